@@ -1,0 +1,87 @@
+#include "core/model/accelerator.h"
+
+namespace orrery {
+namespace {
+
+// One axis-aligned box a primitive, tested first (slabs; survey of acceleration, bounding volumes). Unbounded
+// primitives stand apart and are always tested.
+template <class T>
+class Boxes final : public Accelerator<T> {
+ public:
+  explicit Boxes(const PrimitiveList<T>& primitives) {
+    for (const auto& primitive : primitives) {
+      if (primitive.bounds.bounded())
+        boxed_.push_back({padded<T>(primitive.bounds), primitive.kernel, primitive.index});
+      else
+        unbounded_.push_back(primitive);
+    }
+  }
+
+  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+               AcceleratorCounts& counts) const override {
+    for (const auto& primitive : unbounded_) primitive.kernel->closest(primitive.index, rays, groups, hits);
+    counts.primitive_tests += unbounded_.size() * active_rays(rays, groups);
+    for (const int i : groups) {
+      const Ray<N> ray = rays.at(i);
+      const Vec3<N> inverse = reciprocal(ray.direction);
+      const Groups one = Groups::single(i);
+      counts.box_tests += boxed_.size() * active_rays(rays, one);
+      for (const Boxed& b : boxed_) {
+        const auto entered = enters(Vec3<N>(b.box.lo), Vec3<N>(b.box.hi), ray.origin, inverse, hits.t.at(i));
+        if (!any(entered)) continue;
+        counts.primitive_tests += static_cast<std::uint64_t>(stdx::popcount(entered));
+        b.kernel->closest(b.index, rays, one, hits);
+      }
+    }
+  }
+
+  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    Groups open = groups;
+    for (const auto& primitive : unbounded_) {
+      counts.primitive_tests += active_rays(rays, open);
+      primitive.kernel->occlude(primitive.index, rays, open);
+      open = with_active_rays(rays, open);
+    }
+    for (const int i : open) occlude_register(rays, i, counts);
+  }
+
+ private:
+  using N = Lanes<T>;
+  struct Boxed {
+    Bounds<T> box;
+    const ShapeKernel<T>* kernel;
+    int index;
+  };
+
+  static Vec3<N> reciprocal(const Vec3<N>& d) { return {N(T(1) / d.x), N(T(1) / d.y), N(T(1) / d.z)}; }
+
+  void occlude_register(RayBatch<T>& rays, int i, AcceleratorCounts& counts) const {
+    const Ray<N> ray = rays.at(i);
+    const Vec3<N> inverse = reciprocal(ray.direction);
+    const Groups one = Groups::single(i);
+    for (const Boxed& b : boxed_) {
+      const N t_max = rays.t_max.at(i);
+      const auto active = t_max > N(T(0));
+      if (!any(active)) return;
+      counts.box_tests += static_cast<std::uint64_t>(stdx::popcount(active));
+      const auto entered = enters(Vec3<N>(b.box.lo), Vec3<N>(b.box.hi), ray.origin, inverse, t_max);
+      if (!any(entered)) continue;
+      counts.primitive_tests += static_cast<std::uint64_t>(stdx::popcount(entered));
+      b.kernel->occlude(b.index, rays, one);
+    }
+  }
+
+  std::vector<Boxed> boxed_;
+  PrimitiveList<T> unbounded_;
+};
+
+}  // namespace
+
+AcceleratorPtr<float> build_boxes(const PrimitiveList<float>& primitives) {
+  return std::make_unique<Boxes<float>>(primitives);
+}
+AcceleratorPtr<double> build_boxes(const PrimitiveList<double>& primitives) {
+  return std::make_unique<Boxes<double>>(primitives);
+}
+
+}  // namespace orrery

@@ -1,0 +1,39 @@
+#include "core/model/accelerator.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+class List final : public Accelerator<T> {
+ public:
+  explicit List(const PrimitiveList<T>& primitives) : primitives_(primitives) {}
+
+  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+               AcceleratorCounts& counts) const override {
+    for (const auto& primitive : primitives_) primitive.kernel->closest(primitive.index, rays, groups, hits);
+    counts.primitive_tests += primitives_.size() * active_rays(rays, groups);
+  }
+
+  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    Groups open = groups;
+    for (const auto& primitive : primitives_) {
+      counts.primitive_tests += active_rays(rays, open);
+      primitive.kernel->occlude(primitive.index, rays, open);
+      open = with_active_rays(rays, open);
+    }
+  }
+
+ private:
+  const PrimitiveList<T>& primitives_;
+};
+
+}  // namespace
+
+AcceleratorPtr<float> build_list(const PrimitiveList<float>& primitives) {
+  return std::make_unique<List<float>>(primitives);
+}
+AcceleratorPtr<double> build_list(const PrimitiveList<double>& primitives) {
+  return std::make_unique<List<double>>(primitives);
+}
+
+}  // namespace orrery

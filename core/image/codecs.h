@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/base/error.h"
+#include "core/image/files.h"
+
+// What the codecs of this room share. Sizes are checked against the header before anything is decoded.
+namespace orrery {
+
+Image decode_png(std::span<const std::byte> bytes, std::size_t max_pixels);
+Image decode_jpeg(std::span<const std::byte> bytes, std::size_t max_pixels);
+Image decode_exr(std::span<const std::byte> bytes, std::size_t max_pixels);
+
+inline InputError damaged(const char* format, const char* why) {
+  return InputError("", std::string("the ") + format + " picture is damaged: " + why);
+}
+
+inline void check_size(std::size_t width, std::size_t height, std::size_t max_pixels) {
+  constexpr std::size_t kMaxSide = 65535;
+  if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide || width * height > max_pixels)
+    throw InputError("", "expected a picture of 1 to " + std::to_string(max_pixels) + " pixels, got " +
+                             std::to_string(width) + " x " + std::to_string(height));
+}
+
+}  // namespace orrery

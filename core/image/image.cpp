@@ -1,0 +1,77 @@
+#include "core/image/image.h"
+
+#include <sys/mman.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#include "core/math/elementary.h"
+
+namespace orrery {
+namespace {
+
+constexpr std::size_t kHugePage = std::size_t{1} << 21;
+
+// Codes 0..255 nearest to the sRGB curve over lanes of linear values; NaN gives 0.
+IndexLanes<float> srgb_codes(const Lanes<float>& linear) {
+  using N = Lanes<float>;
+  const N x = min_first(N(1.0f), max_first(N(0.0f), linear));
+  const N curve = pow_unit(x, N(1.0f / 2.4f)) * 1.055f - 0.055f;
+  const N encoded = select(x <= N(0.0031308f), x * 12.92f, curve);
+  return stdx::static_simd_cast<IndexLanes<float>>(encoded * 255.0f + 0.5f);
+}
+
+}  // namespace
+
+void Image::Free::operator()(std::byte* p) const { std::free(p); }
+
+Image::Image(int width, int height, PixelFormat format) : width_(width), height_(height), format_(format) {
+  const std::size_t size = row_bytes() * static_cast<std::size_t>(height);
+  const std::size_t alignment = size >= kHugePage ? kHugePage : 64;
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, rounded)));
+  if (!data_) throw std::bad_alloc();
+  if (alignment == kHugePage) madvise(data_.get(), rounded, MADV_HUGEPAGE);  // fewer page faults; may be refused
+}
+
+void Image::set_row(int x, int y, int count, const float* red, const float* green, const float* blue) {
+  std::byte* out = data_.get() + static_cast<std::size_t>(y) * row_bytes() + static_cast<std::size_t>(x) * pixel_bytes();
+  if (format_ == PixelFormat::linear32) {
+    for (int i = 0; i < count; ++i) {
+      const float pixel[3] = {red[i], green[i], blue[i]};
+      std::memcpy(out + static_cast<std::size_t>(i) * sizeof pixel, pixel, sizeof pixel);
+    }
+    return;
+  }
+  constexpr int kLanes = kWidth<float>;
+  alignas(64) std::array<std::array<std::int32_t, kLanes>, 3> codes;
+  const std::array channels = {red, green, blue};
+  for (int from = 0; from < count; from += kLanes) {
+    for (std::size_t c = 0; c < 3; ++c)
+      srgb_codes(load(channels[c] + from)).copy_to(codes[c].data(), stdx::vector_aligned);
+    const int lanes = std::min(kLanes, count - from);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i)
+      for (const auto& channel : codes) *out++ = static_cast<std::byte>(channel[i]);
+  }
+}
+
+Vec3f Image::linear(int x, int y) const {
+  const std::byte* pixel =
+      data_.get() + static_cast<std::size_t>(y) * row_bytes() + static_cast<std::size_t>(x) * pixel_bytes();
+  if (format_ == PixelFormat::srgb8) {
+    const auto value = [&](int c) { return decode_srgb(static_cast<float>(pixel[c]) / 255.0f); };
+    return {value(0), value(1), value(2)};
+  }
+  std::array<float, 3> values;
+  std::memcpy(values.data(), pixel, sizeof values);
+  return {values[0], values[1], values[2]};
+}
+
+float decode_srgb(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+}  // namespace orrery

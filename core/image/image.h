@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "core/math/vec3.h"
+
+namespace orrery {
+
+enum class PixelFormat {
+  srgb8,    // 3 bytes a pixel, sRGB-encoded (IEC 61966-2-1), values above 1 cut
+  linear32  // 3 floats a pixel, linear, unbounded
+};
+
+// A picture, row 0 at the top. Several threads may set different pixels at once.
+class Image {
+ public:
+  // Pixels are not initialised.
+  Image(int width, int height, PixelFormat format);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  PixelFormat format() const { return format_; }
+
+  // Sets pixels (x, y) .. (x + count - 1, y) from linear colour. The channel arrays are aligned to 64 bytes and
+  // may be read up to the next multiple of 16 entries.
+  void set_row(int x, int y, int count, const float* red, const float* green, const float* blue);
+
+  std::size_t row_bytes() const { return static_cast<std::size_t>(width_) * pixel_bytes(); }
+  std::size_t pixel_bytes() const { return format_ == PixelFormat::srgb8 ? 3 : 12; }
+  std::span<const std::byte> bytes() const { return {data_.get(), row_bytes() * static_cast<std::size_t>(height_)}; }
+  std::span<std::byte> bytes() { return {data_.get(), row_bytes() * static_cast<std::size_t>(height_)}; }
+
+  // Linear colour of a pixel, whatever the format.
+  Vec3f linear(int x, int y) const;
+
+ private:
+  struct Free {
+    void operator()(std::byte* p) const;
+  };
+  int width_, height_;
+  PixelFormat format_;
+  std::unique_ptr<std::byte[], Free> data_;
+};
+
+// Linear value of an sRGB code / 255, both in [0, 1] (IEC 61966-2-1).
+float decode_srgb(float encoded);
+
+}  // namespace orrery

@@ -1,0 +1,189 @@
+#include "core/load/load.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/accelerators/registry.h"
+#include "core/lights/registry.h"
+#include "core/load/names_of.h"
+#include "core/materials/registry.h"
+#include "core/params/params.h"
+#include "core/plan/limits.h"
+#include "core/shapes/registry.h"
+
+namespace orrery {
+namespace {
+
+template <class Types>
+std::vector<Choice> choices_of(const Types& types) {
+  std::vector<Choice> choices;
+  for (const auto& type : types) choices.push_back({type.name, type.summary});
+  return choices;
+}
+
+constexpr std::array kProjections{
+    Choice{"perspective", "Everything is seen from one point."},
+    Choice{"orthographic", "Everything is seen along parallel rays."},
+};
+
+void read_camera(Params& p, Camera& camera) {
+  const auto projection = p.pick("type", "Projection.", kProjections);
+  if (!projection) return;
+  camera.projection = *projection == 0 ? Projection::perspective : Projection::orthographic;
+  camera.eye = p.point("eye", "Where the picture is taken from, in metres.");
+  camera.look_at = p.point("look_at", "What stands in the middle of the picture, in metres.");
+  camera.up = p.direction("up", "Direction that is up in the picture.", Vec3d(0, 1, 0));
+  if (camera.projection == Projection::perspective)
+    camera.fov_degrees = p.number("fov_degrees", "Vertical angle of the picture, for any aspect.",
+                                  {.min = 0, .max = 180, .exclusive_min = true, .exclusive_max = true}, 45.0);
+  else
+    camera.height = p.positive("height", "Metres that the picture's height shows.");
+  const Vec3d view = safe_normalize(camera.look_at - camera.eye);
+  if (view == Vec3d())
+    p.fail("look_at", "expected a point other than eye");
+  else if (!(length(cross(view, camera.up)) > 1e-9))
+    p.fail("up", "expected a direction that is not along the view");
+}
+
+void read_image(Params& p, RenderSettings& render) {
+  render.width = static_cast<int>(p.integer("width", "Pixels.", 1, kMaxImageSide, 600));
+  render.height = static_cast<int>(p.integer("height", "Pixels.", 1, kMaxImageSide, 600));
+}
+
+void read_render(Params& p, RenderSettings& render) {
+  const std::vector<std::string_view> techniques = technique_names(), accelerators = accelerator_names();
+  render.technique = p.choice("technique", "How light is followed.", techniques, "whitted");
+  render.max_depth = static_cast<int>(
+      p.integer("max_depth", "Deepest ray that is traced; camera rays have depth 0.", 0, kMaxDepth, 5));
+  render.min_contribution =
+      p.number("min_contribution", "Rays with less weight in every channel are not traced.", {.min = 0, .max = 1}, 0.0);
+  render.samples = static_cast<int>(
+      p.integer("samples", "Rays a pixel: one through the centre, more are stratified.", 1, kMaxSamples, 1));
+  render.accelerator = p.choice("accelerator", "How rays find what they meet.", accelerators, "auto");
+  render.precision = precision_of(p.choice("precision", "Number type of rays.", {"auto", "float", "double"}, "auto"));
+  render.seed = static_cast<std::uint64_t>(p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, 0));
+}
+
+class SceneReader {
+ public:
+  SceneReader() : scene_(std::make_shared<Scene>()) {
+    for (const auto& type : shape_types()) scene_->shapes.push_back(type.make());
+    for (const auto& type : material_types()) scene_->materials.push_back(type.make());
+    objects_by_shape_.resize(scene_->shapes.size());
+  }
+
+  void read(Params& p) {
+    p.integer("version", "Version of this format.", 1, 1);
+    scene_->title = p.text("title", "A name for people.", 200, "");
+    scene_->description = p.text("description", "What there is to see.", 200, "");
+    p.object("camera", "Where the picture is taken from.", [&](Params& c) { read_camera(c, scene_->camera); });
+    p.optional_object("image", "Size of the picture.", [&](Params& i) { read_image(i, scene_->render); });
+    scene_->ambient = p.color("ambient", "Light that comes from everywhere.", Vec3d(0));
+    scene_->background = p.color("background", "What a ray sees that meets nothing.", Vec3d(0));
+    p.each_named("materials", "Materials by name.", {}, [&](const std::string& name, Params& m) { read_material(name, m); });
+    p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
+    p.each("objects", "What there is to see.", {1, kMaxObjects}, [&](Params& o) { read_object(o); });
+    p.optional_object("render", "How the picture is made.", [&](Params& r) { read_render(r, scene_->render); });
+  }
+
+  // To be called once all is read without a problem.
+  std::shared_ptr<const Scene> finish(const Document& document) {
+    scene_->id = document.id();
+    scene_->canonical = document.canonical();
+    number_materials();
+    gather_facts();
+    return scene_;
+  }
+
+ private:
+  struct MaterialPlace {
+    std::size_t set;
+    int index;  // within the set
+  };
+
+  void read_material(const std::string& name, Params& p) {
+    const auto type = p.pick("type", "Kind of material.", choices_of(material_types()));
+    names_.add(name);
+    if (!type) return places_.push_back({0, 0});
+    MaterialSet& set = *scene_->materials[*type];
+    places_.push_back({*type, set.size()});
+    set.add(p);
+  }
+
+  void read_light(Params& p) {
+    const auto type = p.pick("type", "Kind of light.", choices_of(light_types()));
+    if (type) scene_->lights.push_back(light_types()[*type].make(p));
+  }
+
+  void read_object(Params& p) {
+    const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
+    if (!type) return;
+    const std::size_t material = p.reference("material", "Name of its material.", names_);
+    const int primitives = scene_->shapes[*type]->add(p);
+    objects_by_shape_[*type].push_back({material, primitives});
+    ++scene_->object_count;
+  }
+
+  // Materials are numbered set by set, and each primitive learns its number.
+  void number_materials() {
+    std::vector<int> first(scene_->materials.size(), 0);
+    for (std::size_t set = 1; set < first.size(); ++set)
+      first[set] = first[set - 1] + scene_->materials[set - 1]->size();
+    for (const auto& objects : objects_by_shape_)
+      for (const auto& [name, primitives] : objects) {
+        const MaterialPlace place = places_[name];
+        used_sets_.push_back(place.set);
+        scene_->material_of.insert(scene_->material_of.end(), static_cast<std::size_t>(primitives),
+                                   first[place.set] + place.index);
+      }
+  }
+
+  void gather_facts() {
+    SceneFacts& facts = scene_->facts;
+    for (const std::size_t set : used_sets_) {
+      const MaterialTraits traits = scene_->materials[set]->traits();
+      facts.materials.lit |= traits.lit;
+      facts.materials.mirrors |= traits.mirrors;
+      facts.materials.transmits |= traits.transmits;
+      facts.materials.filters |= traits.filters;
+    }
+    facts.smallest_feature = std::numeric_limits<double>::infinity();
+    for (const auto& shapes : scene_->shapes)
+      for (int i = 0; i < shapes->size(); ++i) {
+        const Boundsd bounds = shapes->bounds(i);
+        if (!bounds.bounded()) continue;
+        facts.magnitude = std::max(facts.magnitude, bounds.magnitude());
+        facts.smallest_feature = std::min(facts.smallest_feature, bounds.diagonal());
+      }
+  }
+
+  std::shared_ptr<Scene> scene_;
+  Names names_{"material"};
+  std::vector<MaterialPlace> places_;  // by number of the name
+  struct ObjectOf {
+    std::size_t material;
+    int primitives;
+  };
+  std::vector<std::vector<ObjectOf>> objects_by_shape_;
+  std::vector<std::size_t> used_sets_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Scene> load_scene(const Document& document) {
+  SceneReader reader;
+  read_document(document, [&](Params& p) { reader.read(p); });
+  return reader.finish(document);
+}
+
+std::shared_ptr<const Scene> load_scene(std::string_view json, const JsonLimits& limits) {
+  return load_scene(parse_document(json, limits));
+}
+
+std::string scene_schema() {
+  SceneReader reader;
+  return describe("scene.json", "orrery scene", "A scene for orrery, version 1. Lengths in metres, angles in degrees, colours linear.",
+                  [&](Params& p) { reader.read(p); });
+}
+
+}  // namespace orrery

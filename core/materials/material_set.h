@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/material.h"
+#include "core/model/record.h"
+
+// A material type is one record, `template <class N> struct Rough`, with
+//   static Rough<double> read(Params&);
+//   MaterialTraits traits() const;              of a Rough<double>
+// and a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
+namespace orrery {
+
+// The materials of one type in the render's precision, and the loop over the lanes that have one of them.
+template <template <class> class Record, class T>
+class MaterialRecords : public MaterialKernel<T> {
+ public:
+  using N = Lanes<T>;
+
+  MaterialRecords(std::span<const Record<double>> records, int first) : first_(first) {
+    for (const auto& record : records) records_.push_back(convert_record<Record, T, double>(record));
+  }
+
+ protected:
+  // Calls visit(i, mine, record) for each register with lanes of these materials.
+  template <class Visit>
+  void for_each_register(const SurfaceBatch<T>& surface, const Groups& groups, const Visit& visit) const {
+    const int last = first_ + static_cast<int>(records_.size());
+    for (const int i : groups) {
+      const IndexLanes<T> material = load_index<T>(surface.material, i);
+      const auto mine = mask_cast<N>(material >= first_ && material < last);
+      if (any(mine)) visit(i, mine, fetch_records<Record, T>(records_, material - first_, mine));
+    }
+  }
+
+ private:
+  std::vector<Record<T>> records_;
+  int first_;
+};
+
+template <template <class> class Record, template <class> class Kernel>
+class MaterialSetOf final : public MaterialSet {
+ public:
+  void add(Params& params) override { records_.push_back(Record<double>::read(params)); }
+  int size() const override { return static_cast<int>(records_.size()); }
+  MaterialTraits traits() const override {
+    MaterialTraits all;
+    for (const auto& record : records_) {
+      const MaterialTraits one = record.traits();
+      all.lit |= one.lit;
+      all.mirrors |= one.mirrors;
+      all.transmits |= one.transmits;
+      all.filters |= one.filters;
+    }
+    return all;
+  }
+  MaterialKernelPtr<float> kernel(float, int first) const override {
+    return std::make_unique<Kernel<float>>(std::span<const Record<double>>(records_), first);
+  }
+  MaterialKernelPtr<double> kernel(double, int first) const override {
+    return std::make_unique<Kernel<double>>(std::span<const Record<double>>(records_), first);
+  }
+
+ private:
+  std::vector<Record<double>> records_;
+};
+
+}  // namespace orrery

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <span>
+
+#include "core/model/material.h"
+
+namespace orrery {
+
+// Every material type, in the order in which materials are numbered.
+std::span<const MaterialType> material_types();
+
+}  // namespace orrery

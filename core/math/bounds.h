@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/math/lanes.h"
+#include "core/math/vec3.h"
+
+namespace orrery {
+
+// An axis-aligned box. Empty when made by default; infinite sides are allowed.
+template <class T>
+struct Bounds {
+  Vec3<T> lo{Vec3<T>(std::numeric_limits<T>::infinity())};
+  Vec3<T> hi{Vec3<T>(-std::numeric_limits<T>::infinity())};
+
+  void include(const Vec3<T>& p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+  }
+  void include(const Bounds& b) {
+    include(b.lo);
+    include(b.hi);
+  }
+  bool bounded() const {
+    return std::isfinite(lo.x) && std::isfinite(lo.y) && std::isfinite(lo.z) && std::isfinite(hi.x) &&
+           std::isfinite(hi.y) && std::isfinite(hi.z);
+  }
+  T diagonal() const { return length(hi - lo); }
+  // Largest absolute coordinate.
+  T magnitude() const { return std::max(max_component(abs(lo)), max_component(abs(hi))); }
+
+  static Bounds everything() {
+    Bounds b;
+    b.lo = Vec3<T>(-std::numeric_limits<T>::infinity());
+    b.hi = Vec3<T>(std::numeric_limits<T>::infinity());
+    return b;
+  }
+};
+
+using Boundsd = Bounds<double>;
+
+// The box in another precision, grown outward by 4 ulp of its largest coordinate on every side, so that a
+// hit computed in that precision and put back on its shape still lies inside.
+template <class T>
+Bounds<T> padded(const Boundsd& b) {
+  const T pad = static_cast<T>(b.magnitude()) * std::numeric_limits<T>::epsilon() * 4;
+  Bounds<T> grown;
+  grown.lo = Vec3<T>(b.lo) - Vec3<T>(pad);
+  grown.hi = Vec3<T>(b.hi) + Vec3<T>(pad);
+  return grown;
+}
+
+// Lanes that may enter `box` at a distance in [0, t_max]; conservative: a ray that touches it is never lost.
+// Near and far planes are chosen by the sign bit of the direction; a NaN (0 * infinity, a ray in the plane of
+// a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray Traversal",
+// JCGT 2013). `inverse` is 1 / direction, infinite where that is 0.
+template <class N>
+MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin, const Vec3<N>& inverse,
+                 const N& t_max) {
+  using T = ScalarOf<N>;
+  N near = N(T(0)), far = t_max;
+  const auto fold = [&](const N& lo_i, const N& hi_i, const N& o, const N& inv) {
+    using std::signbit;
+    const auto negative = signbit(inv);
+    const N t0 = (lo_i - o) * inv, t1 = (hi_i - o) * inv;
+    near = max_first(near, select(negative, t1, t0));
+    constexpr T kFarPad = 1 + 4 * std::numeric_limits<T>::epsilon();
+    far = min_first(far, N(select(negative, t0, t1) * kFarPad));
+  };
+  fold(lo.x, hi.x, origin.x, inverse.x);
+  fold(lo.y, hi.y, origin.y, inverse.y);
+  fold(lo.z, hi.z, origin.z, inverse.z);
+  return near <= far;
+}
+
+}  // namespace orrery

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "core/math/lanes.h"
+
+// Powers and exponentials over scalars and lanes, made of IEEE operations alone, so that every machine and
+// every width gives the same bits (libm chooses variants by processor). Series: atanh for the logarithm
+// (|s| <= 0.172), Taylor for 2^f (|f| <= 1/2), each long enough for half an ulp of its type.
+namespace orrery {
+
+namespace detail {
+
+template <class T>
+struct FloatFormat;
+template <>
+struct FloatFormat<float> {
+  static constexpr int kMantissaBits = 23;
+  static constexpr std::int32_t kSqrtHalfBits = 0x3f3504f3;  // bits of sqrt(1/2)
+  static constexpr std::int32_t kMantissaMask = 0x007fffff;
+  static constexpr std::int32_t kExponentBias = 127;
+  static constexpr int kLogTerms = 5, kExpTerms = 7;
+};
+template <>
+struct FloatFormat<double> {
+  static constexpr int kMantissaBits = 52;
+  static constexpr std::int64_t kSqrtHalfBits = 0x3fe6a09e667f3bcd;
+  static constexpr std::int64_t kMantissaMask = 0x000fffffffffffff;
+  static constexpr std::int64_t kExponentBias = 1023;
+  static constexpr int kLogTerms = 12, kExpTerms = 14;
+};
+
+template <class N>
+struct IntegerOf {
+  using type = IndexOf<N>;
+};
+template <class T, class Abi>
+struct IntegerOf<stdx::simd<T, Abi>> {
+  using type = stdx::rebind_simd_t<IndexOf<T>, stdx::simd<T, Abi>>;
+};
+
+template <class To, class From>
+To convert(const From& x) {
+  if constexpr (std::is_arithmetic_v<From>)
+    return static_cast<To>(x);
+  else
+    return stdx::static_simd_cast<To>(x);
+}
+
+}  // namespace detail
+
+// log2(x). REQUIRES: x positive and normal (other values give a meaningless finite number).
+template <class N>
+N log2_normal(const N& x) {
+  using T = ScalarOf<N>;
+  using Format = detail::FloatFormat<T>;
+  using Integer = typename detail::IntegerOf<N>::type;
+  const Integer bits = std::bit_cast<Integer>(x) - Integer(Format::kSqrtHalfBits);
+  const Integer exponent = bits >> Format::kMantissaBits;
+  const N m = std::bit_cast<N>((bits & Integer(Format::kMantissaMask)) + Integer(Format::kSqrtHalfBits));
+  const N s = (m - T(1)) / (m + T(1));
+  const N s2 = s * s;
+  N series = N(T(1) / T(2 * Format::kLogTerms - 1));
+  for (int k = Format::kLogTerms - 2; k >= 0; --k) series = series * s2 + T(1) / T(2 * k + 1);
+  constexpr T kTwoOverLn2 = T(2.88539008177792681471984936200378427L);
+  return detail::convert<N>(exponent) + s * series * kTwoOverLn2;
+}
+
+// 2^y; 0 where y is below the smallest normal exponent. REQUIRES: y below the largest exponent.
+template <class N>
+N exp2_flushed(const N& y) {
+  using T = ScalarOf<N>;
+  using Format = detail::FloatFormat<T>;
+  using Integer = typename detail::IntegerOf<N>::type;
+  constexpr T kLowest = T(1 - Format::kExponentBias);
+  const N clamped = select(y > N(kLowest), y, N(kLowest));
+  // Adding and taking away 1.5 * 2^mantissa rounds to the nearest integer.
+  constexpr T kRounder = T(3) * T(std::int64_t{1} << (Format::kMantissaBits - 1));
+  const N whole = (clamped + kRounder) - kRounder;
+  constexpr T kLn2 = T(0.693147180559945309417232121458176568L);
+  const N z = (clamped - whole) * kLn2;
+  N series = N(T(1));
+  for (int k = Format::kExpTerms; k >= 1; --k) series = series * z * (T(1) / T(k)) + T(1);
+  const Integer scale = (detail::convert<Integer>(whole) + Integer(Format::kExponentBias))
+                        << Format::kMantissaBits;
+  return select(y < N(kLowest), N(T(0)), series * std::bit_cast<N>(scale));
+}
+
+// x^y for x in [0, 1] and y >= 0, with 0^0 = 1 and results below the smallest normal number flushed to 0.
+// Relative error: y |log2 x| ulp at most; 2e-5 (float), 3e-13 (double) wherever the result is normal.
+template <class N>
+N pow_unit(const N& x, const N& y) {
+  using T = ScalarOf<N>;
+  constexpr T kSmallest = std::numeric_limits<T>::min();
+  const auto vanishing = x < N(kSmallest);
+  const N power = exp2_flushed(y * log2_normal(select(vanishing, N(T(1)), x)));
+  return select(vanishing, select(y > N(T(0)), N(T(0)), N(T(1))), power);
+}
+
+}  // namespace orrery

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <experimental/simd>
+#include <limits>
+#include <type_traits>
+
+// Lanes: several numbers of one type that go through the same formula at once. A formula written over a
+// number type N takes a scalar or lanes alike; the few operations that differ stand here.
+namespace orrery {
+
+namespace stdx = std::experimental;
+
+template <class T>
+struct LanesOf {
+  using type = stdx::native_simd<T>;
+};
+template <>
+struct LanesOf<long double> {  // oracles: one lane
+  using type = stdx::simd<long double, stdx::simd_abi::scalar>;
+};
+
+// As many numbers as one register of this machine level holds.
+template <class T>
+using Lanes = typename LanesOf<T>::type;
+
+// Integers as wide as T, so that a mask of one serves the other.
+template <class T>
+using IndexOf = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+template <class T>
+using IndexLanes = stdx::rebind_simd_t<IndexOf<T>, Lanes<T>>;
+
+template <class T>
+inline constexpr int kWidth = static_cast<int>(Lanes<T>::size());
+
+template <class N>
+struct NumberTraits {
+  using Scalar = N;
+  using Mask = bool;
+};
+template <class T, class Abi>
+struct NumberTraits<stdx::simd<T, Abi>> {
+  using Scalar = T;
+  using Mask = stdx::simd_mask<T, Abi>;
+};
+// The scalar behind a number type, and what a comparison of it yields.
+template <class N>
+using ScalarOf = typename NumberTraits<N>::Scalar;
+template <class N>
+using MaskOf = typename NumberTraits<N>::Mask;
+
+template <class N>
+  requires std::is_arithmetic_v<N>
+N select(bool m, N a, N b) {
+  return m ? a : b;
+}
+template <class T, class Abi>
+stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& m, const std::type_identity_t<stdx::simd<T, Abi>>& a,
+                          stdx::simd<T, Abi> b) {
+  stdx::where(m, b) = a;
+  return b;
+}
+
+inline bool any(bool m) { return m; }
+inline bool all(bool m) { return m; }
+template <class T, class Abi>
+bool any(const stdx::simd_mask<T, Abi>& m) {
+  return stdx::any_of(m);
+}
+template <class T, class Abi>
+bool all(const stdx::simd_mask<T, Abi>& m) {
+  return stdx::all_of(m);
+}
+
+// A mask of one element type as the mask of another with as many lanes.
+template <class To, class T, class Abi>
+typename To::mask_type mask_cast(const stdx::simd_mask<T, Abi>& m) {
+  if constexpr (std::is_same_v<typename To::mask_type, stdx::simd_mask<T, Abi>>)
+    return m;
+  else
+    return stdx::__proposed::static_simd_cast<typename To::mask_type>(m);
+}
+
+template <class T>
+Lanes<T> load(const T* from) {
+  return Lanes<T>(from, stdx::vector_aligned);
+}
+template <class T, class V>
+void store(const V& v, T* to) {
+  v.copy_to(to, stdx::vector_aligned);
+}
+
+// Smaller and larger of two numbers; where one is NaN the other is returned if it stands first, so an
+// accumulator passed first wins over a NaN (and -0 and +0 count as equal: the first is kept).
+template <class N>
+N min_first(const N& accumulator, const N& x) {
+  return select(x < accumulator, x, accumulator);
+}
+template <class N>
+N max_first(const N& accumulator, const N& x) {
+  return select(x > accumulator, x, accumulator);
+}
+
+}  // namespace orrery

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+
+namespace orrery {
+
+// Three components of one number type: a scalar (float, double, long double) or lanes of it.
+// Points, directions and linear colours all use it; which one is meant stands in the variable's name.
+template <class N>
+struct Vec3 {
+  N x{}, y{}, z{};
+
+  Vec3() = default;
+  Vec3(N x_, N y_, N z_) : x(x_), y(y_), z(z_) {}
+  explicit Vec3(N all) : x(all), y(all), z(all) {}
+  template <class M>
+    requires(!std::is_same_v<M, N>)
+  explicit Vec3(const Vec3<M>& v) : x(static_cast<N>(v.x)), y(static_cast<N>(v.y)), z(static_cast<N>(v.z)) {}
+
+  bool operator==(const Vec3&) const = default;
+};
+
+using Vec3d = Vec3<double>;
+using Vec3f = Vec3<float>;
+
+template <class N>
+Vec3<N> operator+(const Vec3<N>& a, const Vec3<N>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class N>
+Vec3<N> operator-(const Vec3<N>& a, const Vec3<N>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class N>
+Vec3<N> operator-(const Vec3<N>& a) {
+  return {-a.x, -a.y, -a.z};
+}
+template <class N>
+Vec3<N> operator*(const Vec3<N>& a, const Vec3<N>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class N>
+Vec3<N> operator*(const Vec3<N>& a, const std::type_identity_t<N>& s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+template <class N>
+Vec3<N> operator*(const std::type_identity_t<N>& s, const Vec3<N>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <class N>
+Vec3<N> operator/(const Vec3<N>& a, const std::type_identity_t<N>& s) {
+  return {a.x / s, a.y / s, a.z / s};
+}
+
+template <class N>
+N dot(const Vec3<N>& a, const Vec3<N>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class N>
+Vec3<N> cross(const Vec3<N>& a, const Vec3<N>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class N>
+N length(const Vec3<N>& a) {
+  using std::sqrt;
+  return sqrt(dot(a, a));
+}
+
+// Unit vector along `a`. REQUIRES: dot(a, a) neither overflows nor underflows to 0; for input of any
+// magnitude use `safe_normalize`.
+template <class N>
+Vec3<N> normalize(const Vec3<N>& a) {
+  return a * (N(1) / length(a));
+}
+
+template <class N>
+N max_component(const Vec3<N>& a) {
+  using std::max;
+  return max(max(a.x, a.y), a.z);
+}
+template <class N>
+Vec3<N> abs(const Vec3<N>& a) {
+  using std::abs;
+  return {abs(a.x), abs(a.y), abs(a.z)};
+}
+
+// Unit vector of a scalar vector of any finite magnitude: the largest component is scaled to 1 first, so
+// that neither 1e-200 nor 1e200 leaves the range. The zero vector stays zero.
+template <class N>
+  requires std::is_floating_point_v<N>
+Vec3<N> safe_normalize(const Vec3<N>& a) {
+  const N largest = max_component(abs(a));
+  if (!(largest > 0)) return Vec3<N>{};
+  const Vec3<N> scaled = a / largest;
+  return scaled / length(scaled);
+}
+
+}  // namespace orrery

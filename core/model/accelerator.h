@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/model/shape.h"
+
+namespace orrery {
+
+// Work of a structure: one ray against one thing, whatever the width of the lanes.
+struct AcceleratorCounts {
+  std::uint64_t box_tests = 0;
+  std::uint64_t primitive_tests = 0;
+
+  void add(const AcceleratorCounts& other) {
+    box_tests += other.box_tests;
+    primitive_tests += other.primitive_tests;
+  }
+};
+
+// What a structure is built over: every primitive of a scene; its position is its number.
+template <class T>
+struct Primitive {
+  const ShapeKernel<T>* kernel;
+  int index;  // within the kernel
+  Boundsd bounds;
+};
+template <class T>
+using PrimitiveList = std::vector<Primitive<T>>;
+
+// Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive, equal
+// distances going to the lower number. Immutable once built; calls may run on any number of threads.
+template <class T>
+class Accelerator {
+ public:
+  virtual ~Accelerator() = default;
+
+  // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max, hits.primitive kNoPrimitive.
+  virtual void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+                       AcceleratorCounts& counts) const = 0;
+
+  // Sets t_max to -1 for every ray of `groups` that meets anything in (0, t_max).
+  virtual void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const = 0;
+};
+
+template <class T>
+using AcceleratorPtr = std::unique_ptr<Accelerator<T>>;
+
+// The list passed to `build` outlives the accelerator.
+struct AcceleratorType {
+  const char* name;
+  const char* summary;
+  AcceleratorPtr<float> (*build_float)(const PrimitiveList<float>&);
+  AcceleratorPtr<double> (*build_double)(const PrimitiveList<double>&);
+};
+
+template <class T>
+AcceleratorPtr<T> build(const AcceleratorType& type, const PrimitiveList<T>& primitives) {
+  if constexpr (std::is_same_v<T, float>)
+    return type.build_float(primitives);
+  else
+    return type.build_double(primitives);
+}
+
+}  // namespace orrery

@@ -1,0 +1,151 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/math/lanes.h"
+#include "core/math/vec3.h"
+
+// Batches: many rays in structure-of-arrays form, passed between stages. T is float or double (long double in
+// oracles). All arrays are aligned for whole registers and hold kBatchRoom entries, so that a stage may read
+// and write past `count` up to the next register boundary.
+namespace orrery {
+
+inline constexpr int kBatch = 1024;            // rays a batch holds at most
+inline constexpr int kBatchRoom = kBatch + 16;  // the widest register is 16 lanes
+
+template <class T>
+struct Array {
+  alignas(64) std::array<T, kBatchRoom> values;
+
+  T& operator[](int i) { return values[static_cast<std::size_t>(i)]; }
+  const T& operator[](int i) const { return values[static_cast<std::size_t>(i)]; }
+  // Lanes i, i+1, ...; REQUIRES: i is a multiple of the lane count.
+  stdx::rebind_simd_t<T, Lanes<std::conditional_t<std::is_floating_point_v<T>, T, float>>> at(int i) const
+    requires std::is_floating_point_v<T>
+  {
+    return {&values[static_cast<std::size_t>(i)], stdx::vector_aligned};
+  }
+  template <class V>
+  void put(int i, const V& v) {
+    v.copy_to(&values[static_cast<std::size_t>(i)], stdx::vector_aligned);
+  }
+  template <class V, class M>
+  void put(int i, const M& mask, const V& v) {
+    stdx::where(mask, v).copy_to(&values[static_cast<std::size_t>(i)], stdx::vector_aligned);
+  }
+};
+
+template <class T>
+struct Vec3Array {
+  Array<T> x, y, z;
+
+  Vec3<Lanes<T>> at(int i) const { return {x.at(i), y.at(i), z.at(i)}; }
+  void put(int i, const Vec3<Lanes<T>>& v) {
+    x.put(i, v.x);
+    y.put(i, v.y);
+    z.put(i, v.z);
+  }
+  template <class M>
+  void put(int i, const M& mask, const Vec3<Lanes<T>>& v) {
+    x.put(i, mask, v.x);
+    y.put(i, mask, v.y);
+    z.put(i, mask, v.z);
+  }
+};
+
+// Indices as wide as T, so that comparisons of the two share a mask.
+template <class T>
+IndexLanes<T> load_index(const Array<IndexOf<T>>& a, int i) {
+  return {&a.values[static_cast<std::size_t>(i)], stdx::vector_aligned};
+}
+
+// The registers of a batch that a stage works on: index of each one's first ray, ascending.
+class Groups {
+ public:
+  Groups() {}  // the list itself stays uninitialised
+
+  // Every register that holds one of the rays from..to-1; `from` is a multiple of the width.
+  static Groups covering(int from, int to, int width) {
+    Groups all;
+    for (int i = from; i < to; i += width) all.add(i);
+    return all;
+  }
+  static Groups single(int first) {
+    Groups one;
+    one.add(first);
+    return one;
+  }
+  Groups(const Groups& other) { *this = other; }
+  Groups& operator=(const Groups& other) {
+    count_ = other.count_;
+    std::copy(other.begin(), other.end(), first_.begin());
+    return *this;
+  }
+  void add(int first) { first_[static_cast<std::size_t>(count_++)] = static_cast<std::uint16_t>(first); }
+  bool empty() const { return count_ == 0; }
+  int size() const { return count_; }
+  const std::uint16_t* begin() const { return first_.data(); }
+  const std::uint16_t* end() const { return first_.data() + count_; }
+
+ private:
+  int count_ = 0;
+  std::array<std::uint16_t, kBatch> first_;
+};
+
+// One ray: points origin + t * direction. Formulas for hits take any non-zero direction; the stages pass unit
+// directions, so that t is metres.
+template <class N>
+struct Ray {
+  Vec3<N> origin, direction;
+
+  Vec3<N> at(const N& t) const { return origin + direction * t; }
+};
+
+// Rays on their way. t_max is the far end (exclusive); a ray with t_max < 0 is inactive: it hits nothing.
+template <class T>
+struct RayBatch {
+  int count = 0;
+  Vec3Array<T> origin, direction;
+  Array<T> t_max;
+
+  Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
+};
+
+// Rays of `groups` that are still active, and the registers that hold one.
+template <class T>
+std::uint64_t active_rays(const RayBatch<T>& rays, const Groups& groups) {
+  std::uint64_t count = 0;
+  for (const int i : groups)
+    count += static_cast<std::uint64_t>(stdx::popcount(rays.t_max.at(i) > Lanes<T>(T(0))));
+  return count;
+}
+template <class T>
+Groups with_active_rays(const RayBatch<T>& rays, const Groups& groups) {
+  Groups active;
+  for (const int i : groups)
+    if (any(rays.t_max.at(i) > Lanes<T>(T(0)))) active.add(i);
+  return active;
+}
+
+inline constexpr int kNoPrimitive = -1;
+
+// Nearest hit so far of each ray: t starts as the ray's t_max, primitive as kNoPrimitive.
+template <class T>
+struct HitBatch {
+  Array<T> t;
+  Array<IndexOf<T>> primitive;
+};
+
+// The surface at each hit. Unit normals stand on the side the ray came from.
+template <class T>
+struct SurfaceBatch {
+  Vec3Array<T> position;   // put back on the shape
+  Vec3Array<T> normal;     // for shading; may be interpolated
+  Vec3Array<T> geometric;  // of the true surface
+  Array<T> side;           // +1: the ray came from the outside, -1: from the inside
+  Array<T> step;           // metres along `geometric` that clear the surface of rounding
+  Array<IndexOf<T>> material;
+};
+
+}  // namespace orrery

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/model/accelerator.h"
+
+namespace orrery {
+
+inline constexpr int kDeepestRay = 32;  // no request may ask for deeper rays
+
+// Rays by kind and depth; a shadow ray has the depth of the ray whose hit sent it.
+struct RayCounts {
+  using ByDepth = std::array<std::uint64_t, kDeepestRay + 1>;
+  std::uint64_t camera = 0;
+  ByDepth reflected{}, refracted{}, shadow{};
+
+  std::uint64_t total() const {
+    std::uint64_t sum = camera;
+    for (std::size_t d = 0; d < reflected.size(); ++d) sum += reflected[d] + refracted[d] + shadow[d];
+    return sum;
+  }
+  void add(const RayCounts& other) {
+    camera += other.camera;
+    for (std::size_t d = 0; d < reflected.size(); ++d) {
+      reflected[d] += other.reflected[d];
+      refracted[d] += other.refracted[d];
+      shadow[d] += other.shadow[d];
+    }
+  }
+};
+
+// What one piece of a render did.
+struct TraceCounts {
+  RayCounts rays;
+  AcceleratorCounts accelerator;
+  std::uint64_t cut_rays = 0;  // not traced: too deep or too weak
+
+  void add(const TraceCounts& other) {
+    rays.add(other.rays);
+    accelerator.add(other.accelerator);
+    cut_rays += other.cut_rays;
+  }
+};
+
+}  // namespace orrery

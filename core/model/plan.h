@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/model/camera.h"
+
+namespace orrery {
+
+struct AcceleratorType;
+struct TechniqueType;
+
+enum class Precision { automatic, single_precision, double_precision };
+
+// One choice the plan made, for people to read.
+struct Decision {
+  std::string subject, choice, reason;
+};
+
+// All that a render needs to know beside the scene: what will be modelled and, in `decisions`, why no more.
+struct Plan {
+  int width = 0, height = 0, samples = 1;
+  CameraFrame camera;
+  const TechniqueType* technique = nullptr;
+  const AcceleratorType* accelerator = nullptr;
+  bool double_precision = false;
+  int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
+  double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
+  std::uint64_t seed = 0;
+  // Stages that are present.
+  bool direct_light = true;  // light sources are evaluated
+  bool shadows = true;       // shadow rays are traced
+  bool specular = true;      // mirrored and refracted rays
+  bool filters = true;       // bodies weaken the light that crosses them
+  int slice = 256;           // rays that pass through the stages together; changes no result
+  std::vector<Decision> decisions;
+};
+
+}  // namespace orrery

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <span>
+
+#include "core/model/batch.h"
+
+// Records: structs of numbers alone, written once as `template <class N> struct Sphere { Vec3<N> center; N
+// radius; ... }`. The same struct holds one shape in double precision as read, one in the render's precision,
+// or lanes of them: a register full of the same one, or a different one in each lane.
+namespace orrery {
+
+template <template <class> class Record, class N>
+inline constexpr std::size_t kFields = sizeof(Record<N>) / sizeof(N);
+
+template <template <class> class Record, class To, class From>
+Record<To> convert_record(const Record<From>& from) {
+  static_assert(kFields<Record, To> == kFields<Record, From>);
+  std::array<From, kFields<Record, From>> source;
+  std::memcpy(source.data(), &from, sizeof from);
+  std::array<To, kFields<Record, To>> target;
+  for (std::size_t i = 0; i < source.size(); ++i) target[i] = static_cast<To>(source[i]);
+  Record<To> to;
+  std::memcpy(static_cast<void*>(&to), target.data(), sizeof to);
+  return to;
+}
+
+template <template <class> class Record, class T>
+Record<Lanes<T>> broadcast_record(const Record<T>& one) {
+  return convert_record<Record, Lanes<T>, T>(one);
+}
+
+// Lane i holds table[index[i]] where `mask` is set, and some valid record elsewhere. REQUIRES: any(mask).
+// Rays of one register mostly meet the same thing, so that case is a broadcast.
+template <template <class> class Record, class T>
+Record<Lanes<T>> fetch_records(std::span<const Record<T>> table, const IndexLanes<T>& index,
+                               const MaskOf<Lanes<T>>& mask) {
+  const int leader = stdx::find_first_set(mask);
+  const IndexOf<T> first = index[static_cast<std::size_t>(leader)];
+  if (all(!mask || mask_cast<Lanes<T>>(index == first)))
+    return broadcast_record<Record, T>(table[static_cast<std::size_t>(first)]);
+  constexpr std::size_t kCount = kFields<Record, T>;
+  alignas(64) std::array<std::array<T, static_cast<std::size_t>(kWidth<T>)>, kCount> columns;
+  for (std::size_t lane = 0; lane < static_cast<std::size_t>(kWidth<T>); ++lane) {
+    std::array<T, kCount> row;
+    std::memcpy(row.data(), &table[static_cast<std::size_t>(mask[lane] ? index[lane] : first)], sizeof row);
+    for (std::size_t field = 0; field < kCount; ++field) columns[field][lane] = row[field];
+  }
+  std::array<Lanes<T>, kCount> lanes;
+  for (std::size_t field = 0; field < kCount; ++field)
+    lanes[field] = Lanes<T>(columns[field].data(), stdx::vector_aligned);
+  Record<Lanes<T>> result;
+  std::memcpy(static_cast<void*>(&result), lanes.data(), sizeof result);
+  return result;
+}
+
+}  // namespace orrery

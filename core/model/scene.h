@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/model/light.h"
+#include "core/model/material.h"
+#include "core/model/plan.h"
+#include "core/model/shape.h"
+
+namespace orrery {
+
+// What the scene itself asks of a render; requests may say otherwise.
+struct RenderSettings {
+  int width = 600, height = 600;
+  std::string technique = "whitted", accelerator = "auto";
+  Precision precision = Precision::automatic;
+  int max_depth = 5, samples = 1;
+  double min_contribution = 0;
+  std::uint64_t seed = 0;
+};
+
+// What the plan wants to know about a scene, computed once.
+struct SceneFacts {
+  MaterialTraits materials;     // of those that some object has
+  double magnitude = 0;         // largest absolute coordinate of bounded primitives, metres
+  double smallest_feature = 0;  // smallest diagonal of a bounded primitive's box; infinite if there is none
+};
+
+// A scene as read, in double precision; never changed afterwards, shared between threads. Primitives are
+// numbered set by set in the order of `shapes`, materials likewise in the order of `materials`.
+struct Scene {
+  std::string id;  // SHA-256 of the canonical JSON
+  std::string canonical;
+  std::string title, description;
+  Camera camera;
+  RenderSettings render;
+  Vec3d ambient, background;
+  std::vector<std::unique_ptr<ShapeSet>> shapes;
+  std::vector<std::unique_ptr<MaterialSet>> materials;
+  std::vector<std::unique_ptr<Light>> lights;
+  std::vector<std::int32_t> material_of;  // of each primitive
+  int object_count = 0;
+  SceneFacts facts;
+
+  int primitive_count() const { return static_cast<int>(material_of.size()); }
+};
+
+}  // namespace orrery

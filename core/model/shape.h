@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+
+#include "core/math/bounds.h"
+#include "core/model/batch.h"
+
+// Shapes. A scene keeps all shapes of one type together (a ShapeSet, in double precision); for rendering each
+// set makes a ShapeKernel in the plan's number type, whose calls take whole batches.
+namespace orrery {
+
+class Params;
+
+// The surface of one shape at one hit.
+template <class N>
+struct Surface {
+  Vec3<N> position;   // on the shape, to the last few ulp
+  Vec3<N> geometric;  // outward unit normal
+  Vec3<N> normal;     // outward unit normal for shading
+  N magnitude;        // largest absolute coordinate of the shape, at least near the hit: the scale of rounding
+};
+
+// Const and free of state: any number of threads may call it at once.
+template <class T>
+class ShapeKernel {
+ public:
+  virtual ~ShapeKernel() = default;
+
+  // Tests primitive `index` of this set against the rays of `groups`; a hit in (0, hits.t) replaces the one
+  // there. At equal t the lower primitive number stays.
+  virtual void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) const = 0;
+
+  // Sets t_max to -1 for the rays of `groups` that meet primitive `index` in (0, t_max).
+  virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups) const = 0;
+
+  // Fills the surface of every hit in `groups` that belongs to this set, other lanes stay as they are.
+  virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+                       SurfaceBatch<T>& out) const = 0;
+};
+
+template <class T>
+using ShapeKernelPtr = std::unique_ptr<ShapeKernel<T>>;
+
+// What the plan may use about a shape.
+struct ShapeTraits {
+  bool convex = false;  // encloses a convex body, or is flat: it cannot shadow or mirror itself outside
+  bool closed = false;  // has an inside
+};
+
+class ShapeSet {
+ public:
+  virtual ~ShapeSet() = default;
+
+  // Reads one object; returns how many primitives it added.
+  virtual int add(Params& params) = 0;
+  virtual int size() const = 0;
+  // Infinite sides where the primitive is unbounded.
+  virtual Boundsd bounds(int index) const = 0;
+  virtual ShapeTraits traits() const = 0;
+
+  // Kernels whose primitives are numbered from `first`. They do not refer to the set afterwards.
+  virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;
+  virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
+  virtual ShapeKernelPtr<long double> kernel(long double, int first) const = 0;
+};
+
+struct ShapeType {
+  const char* name;
+  const char* summary;
+  std::unique_ptr<ShapeSet> (*make)();
+};
+
+}  // namespace orrery

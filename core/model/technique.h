@@ -1,0 +1,45 @@
+#pragma once
+
+#include "core/model/counts.h"
+#include "core/model/plan.h"
+#include "core/model/world.h"
+
+namespace orrery {
+
+// What the camera rays of one batch bring home, by slot. Not averaged, not clamped.
+template <class T>
+struct TraceResult {
+  Vec3Array<T> radiance;
+  Array<T> cut;  // weight of rays that were not traced, largest channel: the ledger of the depth limit
+};
+
+// How light is followed. One tracer belongs to one thread and is used again and again; it keeps its batches.
+template <class T>
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  // Follows the camera rays to the end. Slots of inactive rays get the background.
+  virtual void trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts) = 0;
+};
+
+template <class T>
+using TracerPtr = std::unique_ptr<Tracer<T>>;
+
+// World and plan outlive the tracer.
+struct TechniqueType {
+  const char* name;
+  const char* summary;
+  bool secondary_rays;  // follows mirrored and refracted rays
+  TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
+  TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
+};
+
+template <class T>
+TracerPtr<T> make_tracer(const TechniqueType& type, const World<T>& world, const Plan& plan) {
+  if constexpr (std::is_same_v<T, float>)
+    return type.make_float(world, plan);
+  else
+    return type.make_double(world, plan);
+}
+
+}  // namespace orrery

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "core/params/params.h"
+
+// Params over nothing: the describing mode. For core/params only.
+
+namespace orrery {
+
+using Schema = nlohmann::ordered_json;
+
+// The choices (pick, form) met on one run of a read function. Running it again and again while advance() says
+// so takes every way through it once: the last choice that has alternatives left is turned, later ones start
+// anew.
+class Choices {
+ public:
+  std::size_t choose(std::size_t alternatives) {
+    if (next_ == steps_.size()) steps_.push_back({0, alternatives});
+    return steps_[next_++].first;
+  }
+  bool advance() {
+    next_ = 0;
+    for (; !steps_.empty(); steps_.pop_back()) {
+      if (++steps_.back().first < steps_.back().second) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::vector<std::pair<std::size_t, std::size_t>> steps_;  // taken, of how many
+  std::size_t next_ = 0;
+};
+
+// One way through a read function, i.e. one set of keys that an object may have. Values asked for are
+// stand-ins.
+class Describer final : public Params {
+ public:
+  // `definitions` gathers what schemas share ($defs).
+  Describer(Choices& choices, Schema& definitions) : choices_(choices), definitions_(definitions) {}
+
+  // The schema of every way through `read`: one object, or several of which exactly one fits.
+  static Schema describe_object(const Read& read, Schema& definitions);
+
+ private:
+  double do_number(Key, Doc, const Range&, const Fallback<double>&) override;
+  std::int64_t do_integer(Key, Doc, std::int64_t min, std::int64_t max,
+                          const Fallback<std::int64_t>&) override;
+  bool do_flag(Key, Doc, const Fallback<bool>&) override;
+  std::string do_choice(Key, Doc, Options, const char* fallback) override;
+  std::string do_text(Key, Doc, std::size_t max_length, const char* fallback) override;
+  Vec3d do_three(Key, Doc, Kind, const Range&, const Fallback<Vec3d>&) override;
+  std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) override;
+  std::vector<std::array<std::int64_t, 3>> do_triples(Key, Doc, Count, std::int64_t bound) override;
+  void do_object(Key, Doc, bool required, const Read&) override;
+  void do_each(Key, Doc, Count, const Read&) override;
+  void do_each_named(Key, Doc, Count, const ReadNamed&) override;
+  std::optional<std::size_t> do_pick(Key, Doc, std::span<const Choice>) override;
+  std::size_t do_form(KeySets) override;
+  std::size_t do_reference(Key, Doc, const Names&) override;
+  std::optional<Document> do_any(Key, Doc) override;
+  bool do_has(Key) const override { return false; }
+  void do_fail(Key, std::string) override {}
+  std::string do_pointer(Key) const override { return ""; }
+
+  // Adds the property; `fallback` is null for none, and is not written for discarded (derived defaults).
+  void add(Key key, Doc doc, Schema schema, bool required, const Schema* fallback = nullptr);
+  template <class T>
+  void add(Key key, Doc doc, Schema schema, const Fallback<T>& fallback);
+  Schema three(Kind kind, const Range& range);
+  Schema define(const char* name, const char* doc, Schema schema);
+  Schema finish();
+
+  Choices& choices_;
+  Schema& definitions_;
+  std::string title_, summary_;  // of the type picked
+  Schema properties_ = Schema::object();
+  Schema required_ = Schema::array();
+};
+
+// Indented text: what fits into a line stays on one.
+std::string pretty(const Schema& schema);
+
+}  // namespace orrery

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <cassert>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/params/document.h"
+#include "core/params/json.h"
+#include "core/params/words.h"
+
+// Text to tree, through nlohmann's event interface: its tree builder would keep the last of two equal keys,
+// has no limits, and words its errors for programmers.
+
+namespace orrery {
+namespace {
+
+using nlohmann::json;
+
+std::string in_plain_words(std::string text) {
+  static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+      {"'[', '{', or a literal", "a value"},
+      {"number literal", "number"},
+      {"string literal", "text in double quotes"},
+      {"true literal", "true"},
+      {"false literal", "false"},
+      {"null literal", "null"},
+      {"end of input", "end of the text"},
+      {"ill-formed UTF-8 byte", "a byte that is not UTF-8"}};
+  for (const auto& [theirs, ours] : kWords) {
+    const std::size_t at = text.find(theirs);
+    if (at != text.npos) text.replace(at, theirs.size(), ours);
+  }
+  return text;
+}
+
+// `what` is nlohmann's message: "[json.exception...] parse error at line 1, column 2: syntax error while
+// parsing value - invalid literal; last read: '...'; expected ...". Keeps the reason, and what was expected
+// where no text of the document stands before it: that may be long and need not be valid UTF-8.
+std::string reason_of(std::string_view what) {
+  const std::size_t dash = what.find(" - ");
+  const std::string_view reason = dash == what.npos ? what : what.substr(dash + 3);
+  return in_plain_words(std::string(reason.substr(0, reason.find("; last read: "))));
+}
+
+class TreeBuilder {
+ public:
+  TreeBuilder(std::string_view text, const JsonLimits& limits) : text_(text), limits_(limits) {}
+
+  bool null() { return place(nullptr); }
+  bool boolean(bool value) { return place(value); }
+  bool number_integer(std::int64_t value) { return place(value); }
+  bool number_unsigned(std::uint64_t value) { return place(value); }
+  bool number_float(double value, const std::string&) { return place(value); }
+  bool string(std::string& value) { return place(std::move(value)); }
+  bool binary(json::binary_t&) { return false; }  // never in JSON text
+  bool start_object(std::size_t) { return open(json::object()); }
+  bool start_array(std::size_t) { return open(json::array()); }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
+
+  bool key(std::string& name) {
+    Level& level = levels_.back();
+    const auto [member, is_new] = level.container->get_ref<json::object_t&>().try_emplace(std::move(name));
+    level.key = &member->first;
+    level.slot = &member->second;
+    if (!is_new) {
+      problems_.push_back({pointer(), "duplicate key " + in_quotes(member->first)});
+      if (problems_.size() == InputError::kMaxProblems) throw InputError(std::move(problems_));
+    }
+    return true;
+  }
+
+  [[noreturn]] bool parse_error(std::size_t position, const std::string& token,
+                                const json::exception& error) {
+    constexpr int kNumberOverflow = 406;
+    if (error.id == kNumberOverflow) {
+      problems_.push_back({next_pointer(), "number too large for a double, got " + in_quotes(token)});
+      throw InputError(std::move(problems_));
+    }
+    // `position` counts the bytes read: the last one is the wrong character, or ends the wrong token.
+    const std::string_view what = error.what();
+    const std::size_t last = position > 0 ? position - 1 : 0;
+    fail(what.find(" - unexpected ") == what.npos ? last : token_start(last), reason_of(what));
+  }
+
+  void refuse_zero_bytes() {
+    const std::size_t zero = text_.find('\0');  // nlohmann takes one for the end of the text
+    if (zero != text_.npos) fail(zero, "a zero byte cannot be in JSON text");
+  }
+
+  json finish() {
+    if (!problems_.empty()) throw InputError(std::move(problems_));
+    return std::move(root_);
+  }
+
+ private:
+  struct Level {  // an array or object that is not closed yet
+    json* container;
+    const std::string* key = nullptr;  // of an object: the member being read
+    json* slot = nullptr;
+  };
+
+  bool place(json value) {
+    put(std::move(value));
+    return true;
+  }
+
+  bool open(json container) {
+    if (levels_.size() == limits_.depth) {
+      throw InputError(next_pointer(), "arrays and objects are more than " + std::to_string(limits_.depth) +
+                                           " deep (limit: JSON depth)");
+    }
+    json* placed = put(std::move(container));
+    levels_.push_back({placed});
+    return true;
+  }
+
+  bool close() {
+    levels_.pop_back();
+    return true;
+  }
+
+  json* put(json value) {
+    if (++nodes_ > limits_.nodes) {
+      throw InputError(next_pointer(), "the document has more than " + std::to_string(limits_.nodes) +
+                                           " values (limit: JSON nodes)");
+    }
+    if (levels_.empty()) {
+      root_ = std::move(value);
+      return &root_;
+    }
+    Level& level = levels_.back();
+    if (level.container->is_array()) {
+      level.container->push_back(std::move(value));
+      return &level.container->back();
+    }
+    *level.slot = std::move(value);
+    return level.slot;
+  }
+
+  // Where the last value or key came; of an array, its last element.
+  std::string pointer() const {
+    std::string text;
+    for (const Level& level : levels_) {
+      if (level.container->is_array()) {
+        const std::size_t size = level.container->size();
+        if (size > 0) text += "/" + std::to_string(size - 1);
+      } else if (level.key) {
+        text += pointer_step(*level.key);
+      }
+    }
+    return text;
+  }
+
+  // Where the value that is being read will come.
+  std::string next_pointer() const {
+    if (levels_.empty() || !levels_.back().container->is_array()) return pointer();
+    const std::size_t size = levels_.back().container->size();
+    const std::string last = pointer();
+    return (size == 0 ? last : last.substr(0, last.rfind('/'))) + "/" + std::to_string(size);
+  }
+
+  static bool in_word(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '+' || c == '-' || c == '.';
+  }
+
+  // Where the complete token starts whose last byte is at `last`.
+  std::size_t token_start(std::size_t last) const {
+    if (last >= text_.size()) return text_.size();
+    std::size_t first = last;
+    if (text_[last] == '"') {
+      const auto escaped = [&](std::size_t i) {
+        std::size_t slashes = 0;
+        while (slashes < i && text_[i - 1 - slashes] == '\\') ++slashes;
+        return slashes % 2 == 1;
+      };
+      do {
+        if (first > 0) --first;
+      } while (first > 0 && (text_[first] != '"' || escaped(first)));
+    }
+    while (in_word(text_[last]) && first > 0 && in_word(text_[first - 1])) --first;
+    return first;
+  }
+
+  // The word around `offset`, e.g. NaN, to be named in the error.
+  std::string_view word_at(std::size_t offset) const {
+    std::size_t first = offset, last = offset;
+    while (first > 0 && offset - first < 40 && in_word(text_[first - 1])) --first;
+    while (last < text_.size() && last - offset < 40 && in_word(text_[last])) ++last;
+    return text_.substr(first, last - first);
+  }
+
+  [[noreturn]] void fail(std::size_t offset, std::string reason) const {
+    offset = std::min(offset, text_.size());
+    if (reason == "invalid literal" || reason.starts_with("invalid number")) {
+      const std::string_view word = word_at(offset);
+      reason = word.empty() ? "unexpected character " + in_quotes(text_.substr(offset, 1))
+                            : in_quotes(word) + " is not a JSON value";
+      if (!word.empty()) offset = static_cast<std::size_t>(word.data() - text_.data());
+    }
+    const std::string_view before = text_.substr(0, offset);
+    const std::size_t line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
+    const std::size_t line_start = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+    const std::size_t column = character_count(before.substr(line_start)) + 1;
+    throw MalformedJson(next_pointer(), std::move(reason), offset, line, column);
+  }
+
+  std::string_view text_;
+  JsonLimits limits_;
+  json root_;
+  std::vector<Level> levels_;
+  std::size_t nodes_ = 0;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+Document parse_document(std::string_view text, const JsonLimits& limits) {
+  TreeBuilder builder(text, limits);
+  builder.refuse_zero_bytes();
+  const bool complete = json::sax_parse(text.begin(), text.end(), &builder);
+  assert(complete);
+  static_cast<void>(complete);
+  return document_of(builder.finish());
+}
+
+}  // namespace orrery

@@ -1,0 +1,210 @@
+#include "core/params/reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/params/json.h"
+#include "core/params/suggest.h"
+#include "core/params/words.h"
+
+namespace orrery {
+namespace {
+
+using nlohmann::json;
+
+}  // namespace
+
+std::optional<double> number_in(const json& value, const Range& range) {
+  if (!value.is_number()) return std::nullopt;
+  const double x = value.get<double>() + 0.0;
+  return range.contains(x) ? std::optional(x) : std::nullopt;
+}
+
+Reader::Reader(const Document& document, ProblemList& problems)
+    : document_(document), problems_(problems), object_(&json_of(document)) {}
+
+Reader::Reader(Reader& parent, const Place& place, const json& object)
+    : parent_(&parent),
+      place_(place),
+      document_(parent.document_),
+      problems_(parent.problems_),
+      object_(&object) {
+  asked_.reserve(8);
+}
+
+void Reader::finish() {
+  if (type_unknown_) return;
+  const auto was_asked = [&](Key key) {
+    return std::find(asked_.begin(), asked_.end(), key) != asked_.end();
+  };
+  for (const auto& [key, value] : object_->get_ref<const json::object_t&>()) {
+    if (was_asked(key)) continue;
+    std::vector<Key> free;  // known keys that this object does not have: one of them may be meant
+    std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(free), [&](Key k) { return !lookup(k); });
+    problems_.add(pointer(), "unknown key " + in_quotes(key) + did_you_mean(key, free));
+  }
+}
+
+const json* Reader::lookup(Key key) const {
+  const auto& members = object_->get_ref<const json::object_t&>();
+  const auto found = members.find(key);
+  return found == members.end() ? nullptr : &found->second;
+}
+
+void Reader::note_missing(Key key, const std::string& expected) {
+  if (std::find(excused_.begin(), excused_.end(), key) != excused_.end()) return;
+  note(pointer(), "missing key " + in_quotes(key) + ": expected " + expected);
+}
+
+void Reader::note(std::string pointer, std::string detail) {
+  for (Reader* r = this; r; r = r->parent_) r->broken_ = true;
+  problems_.add(std::move(pointer), std::move(detail));
+}
+
+void Reader::note_value(std::string pointer, const std::string& expected, const json& got,
+                        const std::string& hint) {
+  note(std::move(pointer), "expected " + expected + ", got " + brief(got) + hint);
+}
+
+double Reader::do_number(Key key, Doc, const Range& range, const Fallback<double>& fallback) {
+  const auto expected = [&] { return "a number" + range_text(range); };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const std::optional<double> number = value ? number_in(*value, range) : std::nullopt;
+  if (value && !number) note_value(pointer(key), expected(), *value);
+  return number.value_or(fallback.value.value_or(stand_in(range)));
+}
+
+std::int64_t Reader::do_integer(Key key, Doc, std::int64_t min, std::int64_t max,
+                                const Fallback<std::int64_t>& fallback) {
+  const Range range{.min = static_cast<double>(min), .max = static_cast<double>(max)};
+  const auto expected = [&] {
+    return min == max ? std::to_string(min)
+                      : "an integer >= " + std::to_string(min) + " and <= " + std::to_string(max);
+  };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  if (!value) return fallback.value.value_or(min);
+  const std::optional<double> number = number_in(*value, range);
+  if (number && *number == std::trunc(*number)) return static_cast<std::int64_t>(*number);
+  note_value(pointer(key), expected(), *value);
+  return fallback.value.value_or(min);
+}
+
+bool Reader::do_flag(Key key, Doc, const Fallback<bool>& fallback) {
+  const auto expected = [] { return std::string("true or false"); };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  if (value && value->is_boolean()) return value->get<bool>();
+  if (value) note_value(pointer(key), expected(), *value);
+  return fallback.value.value_or(false);
+}
+
+std::string Reader::do_choice(Key key, Doc, Options options, const char* fallback) {
+  const auto expected = [&] { return one_of(options); };
+  const json* value = find(key, fallback ? Need::optional : Need::required, expected);
+  const std::string otherwise(fallback ? std::string_view(fallback) : options.front());
+  if (!value) return otherwise;
+  const std::string* word = value->get_ptr<const std::string*>();
+  if (word && std::find(options.begin(), options.end(), *word) != options.end()) return *word;
+  note_value(pointer(key), expected(), *value, word ? did_you_mean(*word, options) : "");
+  return otherwise;
+}
+
+std::string Reader::do_text(Key key, Doc, std::size_t max_length, const char* fallback) {
+  const auto expected = [&] { return "a text of at most " + std::to_string(max_length) + " characters"; };
+  const json* value = find(key, fallback ? Need::optional : Need::required, expected);
+  if (!value) return fallback ? fallback : "";
+  const std::string* text = value->get_ptr<const std::string*>();
+  if (text && character_count(*text) <= max_length) return *text;
+  note_value(pointer(key), expected(), *value);
+  return fallback ? fallback : "";
+}
+
+std::size_t Reader::do_reference(Key key, Doc, const Names& names) {
+  const auto expected = [&] { return "the name of a " + names.kind(); };
+  const json* value = find(key, Need::required, expected);
+  if (!value) return 0;
+  const std::string* name = value->get_ptr<const std::string*>();
+  if (!name) {
+    note_value(pointer(key), expected(), *value);
+    return 0;
+  }
+  const std::optional<std::size_t> index = names.find(*name);
+  if (!index) {
+    std::vector<Key> known;
+    for (const auto& entry : names.index_of()) known.push_back(entry.first);
+    note(pointer(key), "no " + names.kind() + " " + in_quotes(*name) + did_you_mean(*name, known));
+  }
+  return index.value_or(0);
+}
+
+std::optional<std::size_t> Reader::do_pick(Key key, Doc, std::span<const Choice> choices) {
+  std::vector<Key> types;
+  const auto expected = [&] {
+    types.clear();
+    for (const Choice& choice : choices) types.push_back(choice.type);
+    return one_of(types);
+  };
+  const json* value = find(key, Need::required, expected);
+  const std::string* word = value ? value->get_ptr<const std::string*>() : nullptr;
+  if (word) {
+    const auto chosen =
+        std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return c.type == *word; });
+    if (chosen != choices.end()) return static_cast<std::size_t>(chosen - choices.begin());
+  }
+  if (value) {
+    const std::string words = expected();
+    note_value(pointer(key), words, *value, word ? did_you_mean(*word, types) : "");
+  }
+  type_unknown_ = true;
+  return std::nullopt;
+}
+
+std::size_t Reader::do_form(KeySets key_sets) {
+  const auto present = [&](std::initializer_list<Key> keys) {
+    return std::count_if(keys.begin(), keys.end(), [&](Key k) { return lookup(k) != nullptr; });
+  };
+  std::size_t best = 0, begun = 0;
+  std::ptrdiff_t most = 0;
+  std::vector<std::string> sets;
+  for (const auto& keys : key_sets) {
+    if (present(keys) > 0) ++begun;
+    if (present(keys) > most || (most == 0 && keys.size() == 0)) best = sets.size();
+    most = std::max(most, present(keys));
+    sets.push_back(one_of(std::span(keys.begin(), keys.size()), " and "));
+  }
+  const bool empty_allowed = std::find(sets.begin(), sets.end(), "") != sets.end();
+  if (begun == 1 || (begun == 0 && empty_allowed)) return best;
+
+  std::string expected, got;
+  for (const std::string& set : sets) {
+    if (!set.empty()) expected += (expected.empty() ? "either " : ", or ") + set;
+  }
+  for (const auto& keys : key_sets) {
+    for (const Key key : keys) {
+      if (lookup(key)) got += (got.empty() ? "" : ", ") + in_quotes(key);
+      asked_.push_back(key);
+      excused_.push_back(key);
+    }
+  }
+  note(pointer(), "expected " + expected + ", got " + (got.empty() ? "none of them" : got));
+  return best;
+}
+
+std::optional<Document> Reader::do_any(Key key, Doc) {
+  const json* value = find(key, Need::optional, [] { return std::string(); });
+  if (!value) return std::nullopt;
+  return DocumentAccess::part(document_, *value, pointer(key));
+}
+
+bool Reader::do_has(Key key) const { return lookup(key) != nullptr; }
+
+void Reader::do_fail(Key key, std::string detail) {
+  if (!broken_) problems_.add(pointer(key), std::move(detail));
+}
+
+std::string Reader::do_pointer(Key key) const {
+  std::string text = parent_ ? parent_->place_text(place_) : document_.pointer();
+  if (!key.empty()) text += pointer_step(key);
+  return text;
+}
+
+}  // namespace orrery

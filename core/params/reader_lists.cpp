@@ -1,0 +1,164 @@
+#include <cmath>
+
+#include "core/params/json.h"
+#include "core/params/reader.h"
+#include "core/params/words.h"
+
+// The part of Reader that goes into arrays and objects. Elements that are right cost no text.
+
+namespace orrery {
+
+using nlohmann::json;
+
+namespace {
+
+const Range kCoordinates{.min = -kMaxCoordinate, .max = kMaxCoordinate};
+
+std::string three_text(bool number_too, bool not_zero, const Range& range) {
+  return std::string(number_too ? "a number or 3 numbers" : "3 numbers") + range_text(range) +
+         (not_zero ? ", not all 0" : "");
+}
+
+}  // namespace
+
+std::string Reader::place_text(const Place& place) const {
+  std::string text = pointer(place.key);
+  if (place.index) text += "/" + std::to_string(*place.index);
+  if (place.name) text += pointer_step(*place.name);
+  return text;
+}
+
+void Reader::read_three(const json& value, const Place& place, Kind kind, const Range& range, Vec3d& three) {
+  const bool number_too = kind == Kind::coefficient;
+  const auto note_whole = [&] {
+    note_value(place_text(place), three_text(number_too, kind == Kind::direction, range), value);
+  };
+  if (number_too && !value.is_array()) {
+    const std::optional<double> number = number_in(value, range);
+    if (!number) return note_whole();
+    three = Vec3d{*number, *number, *number};
+    return;
+  }
+  if (!value.is_array() || value.size() != 3) return note_whole();
+  std::array<double, 3> numbers{};
+  bool all_right = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::optional<double> number = number_in(value[i], range);
+    if (number) {
+      numbers[i] = *number;
+    } else {
+      all_right = false;
+      note_value(place_text(place) + "/" + std::to_string(i), "a number" + range_text(range), value[i]);
+    }
+  }
+  if (!all_right) return;
+  if (kind == Kind::direction && numbers == std::array{0.0, 0.0, 0.0}) return note_whole();
+  three = Vec3d{numbers[0], numbers[1], numbers[2]};
+}
+
+Vec3d Reader::do_three(Key key, Doc, Kind kind, const Range& range, const Fallback<Vec3d>& fallback) {
+  const auto expected = [&] { return three_text(kind == Kind::coefficient, kind == Kind::direction, range); };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const double x = stand_in(range);
+  Vec3d three = fallback.value.value_or(kind == Kind::direction ? Vec3d{0, 0, 1} : Vec3d{x, x, x});
+  if (value) read_three(*value, {key}, kind, range, three);
+  return three;
+}
+
+const json* Reader::find_list(Key key, Count count, std::string_view noun) {
+  const auto expected = [&] { return "a list of " + count_text(count) + " " + std::string(noun); };
+  const json* list = find(key, count.min > 0 ? Need::required : Need::optional, expected);
+  if (!list) return nullptr;
+  if (!list->is_array()) {
+    note_value(pointer(key), expected(), *list);
+    return nullptr;
+  }
+  if (list->size() < count.min || list->size() > count.max) {
+    note(pointer(key), "expected " + expected() + ", got " + std::to_string(list->size()));
+    return nullptr;
+  }
+  return list;
+}
+
+std::vector<Vec3d> Reader::do_threes(Key key, Doc, Kind kind, Count count) {
+  const json* list = find_list(key, count, kind == Kind::direction ? "directions" : "points");
+  std::vector<Vec3d> all(list ? list->size() : count.min, kind == Kind::direction ? Vec3d{0, 0, 1} : Vec3d{});
+  for (std::size_t i = 0; list && i < all.size(); ++i)
+    read_three((*list)[i], {key, i}, kind, kCoordinates, all[i]);
+  return all;
+}
+
+void Reader::read_triple(const json& value, const Place& place, std::int64_t bound,
+                         std::array<std::int64_t, 3>& triple) {
+  const Range range{.min = 0, .max = static_cast<double>(bound), .exclusive_max = true};
+  const auto expected = [&](const char* what) { return what + range_text(range); };
+  if (!value.is_array() || value.size() != 3)
+    return note_value(place_text(place), expected("3 integers"), value);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::optional<double> number = number_in(value[i], range);
+    if (number && *number == std::trunc(*number)) {
+      triple[i] = static_cast<std::int64_t>(*number);
+    } else {
+      note_value(place_text(place) + "/" + std::to_string(i), expected("an integer"), value[i]);
+    }
+  }
+}
+
+std::vector<std::array<std::int64_t, 3>> Reader::do_triples(Key key, Doc, Count count, std::int64_t bound) {
+  const json* list = find_list(key, count, "threes of integers");
+  std::vector<std::array<std::int64_t, 3>> all(list ? list->size() : count.min);
+  for (std::size_t i = 0; list && i < all.size(); ++i) read_triple((*list)[i], {key, i}, bound, all[i]);
+  return all;
+}
+
+void Reader::read_inside(const json& value, const Place& place, const Read& read) {
+  if (!value.is_object()) return note_value(place_text(place), "an object", value);
+  Reader inside(*this, place, value);
+  read(inside);
+  inside.finish();
+}
+
+void Reader::do_object(Key key, Doc, bool required, const Read& read) {
+  static const json kEmpty = json::object();
+  const json* value =
+      find(key, required ? Need::required : Need::optional, [] { return std::string("an object"); });
+  if (!value && required) return;
+  read_inside(value ? *value : kEmpty, {key}, read);
+}
+
+void Reader::do_each(Key key, Doc, Count count, const Read& read) {
+  const json* list = find_list(key, count, "objects");
+  for (std::size_t i = 0; list && i < list->size(); ++i) read_inside((*list)[i], {key, i}, read);
+}
+
+void Reader::do_each_named(Key key, Doc, Count count, const ReadNamed& read) {
+  const auto expected = [&] { return "an object with " + count_text(count) + " members"; };
+  const json* map = find(key, count.min > 0 ? Need::required : Need::optional, expected);
+  if (!map) return;
+  if (!map->is_object()) return note_value(pointer(key), expected(), *map);
+  if (map->size() < count.min || map->size() > count.max) {
+    return note(pointer(key), "expected " + expected() + ", got " + std::to_string(map->size()));
+  }
+  for (const auto& [name, value] : map->get_ref<const json::object_t&>()) {
+    const Place place{.key = key, .name = name};
+    if (name.empty() || character_count(name) > kMaxNameLength) {
+      note(place_text(place), "expected a name of 1 to " + std::to_string(kMaxNameLength) +
+                                  " characters, got " + in_quotes(name));
+      continue;
+    }
+    read_inside(value, place, [&](Params& inside) { read(name, inside); });
+  }
+}
+
+void read_document(const Document& document, const Params::Read& read) {
+  if (!json_of(document).is_object()) {
+    throw InputError(document.pointer(), "expected an object, got " + brief(json_of(document)));
+  }
+  ProblemList problems;
+  Reader root(document, problems);
+  read(root);
+  root.finish();
+  problems.throw_if_any();
+}
+
+}  // namespace orrery

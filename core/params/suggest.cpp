@@ -1,0 +1,73 @@
+#include "core/params/suggest.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "core/params/words.h"
+
+namespace orrery {
+namespace {
+
+constexpr int kMaxSlips = 2;
+constexpr std::size_t kMaxWord = 64;  // longer words are no typing errors, and the distance is quadratic
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+// Two slips in a word of three letters would make anything of it.
+int slips_allowed(std::size_t length) { return std::min(kMaxSlips, static_cast<int>((length + 2) / 3)); }
+
+}  // namespace
+
+int edit_distance(std::string_view a, std::string_view b, int limit) {
+  const std::size_t gap = a.size() > b.size() ? a.size() - b.size() : b.size() - a.size();
+  if (gap > static_cast<std::size_t>(limit)) return limit + 1;
+  std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);  // rows i-2, i-1, i
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = static_cast<int>(j);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before.swap(last);
+    last.swap(row);
+  }
+  return std::min(last[b.size()], limit + 1);
+}
+
+std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
+  if (word.size() > kMaxWord) return std::nullopt;
+  const std::string wanted = lower_case(word);
+  int best = slips_allowed(wanted.size()) + 1;
+  std::optional<std::string> found;
+  for (const std::string_view candidate : candidates) {
+    const int distance = edit_distance(wanted, lower_case(candidate), best - 1);
+    if (distance < best) {
+      best = distance;
+      found = candidate;
+    }
+    if (best == 0) return found;
+  }
+  if (found) return found;
+  for (const std::string_view candidate : candidates) {
+    const bool abbreviates = wanted.size() >= 3 && candidate.starts_with(wanted + "_");
+    const bool elaborates = candidate.size() >= 3 && wanted.starts_with(std::string(candidate) + "_");
+    if (abbreviates || elaborates) return std::string(candidate);
+  }
+  return std::nullopt;
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
+  const std::optional<std::string> name = nearest(word, candidates);
+  return name ? " (did you mean " + in_quotes(*name) + "?)" : "";
+}
+
+}  // namespace orrery

@@ -1,0 +1,176 @@
+#include "core/params/words.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace orrery {
+namespace {
+
+constexpr std::size_t kBriefCharacters = 40;
+constexpr double kExactIntegers = 9007199254740992.0;  // 2^53
+
+std::string shortest(double x) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, x);
+  return std::string(buffer, end);
+}
+
+void append_number(double x, std::string& out) {
+  if (x == std::trunc(x) && std::abs(x) <= kExactIntegers) {
+    out += std::to_string(static_cast<long long>(x));  // turns -0 into 0
+  } else {
+    out += shortest(x);
+  }
+}
+
+void append_string(std::string_view text, std::string& out, std::size_t limit) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  out += '"';
+  for (const char c : text) {
+    if (out.size() > limit) return;
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (c == '\t') {
+      out += "\\t";
+    } else if (byte < 0x20) {
+      out += "\\u00";
+      out += kDigits[byte >> 4];
+      out += kDigits[byte & 15];
+    } else {
+      out += c;
+    }
+  }
+  out += '"';
+}
+
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
+
+// The text cut after kBriefCharacters characters.
+std::string cut(std::string text) {
+  std::size_t characters = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!continues_character(text[i]) && ++characters > kBriefCharacters) {
+      text.resize(i);
+      return text + "...";
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string number_text(double x) {
+  std::string text = shortest(x);
+  const std::size_t e = text.find('e');
+  if (e == std::string::npos) return text;
+  const std::string sign = text[e + 1] == '-' ? "-" : "";
+  const std::size_t digits = text.find_first_not_of("+-0", e + 1);
+  return text.substr(0, e) + "e" + sign + text.substr(digits);
+}
+
+void append_canonical(const nlohmann::json& value, std::string& out, std::size_t limit) {
+  using nlohmann::json;
+  if (out.size() > limit) return;
+  switch (value.type()) {
+    case json::value_t::object: {
+      char separator = '{';
+      for (const auto& [key, member] : value.get_ref<const json::object_t&>()) {
+        if (out.size() > limit) return;
+        out += separator;
+        append_string(key, out, limit);
+        out += ':';
+        append_canonical(member, out, limit);
+        separator = ',';
+      }
+      out += value.empty() ? "{}" : "}";
+      break;
+    }
+    case json::value_t::array: {
+      char separator = '[';
+      for (const json& element : value) {
+        if (out.size() > limit) return;
+        out += separator;
+        append_canonical(element, out, limit);
+        separator = ',';
+      }
+      out += value.empty() ? "[]" : "]";
+      break;
+    }
+    case json::value_t::string: append_string(value.get_ref<const std::string&>(), out, limit); break;
+    case json::value_t::boolean: out += value.get<bool>() ? "true" : "false"; break;
+    case json::value_t::number_integer:
+    case json::value_t::number_unsigned:
+    case json::value_t::number_float: append_number(value.get<double>(), out); break;
+    default: out += "null";
+  }
+}
+
+std::string brief(const nlohmann::json& value) {
+  std::string text;
+  append_canonical(value, text, 4 * kBriefCharacters + 8);  // UTF-8: at most 4 bytes a character
+  return cut(std::move(text));
+}
+
+std::string in_quotes(std::string_view name) {
+  std::string text;
+  append_string(name, text, 4 * kBriefCharacters + 8);
+  return cut(std::move(text));
+}
+
+std::string one_of(std::span<const std::string_view> words, std::string_view last_join) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? last_join : ", ";
+    text += in_quotes(words[i]);
+  }
+  return text;
+}
+
+std::string pointer_step(std::string_view key) {
+  std::string step = "/";
+  for (const char c : key) {
+    if (c == '~') {
+      step += "~0";
+    } else if (c == '/') {
+      step += "~1";
+    } else {
+      step += c;
+    }
+  }
+  return step;
+}
+
+std::string range_text(const Range& range) {
+  std::string text;
+  if (std::isfinite(range.min)) text += (range.exclusive_min ? " > " : " >= ") + number_text(range.min);
+  if (std::isfinite(range.max)) {
+    if (!text.empty()) text += " and";
+    text += (range.exclusive_max ? " < " : " <= ") + number_text(range.max);
+  }
+  return text;
+}
+
+std::string count_text(Count count) {
+  if (count.min == count.max) return std::to_string(count.min);
+  if (count.max == Count{}.max) return "at least " + std::to_string(count.min);
+  return std::to_string(count.min) + " to " + std::to_string(count.max);
+}
+
+double stand_in(const Range& range) {
+  for (const double x : {0.0, 1.0, range.min, range.max, (range.min + range.max) / 2}) {
+    if (std::isfinite(x) && range.contains(x)) return x;
+  }
+  return std::isfinite(range.min) ? range.min + 1 : range.max - 1;
+}
+
+std::size_t character_count(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return !continues_character(c); }));
+}
+
+}  // namespace orrery

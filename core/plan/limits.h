@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/model/counts.h"
+
+namespace orrery {
+
+// What no scene and no request may exceed.
+inline constexpr int kMaxImageSide = 4096;
+inline constexpr std::int64_t kMaxImagePixels = 16'777'216;
+inline constexpr int kMaxSamples = 4096;
+inline constexpr int kMaxDepth = kDeepestRay;
+inline constexpr int kMaxLights = 1024;
+inline constexpr int kMaxObjects = 1'000'000;
+inline constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53;
+inline constexpr double kMaxOrbitDegrees = 1e9;
+inline constexpr double kMinOrbitDistance = 1e-3, kMaxOrbitDistance = 1e3;
+
+}  // namespace orrery

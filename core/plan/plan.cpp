@@ -1,0 +1,200 @@
+#include "core/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/accelerators/registry.h"
+#include "core/base/error.h"
+#include "core/plan/limits.h"
+#include "core/techniques/registry.h"
+
+namespace orrery {
+namespace {
+
+// Collects what is wrong with a request, in the words of the loader.
+class Checks {
+ public:
+  template <class V>
+  V within(const char* pointer, V value, V min, V max) {
+    if (!(value >= min && value <= max))
+      problems_.push_back({pointer, "expected " + text(min) + " to " + text(max) + ", got " + text(value)});
+    return value;
+  }
+  void fail(std::string pointer, std::string detail) { problems_.push_back({std::move(pointer), std::move(detail)}); }
+  void throw_if_any() {
+    if (!problems_.empty()) throw InputError(std::move(problems_));
+  }
+
+ private:
+  template <class V>
+  static std::string text(V value) {
+    if constexpr (std::is_integral_v<V>) return std::to_string(value);
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%g", static_cast<double>(value));
+    return buffer;
+  }
+  std::vector<Problem> problems_;
+};
+
+template <class Types>
+auto find_type(const Types& types, const std::string& name, const char* pointer, Checks& checks) {
+  const auto found = std::find_if(types.begin(), types.end(), [&](const auto& t) { return name == t.name; });
+  if (found != types.end()) return &*found;
+  std::string known;
+  for (const auto& t : types) known += (known.empty() ? "" : ", ") + std::string(t.name);
+  checks.fail(pointer, "expected one of " + known + ", got \"" + name.substr(0, 40) + "\"");
+  return &*types.begin();
+}
+
+bool contains(const Boundsd& b, const Vec3d& p) {
+  return p.x >= b.lo.x && p.x <= b.hi.x && p.y >= b.lo.y && p.y <= b.hi.y && p.z >= b.lo.z && p.z <= b.hi.z;
+}
+
+class Planner {
+ public:
+  Planner(const Scene& scene, const RenderRequest& request) : scene_(scene), request_(request) {}
+
+  Plan make() {
+    take_request();
+    checks_.throw_if_any();
+    choose_precision();
+    choose_accelerator();
+    if (request_.full_model) return plan_;
+    choose_lights();
+    choose_specular();
+    return plan_;
+  }
+
+ private:
+  void decide(std::string subject, std::string choice, std::string reason) {
+    plan_.decisions.push_back({std::move(subject), std::move(choice), std::move(reason)});
+  }
+
+  void take_request() {
+    const RenderSettings& own = scene_.render;
+    plan_.width = checks_.within("/image/width", request_.width.value_or(own.width), 1, kMaxImageSide);
+    plan_.height = checks_.within("/image/height", request_.height.value_or(own.height), 1, kMaxImageSide);
+    if (std::int64_t{plan_.width} * plan_.height > kMaxImagePixels)
+      checks_.fail("/image", "expected at most " + std::to_string(kMaxImagePixels) + " pixels");
+    plan_.samples = checks_.within("/render/samples", request_.samples.value_or(own.samples), 1, kMaxSamples);
+    plan_.max_depth = checks_.within("/render/max_depth", request_.max_depth.value_or(own.max_depth), 0, kMaxDepth);
+    plan_.min_contribution = checks_.within("/render/min_contribution",
+                                            request_.min_contribution.value_or(own.min_contribution), 0.0, 1.0);
+    plan_.seed = request_.seed.value_or(own.seed);
+    plan_.slice = checks_.within("/render/slice", request_.slice, 16, kBatch) / 16 * 16;
+    const std::string technique = request_.technique.value_or(own.technique);
+    plan_.technique = find_type(technique_types(), technique, "/render/technique", checks_);
+    take_camera();
+  }
+
+  void take_camera() {
+    Camera camera = scene_.camera;
+    if (request_.fov_degrees) {
+      camera.fov_degrees = *request_.fov_degrees;
+      if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
+        checks_.fail("/camera/fov_degrees", "expected a number > 0 and < 180");
+    }
+    const Orbit& orbit = request_.orbit;
+    checks_.within("/camera/azimuth_degrees", orbit.azimuth_degrees, -kMaxOrbitDegrees, kMaxOrbitDegrees);
+    checks_.within("/camera/elevation_degrees", orbit.elevation_degrees, -180.0, 180.0);
+    checks_.within("/camera/distance", orbit.distance, kMinOrbitDistance, kMaxOrbitDistance);
+    plan_.camera = frame_at(camera, orbit);
+  }
+
+  // Float where 8 ulp of the largest coordinate stay under a tenth of the smallest shape and of a pixel's
+  // footprint; double beyond.
+  void choose_precision() {
+    const Precision asked = request_.precision.value_or(scene_.render.precision);
+    if (asked != Precision::automatic) {
+      plan_.double_precision = asked == Precision::double_precision;
+      return decide("precision", plan_.double_precision ? "double" : "float", "as asked");
+    }
+    const double largest = std::max(scene_.facts.magnitude, max_component(abs(plan_.camera.eye)));
+    const bool perspective = plan_.camera.projection == Projection::perspective;
+    const double footprint =
+        2 * plan_.camera.half_extent / plan_.height * (perspective ? plan_.camera.distance : 1.0);
+    const double detail = std::min(scene_.facts.smallest_feature, footprint);
+    const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
+    plan_.double_precision = !(rounding <= detail / 10);
+    decide("precision", plan_.double_precision ? "double" : "float",
+           plan_.double_precision ? "coordinates are too large for the smallest shape or pixel in float"
+                                  : "8 ulp of the largest coordinate are below a tenth of the smallest shape and pixel");
+  }
+
+  void choose_accelerator() {
+    const std::string asked = request_.accelerator.value_or(scene_.render.accelerator);
+    if (asked != "auto") {
+      plan_.accelerator = find_type(accelerator_types(), asked, "/render/accelerator", checks_);
+      checks_.throw_if_any();
+      return decide("accelerator", asked, "as asked");
+    }
+    constexpr int kFewPrimitives = 8;
+    const bool few = scene_.primitive_count() <= kFewPrimitives;
+    plan_.accelerator = find_type(accelerator_types(), few ? "list" : "boxes", "/render/accelerator", checks_);
+    decide("accelerator", plan_.accelerator->name,
+           few ? "so few primitives that testing each costs less than any structure"
+               : "more than " + std::to_string(kFewPrimitives) + " primitives");
+  }
+
+  void choose_lights() {
+    const bool glows = std::any_of(scene_.lights.begin(), scene_.lights.end(),
+                                   [](const auto& light) { return light->intensity() != Vec3d(0); });
+    plan_.direct_light = glows && scene_.facts.materials.lit;
+    if (!plan_.direct_light) {
+      plan_.shadows = false;
+      return decide("direct light", "absent", glows ? "no material in use answers light sources" : "no light source");
+    }
+    plan_.shadows = !lonely_convex();
+    decide("shadows", plan_.shadows ? "traced" : "absent",
+           plan_.shadows ? "objects may stand between light and surface"
+                         : "the only object is convex and seen from outside: nothing stands in its light");
+  }
+
+  void choose_specular() {
+    const MaterialTraits& used = scene_.facts.materials;
+    plan_.specular = used.mirrors;
+    plan_.filters = plan_.specular && used.filters;
+    if (!plan_.specular) {
+      plan_.max_depth = 0;
+      return decide("mirrored and refracted rays", "absent", "no material in use mirrors or refracts");
+    }
+    if (!plan_.technique->secondary_rays) {
+      plan_.max_depth = 0;
+      return decide("mirrored and refracted rays", "absent", std::string(plan_.technique->name) + " sends none");
+    }
+    if (!used.transmits) decide("refracted rays", "absent", "no material in use is transparent");
+    if (!plan_.filters) decide("filtering in bodies", "absent", "no body in use weakens light");
+    if (!used.transmits && lonely_convex() && plan_.max_depth > 1) {
+      plan_.max_depth = 1;
+      decide("depth", "1", "the only object is convex: its mirrored rays meet nothing");
+    } else {
+      decide("depth", std::to_string(plan_.max_depth), "as asked; deeper rays are replaced by ambient light");
+    }
+  }
+
+  // One convex primitive, and the eye surely outside of it.
+  bool lonely_convex() const {
+    if (scene_.primitive_count() != 1) return false;
+    for (const auto& shapes : scene_.shapes) {
+      if (shapes->size() == 0) continue;
+      const ShapeTraits traits = shapes->traits();
+      if (!traits.convex) return false;
+      const bool outside = plan_.camera.projection == Projection::perspective &&
+                           !contains(shapes->bounds(0), plan_.camera.eye);
+      return !traits.closed || outside;
+    }
+    return false;
+  }
+
+  const Scene& scene_;
+  const RenderRequest& request_;
+  Plan plan_;
+  Checks checks_;
+};
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const RenderRequest& request) { return Planner(scene, request).make(); }
+
+}  // namespace orrery

@@ -1,0 +1,70 @@
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "core/base/error.h"
+#include "core/render/prepare.h"
+#include "core/render/tile.h"
+
+namespace orrery {
+
+struct WorkerPool::Parts {
+  explicit Parts(int threads) : arena(threads > 0 ? threads : tbb::task_arena::automatic, 0) {}
+  tbb::task_arena arena;
+};
+
+WorkerPool::WorkerPool(int threads) : parts_(std::make_unique<Parts>(threads)) {}
+WorkerPool::~WorkerPool() = default;
+int WorkerPool::threads() const { return parts_->arena.max_concurrency(); }
+
+namespace {
+
+template <class T>
+RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
+                    const RenderControl& control) {
+  RenderStats stats;
+  const World<T>& world = world_for<T>(scene.parts(), *plan.accelerator, stats.build_ms);
+  Image image(plan.width, plan.height, format);
+  tbb::enumerable_thread_specific<std::unique_ptr<TileRenderer<T>>> renderers(
+      [&] { return std::make_unique<TileRenderer<T>>(world, plan); });
+  const int across = (plan.width + kTileSide - 1) / kTileSide, down = (plan.height + kTileSide - 1) / kTileSide;
+  std::atomic<int> done = 0;
+  std::atomic<bool> stopped = false;
+  const auto start = std::chrono::steady_clock::now();
+  tbb::task_group_context context;
+  pool.parts().arena.execute([&] {
+    tbb::parallel_for(
+        0, across * down,
+        [&](int tile) {
+          if (control.stop && control.stop()) {
+            stopped = true;
+            context.cancel_group_execution();
+          }
+          if (stopped) return;
+          renderers.local()->render(tile % across * kTileSide, tile / across * kTileSide, control.stop, image);
+          if (control.progress) control.progress(++done, across * down);
+        },
+        tbb::auto_partitioner(), context);
+  });
+  for (const auto& renderer : renderers) {
+    stopped = stopped || renderer->stopped();
+    renderer->add_to(stats);
+  }
+  if (stopped) throw Cancelled();
+  stats.mean_cut /= static_cast<double>(plan.width) * plan.height;
+  stats.trace_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return {std::move(image), stats};
+}
+
+}  // namespace
+
+RenderResult render_frame(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
+                          const RenderControl& control) {
+  return plan.double_precision ? render<double>(scene, plan, format, pool, control)
+                               : render<float>(scene, plan, format, pool, control);
+}
+
+}  // namespace orrery

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/image/image.h"
+#include "core/model/counts.h"
+#include "core/model/plan.h"
+#include "core/model/scene.h"
+
+namespace orrery {
+
+// A scene with what rendering it has built so far (its shapes in the render's precision, its accelerators),
+// kept for the next frame. Safe to use from any number of threads; each part is built once.
+class PreparedScene {
+ public:
+  explicit PreparedScene(std::shared_ptr<const Scene> scene);
+  ~PreparedScene();
+
+  const Scene& scene() const;
+  std::shared_ptr<const Scene> shared_scene() const;
+
+  struct Parts;
+  Parts& parts() const { return *parts_; }
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+// The threads that render. One for a process; frames from several callers share them fairly.
+class WorkerPool {
+ public:
+  // threads 0: one a core.
+  explicit WorkerPool(int threads = 0);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  int threads() const;
+
+  struct Parts;
+  Parts& parts() const { return *parts_; }
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+// How a caller follows a render. Both are called from worker threads, several at once.
+struct RenderControl {
+  std::function<bool()> stop;                        // asked before each tile; true ends it with Cancelled
+  std::function<void(int done, int total)> progress;  // tiles
+};
+
+struct RenderStats {
+  TraceCounts counts;
+  double mean_cut = 0, max_cut = 0;  // weight of rays not traced, a pixel: mean and largest
+  double build_ms = 0;               // making the scene ready, where it was not yet
+  double trace_ms = 0;               // wall clock
+  std::uint64_t non_finite_pixels = 0;
+};
+
+struct RenderResult {
+  Image image;
+  RenderStats stats;
+};
+
+// Renders one frame on the pool. Throws Cancelled if control.stop said so. The picture depends on scene and plan
+// alone: not on threads, their order or the machine's vector width.
+RenderResult render_frame(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
+                          const RenderControl& control = {});
+
+}  // namespace orrery

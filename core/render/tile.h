@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/model/technique.h"
+#include "core/render/renderer.h"
+
+namespace orrery {
+
+// Renders tiles, one after another, on one thread. Sums over samples are kept in double precision.
+template <class T>
+class TileRenderer {
+ public:
+  TileRenderer(const World<T>& world, const Plan& plan);
+
+  // Sets the pixels of the tile whose first pixel is (x0, y0). Asks `stop` (if there is one) before each sample
+  // after the first; once it says yes the tile is left unfinished and stopped() is true.
+  void render(int x0, int y0, const std::function<bool()>& stop, Image& image);
+  bool stopped() const { return stopped_; }
+
+  // Adds what the tiles so far took; mean_cut is summed, not yet divided.
+  void add_to(RenderStats& stats) const;
+
+ private:
+  static constexpr int kMaxSide = 65536;  // pixels are numbered row by row as if rows were this long
+
+  void place_samples(int x0, int y0, int sample);
+  void add_sample();
+  void write(int x0, int y0, Image& image);
+
+  const Plan& plan_;
+  TracerPtr<T> tracer_;
+  TileSamples samples_;
+  RayBatch<T> rays_;
+  TraceResult<T> result_;
+  struct Sums {
+    std::vector<double> red, green, blue, cut;
+  } sums_;
+  RenderStats stats_;
+  bool stopped_ = false;
+};
+
+extern template class TileRenderer<float>;
+extern template class TileRenderer<double>;
+
+}  // namespace orrery

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/record.h"
+#include "core/model/shape.h"
+
+// A shape type is one record, `template <class N> struct Sphere`, with
+//   static constexpr ShapeTraits kTraits;
+//   static void read(Params&, std::vector<Sphere<double>>& out);   appends what one object holds
+//   Boundsd bounds() const;                                        of a Sphere<double>
+//   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit, or +infinity (or NaN) for none
+//   Surface<N> surface(const Ray<N>&, const N& t) const;
+// and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
+namespace orrery {
+
+template <template <class> class Record, class T>
+class PrimitiveKernel final : public ShapeKernel<T> {
+ public:
+  using N = Lanes<T>;
+
+  PrimitiveKernel(std::span<const Record<double>> records, int first) : first_(first) {
+    records_.reserve(records.size());
+    for (const auto& record : records) records_.push_back(convert_record<Record, T, double>(record));
+  }
+
+  void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) const override {
+    const auto shape = broadcast_record<Record, T>(records_[static_cast<std::size_t>(index)]);
+    const IndexLanes<T> id(static_cast<IndexOf<T>>(first_ + index));
+    for (const int i : groups) {
+      const N best = hits.t.at(i);
+      const N t = shape.distance(rays.at(i));
+      if (!any(t <= best)) continue;
+      const IndexLanes<T> best_id = load_index<T>(hits.primitive, i);
+      const auto lower = mask_cast<N>(id < best_id || best_id == kNoPrimitive);
+      const auto nearer = t < best || (t == best && lower && t < std::numeric_limits<T>::infinity());
+      hits.t.put(i, nearer, t);
+      hits.primitive.put(i, mask_cast<IndexLanes<T>>(nearer), id);
+    }
+  }
+
+  void occlude(int index, RayBatch<T>& rays, const Groups& groups) const override {
+    const auto shape = broadcast_record<Record, T>(records_[static_cast<std::size_t>(index)]);
+    for (const int i : groups) {
+      const auto hit = shape.distance(rays.at(i)) < rays.t_max.at(i);
+      if (any(hit)) rays.t_max.put(i, hit, N(-1));
+    }
+  }
+
+  void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+               SurfaceBatch<T>& out) const override {
+    const int last = first_ + static_cast<int>(records_.size());
+    for (const int i : groups) {
+      const IndexLanes<T> id = load_index<T>(hits.primitive, i);
+      const auto mine = mask_cast<N>(id >= first_ && id < last);
+      if (!any(mine)) continue;
+      const auto shape = fetch_records<Record, T>(records_, id - first_, mine);
+      put_surface(shape.surface(rays.at(i), hits.t.at(i)), rays.direction.at(i), i, mine, out);
+    }
+  }
+
+ private:
+  static void put_surface(const Surface<N>& s, const Vec3<N>& direction, int i, const MaskOf<N>& mine,
+                          SurfaceBatch<T>& out) {
+    const N side = select(dot(s.geometric, direction) > N(0), N(-1), N(1));
+    out.position.put(i, mine, s.position);
+    out.geometric.put(i, mine, s.geometric * side);
+    out.normal.put(i, mine, s.normal * side);
+    out.side.put(i, mine, side);
+    out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));
+  }
+
+  std::vector<Record<T>> records_;
+  int first_;
+};
+
+template <template <class> class Record>
+class PrimitiveSet final : public ShapeSet {
+ public:
+  int add(Params& params) override {
+    const std::size_t before = records_.size();
+    Record<double>::read(params, records_);
+    return static_cast<int>(records_.size() - before);
+  }
+  int size() const override { return static_cast<int>(records_.size()); }
+  Boundsd bounds(int index) const override { return records_[static_cast<std::size_t>(index)].bounds(); }
+  ShapeTraits traits() const override { return Record<double>::kTraits; }
+  ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
+  ShapeKernelPtr<double> kernel(double, int first) const override { return make<double>(first); }
+  ShapeKernelPtr<long double> kernel(long double, int first) const override {
+    return make<long double>(first);
+  }
+
+ private:
+  template <class T>
+  ShapeKernelPtr<T> make(int first) const {
+    return std::make_unique<PrimitiveKernel<Record, T>>(std::span<const Record<double>>(records_), first);
+  }
+  std::vector<Record<double>> records_;
+};
+
+template <template <class> class Record>
+std::unique_ptr<ShapeSet> make_shape_set() {
+  return std::make_unique<PrimitiveSet<Record>>();
+}
+
+}  // namespace orrery

@@ -1,0 +1,44 @@
+#include "core/params/params.h"
+#include "core/shapes/primitive_set.h"
+#include "core/shapes/triangle_hit.h"
+
+namespace orrery {
+namespace {
+
+template <class N>
+struct Triangle {
+  Vec3<N> a, b, c;
+  Vec3<N> normal;  // by the right-hand rule over a, b, c
+  N magnitude;     // largest absolute coordinate
+
+  static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
+
+  static void read(Params& p, std::vector<Triangle<double>>& out) {
+    std::vector<Vec3d> v = p.points("vertices", "The three vertices, in metres; anticlockwise from the front.", {3, 3});
+    v.resize(3);
+    const Vec3d normal = safe_normalize(cross(v[1] - v[0], v[2] - v[0]));
+    if (normal == Vec3d()) p.fail("vertices", "expected three vertices that are not on one line");
+    Boundsd b;
+    for (const Vec3d& vertex : v) b.include(vertex);
+    out.push_back({v[0], v[1], v[2], normal, b.magnitude()});
+  }
+
+  Boundsd bounds() const {
+    Boundsd box;
+    for (const Vec3d& vertex : {a, b, c}) box.include(vertex);
+    return box;
+  }
+
+  N distance(const Ray<N>& ray) const { return intersect_triangle(ray, a, b, c).t; }
+
+  Surface<N> surface(const Ray<N>& ray, const N&) const {
+    const TriangleHit<N> hit = intersect_triangle(ray, a, b, c);
+    return {a * hit.weight_a + b * hit.weight_b + c * hit.weight_c, normal, normal, magnitude};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<ShapeSet> make_triangles() { return make_shape_set<Triangle>(); }
+
+}  // namespace orrery

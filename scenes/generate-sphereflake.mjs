@@ -1,0 +1,81 @@
+#!/usr/bin/env node
+// Writes a sphereflake scene:  node scenes/generate-sphereflake.mjs LEVEL [FILE]     (standard output if no FILE)
+//
+// The "balls" scene of Eric Haines' Standard Procedural Databases (A Proposal for Standard Graphics Environments,
+// IEEE Computer Graphics and Applications 7(11), 1987): a sphere of radius 0.5, and on each sphere, LEVEL times
+// over, nine touching ones of a third of its radius, six about its equator and three above. LEVEL is that
+// collection's size factor: 1 gives 10 spheres, 2 gives 91, 3 gives 820, 4 (its usual size) 7,381, 5 gives 66,430.
+// Its camera, its three lights, sky and floor; the spheres are of gold here, the floor has no edge.
+import { writeFileSync } from "node:fs";
+
+const kDigits = 9;
+const round = (x) => Number(x.toPrecision(kDigits)) + 0;
+const three = (v) => `[${v.map(round).join(", ")}]`;
+
+// Unit vectors to the nine children of a sphere whose pole is z: nine of the twelve corners of a cuboctahedron.
+function childDirections() {
+  const ring = (count, azimuthDegrees, z) =>
+    Array.from({ length: count }, (_, i) => {
+      const azimuth = (azimuthDegrees / 180 + (2 * i) / count) * Math.PI;
+      const across = Math.sqrt(1 - z * z);
+      return [across * Math.cos(azimuth), across * Math.sin(azimuth), z];
+    });
+  return [...ring(6, 15, 0), ...ring(3, 45, Math.sqrt(2 / 3))];
+}
+
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+
+// `v` turned by the shortest rotation that takes z to the unit vector `pole` (Rodrigues' formula).
+function turned(v, pole) {
+  if (pole[2] < -0.999999999) return [v[0], -v[1], -v[2]];
+  const axis = cross([0, 0, 1], pole); // its length is the sine of the angle
+  const once = cross(axis, v);
+  const twice = cross(axis, once);
+  return v.map((c, i) => c + once[i] + twice[i] / (1 + pole[2]));
+}
+
+function* spheres(level, center = [0, 0, 0], radius = 0.5, pole = [0, 0, 1]) {
+  yield `{ "type": "sphere", "center": ${three(center)}, "radius": ${round(radius)}, "material": "gold" }`;
+  if (level === 0) return;
+  const reach = radius + radius / 3;
+  for (const direction of childDirections()) {
+    const outward = turned(direction, pole);
+    const child = center.map((c, i) => c + reach * outward[i]);
+    yield* spheres(level - 1, child, radius / 3, outward);
+  }
+}
+
+function scene(level) {
+  const flake = [...spheres(level)];
+  const light = (from) => `{ "type": "point", "position": ${three(from)}, "intensity": [0.58, 0.58, 0.58] }`;
+  return `{
+  "version": 1,
+  "title": "Sphereflake ${level}",
+  "description": "${flake.length.toLocaleString("en")} spheres of gold: nine small ones sit on every large one.",
+  "camera": { "type": "perspective", "eye": [2.1, 1.3, 1.7], "look_at": [0, 0, 0], "up": [0, 0, 1], "fov_degrees": 45 },
+  "image": { "width": 512, "height": 512 },
+  "ambient": [0.1, 0.1, 0.1],
+  "background": [0.078, 0.361, 0.753],
+  "materials": {
+    "gold": { "type": "reflective", "n": [0.143, 0.375, 1.442], "k": [3.983, 2.386, 1.603] },
+    "floor": { "type": "rough", "kd": [0.8, 0.6, 0.264] }
+  },
+  "lights": [
+    ${[[4, 3, 2], [1, -4, 4], [-3, 1, 5]].map(light).join(",\n    ")}
+  ],
+  "objects": [
+    { "type": "plane", "point": [0, 0, -0.5], "normal": [0, 0, 1], "material": "floor" },
+    ${flake.join(",\n    ")}
+  ],
+  "render": { "max_depth": 5 }
+}
+`;
+}
+
+const level = Number(process.argv[2]);
+if (!Number.isInteger(level) || level < 0 || level > 6) {
+  console.error("usage: generate-sphereflake.mjs LEVEL [FILE]     LEVEL is 0 to 6");
+  process.exit(2);
+}
+if (process.argv[3]) writeFileSync(process.argv[3], scene(level));
+else process.stdout.write(scene(level));

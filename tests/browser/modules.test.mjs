@@ -1,0 +1,173 @@
+#!/usr/bin/env node
+// The page's modules that need no browser, one by one.
+
+import assert from "node:assert/strict";
+import { cpSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { kRoot } from "./support.mjs";
+
+// A copy that says it is made of modules: Node asks for that, a browser does not.
+const copy = mkdtempSync(join(tmpdir(), "orrery-web-"));
+cpSync(join(kRoot, "web"), copy, { recursive: true });
+writeFileSync(join(copy, "package.json"), '{"type": "module"}');
+after(() => rmSync(copy, { recursive: true }));
+const load = (name) => import(join(copy, name));
+
+const { server_timing } = await load("api.js");
+const { persist, wake_all } = await load("backoff.js");
+const { OrbitCamera, elevation_of } = await load("camera.js");
+const { locate, offset_of } = await load("pointer.js");
+const { pretty } = await load("scenes.js");
+const { picture_size, within } = await load("size.js");
+const { format_hash, parse_hash } = await load("state.js");
+const { FrameParser, read_frames } = await load("stream.js");
+const { curl_command, frame_url } = await load("urls.js");
+
+function frame_bytes(header, png) {
+  const text = new TextEncoder().encode(JSON.stringify({ ...header, bytes: png.length }));
+  const bytes = new Uint8Array(4 + text.length + png.length);
+  new DataView(bytes.buffer).setUint32(0, text.length);
+  bytes.set(text, 4);
+  bytes.set(png, 4 + text.length);
+  return bytes;
+}
+
+test("frames come out whole however the bytes are cut", () => {
+  const first = frame_bytes({ frame: 0 }, Uint8Array.of(1, 2, 3));
+  const second = frame_bytes({ frame: 1 }, Uint8Array.of(4, 5, 6, 7));
+  const all = Uint8Array.of(...first, ...second);
+  for (let piece = 1; piece <= all.length; piece += 1) {
+    const parser = new FrameParser();
+    const frames = [];
+    for (let at = 0; at < all.length; at += piece) frames.push(...parser.push(all.slice(at, at + piece)));
+    assert.deepEqual(frames.map(({ header }) => header.frame), [0, 1], `pieces of ${piece}`);
+    assert.deepEqual([...frames[0].png, ...frames[1].png], [1, 2, 3, 4, 5, 6, 7], `pieces of ${piece}`);
+    assert.equal(parser.inside_frame, false);
+  }
+});
+
+test("bytes that are no frames are refused", () => {
+  assert.throws(() => new FrameParser().push(Uint8Array.of(255, 255, 255, 255, 0)), /not made of frames/);
+  assert.throws(() => new FrameParser().push(Uint8Array.of(0, 0, 0, 2, 123, 125)), /not made of frames/);
+});
+
+test("a stream that breaks off inside a frame is a failure worth a new attempt", async () => {
+  const bytes = frame_bytes({ frame: 0 }, Uint8Array.of(1, 2, 3));
+  const body = new Blob([bytes, bytes.slice(0, -1)]).stream();
+  const seen = [];
+  await assert.rejects(async () => {
+    for await (const frame of read_frames(body)) seen.push(frame);
+  }, (error) => error.retryable);
+  assert.equal(seen.length, 1);
+});
+
+test("the camera glides to its goal and stops there", () => {
+  const camera = new OrbitCamera();
+  camera.rotate(90, 30);
+  camera.dolly(0.5);
+  assert.equal(camera.step(1 / 60), true);
+  assert.ok(Math.abs(camera.view.azimuth - 4.5) < 1e-9, "a sixtieth of a second covers a twentieth of the way");
+  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5 });
+});
+
+test("the camera never looks straight along up, wherever the scene's own eye is", () => {
+  const own = { eye: [0, 3, 3], look_at: [0, 0, 0], up: [0, 2, 0] };
+  assert.ok(Math.abs(elevation_of(own) - 45) < 1e-9);
+  const camera = new OrbitCamera();
+  camera.use_scene_camera(own);
+  camera.rotate(0, 1000);
+  assert.ok(Math.abs(camera.goal.elevation - 44.9) < 1e-9);
+  camera.rotate(0, -1000);
+  assert.ok(Math.abs(camera.goal.elevation + 134.9) < 1e-9);
+});
+
+test("reset takes the short way round", () => {
+  const camera = new OrbitCamera();
+  camera.jump({ azimuth: 350, elevation: 10, distance: 2 });
+  camera.reset();
+  camera.step(1 / 60);
+  assert.ok(camera.view.azimuth > 350);
+});
+
+test("a JSON pointer leads to its place in the text", () => {
+  const text = '{ "a/b": [1, {"x": "}]\\"", "radius": -2}], "radius": 7, "list": [[], {}, 3] }';
+  const at = (pointer, key) => text.slice(...locate(text, pointer, key));
+  assert.equal(at("/a~1b/1/radius"), "-2");
+  assert.equal(at("/radius"), "7");
+  assert.equal(at("/a~1b/0"), "1");
+  assert.equal(at("/list/2"), "3");
+  assert.equal(at("/a~1b/1", "x"), '"x"');
+  assert.deepEqual(locate(text, "/a~1b/1/absent"), locate(text, "/a~1b/1"));
+  assert.equal(at(""), "{");
+  for (let end = 0; end < text.length; end += 1) locate(text.slice(0, end), "/list/2");
+  assert.equal(locate("[".repeat(1e5), "/0/0").length, 2);
+});
+
+test("a line and a column lead to their place in the text", () => {
+  assert.equal(offset_of("ab\ncd\n", 2, 2), 4);
+  assert.equal(offset_of("ab\ncd\n", 1, 99), 2);
+  assert.equal(offset_of("ab", 9, 1), 0);
+});
+
+test("a link restores what it was made from, and nonsense in it is ignored", () => {
+  const state = { ...parse_hash(""), scene: "mirror", az: 12.5, el: -3, dist: 0.5, playing: false, technique: "raycast", samples: 16 };
+  assert.deepEqual(parse_hash(format_hash(state)), state);
+  const odd = parse_hash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999");
+  assert.deepEqual({ ...odd, speed: 20 }, parse_hash(""));
+  assert.equal(odd.speed, 120);
+});
+
+test("a picture fits its box and the limits", () => {
+  const scene = { width: 600, height: 600, camera: { type: "perspective", fov_degrees: 90 } };
+  const limits = { side: 4096, pixels: 2 ** 24 };
+  const size = (more) => picture_size({
+    mode: "fit", purpose: "still", box: { width: 800, height: 400 }, pixel_ratio: 2, scene, limits, ...more,
+  });
+  assert.deepEqual(size(), { width: 1600, height: 800, fov: undefined, fills: true });
+  assert.deepEqual(size({ purpose: "preview", preview_part: 0.25 }), { width: 400, height: 200, fov: undefined, fills: true });
+  const stream = size({ purpose: "stream" });
+  assert.ok(stream.width * stream.height <= 1e6 && stream.width > 1400);
+  const narrow = size({ box: { width: 400, height: 800 } });
+  assert.ok(Math.abs(narrow.fov - (2 * Math.atan(2) * 180) / Math.PI) < 1e-9, "the sides stay in view");
+  assert.deepEqual(within({ width: 8192, height: 100 }, 4096, 2 ** 24), { width: 4096, height: 50 });
+});
+
+test("addresses are the same for the same view and safe in a shell", () => {
+  const picture = { id: "ab12", azimuth: 10.001, elevation: -0.0001, distance: 1, width: 60, height: 40, samples: 0 };
+  assert.equal(frame_url(picture), "v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40");
+  assert.equal(curl_command(picture, "my scene", "http://host:1/"),
+    "curl -fo my-scene-10-0.png 'http://host:1/v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40'");
+});
+
+test("Server-Timing is read by name", () => {
+  assert.deepEqual(server_timing('load;dur=0.1, render;desc="x";dur=12.5, cached'), { load: 0.1, render: 12.5 });
+  assert.deepEqual(server_timing(null), {});
+});
+
+test("an attempt is repeated while the failure may pass, and no longer", async () => {
+  const failure = (retryable) => Object.assign(new Error("no"), { retryable, retry_after_seconds: 60 });
+  let attempts = 0;
+  const task = async () => {
+    attempts += 1;
+    if (attempts < 3) throw failure(true);
+    return "done";
+  };
+  assert.equal(await persist(task, () => setImmediate(wake_all)), "done");
+  assert.equal(attempts, 3);
+  await assert.rejects(persist(async () => { throw failure(false); }, () => {}), /no/);
+});
+
+test("canonical JSON is laid out for reading and stays the same value", () => {
+  const value = { eye: [0, -1.5, 2e-7], names: ["a", "b"], empty: [], deep: [[1, 2], [3, 4]] };
+  assert.deepEqual(JSON.parse(pretty(value)), value);
+  assert.match(pretty(value), /"eye": \[0, -1\.5, 2e-7\]/);
+});
+
+test("the page stays under 100 KB", () => {
+  const files = readdirSync(join(kRoot, "web"));
+  const total = files.reduce((sum, file) => sum + statSync(join(kRoot, "web", file)).size, 0);
+  assert.ok(total < 100 * 1024, `${total} bytes`);
+});

@@ -1,0 +1,130 @@
+// What the browser tests and the screenshot helper share: a daemon of their own and a Chromium of their own.
+
+import { spawn } from "node:child_process";
+import { existsSync } from "node:fs";
+import { createRequire } from "node:module";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const kRoot = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
+export const kSkipped = 77;
+const kChromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const kStartMs = 20_000;
+const require = createRequire(import.meta.url);
+
+// Path of a file in a package, found in node_modules or NODE_PATH; null where it is not installed.
+export function package_file(name) {
+  try {
+    return require.resolve(name);
+  } catch {
+    return null;
+  }
+}
+
+// Ends the process with the code for "skipped" when the browser or its driver is missing.
+export function skip_without_browser() {
+  for (const [what, present] of [[kChromium, existsSync(kChromium)], ["playwright-core", package_file("playwright-core")]]) {
+    if (present) continue;
+    console.log(`skipped: ${what} is not installed`);
+    process.exit(kSkipped);
+  }
+}
+
+// Starts `orrery serve` on a free port, or on `port`. Returns {url, stop()}; stop() ends it by its own pid.
+export async function start_daemon(port = 0) {
+  const program = process.env.ORRERY_BIN ?? join(kRoot, "build/orrery");
+  const child = spawn(program, ["serve", "--port", String(port)], { stdio: ["ignore", "pipe", "pipe"] });
+  const gone = new Promise((resolve) => child.once("close", resolve));
+  let output = "";
+  const url = await new Promise((resolve, reject) => {
+    const timer = setTimeout(() => reject(new Error(`no address within ${kStartMs} ms; it said: ${output}`)), kStartMs);
+    const fail = (why) => {
+      clearTimeout(timer);
+      reject(new Error(`${program} ${why}; it said: ${output}`));
+    };
+    const read = (chunk) => {
+      output += chunk;
+      const match = /listens on (http:\/\/\S+)/.exec(output);
+      if (!match) return;
+      clearTimeout(timer);
+      resolve(match[1]);
+    };
+    child.stdout.on("data", read);
+    child.stderr.on("data", read);
+    child.once("error", (error) => fail(error.message));
+    child.once("close", (code) => fail(`ended with ${code}`));
+  }).catch((error) => {
+    child.kill("SIGKILL");
+    throw error;
+  });
+  const stop = async () => {
+    child.kill("SIGTERM");
+    const timer = setTimeout(() => child.kill("SIGKILL"), 5000);
+    await gone;
+    clearTimeout(timer);
+  };
+  return { url: url.replace(/\/?$/, "/"), stop };
+}
+
+// A Chromium with an empty profile of its own.
+export function start_browser() {
+  return require("playwright-core").chromium.launch({
+    executablePath: kChromium,
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+}
+
+// A page at `url` that notes what should not happen: {page, faults, close()}. Faults are console errors,
+// uncaught exceptions and requests to another origin.
+export async function open_page(browser, url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
+  const page = await context.newPage();
+  const faults = [];
+  page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
+  page.on("pageerror", (error) => faults.push(String(error)));
+  page.on("request", (request) => {
+    const { origin, protocol } = new URL(request.url());
+    if (protocol !== "blob:" && origin !== new URL(url).origin) faults.push(`request to ${request.url()}`);
+  });
+  await page.goto(url);
+  await page.locator("#canvas").waitFor({ state: "visible" });
+  return { page, faults, close: () => context.close() };
+}
+
+// A short text that differs for different pictures on the canvas.
+export function canvas_digest(page) {
+  return page.evaluate(async () => {
+    const canvas = document.getElementById("canvas");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", data));
+    return `${canvas.width}x${canvas.height} ${[...digest.slice(0, 8)].join(".")}`;
+  });
+}
+
+// The page's state as its address gives it: {scene, az, el, dist, ...} as texts.
+export async function hash_of(page) {
+  return Object.fromEntries(new URLSearchParams(await page.evaluate(() => location.hash.slice(1))));
+}
+
+// Waits until `probe()` returns something true, and returns that.
+export async function eventually(what, probe, timeout_ms = 15_000) {
+  for (const start = Date.now(); Date.now() - start < timeout_ms;) {
+    const result = await probe();
+    if (result) return result;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  throw new Error(`not within ${timeout_ms} ms: ${what}`);
+}
+
+// Waits until the view rests and its full picture is drawn; returns its digest.
+export async function rest(page) {
+  let last = "";
+  let since = Date.now();
+  return eventually("the picture comes to rest", async () => {
+    const now = await canvas_digest(page);
+    if (now !== last) since = Date.now();
+    last = now;
+    return Date.now() - since > 500 && now;
+  });
+}

@@ -1,0 +1,234 @@
+#!/usr/bin/env node
+// The arrangement of the source tree: who may include whom, what a registry must list, how long a file may
+// be. Without arguments it judges this repository; with --self-test it judges small trees that each break a rule.
+
+import {mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
+import {tmpdir} from "node:os";
+import {basename, dirname, extname, join} from "node:path";
+import {fileURLToPath} from "node:url";
+
+const kFloors = [
+  ["core/base", "core/math"],
+  ["core/params", "core/image"],
+  ["core/model"],
+  ["core/shapes", "core/materials", "core/textures", "core/lights", "core/accelerators", "core/techniques"],
+  ["core/plan"],
+  ["core/render", "core/load"],
+  ["core/study"],
+  ["server"],
+];
+const kRegisteredRooms = kFloors[3];
+const kGenerated = ["core/base/version.h"];  // lies in the build folder
+const kMaxLines = 500;
+const kMaxHttplibUsers = 3;  // 20,000 lines of header each
+const kTextFolders = [".ci", "core", "docker", "scenes", "script", "server", "tests", "web"];
+const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", ".cmake"]);
+const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ""]);
+const kUnread = new Set(["package-lock.json", "LICENSE"]);
+const kLibraries = [
+  {name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|server)\// },
+  {name: "libpng", header: /^png\.h$/, rooms: /^core\/image\// },
+  {name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\// },
+  {name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\// },
+];
+// Folders that exist on one machine only. (Preceded by a word or a dot it is a relative path.)
+const kMachinePath = /(?<![\w.)}\]-])(?:\/(?:work|home|root|Users|mnt)\/|[A-Z]:\\\\?Users)/;
+
+const roomOf = (path) => (path.startsWith("server/") ? "server" : path.split("/").slice(0, 2).join("/"));
+const floorOf = (path) => kFloors.findIndex((rooms) => rooms.includes(roomOf(path)));
+const isCode = (path) => /^(core|server)\/.*\.(cpp|h)$/.test(path);
+
+function listFiles(root) {
+  const files = [];
+  const walk = (folder) => {
+    for (const entry of readdirSync(join(root, folder), {withFileTypes: true})) {
+      const path = folder ? `${folder}/${entry.name}` : entry.name;
+      if (entry.isFile()) files.push(path);
+      else if (entry.isDirectory() && (folder || kTextFolders.includes(path))) walk(path);
+    }
+  };
+  walk("");
+  return files.filter((path) => kText.has(extname(path)) && !kUnread.has(path)).sort();
+}
+
+function includesOf(lines) {
+  const found = [];
+  lines.forEach((line, index) => {
+    const match = line.match(/^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)/);
+    if (match) found.push({line: index + 1, target: match[1] ?? match[2], quoted: match[1] !== undefined});
+  });
+  return found;
+}
+
+// Returns what is wrong in the tree at `root`, as {path, line, rule, text}.
+function judge(root) {
+  const problems = [];
+  const complain = (rule, path, line, text) => problems.push({rule, path, line, text});
+  const files = listFiles(root);
+  const contents = new Map(files.map((path) => [path, readFileSync(join(root, path), "utf8")]));
+  const includes = new Map();
+  for (const path of files.filter(isCode)) includes.set(path, includesOf(contents.get(path).split("\n")));
+
+  judgeText(contents, complain);
+  judgeIncludes(includes, complain);
+  judgeLibraries(includes, complain);
+  judgeCycles(includes, complain);
+  judgeRegistries(contents, complain);
+  return problems;
+}
+
+function judgeText(contents, complain) {
+  for (const [path, text] of contents) {
+    const lines = text.split("\n");
+    if (lines.at(-1) === "") lines.pop();
+    const script = text.startsWith("#!") || basename(path) === "CMakeLists.txt";
+    if ((script || kCounted.has(extname(path))) && lines.length > kMaxLines) {
+      complain("length", path, kMaxLines + 1, `${lines.length} lines, at most ${kMaxLines} are allowed`);
+    }
+    lines.forEach((line, index) => {
+      const match = line.match(kMachinePath);
+      if (match) complain("machine", path, index + 1, `"${match[0]}" exists on one machine only`);
+    });
+  }
+}
+
+function judgeIncludes(includes, complain) {
+  for (const [path, list] of includes) {
+    const floor = floorOf(path);
+    if (floor < 0) complain("room", path, 1, `${roomOf(path)} is not a room of the design`);
+    for (const {line, target, quoted} of list) {
+      if (!quoted) continue;
+      if (!includes.has(target) && !kGenerated.includes(target)) {
+        complain("root", path, line, `"${target}" is no file of core/ or server/ from the repository root`);
+      } else if (floorOf(target) > floor) {
+        complain("floor", path, line, `"${target}" lies on a higher floor`);
+      } else if (floorOf(target) === floor && roomOf(target) !== roomOf(path)) {
+        complain("neighbour", path, line, `"${target}" lies in another room of the same floor`);
+      }
+    }
+  }
+}
+
+function judgeLibraries(includes, complain) {
+  const reaches = (path, seen = new Set()) => {  // does it include httplib, itself or through a header?
+    if (seen.has(path)) return false;
+    seen.add(path);
+    const list = includes.get(path) ?? [];
+    return list.some(({target, quoted}) => (quoted ? reaches(target, seen) : target === "httplib.h"));
+  };
+  const users = [...includes.keys()].filter((path) => path.endsWith(".cpp") && reaches(path));
+  if (users.length > kMaxHttplibUsers) {
+    const text = `${users.length} files compile httplib, at most ${kMaxHttplibUsers} may: ${users.join(" ")}`;
+    complain("httplib", users.at(-1), 1, text);
+  }
+  for (const [path, list] of includes) {
+    for (const {line, target} of list) {
+      for (const {name, header, rooms} of kLibraries) {
+        if (header.test(target) && !rooms.test(path)) {
+          complain("library", path, line, `${name} may not be included here (only in ${rooms.source})`);
+        }
+      }
+    }
+  }
+}
+
+function judgeCycles(includes, complain) {
+  const done = new Set();
+  const visit = (path, trail) => {
+    if (trail.includes(path)) {
+      complain("cycle", path, 1, [...trail.slice(trail.indexOf(path)), path].join(" -> "));
+    } else if (!done.has(path)) {
+      for (const {target, quoted} of includes.get(path) ?? []) if (quoted) visit(target, [...trail, path]);
+      done.add(path);
+    }
+  };
+  for (const path of includes.keys()) visit(path, []);
+}
+
+// A system core/shapes/sphere.cpp is listed if registry.cpp names sphere, make_sphere or sphere_<word>.
+function judgeRegistries(contents, complain) {
+  for (const path of contents.keys()) {
+    if (!path.endsWith(".cpp") || !kRegisteredRooms.includes(dirname(path))) continue;
+    const name = basename(path, ".cpp");
+    if (name === "registry") continue;
+    const registry = contents.get(`${dirname(path)}/registry.cpp`) ?? "";
+    const code = registry.replace(/\/\/.*|\/\*[^]*?\*\/|^\s*#.*/gm, "");
+    if (!new RegExp(`\\b(?:make_)?${name}(?:_[a-z]+)?\\b`).test(code)) {
+      complain("registry", path, 1, `${dirname(path)}/registry.cpp does not list it`);
+    }
+  }
+}
+
+// ---- self-test ----
+
+const kGoodTree = {
+  "core/base/a.h": "#pragma once\n#include <string>\n",
+  "core/params/params.cpp": '#include <nlohmann/json.hpp>\n#include "core/base/a.h"\n',
+  "core/image/png.cpp": "#include <png.h>\n#include <turbojpeg.h>\n#include <OpenEXR/ImfRgbaFile.h>\n",
+  "core/model/shape.h": '#include "core/base/a.h"\n#include "core/base/version.h"\n',
+  "core/shapes/sphere.cpp": '#include "core/model/shape.h"\n// see ../work/paper, docs/home/x\n',
+  "core/shapes/registry.cpp": "ShapeType sphere_type();  // one line each\n",
+  "server/http/http.cpp": '#include <httplib.h>\n#include "core/model/shape.h"\n',
+  "web/app.js": "// one\n".repeat(kMaxLines),
+};
+const machineFolder = ["", "work", "checkout"].join("/");
+const kBadTrees = [
+  ["floor", {"core/model/bad.h": '#include "server/http/x.h"\n', "server/http/x.h": ""}],
+  ["floor", {"core/base/bad.h": '#include "core/model/shape.h"\n'}],
+  ["neighbour", {"core/math/bad.h": '#include "core/base/a.h"\n'}],
+  ["neighbour", {"core/shapes/bad.h": '#include "core/lights/light.h"\n', "core/lights/light.h": ""}],
+  ["cycle", {"core/base/p.h": '#include "core/base/q.h"\n', "core/base/q.h": '#include "core/base/p.h"\n'}],
+  ["registry", {"core/shapes/box.cpp": "int box;\n"}],
+  ["registry", {"core/shapes/cone.cpp": "", "core/shapes/registry.cpp": "sphere_type(); // cone_type();\n"}],
+  ["registry", {"core/shapes/box.cpp": "", "core/shapes/registry.cpp": "sphere_type(); boxes_type();\n"}],
+  ["registry", {"core/lights/point.cpp": "int point;\n"}],
+  ["length", {"web/long.js": "// line\n".repeat(kMaxLines + 1)}],
+  ["length", {"script/long": `#!/bin/sh\n${"true\n".repeat(kMaxLines)}`}],
+  ["library", {"core/model/json.cpp": "#include <nlohmann/json.hpp>\n"}],
+  ["library", {"server/picture.cpp": "#include <png.h>\n"}],
+  ["library", {"core/render/picture.cpp": "#include <turbojpeg.h>\n"}],
+  ["library", {"core/load/picture.cpp": "#include <OpenEXR/ImfRgbaFile.h>\n"}],
+  ["httplib", {
+    "server/http/http.h": "#include <httplib.h>\n",
+    ...Object.fromEntries(["b", "c", "d"].map((n) => [`server/${n}.cpp`, '#include "server/http/http.h"\n'])),
+  }],
+  ["machine", {"script/run": `cd ${machineFolder}\n`}],
+  ["machine", {"README.md": `It lies in "${machineFolder}".\n`}],
+  ["root", {"core/model/near.cpp": '#include "shape.h"\n'}],
+  ["room", {"core/attic/old.cpp": "int old;\n"}],
+];
+
+function judgeTree(tree) {
+  const root = mkdtempSync(join(tmpdir(), "layers-"));
+  try {
+    for (const [path, text] of Object.entries(tree)) {
+      mkdirSync(join(root, dirname(path)), {recursive: true});
+      writeFileSync(join(root, path), text);
+    }
+    return judge(root).map(({rule}) => rule);
+  } finally {
+    rmSync(root, {recursive: true});
+  }
+}
+
+function selfTest() {
+  let failures = 0;
+  for (const [expected, changes] of [[null, {}], ...kBadTrees]) {
+    const fired = [...new Set(judgeTree({...kGoodTree, ...changes}))];
+    if (fired.join() === (expected ?? "")) continue;
+    ++failures;
+    console.error(`expected [${expected ?? ""}], got [${fired}] for ${Object.keys(changes)}`);
+  }
+  console.log(`${kBadTrees.length + 1} trees judged, ${failures} wrongly`);
+  return failures;
+}
+
+function judgeRepository() {
+  const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+  const problems = judge(root);
+  for (const {path, line, rule, text} of problems) console.error(`${path}:${line}: ${rule}: ${text}`);
+  console.log(`${problems.length} problems`);
+  return problems.length;
+}
+
+process.exitCode = (process.argv.includes("--self-test") ? selfTest() : judgeRepository()) ? 1 : 0;

@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/params/params.h"
+#include "core/params/suggest.h"
+
+namespace orrery {
+namespace {
+
+using nlohmann::json;
+
+json schema_of(const Params::Read& read) { return json::parse(describe("id", "title", "description", read)); }
+
+TEST(Describe, WritesRangesDefaultsAndDescriptions) {
+  const json schema = schema_of([](Params& p) {
+    p.number("fov", "Angle.", {.min = 0, .max = 180, .exclusive_min = true, .exclusive_max = true}, 45);
+    p.integer("width", "Pixels.", 1, 4096, 600);
+    p.choice("shading", "Which.", {"phong", "blinn-phong"}, "phong");
+    p.integer("version", "Format.", 1, 1);
+    p.text("title", "Name.", 200, "");
+    p.numbers3("attenuation", "c0, c1, c2.", {.min = 0}, Vec3d{1, 0, 0});
+  });
+  EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+  EXPECT_EQ(schema["additionalProperties"], false);
+  EXPECT_EQ(schema["required"], json::array({"version"}));
+  const json& properties = schema["properties"];
+  EXPECT_EQ(properties["fov"],
+            json::parse(R"({"description": "Angle.", "type": "number", "exclusiveMinimum": 0,
+                                               "exclusiveMaximum": 180, "default": 45})"));
+  EXPECT_EQ(properties["width"], json::parse(R"({"description": "Pixels.", "type": "integer", "minimum": 1,
+                                                 "maximum": 4096, "default": 600})"));
+  EXPECT_EQ(properties["shading"], json::parse(R"({"description": "Which.", "enum": ["phong", "blinn-phong"],
+                                                   "default": "phong"})"));
+  EXPECT_EQ(properties["version"], json::parse(R"({"description": "Format.", "const": 1})"));
+  EXPECT_EQ(properties["title"]["maxLength"], 200);
+  EXPECT_EQ(properties["attenuation"]["default"], json::array({1, 0, 0}));
+}
+
+TEST(Describe, SharesPointsAndColours) {
+  const json schema = schema_of([](Params& p) {
+    p.point("eye", "Where.");
+    p.direction("up", "Up.", Vec3d{0, 1, 0});
+    p.coefficient("kd", "Diffuse.", Vec3d{0.5, 0.5, 0.5});
+    p.coefficient("ka", "Ambient; as kd if not given.", derived(Vec3d{0.5, 0.5, 0.5}));
+    p.color("filter", "Filter.", Vec3d{1, 1, 1}, 1);
+  });
+  EXPECT_EQ(schema["properties"]["eye"],
+            json::parse(R"({"description": "Where.", "$ref": "#/$defs/point"})"));
+  EXPECT_EQ(schema["$defs"]["direction"]["not"], json::parse(R"({"const": [0, 0, 0]})"));
+  EXPECT_EQ(schema["properties"]["kd"]["default"], json::array({0.5, 0.5, 0.5}));
+  EXPECT_FALSE(schema["properties"]["ka"].contains("default"));
+  EXPECT_EQ(schema["properties"]["filter"]["items"]["maximum"], 1);
+  EXPECT_EQ(schema["required"], json::array({"eye"}));
+}
+
+struct Entry {
+  std::string_view type, summary;
+  int (*read)(Params&);
+};
+constexpr Entry kEntries[] = {
+    {"sphere", "A ball.", [](Params& p) { return p.positive("radius", ""), 1; }},
+    {"cylinder", "A column.",
+     [](Params& p) {
+       const bool infinite = p.form({{"base", "top"}, {"point", "axis"}}) == 1;
+       p.point(infinite ? "point" : "base", "");
+       infinite ? p.direction("axis", "") : p.point("top", "");
+       return 2;
+     }},
+};
+
+TEST(Describe, WalksEveryTypeAndForm) {
+  const json schema = schema_of([](Params& p) {
+    p.each("objects", "Things.", {.min = 1, .max = 9}, [](Params& object) {
+      object.dispatch("type", "Kind.", kEntries);
+      object.reference("material", "Name.", Names("material"));
+    });
+  });
+  const json& objects = schema["properties"]["objects"];
+  EXPECT_EQ(objects["minItems"], 1);
+  const json& ways = objects["items"]["oneOf"];
+  ASSERT_EQ(ways.size(), 3u);
+  EXPECT_EQ(ways[0]["title"], "sphere");
+  EXPECT_EQ(ways[0]["description"], "A ball.");
+  EXPECT_EQ(ways[0]["required"], json::array({"type", "radius", "material"}));
+  EXPECT_EQ(ways[1]["required"], json::array({"type", "base", "top", "material"}));
+  EXPECT_EQ(ways[2]["required"], json::array({"type", "point", "axis", "material"}));
+  for (const json& way : ways) EXPECT_EQ(way["additionalProperties"], false);
+  EXPECT_EQ(ways[2]["properties"]["type"]["const"], "cylinder");
+}
+
+TEST(Describe, MapsListsAndOptionalObjects) {
+  const json schema = schema_of([](Params& p) {
+    p.each_named("materials", "", {.min = 1}, [](const std::string&, Params& m) { m.number("kd", ""); });
+    p.each("lights", "", {.max = 1024}, [](Params& light) { light.flag("on", "", true); });
+    p.optional_object("image", "", [](Params& image) { image.integer("width", "", 1, 9, 6); });
+    p.points("positions", "", {.min = 3});
+    p.directions("normals", "", {});
+    p.index_triples("indices", "", {.min = 1}, 3);
+    p.any("scene", "Anything.");
+  });
+  const json& properties = schema["properties"];
+  EXPECT_EQ(properties["materials"]["additionalProperties"]["required"], json::array({"kd"}));
+  EXPECT_EQ(properties["materials"]["minProperties"], 1);
+  EXPECT_EQ(properties["lights"]["default"], json::array());
+  EXPECT_EQ(properties["lights"]["maxItems"], 1024);
+  EXPECT_EQ(properties["image"]["default"], json::object());
+  EXPECT_EQ(properties["indices"]["items"]["items"]["type"], "integer");
+  EXPECT_EQ(schema["required"], json::array({"materials", "positions", "indices"}));
+}
+
+TEST(Describe, IgnoresMeaning) {
+  EXPECT_NO_THROW(schema_of([](Params& p) {
+    if (p.point("eye", "") == p.point("look_at", "")) p.fail("eye", "equals look_at");
+  }));
+}
+
+TEST(EditDistance, CountsSlipsIncludingSwaps) {
+  EXPECT_EQ(edit_distance("radius", "radius", 2), 0);
+  EXPECT_EQ(edit_distance("raduis", "radius", 2), 1);
+  EXPECT_EQ(edit_distance("radis", "radius", 2), 1);
+  EXPECT_EQ(edit_distance("rradiuss", "radius", 2), 2);
+  EXPECT_EQ(edit_distance("", "ab", 2), 2);
+  EXPECT_EQ(edit_distance("kitten", "sitting", 9), 3);
+  EXPECT_EQ(edit_distance("kitten", "sitting", 2), 3);
+}
+
+TEST(Suggestion, FindsSlipsCaseAndAbbreviations) {
+  const std::string_view keys[] = {"eye", "look_at", "up", "fov_degrees", "center", "radius"};
+  EXPECT_EQ(nearest("lookAt", keys), "look_at");
+  EXPECT_EQ(nearest("Radius", keys), "radius");
+  EXPECT_EQ(nearest("centre", keys), "center");
+  EXPECT_EQ(nearest("fov", keys), "fov_degrees");
+  EXPECT_EQ(nearest("radius_metres", keys), "radius");
+  EXPECT_EQ(nearest("to", keys), std::nullopt);
+  EXPECT_EQ(nearest("colour", keys), std::nullopt);
+  EXPECT_EQ(nearest(std::string(1 << 20, 'x'), keys), std::nullopt);
+  EXPECT_EQ(did_you_mean("uup", keys), " (did you mean \"up\"?)");
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,303 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+void read_text(std::string_view text, const Params::Read& read) { read_document(parse_document(text), read); }
+
+// The problems as lines "pointer: detail"; empty if there are none.
+std::vector<std::string> problems(std::string_view text, const Params::Read& read) {
+  std::vector<std::string> lines;
+  try {
+    read_text(text, read);
+  } catch (const InputError& error) {
+    for (const Problem& p : error.problems()) lines.push_back(p.pointer + ": " + p.detail);
+  }
+  return lines;
+}
+
+using Lines = std::vector<std::string>;
+
+void read_sphere(Params& p) {
+  p.point("center", "");
+  p.positive("radius", "");
+}
+
+TEST(Reader, SaysThePlaceTheLimitAndWhatCame) {
+  const auto read = [](Params& p) { p.each("objects", "", {}, read_sphere); };
+  EXPECT_EQ(
+      problems(R"({"objects": [{"center": [0,0,0], "radius": 1}, {"center": [0,0,0], "radius": "big"}]})",
+               read),
+      Lines{R"(/objects/1/radius: expected a number >= 1e-12 and <= 1e12, got "big")"});
+  EXPECT_EQ(problems(R"({"objects": [{"center": [0,0,0], "radius": -1}]})", read),
+            Lines{"/objects/0/radius: expected a number >= 1e-12 and <= 1e12, got -1"});
+  EXPECT_EQ(problems(R"({"objects": [{"center": [0,"x",1e13], "radius": 1}]})", read),
+            (Lines{R"(/objects/0/center/1: expected a number >= -1e12 and <= 1e12, got "x")",
+                   "/objects/0/center/2: expected a number >= -1e12 and <= 1e12, got 10000000000000"}));
+  EXPECT_EQ(problems(R"({"objects": [{"center": [0,0], "radius": 1}]})", read),
+            Lines{"/objects/0/center: expected 3 numbers >= -1e12 and <= 1e12, got [0,0]"});
+  EXPECT_EQ(problems(R"({"objects": [7]})", read), Lines{"/objects/0: expected an object, got 7"});
+  EXPECT_EQ(problems("[1]", read), Lines{": expected an object, got [1]"});
+}
+
+TEST(Reader, SuggestsTheKeyThatWasMeant) {
+  EXPECT_EQ(problems(R"({"center": [0,0,0], "raduis": 1})", read_sphere),
+            (Lines{R"(: missing key "radius": expected a number >= 1e-12 and <= 1e12)",
+                   R"(: unknown key "raduis" (did you mean "radius"?))"}));
+  EXPECT_EQ(problems(R"({"center": [0,0,0], "radius": 1, "colour": 1})", read_sphere),
+            Lines{R"(: unknown key "colour")"});
+}
+
+TEST(Reader, CutsLongValues) {
+  const std::string text = R"({"radius": ")" + std::string(100000, 'a') + R"(", "center": [0,0,0]})";
+  EXPECT_EQ(problems(text, read_sphere),
+            Lines{"/radius: expected a number >= 1e-12 and <= 1e12, got \"" + std::string(39, 'a') + "..."});
+}
+
+TEST(Reader, EscapesPointersAndNames) {
+  const auto read = [](Params& p) {
+    p.each_named("materials", "", {}, [](const std::string&, Params& m) { m.number("kd", "", {.min = 0}); });
+  };
+  EXPECT_EQ(
+      problems(R"({"materials": {"a/b~c": {"kd": -1}, "\"": {"kd": 1, "\n": 2}, "": {"kd": 1}}})", read),
+      (Lines{R"(/materials/: expected a name of 1 to 128 characters, got "")",
+             R"(/materials/": unknown key "\n")", "/materials/a~1b~0c/kd: expected a number >= 0, got -1"}));
+}
+
+TEST(Reader, ReadsValuesAndDefaults) {
+  bool ran = false;
+  read_text(
+      R"({"n": 2.5, "i": 3.0, "f": true, "c": "b", "t": "é", "v": [1, -0.0, 3], "k": 0.5, "kc": [1,2,3]})",
+      [&](Params& p) {
+        EXPECT_EQ(p.number("n", ""), 2.5);
+        EXPECT_EQ(p.number("n2", "", {}, 7), 7);
+        EXPECT_EQ(p.integer("i", "", 0, 5), 3);
+        EXPECT_EQ(p.integer("i2", "", 0, 5, 4), 4);
+        EXPECT_TRUE(p.flag("f", ""));
+        EXPECT_FALSE(p.flag("f2", "", false));
+        EXPECT_EQ(p.choice("c", "", {"a", "b"}), "b");
+        EXPECT_EQ(p.choice("c2", "", {"a", "b"}, "a"), "a");
+        EXPECT_EQ(p.text("t", "", 1), "é");
+        EXPECT_EQ(p.text("t2", "", 1, ""), "");
+        EXPECT_EQ(p.point("v", ""), (Vec3d{1, 0, 3}));
+        EXPECT_EQ(p.color("v2", "", Vec3d{1, 1, 1}), (Vec3d{1, 1, 1}));
+        EXPECT_EQ(p.coefficient("k", ""), (Vec3d{0.5, 0.5, 0.5}));
+        EXPECT_EQ(p.coefficient("kc", ""), (Vec3d{1, 2, 3}));
+        EXPECT_EQ(p.coefficient("kd", "", derived(Vec3d{4, 4, 4})), (Vec3d{4, 4, 4}));
+        EXPECT_EQ(p.numbers3("a", "", {.min = 0}, Vec3d{1, 0, 0}), (std::array<double, 3>{1, 0, 0}));
+        EXPECT_TRUE(p.has("n"));
+        EXPECT_FALSE(p.has("n2"));
+        ran = true;
+      });
+  EXPECT_TRUE(ran);
+}
+
+TEST(Reader, MinusZeroIsZeroAsInCanonicalText) {
+  read_text(R"({"v": [-0.0, -0, 0], "n": -0.0})", [](Params& p) {
+    const Vec3d v = p.point("v", "");
+    EXPECT_FALSE(std::signbit(v.x) || std::signbit(v.y) || std::signbit(v.z) ||
+                 std::signbit(p.number("n", "")));
+  });
+}
+
+TEST(Reader, ScalarErrorsSayWhatWasExpected) {
+  EXPECT_EQ(
+      problems(R"({"n": 180, "i": 2.5, "j": 1e300, "v": 2, "f": 1, "c": "blin-phong", "d": 4, "t": "abc"})",
+               [](Params& p) {
+                 p.number("n", "", {.min = 0, .max = 180, .exclusive_min = true, .exclusive_max = true});
+                 p.integer("i", "", 1, 4096);
+                 p.integer("j", "", 0, 9007199254740992);
+                 p.integer("v", "", 1, 1);
+                 p.flag("f", "");
+                 p.choice("c", "", {"phong", "blinn-phong"});
+                 p.choice("d", "", {"phong", "blinn-phong"});
+                 p.text("t", "", 2);
+               }),
+      (Lines{"/n: expected a number > 0 and < 180, got 180",
+             "/i: expected an integer >= 1 and <= 4096, got 2.5",
+             "/j: expected an integer >= 0 and <= 9007199254740992, got 1e+300", "/v: expected 1, got 2",
+             "/f: expected true or false, got 1",
+             R"(/c: expected "phong" or "blinn-phong", got "blin-phong" (did you mean "blinn-phong"?))",
+             R"(/d: expected "phong" or "blinn-phong", got 4)",
+             R"(/t: expected a text of at most 2 characters, got "abc")"}));
+}
+
+TEST(Reader, DirectionsComeNormalisedFromAnyLength) {
+  for (const char* text :
+       {R"({"d": [3e-300, 0, 4e-300]})", R"({"d": [3e11, 0, 4e11]})", R"({"d": [3, 0, 4]})"}) {
+    read_text(text, [&](Params& p) {
+      const Vec3d d = p.direction("d", "");
+      EXPECT_NEAR(d.x, 0.6, 1e-15) << text;
+      EXPECT_NEAR(d.z, 0.8, 1e-15) << text;
+    });
+  }
+  EXPECT_EQ(problems(R"({"d": [0, 0.0, -0]})", [](Params& p) { p.direction("d", ""); }),
+            Lines{"/d: expected 3 numbers >= -1e12 and <= 1e12, not all 0, got [0,0,0]"});
+}
+
+TEST(Reader, CoefficientsTakeANumberOrAColour) {
+  const auto read = [](Params& p) { p.coefficient("k", "", Vec3d{0, 0, 0}); };
+  EXPECT_EQ(problems(R"({"k": -1})", read),
+            Lines{"/k: expected a number or 3 numbers >= 0 and <= 1e6, got -1"});
+  EXPECT_EQ(problems(R"({"k": [1]})", read),
+            Lines{"/k: expected a number or 3 numbers >= 0 and <= 1e6, got [1]"});
+  EXPECT_EQ(problems(R"({"k": [1,1,-1]})", read), Lines{"/k/2: expected a number >= 0 and <= 1e6, got -1"});
+}
+
+TEST(Reader, ListsCheckTheirSizeAndEveryElement) {
+  const auto read = [](Params& p) {
+    EXPECT_GE(p.points("positions", "", {.min = 3}).size(), 3u);  // even after an error
+    p.index_triples("indices", "", {.min = 1, .max = 2}, 3);
+    p.directions("normals", "", {});
+  };
+  EXPECT_EQ(
+      problems(R"({"positions": [[0,0,0],[1,0,0],[0,1,0]], "indices": [[0,1,2]], "normals": [[0,0,2]]})",
+               read),
+      Lines{});
+  EXPECT_EQ(problems(R"({"positions": [[0,0,0]], "indices": [[0,1,3],[0,-1,1.5]]})", read),
+            (Lines{"/positions: expected a list of at least 3 points, got 1",
+                   "/indices/0/2: expected an integer >= 0 and < 3, got 3",
+                   "/indices/1/1: expected an integer >= 0 and < 3, got -1",
+                   "/indices/1/2: expected an integer >= 0 and < 3, got 1.5"}));
+  EXPECT_EQ(problems(R"({"positions": {}, "indices": [[0,1,2],[0,1],[0,1,2]], "normals": [[0,0,0]]})", read),
+            (Lines{"/positions: expected a list of at least 3 points, got {}",
+                   "/indices: expected a list of 1 to 2 threes of integers, got 3",
+                   "/normals/0: expected 3 numbers >= -1e12 and <= 1e12, not all 0, got [0,0,0]"}));
+  EXPECT_EQ(problems(R"({"positions": [[0,0,0],[1,0,0],[0,1]]})", read),
+            (Lines{"/positions/2: expected 3 numbers >= -1e12 and <= 1e12, got [0,1]",
+                   R"(: missing key "indices": expected a list of 1 to 2 threes of integers)"}));
+}
+
+TEST(Reader, OptionalObjectsReadTheirDefaults) {
+  int width = 0;
+  const auto read = [&](Params& p) {
+    p.optional_object("image", "",
+                      [&](Params& image) { width = static_cast<int>(image.integer("width", "", 1, 9, 6)); });
+  };
+  EXPECT_EQ(problems("{}", read), Lines{});
+  EXPECT_EQ(width, 6);
+  EXPECT_EQ(problems(R"({"image": null})", read), Lines{"/image: expected an object, got null"});
+  EXPECT_EQ(problems("{}", [](Params& p) { p.object("camera", "", [](Params&) { FAIL(); }); }),
+            Lines{R"(: missing key "camera": expected an object)"});
+}
+
+struct Entry {
+  std::string_view type, summary;
+  std::unique_ptr<std::string> (*read)(Params&);
+};
+constexpr Entry kEntries[] = {
+    {"sphere", "A ball.", [](Params& p) { return std::make_unique<std::string>(p.text("name", "", 9)); }},
+    {"plane", "A floor.", [](Params&) { return std::make_unique<std::string>("plane"); }},
+};
+
+TEST(Reader, DispatchRunsTheTypeNamed) {
+  const auto read = [](Params& p) {
+    const std::unique_ptr<std::string> made = p.dispatch("type", "", kEntries);
+    if (p.has("name")) {
+      ASSERT_TRUE(made);
+      EXPECT_EQ(*made, "x");
+    }
+  };
+  EXPECT_EQ(problems(R"({"type": "sphere", "name": "x"})", read), Lines{});
+  EXPECT_EQ(problems(R"({"type": "shpere", "leftover": 1})", read),
+            Lines{R"(/type: expected "sphere" or "plane", got "shpere" (did you mean "sphere"?))"});
+  EXPECT_EQ(problems(R"({"leftover": 1})", read),
+            Lines{R"(: missing key "type": expected "sphere" or "plane")"});
+  EXPECT_EQ(problems(R"({"type": "plane", "nom": 1})", read), Lines{R"(: unknown key "nom")"});
+}
+
+TEST(Reader, FormIsToldByTheKeysThatAreThere) {
+  std::size_t form = 9;
+  const auto read = [&](Params& p) {
+    form = p.form({{"base", "top"}, {"point", "axis"}});
+    p.number(form == 0 ? "base" : "point", "");
+    p.number(form == 0 ? "top" : "axis", "");
+  };
+  EXPECT_EQ(problems(R"({"base": 1, "top": 2})", read), Lines{});
+  EXPECT_EQ(form, 0u);
+  EXPECT_EQ(problems(R"({"point": 1, "axis": 2})", read), Lines{});
+  EXPECT_EQ(form, 1u);
+  EXPECT_EQ(problems(R"({"axis": 2})", read), Lines{R"(: missing key "point": expected a number)"});
+  EXPECT_EQ(problems(R"({"base": 1, "axis": 2})", read),
+            Lines{R"(: expected either "base" and "top", or "point" and "axis", got "base", "axis")"});
+  EXPECT_EQ(problems("{}", read),
+            Lines{R"(: expected either "base" and "top", or "point" and "axis", got none of them)"});
+}
+
+TEST(Reader, ReferencesMustBeKnown) {
+  Names names("material");
+  names.add("silver");
+  names.add("plum");
+  const auto read = [&](Params& p) {
+    const std::size_t index = p.reference("material", "", names);
+    EXPECT_EQ(index, static_cast<std::size_t>(p.integer("index", "", 0, 1, 0)));
+  };
+  EXPECT_EQ(problems(R"({"material": "plum", "index": 1})", read), Lines{});
+  EXPECT_EQ(problems(R"({"material": "slver"})", read),
+            Lines{R"(/material: no material "slver" (did you mean "silver"?))"});
+  EXPECT_EQ(problems(R"({"material": 3})", read), Lines{"/material: expected the name of a material, got 3"});
+}
+
+TEST(Reader, MeaningIsJudgedOnlyOfWholeValues) {
+  const auto read = [](Params& p) {
+    p.object("camera", "", [](Params& camera) {
+      if (camera.point("eye", "") == camera.point("look_at", "")) camera.fail("look_at", "equals eye");
+    });
+    p.fail("", "never good");
+  };
+  EXPECT_EQ(problems(R"({"camera": {"eye": [0,0,0], "look_at": [0,0,0]}})", read),
+            (Lines{"/camera/look_at: equals eye", ": never good"}));
+  EXPECT_EQ(problems(R"({"camera": {"eye": [0,0,0], "look_at": "x"}})", read).size(), 1u);
+}
+
+TEST(Reader, AnyHandsOverAPieceThatKnowsItsPlace) {
+  std::optional<Document> scene;
+  read_text(R"({"scene": {"radius": "x", "center": [0,0,0]}})",
+            [&](Params& p) { scene = p.any("scene", ""); });
+  ASSERT_TRUE(scene);
+  try {
+    read_document(*scene, read_sphere);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().front().pointer, "/scene/radius");
+  }
+}
+
+TEST(Reader, StopsAtTwentyProblems) {
+  std::string text = R"({"objects": [0)";
+  for (int i = 0; i < 100000; ++i) text += ",0";
+  int visits = 0;
+  EXPECT_EQ(
+      problems(text + "]}", [&](Params& p) { p.each("objects", "", {}, [&](Params&) { ++visits; }); }).size(),
+      20u);
+  EXPECT_EQ(visits, 0);
+}
+
+TEST(Reader, AMillionNodesAreNoTrouble) {
+  std::string text = R"({"objects": [)";
+  constexpr int kCount = 160'000;  // 6 nodes each
+  for (int i = 0; i < kCount; ++i) text += R"({"center":[0.25,-1.5e3,7],"radius":0.125},)";
+  text.back() = ']';
+  text += "}";
+  int read = 0;
+  const auto start = std::chrono::steady_clock::now();
+  read_text(text, [&](Params& p) {
+    p.each("objects", "", {}, [&](Params& object) {
+      read_sphere(object);
+      ++read;
+    });
+  });
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  RecordProperty("milliseconds", static_cast<int>(1000 * seconds.count()));
+  EXPECT_EQ(read, kCount);
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,259 @@
+// Wires the page together: the URL hash is its state, the player shows it, the controls change it.
+
+import { get_json } from "./api.js";
+import { persist, wake_all } from "./backoff.js";
+import { OrbitCamera } from "./camera.js";
+import { attach_controls, kTurnStep, kZoomStep } from "./controls.js";
+import { Editor } from "./editor.js";
+import { Gallery } from "./gallery.js";
+import { Hud } from "./hud.js";
+import { Options } from "./options.js";
+import { Player } from "./player.js";
+import { hide_problem, show_problem } from "./problem.js";
+import { SceneLibrary } from "./scenes.js";
+import { attach_curl, attach_download } from "./share.js";
+import { picture_size } from "./size.js";
+import { format_hash, kDefaults, parse_hash } from "./state.js";
+import { attach_tabs } from "./tabs.js";
+import { View } from "./view.js";
+
+const kSaveMs = 1000;  // the hash follows the view this often; browsers refuse much faster
+
+const $ = (id) => document.getElementById(id);
+const still_please = matchMedia("(prefers-reduced-motion: reduce)");
+
+const state = parse_hash(location.hash);
+const library = new SceneLibrary();
+const camera = new OrbitCamera();
+const view = new View($("stage"), $("canvas"));
+const hud = new Hud(Object.fromEntries(
+  ["fps", "render", "encode", "rays", "size", "skipped"].map((name) => [name, $(`hud-${name}`)])));
+const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
+let scene = null;      // the scene shown, or null
+let gallery = null;
+let options = null;
+let opening = 0;       // counts scene changes, so that a slow answer to an old one is dropped
+let save_timer = 0;
+
+const player = new Player(camera, view, {
+  picture: (purpose, preview_part) => scene && picture(purpose, preview_part, camera.view),
+  missing: () => post_again(),
+  stats: (kind, figures) => {
+    hud.show(kind, figures);
+    $("notice").hidden = true;
+    hide_problem($("stage-problem"));
+    if (kind === "stream") save_soon();
+  },
+  waiting: show_waiting,
+  problem: (error) => show_problem($("stage-problem"), error),
+  busy: (busy) => ($("busy").hidden = !busy),
+  settled: () => save_now(),
+});
+
+const editor = new Editor(
+  { text: $("text"), card: $("text-problem"), note: $("text-note"), apply: $("apply"), restore: $("restore") },
+  async (text) => {
+    const posted = await library.post(text);
+    save_now();
+    show_scene(posted, kDefaults);
+    history.pushState(null, "", current_hash());
+  });
+
+function picture(purpose, preview_part, at) {
+  const size = picture_size({
+    mode: state.size, purpose, preview_part, box: view.box, pixel_ratio: devicePixelRatio, scene, limits,
+  });
+  const samples = purpose === "preview" ? 1 : state.samples;
+  return { id: scene.id, ...at, ...size, technique: state.technique, samples };
+}
+
+// What a download or a copied command shows: the view at full size, where it is or will come to rest.
+function current_picture() {
+  return scene && { picture: picture("still", 1, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
+}
+
+// ---- scenes ----
+
+// Opens the scene that the state names. Waits and tries again for as long as the service does not answer.
+async function open_scene(at) {
+  const turn = ++opening;
+  const wanted = () => turn === opening;
+  player.invalidate();
+  try {
+    const opened = await persist(() => library.open(state.scene), show_waiting, wanted);
+    if (opened && wanted()) show_scene(opened, at);
+  } catch (error) {
+    if (wanted()) show_problem($("stage-problem"), error);
+  }
+}
+
+function show_scene(opened, at) {
+  opening += 1;
+  scene = opened;
+  state.scene = opened.ref;
+  camera.use_scene_camera(opened.camera);
+  camera.jump({ azimuth: at.az, elevation: at.el, distance: at.dist });
+  hide_problem($("stage-problem"));
+  editor.load(opened.text);
+  gallery?.mark(opened.ref);
+  options?.show(state, opened);
+  document.title = `${opened.title} · orrery`;
+  $("stage").setAttribute("aria-label", `${opened.title}, orbit view`);
+  refresh_download();
+  player.invalidate();
+  player.refresh();
+}
+
+async function post_again() {
+  const posted = await library.post(scene.text);
+  scene = { ...scene, id: posted.id };
+  player.refresh();
+}
+
+function pick_sample(name) {
+  save_now();
+  state.scene = name;
+  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1 }));
+  gallery.mark(name);
+  open_scene(kDefaults);
+}
+
+// ---- state ----
+
+function current_hash() {
+  const { azimuth, elevation, distance } = camera.view;
+  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance });
+}
+
+function save_now() {
+  clearTimeout(save_timer);
+  save_timer = 0;
+  if (scene) history.replaceState(null, "", current_hash());
+}
+
+function save_soon() {
+  save_timer ||= setTimeout(save_now, kSaveMs);
+}
+
+// The user went back, forward, or edited the address.
+function load_hash() {
+  clearTimeout(save_timer);
+  save_timer = 0;
+  const next = parse_hash(location.hash);
+  const same_scene = scene && next.scene === scene.ref;
+  Object.assign(state, next, { playing: next.playing && (!still_please.matches || state.playing) });
+  show_settings();
+  if (!same_scene) return open_scene(state);
+  opening += 1;
+  camera.jump({ azimuth: state.az, elevation: state.el, distance: state.dist });
+  player.invalidate();
+  player.playing = state.playing;
+}
+
+function show_settings() {
+  player.speed = state.speed;
+  $("play").setAttribute("aria-label", state.playing ? "Pause" : "Play");
+  $("play").classList.toggle("playing", state.playing);
+  $("speed").value = state.speed;
+  $("speed-text").textContent = `${state.speed}°/s`;
+  options?.show(state, scene);
+}
+
+function set_playing(playing) {
+  state.playing = playing;
+  show_settings();
+  player.playing = playing;
+  save_now();
+}
+
+function set_option(key, value) {
+  save_now();
+  state[key] = value;
+  history.pushState(null, "", current_hash());
+  hide_problem($("stage-problem"));
+  player.refresh();
+}
+
+// ---- messages ----
+
+function announce(text) {
+  $("announcement").textContent = text;
+}
+
+function show_waiting(error, seconds) {
+  $("notice-text").textContent = `${error.title}. Trying again in ${Math.max(1, Math.round(seconds))} s.`;
+  $("notice").hidden = false;
+}
+
+// ---- controls ----
+
+function moved() {
+  $("hint").hidden = true;
+  player.input();
+}
+
+const moves = {
+  rotate: (azimuth, elevation) => (camera.rotate(azimuth, elevation), moved()),
+  dolly: (factor) => (camera.dolly(factor), moved()),
+  reset: () => (camera.reset(), moved()),
+  toggle_play: () => set_playing(!state.playing),
+  hold: (held) => player.hold(held),
+};
+
+const actions = {
+  left: () => moves.rotate(-kTurnStep, 0),
+  right: () => moves.rotate(kTurnStep, 0),
+  up: () => moves.rotate(0, kTurnStep),
+  down: () => moves.rotate(0, -kTurnStep),
+  closer: () => moves.dolly(kZoomStep),
+  farther: () => moves.dolly(1 / kZoomStep),
+  reset: () => moves.reset(),
+  play: () => moves.toggle_play(),
+  retry: () => (wake_all(), player.retry_now()),
+};
+
+attach_controls($("stage"), moves);
+attach_tabs($("tabs"));
+for (const button of document.querySelectorAll("[data-do]")) {
+  button.addEventListener("click", actions[button.dataset.do]);
+}
+$("speed").addEventListener("input", () => {
+  state.speed = Number($("speed").value);
+  show_settings();
+  player.refresh_soon();
+  save_soon();
+});
+view.on_resize(() => player.refresh_soon());
+const refresh_download = attach_download($("download"), current_picture);
+attach_curl($("curl"), $("curl-dialog"), current_picture, announce);
+addEventListener("hashchange", load_hash);
+still_please.addEventListener("change", () => (camera.damped = !still_please.matches));
+
+// ---- start ----
+
+async function load_catalog() {
+  const [catalog, published] = await Promise.all([get_json("v1/catalog"), get_json("v1/limits")]);
+  limits.side = published.image_side ?? limits.side;
+  limits.pixels = published.image_pixels ?? limits.pixels;
+  limits.samples = published.samples ?? limits.samples;
+  limits.frames = published.orbit_frames ?? limits.frames;
+  return catalog;
+}
+
+async function start() {
+  camera.damped = !still_please.matches;
+  if (still_please.matches) state.playing = false;
+  show_settings();
+  player.playing = state.playing;
+  const catalog = await persist(load_catalog, show_waiting);
+  player.stream_frames = limits.frames;
+  library.samples = catalog.samples ?? [];
+  if (!location.hash && !library.sample(state.scene)) state.scene = library.samples[0]?.name ?? state.scene;
+  options = new Options(
+    { technique: $("technique"), samples: $("samples"), size: $("size") }, catalog, limits, set_option);
+  options.show(state, null);
+  gallery = new Gallery($("gallery"), library, limits, pick_sample);
+  await open_scene(state);
+}
+
+start().catch((error) => show_problem($("stage-problem"), error));

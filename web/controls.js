@@ -1,0 +1,103 @@
+// Turns pointer, touch, wheel and keyboard input on the stage into camera moves.
+// `on` has: rotate(azimuth, elevation) in degrees, dolly(factor), reset(), toggle_play(), hold(bool).
+
+const kDollyStep = 0.95;                  // factor of the distance for one wheel notch
+export const kZoomStep = kDollyStep ** 3; // for a key or a button
+export const kTurnStep = 180 / 8;         // degrees for an arrow key or a button
+const kDragThreshold = 3;                 // pixels; less is a click
+const kWheelNotch = 100;                  // pixels of wheel movement that count as one step
+const kPinchGain = 8;                     // a trackpad pinch arrives as small wheel movements with ctrlKey
+
+export function attach_controls(stage, on) {
+  attach_pointers(stage, on);
+  attach_wheel(stage, on);
+  attach_keys(stage, on);
+  stage.addEventListener("dblclick", () => on.reset());
+}
+
+function attach_pointers(stage, on) {
+  const pointers = new Map();  // id -> {x, y}
+  let dragging = false;
+
+  const gap = () => {
+    const [a, b] = [...pointers.values()];
+    return Math.hypot(a.x - b.x, a.y - b.y);
+  };
+
+  stage.addEventListener("pointerdown", (event) => {
+    if (event.pointerType === "mouse" && event.button !== 0) return;
+    stage.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+  });
+
+  stage.addEventListener("pointermove", (event) => {
+    const last = pointers.get(event.pointerId);
+    if (!last) return;
+    const dx = event.clientX - last.x;
+    const dy = event.clientY - last.y;
+    if (!dragging && Math.hypot(dx, dy) < kDragThreshold) return;
+    if (!dragging) {
+      dragging = true;
+      on.hold(true);
+    }
+    const before = pointers.size === 2 ? gap() : 0;
+    last.x = event.clientX;
+    last.y = event.clientY;
+    if (pointers.size === 1) {
+      const degrees_per_pixel = 360 / stage.clientHeight;
+      on.rotate(-dx * degrees_per_pixel, dy * degrees_per_pixel);
+    } else if (before > 0 && gap() > 0) {
+      on.dolly(before / gap());
+    }
+  });
+
+  const release = (event) => {
+    if (!pointers.delete(event.pointerId) || pointers.size > 0 || !dragging) return;
+    dragging = false;
+    on.hold(false);
+  };
+  stage.addEventListener("pointerup", release);
+  stage.addEventListener("pointercancel", release);
+  stage.addEventListener("lostpointercapture", release);
+}
+
+function attach_wheel(stage, on) {
+  const pixels_per_unit = [1, 16, 400];  // by deltaMode: pixels, lines, pages
+  stage.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const pixels = event.deltaY * pixels_per_unit[event.deltaMode] * (event.ctrlKey ? kPinchGain : 1);
+    const steps = Math.max(-3, Math.min(3, pixels / kWheelNotch));
+    if (steps !== 0) on.dolly(kDollyStep ** -steps);
+  }, { passive: false });
+}
+
+// Keys work on the stage, and without it where nothing has the focus and the page has nothing to scroll: so no
+// form field loses a key, and a long page still scrolls. Space plays and pauses in any case.
+function attach_keys(stage, on) {
+  const actions = {
+    ArrowLeft: () => on.rotate(-kTurnStep, 0),
+    ArrowRight: () => on.rotate(kTurnStep, 0),
+    ArrowUp: () => on.rotate(0, kTurnStep),
+    ArrowDown: () => on.rotate(0, -kTurnStep),
+    PageUp: () => on.dolly(kZoomStep),
+    PageDown: () => on.dolly(1 / kZoomStep),
+    "+": () => on.dolly(kZoomStep),
+    "=": () => on.dolly(kZoomStep),
+    "-": () => on.dolly(1 / kZoomStep),
+    "0": () => on.reset(),
+    " ": () => on.toggle_play(),
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.target !== stage && event.target !== document.body) return;
+    if (event.target !== stage && event.key !== " " && page_scrolls()) return;
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const action = actions[event.key];
+    if (!action || (event.key === " " && event.repeat)) return;
+    event.preventDefault();
+    action();
+  });
+}
+
+function page_scrolls() {
+  return document.documentElement.scrollHeight > innerHeight;
+}

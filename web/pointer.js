@@ -1,0 +1,82 @@
+// Finds the place in a JSON text that a JSON Pointer (RFC 6901) names. Works on broken text as far as it is
+// whole, and never recurses, so that no text is too deep for it.
+
+const kSpace = /[\s,:]*/y;
+const kPlain = /[^\s,:{}[\]"]*/y;
+const kString = /"(?:[^"\\]|\\.)*"?/sy;
+
+function match_end(pattern, text, at) {
+  pattern.lastIndex = at;
+  pattern.exec(text);
+  return Math.max(at, pattern.lastIndex);
+}
+
+const skip_space = (text, at) => match_end(kSpace, text, at);
+
+// End of the value that starts at `at`.
+function value_end(text, at) {
+  let depth = 0;
+  while (at < text.length) {
+    const first = text[at];
+    if (first === '"') at = match_end(kString, text, at);
+    else if (first === "{" || first === "[") depth += 1, at += 1;
+    else if (first === "}" || first === "]") depth -= 1, at += 1;
+    else at = Math.max(at + 1, match_end(kPlain, text, at));
+    if (depth <= 0) return at;
+    at = skip_space(text, at);
+  }
+  return text.length;
+}
+
+function unquoted(text) {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return text.replace(/^"|"$/g, "");
+  }
+}
+
+// The member `name` of the object or list at `at`: {key: [start, end] or null, value: start}, or null.
+function find_child(text, at, name) {
+  const is_list = text[at] === "[";
+  if (!is_list && text[at] !== "{") return null;
+  let place = skip_space(text, at + 1);
+  for (let index = 0; place < text.length && text[place] !== "}" && text[place] !== "]"; index += 1) {
+    let key = null;
+    if (!is_list) {
+      key = [place, value_end(text, place)];
+      place = skip_space(text, key[1]);
+    }
+    if ((is_list ? String(index) : unquoted(text.slice(...key))) === name) return { key, value: place };
+    place = skip_space(text, value_end(text, place));
+  }
+  return null;
+}
+
+// [start, end] in `text` of the value at `pointer`. A missing member is shown by its nearest ancestor's opening
+// bracket. A `key` is looked for in the value found; where it is there, the key's own place is returned.
+export function locate(text, pointer, key = null) {
+  const names = pointer.split("/").slice(1).map((name) => name.replaceAll("~1", "/").replaceAll("~0", "~"));
+  let at = skip_space(text, 0);
+  for (const name of names) {
+    const child = find_child(text, at, name);
+    if (!child) return [at, Math.min(at + 1, text.length)];
+    at = child.value;
+  }
+  const child = key === null ? null : find_child(text, at, key);
+  if (child?.key) return child.key;
+  const opens = text[at] === "{" || text[at] === "[";
+  return [at, opens ? at + 1 : value_end(text, at)];
+}
+
+// Offset of a line and column, both counted from 1.
+export function offset_of(text, line, column) {
+  let at = 0;
+  for (let n = 1; n < line; n += 1) {
+    const end = text.indexOf("\n", at);
+    if (end < 0) break;
+    at = end + 1;
+  }
+  const line_end = text.indexOf("\n", at);
+  return Math.min(at + Math.max(0, column - 1), line_end < 0 ? text.length : line_end);
+}

@@ -1,0 +1,57 @@
+// An error card: what went wrong, where (one entry a place), and the request id to quote in a report.
+
+function element(name, text, class_name) {
+  const made = document.createElement(name);
+  if (text) made.textContent = text;
+  if (class_name) made.className = class_name;
+  return made;
+}
+
+// The places an error names: {label, detail, pointer} or {label, line, column}.
+function places_of(error) {
+  const places = (error.errors ?? []).map(({ pointer, detail }) => ({ label: pointer || "/", detail, pointer: pointer ?? "" }));
+  if (places.length === 0 && error.line) {
+    places.push({ label: `line ${error.line}, column ${error.column}`, line: error.line, column: error.column });
+  }
+  return places;
+}
+
+// Fills and shows `card`. `on_place` is called with the place that the user picks; without it places are text.
+export function show_problem(card, error, on_place) {
+  const title = element("h2", error.title ?? error.message);
+  const close = element("button", "", "close");
+  close.type = "button";
+  close.setAttribute("aria-label", "Dismiss");
+  close.addEventListener("click", () => hide_problem(card));
+  const parts = [close, title];
+  const places = places_of(error);
+  const repeated = places.length === 1 && places[0].detail && error.detail?.includes(places[0].detail);
+  if (error.detail && !repeated) parts.push(element("p", error.detail));
+  if (places.length > 0) {
+    const list = element("ul");
+    for (const place of places) {
+      const entry = element(on_place ? "button" : "span", "", "place");
+      if (on_place) {
+        entry.type = "button";
+        entry.addEventListener("click", () => on_place(place));
+      }
+      entry.append(element("code", place.label), element("span", place.detail));
+      const row = element("li");
+      row.append(entry);
+      list.append(row);
+    }
+    parts.push(list);
+  }
+  if (error.request_id) {
+    const request = element("p", "Request ", "request");
+    request.append(element("code", error.request_id));
+    parts.push(request);
+  }
+  card.replaceChildren(...parts);
+  card.hidden = false;
+}
+
+export function hide_problem(card) {
+  card.hidden = true;
+  card.replaceChildren();
+}

@@ -1,0 +1,77 @@
+// Scenes the page knows: the service's samples by name, pasted ones by id. The service may forget a scene
+// (a restart, a full store); as long as its text is here it is simply posted again.
+
+import { get_json, get_text, post_scene } from "./api.js";
+
+const kStorageKey = "orrery.scenes";
+const kLongestKept = 500_000;  // characters; session storage is small
+const kMostKept = 8;
+
+// A scene is {ref, id, title, text, width, height, camera}; `ref` is what a link calls it.
+export class SceneLibrary {
+  samples = [];        // {name, title, description, href}
+  #texts = new Map();  // name or id -> JSON text
+  #ids = new Map();    // id -> name of the sample
+
+  constructor() {
+    for (const [id, text] of kept_texts()) this.#texts.set(id, text);
+  }
+
+  sample(ref) {
+    return this.samples.find((sample) => sample.name === ref);
+  }
+
+  // The scene that `ref` names. Throws ApiError: 404 for an id that neither side knows any more.
+  async open(ref) {
+    const sample = this.sample(ref);
+    const text = this.#texts.get(ref) ?? (sample ? await get_text(sample.href) : undefined);
+    if (text === undefined) return this.#fetch(ref);
+    const scene = await this.post(text);
+    if (sample) {
+      this.#texts.set(ref, text);
+      this.#ids.set(scene.id, ref);
+    }
+    return sample ? { ...scene, ref, title: sample.title || ref } : scene;
+  }
+
+  // Posts `text`. Throws ApiError with the places that are wrong in it.
+  async post(text) {
+    const info = await post_scene(text);
+    const name = this.#ids.get(info.id);
+    if (!name) this.#keep(info.id, text);
+    const title = this.sample(name)?.title ?? name ?? "Your scene";
+    return { ref: name ?? info.id, id: info.id, title, text, width: info.width, height: info.height, camera: info.camera };
+  }
+
+  async #fetch(id) {
+    const canonical = await get_json(`v1/scenes/${id}`);
+    const { width = 600, height = 600 } = canonical.image ?? {};
+    return { ref: id, id, title: "Your scene", text: pretty(canonical), width, height, camera: canonical.camera };
+  }
+
+  #keep(id, text) {
+    this.#texts.set(id, text);
+    if (text.length > kLongestKept) return;
+    const kept = kept_texts().filter(([known]) => known !== id);
+    kept.push([id, text]);
+    try {
+      sessionStorage.setItem(kStorageKey, JSON.stringify(kept.slice(-kMostKept)));
+    } catch {
+      // Full or forbidden: then a reload has to find the scene on the service.
+    }
+  }
+}
+
+function kept_texts() {
+  try {
+    return JSON.parse(sessionStorage.getItem(kStorageKey)) ?? [];
+  } catch {
+    return [];
+  }
+}
+
+// Indented JSON with lists of numbers on one line.
+export function pretty(value) {
+  const list = /\[\s+((?:-?[\d.]+(?:e[+-]?\d+)?,?\s+)+)\]/gi;
+  return JSON.stringify(value, null, 2).replace(list, (_, numbers) => `[${numbers.trim().replace(/\s+/g, " ")}]`);
+}

@@ -1,0 +1,57 @@
+// How many pixels a picture gets.
+
+const kStreamPixels = 1e6;  // a larger stream spends its time in PNG, on both ends
+
+export const kModes = ["fit", "half", "scene", "1280x720", "1920x1080", "3840x2160"];
+
+export function fixed_size(mode) {
+  const match = /^(\d+)x(\d+)$/.exec(mode);
+  return match ? { width: Number(match[1]), height: Number(match[2]) } : null;
+}
+
+// Shrinks a size until no side and no product is over the limits; the proportions stay.
+export function within(size, side, pixels) {
+  const factor = Math.min(1, side / Math.max(size.width, size.height), Math.sqrt(pixels / (size.width * size.height)));
+  return {
+    width: Math.max(1, Math.floor(size.width * factor + 1e-6)),
+    height: Math.max(1, Math.floor(size.height * factor + 1e-6)),
+  };
+}
+
+// Size of the picture for `purpose` "still", "stream" or "preview": {width, height, fills, fov}.
+// `preview_part` is the part of each side a preview gets. `fov` is set where the box is narrower than the
+// scene's own picture: its angle is vertical, so it has to grow for the sides to stay in view.
+export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, preview_part }) {
+  const own = { width: scene.width, height: scene.height };
+  const fills = mode === "fit" || mode === "half";
+  let size = fixed_size(mode) ?? own;
+  let fov;
+  if (fills) {
+    const factor = pixel_ratio * (mode === "half" ? 0.5 : 1);
+    size = fit(own, { width: box.width * factor, height: box.height * factor }, scene.camera);
+    fov = fov_for(own, size, scene.camera);
+  }
+  const most = purpose === "stream" && fills ? Math.min(kStreamPixels, limits.pixels) : limits.pixels;
+  size = within(size, limits.side, most);
+  if (purpose === "preview") {
+    size = {
+      width: Math.max(1, Math.round(size.width * preview_part)),
+      height: Math.max(1, Math.round(size.height * preview_part)),
+    };
+  }
+  return { ...size, fov, fills };
+}
+
+const aspect = (size) => size.width / size.height;
+
+// The box itself; but an orthographic view has no angle to widen, so in a narrow box it keeps its proportions.
+function fit(own, box, camera) {
+  if (camera?.type !== "orthographic" || aspect(box) >= aspect(own)) return box;
+  return { width: box.width, height: box.width / aspect(own) };
+}
+
+function fov_for(own, size, camera) {
+  if (camera?.type === "orthographic" || aspect(size) >= aspect(own)) return undefined;
+  const half = ((camera?.fov_degrees ?? 45) * Math.PI) / 360;
+  return (Math.atan(Math.tan(half) * (aspect(own) / aspect(size))) * 360) / Math.PI;
+}

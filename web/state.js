@@ -1,0 +1,51 @@
+// What a link to the page says: the URL hash as an object and back.
+
+import { kModes, fixed_size } from "./size.js";
+import { round } from "./urls.js";
+
+export const kDefaults = Object.freeze({
+  scene: "paper", az: 0, el: 0, dist: 1, speed: 20, playing: true, technique: "", samples: 0, size: "fit",
+});
+export const kFastest = 120;  // degrees per second
+const kAlways = ["scene", "az", "el", "dist", "speed", "playing"];
+
+// Reads a hash such as "#scene=paper&az=30"; whatever is missing or makes no sense gets its default.
+export function parse_hash(hash) {
+  const query = new URLSearchParams(hash.replace(/^#/, ""));
+  const number = (key, low, high) => {
+    const value = Number.parseFloat(query.get(key));
+    return Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : kDefaults[key];
+  };
+  const word = (key, pattern) => (pattern.test(query.get(key) ?? "") ? query.get(key) : kDefaults[key]);
+  const size = query.get("size") ?? "";
+  return {
+    scene: word("scene", /^[\w-]{1,100}$/),
+    az: number("az", -1e6, 1e6),
+    el: number("el", -180, 180),
+    dist: number("dist", 0.001, 1000),
+    speed: number("speed", 1, kFastest),
+    playing: query.has("playing") ? query.get("playing") !== "0" : kDefaults.playing,
+    technique: word("technique", /^[\w-]{1,40}$/),
+    samples: Math.round(number("samples", 0, 65536)),
+    size: kModes.includes(size) || fixed_size(size) ? size : kDefaults.size,
+  };
+}
+
+export function format_hash(state) {
+  const texts = {
+    scene: state.scene,
+    az: round(state.az, 1),
+    el: round(state.el, 1),
+    dist: round(state.dist, 3),
+    speed: state.speed,
+    playing: state.playing ? 1 : 0,
+    technique: state.technique,
+    samples: state.samples,
+    size: state.size,
+  };
+  const query = new URLSearchParams();
+  for (const [key, value] of Object.entries(texts)) {
+    if (kAlways.includes(key) || value !== kDefaults[key]) query.set(key, value);
+  }
+  return `#${query}`;
+}

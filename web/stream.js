@@ -1,0 +1,99 @@
+// Reads application/x-orrery-frames: [4 bytes, big-endian: length of the header][header, JSON][PNG bytes]
+// again and again. The header's `bytes` is the length of the PNG.
+
+import { is_abort, no_answer } from "./api.js";
+
+export const kFrameType = "application/x-orrery-frames";
+const kLongestHeader = 64 * 1024;
+const kLongestPicture = 256 * 1024 * 1024;
+
+// Collects bytes as they come and hands out whole frames.
+export class FrameParser {
+  #chunks = [];   // bytes not yet handed out, in order
+  #size = 0;      // their total
+  #header = null; // header of the frame whose PNG is awaited
+  #header_length = -1;
+
+  // Returns the frames {header, png} that `chunk` completes. Throws Error on bytes that are no frames.
+  push(chunk) {
+    this.#chunks.push(chunk);
+    this.#size += chunk.length;
+    const frames = [];
+    for (let frame = this.#next(); frame; frame = this.#next()) frames.push(frame);
+    return frames;
+  }
+
+  get inside_frame() {
+    return this.#size > 0 || this.#header !== null || this.#header_length >= 0;
+  }
+
+  #next() {
+    if (this.#header_length < 0) {
+      const bytes = this.#take(4);
+      if (!bytes) return null;
+      this.#header_length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0);
+      if (this.#header_length > kLongestHeader) throw new Error("The stream is not made of frames");
+    }
+    if (!this.#header) {
+      const bytes = this.#take(this.#header_length);
+      if (!bytes) return null;
+      this.#header = JSON.parse(new TextDecoder().decode(bytes));
+      const length = this.#header.bytes;
+      if (!Number.isInteger(length) || length < 0 || length > kLongestPicture) {
+        throw new Error("The stream is not made of frames");
+      }
+    }
+    const png = this.#take(this.#header.bytes);
+    if (!png) return null;
+    const frame = { header: this.#header, png };
+    this.#header = null;
+    this.#header_length = -1;
+    return frame;
+  }
+
+  // The next `count` bytes as one array, or null while fewer are here. Copies only across chunks.
+  #take(count) {
+    if (this.#size < count) return null;
+    this.#size -= count;
+    if (count === 0) return new Uint8Array(0);
+    if (this.#chunks[0].length >= count) return this.#take_from_first(count);
+    const bytes = new Uint8Array(count);
+    for (let filled = 0; filled < count;) {
+      const part = this.#take_from_first(Math.min(this.#chunks[0].length, count - filled));
+      bytes.set(part, filled);
+      filled += part.length;
+    }
+    return bytes;
+  }
+
+  #take_from_first(count) {
+    const first = this.#chunks[0];
+    if (first.length === count) return this.#chunks.shift();
+    this.#chunks[0] = first.subarray(count);
+    return first.subarray(0, count);
+  }
+}
+
+// Frames of a response body, as they arrive. Ends with the stream; throws ApiError when it breaks off.
+export async function* read_frames(body) {
+  const reader = body.getReader();
+  const parser = new FrameParser();
+  try {
+    for (;;) {
+      const { done, value } = await read(reader);
+      if (done) break;
+      yield* parser.push(value);
+    }
+    if (parser.inside_frame) throw no_answer("The stream broke off inside a frame.");
+  } finally {
+    reader.cancel().catch(() => {});  // the connection is gone already, or goes now
+  }
+}
+
+async function read(reader) {
+  try {
+    return await reader.read();
+  } catch (error) {
+    throw is_abort(error) ? error : no_answer(error.message);
+  }
+}

@@ -1,0 +1,43 @@
+// Addresses of pictures. Relative, so that the page works below any path; rounded, so that equal views
+// have equal addresses and come from the browser's cache.
+
+// A picture is {id, azimuth, elevation, distance, width, height} and optionally {fov, technique, samples}.
+function query_of(picture) {
+  const query = new URLSearchParams({
+    azimuth: round(picture.azimuth, 2),
+    elevation: round(picture.elevation, 2),
+    distance: round(picture.distance, 4),
+    width: picture.width,
+    height: picture.height,
+  });
+  if (picture.fov) query.set("fov", round(picture.fov, 3));
+  if (picture.technique) query.set("technique", picture.technique);
+  if (picture.samples) query.set("samples", picture.samples);
+  return query;
+}
+
+export function round(value, digits) {
+  return Number(value.toFixed(digits)) + 0;  // + 0: no minus zero
+}
+
+export function frame_url(picture) {
+  return `v1/scenes/${picture.id}/frame.png?${query_of(picture)}`;
+}
+
+export function orbit_url(picture, { frames, fps, step }) {
+  const query = query_of(picture);
+  query.set("frames", frames);
+  query.set("fps", fps);
+  query.set("step", round(step, 5));
+  return `v1/scenes/${picture.id}/orbit?${query}`;
+}
+
+export function file_name(name, view) {
+  const plain = name.replace(/[^\w-]+/g, "-").slice(0, 40);
+  return `${plain}-${Math.round(view.azimuth)}-${Math.round(view.elevation)}.png`;
+}
+
+export function curl_command(picture, name, base) {
+  const address = new URL(frame_url(picture), base).href.replaceAll("'", "%27");
+  return `curl -fo ${file_name(name, picture)} '${address}'`;
+}
