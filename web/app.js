@@ -181,6 +181,7 @@ function announce(text) {
 }
 
 function show_waiting(error, seconds) {
+  hud.pause();
   $("notice-text").textContent = `${error.title}. Trying again in ${Math.max(1, Math.round(seconds))} s.`;
   $("notice").hidden = false;
 }

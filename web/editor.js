@@ -74,8 +74,17 @@ export class Editor {
     }
     this.#text.focus();
     this.#text.setSelectionRange(...range);
-    const line = text.slice(0, range[0]).split("\n").length - 1;
-    const line_height = Number.parseFloat(getComputedStyle(this.#text).lineHeight);
-    this.#text.scrollTop = Math.max(0, (line - 3) * line_height);
+    this.#scroll_to(...range);
+  }
+
+  // Selecting alone does not bring the place into view.
+  #scroll_to(start, end) {
+    const lines = this.#text.value.slice(0, start).split("\n");
+    const style = getComputedStyle(this.#text);
+    const brush = document.createElement("canvas").getContext("2d");
+    brush.font = `${style.fontSize} ${style.fontFamily}`;
+    const right = brush.measureText("0").width * (lines.at(-1).length + end - start + 4);
+    this.#text.scrollTop = Math.max(0, (lines.length - 4) * Number.parseFloat(style.lineHeight));
+    this.#text.scrollLeft = Math.max(0, right - this.#text.clientWidth);
   }
 }

@@ -34,6 +34,11 @@ export class Hud {
     else this.#timer = setTimeout(() => this.#write(), wait);
   }
 
+  // No frames come at present.
+  pause() {
+    if (this.#figures) this.show("still", {});
+  }
+
   #write() {
     this.#last_write = performance.now();
     const { render_ms, encode_ms, rays, width, height, skipped } = this.#figures;

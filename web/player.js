@@ -30,6 +30,7 @@ export class Player {
   #work = null;       // {kind, key, abort} of the stream or still being fetched
   #shown = "";        // address of the still on the canvas
   #preview_busy = false;
+  #epoch = 0;         // counts invalidations: a preview asked for before one is not drawn after it
   #preview_slow = 0;  // index into kPreviewParts
   #backoff = new Backoff();
   #timer = 0;
@@ -94,6 +95,7 @@ export class Player {
   invalidate() {
     this.#stop();
     this.#shown = "";
+    this.#epoch += 1;
   }
 
   #show_tab(visible) {
@@ -120,11 +122,12 @@ export class Player {
     const url = picture && frame_url(picture);
     if (!url || url === this.#shown) return;
     this.#preview_busy = true;
+    const epoch = this.#epoch;
     const start = performance.now();
     try {
       const frame = await get_frame(url);
       const bitmap = await decode(frame.png);
-      if (this.#moving) this.#draw(url, bitmap, picture, "preview", frame.stats);
+      if (this.#moving && epoch === this.#epoch) this.#draw(url, bitmap, picture, "preview", frame.stats);
       else bitmap.close();
       this.#preview_slow = performance.now() - start > kQuickMs ? 1 : 0;
     } catch (error) {

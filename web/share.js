@@ -36,7 +36,11 @@ export function attach_curl(button, dialog, current, announce) {
       return;
     }
     label.textContent = "Copied";
+    button.classList.add("done");
     announce("The curl command is on the clipboard.");
-    setTimeout(() => (label.textContent = usual), kThanksMs);
+    setTimeout(() => {
+      label.textContent = usual;
+      button.classList.remove("done");
+    }, kThanksMs);
   });
 }

@@ -7,7 +7,7 @@ namespace orrery {
 
 // Schlick's approximation F0 + (1 - F0) (1 - cos)^5. REQUIRES: the cosine in the optically thinner medium.
 template <class N>
-N fresnel_schlick(const N& f0, const N& cosine) {
+[[gnu::always_inline]] inline N fresnel_schlick(const N& f0, const N& cosine) {
   const N x = N(ScalarOf<N>(1)) - cosine;
   const N x2 = x * x;
   return f0 + (ScalarOf<N>(1) - f0) * (x2 * x2 * x);
@@ -15,7 +15,7 @@ N fresnel_schlick(const N& f0, const N& cosine) {
 
 // Fresnel's equations between two dielectrics; eta is the index on the incident side over that beyond.
 template <class N>
-N fresnel_dielectric(const N& eta, const N& cos_incident, const N& cos_transmitted) {
+[[gnu::always_inline]] inline N fresnel_dielectric(const N& eta, const N& cos_incident, const N& cos_transmitted) {
   const N s = (eta * cos_incident - cos_transmitted) / (eta * cos_incident + cos_transmitted);
   const N p = (cos_incident - eta * cos_transmitted) / (cos_incident + eta * cos_transmitted);
   return (s * s + p * p) * ScalarOf<N>(0.5);
@@ -23,7 +23,7 @@ N fresnel_dielectric(const N& eta, const N& cos_incident, const N& cos_transmitt
 
 // Fresnel's equations for a metal of index n and extinction k, from air.
 template <class N>
-N fresnel_conductor(const N& n, const N& k, const N& cosine) {
+[[gnu::always_inline]] inline N fresnel_conductor(const N& n, const N& k, const N& cosine) {
   using T = ScalarOf<N>;
   using std::sqrt;
   const N c2 = cosine * cosine, s2 = max_first(N(T(0)), N(T(1) - c2));
@@ -38,7 +38,7 @@ N fresnel_conductor(const N& n, const N& k, const N& cosine) {
 
 // F0 of Schlick's approximation: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
 template <class N>
-N normal_reflectance(const N& n, const N& k) {
+[[gnu::always_inline]] inline N normal_reflectance(const N& n, const N& k) {
   using T = ScalarOf<N>;
   return ((n - T(1)) * (n - T(1)) + k * k) / ((n + T(1)) * (n + T(1)) + k * k);
 }

@@ -43,7 +43,7 @@ using Boundsd = Bounds<double>;
 // The box in another precision, grown outward by 4 ulp of its largest coordinate on every side, so that a
 // hit computed in that precision and put back on its shape still lies inside.
 template <class T>
-Bounds<T> padded(const Boundsd& b) {
+[[gnu::always_inline]] inline Bounds<T> padded(const Boundsd& b) {
   const T pad = static_cast<T>(b.magnitude()) * std::numeric_limits<T>::epsilon() * 4;
   Bounds<T> grown;
   grown.lo = Vec3<T>(b.lo) - Vec3<T>(pad);
@@ -56,7 +56,7 @@ Bounds<T> padded(const Boundsd& b) {
 // a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray Traversal",
 // JCGT 2013). `inverse` is 1 / direction, infinite where that is 0.
 template <class N>
-MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin, const Vec3<N>& inverse,
+[[gnu::always_inline]] inline MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin, const Vec3<N>& inverse,
                  const N& t_max) {
   using T = ScalarOf<N>;
   N near = N(T(0)), far = t_max;

@@ -10,7 +10,7 @@ namespace orrery {
 
 // The lanes of a mask as bits, lane 0 lowest.
 template <class T, class Abi>
-unsigned bits_of(const stdx::simd_mask<T, Abi>& m) {
+[[gnu::always_inline]] inline unsigned bits_of(const stdx::simd_mask<T, Abi>& m) {
   if constexpr (stdx::simd_mask<T, Abi>::size() == 1)
     return m[0];
   else
@@ -20,7 +20,7 @@ unsigned bits_of(const stdx::simd_mask<T, Abi>& m) {
 // Writes the lanes named by `bits` to consecutive places from `to`, in order. May write a whole register's
 // width: `to` needs that much room.
 template <class V, class T>
-void compress_store(const V& v, unsigned bits, T* to) {
+[[gnu::always_inline]] inline void compress_store(const V& v, unsigned bits, T* to) {
 #if defined(__AVX512F__)
   if constexpr (sizeof(V) == 64 && sizeof(T) == 4) {
     const auto packed = _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), std::bit_cast<__m512i>(v));

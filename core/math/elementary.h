@@ -38,7 +38,7 @@ struct IntegerOf<stdx::simd<T, Abi>> {
 };
 
 template <class To, class From>
-To convert(const From& x) {
+[[gnu::always_inline]] inline To convert(const From& x) {
   if constexpr (std::is_arithmetic_v<From>)
     return static_cast<To>(x);
   else
@@ -49,7 +49,7 @@ To convert(const From& x) {
 
 // log2(x). REQUIRES: x positive and normal (other values give a meaningless finite number).
 template <class N>
-N log2_normal(const N& x) {
+[[gnu::always_inline]] inline N log2_normal(const N& x) {
   using T = ScalarOf<N>;
   using Format = detail::FloatFormat<T>;
   using Integer = typename detail::IntegerOf<N>::type;
@@ -59,6 +59,7 @@ N log2_normal(const N& x) {
   const N s = (m - T(1)) / (m + T(1));
   const N s2 = s * s;
   N series = N(T(1) / T(2 * Format::kLogTerms - 1));
+#pragma GCC unroll 16
   for (int k = Format::kLogTerms - 2; k >= 0; --k) series = series * s2 + T(1) / T(2 * k + 1);
   constexpr T kTwoOverLn2 = T(2.88539008177792681471984936200378427L);
   return detail::convert<N>(exponent) + s * series * kTwoOverLn2;
@@ -66,7 +67,7 @@ N log2_normal(const N& x) {
 
 // 2^y; 0 where y is below the smallest normal exponent. REQUIRES: y below the largest exponent.
 template <class N>
-N exp2_flushed(const N& y) {
+[[gnu::always_inline]] inline N exp2_flushed(const N& y) {
   using T = ScalarOf<N>;
   using Format = detail::FloatFormat<T>;
   using Integer = typename detail::IntegerOf<N>::type;
@@ -78,6 +79,7 @@ N exp2_flushed(const N& y) {
   constexpr T kLn2 = T(0.693147180559945309417232121458176568L);
   const N z = (clamped - whole) * kLn2;
   N series = N(T(1));
+#pragma GCC unroll 16
   for (int k = Format::kExpTerms; k >= 1; --k) series = series * z * (T(1) / T(k)) + T(1);
   const Integer scale = (detail::convert<Integer>(whole) + Integer(Format::kExponentBias))
                         << Format::kMantissaBits;
@@ -87,7 +89,7 @@ N exp2_flushed(const N& y) {
 // x^y for x in [0, 1] and y >= 0, with 0^0 = 1 and results below the smallest normal number flushed to 0.
 // Relative error: y |log2 x| ulp at most; 2e-5 (float), 3e-13 (double) wherever the result is normal.
 template <class N>
-N pow_unit(const N& x, const N& y) {
+[[gnu::always_inline]] inline N pow_unit(const N& x, const N& y) {
   using T = ScalarOf<N>;
   constexpr T kSmallest = std::numeric_limits<T>::min();
   const auto vanishing = x < N(kSmallest);

@@ -54,30 +54,30 @@ using MaskOf = typename NumberTraits<N>::Mask;
 
 template <class N>
   requires std::is_arithmetic_v<N>
-N select(bool m, N a, N b) {
+[[gnu::always_inline]] inline N select(bool m, N a, N b) {
   return m ? a : b;
 }
 template <class T, class Abi>
-stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& m, const std::type_identity_t<stdx::simd<T, Abi>>& a,
+[[gnu::always_inline]] inline stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& m, const std::type_identity_t<stdx::simd<T, Abi>>& a,
                           stdx::simd<T, Abi> b) {
   stdx::where(m, b) = a;
   return b;
 }
 
-inline bool any(bool m) { return m; }
-inline bool all(bool m) { return m; }
+[[gnu::always_inline]] inline bool any(bool m) { return m; }
+[[gnu::always_inline]] inline bool all(bool m) { return m; }
 template <class T, class Abi>
-bool any(const stdx::simd_mask<T, Abi>& m) {
+[[gnu::always_inline]] inline bool any(const stdx::simd_mask<T, Abi>& m) {
   return stdx::any_of(m);
 }
 template <class T, class Abi>
-bool all(const stdx::simd_mask<T, Abi>& m) {
+[[gnu::always_inline]] inline bool all(const stdx::simd_mask<T, Abi>& m) {
   return stdx::all_of(m);
 }
 
 // A mask of one element type as the mask of another with as many lanes.
 template <class To, class T, class Abi>
-typename To::mask_type mask_cast(const stdx::simd_mask<T, Abi>& m) {
+[[gnu::always_inline]] inline typename To::mask_type mask_cast(const stdx::simd_mask<T, Abi>& m) {
   if constexpr (std::is_same_v<typename To::mask_type, stdx::simd_mask<T, Abi>>)
     return m;
   else
@@ -85,22 +85,22 @@ typename To::mask_type mask_cast(const stdx::simd_mask<T, Abi>& m) {
 }
 
 template <class T>
-Lanes<T> load(const T* from) {
+[[gnu::always_inline]] inline Lanes<T> load(const T* from) {
   return Lanes<T>(from, stdx::vector_aligned);
 }
 template <class T, class V>
-void store(const V& v, T* to) {
+[[gnu::always_inline]] inline void store(const V& v, T* to) {
   v.copy_to(to, stdx::vector_aligned);
 }
 
 // Smaller and larger of two numbers; where one is NaN the other is returned if it stands first, so an
 // accumulator passed first wins over a NaN (and -0 and +0 count as equal: the first is kept).
 template <class N>
-N min_first(const N& accumulator, const N& x) {
+[[gnu::always_inline]] inline N min_first(const N& accumulator, const N& x) {
   return select(x < accumulator, x, accumulator);
 }
 template <class N>
-N max_first(const N& accumulator, const N& x) {
+[[gnu::always_inline]] inline N max_first(const N& accumulator, const N& x) {
   return select(x > accumulator, x, accumulator);
 }
 

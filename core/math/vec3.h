@@ -25,44 +25,44 @@ using Vec3d = Vec3<double>;
 using Vec3f = Vec3<float>;
 
 template <class N>
-Vec3<N> operator+(const Vec3<N>& a, const Vec3<N>& b) {
+[[gnu::always_inline]] inline Vec3<N> operator+(const Vec3<N>& a, const Vec3<N>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <class N>
-Vec3<N> operator-(const Vec3<N>& a, const Vec3<N>& b) {
+[[gnu::always_inline]] inline Vec3<N> operator-(const Vec3<N>& a, const Vec3<N>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class N>
-Vec3<N> operator-(const Vec3<N>& a) {
+[[gnu::always_inline]] inline Vec3<N> operator-(const Vec3<N>& a) {
   return {-a.x, -a.y, -a.z};
 }
 template <class N>
-Vec3<N> operator*(const Vec3<N>& a, const Vec3<N>& b) {
+[[gnu::always_inline]] inline Vec3<N> operator*(const Vec3<N>& a, const Vec3<N>& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 template <class N>
-Vec3<N> operator*(const Vec3<N>& a, const std::type_identity_t<N>& s) {
+[[gnu::always_inline]] inline Vec3<N> operator*(const Vec3<N>& a, const std::type_identity_t<N>& s) {
   return {a.x * s, a.y * s, a.z * s};
 }
 template <class N>
-Vec3<N> operator*(const std::type_identity_t<N>& s, const Vec3<N>& a) {
+[[gnu::always_inline]] inline Vec3<N> operator*(const std::type_identity_t<N>& s, const Vec3<N>& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 template <class N>
-Vec3<N> operator/(const Vec3<N>& a, const std::type_identity_t<N>& s) {
+[[gnu::always_inline]] inline Vec3<N> operator/(const Vec3<N>& a, const std::type_identity_t<N>& s) {
   return {a.x / s, a.y / s, a.z / s};
 }
 
 template <class N>
-N dot(const Vec3<N>& a, const Vec3<N>& b) {
+[[gnu::always_inline]] inline N dot(const Vec3<N>& a, const Vec3<N>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 template <class N>
-Vec3<N> cross(const Vec3<N>& a, const Vec3<N>& b) {
+[[gnu::always_inline]] inline Vec3<N> cross(const Vec3<N>& a, const Vec3<N>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class N>
-N length(const Vec3<N>& a) {
+[[gnu::always_inline]] inline N length(const Vec3<N>& a) {
   using std::sqrt;
   return sqrt(dot(a, a));
 }
@@ -70,17 +70,17 @@ N length(const Vec3<N>& a) {
 // Unit vector along `a`. REQUIRES: dot(a, a) neither overflows nor underflows to 0; for input of any
 // magnitude use `safe_normalize`.
 template <class N>
-Vec3<N> normalize(const Vec3<N>& a) {
+[[gnu::always_inline]] inline Vec3<N> normalize(const Vec3<N>& a) {
   return a * (N(1) / length(a));
 }
 
 template <class N>
-N max_component(const Vec3<N>& a) {
+[[gnu::always_inline]] inline N max_component(const Vec3<N>& a) {
   using std::max;
   return max(max(a.x, a.y), a.z);
 }
 template <class N>
-Vec3<N> abs(const Vec3<N>& a) {
+[[gnu::always_inline]] inline Vec3<N> abs(const Vec3<N>& a) {
   using std::abs;
   return {abs(a.x), abs(a.y), abs(a.z)};
 }
@@ -89,7 +89,7 @@ Vec3<N> abs(const Vec3<N>& a) {
 // that neither 1e-200 nor 1e200 leaves the range. The zero vector stays zero.
 template <class N>
   requires std::is_floating_point_v<N>
-Vec3<N> safe_normalize(const Vec3<N>& a) {
+[[gnu::always_inline]] inline Vec3<N> safe_normalize(const Vec3<N>& a) {
   const N largest = max_component(abs(a));
   if (!(largest > 0)) return Vec3<N>{};
   const Vec3<N> scaled = a / largest;

@@ -21,17 +21,17 @@ struct Array {
   T& operator[](int i) { return values[static_cast<std::size_t>(i)]; }
   const T& operator[](int i) const { return values[static_cast<std::size_t>(i)]; }
   // Lanes i, i+1, ...; REQUIRES: i is a multiple of the lane count.
-  stdx::rebind_simd_t<T, Lanes<std::conditional_t<std::is_floating_point_v<T>, T, float>>> at(int i) const
+  [[gnu::always_inline]] Lanes<T> at(int i) const
     requires std::is_floating_point_v<T>
   {
     return {&values[static_cast<std::size_t>(i)], stdx::vector_aligned};
   }
   template <class V>
-  void put(int i, const V& v) {
+  [[gnu::always_inline]] void put(int i, const V& v) {
     v.copy_to(&values[static_cast<std::size_t>(i)], stdx::vector_aligned);
   }
   template <class V, class M>
-  void put(int i, const M& mask, const V& v) {
+  [[gnu::always_inline]] void put(int i, const M& mask, const V& v) {
     stdx::where(mask, v).copy_to(&values[static_cast<std::size_t>(i)], stdx::vector_aligned);
   }
 };
@@ -40,14 +40,14 @@ template <class T>
 struct Vec3Array {
   Array<T> x, y, z;
 
-  Vec3<Lanes<T>> at(int i) const { return {x.at(i), y.at(i), z.at(i)}; }
-  void put(int i, const Vec3<Lanes<T>>& v) {
+  [[gnu::always_inline]] Vec3<Lanes<T>> at(int i) const { return {x.at(i), y.at(i), z.at(i)}; }
+  [[gnu::always_inline]] void put(int i, const Vec3<Lanes<T>>& v) {
     x.put(i, v.x);
     y.put(i, v.y);
     z.put(i, v.z);
   }
   template <class M>
-  void put(int i, const M& mask, const Vec3<Lanes<T>>& v) {
+  [[gnu::always_inline]] void put(int i, const M& mask, const Vec3<Lanes<T>>& v) {
     x.put(i, mask, v.x);
     y.put(i, mask, v.y);
     z.put(i, mask, v.z);
@@ -56,7 +56,7 @@ struct Vec3Array {
 
 // Indices as wide as T, so that comparisons of the two share a mask.
 template <class T>
-IndexLanes<T> load_index(const Array<IndexOf<T>>& a, int i) {
+[[gnu::always_inline]] inline IndexLanes<T> load_index(const Array<IndexOf<T>>& a, int i) {
   return {&a.values[static_cast<std::size_t>(i)], stdx::vector_aligned};
 }
 
@@ -99,7 +99,7 @@ template <class N>
 struct Ray {
   Vec3<N> origin, direction;
 
-  Vec3<N> at(const N& t) const { return origin + direction * t; }
+  [[gnu::always_inline]] Vec3<N> at(const N& t) const { return origin + direction * t; }
 };
 
 // Rays on their way. t_max is the far end (exclusive); a ray with t_max < 0 is inactive: it hits nothing.
@@ -109,7 +109,7 @@ struct RayBatch {
   Vec3Array<T> origin, direction;
   Array<T> t_max;
 
-  Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
+  [[gnu::always_inline]] Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
 };
 
 // Rays of `groups` that are still active, and the registers that hold one.

@@ -1,8 +1,7 @@
 #include "core/render/tile.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <cstring>
 
 namespace orrery {
 
@@ -11,20 +10,22 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
     : plan_(plan), tracer_(make_tracer(*plan.technique, world, plan)) {
   samples_.u.values.fill(0.5f);
   samples_.v.values.fill(0.5f);
-  for (auto* sum : {&sums_.red, &sums_.green, &sums_.blue, &sums_.cut}) sum->resize(kBatch);
 }
 
 template <class T>
 void TileRenderer<T>::render(int x0, int y0, const std::function<bool()>& stop, Image& image) {
-  for (auto* sum : {&sums_.red, &sums_.green, &sums_.blue, &sums_.cut}) std::fill(sum->begin(), sum->end(), 0.0);
+  if (plan_.samples > 1) clear_sums();
+  const std::uint64_t cut_before = stats_.counts.cut_rays;
   for (int sample = 0; sample < plan_.samples; ++sample) {
     if (sample > 0 && stop && stop()) stopped_ = true;
     if (stopped_) return;
     if (plan_.samples > 1) place_samples(x0, y0, sample);
     generate_rays(plan_.camera, plan_.width, plan_.height, x0, y0, samples_, rays_);
     tracer_->trace(rays_, result_, stats_.counts);
-    add_sample();
+    if (plan_.samples > 1) add_sample();
   }
+  take_mean();
+  if (stats_.counts.cut_rays != cut_before) take_cut(x0, y0);
   write(x0, y0, image);
 }
 
@@ -41,36 +42,64 @@ void TileRenderer<T>::place_samples(int x0, int y0, int sample) {
 }
 
 template <class T>
+void TileRenderer<T>::clear_sums() {
+  for (auto* sum : {&sums_.red, &sums_.green, &sums_.blue, &sums_.cut}) sum->fill(0.0);
+}
+
+template <class T>
 void TileRenderer<T>::add_sample() {
-  for (int slot = 0; slot < kBatch; ++slot) {
-    const auto i = static_cast<std::size_t>(slot);
-    sums_.red[i] += static_cast<double>(result_.radiance.x[slot]);
-    sums_.green[i] += static_cast<double>(result_.radiance.y[slot]);
-    sums_.blue[i] += static_cast<double>(result_.radiance.z[slot]);
-    sums_.cut[i] += static_cast<double>(result_.cut[slot]);
+  const auto add = [](std::array<double, kBatch>& sum, const Array<T>& value) {
+    for (std::size_t i = 0; i < kBatch; ++i) sum[i] += static_cast<double>(value.values[i]);
+  };
+  add(sums_.red, result_.radiance.x);
+  add(sums_.green, result_.radiance.y);
+  add(sums_.blue, result_.radiance.z);
+  add(sums_.cut, result_.cut);
+}
+
+// The means over samples, and whether any of them is not a number.
+template <class T>
+void TileRenderer<T>::take_mean() {
+  const double share = 1.0 / plan_.samples;
+  const auto mean = [&](Array<float>& to, const Array<T>& only, const std::array<double, kBatch>& sum) {
+    if (plan_.samples == 1)
+      for (std::size_t i = 0; i < kBatch; ++i) to.values[i] = static_cast<float>(only.values[i]);
+    else
+      for (std::size_t i = 0; i < kBatch; ++i) to.values[i] = static_cast<float>(sum[i] * share);
+  };
+  mean(red_, result_.radiance.x, sums_.red);
+  mean(green_, result_.radiance.y, sums_.green);
+  mean(blue_, result_.radiance.z, sums_.blue);
+  mean(cut_, result_.cut, sums_.cut);
+  for (int i = 0; i < kBatch; i += kWidth<float>) {
+    const Lanes<float> sum = red_.at(i) + green_.at(i) + blue_.at(i);
+    stats_.non_finite_pixels += static_cast<std::uint64_t>(stdx::popcount(!(sum - sum == 0.0f)));
   }
 }
 
 template <class T>
-void TileRenderer<T>::write(int x0, int y0, Image& image) {
-  const double share = 1.0 / plan_.samples;
-  const int width = std::min(kTileSide, plan_.width - x0), height = std::min(kTileSide, plan_.height - y0);
-  alignas(64) std::array<std::array<float, kTileSide * kTileSide>, 3> rows;
+void TileRenderer<T>::take_cut(int x0, int y0) {
   for (int slot = 0; slot < kBatch; ++slot) {
     const TilePixel p = tile_pixel(slot);
-    if (p.x >= width || p.y >= height) continue;
-    const auto i = static_cast<std::size_t>(slot), at = static_cast<std::size_t>(p.y * kTileSide + p.x);
-    rows[0][at] = static_cast<float>(sums_.red[i] * share);
-    rows[1][at] = static_cast<float>(sums_.green[i] * share);
-    rows[2][at] = static_cast<float>(sums_.blue[i] * share);
-    const double cut = sums_.cut[i] * share;
-    stats_.mean_cut += cut;
-    stats_.max_cut = std::max(stats_.max_cut, cut);
-    if (!std::isfinite(rows[0][at] + rows[1][at] + rows[2][at])) ++stats_.non_finite_pixels;
+    if (x0 + p.x >= plan_.width || y0 + p.y >= plan_.height) continue;
+    stats_.mean_cut += static_cast<double>(cut_[slot]);
+    stats_.max_cut = std::max(stats_.max_cut, static_cast<double>(cut_[slot]));
   }
+}
+
+// From slots, which run in blocks of 4x4 pixels, to rows.
+template <class T>
+void TileRenderer<T>::write(int x0, int y0, Image& image) const {
+  const int width = std::min(kTileSide, plan_.width - x0), height = std::min(kTileSide, plan_.height - y0);
+  alignas(64) std::array<std::array<float, kTileSide>, 3> row;
   for (int y = 0; y < height; ++y) {
-    const auto row = static_cast<std::size_t>(y * kTileSide);
-    image.set_row(x0, y0 + y, width, &rows[0][row], &rows[1][row], &rows[2][row]);
+    for (int x = 0; x < kTileSide; x += 4) {
+      const int slot = (y / 4 * (kTileSide / 4) + x / 4) * 16 + y % 4 * 4;
+      std::memcpy(&row[0][static_cast<std::size_t>(x)], &red_[slot], 4 * sizeof(float));
+      std::memcpy(&row[1][static_cast<std::size_t>(x)], &green_[slot], 4 * sizeof(float));
+      std::memcpy(&row[2][static_cast<std::size_t>(x)], &blue_[slot], 4 * sizeof(float));
+    }
+    image.set_row(x0, y0 + y, width, row[0].data(), row[1].data(), row[2].data());
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <functional>
-#include <vector>
 
 #include "core/model/technique.h"
 #include "core/render/renderer.h"
@@ -26,8 +26,11 @@ class TileRenderer {
   static constexpr int kMaxSide = 65536;  // pixels are numbered row by row as if rows were this long
 
   void place_samples(int x0, int y0, int sample);
+  void clear_sums();
   void add_sample();
-  void write(int x0, int y0, Image& image);
+  void take_mean();
+  void take_cut(int x0, int y0);
+  void write(int x0, int y0, Image& image) const;
 
   const Plan& plan_;
   TracerPtr<T> tracer_;
@@ -35,8 +38,9 @@ class TileRenderer {
   RayBatch<T> rays_;
   TraceResult<T> result_;
   struct Sums {
-    std::vector<double> red, green, blue, cut;
-  } sums_;
+    std::array<double, kBatch> red, green, blue, cut;
+  } sums_;                                // used if there are several samples
+  Array<float> red_, green_, blue_, cut_;  // means, by slot
   RenderStats stats_;
   bool stopped_ = false;
 };

@@ -15,14 +15,14 @@ namespace detail {
 
 // x of the component named by the masks.
 template <class N>
-N pick(const MaskOf<N>& x, const MaskOf<N>& y, const Vec3<N>& v) {
+[[gnu::always_inline]] inline N pick(const MaskOf<N>& x, const MaskOf<N>& y, const Vec3<N>& v) {
   return select(x, v.x, select(y, v.y, v.z));
 }
 
 // a * b - c * d with the right sign: rounding cannot turn the sign of a difference of rounded products, only
 // make it 0, and then the rounding errors of the products decide.
 template <class N>
-N difference_of_products(const N& a, const N& b, const N& c, const N& d) {
+[[gnu::always_inline]] inline N difference_of_products(const N& a, const N& b, const N& c, const N& d) {
   using std::fma;
   const N ab = a * b, cd = c * d;
   const N difference = ab - cd;
@@ -38,7 +38,7 @@ N difference_of_products(const N& a, const N& b, const N& c, const N& d) {
 // function that its two triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight Ray/Triangle
 // Intersection", JCGT 2013).
 template <class N>
-TriangleHit<N> intersect_triangle(const Ray<N>& ray, const Vec3<N>& a, const Vec3<N>& b, const Vec3<N>& c) {
+[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Ray<N>& ray, const Vec3<N>& a, const Vec3<N>& b, const Vec3<N>& c) {
   using T = ScalarOf<N>;
   const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
   const Vec3<N> size = abs(ray.direction);

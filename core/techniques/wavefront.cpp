@@ -75,13 +75,20 @@ Groups Wavefront<T>::find_surfaces(const Groups& groups) {
                        select(missed, background.z, zero)});
     if (all(missed)) continue;
     met.add(i);
-    for (int lane = i; lane < i + kWidth<T>; ++lane) {
-      const IndexOf<T> p = s.hits.primitive[lane];
-      s.surface.material[lane] = p < 0 ? -1 : world_.material_of[static_cast<std::size_t>(p)];
-    }
+    find_materials(i, primitive);
   }
   for (const auto& shapes : world_.shapes) shapes->surface(s.paths->rays, s.hits, met, s.surface);
   return met;
+}
+
+// Neighbours mostly meet the same primitive.
+template <class T>
+void Wavefront<T>::find_materials(int i, const IndexLanes<T>& primitive) {
+  const auto material = [&](IndexOf<T> p) { return p < 0 ? -1 : world_.material_of[static_cast<std::size_t>(p)]; };
+  const IndexOf<T> first = primitive[0];
+  if (all(primitive == first)) return stage_->surface.material.put(i, IndexLanes<T>(material(first)));
+  for (int lane = i; lane < i + kWidth<T>; ++lane)
+    stage_->surface.material[lane] = material(stage_->hits.primitive[lane]);
 }
 
 template <class T>

@@ -50,6 +50,7 @@ class Wavefront : public Tracer<T> {
   void run(PathBatch<T>& paths);
   void run_slice(const Groups& groups);
   Groups find_surfaces(const Groups& groups);
+  void find_materials(int i, const IndexLanes<T>& primitive);
   void light_surfaces(const Groups& groups);
   void light_from(const Light& light, const Groups& groups);
   void follow_specular(const Groups& groups);

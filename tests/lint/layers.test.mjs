@@ -145,12 +145,13 @@ function judgeCycles(includes, complain) {
   for (const path of includes.keys()) visit(path, []);
 }
 
-// A system core/shapes/sphere.cpp is listed if registry.cpp names sphere, make_sphere or sphere_<word>.
+// A system core/shapes/sphere.cpp is listed if registry.cpp names sphere, make_sphere or sphere_<word>. A .cpp
+// with a header of its own is what several systems of the room share; a system has none.
 function judgeRegistries(contents, complain) {
   for (const path of contents.keys()) {
     if (!path.endsWith(".cpp") || !kRegisteredRooms.includes(dirname(path))) continue;
     const name = basename(path, ".cpp");
-    if (name === "registry") continue;
+    if (name === "registry" || contents.has(`${dirname(path)}/${name}.h`)) continue;
     const registry = contents.get(`${dirname(path)}/registry.cpp`) ?? "";
     const code = registry.replace(/\/\/.*|\/\*[^]*?\*\/|^\s*#.*/gm, "");
     if (!new RegExp(`\\b(?:make_)?${name}(?:_[a-z]+)?\\b`).test(code)) {
@@ -167,6 +168,8 @@ const kGoodTree = {
   "core/image/png.cpp": "#include <png.h>\n#include <turbojpeg.h>\n#include <OpenEXR/ImfRgbaFile.h>\n",
   "core/model/shape.h": '#include "core/base/a.h"\n#include "core/base/version.h"\n',
   "core/shapes/sphere.cpp": '#include "core/model/shape.h"\n// see ../work/paper, docs/home/x\n',
+  "core/shapes/shared.h": "#pragma once\n",
+  "core/shapes/shared.cpp": '#include "core/shapes/shared.h"\n',
   "core/shapes/registry.cpp": "ShapeType sphere_type();  // one line each\n",
   "server/http/http.cpp": '#include <httplib.h>\n#include "core/model/shape.h"\n',
   "web/app.js": "// one\n".repeat(kMaxLines),

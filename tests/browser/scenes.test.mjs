@@ -1,0 +1,137 @@
+#!/usr/bin/env node
+// Scenes of one's own in the page, and what it does when the service goes away, forgets, or is not looked at.
+
+import assert from "node:assert/strict";
+import { after, test } from "node:test";
+import {
+  canvas_digest, eventually, hash_of, open_page, rest, skip_without_browser, start_browser, start_daemon,
+} from "./support.mjs";
+
+skip_without_browser();
+const browser = await start_browser();
+after(() => browser.close());
+
+// Runs `body(page, daemon)` on a page of a daemon that no other test uses.
+function daemon_test(name, hash, body) {
+  test(name, async () => {
+    const daemon = await start_daemon();
+    const { page, faults, close } = await open_page(browser, `${daemon.url}#${hash}`);
+    try {
+      await body(page, daemon);
+      // Refusals and lost connections are what these tests provoke.
+      assert.deepEqual(faults.filter((fault) => !/Failed to load resource|net::ERR_/.test(fault)), []);
+    } finally {
+      await close();
+      await daemon.stop();
+    }
+  });
+}
+
+const selection = (page) =>
+  page.locator("#text").evaluate((field) => field.value.slice(field.selectionStart, field.selectionEnd));
+
+async function apply(page, edit) {
+  await page.locator("#tab-json").click();
+  const text = await page.locator("#text").inputValue();
+  await page.locator("#text").fill(edit(text));
+  await page.locator("#apply").click();
+}
+
+daemon_test("what is wrong in a pasted scene is named, and a click leads there", "playing=0", async (page) => {
+  const before = await rest(page);
+  const card = page.locator("#text-problem");
+  await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": -77'));
+  await card.waitFor({ state: "visible" });
+  assert.match(await card.textContent(), /\/objects\/0\/radius/);
+  assert.match(await card.locator(".request").textContent(), /Request \S{4,}/);
+  await card.locator("button.place").first().click();
+  assert.equal(await selection(page), "-77");
+
+  await apply(page, (text) => text.replace('"radius": -77', '"raduis": 1'));
+  await eventually("the unknown key", async () => /raduis/.test(await card.textContent()));
+  await card.locator("button.place", { hasText: "raduis" }).click();
+  assert.equal(await selection(page), '"raduis"');
+
+  await apply(page, () => '{\n  "version": 1,\n  "camera" 2\n}');
+  await eventually("the malformed line", async () => /line 3/.test(await card.textContent()));
+  await card.locator("button.place").click();
+  const caret = await page.locator("#text").evaluate((field) => field.selectionStart);
+  assert.ok(caret >= 18 && caret <= 31, `the caret is at ${caret}`);
+  assert.equal(await canvas_digest(page), before, "the picture stays");
+});
+
+daemon_test("a pasted scene is shown, and back leads to the one before", "playing=0", async (page) => {
+  const before = await rest(page);
+  await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": 0.25'));
+  await eventually("another picture", async () => (await canvas_digest(page)) !== before);
+  assert.match((await hash_of(page)).scene, /^[0-9a-f]{64}$/);
+  assert.equal(await page.locator("#text-problem").isVisible(), false);
+  const own = await rest(page);
+  await page.goBack();
+  await eventually("the first scene", async () => (await canvas_digest(page)) === before);
+  await page.goForward();
+  await eventually("the pasted scene", async () => (await canvas_digest(page)) === own);
+  assert.match(await page.locator("#text").inputValue(), /"radius": 0\.25/);
+});
+
+daemon_test("an edit that another scene replaces can be brought back", "playing=0", async (page) => {
+  await page.locator("#tab-json").click();
+  await page.locator("#text").fill("my edit");
+  await page.locator("#tab-scenes").click();
+  await page.locator("#gallery button").nth(1).click();
+  await page.locator("#tab-json").click();
+  await page.locator("#restore").click();
+  assert.equal(await page.locator("#text").inputValue(), "my edit");
+});
+
+daemon_test("a forgotten scene is posted again", "playing=0", async (page, daemon) => {
+  const before = await rest(page);
+  const link = await page.locator("#download").getAttribute("href");
+  const scene = /v1\/scenes\/[0-9a-f]+/.exec(link)[0];
+  await fetch(daemon.url + scene, { method: "DELETE" });
+  assert.equal((await fetch(daemon.url + scene)).status, 404);
+  await page.locator("#size").selectOption("1280x720");
+  await eventually("a new picture", async () => (await canvas_digest(page)).startsWith("1280x720 "));
+  await page.locator("#size").selectOption("fit");
+  await eventually("the first picture", async () => (await canvas_digest(page)) === before);
+});
+
+daemon_test("the page says that the service is gone, and goes on when it is back", "", async (page, daemon) => {
+  await eventually("frames", async () => Number((await hash_of(page)).az) > 0);
+  await daemon.stop();
+  const notice = page.locator("#notice");
+  await notice.waitFor({ state: "visible" });
+  assert.match(await notice.textContent(), /Trying again in \d+ s/);
+  const frozen = await canvas_digest(page);
+  const revived = await start_daemon(new URL(daemon.url).port);
+  try {
+    await eventually("frames again", async () => (await canvas_digest(page)) !== frozen, 30_000);
+    assert.equal(await notice.isVisible(), false);
+  } finally {
+    await revived.stop();
+  }
+});
+
+daemon_test("a hidden tab asks for nothing and goes on when it is seen again", "", async (page) => {
+  const show = (visibility) => page.evaluate((state) => {
+    Object.defineProperty(document, "visibilityState", { get: () => state, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+  }, visibility);
+  const digest = () => canvas_digest(page);
+  const first = await digest();
+  await eventually("frames", async () => (await digest()) !== first);
+  await show("hidden");
+  const frozen = await rest(page);
+  await page.waitForTimeout(500);
+  assert.equal(await digest(), frozen);
+  await show("visible");
+  await eventually("frames again", async () => (await digest()) !== frozen);
+});
+
+daemon_test("a link to a scene that nobody knows says so", "playing=0", async (page) => {
+  await page.evaluate((id) => (location.hash = `scene=${id}`), "0".repeat(64));
+  const card = page.locator("#stage-problem");
+  await card.waitFor({ state: "visible" });
+  await page.locator("#gallery button").first().click();
+  await card.waitFor({ state: "hidden" });
+});
