@@ -5,7 +5,7 @@
 // IEEE Computer Graphics and Applications 7(11), 1987): a sphere of radius 0.5, and on each sphere, LEVEL times
 // over, nine touching ones of a third of its radius, six about its equator and three above. LEVEL is that
 // collection's size factor: 1 gives 10 spheres, 2 gives 91, 3 gives 820, 4 (its usual size) 7,381, 5 gives 66,430.
-// Its camera, its three lights, sky and floor; the spheres are of silver here, the floor has no edge.
+// Its camera and its three lights; the spheres are of gold here, and the floor has no edge.
 import { writeFileSync } from "node:fs";
 
 const kDigits = 9;
@@ -35,7 +35,7 @@ function turned(v, pole) {
 }
 
 function* spheres(level, center = [0, 0, 0], radius = 0.5, pole = [0, 0, 1]) {
-  yield `{ "type": "sphere", "center": ${three(center)}, "radius": ${round(radius)}, "material": "silver" }`;
+  yield `{ "type": "sphere", "center": ${three(center)}, "radius": ${round(radius)}, "material": "gold" }`;
   if (level === 0) return;
   const reach = radius + radius / 3;
   for (const direction of childDirections()) {
@@ -51,14 +51,14 @@ function scene(level) {
   return `{
   "version": 1,
   "title": "Sphereflake ${level}",
-  "description": "${flake.length.toLocaleString("en")} spheres of silver: nine small ones sit on every large one.",
+  "description": "${flake.length.toLocaleString("en")} spheres of gold: nine small ones sit on every large one.",
   "camera": { "type": "perspective", "eye": [2.1, 1.3, 1.7], "look_at": [0, 0, 0], "up": [0, 0, 1], "fov_degrees": 45 },
   "image": { "width": 512, "height": 512 },
   "ambient": [0.1, 0.1, 0.1],
-  "background": [0.078, 0.361, 0.753],
+  "background": [0.62, 0.68, 0.78],
   "materials": {
-    "silver": { "type": "reflective", "n": [0.159, 0.145, 0.135], "k": [3.929, 3.19, 2.381] },
-    "floor": { "type": "rough", "kd": [0.8, 0.6, 0.264] }
+    "gold": { "type": "reflective", "n": [0.143, 0.375, 1.442], "k": [3.983, 2.386, 1.603] },
+    "floor": { "type": "rough", "kd": [0.09, 0.13, 0.22] }
   },
   "lights": [
     ${[[4, 3, 2], [1, -4, 4], [-3, 1, 5]].map(light).join(",\n    ")}

@@ -1,20 +1,30 @@
-// The list of sample scenes. A thumbnail is asked for once its row is in sight, one at a time, so that
+// The sample scenes, those that show one shape, light or the like under a heading of their own. A thumbnail is asked for once its row is in sight, one at a time, so that
 // thumbnails never crowd out the picture.
 
+import { title_of } from "./scenes.js";
 import { picture_size } from "./size.js";
 import { frame_url } from "./urls.js";
 
 const kThumbnail = { width: 96, height: 72 };  // CSS pixels, as in style.css
+const kFirst = "paper";
+const kHeadings = {  // by what a sample's name starts with, in the order shown
+  "": "", material: "Materials", light: "Lights", shape: "Shapes", camera: "Cameras", technique: "Techniques",
+};
+
+function kind_of(sample) {
+  const start = sample.name.split("-")[0];
+  return start in kHeadings ? start : "";
+}
 
 export class Gallery {
-  #list;
+  #root;
   #library;
   #on_pick;
   #limits;
   #queue = Promise.resolve();
 
-  constructor(list, library, limits, on_pick) {
-    this.#list = list;
+  constructor(root, library, limits, on_pick) {
+    this.#root = root;
     this.#library = library;
     this.#limits = limits;
     this.#on_pick = on_pick;
@@ -24,15 +34,27 @@ export class Gallery {
         this.#queue = this.#queue.then(() => this.#load_thumbnail(entry.target)).catch(() => {});
       }
     });
-    list.replaceChildren(...library.samples.map((sample) => this.#row(sample)));
-    for (const image of list.querySelectorAll("img")) watcher.observe(image);
+    root.replaceChildren(...Object.keys(kHeadings).flatMap((kind) => this.#group(kind)));
+    for (const image of root.querySelectorAll("img")) watcher.observe(image);
   }
 
   mark(ref) {
-    for (const button of this.#list.querySelectorAll("button")) {
+    for (const button of this.#root.querySelectorAll("button")) {
       if (button.dataset.name === ref) button.setAttribute("aria-current", "true");
       else button.removeAttribute("aria-current");
     }
+  }
+
+  #group(kind) {
+    const members = this.#library.samples.filter((sample) => kind_of(sample) === kind);
+    if (members.length === 0) return [];
+    members.sort((a, b) => (b.name === kFirst) - (a.name === kFirst));
+    const list = document.createElement("ul");
+    list.append(...members.map((sample) => this.#row(sample)));
+    if (!kHeadings[kind]) return [list];
+    const heading = document.createElement("h2");
+    heading.textContent = kHeadings[kind];
+    return [heading, list];
   }
 
   #row(sample) {
@@ -40,7 +62,7 @@ export class Gallery {
     Object.assign(image, { alt: "", ...kThumbnail });
     image.dataset.name = sample.name;
     const title = document.createElement("strong");
-    title.textContent = sample.title || sample.name;
+    title.textContent = title_of(sample);
     const description = document.createElement("span");
     description.textContent = sample.description ?? "";
     const text = document.createElement("span");

@@ -8,6 +8,10 @@ const kLongestKept = 500_000;  // characters; session storage is small
 const kMostKept = 8;
 
 // A scene is {ref, id, title, text, width, height, camera}; `ref` is what a link calls it.
+export function title_of(sample) {
+  return sample.title || sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
+}
+
 export class SceneLibrary {
   samples = [];        // {name, title, description, href}
   #texts = new Map();  // name or id -> JSON text
@@ -31,7 +35,7 @@ export class SceneLibrary {
       this.#texts.set(ref, text);
       this.#ids.set(scene.id, ref);
     }
-    return sample ? { ...scene, ref, title: sample.title || ref } : scene;
+    return sample ? { ...scene, ref, title: title_of(sample) } : scene;
   }
 
   // Posts `text`. Throws ApiError with the places that are wrong in it.
@@ -39,14 +43,14 @@ export class SceneLibrary {
     const info = await post_scene(text);
     const name = this.#ids.get(info.id);
     if (!name) this.#keep(info.id, text);
-    const title = this.sample(name)?.title ?? name ?? "Your scene";
+    const title = name ? title_of(this.sample(name)) : own_title(JSON.parse(text));
     return { ref: name ?? info.id, id: info.id, title, text, width: info.width, height: info.height, camera: info.camera };
   }
 
   async #fetch(id) {
     const canonical = await get_json(`v1/scenes/${id}`);
     const { width = 600, height = 600 } = canonical.image ?? {};
-    return { ref: id, id, title: "Your scene", text: pretty(canonical), width, height, camera: canonical.camera };
+    return { ref: id, id, title: own_title(canonical), text: pretty(canonical), width, height, camera: canonical.camera };
   }
 
   #keep(id, text) {
@@ -61,6 +65,8 @@ export class SceneLibrary {
     }
   }
 }
+
+const own_title = (scene) => scene.title || "Your scene";
 
 function kept_texts() {
   try {

@@ -24,23 +24,25 @@ struct Rough {
   MaterialTraits traits() const { return {.lit = true}; }
 
   // Cosine that the highlight is a power of, 0 where there is none. Unit vectors: normal, toward the light,
-  // toward the viewer. H is (L + V) / |L + V|, R is 2 (N.L) N - L.
-  N highlight(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer, const N& cosine) const {
+  // toward the viewer, and half way between the two. The mirrored direction is R = 2 (N.L) N - L.
+  N highlight(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer, const Vec3<N>& half,
+              const N& cosine) const {
     using T = ScalarOf<N>;
-    using std::sqrt;
-    const N zero(T(0)), one(T(1));
-    const auto mirrored = phong > zero;
-    N c = zero;
-    if (!all(mirrored)) {
-      const Vec3<N> sum = light + viewer;
-      const N size2 = dot(sum, sum);
-      c = select(size2 > zero, N(dot(normal, sum) / sqrt(size2)), zero);
-    }
-    if (any(mirrored))
-      c = select(mirrored, N(T(2) * cosine * dot(normal, viewer) - dot(light, viewer)), c);
-    return min_first(one, max_first(zero, c));
+    const N mirrored = T(2) * cosine * dot(normal, viewer) - dot(light, viewer);
+    const N c = select(phong > N(T(0)), mirrored, dot(normal, half));
+    return min_first(N(T(1)), max_first(N(T(0)), c));
   }
 };
+
+// H = (L + V) / |L + V|; zero where the two are opposite.
+template <class N>
+Vec3<N> half_vector(const Vec3<N>& light, const Vec3<N>& viewer) {
+  using T = ScalarOf<N>;
+  using std::sqrt;
+  const Vec3<N> sum = light + viewer;
+  const N size2 = dot(sum, sum);
+  return sum * select(size2 > N(T(0)), N(T(1) / sqrt(size2)), N(T(0)));
+}
 
 template <class T>
 class RoughKernel final : public MaterialRecords<Rough, T> {
@@ -60,6 +62,8 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
   void reflect(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, const Groups& groups,
                LightBatch<T>& light) const override {
     const N zero(T(0));
+    const auto half_at = [&](int i) { return half_vector(light.shadow.direction.at(i), -rays.direction.at(i)); };
+    const Vec3<N> first_half = half_at(*groups.begin());
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
       const Vec3<N> normal = surface.normal.at(i), toward = light.shadow.direction.at(i);
       const N cosine = dot(normal, toward);
@@ -70,7 +74,8 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
       Vec3<N> reflected = rough.diffuse * cosine;
       if (any(lit && max_component(rough.specular) > zero)) {
         const Vec3<N> viewer = -rays.direction.at(i);
-        const N base = rough.highlight(normal, toward, viewer, cosine);
+        const Vec3<N> half = light.constant_half ? first_half : half_at(i);
+        const N base = rough.highlight(normal, toward, viewer, half, cosine);
         const N lobe = select(dot(normal, viewer) > zero, pow_unit(base, rough.shininess), zero);
         reflected = reflected + rough.specular * lobe;
       }

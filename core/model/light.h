@@ -16,6 +16,7 @@ struct LightBatch {
   RayBatch<T> shadow;
   Vec3Array<T> incident;  // intensity that arrives, after attenuation and cone
   Vec3Array<T> radiance;  // filled by the material: what leaves toward the viewer
+  bool constant_half = false;  // one direction to the light and one to the viewer for the whole batch
 };
 
 // Convention: a white Lambert surface that faces a light of intensity 1 reads 1.

@@ -39,6 +39,11 @@ Schema three_numbers(const char* type, const Range& range) {
   return list_schema(number_schema(type, range), {.min = 3, .max = 3});
 }
 
+constexpr const char* kBeyond =
+    " A schema cannot say what values must mean together: a name that must exist, points that must differ, "
+    "an index "
+    "that must be below a count. The program checks that as well.";
+
 const Schema kEmptyList = Schema::array();
 const Schema kEmptyObject = Schema::object();
 
@@ -209,7 +214,7 @@ std::string describe(std::string_view id, std::string_view title, std::string_vi
   Schema schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"$id", id},
                    {"title", title},
-                   {"description", description}};
+                   {"description", std::string(description) + kBeyond}};
   schema.update(object);
   if (!definitions.empty()) schema["$defs"] = std::move(definitions);
   return pretty(schema) + "\n";

@@ -154,7 +154,7 @@ class Params {
   }
 
   // Which of several sets of keys is there: form({{"base", "top"}, {"point", "axis"}}) is 0 or 1. Exactly one
-  // set must be given. The keys themselves are then read as usual.
+  // set must be given, and no key is in two of them. The keys themselves are then read as usual.
   std::size_t form(std::initializer_list<std::initializer_list<std::string_view>> key_sets);
 
   // The index of a name in `names`, e.g. of the material of an object. 0 on error: good only once the read
@@ -209,9 +209,9 @@ class Params {
 void read_document(const Document& document, const Params::Read& read);
 
 // The JSON Schema (draft 2020-12) of what `read` accepts, as indented text that ends in a newline. `id` and
-// `title` become $id and title; `description` is prose for the whole. It says all that read_document checks
-// except what fail(), reference() and the bound of index_triples() check: meaning across keys, which no
-// schema can say.
+// `title` become $id and title; `description` is prose for the whole, to which what a schema cannot say is
+// added. It says all that read_document checks except what fail(), reference() and the bound of
+// index_triples() check: meaning across keys, which no schema can say.
 std::string describe(std::string_view id, std::string_view title, std::string_view description,
                      const Params::Read& read);
 

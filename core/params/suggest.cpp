@@ -10,7 +10,9 @@ namespace orrery {
 namespace {
 
 constexpr int kMaxSlips = 2;
-constexpr std::size_t kMaxWord = 64;  // longer words are no typing errors, and the distance is quadratic
+// Longer words are no typing errors, more candidates are not searched: a bad document must not cost much.
+constexpr std::size_t kMaxWord = 64;
+constexpr std::size_t kMaxCandidates = 1000;
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -45,6 +47,7 @@ int edit_distance(std::string_view a, std::string_view b, int limit) {
 
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
   if (word.size() > kMaxWord) return std::nullopt;
+  candidates = candidates.first(std::min(candidates.size(), kMaxCandidates));
   const std::string wanted = lower_case(word);
   int best = slips_allowed(wanted.size()) + 1;
   std::optional<std::string> found;

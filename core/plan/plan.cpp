@@ -145,6 +145,11 @@ class Planner {
       plan_.shadows = false;
       return decide("direct light", "absent", glows ? "no material in use answers light sources" : "no light source");
     }
+    const bool parallel_light = std::any_of(scene_.lights.begin(), scene_.lights.end(),
+                                            [](const auto& light) { return light->directional(); });
+    plan_.constant_half = parallel_light && plan_.camera.projection == Projection::orthographic;
+    if (plan_.constant_half)
+      decide("half vector", "computed once", "the viewer and a light are parallel, so it is the same everywhere");
     plan_.shadows = !lonely_convex();
     decide("shadows", plan_.shadows ? "traced" : "absent",
            plan_.shadows ? "objects may stand between light and surface"

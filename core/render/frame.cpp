@@ -1,4 +1,5 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -12,7 +13,11 @@
 namespace orrery {
 
 struct WorkerPool::Parts {
-  explicit Parts(int threads) : arena(threads > 0 ? threads : tbb::task_arena::automatic, 0) {}
+  explicit Parts(int threads)
+      : allowed(tbb::global_control::max_allowed_parallelism,
+                1 + static_cast<std::size_t>(threads > 0 ? threads : tbb::this_task_arena::max_concurrency())),
+        arena(threads > 0 ? threads : tbb::task_arena::automatic, 0) {}
+  tbb::global_control allowed;  // the caller and its workers, more than the cores if asked for
   tbb::task_arena arena;
 };
 

@@ -107,6 +107,7 @@ template <class T>
 void Wavefront<T>::light_from(const Light& light, const Groups& groups) {
   Stage& s = *stage_;
   light.illuminate(s.surface, groups, s.light);
+  s.light.constant_half = plan_.constant_half && s.paths->depth == 0 && light.directional();
   for (const int i : groups) s.light.shadow.t_max.put(i, !lanes_of(i, &MaterialTraits::lit), N(T(-1)));
   for (const auto& m : world_.materials)
     if (m.traits.lit) m.kernel->reflect(s.paths->rays, s.surface, groups, s.light);

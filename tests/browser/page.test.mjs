@@ -34,12 +34,14 @@ async function middle(page) {
   return { x: box.x + box.width / 2, y: box.y + box.height / 2, height: box.height };
 }
 
-async function drag(page, dx, dy) {
+// Drags by (dx, dy) pixels; `held()` runs before the button is let go. Returns the stage's height.
+async function drag(page, dx, dy, held = () => {}) {
   const { x, y, height } = await middle(page);
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x + dx / 2, y + dy / 2, { steps: 3 });
   await page.mouse.move(x + dx, y + dy, { steps: 3 });
+  await held();
   await page.mouse.up();
   return height;
 }
@@ -131,6 +133,14 @@ page_test("a drag interrupts the orbit, which goes on after it", "speed=30", asy
   });
 });
 
+page_test("the orbit waits for as long as the view is held", "", async (page) => {
+  await page.locator("#play").click();
+  await eventually("frames", async () => Number((await hash_of(page)).az) > 0);
+  let held = "";
+  await drag(page, 50, 0, async () => (held = await rest(page)));
+  await eventually("frames after it", async () => (await canvas_digest(page)) !== held);
+}, { reducedMotion: "reduce" });
+
 page_test("wheel, keys and buttons move the view", "playing=0", async (page) => {
   const { x, y } = await middle(page);
   const state_after = async (action) => {
@@ -196,8 +206,10 @@ page_test("technique and size can be chosen", "playing=0", async (page) => {
   await page.locator("#size").selectOption("1280x720");
   await eventually("the size", async () => (await canvas_digest(page)).startsWith("1280x720 "));
   await page.locator("#size").selectOption("fit");
+  await eventually("the first size", async () => (await canvas_digest(page)) === before);
+  const answer = page.waitForResponse((response) => response.url().includes("technique=raycast"));
   await page.locator("#technique").selectOption("raycast");
-  await eventually("a picture of the technique", async () => (await page.locator("#hud-size").textContent()).startsWith(before.split("x")[0]));
+  assert.equal((await answer).status(), 200);
   assert.equal((await hash_of(page)).technique, "raycast");
 });
 

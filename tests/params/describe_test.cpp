@@ -136,6 +136,10 @@ TEST(Suggestion, FindsSlipsCaseAndAbbreviations) {
   EXPECT_EQ(nearest("to", keys), std::nullopt);
   EXPECT_EQ(nearest("colour", keys), std::nullopt);
   EXPECT_EQ(nearest(std::string(1 << 20, 'x'), keys), std::nullopt);
+  std::vector<std::string> names;  // a bad document must not be able to ask for an endless search
+  for (int i = 0; i < 200'000; ++i) names.push_back(std::string(60, 'a') + std::to_string(i % 10));
+  EXPECT_EQ(nearest(std::string(62, 'b'), std::vector<std::string_view>(names.begin(), names.end())),
+            std::nullopt);
   EXPECT_EQ(did_you_mean("uup", keys), " (did you mean \"up\"?)");
 }
 

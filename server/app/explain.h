@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/model/plan.h"
+#include "core/model/scene.h"
+
+namespace orrery {
+
+// What a render will model and, choice by choice, why no more.
+nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan);
+std::string explain_text(const Scene& scene, const Plan& plan);
+
+}  // namespace orrery

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "core/image/files.h"
+#include "core/render/renderer.h"
+
+namespace orrery {
+
+using Clock = std::chrono::steady_clock;
+
+inline double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// For pictures that are shown once and thrown away: the time to encode counts more than the bytes.
+inline constexpr PngOptions kFrameOfStream{.level = 1};
+
+// A rendered and encoded picture.
+struct Frame {
+  std::string bytes;
+  RenderStats stats;
+  double render_ms = 0, encode_ms = 0;
+};
+
+// Adds what `encoder` makes of the image, and how long that took.
+template <class Encoder>
+Frame encode_frame(RenderResult&& rendered, double render_ms, const Encoder& encoder) {
+  const auto start = Clock::now();
+  Frame frame{.bytes = encoder(rendered.image), .stats = rendered.stats, .render_ms = render_ms};
+  frame.encode_ms = milliseconds_since(start);
+  return frame;
+}
+
+}  // namespace orrery

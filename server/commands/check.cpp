@@ -1,0 +1,53 @@
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "server/commands/commands.h"
+#include "server/commands/scene_file.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  orrery check my-scene.json
+  orrery check --json scenes/*.json
+
+Prints a line for each problem: the file, where in it (a JSON Pointer), and what was expected. The status is 0 if
+all scenes are good and 2 if not.
+)";
+
+struct Options {
+  std::vector<std::string> scenes;
+  bool json = false;
+};
+
+int check(const Options& options) {
+  nlohmann::ordered_json found = nlohmann::ordered_json::array();
+  bool good = true;
+  for (const std::string& file : options.scenes) {
+    try {
+      load_scene_file(file);
+    } catch (const BadScene& error) {
+      good = false;
+      for (const Problem& p : error.problems())
+        found.push_back({{"file", file}, {"pointer", p.pointer}, {"detail", p.detail}});
+      if (!options.json)
+        for (const std::string& line : error.lines()) std::cout << line << "\n";
+    }
+  }
+  if (options.json) std::cout << found.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  return good ? kDone : kBadInput;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand("check", "Say what is wrong with scenes");
+  app->footer(kExamples);
+  app->add_option("SCENE", options->scenes, "JSON files of scenes, or - for standard input")->required();
+  app->add_flag("--json", options->json, "Print the problems as a JSON array");
+  return {app, [options] { return check(*options); }};
+}
+
+}  // namespace orrery

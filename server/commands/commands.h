@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace orrery {
+
+// A subcommand: its part of the command line, and its work once that is parsed, which returns the exit status or
+// throws.
+struct Command {
+  CLI::App* app;
+  std::function<int()> run;
+};
+
+Command add_render(CLI::App& root);
+Command add_orbit(CLI::App& root);
+Command add_serve(CLI::App& root);
+Command add_check(CLI::App& root);
+Command add_explain(CLI::App& root);
+Command add_catalog(CLI::App& root);
+Command add_schema(CLI::App& root);
+
+// Exit statuses of the program.
+inline constexpr int kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 130;
+
+}  // namespace orrery

@@ -1,0 +1,48 @@
+#include "server/app/explain.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "server/commands/commands.h"
+#include "server/commands/render_flags.h"
+#include "server/commands/scene_file.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  orrery explain scenes/paper.json
+  orrery explain scenes/paper.json --technique raycast --json
+
+Renders nothing. Says what a render of the scene would model, and for each thing that it would leave out, why it
+is not needed.
+)";
+
+struct Options {
+  std::string scene;
+  bool json = false;
+  RenderFlags render;
+};
+
+int explain(const Options& options) {
+  const RenderRequest request = read_render_flags(options.render);
+  const auto scene = load_scene_file(options.scene);
+  const Plan plan = plan_for(*scene, request);
+  std::cout << (options.json ? explain_json(*scene, plan).dump(2) + "\n" : explain_text(*scene, plan));
+  return kDone;
+}
+
+}  // namespace
+
+Command add_explain(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand("explain", "Say what a render would model, and why no more");
+  app->footer(kExamples);
+  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
+  app->add_flag("--json", options->json, "Print JSON");
+  add_render_flags(*app, options->render);
+  return {app, [options] { return explain(*options); }};
+}
+
+}  // namespace orrery

@@ -1,0 +1,169 @@
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "server/app/pipeline.h"
+#include "server/commands/commands.h"
+#include "server/commands/frame_names.h"
+#include "server/commands/output_file.h"
+#include "server/commands/progress.h"
+#include "server/commands/render_flags.h"
+#include "server/commands/scene_file.h"
+#include "server/commands/signals.h"
+#include "server/commands/stats.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  orrery orbit scenes/paper.json --frames 120 -o frame-%04d.png
+  orrery orbit scenes/paper.json --frames 45 --step 2 --elevation 20 -o turn-%d.jpg
+  orrery orbit scenes/paper.json --frames 240 --discard       how fast? renders and encodes, keeps nothing
+
+Turns the camera once about the scene, or by --step from frame to frame. A film of the frames:
+  ffmpeg -framerate 30 -i frame-%04d.png orbit.mp4
+)";
+
+struct Options {
+  std::string scene, output, stats;
+  int frames = 120, threads = 0;
+  double step = 0;
+  CLI::Option* step_given = nullptr;
+  bool discard = false;
+  RenderFlags render;
+};
+
+struct Totals {
+  int frames = 0;
+  std::uint64_t bytes = 0, rays = 0;
+  double render_ms = 0, encode_ms = 0;
+  double seconds = 0, cpu_s = 0;
+
+  void add(const Frame& frame) {
+    ++frames;
+    bytes += frame.bytes.size();
+    rays += frame.stats.counts.rays.total();
+    render_ms += frame.render_ms;
+    encode_ms += frame.encode_ms;
+  }
+};
+
+nlohmann::ordered_json json_of(const Totals& t, int threads) {
+  return {{"frames", t.frames},
+          {"seconds", t.seconds},
+          {"frames_per_s", t.frames / t.seconds},
+          {"cpu_s", t.cpu_s},
+          {"render_ms", t.render_ms / t.frames},
+          {"encode_ms", t.encode_ms / t.frames},
+          {"bytes", t.bytes},
+          {"rays", t.rays},
+          {"threads", threads}};
+}
+
+void print(const Totals& t, int threads) {
+  std::printf("%d frames in %.2f s, %.1f a second, threads %d\n", t.frames, t.seconds, t.frames / t.seconds, threads);
+  std::printf("a frame: %.2f ms rendering, %.2f ms encoding, %.0f bytes, %.0f rays, %.2f ms of processor\n",
+              t.render_ms / t.frames, t.encode_ms / t.frames, double(t.bytes) / t.frames, double(t.rays) / t.frames,
+              1000 * t.cpu_s / t.frames);
+}
+
+// One turn of the camera: what is rendered, and where it goes.
+class Turn {
+ public:
+  explicit Turn(const Options& options)
+      : options_(options),
+        names_(options.discard ? "frame-%d.png" : options.output),
+        format_(format_of(names_.of(0))),
+        request_(read_render_flags(options.render)),
+        scene_(load_scene_file(options.scene)),
+        pool_(options.threads) {
+    if (options.step_given->count() == 0) step_ = 360.0 / options.frames;
+    else step_ = options.step;
+    for (const int frame : {0, options.frames - 1}) plan(frame);  // complains before any work
+  }
+
+  int threads() const { return pool_.threads(); }
+
+  Totals run() {
+    Totals totals;
+    ProgressBar bar("frames");
+    std::int64_t next = 0;
+    const auto start = Clock::now();
+    const double cpu_before = cpu_seconds();
+    const Pipeline pipeline{
+        .next = [&] { return next < options_.frames ? std::optional(next++) : std::nullopt; },
+        .render = [&](std::int64_t n) { return render(n); },
+        .encode = [&](const Image& i) { return format_ == FileFormat::png ? encode_png(i, kFrameOfStream) : encode(i, format_); },
+        .deliver = [&](std::int64_t n, Frame&& frame) {
+          if (!options_.discard) write_file(names_.of(n), frame.bytes);
+          totals.add(frame);
+          bar.update(totals.frames, options_.frames);
+          return true;
+        }};
+    pipeline.run();
+    totals.seconds = milliseconds_since(start) / 1000;
+    totals.cpu_s = cpu_seconds() - cpu_before;
+    return totals;
+  }
+
+ private:
+  Plan plan(std::int64_t frame) const {
+    RenderRequest request = request_;
+    request.orbit.azimuth_degrees += static_cast<double>(frame) * step_;
+    return plan_for(scene_.scene(), request);
+  }
+  RenderResult render(std::int64_t frame) {
+    return render_frame(scene_, plan(frame), pixels_of(format_), pool_,
+                        {.stop = [this] { return signals_.interrupted(); }, .progress = {}});
+  }
+
+  const Options& options_;
+  FrameNames names_;
+  FileFormat format_;
+  double step_ = 0;
+  RenderRequest request_;
+  SignalWatch signals_;  // before the pool, whose threads leave the signals to it
+  PreparedScene scene_;
+  WorkerPool pool_;
+};
+
+int orbit(const Options& options) {
+  if (options.output.empty() && !options.discard)
+    throw InputError("--output", "expected a name for the frames such as frame-%04d.png, or --discard");
+  Turn turn(options);
+  const Totals totals = turn.run();
+  if (options.stats == "json")
+    std::cout << json_of(totals, turn.threads()).dump() << "\n";
+  else if (options.discard || !options.stats.empty())
+    print(totals, turn.threads());
+  return kDone;
+}
+
+}  // namespace
+
+Command add_orbit(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand("orbit", "Render the frames of a turn about the scene");
+  app->footer(kExamples);
+  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
+  app->add_option("--frames", options->frames, "How many")
+      ->check(CLI::Range(1, 1'000'000))
+      ->type_name("N")
+      ->capture_default_str();
+  options->step_given =
+      app->add_option("--step", options->step, "Degrees from frame to frame; without it, one full turn")
+          ->check(CLI::Range(-360.0, 360.0))
+          ->type_name("DEGREES");
+  auto* output = app->add_option("-o,--output", options->output, "Names of the frames; %04d becomes the number")
+                     ->type_name("NAME-%04d.{png,jpg,exr}");
+  app->add_flag("--discard", options->discard, "Render and encode, but write nothing: prints how fast that is")
+      ->excludes(output);
+  app->add_flag("--stats{text},--stats", options->stats, "Print what it took; --stats=json for programs");
+  app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  add_render_flags(*app, options->render);
+  return {app, [options] { return orbit(*options); }};
+}
+
+}  // namespace orrery

@@ -1,0 +1,40 @@
+#include "server/commands/output_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/error.h"
+#include "server/commands/scene_file.h"
+
+namespace orrery {
+
+FileFormat format_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".png") return FileFormat::png;
+  if (ending == ".jpg" || ending == ".jpeg") return FileFormat::jpeg;
+  if (ending == ".exr") return FileFormat::exr;
+  throw InputError("--output", "expected a name that ends in .png, .jpg or .exr, got " + path);
+}
+
+void write_file(const std::string& path, std::string_view bytes) {
+  // Where the name is no plain file (a device, a pipe), there is nothing to put in its place.
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  const bool replace = kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
+  const std::string written = replace ? path + ".part-" + std::to_string(getpid()) : path;
+  errno = 0;
+  std::ofstream out(written, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (out && (!replace || std::rename(written.c_str(), path.c_str()) == 0)) return;
+  const std::string reason = errno ? ": " + std::string(std::strerror(errno)) : "";
+  if (replace) std::filesystem::remove(written, ignored);
+  throw FileError("cannot write " + path + reason);
+}
+
+}  // namespace orrery

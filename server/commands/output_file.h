@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/image/files.h"
+
+namespace orrery {
+
+// The format that the ending of a file's name stands for. Throws InputError.
+FileFormat format_of(const std::string& path);
+
+// Writes all or nothing: the bytes go to a file beside it that takes its name once it is complete. Throws
+// FileError.
+void write_file(const std::string& path, std::string_view bytes);
+
+}  // namespace orrery

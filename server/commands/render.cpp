@@ -1,0 +1,84 @@
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "server/app/frame.h"
+#include "server/commands/commands.h"
+#include "server/commands/output_file.h"
+#include "server/commands/progress.h"
+#include "server/commands/render_flags.h"
+#include "server/commands/scene_file.h"
+#include "server/commands/signals.h"
+#include "server/commands/stats.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  orrery render scenes/paper.json -o paper.png
+  orrery render scenes/glass.json -o glass.png --width 1920 --height 1080 --samples 16
+  orrery render scenes/paper.json -o turned.exr --azimuth 30 --elevation 10 --distance 1.5
+  orrery render scenes/paper.json --stats            renders, writes no picture
+)";
+
+struct Options {
+  std::string scene, output, stats;
+  int threads = 0;
+  RenderFlags render;
+};
+
+RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
+                                  const SignalWatch& signals) {
+  ProgressBar bar("tiles");
+  return render_frame(scene, plan, format, pool,
+                      {.stop = [&] { return signals.interrupted(); },
+                       .progress = [&](int done, int total) { bar.update(done, total); }});
+}
+
+int render(const Options& options) {
+  const FileFormat format = options.output.empty() ? FileFormat::png : format_of(options.output);
+  const RenderRequest request = read_render_flags(options.render);
+  const SignalWatch signals;
+  RunStats stats;
+  auto start = Clock::now();
+  const PreparedScene scene(load_scene_file(options.scene));
+  stats.load_ms = milliseconds_since(start);
+  const Plan plan = plan_for(scene.scene(), request);
+  WorkerPool pool(options.threads);
+  stats.threads = pool.threads();
+
+  const double cpu_before = cpu_seconds();
+  const RenderResult result = render_with_progress(scene, plan, pixels_of(format), pool, signals);
+  stats.render_cpu_s = cpu_seconds() - cpu_before;
+  stats.render = result.stats;
+  if (!options.output.empty()) {
+    start = Clock::now();
+    const std::string bytes = encode(result.image, format);
+    stats.encode_ms = milliseconds_since(start);
+    write_file(options.output, bytes);
+  }
+  if (options.stats == "json")
+    std::cout << stats_json(plan, stats).dump() << "\n";
+  else if (!options.stats.empty() || options.output.empty())
+    std::cout << stats_text(plan, stats);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_render(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand("render", "Render a scene to a picture");
+  app->footer(kExamples);
+  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
+  app->add_option("-o,--output", options->output, "The picture; its ending chooses PNG, JPEG or EXR")
+      ->type_name("FILE.{png,jpg,exr}");
+  app->add_flag("--stats{text},--stats", options->stats, "Print what was traced and what it took; --stats=json for programs");
+  app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  add_render_flags(*app, options->render);
+  return {app, [options] { return render(*options); }};
+}
+
+}  // namespace orrery

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+namespace orrery {
+
+// Takes SIGINT and SIGTERM for itself while it lives. The first one calls `on_first` on a thread of its own;
+// a second one ends the process at once with status 130. Threads started meanwhile leave the signals to it, so
+// make one before any other thread.
+class SignalWatch {
+ public:
+  explicit SignalWatch(std::function<void()> on_first = {});
+  ~SignalWatch();
+  SignalWatch(const SignalWatch&) = delete;
+
+  // Whether a signal came. Safe from any thread.
+  bool interrupted() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace orrery

@@ -1,0 +1,108 @@
+#include "server/commands/stats.h"
+
+#include <sys/resource.h>
+
+#include <cstdarg>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/base/version.h"
+#include "core/model/technique.h"
+
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Counts by depth without the zeros at the end.
+ordered_json by_depth(const RayCounts::ByDepth& counts) {
+  std::size_t size = counts.size();
+  while (size > 0 && counts[size - 1] == 0) --size;
+  return ordered_json(std::vector<std::uint64_t>(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(size)));
+}
+
+double mrays_per_s(const RenderStats& stats) {
+  return stats.trace_ms > 0 ? static_cast<double>(stats.counts.rays.total()) / stats.trace_ms / 1000 : 0;
+}
+
+__attribute__((format(printf, 2, 3))) void line(std::string& text, const char* format, ...) {
+  char buffer[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  text += buffer;
+  text += '\n';
+}
+
+void rays_text(std::string& text, const RayCounts& rays) {
+  line(text, "%-12s %14s %14s %14s", "rays", "reflected", "refracted", "shadow");
+  for (std::size_t d = 0; d < rays.shadow.size(); ++d) {
+    if (rays.reflected[d] + rays.refracted[d] + rays.shadow[d] == 0) continue;
+    line(text, "  depth %-4zu %14llu %14llu %14llu", d, static_cast<unsigned long long>(rays.reflected[d]),
+         static_cast<unsigned long long>(rays.refracted[d]), static_cast<unsigned long long>(rays.shadow[d]));
+  }
+  line(text, "  %-10s %14llu", "camera", static_cast<unsigned long long>(rays.camera));
+  line(text, "  %-10s %14llu", "total", static_cast<unsigned long long>(rays.total()));
+}
+
+}  // namespace
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + double(t.tv_usec) * 1e-6; };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+ordered_json stats_json(const Plan& plan, const RunStats& stats) {
+  const TraceCounts& counts = stats.render.counts;
+  return {{"width", plan.width},
+          {"height", plan.height},
+          {"samples", plan.samples},
+          {"technique", plan.technique->name},
+          {"accelerator", plan.accelerator->name},
+          {"precision", plan.double_precision ? "double" : "float"},
+          {"instructions", kInstructionLevel},
+          {"threads", stats.threads},
+          {"rays", {{"camera", counts.rays.camera}, {"reflected", by_depth(counts.rays.reflected)},
+                    {"refracted", by_depth(counts.rays.refracted)}, {"shadow", by_depth(counts.rays.shadow)},
+                    {"total", counts.rays.total()}}},
+          {"box_tests", counts.accelerator.box_tests},
+          {"primitive_tests", counts.accelerator.primitive_tests},
+          {"cut_rays", counts.cut_rays},
+          {"mean_cut", stats.render.mean_cut},
+          {"max_cut", stats.render.max_cut},
+          {"non_finite_pixels", stats.render.non_finite_pixels},
+          {"load_ms", stats.load_ms},
+          {"build_ms", stats.render.build_ms},
+          {"trace_ms", stats.render.trace_ms},
+          {"encode_ms", stats.encode_ms},
+          {"mrays_per_s", mrays_per_s(stats.render)},
+          {"render_cpu_s", stats.render_cpu_s},
+          {"cpu_s", cpu_seconds()}};
+}
+
+std::string stats_text(const Plan& plan, const RunStats& stats) {
+  const TraceCounts& counts = stats.render.counts;
+  std::string text;
+  line(text, "%-12s %d x %d, %d a pixel", "picture", plan.width, plan.height, plan.samples);
+  line(text, "%-12s %s, %s, %s, %s, threads %d", "rendered by", plan.technique->name, plan.accelerator->name,
+       plan.double_precision ? "double" : "float", std::string(kInstructionLevel).c_str(), stats.threads);
+  rays_text(text, counts.rays);
+  line(text, "%-12s %14llu of boxes, %llu of primitives", "tests",
+       static_cast<unsigned long long>(counts.accelerator.box_tests),
+       static_cast<unsigned long long>(counts.accelerator.primitive_tests));
+  line(text, "%-12s %14llu rays, weight a pixel %.3g on average, %.3g at most", "cut",
+       static_cast<unsigned long long>(counts.cut_rays), stats.render.mean_cut, stats.render.max_cut);
+  if (stats.render.non_finite_pixels > 0)
+    line(text, "%-12s %14llu", "not finite", static_cast<unsigned long long>(stats.render.non_finite_pixels));
+  line(text, "%-12s %11.1f ms loading", "time", stats.load_ms);
+  line(text, "%-12s %11.1f ms building", "", stats.render.build_ms);
+  line(text, "%-12s %11.1f ms tracing, %.2f million rays/s", "", stats.render.trace_ms, mrays_per_s(stats.render));
+  line(text, "%-12s %11.1f ms encoding", "", stats.encode_ms);
+  line(text, "%-12s %12.3f s rendering, %.3f s in all", "processor", stats.render_cpu_s, cpu_seconds());
+  return text;
+}
+
+}  // namespace orrery

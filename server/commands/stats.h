@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/model/plan.h"
+#include "core/render/renderer.h"
+
+namespace orrery {
+
+// Processor time that this process has used so far, on all its threads.
+double cpu_seconds();
+
+// What a render did and what it cost.
+struct RunStats {
+  int threads = 0;
+  double load_ms = 0, encode_ms = 0;
+  double render_cpu_s = 0;  // while rendering: building included, loading and encoding not
+  RenderStats render;
+};
+
+nlohmann::ordered_json stats_json(const Plan& plan, const RunStats& stats);
+std::string stats_text(const Plan& plan, const RunStats& stats);
+
+}  // namespace orrery

@@ -1,0 +1,69 @@
+#include "server/run.h"
+
+#include <CLI/CLI.hpp>
+
+#include "core/base/version.h"
+#include "server/commands/commands.h"
+#include "server/commands/scene_file.h"
+
+namespace orrery {
+namespace {
+
+constexpr auto kCommands = {add_serve, add_render, add_orbit, add_check, add_explain, add_catalog, add_schema};
+
+constexpr const char* kExamples = R"(
+Examples:
+  orrery serve                                  then open http://127.0.0.1:8080
+  orrery render scenes/paper.json -o paper.png
+  orrery orbit scenes/paper.json --frames 120 -o frame-%04d.png
+  orrery check my-scene.json
+
+Status: 0 done, 1 failed, 2 wrong input or usage, 130 interrupted. `orrery COMMAND --help` tells more.
+)";
+
+int fail(int status, const std::string& message) {
+  std::cerr << "orrery: " << message << "\n";
+  return status;
+}
+
+int run_chosen(const std::vector<Command>& commands) {
+  try {
+    for (const Command& command : commands)
+      if (command.app->parsed()) return command.run();
+    return kBadInput;
+  } catch (const BadScene& error) {
+    for (const std::string& line : error.lines()) std::cerr << line << "\n";
+    return kBadInput;
+  } catch (const InputError& error) {
+    for (const Problem& p : error.problems())
+      std::cerr << "orrery: " << (p.pointer.empty() ? "" : p.pointer + ": ") << p.detail << "\n";
+    return kBadInput;
+  } catch (const Cancelled&) {
+    return fail(kInterrupted, "interrupted");
+  } catch (const std::exception& error) {
+    return fail(kFailed, error.what());
+  }
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  try {
+    CLI::App app("A render service: post a scene, get a picture, watch it turn.", "orrery");
+    app.footer(kExamples);
+    app.set_version_flag("--version", std::string(kVersion) + " (" + std::string(kInstructionLevel) + ")");
+    app.require_subcommand(1);
+    std::vector<Command> commands;
+    for (const auto& add : kCommands) commands.push_back(add(app));
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? kDone : kBadInput;
+    }
+    return run_chosen(commands);
+  } catch (const std::exception& error) {
+    return fail(kFailed, error.what());
+  }
+}
+
+}  // namespace orrery
