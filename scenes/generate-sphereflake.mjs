@@ -1,11 +1,11 @@
 #!/usr/bin/env node
-// Writes a sphereflake scene:  node scenes/generate-sphereflake.mjs LEVEL [FILE]     (standard output if no FILE)
+// Writes a sphereflake scene to FILE, or to standard output:  node scenes/generate-sphereflake.mjs LEVEL [FILE]
 //
-// The "balls" scene of Eric Haines' Standard Procedural Databases (A Proposal for Standard Graphics Environments,
-// IEEE Computer Graphics and Applications 7(11), 1987): a sphere of radius 0.5, and on each sphere, LEVEL times
-// over, nine touching ones of a third of its radius, six about its equator and three above. LEVEL is that
-// collection's size factor: 1 gives 10 spheres, 2 gives 91, 3 gives 820, 4 (its usual size) 7,381, 5 gives 66,430.
-// Its camera and its three lights; the spheres are of gold here, and the floor has no edge.
+// The "balls" scene of Eric Haines' Standard Procedural Databases (A Proposal for Standard Graphics
+// Environments, IEEE Computer Graphics and Applications 7(11), 1987): a sphere of radius 0.5, and on each sphere,
+// LEVEL times over, nine touching ones of a third of its radius, six about its equator and three above. LEVEL is
+// that collection's size factor: 1 gives 10 spheres, 2 gives 91, 3 gives 820, 4 (its usual size) 7,381, 5 gives
+// 66,430. Its camera and its three lights; the spheres are of gold here, and the floor has no edge.
 import { writeFileSync } from "node:fs";
 
 const kDigits = 9;
@@ -13,10 +13,10 @@ const round = (x) => Number(x.toPrecision(kDigits)) + 0;
 const three = (v) => `[${v.map(round).join(", ")}]`;
 
 // Unit vectors to the nine children of a sphere whose pole is z: nine of the twelve corners of a cuboctahedron.
-function childDirections() {
-  const ring = (count, azimuthDegrees, z) =>
+function child_directions() {
+  const ring = (count, azimuth_degrees, z) =>
     Array.from({ length: count }, (_, i) => {
-      const azimuth = (azimuthDegrees / 180 + (2 * i) / count) * Math.PI;
+      const azimuth = (azimuth_degrees / 180 + (2 * i) / count) * Math.PI;
       const across = Math.sqrt(1 - z * z);
       return [across * Math.cos(azimuth), across * Math.sin(azimuth), z];
     });
@@ -38,7 +38,7 @@ function* spheres(level, center = [0, 0, 0], radius = 0.5, pole = [0, 0, 1]) {
   yield `{ "type": "sphere", "center": ${three(center)}, "radius": ${round(radius)}, "material": "gold" }`;
   if (level === 0) return;
   const reach = radius + radius / 3;
-  for (const direction of childDirections()) {
+  for (const direction of child_directions()) {
     const outward = turned(direction, pole);
     const child = center.map((c, i) => c + reach * outward[i]);
     yield* spheres(level - 1, child, radius / 3, outward);

@@ -6,12 +6,14 @@ import { get_json, get_text, post_scene } from "./api.js";
 const kStorageKey = "orrery.scenes";
 const kLongestKept = 500_000;  // characters; session storage is small
 const kMostKept = 8;
+const kUntitled = "Your scene";
 
-// A scene is {ref, id, title, text, width, height, camera}; `ref` is what a link calls it.
 export function title_of(sample) {
-  return sample.title || sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
+  if (sample.title && sample.title !== sample.name) return sample.title;
+  return sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
 }
 
+// A scene is {ref, id, title, text, width, height, camera}; `ref` is what a link calls it.
 export class SceneLibrary {
   samples = [];        // {name, title, description, href}
   #texts = new Map();  // name or id -> JSON text
@@ -30,27 +32,26 @@ export class SceneLibrary {
     const sample = this.sample(ref);
     const text = this.#texts.get(ref) ?? (sample ? await get_text(sample.href) : undefined);
     if (text === undefined) return this.#fetch(ref);
-    const scene = await this.post(text);
-    if (sample) {
-      this.#texts.set(ref, text);
-      this.#ids.set(scene.id, ref);
-    }
-    return sample ? { ...scene, ref, title: title_of(sample) } : scene;
+    if (!sample) return this.post(text);
+    const info = await post_scene(text);
+    this.#texts.set(ref, text);
+    this.#ids.set(info.id, ref);
+    return { ...info, ref, title: title_of(sample), text };
   }
 
-  // Posts `text`. Throws ApiError with the places that are wrong in it.
+  // Posts a text of the user's own. Throws ApiError with the places that are wrong in it.
   async post(text) {
     const info = await post_scene(text);
     const name = this.#ids.get(info.id);
-    if (!name) this.#keep(info.id, text);
-    const title = name ? title_of(this.sample(name)) : own_title(JSON.parse(text));
-    return { ref: name ?? info.id, id: info.id, title, text, width: info.width, height: info.height, camera: info.camera };
+    if (name) return { ...info, ref: name, title: title_of(this.sample(name)), text };
+    this.#keep(info.id, text);
+    return { ...info, ref: info.id, title: own_title(text), text };
   }
 
   async #fetch(id) {
     const canonical = await get_json(`v1/scenes/${id}`);
     const { width = 600, height = 600 } = canonical.image ?? {};
-    return { ref: id, id, title: own_title(canonical), text: pretty(canonical), width, height, camera: canonical.camera };
+    return { ref: id, id, title: canonical.title || kUntitled, text: pretty(canonical), width, height, camera: canonical.camera };
   }
 
   #keep(id, text) {
@@ -66,7 +67,13 @@ export class SceneLibrary {
   }
 }
 
-const own_title = (scene) => scene.title || "Your scene";
+function own_title(text) {
+  try {
+    return JSON.parse(text).title || kUntitled;
+  } catch {
+    return kUntitled;  // the service reads some texts that JSON.parse does not, such as one with a byte order mark
+  }
+}
 
 function kept_texts() {
   try {

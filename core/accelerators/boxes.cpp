@@ -77,11 +77,9 @@ class Boxes final : public Accelerator<T> {
 
 }  // namespace
 
-AcceleratorPtr<float> build_boxes(const PrimitiveList<float>& primitives) {
-  return std::make_unique<Boxes<float>>(primitives);
-}
-AcceleratorPtr<double> build_boxes(const PrimitiveList<double>& primitives) {
-  return std::make_unique<Boxes<double>>(primitives);
+AcceleratorType boxes_type() {
+  return {"boxes", "A box around each primitive is tested first.", build_accelerator<Boxes, float>,
+          build_accelerator<Boxes, double>};
 }
 
 }  // namespace orrery

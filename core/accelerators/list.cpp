@@ -29,11 +29,9 @@ class List final : public Accelerator<T> {
 
 }  // namespace
 
-AcceleratorPtr<float> build_list(const PrimitiveList<float>& primitives) {
-  return std::make_unique<List<float>>(primitives);
-}
-AcceleratorPtr<double> build_list(const PrimitiveList<double>& primitives) {
-  return std::make_unique<List<double>>(primitives);
+AcceleratorType list_type() {
+  return {"list", "Every ray against every primitive: the reference.", build_accelerator<List, float>,
+          build_accelerator<List, double>};
 }
 
 }  // namespace orrery

@@ -36,7 +36,8 @@ class MemoryStream final : public Imf::IStream {
   explicit MemoryStream(std::span<const std::byte> bytes) : IStream("memory"), bytes_(bytes) {}
   bool read(char* to, int count) override {
     const auto size = static_cast<std::size_t>(count);
-    if (position_ > bytes_.size() || bytes_.size() - position_ < size) throw std::runtime_error("it ends too early");
+    if (position_ > bytes_.size() || bytes_.size() - position_ < size)
+      throw std::runtime_error("it ends too early");
     std::memcpy(to, bytes_.data() + position_, size);
     position_ += size;
     return position_ < bytes_.size();
@@ -54,8 +55,9 @@ constexpr std::array kChannels = {"R", "G", "B"};
 Imf::FrameBuffer frame_of(std::byte* first, int width) {
   Imf::FrameBuffer frame;
   for (std::size_t c = 0; c < kChannels.size(); ++c)
-    frame.insert(kChannels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(first) + c * sizeof(float),
-                                          3 * sizeof(float), 3 * sizeof(float) * static_cast<std::size_t>(width)));
+    frame.insert(kChannels[c],
+                 Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(first) + c * sizeof(float), 3 * sizeof(float),
+                            3 * sizeof(float) * static_cast<std::size_t>(width)));
   return frame;
 }
 
@@ -86,7 +88,8 @@ Image decode_exr(std::span<const std::byte> bytes, std::size_t max_pixels) try {
   Image image(static_cast<int>(width), static_cast<int>(height), PixelFormat::linear32);
   std::memset(image.bytes().data(), 0, image.bytes().size());
   const std::ptrdiff_t origin =
-      (std::ptrdiff_t{window.min.y} * static_cast<std::ptrdiff_t>(width) + window.min.x) * 3 * std::ptrdiff_t{sizeof(float)};
+      (std::ptrdiff_t{window.min.y} * static_cast<std::ptrdiff_t>(width) + window.min.x) * 3 *
+      std::ptrdiff_t{sizeof(float)};
   file.setFrameBuffer(frame_of(image.bytes().data() - origin, image.width()));
   file.readPixels(window.min.y, window.max.y);
   return image;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
-// 1.055 x^(1/2.4) - 0.055 over x^(1/4), for x from 0.0031308 to 1: interpolated at Chebyshev points; the error is
-// below 0.0006 of a code.
+// 1.055 x^(1/2.4) - 0.055 over x^(1/4), for x from 0.0031308 to 1: interpolated at Chebyshev points; the
+// error is below 0.0006 of a code.
 constexpr std::array kCurve = {-0.059739011f, 0.14195826f,  1.3545726f,  -0.82528002f,
                                0.62100228f,   -0.29424764f, 0.061734308f};
 
@@ -43,11 +43,13 @@ Image::Image(int width, int height, PixelFormat format) : width_(width), height_
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
   data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, rounded)));
   if (!data_) throw std::bad_alloc();
-  if (alignment == kHugePage) madvise(data_.get(), rounded, MADV_HUGEPAGE);  // fewer page faults; may be refused
+  if (alignment == kHugePage)
+    madvise(data_.get(), rounded, MADV_HUGEPAGE);  // fewer page faults; may be refused
 }
 
 void Image::set_row(int x, int y, int count, const float* red, const float* green, const float* blue) {
-  std::byte* out = data_.get() + static_cast<std::size_t>(y) * row_bytes() + static_cast<std::size_t>(x) * pixel_bytes();
+  std::byte* out =
+      data_.get() + static_cast<std::size_t>(y) * row_bytes() + static_cast<std::size_t>(x) * pixel_bytes();
   if (format_ == PixelFormat::linear32) {
     for (int i = 0; i < count; ++i) {
       const float pixel[3] = {red[i], green[i], blue[i]};

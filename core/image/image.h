@@ -24,13 +24,15 @@ class Image {
   int height() const { return height_; }
   PixelFormat format() const { return format_; }
 
-  // Sets pixels (x, y) .. (x + count - 1, y) from linear colour. The channel arrays are aligned to 64 bytes and
-  // may be read up to the next multiple of 16 entries.
+  // Sets pixels (x, y) .. (x + count - 1, y) from linear colour. The channel arrays are aligned to 64 bytes
+  // and may be read up to the next multiple of 16 entries.
   void set_row(int x, int y, int count, const float* red, const float* green, const float* blue);
 
   std::size_t row_bytes() const { return static_cast<std::size_t>(width_) * pixel_bytes(); }
   std::size_t pixel_bytes() const { return format_ == PixelFormat::srgb8 ? 3 : 12; }
-  std::span<const std::byte> bytes() const { return {data_.get(), row_bytes() * static_cast<std::size_t>(height_)}; }
+  std::span<const std::byte> bytes() const {
+    return {data_.get(), row_bytes() * static_cast<std::size_t>(height_)};
+  }
   std::span<std::byte> bytes() { return {data_.get(), row_bytes() * static_cast<std::size_t>(height_)}; }
 
   // Linear colour of a pixel, whatever the format.

@@ -22,8 +22,8 @@ std::string encode_jpeg(const Image& image, int quality) {
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   const int failed =
-      tjCompress2(handle.get(), reinterpret_cast<const unsigned char*>(image.bytes().data()), image.width(), 0,
-                  image.height(), TJPF_RGB, &bytes, &size, TJSAMP_444, quality, TJFLAG_ACCURATEDCT);
+      tjCompress2(handle.get(), reinterpret_cast<const unsigned char*>(image.bytes().data()), image.width(),
+                  0, image.height(), TJPF_RGB, &bytes, &size, TJSAMP_444, quality, TJFLAG_ACCURATEDCT);
   const std::unique_ptr<unsigned char, decltype(&tjFree)> guard(bytes, tjFree);
   if (failed) throw std::runtime_error(tjGetErrorStr2(handle.get()));
   return {reinterpret_cast<const char*>(bytes), size};
@@ -37,8 +37,8 @@ Image decode_jpeg(std::span<const std::byte> bytes, std::size_t max_pixels) {
     throw damaged("JPEG", tjGetErrorStr2(handle.get()));
   check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), max_pixels);
   Image image(width, height, PixelFormat::srgb8);
-  if (tjDecompress2(handle.get(), data, bytes.size(), reinterpret_cast<unsigned char*>(image.bytes().data()), width,
-                    0, height, TJPF_RGB, TJFLAG_ACCURATEDCT))
+  if (tjDecompress2(handle.get(), data, bytes.size(), reinterpret_cast<unsigned char*>(image.bytes().data()),
+                    width, 0, height, TJPF_RGB, TJFLAG_ACCURATEDCT))
     throw damaged("JPEG", tjGetErrorStr2(handle.get()));
   return image;
 }

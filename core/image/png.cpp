@@ -40,7 +40,8 @@ std::string encode_png(const Image& image, const PngOptions& options) {
   png_write_info(writer.png, writer.info);
   const auto bytes = image.bytes();
   for (int y = 0; y < image.height(); ++y)
-    png_write_row(writer.png, reinterpret_cast<png_const_bytep>(bytes.data()) + image.row_bytes() * static_cast<std::size_t>(y));
+    png_write_row(writer.png, reinterpret_cast<png_const_bytep>(bytes.data()) +
+                                  image.row_bytes() * static_cast<std::size_t>(y));
   png_write_end(writer.png, nullptr);
   return out;
 }
@@ -49,11 +50,13 @@ Image decode_png(std::span<const std::byte> bytes, std::size_t max_pixels) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   const std::unique_ptr<png_image, decltype(&png_image_free)> guard(&header, png_image_free);
-  if (!png_image_begin_read_from_memory(&header, bytes.data(), bytes.size())) throw damaged("PNG", header.message);
+  if (!png_image_begin_read_from_memory(&header, bytes.data(), bytes.size()))
+    throw damaged("PNG", header.message);
   check_size(header.width, header.height, max_pixels);
   header.format = PNG_FORMAT_RGB;
   Image image(static_cast<int>(header.width), static_cast<int>(header.height), PixelFormat::srgb8);
-  if (!png_image_finish_read(&header, nullptr, image.bytes().data(), 0, nullptr)) throw damaged("PNG", header.message);
+  if (!png_image_finish_read(&header, nullptr, image.bytes().data(), 0, nullptr))
+    throw damaged("PNG", header.message);
   return image;
 }
 

@@ -31,6 +31,8 @@ class Directional final : public LightOf<Directional> {
 
 }  // namespace
 
-std::unique_ptr<Light> make_directional(Params& p) { return std::make_unique<Directional>(p); }
+LightType directional_type() {
+  return {"directional", "Parallel light from infinitely far away.", make_light<Directional>};
+}
 
 }  // namespace orrery

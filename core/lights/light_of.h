@@ -18,4 +18,9 @@ class LightOf : public Light {
   }
 };
 
+template <class Derived>
+std::unique_ptr<Light> make_light(Params& params) {
+  return std::make_unique<Derived>(params);
+}
+
 }  // namespace orrery

@@ -33,6 +33,6 @@ class Point final : public LightOf<Point> {
 
 }  // namespace
 
-std::unique_ptr<Light> make_point(Params& p) { return std::make_unique<Point>(p); }
+LightType point_type() { return {"point", "Light from one point in all directions.", make_light<Point>}; }
 
 }  // namespace orrery

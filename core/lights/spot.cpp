@@ -56,6 +56,6 @@ class Spot final : public LightOf<Spot> {
 
 }  // namespace
 
-std::unique_ptr<Light> make_spot(Params& p) { return std::make_unique<Spot>(p); }
+LightType spot_type() { return {"spot", "Light from one point in a cone.", make_light<Spot>}; }
 
 }  // namespace orrery

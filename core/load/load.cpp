@@ -56,11 +56,13 @@ void read_render(Params& p, RenderSettings& render) {
   render.max_depth = static_cast<int>(
       p.integer("max_depth", "Deepest ray that is traced; camera rays have depth 0.", 0, kMaxDepth, 5));
   render.min_contribution =
-      p.number("min_contribution", "Rays with less weight in every channel are not traced.", {.min = 0, .max = 1}, 0.0);
+      p.number("min_contribution", "Rays with less weight in every channel are not traced.",
+               {.min = 0, .max = 1}, 0.0);
   render.samples = static_cast<int>(
       p.integer("samples", "Rays a pixel: one through the centre, more are stratified.", 1, kMaxSamples, 1));
   render.accelerator = p.choice("accelerator", "How rays find what they meet.", accelerators, "auto");
-  render.precision = precision_of(p.choice("precision", "Number type of rays.", {"auto", "float", "double"}, "auto"));
+  render.precision =
+      precision_of(p.choice("precision", "Number type of rays.", {"auto", "float", "double"}, "auto"));
   render.seed = static_cast<std::uint64_t>(p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, 0));
 }
 
@@ -76,14 +78,17 @@ class SceneReader {
     p.integer("version", "Version of this format.", 1, 1);
     scene_->title = p.text("title", "A name for people.", 200, "");
     scene_->description = p.text("description", "What there is to see.", 200, "");
-    p.object("camera", "Where the picture is taken from.", [&](Params& c) { read_camera(c, scene_->camera); });
+    p.object("camera", "Where the picture is taken from.",
+             [&](Params& c) { read_camera(c, scene_->camera); });
     p.optional_object("image", "Size of the picture.", [&](Params& i) { read_image(i, scene_->render); });
     scene_->ambient = p.color("ambient", "Light that comes from everywhere.", Vec3d(0));
     scene_->background = p.color("background", "What a ray sees that meets nothing.", Vec3d(0));
-    p.each_named("materials", "Materials by name.", {}, [&](const std::string& name, Params& m) { read_material(name, m); });
+    p.each_named("materials", "Materials by name.", {},
+                 [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
     p.each("objects", "What there is to see.", {1, kMaxObjects}, [&](Params& o) { read_object(o); });
-    p.optional_object("render", "How the picture is made.", [&](Params& r) { read_render(r, scene_->render); });
+    p.optional_object("render", "How the picture is made.",
+                      [&](Params& r) { read_render(r, scene_->render); });
   }
 
   // To be called once all is read without a problem.
@@ -182,7 +187,8 @@ std::shared_ptr<const Scene> load_scene(std::string_view json, const JsonLimits&
 
 std::string scene_schema() {
   SceneReader reader;
-  return describe("scene.json", "orrery scene", "A scene for orrery, version 1. Lengths in metres, angles in degrees, colours linear.",
+  return describe("scene.json", "orrery scene",
+                  "A scene for orrery, version 1. Lengths in metres, angles in degrees, colours linear.",
                   [&](Params& p) { reader.read(p); });
 }
 

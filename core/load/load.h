@@ -10,14 +10,14 @@
 
 namespace orrery {
 
-// Reads a scene, strictly. Throws InputError with up to 20 problems, each with its JSON Pointer; MalformedJson
-// if the text is not JSON.
+// Reads a scene, strictly. Throws InputError with up to 20 problems, each with its JSON Pointer;
+// MalformedJson if the text is not JSON.
 std::shared_ptr<const Scene> load_scene(const Document& document);
 std::shared_ptr<const Scene> load_scene(std::string_view json, const JsonLimits& limits = {});
 
 // Reads what a request says beside the scene: {camera: {azimuth_degrees, elevation_degrees, distance,
-// fov_degrees}, image: {width, height}, render: {...}}. The keys scene and scene_id belong to the caller and are
-// allowed. Throws as above.
+// fov_degrees}, image: {width, height}, render: {...}}. The keys scene and scene_id belong to the caller and
+// are allowed. Throws as above.
 RenderRequest read_request(const Document& document);
 
 // The JSON Schema of scenes, written from the very code that reads them.

@@ -27,19 +27,33 @@ void read_camera(Params& p, RenderRequest& request) {
 }
 
 void read_image(Params& p, RenderRequest& request) {
-  take(p, "width", request.width, [&] { return p.integer("width", "Pixels.", 1, kMaxImageSide, derived<std::int64_t>(600)); });
-  take(p, "height", request.height, [&] { return p.integer("height", "Pixels.", 1, kMaxImageSide, derived<std::int64_t>(600)); });
+  take(p, "width", request.width,
+       [&] { return p.integer("width", "Pixels.", 1, kMaxImageSide, derived<std::int64_t>(600)); });
+  take(p, "height", request.height,
+       [&] { return p.integer("height", "Pixels.", 1, kMaxImageSide, derived<std::int64_t>(600)); });
 }
 
 void read_render(Params& p, RenderRequest& request) {
   const std::vector<std::string_view> techniques = technique_names(), accelerators = accelerator_names();
-  take(p, "technique", request.technique, [&] { return p.choice("technique", "How light is followed.", techniques, "whitted"); });
-  take(p, "max_depth", request.max_depth, [&] { return p.integer("max_depth", "Deepest ray that is traced.", 0, kMaxDepth, derived<std::int64_t>(5)); });
-  take(p, "min_contribution", request.min_contribution, [&] { return p.number("min_contribution", "Rays with less weight are not traced.", {.min = 0, .max = 1}, derived(0.0)); });
-  take(p, "samples", request.samples, [&] { return p.integer("samples", "Rays a pixel.", 1, kMaxSamples, derived<std::int64_t>(1)); });
-  take(p, "accelerator", request.accelerator, [&] { return p.choice("accelerator", "How rays find what they meet.", accelerators, "auto"); });
-  take(p, "precision", request.precision, [&] { return precision_of(p.choice("precision", "Number type of rays.", {"auto", "float", "double"}, "auto")); });
-  take(p, "seed", request.seed, [&] { return p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, derived<std::int64_t>(0)); });
+  take(p, "technique", request.technique,
+       [&] { return p.choice("technique", "How light is followed.", techniques, "whitted"); });
+  take(p, "max_depth", request.max_depth, [&] {
+    return p.integer("max_depth", "Deepest ray that is traced.", 0, kMaxDepth, derived<std::int64_t>(5));
+  });
+  take(p, "min_contribution", request.min_contribution, [&] {
+    return p.number("min_contribution", "Rays with less weight are not traced.", {.min = 0, .max = 1},
+                    derived(0.0));
+  });
+  take(p, "samples", request.samples,
+       [&] { return p.integer("samples", "Rays a pixel.", 1, kMaxSamples, derived<std::int64_t>(1)); });
+  take(p, "accelerator", request.accelerator,
+       [&] { return p.choice("accelerator", "How rays find what they meet.", accelerators, "auto"); });
+  take(p, "precision", request.precision, [&] {
+    return precision_of(p.choice("precision", "Number type of rays.", {"auto", "float", "double"}, "auto"));
+  });
+  take(p, "seed", request.seed, [&] {
+    return p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, derived<std::int64_t>(0));
+  });
 }
 
 }  // namespace
@@ -49,7 +63,8 @@ RenderRequest read_request(const Document& document) {
   read_document(document, [&](Params& p) {
     p.any("scene", "The scene itself.");
     p.any("scene_id", "Or the id of one sent before.");
-    p.optional_object("camera", "Where on its orbit the camera stands.", [&](Params& c) { read_camera(c, request); });
+    p.optional_object("camera", "Where on its orbit the camera stands.",
+                      [&](Params& c) { read_camera(c, request); });
     p.optional_object("image", "Size of the picture.", [&](Params& i) { read_image(i, request); });
     p.optional_object("render", "How the picture is made.", [&](Params& r) { read_render(r, request); });
   });

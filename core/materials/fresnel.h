@@ -15,7 +15,8 @@ template <class N>
 
 // Fresnel's equations between two dielectrics; eta is the index on the incident side over that beyond.
 template <class N>
-[[gnu::always_inline]] inline N fresnel_dielectric(const N& eta, const N& cos_incident, const N& cos_transmitted) {
+[[gnu::always_inline]] inline N fresnel_dielectric(const N& eta, const N& cos_incident,
+                                                   const N& cos_transmitted) {
   const N s = (eta * cos_incident - cos_transmitted) / (eta * cos_incident + cos_transmitted);
   const N p = (cos_incident - eta * cos_transmitted) / (cos_incident + eta * cos_transmitted);
   return (s * s + p * p) * ScalarOf<N>(0.5);

@@ -65,4 +65,9 @@ class MaterialSetOf final : public MaterialSet {
   std::vector<Record<double>> records_;
 };
 
+template <template <class> class Record, template <class> class Kernel>
+std::unique_ptr<MaterialSet> make_material_set() {
+  return std::make_unique<MaterialSetOf<Record, Kernel>>();
+}
+
 }  // namespace orrery

@@ -14,7 +14,8 @@ struct Reflective {
   static Reflective<double> read(Params& p) {
     const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
     const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
-    const bool exact = p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
+    const bool exact =
+        p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
     const Vec3d f0(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z));
     return {n, k, f0, exact ? 1.0 : 0.0};
   }
@@ -51,8 +52,9 @@ class ReflectiveKernel final : public MaterialRecords<Reflective, T> {
 
 }  // namespace
 
-std::unique_ptr<MaterialSet> make_reflective() {
-  return std::make_unique<MaterialSetOf<Reflective, ReflectiveKernel>>();
+MaterialType reflective_type() {
+  return {"reflective", "A metal mirror coloured by Fresnel's law.",
+          make_material_set<Reflective, ReflectiveKernel>};
 }
 
 }  // namespace orrery

@@ -8,14 +8,15 @@ namespace {
 
 template <class N>
 struct Refractive {
-  N ior;               // index inside over index outside
-  N f0;                // reflectance along the normal
-  N exact;             // 1: Fresnel's equations, 0: Schlick's approximation
+  N ior;                // index inside over index outside
+  N f0;                 // reflectance along the normal
+  N exact;              // 1: Fresnel's equations, 0: Schlick's approximation
   Vec3<N> log2_filter;  // of what remains of light after one metre inside
 
   static Refractive<double> read(Params& p) {
     const double ior = p.number("ior", "Index of refraction inside over outside.", {.min = 0.01, .max = 100});
-    const bool exact = p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
+    const bool exact =
+        p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
     const Vec3d filter = p.color("filter", "What remains of light after one metre inside.", Vec3d(1), 1);
     const auto log2_of = [](double x) {
       return x < std::numeric_limits<double>::min() ? -1e30 : log2_normal(x);
@@ -34,7 +35,8 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
   using N = Lanes<T>;
   using MaterialRecords<Refractive, T>::MaterialRecords;
 
-  // Snell's law by the side the ray comes from. Beyond the critical angle all is mirrored and nothing is lost.
+  // Snell's law by the side the ray comes from. Beyond the critical angle all is mirrored and nothing is
+  // lost.
   void specular(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
                 const Groups& groups, SpecularBatch<T>& out) const override {
     using std::sqrt;
@@ -54,7 +56,8 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
       r = select(total, one, r);
       out.reflectance.put(i, mine, Vec3<N>(r));
       out.transmittance.put(i, mine, Vec3<N>(one - r));
-      out.refracted.put(i, mine, normalize(direction * eta + normal * (eta * cos_incident - cos_transmitted)));
+      out.refracted.put(i, mine,
+                        normalize(direction * eta + normal * (eta * cos_incident - cos_transmitted)));
       const N depth = select(inside, hits.t.at(i), zero);
       const Vec3<N>& f = glass.log2_filter;
       out.filter.put(i, mine,
@@ -65,8 +68,9 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
 
 }  // namespace
 
-std::unique_ptr<MaterialSet> make_refractive() {
-  return std::make_unique<MaterialSetOf<Refractive, RefractiveKernel>>();
+MaterialType refractive_type() {
+  return {"refractive", "Clear glass: mirrors and refracts, may filter light inside.",
+          make_material_set<Refractive, RefractiveKernel>};
 }
 
 }  // namespace orrery

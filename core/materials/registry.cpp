@@ -4,16 +4,22 @@
 
 namespace orrery {
 
-using MakeMaterials = std::unique_ptr<MaterialSet>();
-MakeMaterials make_reflective, make_refractive, make_rough;
+// One line a type, in the order in which materials are numbered; the rest is in the file of its name.
+// clang-format off
+#define ORRERY_MATERIALS(add) \
+  add(rough)                  \
+  add(reflective)             \
+  add(refractive)
+// clang-format on
+
+#define ORRERY_DECLARE(name) MaterialType name##_type();
+#define ORRERY_ENTRY(name) name##_type(),
+
+ORRERY_MATERIALS(ORRERY_DECLARE)
 
 std::span<const MaterialType> material_types() {
-  static constexpr std::array kTypes{
-      MaterialType{"rough", "Ambient, Lambert diffuse and a Phong or Blinn-Phong highlight.", make_rough},
-      MaterialType{"reflective", "A metal mirror coloured by Fresnel's law.", make_reflective},
-      MaterialType{"refractive", "Clear glass: mirrors and refracts, may filter light inside.", make_refractive},
-  };
-  return kTypes;
+  static const std::array types{ORRERY_MATERIALS(ORRERY_ENTRY)};
+  return types;
 }
 
 }  // namespace orrery

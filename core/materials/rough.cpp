@@ -17,8 +17,10 @@ struct Rough {
     const Vec3d ks = p.coefficient("ks", "Specular coefficient.", Vec3d(0));
     const Vec3d cd = p.color("cd", "Colour that multiplies ka and kd.", Vec3d(1));
     const Vec3d cs = p.color("cs", "Colour that multiplies ks.", Vec3d(1));
-    const double shininess = p.number("shininess", "Exponent of the highlight.", {.min = 0, .max = 1e6}, 20.0);
-    const bool phong = p.choice("shading", "Model of the highlight.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
+    const double shininess =
+        p.number("shininess", "Exponent of the highlight.", {.min = 0, .max = 1e6}, 20.0);
+    const bool phong =
+        p.choice("shading", "Model of the highlight.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
     return {ka * cd, kd * cd, ks * cs, shininess, phong ? 1.0 : 0.0};
   }
   MaterialTraits traits() const { return {.lit = true}; }
@@ -62,7 +64,9 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
   void reflect(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, const Groups& groups,
                LightBatch<T>& light) const override {
     const N zero(T(0));
-    const auto half_at = [&](int i) { return half_vector(light.shadow.direction.at(i), -rays.direction.at(i)); };
+    const auto half_at = [&](int i) {
+      return half_vector(light.shadow.direction.at(i), -rays.direction.at(i));
+    };
     const Vec3<N> first_half = half_at(*groups.begin());
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
       const Vec3<N> normal = surface.normal.at(i), toward = light.shadow.direction.at(i);
@@ -86,6 +90,9 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
 
 }  // namespace
 
-std::unique_ptr<MaterialSet> make_rough() { return std::make_unique<MaterialSetOf<Rough, RoughKernel>>(); }
+MaterialType rough_type() {
+  return {"rough", "Ambient, Lambert diffuse and a Phong or Blinn-Phong highlight.",
+          make_material_set<Rough, RoughKernel>};
+}
 
 }  // namespace orrery

@@ -56,8 +56,8 @@ template <class T>
 // a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray Traversal",
 // JCGT 2013). `inverse` is 1 / direction, infinite where that is 0.
 template <class N>
-[[gnu::always_inline]] inline MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin, const Vec3<N>& inverse,
-                 const N& t_max) {
+[[gnu::always_inline]] inline MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin,
+                                               const Vec3<N>& inverse, const N& t_max) {
   using T = ScalarOf<N>;
   N near = N(T(0)), far = t_max;
   const auto fold = [&](const N& lo_i, const N& hi_i, const N& o, const N& inv) {

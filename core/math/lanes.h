@@ -53,13 +53,12 @@ template <class N>
 using MaskOf = typename NumberTraits<N>::Mask;
 
 template <class N>
-  requires std::is_arithmetic_v<N>
-[[gnu::always_inline]] inline N select(bool m, N a, N b) {
-  return m ? a : b;
-}
+requires std::is_arithmetic_v<N>
+[[gnu::always_inline]] inline N select(bool m, N a, N b) { return m ? a : b; }
 template <class T, class Abi>
-[[gnu::always_inline]] inline stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& m, const std::type_identity_t<stdx::simd<T, Abi>>& a,
-                          stdx::simd<T, Abi> b) {
+[[gnu::always_inline]] inline stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& m,
+                                                        const std::type_identity_t<stdx::simd<T, Abi>>& a,
+                                                        stdx::simd<T, Abi> b) {
   stdx::where(m, b) = a;
   return b;
 }

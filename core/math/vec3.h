@@ -15,8 +15,8 @@ struct Vec3 {
   Vec3(N x_, N y_, N z_) : x(x_), y(y_), z(z_) {}
   explicit Vec3(N all) : x(all), y(all), z(all) {}
   template <class M>
-    requires(!std::is_same_v<M, N>)
-  explicit Vec3(const Vec3<M>& v) : x(static_cast<N>(v.x)), y(static_cast<N>(v.y)), z(static_cast<N>(v.z)) {}
+  requires(!std::is_same_v<M, N>) explicit Vec3(const Vec3<M>& v)
+      : x(static_cast<N>(v.x)), y(static_cast<N>(v.y)), z(static_cast<N>(v.z)) {}
 
   bool operator==(const Vec3&) const = default;
 };
@@ -88,7 +88,7 @@ template <class N>
 // Unit vector of a scalar vector of any finite magnitude: the largest component is scaled to 1 first, so
 // that neither 1e-200 nor 1e200 leaves the range. The zero vector stays zero.
 template <class N>
-  requires std::is_floating_point_v<N>
+requires std::is_floating_point_v<N>
 [[gnu::always_inline]] inline Vec3<N> safe_normalize(const Vec3<N>& a) {
   const N largest = max_component(abs(a));
   if (!(largest > 0)) return Vec3<N>{};

@@ -29,8 +29,8 @@ struct Primitive {
 template <class T>
 using PrimitiveList = std::vector<Primitive<T>>;
 
-// Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive, equal
-// distances going to the lower number. Immutable once built; calls may run on any number of threads.
+// Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive,
+// equal distances going to the lower number. Immutable once built; calls may run on any number of threads.
 template <class T>
 class Accelerator {
  public:
@@ -54,6 +54,11 @@ struct AcceleratorType {
   AcceleratorPtr<float> (*build_float)(const PrimitiveList<float>&);
   AcceleratorPtr<double> (*build_double)(const PrimitiveList<double>&);
 };
+
+template <template <class> class Structure, class T>
+AcceleratorPtr<T> build_accelerator(const PrimitiveList<T>& primitives) {
+  return std::make_unique<Structure<T>>(primitives);
+}
 
 template <class T>
 AcceleratorPtr<T> build(const AcceleratorType& type, const PrimitiveList<T>& primitives) {

@@ -11,7 +11,7 @@
 // and write past `count` up to the next register boundary.
 namespace orrery {
 
-inline constexpr int kBatch = 1024;            // rays a batch holds at most
+inline constexpr int kBatch = 1024;             // rays a batch holds at most
 inline constexpr int kBatchRoom = kBatch + 16;  // the widest register is 16 lanes
 
 template <class T>
@@ -21,9 +21,7 @@ struct Array {
   T& operator[](int i) { return values[static_cast<std::size_t>(i)]; }
   const T& operator[](int i) const { return values[static_cast<std::size_t>(i)]; }
   // Lanes i, i+1, ...; REQUIRES: i is a multiple of the lane count.
-  [[gnu::always_inline]] Lanes<T> at(int i) const
-    requires std::is_floating_point_v<T>
-  {
+  [[gnu::always_inline]] Lanes<T> at(int i) const requires std::is_floating_point_v<T> {
     return {&values[static_cast<std::size_t>(i)], stdx::vector_aligned};
   }
   template <class V>

@@ -65,8 +65,8 @@ const TilePixels& tile_pixels() {
 }  // namespace
 
 template <class T>
-void generate_rays(const CameraFrame& frame, int width, int height, int x0, int y0, const TileSamples& samples,
-                   RayBatch<T>& out) {
+void generate_rays(const CameraFrame& frame, int width, int height, int x0, int y0,
+                   const TileSamples& samples, RayBatch<T>& out) {
   using N = Lanes<T>;
   const T scale = static_cast<T>(frame.half_extent / height);  // half a pixel, in x and y alike
   const Vec3<N> right(Vec3<T>(frame.right)), up(Vec3<T>(frame.up)), forward(Vec3<T>(-frame.back));

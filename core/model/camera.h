@@ -30,16 +30,16 @@ struct CameraFrame {
   double distance;     // from eye to look_at
 };
 
-// The frame at `orbit`. The lift stops at straight above and below, where the picture stays upright by azimuth:
-// nothing is divided by the cosine of the elevation. REQUIRES: eye, look_at and up span a plane.
+// The frame at `orbit`. The lift stops at straight above and below, where the picture stays upright by
+// azimuth: nothing is divided by the cosine of the elevation. REQUIRES: eye, look_at and up span a plane.
 CameraFrame frame_at(const Camera& camera, const Orbit& orbit);
 
 // The side of the square of pixels that one batch of camera rays covers.
 inline constexpr int kTileSide = 32;
 static_assert(kTileSide * kTileSide == kBatch);
 
-// Pixel of slot `slot` within its tile. Slots run in blocks of 4x4 pixels, so that the rays of one register are
-// neighbours whatever its width.
+// Pixel of slot `slot` within its tile. Slots run in blocks of 4x4 pixels, so that the rays of one register
+// are neighbours whatever its width.
 struct TilePixel {
   int x, y;
 };
@@ -57,7 +57,7 @@ struct TileSamples {
 // One ray a slot for the tile whose first pixel is (x0, y0) of a width x height picture; pixels beyond the
 // picture get inactive rays. Row 0 is the top.
 template <class T>
-void generate_rays(const CameraFrame& frame, int width, int height, int x0, int y0, const TileSamples& samples,
-                   RayBatch<T>& out);
+void generate_rays(const CameraFrame& frame, int width, int height, int x0, int y0,
+                   const TileSamples& samples, RayBatch<T>& out);
 
 }  // namespace orrery

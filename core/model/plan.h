@@ -29,12 +29,12 @@ struct Plan {
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
   std::uint64_t seed = 0;
   // Stages that are present.
-  bool direct_light = true;  // light sources are evaluated
-  bool shadows = true;       // shadow rays are traced
-  bool specular = true;      // mirrored and refracted rays
-  bool filters = true;       // bodies weaken the light that crosses them
+  bool direct_light = true;    // light sources are evaluated
+  bool shadows = true;         // shadow rays are traced
+  bool specular = true;        // mirrored and refracted rays
+  bool filters = true;         // bodies weaken the light that crosses them
   bool constant_half = false;  // with parallel viewer and light, the half vector is computed once a batch
-  int slice = 256;           // rays that pass through the stages together; changes no result
+  int slice = 256;             // rays that pass through the stages together; changes no result
   std::vector<Decision> decisions;
 };
 

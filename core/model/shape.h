@@ -17,7 +17,7 @@ struct Surface {
   Vec3<N> position;   // on the shape, to the last few ulp
   Vec3<N> geometric;  // outward unit normal
   Vec3<N> normal;     // outward unit normal for shading
-  N magnitude;        // largest absolute coordinate of the shape, at least near the hit: the scale of rounding
+  N magnitude;  // largest absolute coordinate of the shape, at least near the hit: the scale of rounding
 };
 
 // Const and free of state: any number of threads may call it at once.

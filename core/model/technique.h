@@ -34,6 +34,11 @@ struct TechniqueType {
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
 };
 
+template <template <class> class Derived, class T>
+TracerPtr<T> make_tracer_of(const World<T>& world, const Plan& plan) {
+  return std::make_unique<Derived<T>>(world, plan);
+}
+
 template <class T>
 TracerPtr<T> make_tracer(const TechniqueType& type, const World<T>& world, const Plan& plan) {
   if constexpr (std::is_same_v<T, float>)

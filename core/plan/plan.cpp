@@ -21,7 +21,9 @@ class Checks {
       problems_.push_back({pointer, "expected " + text(min) + " to " + text(max) + ", got " + text(value)});
     return value;
   }
-  void fail(std::string pointer, std::string detail) { problems_.push_back({std::move(pointer), std::move(detail)}); }
+  void fail(std::string pointer, std::string detail) {
+    problems_.push_back({std::move(pointer), std::move(detail)});
+  }
   void throw_if_any() {
     if (!problems_.empty()) throw InputError(std::move(problems_));
   }
@@ -78,9 +80,10 @@ class Planner {
     if (std::int64_t{plan_.width} * plan_.height > kMaxImagePixels)
       checks_.fail("/image", "expected at most " + std::to_string(kMaxImagePixels) + " pixels");
     plan_.samples = checks_.within("/render/samples", request_.samples.value_or(own.samples), 1, kMaxSamples);
-    plan_.max_depth = checks_.within("/render/max_depth", request_.max_depth.value_or(own.max_depth), 0, kMaxDepth);
-    plan_.min_contribution = checks_.within("/render/min_contribution",
-                                            request_.min_contribution.value_or(own.min_contribution), 0.0, 1.0);
+    plan_.max_depth =
+        checks_.within("/render/max_depth", request_.max_depth.value_or(own.max_depth), 0, kMaxDepth);
+    plan_.min_contribution = checks_.within(
+        "/render/min_contribution", request_.min_contribution.value_or(own.min_contribution), 0.0, 1.0);
     plan_.seed = request_.seed.value_or(own.seed);
     plan_.slice = checks_.within("/render/slice", request_.slice, 16, kBatch) / 16 * 16;
     const std::string technique = request_.technique.value_or(own.technique);
@@ -118,8 +121,9 @@ class Planner {
     const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
     plan_.double_precision = !(rounding <= detail / 10);
     decide("precision", plan_.double_precision ? "double" : "float",
-           plan_.double_precision ? "coordinates are too large for the smallest shape or pixel in float"
-                                  : "8 ulp of the largest coordinate are below a tenth of the smallest shape and pixel");
+           plan_.double_precision
+               ? "coordinates are too large for the smallest shape or pixel in float"
+               : "8 ulp of the largest coordinate are below a tenth of the smallest shape and pixel");
   }
 
   void choose_accelerator() {
@@ -131,7 +135,8 @@ class Planner {
     }
     constexpr int kFewPrimitives = 8;
     const bool few = scene_.primitive_count() <= kFewPrimitives;
-    plan_.accelerator = find_type(accelerator_types(), few ? "list" : "boxes", "/render/accelerator", checks_);
+    plan_.accelerator =
+        find_type(accelerator_types(), few ? "list" : "boxes", "/render/accelerator", checks_);
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
                : "more than " + std::to_string(kFewPrimitives) + " primitives");
@@ -143,13 +148,15 @@ class Planner {
     plan_.direct_light = glows && scene_.facts.materials.lit;
     if (!plan_.direct_light) {
       plan_.shadows = false;
-      return decide("direct light", "absent", glows ? "no material in use answers light sources" : "no light source");
+      return decide("direct light", "absent",
+                    glows ? "no material in use answers light sources" : "no light source");
     }
     const bool parallel_light = std::any_of(scene_.lights.begin(), scene_.lights.end(),
                                             [](const auto& light) { return light->directional(); });
     plan_.constant_half = parallel_light && plan_.camera.projection == Projection::orthographic;
     if (plan_.constant_half)
-      decide("half vector", "computed once", "the viewer and a light are parallel, so it is the same everywhere");
+      decide("half vector", "computed once",
+             "the viewer and a light are parallel, so it is the same everywhere");
     plan_.shadows = !lonely_convex();
     decide("shadows", plan_.shadows ? "traced" : "absent",
            plan_.shadows ? "objects may stand between light and surface"
@@ -166,7 +173,8 @@ class Planner {
     }
     if (!plan_.technique->secondary_rays) {
       plan_.max_depth = 0;
-      return decide("mirrored and refracted rays", "absent", std::string(plan_.technique->name) + " sends none");
+      return decide("mirrored and refracted rays", "absent",
+                    std::string(plan_.technique->name) + " sends none");
     }
     if (!used.transmits) decide("refracted rays", "absent", "no material in use is transparent");
     if (!plan_.filters) decide("filtering in bodies", "absent", "no body in use weakens light");

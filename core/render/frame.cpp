@@ -14,8 +14,9 @@ namespace orrery {
 
 struct WorkerPool::Parts {
   explicit Parts(int threads)
-      : allowed(tbb::global_control::max_allowed_parallelism,
-                1 + static_cast<std::size_t>(threads > 0 ? threads : tbb::this_task_arena::max_concurrency())),
+      : allowed(
+            tbb::global_control::max_allowed_parallelism,
+            1 + static_cast<std::size_t>(threads > 0 ? threads : tbb::this_task_arena::max_concurrency())),
         arena(threads > 0 ? threads : tbb::task_arena::automatic, 0) {}
   tbb::global_control allowed;  // the caller and its workers, more than the cores if asked for
   tbb::task_arena arena;
@@ -35,7 +36,8 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   Image image(plan.width, plan.height, format);
   tbb::enumerable_thread_specific<std::unique_ptr<TileRenderer<T>>> renderers(
       [&] { return std::make_unique<TileRenderer<T>>(world, plan); });
-  const int across = (plan.width + kTileSide - 1) / kTileSide, down = (plan.height + kTileSide - 1) / kTileSide;
+  const int across = (plan.width + kTileSide - 1) / kTileSide,
+            down = (plan.height + kTileSide - 1) / kTileSide;
   std::atomic<int> done = 0;
   std::atomic<bool> stopped = false;
   const auto start = std::chrono::steady_clock::now();
@@ -49,7 +51,8 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
             context.cancel_group_execution();
           }
           if (stopped) return;
-          renderers.local()->render(tile % across * kTileSide, tile / across * kTileSide, control.stop, image);
+          renderers.local()->render(tile % across * kTileSide, tile / across * kTileSide, control.stop,
+                                    image);
           if (control.progress) control.progress(++done, across * down);
         },
         tbb::auto_partitioner(), context);
@@ -60,7 +63,8 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   }
   if (stopped) throw Cancelled();
   stats.mean_cut /= static_cast<double>(plan.width) * plan.height;
-  stats.trace_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  stats.trace_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return {std::move(image), stats};
 }
 

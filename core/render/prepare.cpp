@@ -6,7 +6,8 @@ namespace orrery {
 namespace {
 
 template <class T>
-std::unique_ptr<World<T>> build_world(const std::shared_ptr<const Scene>& scene, const AcceleratorType& accelerator) {
+std::unique_ptr<World<T>> build_world(const std::shared_ptr<const Scene>& scene,
+                                      const AcceleratorType& accelerator) {
   auto world = std::make_unique<World<T>>();
   world->scene = scene;
   world->ambient = Vec3<T>(scene->ambient);
@@ -22,7 +23,8 @@ std::unique_ptr<World<T>> build_world(const std::shared_ptr<const Scene>& scene,
   int first = 0;
   for (const auto& materials : scene->materials) {
     const int last = first + materials->size();
-    if (last > first) world->materials.push_back({materials->kernel(T(), first), first, last, materials->traits()});
+    if (last > first)
+      world->materials.push_back({materials->kernel(T(), first), first, last, materials->traits()});
     first = last;
   }
   world->accelerator = build(accelerator, world->primitives);
@@ -39,7 +41,8 @@ const World<T>& world_for(PreparedScene::Parts& parts, const AcceleratorType& ac
       return parts.float_worlds;
     else
       return parts.double_worlds;
-  }();
+  }
+  ();
   auto& world = worlds[&accelerator];
   if (!world) {
     const auto start = std::chrono::steady_clock::now();

@@ -16,7 +16,8 @@ struct PreparedScene::Parts {
   std::map<const AcceleratorType*, std::unique_ptr<World<double>>> double_worlds;
 };
 
-// The scene in the plan's precision with the plan's accelerator; adds the milliseconds spent building, if any.
+// The scene in the plan's precision with the plan's accelerator; adds the milliseconds spent building, if
+// any.
 template <class T>
 const World<T>& world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms);
 

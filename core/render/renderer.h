@@ -45,7 +45,7 @@ class WorkerPool {
 
 // How a caller follows a render. Both are called from worker threads, several at once.
 struct RenderControl {
-  std::function<bool()> stop;                        // asked before each tile; true ends it with Cancelled
+  std::function<bool()> stop;                         // asked before each tile; true ends it with Cancelled
   std::function<void(int done, int total)> progress;  // tiles
 };
 
@@ -62,8 +62,8 @@ struct RenderResult {
   RenderStats stats;
 };
 
-// Renders one frame on the pool. Throws Cancelled if control.stop said so. The picture depends on scene and plan
-// alone: not on threads, their order or the machine's vector width.
+// Renders one frame on the pool. Throws Cancelled if control.stop said so. The picture depends on scene and
+// plan alone: not on threads, their order or the machine's vector width.
 RenderResult render_frame(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
                           const RenderControl& control = {});
 

@@ -31,7 +31,8 @@ void TileRenderer<T>::render(int x0, int y0, const std::function<bool()>& stop, 
 
 template <class T>
 void TileRenderer<T>::place_samples(int x0, int y0, int sample) {
-  const auto seed = combine_bits(static_cast<std::uint32_t>(plan_.seed), static_cast<std::uint32_t>(plan_.seed >> 32));
+  const auto seed =
+      combine_bits(static_cast<std::uint32_t>(plan_.seed), static_cast<std::uint32_t>(plan_.seed >> 32));
   for (int slot = 0; slot < kBatch; ++slot) {
     const TilePixel p = tile_pixel(slot);
     const auto pixel = static_cast<std::uint32_t>((y0 + p.y) * kMaxSide + x0 + p.x);

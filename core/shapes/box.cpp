@@ -29,8 +29,9 @@ struct Box {
     return b;
   }
 
-  // The nearer face ahead of the origin: of the interval inside all three slabs, the entry, or from within the
-  // exit. A ray in the plane of a face gives NaN there (0 * infinity), which loses against the other slabs.
+  // The nearer face ahead of the origin: of the interval inside all three slabs, the entry, or from within
+  // the exit. A ray in the plane of a face gives NaN there (0 * infinity), which loses against the other
+  // slabs.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -75,6 +76,6 @@ struct Box {
 
 }  // namespace
 
-std::unique_ptr<ShapeSet> make_boxes() { return make_shape_set<Box>(); }
+ShapeType box_type() { return {"box", "A box along the axes.", make_shape_set<Box>}; }
 
 }  // namespace orrery

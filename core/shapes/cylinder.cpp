@@ -42,8 +42,9 @@ struct Cylinder {
     return b;
   }
 
-  // A capped cylinder is where an infinite one and a slab overlap: the hit is the entry into that interval, or
-  // from within its end. The wall's roots come from the residue as for the sphere, in the plane across the axis.
+  // A capped cylinder is where an infinite one and a slab overlap: the hit is the entry into that interval,
+  // or from within its end. The wall's roots come from the residue as for the sphere, in the plane across the
+  // axis.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -96,6 +97,8 @@ struct Cylinder {
 
 }  // namespace
 
-std::unique_ptr<ShapeSet> make_cylinders() { return make_shape_set<Cylinder>(); }
+ShapeType cylinder_type() {
+  return {"cylinder", "A round column, with caps or infinitely long.", make_shape_set<Cylinder>};
+}
 
 }  // namespace orrery

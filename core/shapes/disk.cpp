@@ -44,6 +44,6 @@ struct Disk {
 
 }  // namespace
 
-std::unique_ptr<ShapeSet> make_disks() { return make_shape_set<Disk>(); }
+ShapeType disk_type() { return {"disk", "A flat round plate.", make_shape_set<Disk>}; }
 
 }  // namespace orrery

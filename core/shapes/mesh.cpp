@@ -24,15 +24,16 @@ struct MeshTriangle {
   static constexpr ShapeTraits kTraits = {.convex = false, .closed = false};
 
   static void read(Params& p, std::vector<MeshTriangle<double>>& out) {
-    const std::vector<Vec3d> positions =
-        p.points("positions", "Vertices, in metres.", {3, kMaxVertices});
-    const auto triples = p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
-                                         {1, kMaxTriangles}, static_cast<std::int64_t>(positions.size()));
-    const std::vector<Vec3d> normals = p.directions(
-        "normals", "Direction to shade with at each vertex; left out, triangles are flat.", {0, kMaxVertices});
+    const std::vector<Vec3d> positions = p.points("positions", "Vertices, in metres.", {3, kMaxVertices});
+    const auto triples =
+        p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
+                        {1, kMaxTriangles}, static_cast<std::int64_t>(positions.size()));
+    const std::vector<Vec3d> normals =
+        p.directions("normals", "Direction to shade with at each vertex; left out, triangles are flat.",
+                     {0, kMaxVertices});
     if (!normals.empty() && normals.size() != positions.size())
-      return p.fail("normals", "expected as many as positions (" + std::to_string(positions.size()) + "), got " +
-                                   std::to_string(normals.size()));
+      return p.fail("normals", "expected as many as positions (" + std::to_string(positions.size()) +
+                                   "), got " + std::to_string(normals.size()));
     Boundsd box;
     for (const Vec3d& v : positions) box.include(v);
     for (const auto& triple : triples) {
@@ -65,13 +66,18 @@ struct MeshTriangle {
     const N size = length(sum);
     const auto usable = size > N(ScalarOf<N>(0.001));  // unit normals: below it they point opposite ways
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
-    return {mix(a, b, c), normal, {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
+    return {mix(a, b, c),
+            normal,
+            {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
             magnitude};
   }
 };
 
 }  // namespace
 
-std::unique_ptr<ShapeSet> make_meshes() { return make_shape_set<MeshTriangle>(); }
+ShapeType mesh_type() {
+  return {"mesh", "Triangles over shared vertices, watertight along shared edges.",
+          make_shape_set<MeshTriangle>};
+}
 
 }  // namespace orrery

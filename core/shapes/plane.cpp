@@ -35,6 +35,6 @@ struct Plane {
 
 }  // namespace
 
-std::unique_ptr<ShapeSet> make_planes() { return make_shape_set<Plane>(); }
+ShapeType plane_type() { return {"plane", "An infinite flat surface.", make_shape_set<Plane>}; }
 
 }  // namespace orrery

@@ -24,7 +24,8 @@ class PrimitiveKernel final : public ShapeKernel<T> {
     for (const auto& record : records) records_.push_back(convert_record<Record, T, double>(record));
   }
 
-  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) const override {
+  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const Groups& groups,
+                                HitBatch<T>& hits) const override {
     const auto shape = broadcast_record<Record, T>(records_[static_cast<std::size_t>(index)]);
     const IndexLanes<T> id(static_cast<IndexOf<T>>(first_ + index));
     for (const int i : groups) {
@@ -48,7 +49,7 @@ class PrimitiveKernel final : public ShapeKernel<T> {
   }
 
   [[gnu::flatten]] void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
-               SurfaceBatch<T>& out) const override {
+                                SurfaceBatch<T>& out) const override {
     const int last = first_ + static_cast<int>(records_.size());
     for (const int i : groups) {
       const IndexLanes<T> id = load_index<T>(hits.primitive, i);

@@ -4,20 +4,26 @@
 
 namespace orrery {
 
-using MakeShapes = std::unique_ptr<ShapeSet>();
-MakeShapes make_boxes, make_cylinders, make_disks, make_meshes, make_planes, make_spheres, make_triangles;
+// One line a type, in the order in which primitives are numbered; the rest is in the file of its name.
+// clang-format off
+#define ORRERY_SHAPES(add) \
+  add(sphere)              \
+  add(plane)               \
+  add(triangle)            \
+  add(mesh)                \
+  add(box)                 \
+  add(disk)                \
+  add(cylinder)
+// clang-format on
+
+#define ORRERY_DECLARE(name) ShapeType name##_type();
+#define ORRERY_ENTRY(name) name##_type(),
+
+ORRERY_SHAPES(ORRERY_DECLARE)
 
 std::span<const ShapeType> shape_types() {
-  static constexpr std::array kTypes{
-      ShapeType{"sphere", "Points at one distance from a centre.", make_spheres},
-      ShapeType{"plane", "An infinite flat surface.", make_planes},
-      ShapeType{"triangle", "Three vertices and the flat surface between them.", make_triangles},
-      ShapeType{"mesh", "Triangles over shared vertices, watertight along shared edges.", make_meshes},
-      ShapeType{"box", "A box along the axes.", make_boxes},
-      ShapeType{"disk", "A flat round plate.", make_disks},
-      ShapeType{"cylinder", "A round column, with caps or infinitely long.", make_cylinders},
-  };
-  return kTypes;
+  static const std::array types{ORRERY_SHAPES(ORRERY_ENTRY)};
+  return types;
 }
 
 }  // namespace orrery

@@ -25,9 +25,9 @@ struct Sphere {
     return b;
   }
 
-  // The discriminant is taken from the part of origin - centre perpendicular to the ray, and the constant term
-  // as a product: neither cancels when the origin is far away or close to a huge sphere (Haines, Guenther,
-  // Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
+  // The discriminant is taken from the part of origin - centre perpendicular to the ray, and the constant
+  // term as a product: neither cancels when the origin is far away or close to a huge sphere (Haines,
+  // Guenther, Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::sqrt;
@@ -57,6 +57,8 @@ struct Sphere {
 
 }  // namespace
 
-std::unique_ptr<ShapeSet> make_spheres() { return make_shape_set<Sphere>(); }
+ShapeType sphere_type() {
+  return {"sphere", "Points at one distance from a centre.", make_shape_set<Sphere>};
+}
 
 }  // namespace orrery

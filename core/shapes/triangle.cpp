@@ -14,7 +14,8 @@ struct Triangle {
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
 
   static void read(Params& p, std::vector<Triangle<double>>& out) {
-    std::vector<Vec3d> v = p.points("vertices", "The three vertices, in metres; anticlockwise from the front.", {3, 3});
+    std::vector<Vec3d> v =
+        p.points("vertices", "The three vertices, in metres; anticlockwise from the front.", {3, 3});
     v.resize(3);
     const Vec3d normal = safe_normalize(cross(v[1] - v[0], v[2] - v[0]));
     if (normal == Vec3d()) p.fail("vertices", "expected three vertices that are not on one line");
@@ -39,6 +40,8 @@ struct Triangle {
 
 }  // namespace
 
-std::unique_ptr<ShapeSet> make_triangles() { return make_shape_set<Triangle>(); }
+ShapeType triangle_type() {
+  return {"triangle", "Three vertices and the flat surface between them.", make_shape_set<Triangle>};
+}
 
 }  // namespace orrery

@@ -34,11 +34,12 @@ template <class N>
 }  // namespace detail
 
 // Watertight: a ray through a shared edge or vertex meets one of the triangles around it, in any precision.
-// The ray is turned and sheared to run along its largest axis, and each edge is judged by the sign of a 2D edge
-// function that its two triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight Ray/Triangle
-// Intersection", JCGT 2013).
+// The ray is turned and sheared to run along its largest axis, and each edge is judged by the sign of a 2D
+// edge function that its two triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight
+// Ray/Triangle Intersection", JCGT 2013).
 template <class N>
-[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Ray<N>& ray, const Vec3<N>& a, const Vec3<N>& b, const Vec3<N>& c) {
+[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Ray<N>& ray, const Vec3<N>& a,
+                                                                const Vec3<N>& b, const Vec3<N>& c) {
   using T = ScalarOf<N>;
   const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
   const Vec3<N> size = abs(ray.direction);
@@ -46,7 +47,8 @@ template <class N>
   const auto z_is_y = !z_is_x && size.y >= size.z;
   const auto z_is_z = !z_is_x && !z_is_y;
   const N dz = detail::pick(z_is_x, z_is_y, ray.direction);
-  const N shear_x = detail::pick(z_is_z, z_is_x, ray.direction) / dz;  // x follows z cyclically: zxy, xyz, yzx
+  const N shear_x =
+      detail::pick(z_is_z, z_is_x, ray.direction) / dz;  // x follows z cyclically: zxy, xyz, yzx
   const N shear_y = detail::pick(z_is_y, z_is_z, ray.direction) / dz;
   struct Sheared {
     N x, y, z;
@@ -54,7 +56,8 @@ template <class N>
   const auto shear = [&](const Vec3<N>& vertex) {
     const Vec3<N> v = vertex - ray.origin;
     const N z = detail::pick(z_is_x, z_is_y, v);
-    return Sheared{detail::pick(z_is_z, z_is_x, v) - shear_x * z, detail::pick(z_is_y, z_is_z, v) - shear_y * z, z};
+    return Sheared{detail::pick(z_is_z, z_is_x, v) - shear_x * z,
+                   detail::pick(z_is_y, z_is_z, v) - shear_y * z, z};
   };
   const Sheared sa = shear(a), sb = shear(b), sc = shear(c);
   const N u = detail::difference_of_products(sc.x, sb.y, sc.y, sb.x);
@@ -65,7 +68,8 @@ template <class N>
   if (!any(inside && determinant != zero)) return {infinity, zero, zero, zero};
   const N inverse = N(T(1)) / determinant;
   const N t = (u * sa.z + v * sb.z + w * sc.z) * inverse / dz;
-  return {select(inside && determinant != zero && t > zero, t, infinity), u * inverse, v * inverse, w * inverse};
+  return {select(inside && determinant != zero && t > zero, t, infinity), u * inverse, v * inverse,
+          w * inverse};
 }
 
 }  // namespace orrery

@@ -20,11 +20,9 @@ class Raycast final : public Wavefront<T> {
 
 }  // namespace
 
-TracerPtr<float> make_raycast(const World<float>& world, const Plan& plan) {
-  return std::make_unique<Raycast<float>>(world, plan);
-}
-TracerPtr<double> make_raycast(const World<double>& world, const Plan& plan) {
-  return std::make_unique<Raycast<double>>(world, plan);
+TechniqueType raycast_type() {
+  return {"raycast", "Camera and shadow rays alone (Appel 1968).", false, make_tracer_of<Raycast, float>,
+          make_tracer_of<Raycast, double>};
 }
 
 }  // namespace orrery

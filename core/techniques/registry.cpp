@@ -4,18 +4,21 @@
 
 namespace orrery {
 
-template <class T>
-using MakeTracer = TracerPtr<T>(const World<T>&, const Plan&);
-MakeTracer<float> make_raycast, make_whitted;
-MakeTracer<double> make_raycast, make_whitted;
+// One line a type; the rest is in the file of its name.
+// clang-format off
+#define ORRERY_TECHNIQUES(add) \
+  add(raycast)                 \
+  add(whitted)
+// clang-format on
+
+#define ORRERY_DECLARE(name) TechniqueType name##_type();
+#define ORRERY_ENTRY(name) name##_type(),
+
+ORRERY_TECHNIQUES(ORRERY_DECLARE)
 
 std::span<const TechniqueType> technique_types() {
-  static constexpr std::array kTypes{
-      TechniqueType{"raycast", "Camera and shadow rays alone (Appel 1968).", false, make_raycast, make_raycast},
-      TechniqueType{"whitted", "Mirrored and refracted rays as well (Whitted 1980).", true, make_whitted,
-                    make_whitted},
-  };
-  return kTypes;
+  static const std::array types{ORRERY_TECHNIQUES(ORRERY_ENTRY)};
+  return types;
 }
 
 }  // namespace orrery

@@ -84,7 +84,9 @@ Groups Wavefront<T>::find_surfaces(const Groups& groups) {
 // Neighbours mostly meet the same primitive.
 template <class T>
 void Wavefront<T>::find_materials(int i, const IndexLanes<T>& primitive) {
-  const auto material = [&](IndexOf<T> p) { return p < 0 ? -1 : world_.material_of[static_cast<std::size_t>(p)]; };
+  const auto material = [&](IndexOf<T> p) {
+    return p < 0 ? -1 : world_.material_of[static_cast<std::size_t>(p)];
+  };
   const IndexOf<T> first = primitive[0];
   if (all(primitive == first)) return stage_->surface.material.put(i, IndexLanes<T>(material(first)));
   for (int lane = i; lane < i + kWidth<T>; ++lane)
@@ -191,7 +193,7 @@ void Wavefront<T>::bring_home(const Groups& groups) {
 }
 
 template <class T>
-MaskOf<Lanes<T>> Wavefront<T>::lanes_of(int i, bool MaterialTraits::* trait) const {
+MaskOf<Lanes<T>> Wavefront<T>::lanes_of(int i, bool MaterialTraits::*trait) const {
   const IndexLanes<T> material = load_index<T>(stage_->surface.material, i);
   typename N::mask_type lanes(false);
   for (const auto& m : world_.materials)
@@ -200,7 +202,7 @@ MaskOf<Lanes<T>> Wavefront<T>::lanes_of(int i, bool MaterialTraits::* trait) con
 }
 
 template <class T>
-Groups Wavefront<T>::groups_of(const Groups& groups, bool MaterialTraits::* trait) const {
+Groups Wavefront<T>::groups_of(const Groups& groups, bool MaterialTraits::*trait) const {
   Groups chosen;
   for (const int i : groups)
     if (any(lanes_of(i, trait))) chosen.add(i);

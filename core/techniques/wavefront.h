@@ -7,8 +7,8 @@
 // The loop that all techniques share. A batch of rays passes whole through the stages
 //   closest hit -> surface -> ambient and direct light -> shadow rays -> scattering
 // and the rays that scattering sends out form the next batches. Nothing recurses: batches wait on a stack, at
-// most two a depth, so memory is bounded whatever the scene. Which rays form a batch, and so the order in which
-// a slot's light is summed, depends on the scene alone, not on lane width, slice or thread.
+// most two a depth, so memory is bounded whatever the scene. Which rays form a batch, and so the order in
+// which a slot's light is summed, depends on the scene alone, not on lane width, slice or thread.
 namespace orrery {
 
 template <class T>
@@ -55,8 +55,8 @@ class Wavefront : public Tracer<T> {
   void light_from(const Light& light, const Groups& groups);
   void follow_specular(const Groups& groups);
   void bring_home(const Groups& groups);
-  MaskOf<N> lanes_of(int i, bool MaterialTraits::* trait) const;
-  Groups groups_of(const Groups& groups, bool MaterialTraits::* trait) const;
+  MaskOf<N> lanes_of(int i, bool MaterialTraits::*trait) const;
+  Groups groups_of(const Groups& groups, bool MaterialTraits::*trait) const;
   std::unique_ptr<PathBatch<T>> take_batch(int depth);
   void push(std::unique_ptr<PathBatch<T>> batch);
 

@@ -38,11 +38,9 @@ class Whitted final : public Wavefront<T> {
 
 }  // namespace
 
-TracerPtr<float> make_whitted(const World<float>& world, const Plan& plan) {
-  return std::make_unique<Whitted<float>>(world, plan);
-}
-TracerPtr<double> make_whitted(const World<double>& world, const Plan& plan) {
-  return std::make_unique<Whitted<double>>(world, plan);
+TechniqueType whitted_type() {
+  return {"whitted", "Mirrored and refracted rays as well (Whitted 1980).", true,
+          make_tracer_of<Whitted, float>, make_tracer_of<Whitted, double>};
 }
 
 }  // namespace orrery
