@@ -1,6 +1,6 @@
 // Requests to the service. Every failure becomes an ApiError, whatever its cause.
 
-const kRetryable = new Set([0, 429, 502, 503]);  // 0: no answer
+const kRetryable = new Set([0, 429, 502, 503]); // 0: no answer
 
 // A refusal (problem+json of RFC 9457), or no answer at all: then status is 0.
 export class ApiError extends Error {
@@ -37,7 +37,7 @@ async function problem_of(response) {
   try {
     Object.assign(fields, JSON.parse(await response.text()));
   } catch (error) {
-    if (is_abort(error)) throw error;  // else the body is no JSON: the status line has to do
+    if (is_abort(error)) throw error; // else the body is no JSON: the status line has to do
   }
   const seconds = Number(response.headers.get("Retry-After"));
   return new ApiError({
@@ -90,7 +90,10 @@ export async function get_frame(url, signal) {
   const timing = server_timing(response.headers.get("Server-Timing"));
   const rays = Number(response.headers.get("X-Rays") ?? NaN);
   try {
-    return { png: await response.blob(), stats: { render_ms: timing.render, encode_ms: timing.encode, rays } };
+    return {
+      png: await response.blob(),
+      stats: { render_ms: timing.render, encode_ms: timing.encode, rays },
+    };
   } catch (error) {
     throw is_abort(error) ? error : no_answer(error.message);
   }

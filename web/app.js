@@ -17,7 +17,7 @@ import { format_hash, kDefaults, parse_hash } from "./state.js";
 import { attach_tabs } from "./tabs.js";
 import { View } from "./view.js";
 
-const kSaveMs = 1000;  // the hash follows the view this often; browsers refuse much faster
+const kSaveMs = 1000; // the hash follows the view this often; browsers refuse much faster
 
 const $ = (id) => document.getElementById(id);
 const still_please = matchMedia("(prefers-reduced-motion: reduce)");
@@ -26,13 +26,16 @@ const state = parse_hash(location.hash);
 const library = new SceneLibrary();
 const camera = new OrbitCamera();
 const view = new View($("stage"), $("canvas"));
-const hud = new Hud(Object.fromEntries(
-  ["fps", "render", "encode", "rays", "size", "skipped"].map((name) => [name, $(`hud-${name}`)])));
+const hud = new Hud(
+  Object.fromEntries(
+    ["fps", "render", "encode", "rays", "size", "skipped"].map((name) => [name, $(`hud-${name}`)]),
+  ),
+);
 const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
-let scene = null;      // the scene shown, or null
+let scene = null; // the scene shown, or null
 let gallery = null;
 let options = null;
-let opening = 0;       // counts scene changes, so that a slow answer to an old one is dropped
+let opening = 0; // counts scene changes, so that a slow answer to an old one is dropped
 let save_timer = 0;
 
 const player = new Player(camera, view, {
@@ -40,6 +43,7 @@ const player = new Player(camera, view, {
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
+    $("stage").dataset.shows = kind;
     $("notice").hidden = true;
     hide_problem($("stage-problem"));
     if (kind === "stream") save_soon();
@@ -51,17 +55,31 @@ const player = new Player(camera, view, {
 });
 
 const editor = new Editor(
-  { text: $("text"), card: $("text-problem"), note: $("text-note"), apply: $("apply"), restore: $("restore") },
+  {
+    text: $("text"),
+    card: $("text-problem"),
+    note: $("text-note"),
+    apply: $("apply"),
+    restore: $("restore"),
+  },
   async (text) => {
     const posted = await library.post(text);
     save_now();
     show_scene(posted, kDefaults);
     history.pushState(null, "", current_hash());
-  });
+    show_stage();
+  },
+);
 
 function picture(purpose, preview_part, at) {
   const size = picture_size({
-    mode: state.size, purpose, preview_part, box: view.box, pixel_ratio: devicePixelRatio, scene, limits,
+    mode: state.size,
+    purpose,
+    preview_part,
+    box: view.box,
+    pixel_ratio: devicePixelRatio,
+    scene,
+    limits,
   });
   const samples = purpose === "preview" ? 1 : state.samples;
   return { id: scene.id, ...at, ...size, technique: state.technique, samples };
@@ -69,7 +87,8 @@ function picture(purpose, preview_part, at) {
 
 // What a download or a copied command shows: the view at full size, where it is or will come to rest.
 function current_picture() {
-  return scene && { picture: picture("still", 1, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
+  if (!scene) return null;
+  return { picture: picture("still", 1, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
 }
 
 // ---- scenes ----
@@ -116,6 +135,12 @@ function pick_sample(name) {
   history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1 }));
   gallery.mark(name);
   open_scene(kDefaults);
+  show_stage();
+}
+
+// On a narrow page the picture may be out of sight.
+function show_stage() {
+  $("stage").scrollIntoView({ block: "nearest" });
 }
 
 // ---- state ----
@@ -190,6 +215,7 @@ function show_waiting(error, seconds) {
 
 function moved() {
   $("hint").hidden = true;
+  $("stage").dataset.shows = "preview";
   player.input();
 }
 
@@ -251,7 +277,11 @@ async function start() {
   library.samples = catalog.samples ?? [];
   if (!location.hash && !library.sample(state.scene)) state.scene = library.samples[0]?.name ?? state.scene;
   options = new Options(
-    { technique: $("technique"), samples: $("samples"), size: $("size") }, catalog, limits, set_option);
+    { technique: $("technique"), samples: $("samples"), size: $("size") },
+    catalog,
+    limits,
+    set_option,
+  );
   options.show(state, null);
   gallery = new Gallery($("gallery"), library, limits, pick_sample);
   await open_scene(state);

@@ -2,7 +2,7 @@
 
 const kFirst = 0.5;
 const kLongest = 16;
-const sleepers = new Set();  // resolve functions of the attempts that wait now
+const sleepers = new Set(); // resolve functions of the attempts that wait now
 
 export class Backoff {
   #next = kFirst;

@@ -1,8 +1,8 @@
 // The orbit camera: where the view is (`now`), where it is going (`goal`), and the glide between.
 // Angles are degrees and relative to the scene's own view, `distance` is a factor of its eye's distance.
 
-const kElevationLimit = 89.9;  // at 90 the view direction would be parallel to up
-const kDamping = 0.05;         // part of the way to the goal covered in a sixtieth of a second
+const kElevationLimit = 89.9; // at 90 the view direction would be parallel to up
+const kDamping = 0.05; // part of the way to the goal covered in a sixtieth of a second
 const kNearest = 0.02;
 const kFarthest = 50;
 const kSettledDegrees = 0.1;
@@ -17,12 +17,13 @@ export function elevation_of(camera) {
   if (!camera?.eye || !camera.look_at) return 0;
   const out = camera.eye.map((value, axis) => value - camera.look_at[axis]);
   const up = camera.up ?? [0, 1, 0];
-  const sine = out.reduce((sum, value, axis) => sum + value * up[axis], 0) / (Math.hypot(...out) * Math.hypot(...up));
+  const product = out.reduce((sum, value, axis) => sum + value * up[axis], 0);
+  const sine = product / (Math.hypot(...out) * Math.hypot(...up));
   return Number.isFinite(sine) ? (Math.asin(clamp(sine, -1, 1)) * 180) / Math.PI : 0;
 }
 
 export class OrbitCamera {
-  damped = true;  // false: every move is a jump (reduced motion)
+  damped = true; // false: every move is a jump (reduced motion)
   #now = own_view();
   #goal = own_view();
   #own_elevation = 0;
@@ -76,7 +77,8 @@ export class OrbitCamera {
     now.azimuth += (goal.azimuth - now.azimuth) * part;
     now.elevation += (goal.elevation - now.elevation) * part;
     now.distance *= (goal.distance / now.distance) ** part;
-    const moving = Math.abs(goal.azimuth - now.azimuth) > kSettledDegrees ||
+    const moving =
+      Math.abs(goal.azimuth - now.azimuth) > kSettledDegrees ||
       Math.abs(goal.elevation - now.elevation) > kSettledDegrees ||
       Math.abs(goal.distance / now.distance - 1) > kSettledFactor;
     if (!moving) this.#now = { ...goal };

@@ -1,12 +1,12 @@
 // Turns pointer, touch, wheel and keyboard input on the stage into camera moves.
 // `on` has: rotate(azimuth, elevation) in degrees, dolly(factor), reset(), toggle_play(), hold(bool).
 
-const kDollyStep = 0.95;                  // factor of the distance for one wheel notch
+const kDollyStep = 0.95; // factor of the distance for one wheel notch
 export const kZoomStep = kDollyStep ** 3; // for a key or a button
-export const kTurnStep = 180 / 8;         // degrees for an arrow key or a button
-const kDragThreshold = 3;                 // pixels; less is a click
-const kWheelNotch = 100;                  // pixels of wheel movement that count as one step
-const kPinchGain = 8;                     // a trackpad pinch arrives as small wheel movements with ctrlKey
+export const kTurnStep = 180 / 8; // degrees for an arrow key or a button
+const kDragThreshold = 3; // pixels; less is a click
+const kWheelNotch = 100; // pixels of wheel movement that count as one step
+const kPinchGain = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
 
 export function attach_controls(stage, on) {
   attach_pointers(stage, on);
@@ -16,7 +16,7 @@ export function attach_controls(stage, on) {
 }
 
 function attach_pointers(stage, on) {
-  const pointers = new Map();  // id -> {x, y}
+  const pointers = new Map(); // id -> {x, y}
   let dragging = false;
 
   const gap = () => {
@@ -62,17 +62,21 @@ function attach_pointers(stage, on) {
 }
 
 function attach_wheel(stage, on) {
-  const pixels_per_unit = [1, 16, 400];  // by deltaMode: pixels, lines, pages
-  stage.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    const pixels = event.deltaY * pixels_per_unit[event.deltaMode] * (event.ctrlKey ? kPinchGain : 1);
-    const steps = Math.max(-3, Math.min(3, pixels / kWheelNotch));
-    if (steps !== 0) on.dolly(kDollyStep ** -steps);
-  }, { passive: false });
+  const pixels_per_unit = [1, 16, 400]; // by deltaMode: pixels, lines, pages
+  stage.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      const pixels = event.deltaY * pixels_per_unit[event.deltaMode] * (event.ctrlKey ? kPinchGain : 1);
+      const steps = Math.max(-3, Math.min(3, pixels / kWheelNotch));
+      if (steps !== 0) on.dolly(kDollyStep ** -steps);
+    },
+    { passive: false },
+  );
 }
 
-// Keys work on the stage, and without it where nothing has the focus and the page has nothing to scroll: so no
-// form field loses a key, and a long page still scrolls. Space plays and pauses in any case.
+// Keys work on the stage, and without it where nothing has the focus and the page has nothing to scroll: so
+// no form field loses a key, and a long page still scrolls. Space plays and pauses in any case.
 function attach_keys(stage, on) {
   const actions = {
     ArrowLeft: () => on.rotate(-kTurnStep, 0),
@@ -84,7 +88,7 @@ function attach_keys(stage, on) {
     "+": () => on.dolly(kZoomStep),
     "=": () => on.dolly(kZoomStep),
     "-": () => on.dolly(1 / kZoomStep),
-    "0": () => on.reset(),
+    0: () => on.reset(),
     " ": () => on.toggle_play(),
   };
   document.addEventListener("keydown", (event) => {

@@ -8,8 +8,8 @@ export class Editor {
   #card;
   #note;
   #restore;
-  #loaded = "";  // the text as it was loaded or applied last
-  #draft = "";   // an edit that loading another scene has replaced
+  #loaded = ""; // the text as it was loaded or applied last
+  #draft = ""; // an edit that loading another scene has replaced
 
   // `parts`: {text, card, note, apply, restore}. `on_apply` takes the text and returns a promise; what it
   // throws is shown in the card.

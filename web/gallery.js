@@ -1,14 +1,20 @@
-// The sample scenes, those that show one shape, light or the like under a heading of their own. A thumbnail is asked for once its row is in sight, one at a time, so that
-// thumbnails never crowd out the picture.
+// The sample scenes, those that show one shape, light or the like under a heading of their own. A thumbnail
+// is asked for once its row is in sight, one at a time, so that thumbnails never crowd out the picture.
 
 import { title_of } from "./scenes.js";
 import { picture_size } from "./size.js";
 import { frame_url } from "./urls.js";
 
-const kThumbnail = { width: 96, height: 72 };  // CSS pixels, as in style.css
+const kThumbnail = { width: 96, height: 72 }; // CSS pixels, as in style.css
 const kFirst = "paper";
-const kHeadings = {  // by what a sample's name starts with, in the order shown
-  "": "", material: "Materials", light: "Lights", shape: "Shapes", camera: "Cameras", technique: "Techniques",
+const kHeadings = {
+  // by what a sample's name starts with, in the order shown
+  "": "",
+  material: "Materials",
+  light: "Lights",
+  shape: "Shapes",
+  camera: "Cameras",
+  technique: "Techniques",
 };
 
 function kind_of(sample) {
@@ -35,7 +41,7 @@ export class Gallery {
       }
     });
     root.replaceChildren(...Object.keys(kHeadings).flatMap((kind) => this.#group(kind)));
-    for (const image of root.querySelectorAll("img")) watcher.observe(image);
+    for (const box of root.querySelectorAll(".thumbnail")) watcher.observe(box);
   }
 
   mark(ref) {
@@ -58,9 +64,9 @@ export class Gallery {
   }
 
   #row(sample) {
-    const image = document.createElement("img");
-    Object.assign(image, { alt: "", ...kThumbnail });
-    image.dataset.name = sample.name;
+    const thumbnail = document.createElement("span");
+    thumbnail.className = "thumbnail";
+    thumbnail.dataset.name = sample.name;
     const title = document.createElement("strong");
     title.textContent = title_of(sample);
     const description = document.createElement("span");
@@ -71,19 +77,27 @@ export class Gallery {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.name = sample.name;
-    button.append(image, text);
+    button.append(thumbnail, text);
     button.addEventListener("click", () => this.#on_pick(sample.name));
     const row = document.createElement("li");
     row.append(button);
     return row;
   }
 
-  async #load_thumbnail(image) {
-    const scene = await this.#library.open(image.dataset.name);
+  async #load_thumbnail(box) {
+    const scene = await this.#library.open(box.dataset.name);
     const size = picture_size({
-      mode: "fit", purpose: "still", box: kThumbnail, pixel_ratio: 2, scene, limits: this.#limits,
+      mode: "fit",
+      purpose: "still",
+      box: kThumbnail,
+      pixel_ratio: 2,
+      scene,
+      limits: this.#limits,
     });
+    const image = new Image(kThumbnail.width, kThumbnail.height);
+    image.alt = "";
     image.src = frame_url({ id: scene.id, azimuth: 0, elevation: 0, distance: 1, ...size, samples: 1 });
     await image.decode();
+    box.append(image);
   }
 }

@@ -1,19 +1,26 @@
 // The figures under the picture. Written at most four times a second: faster cannot be read.
 
 const kRefreshMs = 250;
-const kWindowMs = 1500;  // frames per second are counted over this long
+const kWindowMs = 1500; // frames per second are counted over this long
 
 function short(value) {
-  const steps = [[1e9, " G"], [1e6, " M"], [1e3, " k"]];
+  const steps = [
+    [1e9, " G"],
+    [1e6, " M"],
+    [1e3, " k"],
+  ];
   const [unit, name] = steps.find(([least]) => value >= least) ?? [1, ""];
   return `${(value / unit).toPrecision(3).replace(/e.*/, "")}${name}`;
 }
 
-const milliseconds = (value) => (Number.isFinite(value) ? `${value < 9.95 ? value.toFixed(1) : Math.round(value)} ms` : "–");
+function milliseconds(value) {
+  if (!Number.isFinite(value)) return "–";
+  return `${value < 9.95 ? value.toFixed(1) : Math.round(value)} ms`;
+}
 
 export class Hud {
   #fields;
-  #times = [];  // when the last frames were drawn
+  #times = []; // when the last frames were drawn
   #last_write = 0;
   #timer = 0;
   #figures = null;

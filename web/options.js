@@ -5,11 +5,13 @@ import { fixed_size, kModes } from "./size.js";
 const kSamples = [1, 4, 16, 64];
 
 function fill(select, options, value) {
-  select.replaceChildren(...options.map(([key, label, title]) => {
-    const option = new Option(label, key, false, String(key) === String(value));
-    if (title) option.title = title;
-    return option;
-  }));
+  select.replaceChildren(
+    ...options.map(([key, label, title]) => {
+      const option = new Option(label, key, false, String(key) === String(value));
+      if (title) option.title = title;
+      return option;
+    }),
+  );
 }
 
 const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
@@ -25,16 +27,24 @@ export class Options {
     this.#catalog = catalog;
     this.#limits = limits;
     for (const [key, select] of Object.entries(selects)) {
-      select.addEventListener("change", () => on_change(key, key === "samples" ? Number(select.value) : select.value));
+      select.addEventListener("change", () =>
+        on_change(key, key === "samples" ? Number(select.value) : select.value),
+      );
     }
   }
 
   // Lists what may be chosen for `scene` (null: none yet) and marks what `state` says.
   show(state, scene) {
     const { technique, samples, size } = this.#selects;
-    const techniques = (this.#catalog.techniques ?? []).map(({ type, summary }) => [type, sentence(type), summary]);
+    const techniques = (this.#catalog.techniques ?? []).map(({ type, summary }) => [
+      type,
+      sentence(type),
+      summary,
+    ]);
     fill(technique, [["", "Scene’s own"], ...with_value(techniques, state.technique)], state.technique);
-    const counts = kSamples.filter((count) => count <= this.#limits.samples).map((count) => [count, String(count)]);
+    const counts = kSamples
+      .filter((count) => count <= this.#limits.samples)
+      .map((count) => [count, String(count)]);
     fill(samples, [[0, "Scene’s own"], ...with_value(counts, state.samples)], state.samples);
     const sizes = kModes.filter((mode) => this.#fits(mode)).map((mode) => [mode, size_label(mode, scene)]);
     fill(size, with_value(sizes, state.size), state.size);

@@ -7,40 +7,42 @@ import { kFrameType, read_frames } from "./stream.js";
 import { frame_url, orbit_url } from "./urls.js";
 import { decode } from "./view.js";
 
-const kRestMs = 100;          // without input for this long, the view counts as at rest
-const kRestartMs = 150;       // changes of size or speed are gathered this long
+const kRestMs = 100; // without input for this long, the view counts as at rest
+const kRestartMs = 150; // changes of size or speed are gathered this long
 const kStreamFps = 30;
-const kQuickMs = 60;          // previews slower than this get a quarter of each side instead of a half
+const kQuickMs = 60; // previews slower than this get a quarter of each side instead of a half
 const kPreviewParts = [1 / 2, 1 / 4];
 
 // `on` has: picture(purpose, preview_part) -> picture or null, missing() -> promise (post the scene again),
 // stats(kind, figures), waiting(error, seconds), problem(error), busy(bool), settled().
 export class Player {
-  speed = 20;         // degrees per second
+  speed = 20; // degrees per second
   stream_frames = 3600;
   #camera;
   #view;
   #on;
   #playing = false;
   #visible = true;
-  #held = false;      // a drag is under way: no stream until it ends
-  #moving = false;    // the view moves by hand, or has done so less than kRestMs ago
+  #held = false; // a drag is under way: no stream until it ends
+  #moving = false; // the view moves by hand, or has done so less than kRestMs ago
   #last_input = 0;
   #last_tick = 0;
-  #work = null;       // {kind, key, abort} of the stream or still being fetched
-  #shown = "";        // address of the still on the canvas
+  #work = null; // {kind, key, abort} of the stream or still being fetched
+  #shown = ""; // address of the still on the canvas
   #preview_busy = false;
-  #epoch = 0;         // counts invalidations: a preview asked for before one is not drawn after it
-  #preview_slow = 0;  // index into kPreviewParts
+  #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
+  #preview_slow = 0; // index into kPreviewParts
   #backoff = new Backoff();
   #timer = 0;
-  #reposts = 0;       // scenes posted again since the last picture
+  #reposts = 0; // scenes posted again since the last picture
 
   constructor(camera, view, on) {
     this.#camera = camera;
     this.#view = view;
     this.#on = on;
-    document.addEventListener("visibilitychange", () => this.#show_tab(document.visibilityState === "visible"));
+    document.addEventListener("visibilitychange", () =>
+      this.#show_tab(document.visibilityState === "visible"),
+    );
     this.#visible = document.visibilityState === "visible";
     addEventListener("online", () => this.retry_now());
   }
@@ -118,7 +120,9 @@ export class Player {
 
   // One in flight; whatever the camera does meanwhile is caught up with by the next.
   async #preview() {
-    const picture = this.#preview_busy ? null : this.#on.picture("preview", kPreviewParts[this.#preview_slow]);
+    const picture = this.#preview_busy
+      ? null
+      : this.#on.picture("preview", kPreviewParts[this.#preview_slow]);
     const url = picture && frame_url(picture);
     if (!url || url === this.#shown) return;
     this.#preview_busy = true;
@@ -172,7 +176,7 @@ export class Player {
     let painting = false;
     let failure = null;
     let seen = 0;
-    let late = 0;  // frames that came while an older one was being decoded, and gave way to a newer one
+    let late = 0; // frames that came while an older one was being decoded, and gave way to a newer one
     const paint = async () => {
       painting = true;
       while (newest && !failure) {
@@ -230,7 +234,7 @@ export class Player {
     if (error.status === 404 && this.#reposts < 2) {
       this.#reposts += 1;
       try {
-        return await this.#on.missing();  // refreshes by itself
+        return await this.#on.missing(); // refreshes by itself
       } catch (second) {
         error = second;
       }
@@ -247,6 +251,10 @@ async function decode_or_explain(png) {
   try {
     return await decode(png);
   } catch {
-    throw new ApiError({ status: 200, title: "This picture cannot be shown", detail: "The browser could not decode it." });
+    throw new ApiError({
+      status: 200,
+      title: "This picture cannot be shown",
+      detail: "The browser could not decode it.",
+    });
   }
 }

@@ -19,8 +19,8 @@ function value_end(text, at) {
   while (at < text.length) {
     const first = text[at];
     if (first === '"') at = match_end(kString, text, at);
-    else if (first === "{" || first === "[") depth += 1, at += 1;
-    else if (first === "}" || first === "]") depth -= 1, at += 1;
+    else if (first === "{" || first === "[") ((depth += 1), (at += 1));
+    else if (first === "}" || first === "]") ((depth -= 1), (at += 1));
     else at = Math.max(at + 1, match_end(kPlain, text, at));
     if (depth <= 0) return at;
     at = skip_space(text, at);
@@ -53,10 +53,13 @@ function find_child(text, at, name) {
   return null;
 }
 
-// [start, end] in `text` of the value at `pointer`. A missing member is shown by its nearest ancestor's opening
-// bracket. A `key` is looked for in the value found; where it is there, the key's own place is returned.
+// [start, end] in `text` of the value at `pointer`. A missing member is shown by its nearest ancestor's
+// opening bracket. A `key` is looked for in the value found; where it is there, it is the place returned.
 export function locate(text, pointer, key = null) {
-  const names = pointer.split("/").slice(1).map((name) => name.replaceAll("~1", "/").replaceAll("~0", "~"));
+  const names = pointer
+    .split("/")
+    .slice(1)
+    .map((name) => name.replaceAll("~1", "/").replaceAll("~0", "~"));
   let at = skip_space(text, 0);
   for (const name of names) {
     const child = find_child(text, at, name);

@@ -9,14 +9,22 @@ function element(name, text, class_name) {
 
 // The places an error names: {label, detail, pointer} or {label, line, column}.
 function places_of(error) {
-  const places = (error.errors ?? []).map(({ pointer, detail }) => ({ label: pointer || "/", detail, pointer: pointer ?? "" }));
+  const places = (error.errors ?? []).map(({ pointer, detail }) => ({
+    label: pointer || "/",
+    detail,
+    pointer: pointer ?? "",
+  }));
   if (places.length === 0 && error.line) {
-    places.push({ label: `line ${error.line}, column ${error.column}`, line: error.line, column: error.column });
+    places.push({
+      label: `line ${error.line}, column ${error.column}`,
+      line: error.line,
+      column: error.column,
+    });
   }
   return places;
 }
 
-// Fills and shows `card`. `on_place` is called with the place that the user picks; without it places are text.
+// Fills and shows `card`. `on_place` gets the place that the user picks; without it places are plain text.
 export function show_problem(card, error, on_place) {
   const title = element("h2", error.title ?? error.message);
   const close = element("button", "", "close");

@@ -4,7 +4,7 @@
 import { get_json, get_text, post_scene } from "./api.js";
 
 const kStorageKey = "orrery.scenes";
-const kLongestKept = 500_000;  // characters; session storage is small
+const kLongestKept = 500_000; // characters; session storage is small
 const kMostKept = 8;
 const kUntitled = "Your scene";
 
@@ -15,9 +15,9 @@ export function title_of(sample) {
 
 // A scene is {ref, id, title, text, width, height, camera}; `ref` is what a link calls it.
 export class SceneLibrary {
-  samples = [];        // {name, title, description, href}
-  #texts = new Map();  // name or id -> JSON text
-  #ids = new Map();    // id -> name of the sample
+  samples = []; // {name, title, description, href}
+  #texts = new Map(); // name or id -> JSON text
+  #ids = new Map(); // id -> name of the sample
 
   constructor() {
     for (const [id, text] of kept_texts()) this.#texts.set(id, text);
@@ -51,7 +51,15 @@ export class SceneLibrary {
   async #fetch(id) {
     const canonical = await get_json(`v1/scenes/${id}`);
     const { width = 600, height = 600 } = canonical.image ?? {};
-    return { ref: id, id, title: canonical.title || kUntitled, text: pretty(canonical), width, height, camera: canonical.camera };
+    return {
+      ref: id,
+      id,
+      title: canonical.title || kUntitled,
+      text: pretty(canonical),
+      width,
+      height,
+      camera: canonical.camera,
+    };
   }
 
   #keep(id, text) {
@@ -71,7 +79,7 @@ function own_title(text) {
   try {
     return JSON.parse(text).title || kUntitled;
   } catch {
-    return kUntitled;  // the service reads some texts that JSON.parse does not, such as one with a byte order mark
+    return kUntitled; // the service may read what JSON.parse does not, such as a byte order mark
   }
 }
 
@@ -86,5 +94,8 @@ function kept_texts() {
 // Indented JSON with lists of numbers on one line.
 export function pretty(value) {
   const list = /\[\s+((?:-?[\d.]+(?:e[+-]?\d+)?,?\s+)+)\]/gi;
-  return JSON.stringify(value, null, 2).replace(list, (_, numbers) => `[${numbers.trim().replace(/\s+/g, " ")}]`);
+  return JSON.stringify(value, null, 2).replace(
+    list,
+    (_, numbers) => `[${numbers.trim().replace(/\s+/g, " ")}]`,
+  );
 }

@@ -18,7 +18,7 @@ export function attach_download(link, current) {
   return refresh;
 }
 
-// Where the clipboard is out of reach (plain http on another host) the dialog shows the command to copy by hand.
+// Where the clipboard is out of reach (plain http from another host) a dialog shows the command instead.
 export function attach_curl(button, dialog, current, announce) {
   const label = button.querySelector(".label");
   const usual = label.textContent;

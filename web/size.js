@@ -1,6 +1,6 @@
 // How many pixels a picture gets.
 
-const kStreamPixels = 1e6;  // a larger stream spends its time in PNG, on both ends
+const kStreamPixels = 1e6; // a larger stream spends its time in PNG, on both ends
 
 export const kModes = ["fit", "half", "scene", "1280x720", "1920x1080", "3840x2160"];
 
@@ -11,7 +11,11 @@ export function fixed_size(mode) {
 
 // Shrinks a size until no side and no product is over the limits; the proportions stay.
 export function within(size, side, pixels) {
-  const factor = Math.min(1, side / Math.max(size.width, size.height), Math.sqrt(pixels / (size.width * size.height)));
+  const factor = Math.min(
+    1,
+    side / Math.max(size.width, size.height),
+    Math.sqrt(pixels / (size.width * size.height)),
+  );
   return {
     width: Math.max(1, Math.floor(size.width * factor + 1e-6)),
     height: Math.max(1, Math.floor(size.height * factor + 1e-6)),
@@ -44,7 +48,7 @@ export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, p
 
 const aspect = (size) => size.width / size.height;
 
-// The box itself; but an orthographic view has no angle to widen, so in a narrow box it keeps its proportions.
+// The box itself; but an orthographic view has no angle to widen: in a narrow box it keeps its proportions.
 function fit(own, box, camera) {
   if (camera?.type !== "orthographic" || aspect(box) >= aspect(own)) return box;
   return { width: box.width, height: box.width / aspect(own) };

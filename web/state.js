@@ -4,9 +4,17 @@ import { kModes, fixed_size } from "./size.js";
 import { round } from "./urls.js";
 
 export const kDefaults = Object.freeze({
-  scene: "paper", az: 0, el: 0, dist: 1, speed: 20, playing: true, technique: "", samples: 0, size: "fit",
+  scene: "paper",
+  az: 0,
+  el: 0,
+  dist: 1,
+  speed: 20,
+  playing: true,
+  technique: "",
+  samples: 0,
+  size: "fit",
 });
-export const kFastest = 120;  // degrees per second
+export const kFastest = 120; // degrees per second
 const kAlways = ["scene", "az", "el", "dist", "speed", "playing"];
 
 // Reads a hash such as "#scene=paper&az=30"; whatever is missing or makes no sense gets its default.

@@ -9,8 +9,8 @@ const kLongestPicture = 256 * 1024 * 1024;
 
 // Collects bytes as they come and hands out whole frames.
 export class FrameParser {
-  #chunks = [];   // bytes not yet handed out, in order
-  #size = 0;      // their total
+  #chunks = []; // bytes not yet handed out, in order
+  #size = 0; // their total
   #header = null; // header of the frame whose PNG is awaited
   #header_length = -1;
 
@@ -86,7 +86,7 @@ export async function* read_frames(body) {
     }
     if (parser.inside_frame) throw no_answer("The stream broke off inside a frame.");
   } finally {
-    reader.cancel().catch(() => {});  // the connection is gone already, or goes now
+    reader.cancel().catch(() => {}); // the connection is gone already, or goes now
   }
 }
 

@@ -17,7 +17,7 @@ function query_of(picture) {
 }
 
 export function round(value, digits) {
-  return Number(value.toFixed(digits)) + 0;  // + 0: no minus zero
+  return Number(value.toFixed(digits)) + 0; // + 0: no minus zero
 }
 
 export function frame_url(picture) {

@@ -146,7 +146,7 @@ void Reader::do_each_named(Key key, Doc, Count count, const ReadNamed& read) {
                                   " characters, got " + in_quotes(name));
       continue;
     }
-    read_inside(value, place, [&](Params& inside) { read(name, inside); });
+    read_inside(value, place, [&, &name = name](Params& inside) { read(name, inside); });
   }
 }
 

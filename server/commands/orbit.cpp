@@ -158,7 +158,7 @@ Command add_orbit(CLI::App& root) {
                      ->type_name("NAME-%04d.{png,jpg,exr}");
   app->add_flag("--discard", options->discard, "Render and encode, but write nothing: prints how fast that is")
       ->excludes(output);
-  app->add_flag("--stats{text},--stats", options->stats, "Print what it took; --stats=json for programs");
+  app->add_flag("--stats{text}", options->stats, "Print what it took; --stats=json for programs");
   app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

@@ -17,14 +17,10 @@ std::string read_all(std::istream& in) { return {std::istreambuf_iterator<char>(
 
 }  // namespace
 
-BadScene::BadScene(std::string file, const InputError& error) : InputError(error.problems()) {
-  if (const auto* malformed = dynamic_cast<const MalformedJson*>(&error)) {
-    file += ":" + std::to_string(malformed->line()) + ":" + std::to_string(malformed->column());
-    for (const Problem& p : problems()) lines_.push_back(file + ": " + p.detail);
-    return;
-  }
+BadScene::BadScene(const std::string& file, const InputError& error) : InputError(error.problems()) {
+  const bool malformed = dynamic_cast<const MalformedJson*>(&error);  // its text says the line and column
   for (const Problem& p : problems())
-    lines_.push_back(file + ": " + (p.pointer.empty() ? "" : p.pointer + ": ") + p.detail);
+    lines_.push_back(file + ": " + (p.pointer.empty() || malformed ? "" : p.pointer + ": ") + p.detail);
 }
 
 std::string read_file(const std::string& path) {

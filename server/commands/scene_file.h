@@ -17,8 +17,8 @@ class FileError : public Error {
 // What is wrong with the scene in a file.
 class BadScene : public InputError {
  public:
-  BadScene(std::string file, const InputError& error);
-  // A line a problem: "file: /pointer: sentence", or "file:line:column: sentence" where it is not JSON at all.
+  BadScene(const std::string& file, const InputError& error);
+  // A line a problem: "file: /pointer: sentence".
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:

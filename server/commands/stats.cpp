@@ -1,9 +1,8 @@
 #include "server/commands/stats.h"
 
-#include <sys/resource.h>
-
 #include <cstdarg>
 #include <cstdio>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "core/base/version.h"
@@ -49,10 +48,9 @@ void rays_text(std::string& text, const RayCounts& rays) {
 }  // namespace
 
 double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + double(t.tv_usec) * 1e-6; };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  timespec used{};  // unlike getrusage, up to date for threads that run right now
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
 }
 
 ordered_json stats_json(const Plan& plan, const RunStats& stats) {

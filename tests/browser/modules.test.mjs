@@ -42,7 +42,11 @@ test("frames come out whole however the bytes are cut", () => {
     const parser = new FrameParser();
     const frames = [];
     for (let at = 0; at < all.length; at += piece) frames.push(...parser.push(all.slice(at, at + piece)));
-    assert.deepEqual(frames.map(({ header }) => header.frame), [0, 1], `pieces of ${piece}`);
+    assert.deepEqual(
+      frames.map(({ header }) => header.frame),
+      [0, 1],
+      `pieces of ${piece}`,
+    );
     assert.deepEqual([...frames[0].png, ...frames[1].png], [1, 2, 3, 4, 5, 6, 7], `pieces of ${piece}`);
     assert.equal(parser.inside_frame, false);
   }
@@ -57,9 +61,12 @@ test("a stream that breaks off inside a frame is a failure worth a new attempt",
   const bytes = frame_bytes({ frame: 0 }, Uint8Array.of(1, 2, 3));
   const body = new Blob([bytes, bytes.slice(0, -1)]).stream();
   const seen = [];
-  await assert.rejects(async () => {
-    for await (const frame of read_frames(body)) seen.push(frame);
-  }, (error) => error.retryable);
+  await assert.rejects(
+    async () => {
+      for await (const frame of read_frames(body)) seen.push(frame);
+    },
+    (error) => error.retryable,
+  );
   assert.equal(seen.length, 1);
 });
 
@@ -68,7 +75,10 @@ test("the camera glides to its goal and stops there", () => {
   camera.rotate(90, 30);
   camera.dolly(0.5);
   assert.equal(camera.step(1 / 60), true);
-  assert.ok(Math.abs(camera.view.azimuth - 4.5) < 1e-9, "a sixtieth of a second covers a twentieth of the way");
+  assert.ok(
+    Math.abs(camera.view.azimuth - 4.5) < 1e-9,
+    "a sixtieth of a second covers a twentieth of the way",
+  );
   for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
   assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5 });
 });
@@ -113,7 +123,16 @@ test("a line and a column lead to their place in the text", () => {
 });
 
 test("a link restores what it was made from, and nonsense in it is ignored", () => {
-  const state = { ...parse_hash(""), scene: "mirror", az: 12.5, el: -3, dist: 0.5, playing: false, technique: "raycast", samples: 16 };
+  const state = {
+    ...parse_hash(""),
+    scene: "mirror",
+    az: 12.5,
+    el: -3,
+    dist: 0.5,
+    playing: false,
+    technique: "raycast",
+    samples: 16,
+  };
   assert.deepEqual(parse_hash(format_hash(state)), state);
   const odd = parse_hash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999");
   assert.deepEqual({ ...odd, speed: 20 }, parse_hash(""));
@@ -123,11 +142,23 @@ test("a link restores what it was made from, and nonsense in it is ignored", () 
 test("a picture fits its box and the limits", () => {
   const scene = { width: 600, height: 600, camera: { type: "perspective", fov_degrees: 90 } };
   const limits = { side: 4096, pixels: 2 ** 24 };
-  const size = (more) => picture_size({
-    mode: "fit", purpose: "still", box: { width: 800, height: 400 }, pixel_ratio: 2, scene, limits, ...more,
-  });
+  const size = (more) =>
+    picture_size({
+      mode: "fit",
+      purpose: "still",
+      box: { width: 800, height: 400 },
+      pixel_ratio: 2,
+      scene,
+      limits,
+      ...more,
+    });
   assert.deepEqual(size(), { width: 1600, height: 800, fov: undefined, fills: true });
-  assert.deepEqual(size({ purpose: "preview", preview_part: 0.25 }), { width: 400, height: 200, fov: undefined, fills: true });
+  assert.deepEqual(size({ purpose: "preview", preview_part: 0.25 }), {
+    width: 400,
+    height: 200,
+    fov: undefined,
+    fills: true,
+  });
   const stream = size({ purpose: "stream" });
   assert.ok(stream.width * stream.height <= 1e6 && stream.width > 1400);
   const narrow = size({ box: { width: 400, height: 800 } });
@@ -136,14 +167,30 @@ test("a picture fits its box and the limits", () => {
 });
 
 test("addresses are the same for the same view and safe in a shell", () => {
-  const picture = { id: "ab12", azimuth: 10.001, elevation: -0.0001, distance: 1, width: 60, height: 40, samples: 0 };
-  assert.equal(frame_url(picture), "v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40");
-  assert.equal(curl_command(picture, "my scene", "http://host:1/"),
-    "curl -fo my-scene-10-0.png 'http://host:1/v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40'");
+  const picture = {
+    id: "ab12",
+    azimuth: 10.001,
+    elevation: -0.0001,
+    distance: 1,
+    width: 60,
+    height: 40,
+    samples: 0,
+  };
+  assert.equal(
+    frame_url(picture),
+    "v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40",
+  );
+  assert.equal(
+    curl_command(picture, "my scene", "http://host:1/"),
+    "curl -fo my-scene-10-0.png 'http://host:1/v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40'",
+  );
 });
 
 test("Server-Timing is read by name", () => {
-  assert.deepEqual(server_timing('load;dur=0.1, render;desc="x";dur=12.5, cached'), { load: 0.1, render: 12.5 });
+  assert.deepEqual(server_timing('load;dur=0.1, render;desc="x";dur=12.5, cached'), {
+    load: 0.1,
+    render: 12.5,
+  });
   assert.deepEqual(server_timing(null), {});
 });
 
@@ -157,11 +204,27 @@ test("an attempt is repeated while the failure may pass, and no longer", async (
   };
   assert.equal(await persist(task, () => setImmediate(wake_all)), "done");
   assert.equal(attempts, 3);
-  await assert.rejects(persist(async () => { throw failure(false); }, () => {}), /no/);
+  await assert.rejects(
+    persist(
+      async () => {
+        throw failure(false);
+      },
+      () => {},
+    ),
+    /no/,
+  );
 });
 
 test("canonical JSON is laid out for reading and stays the same value", () => {
-  const value = { eye: [0, -1.5, 2e-7], names: ["a", "b"], empty: [], deep: [[1, 2], [3, 4]] };
+  const value = {
+    eye: [0, -1.5, 2e-7],
+    names: ["a", "b"],
+    empty: [],
+    deep: [
+      [1, 2],
+      [3, 4],
+    ],
+  };
   assert.deepEqual(JSON.parse(pretty(value)), value);
   assert.match(pretty(value), /"eye": \[0, -1\.5, 2e-7\]/);
 });

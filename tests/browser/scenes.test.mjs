@@ -4,7 +4,14 @@
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import {
-  canvas_digest, eventually, hash_of, open_page, rest, skip_without_browser, start_browser, start_daemon,
+  canvas_digest,
+  eventually,
+  hash_of,
+  open_page,
+  rest,
+  skip_without_browser,
+  start_browser,
+  start_daemon,
 } from "./support.mjs";
 
 skip_without_browser();
@@ -19,7 +26,10 @@ function daemon_test(name, hash, body) {
     try {
       await body(page, daemon);
       // Refusals and lost connections are what these tests provoke.
-      assert.deepEqual(faults.filter((fault) => !/Failed to load resource|net::ERR_/.test(fault)), []);
+      assert.deepEqual(
+        faults.filter((fault) => !/Failed to load resource|net::ERR_/.test(fault)),
+        [],
+      );
     } finally {
       await close();
       await daemon.stop();
@@ -37,28 +47,32 @@ async function apply(page, edit) {
   await page.locator("#apply").click();
 }
 
-daemon_test("what is wrong in a pasted scene is named, and a click leads there", "playing=0", async (page) => {
-  const before = await rest(page);
-  const card = page.locator("#text-problem");
-  await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": -77'));
-  await card.waitFor({ state: "visible" });
-  assert.match(await card.textContent(), /\/objects\/0\/radius/);
-  assert.match(await card.locator(".request").textContent(), /Request \S{4,}/);
-  await card.locator("button.place").first().click();
-  assert.equal(await selection(page), "-77");
+daemon_test(
+  "what is wrong in a pasted scene is named, and a click leads there",
+  "playing=0",
+  async (page) => {
+    const before = await rest(page);
+    const card = page.locator("#text-problem");
+    await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": -77'));
+    await card.waitFor({ state: "visible" });
+    assert.match(await card.textContent(), /\/objects\/0\/radius/);
+    assert.match(await card.locator(".request").textContent(), /Request \S{4,}/);
+    await card.locator("button.place").first().click();
+    assert.equal(await selection(page), "-77");
 
-  await apply(page, (text) => text.replace('"radius": -77', '"raduis": 1'));
-  await eventually("the unknown key", async () => /raduis/.test(await card.textContent()));
-  await card.locator("button.place", { hasText: "raduis" }).click();
-  assert.equal(await selection(page), '"raduis"');
+    await apply(page, (text) => text.replace('"radius": -77', '"raduis": 1'));
+    await eventually("the unknown key", async () => /raduis/.test(await card.textContent()));
+    await card.locator("button.place", { hasText: "raduis" }).click();
+    assert.equal(await selection(page), '"raduis"');
 
-  await apply(page, () => '{\n  "version": 1,\n  "camera" 2\n}');
-  await eventually("the malformed line", async () => /line 3/.test(await card.textContent()));
-  await card.locator("button.place").click();
-  const caret = await page.locator("#text").evaluate((field) => field.selectionStart);
-  assert.ok(caret >= 18 && caret <= 31, `the caret is at ${caret}`);
-  assert.equal(await canvas_digest(page), before, "the picture stays");
-});
+    await apply(page, () => '{\n  "version": 1,\n  "camera" 2\n}');
+    await eventually("the malformed line", async () => /line 3/.test(await card.textContent()));
+    await card.locator("button.place").click();
+    const caret = await page.locator("#text").evaluate((field) => field.selectionStart);
+    assert.ok(caret >= 18 && caret <= 31, `the caret is at ${caret}`);
+    assert.equal(await canvas_digest(page), before, "the picture stays");
+  },
+);
 
 daemon_test("a pasted scene is shown, and back leads to the one before", "playing=0", async (page) => {
   const before = await rest(page);
@@ -96,32 +110,38 @@ daemon_test("a forgotten scene is posted again", "playing=0", async (page, daemo
   await eventually("the first picture", async () => (await canvas_digest(page)) === before);
 });
 
-daemon_test("the page says that the service is gone, and goes on when it is back", "", async (page, daemon) => {
-  await eventually("frames", async () => Number((await hash_of(page)).az) > 0);
-  await daemon.stop();
-  const notice = page.locator("#notice");
-  await notice.waitFor({ state: "visible" });
-  assert.match(await notice.textContent(), /Trying again in \d+ s/);
-  const frozen = await canvas_digest(page);
-  const revived = await start_daemon(new URL(daemon.url).port);
-  try {
-    await eventually("frames again", async () => (await canvas_digest(page)) !== frozen, 30_000);
-    assert.equal(await notice.isVisible(), false);
-  } finally {
-    await revived.stop();
-  }
-});
+daemon_test(
+  "the page says that the service is gone, and goes on when it is back",
+  "",
+  async (page, daemon) => {
+    await eventually("frames", async () => Number((await hash_of(page)).az) > 0);
+    await daemon.stop();
+    const notice = page.locator("#notice");
+    await notice.waitFor({ state: "visible" });
+    assert.match(await notice.textContent(), /Trying again in \d+ s/);
+    const frozen = await canvas_digest(page);
+    const revived = await start_daemon(new URL(daemon.url).port);
+    try {
+      await eventually("frames again", async () => (await canvas_digest(page)) !== frozen, 30_000);
+      assert.equal(await notice.isVisible(), false);
+    } finally {
+      await revived.stop();
+    }
+  },
+);
 
 daemon_test("a hidden tab asks for nothing and goes on when it is seen again", "", async (page) => {
-  const show = (visibility) => page.evaluate((state) => {
-    Object.defineProperty(document, "visibilityState", { get: () => state, configurable: true });
-    document.dispatchEvent(new Event("visibilitychange"));
-  }, visibility);
+  const show = (visibility) =>
+    page.evaluate((state) => {
+      Object.defineProperty(document, "visibilityState", { get: () => state, configurable: true });
+      document.dispatchEvent(new Event("visibilitychange"));
+    }, visibility);
   const digest = () => canvas_digest(page);
   const first = await digest();
   await eventually("frames", async () => (await digest()) !== first);
   await show("hidden");
-  const frozen = await rest(page);
+  await page.waitForTimeout(500); // what was on its way is drawn
+  const frozen = await digest();
   await page.waitForTimeout(500);
   assert.equal(await digest(), frozen);
   await show("visible");

@@ -10,13 +10,22 @@ const text = (value) => ({ type: "string", default: value });
 const { values, positionals } = parseArgs({
   allowPositionals: true,
   options: {
-    width: text("1280"), height: text("800"), scale: text("1"), hash: text("playing=0"), tab: text("scenes"),
-    wait: text("1500"), url: text(""), dark: { type: "boolean" }, full: { type: "boolean" },
+    width: text("1280"),
+    height: text("800"),
+    scale: text("1"),
+    hash: text("playing=0"),
+    tab: text("scenes"),
+    wait: text("1500"),
+    url: text(""),
+    dark: { type: "boolean" },
+    full: { type: "boolean" },
   },
 });
 if (positionals.length !== 1) {
-  console.error("usage: screenshot.mjs OUT.png [--width N] [--height N] [--scale N] [--dark] [--hash TEXT] " +
-    "[--tab scenes|json] [--full] [--wait MS] [--url URL]");
+  console.error(
+    "usage: screenshot.mjs OUT.png [--width N] [--height N] [--scale N] [--dark] [--hash TEXT] " +
+      "[--tab scenes|json] [--full] [--wait MS] [--url URL]",
+  );
   process.exit(2);
 }
 
@@ -33,6 +42,7 @@ try {
   await page.goto(`${daemon?.url ?? values.url}#${values.hash}`);
   await page.locator("#canvas").waitFor({ state: "visible" });
   await page.locator(`#tab-${values.tab}`).click();
+  await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
   await page.waitForTimeout(Number(values.wait));
   await page.screenshot({ path: positionals[0], fullPage: values.full ?? false });
 } finally {

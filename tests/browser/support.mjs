@@ -23,7 +23,10 @@ export function package_file(name) {
 
 // Ends the process with the code for "skipped" when the browser or its driver is missing.
 export function skip_without_browser() {
-  for (const [what, present] of [[kChromium, existsSync(kChromium)], ["playwright-core", package_file("playwright-core")]]) {
+  for (const [what, present] of [
+    [kChromium, existsSync(kChromium)],
+    ["playwright-core", package_file("playwright-core")],
+  ]) {
     if (present) continue;
     console.log(`skipped: ${what} is not installed`);
     process.exit(kSkipped);
@@ -37,7 +40,10 @@ export async function start_daemon(port = 0) {
   const gone = new Promise((resolve) => child.once("close", resolve));
   let output = "";
   const url = await new Promise((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error(`no address within ${kStartMs} ms; it said: ${output}`)), kStartMs);
+    const timer = setTimeout(
+      () => reject(new Error(`no address within ${kStartMs} ms; it said: ${output}`)),
+      kStartMs,
+    );
     const fail = (why) => {
       clearTimeout(timer);
       reject(new Error(`${program} ${why}; it said: ${output}`));
@@ -70,8 +76,15 @@ export async function start_daemon(port = 0) {
 export function start_browser() {
   return require("playwright-core").chromium.launch({
     executablePath: kChromium,
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
   });
 }
 
@@ -119,12 +132,6 @@ export async function eventually(what, probe, timeout_ms = 15_000) {
 
 // Waits until the view rests and its full picture is drawn; returns its digest.
 export async function rest(page) {
-  let last = "";
-  let since = Date.now();
-  return eventually("the picture comes to rest", async () => {
-    const now = await canvas_digest(page);
-    if (now !== last) since = Date.now();
-    last = now;
-    return Date.now() - since > 500 && now;
-  });
+  await page.locator('#stage[data-shows="still"]').waitFor();
+  return canvas_digest(page);
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/env node
 // The arrangement of the source tree: who may include whom, what a registry must list, how long a file may
-// be. Without arguments it judges this repository; with --self-test it judges small trees that each break a rule.
+// be. Without arguments it judges this repository; with --self-test it judges small trees that each break
+// a rule.
 
 import {mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
@@ -21,7 +22,7 @@ const kRegisteredRooms = kFloors[3];
 const kGenerated = ["core/base/version.h"];  // lies in the build folder
 const kMaxLines = 500;
 const kMaxHttplibUsers = 3;  // 20,000 lines of header each
-const kTextFolders = [".ci", "core", "docker", "scenes", "script", "server", "tests", "web"];
+const kTextFolders = [".ci", "core", "docker", "docs", "scenes", "script", "server", "tests", "web"];
 const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", ".cmake"]);
 const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ""]);
 const kUnread = new Set(["package-lock.json", "LICENSE"]);
@@ -145,8 +146,8 @@ function judgeCycles(includes, complain) {
   for (const path of includes.keys()) visit(path, []);
 }
 
-// A system core/shapes/sphere.cpp is listed if registry.cpp names sphere, make_sphere or sphere_<word>. A .cpp
-// with a header of its own is what several systems of the room share; a system has none.
+// A system core/shapes/sphere.cpp is listed if registry.cpp names sphere, make_sphere or sphere_<word>. A
+// .cpp with a header of its own is what several systems of the room share; a system has none.
 function judgeRegistries(contents, complain) {
   for (const path of contents.keys()) {
     if (!path.endsWith(".cpp") || !kRegisteredRooms.includes(dirname(path))) continue;

@@ -1,0 +1,52 @@
+#include "server/app/app.h"
+
+#include "core/load/load.h"
+#include "server/app/watch.h"
+
+namespace orrery {
+
+App::App(const Settings& settings)
+    : settings_(settings),
+      pool_(settings.threads),
+      scenes_(settings.store_bytes),
+      admission_(settings.renders > 0 ? settings.renders : 2 * pool_.threads(), settings.queue),
+      orbits_({pool_, admission_, draining_, ends_, settings.request_time}, settings.orbits) {}
+
+std::shared_ptr<const Scene> App::load(const Document& document, Timing& timing) const {
+  const auto start = Clock::now();
+  auto scene = load_scene(document);
+  timing.load += milliseconds_since(start);
+  return scene;
+}
+
+Picture App::render(const PreparedScene& scene, const Plan& plan, FileFormat format, std::function<bool()> gone,
+                    Timing& timing) {
+  require_open();
+  const Watch watch(std::move(gone), ends_, settings_.request_time);
+  const auto stop = [&] { return watch.stop(); };
+  try {
+    auto start = Clock::now();
+    const auto ticket = admission_.enter(stop);
+    timing.queue = milliseconds_since(start);
+    RenderResult rendered = render_frame(scene, plan, pixels_of(format), pool_, {.stop = stop, .progress = {}});
+    timing.build = rendered.stats.build_ms;
+    timing.render = rendered.stats.trace_ms;
+    start = Clock::now();
+    Picture picture{encode(rendered.image, format), rendered.stats};
+    timing.encode = milliseconds_since(start);
+    return picture;
+  } catch (const Cancelled&) {
+    watch.explain();
+  }
+}
+
+void App::drain() {
+  draining_ = true;
+  orbits_.wake();
+}
+
+void App::require_open() const {
+  if (draining_) throw Busy("The service is about to end and takes no new work", 5);
+}
+
+}  // namespace orrery

@@ -1,0 +1,156 @@
+#include "server/app/orbit_cast.h"
+
+#include <algorithm>
+
+#include "core/plan/plan.h"
+#include "server/app/pipeline.h"
+#include "server/app/watch.h"
+
+namespace orrery {
+namespace {
+
+constexpr std::chrono::milliseconds kAsk{20};  // how often those who wait look whether it is still worth it
+
+}  // namespace
+
+OrbitCast::OrbitCast(OrbitSpec spec, const Means& means) : spec_(std::move(spec)), means_(means) {}
+
+OrbitCast::~OrbitCast() {
+  if (thread_.joinable()) thread_.join();
+}
+
+std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCast>& cast) {
+  const std::lock_guard lock(cast->mutex_);
+  if (cast->closed_) return nullptr;
+  const auto mailbox = cast->mailboxes_.insert(
+      cast->mailboxes_.end(), {.begin = cast->next_, .end = cast->next_ + cast->spec_.frames, .frame = {}});
+  if (!cast->thread_.joinable()) {
+    cast->start_ = Clock::now();
+    cast->thread_ = std::thread([c = cast.get()] { c->run(); });
+  }
+  cast->changed_.notify_all();
+  return std::unique_ptr<Viewer>(new Viewer(cast, mailbox));
+}
+
+void OrbitCast::wake() {
+  const std::lock_guard lock(mutex_);
+  changed_.notify_all();
+}
+
+void OrbitCast::run() {
+  const Pipeline pipeline{.next = [this] { return next(); },
+                          .render = [this](std::int64_t n) { return render(n); },
+                          .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
+                          .deliver = [this](std::int64_t n, Frame&& frame) { return deliver(n, std::move(frame)); }};
+  try {
+    pipeline.run();
+  } catch (const std::exception&) {
+    // Nobody watches any more, a frame took too long, or memory is short: the streams end here.
+  }
+  const std::lock_guard lock(mutex_);
+  closed_ = over_ = true;
+  changed_.notify_all();
+}
+
+bool OrbitCast::anyone_wants(std::int64_t number) const {
+  return std::any_of(mailboxes_.begin(), mailboxes_.end(), [&](const Mailbox& m) { return m.wants(number); });
+}
+
+bool OrbitCast::anyone_free(std::int64_t number) const {
+  return std::any_of(mailboxes_.begin(), mailboxes_.end(),
+                     [&](const Mailbox& m) { return m.wants(number) && !m.frame; });
+}
+
+bool OrbitCast::pointless() const {
+  if (means_.ends) return true;
+  const std::lock_guard lock(mutex_);
+  return mailboxes_.empty();
+}
+
+std::optional<std::int64_t> OrbitCast::next() {
+  std::unique_lock lock(mutex_);
+  const auto period = std::chrono::duration<double>(spec_.fps > 0 ? 1 / spec_.fps : 0);
+  const auto due = [&](std::int64_t n) {
+    return start_ + std::chrono::duration_cast<Clock::duration>(period * static_cast<double>(n));
+  };
+  bool waited = false;
+  for (;;) {
+    if (means_.draining || means_.ends || !anyone_wants(next_)) {
+      closed_ = true;
+      return std::nullopt;
+    }
+    if (spec_.fps == 0) return next_++;
+    const auto now = Clock::now();
+    if (now < due(next_)) {
+      changed_.wait_until(lock, due(next_));
+    } else if (!anyone_free(next_)) {
+      waited = true;
+      changed_.wait_for(lock, kAsk);
+    } else {
+      const auto on_time = static_cast<std::int64_t>((now - start_) / period);
+      std::int64_t end = 0;
+      for (const Mailbox& m : mailboxes_) end = std::max(end, m.end);
+      if (waited) next_ = std::clamp(on_time, next_, end - 1);
+      else if (on_time > next_) start_ += now - due(next_);
+      return next_++;
+    }
+  }
+}
+
+RenderResult OrbitCast::render(std::int64_t number) {
+  const Watch watch([this] { return pointless(); }, means_.ends, means_.frame_time);
+  const auto stop = [&] { return watch.stop(); };
+  const auto ticket = means_.admission.enter_again(stop);
+  const Plan plan = make_plan(spec_.scene->scene(), spec_.request_of(static_cast<int>(number % spec_.frames)));
+  return render_frame(*spec_.scene, plan, PixelFormat::srgb8, means_.pool, {.stop = stop, .progress = {}});
+}
+
+bool OrbitCast::deliver(std::int64_t number, Frame&& picture) {
+  const int frame = static_cast<int>(number % spec_.frames);
+  const RenderRequest request = spec_.request_of(frame);
+  const RenderSettings& own = spec_.scene->scene().render;
+  const auto shared = std::make_shared<const OrbitFrame>(OrbitFrame{.frame = frame,
+                                                                   .orbit = request.orbit,
+                                                                   .width = request.width.value_or(own.width),
+                                                                   .height = request.height.value_or(own.height),
+                                                                   .picture = std::move(picture)});
+  std::unique_lock lock(mutex_);
+  while (spec_.fps == 0 && anyone_wants(number) && !anyone_free(number) && !means_.draining && !means_.ends)
+    changed_.wait_for(lock, kAsk);
+  for (Mailbox& mailbox : mailboxes_) {
+    if (!mailbox.wants(number)) continue;
+    mailbox.frame = shared;
+    mailbox.number = number;
+  }
+  delivered_ = number + 1;
+  changed_.notify_all();
+  return true;
+}
+
+OrbitCast::Viewer::~Viewer() {
+  const std::lock_guard lock(cast_->mutex_);
+  cast_->mailboxes_.erase(mailbox_);
+  cast_->changed_.notify_all();
+}
+
+std::shared_ptr<const OrbitFrame> OrbitCast::Viewer::next(const std::function<bool()>& gone) {
+  std::unique_lock lock(cast_->mutex_);
+  while (!mailbox_->frame) {
+    const bool all_sent = cast_->delivered_ >= mailbox_->end;
+    if (cast_->over_ || all_sent || cast_->means_.ends) return nullptr;
+    cast_->changed_.wait_for(lock, kAsk);
+    lock.unlock();
+    const bool left = gone();
+    lock.lock();
+    if (left) return nullptr;
+  }
+  const auto frame = std::move(mailbox_->frame);
+  mailbox_->frame = nullptr;
+  mailbox_->fetched += 1;
+  skipped_ = mailbox_->number - mailbox_->begin + 1 - mailbox_->fetched;
+  at_end_ = mailbox_->number + 1 == mailbox_->end || cast_->over_;
+  cast_->changed_.notify_all();
+  return frame;
+}
+
+}  // namespace orrery

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <list>
+#include <mutex>
+#include <thread>
+
+#include "server/app/admission.h"
+#include "server/app/orbit.h"
+
+namespace orrery {
+
+// Renders an orbit once for all who watch it. The frames run in a circle, numbered on and on; each viewer gets as
+// many as the orbit has, from the one where it came in. A viewer has a mailbox for one frame: a newer frame takes
+// the place of one that was not fetched in time. Nothing is rendered that nobody would see: the cast waits while
+// all mailboxes are full. With fps 0 it then goes on where it was; else with the frame whose time has come.
+class OrbitCast {
+ public:
+  // All it uses lives longer. `ends` becomes true when the program ends.
+  struct Means {
+    WorkerPool& pool;
+    Admission& admission;
+    const std::atomic<bool>& draining;  // end at the next frame boundary
+    const std::atomic<bool>& ends;      // end at once
+    std::chrono::seconds frame_time;    // that one frame may take
+  };
+
+  OrbitCast(OrbitSpec spec, const Means& means);
+  ~OrbitCast();
+
+  const OrbitSpec& spec() const { return spec_; }
+
+  class Viewer;
+  // None once the cast is ending.
+  static std::unique_ptr<Viewer> join(const std::shared_ptr<OrbitCast>& cast);
+
+  // To be called when means.draining changed.
+  void wake();
+
+ private:
+  struct Mailbox {
+    std::int64_t begin, end;  // numbers of the frames this viewer gets
+    std::shared_ptr<const OrbitFrame> frame;
+    std::int64_t number = 0;     // of `frame`
+    std::int64_t fetched = 0;    // how many
+    bool wants(std::int64_t n) const { return n >= begin && n < end; }
+  };
+
+  void run();
+  std::optional<std::int64_t> next();
+  RenderResult render(std::int64_t number);
+  bool deliver(std::int64_t number, Frame&& frame);
+  bool anyone_free(std::int64_t number) const;
+  bool anyone_wants(std::int64_t number) const;
+  bool pointless() const;
+
+  const OrbitSpec spec_;
+  const Means means_;
+  mutable std::mutex mutex_;  // guards all below
+  std::condition_variable changed_;
+  std::list<Mailbox> mailboxes_;
+  std::int64_t next_ = 0;       // number of the frame to render next
+  std::int64_t delivered_ = 0;  // all before it are in the mailboxes or lost
+  Clock::time_point start_;     // when frame 0 was due; moves on when rendering is slower than fps
+  bool closed_ = false;         // no frames will be rendered any more
+  bool over_ = false;           // none will be delivered any more
+  std::thread thread_;          // last: it uses the others
+};
+
+// One who watches. For one thread.
+class OrbitCast::Viewer {
+ public:
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+
+  // The newest frame not seen yet; waits for it. None at the end of the orbit, when the program ends, or once
+  // `gone` says so, which is asked every 20 ms.
+  std::shared_ptr<const OrbitFrame> next(const std::function<bool()>& gone);
+  // Frames of the orbit up to the last one got that this viewer missed.
+  std::int64_t skipped() const { return skipped_; }
+  // Whether the frame got last was the last.
+  bool at_end() const { return at_end_; }
+
+ private:
+  friend class OrbitCast;
+  Viewer(std::shared_ptr<OrbitCast> cast, std::list<Mailbox>::iterator mailbox)
+      : cast_(std::move(cast)), mailbox_(mailbox) {}
+
+  const std::shared_ptr<OrbitCast> cast_;
+  const std::list<Mailbox>::iterator mailbox_;
+  std::int64_t skipped_ = 0;
+  bool at_end_ = false;
+};
+
+}  // namespace orrery

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <list>
+#include <memory>
+#include <mutex>
+
+#include "server/app/orbit_cast.h"
+
+namespace orrery {
+
+// The orbits that are being watched. Safe from any thread.
+class OrbitHub {
+ public:
+  OrbitHub(const OrbitCast::Means& means, int most_orbits) : means_(means), most_(most_orbits) {}
+
+  // Joins those who watch the same orbit, or starts it. Throws Busy if there are too many different ones.
+  std::unique_ptr<OrbitCast::Viewer> watch(const OrbitSpec& spec);
+
+  // To be called when means.draining changed.
+  void wake();
+
+ private:
+  const OrbitCast::Means means_;
+  const int most_;
+  std::mutex mutex_;
+  std::list<std::weak_ptr<OrbitCast>> casts_;  // their viewers own them
+};
+
+}  // namespace orrery

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+
+#include "core/base/error.h"
+
+namespace orrery {
+
+// The work took longer than it may.
+class TimedOut : public Error {
+ public:
+  using Error::Error;
+};
+
+// Says when the work for a request should end early: the client has gone, its time is up, or the program ends.
+// Safe from any thread.
+class Watch {
+ public:
+  Watch(std::function<bool()> gone, const std::atomic<bool>& program_ends, std::chrono::seconds limit)
+      : gone_(std::move(gone)),
+        program_ends_(program_ends),
+        limit_(limit),
+        deadline_(std::chrono::steady_clock::now() + limit) {}
+
+  bool stop() const { return program_ends_ || std::chrono::steady_clock::now() >= deadline_ || gone_(); }
+
+  std::chrono::steady_clock::time_point deadline() const { return deadline_; }
+
+  // Throws what stop() was true for: Cancelled, TimedOut or Busy.
+  [[noreturn]] void explain() const;
+
+ private:
+  const std::function<bool()> gone_;
+  const std::atomic<bool>& program_ends_;
+  const std::chrono::seconds limit_;
+  const std::chrono::steady_clock::time_point deadline_;
+};
+
+}  // namespace orrery

@@ -1,0 +1,109 @@
+#include "server/http/head.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace orrery {
+namespace {
+
+constexpr std::array<std::string_view, 9> kMethods{"GET",     "HEAD",    "POST",  "PUT",  "DELETE",
+                                                   "CONNECT", "OPTIONS", "TRACE", "PATCH"};
+
+bool is_token(std::string_view text) {  // RFC 9110, 5.6.2
+  constexpr std::string_view kMarks = "!#$%&'*+-.^_`|~";
+  return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           kMarks.find(c) != std::string_view::npos;
+  });
+}
+
+// Visible characters, blanks and bytes above ASCII: what a header's value may have.
+bool is_field_text(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == '\t' || (byte >= 0x20 && byte != 0x7F);
+  });
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+void parse_request_line(std::string_view line, Head& head) {
+  const std::size_t first = line.find(' '), last = line.rfind(' ');
+  if (first == std::string_view::npos || first == last) throw HttpError(400, "The request line is not METHOD PATH HTTP/1.1");
+  const std::string_view method = line.substr(0, first), version = line.substr(last + 1);
+  const std::string_view target = line.substr(first + 1, last - first - 1);
+  if (!is_token(method)) throw HttpError(400, "The method is no word");
+  if (target.size() > kMaxTargetBytes)
+    throw HttpError(414, "The address has more than " + std::to_string(kMaxTargetBytes) + " bytes");
+  const bool visible = std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c != 0x7F; });
+  if (target.empty() || !visible) throw HttpError(400, "The address has a character that needs a %-escape");
+  if (version != "HTTP/1.1" && version != "HTTP/1.0") {
+    if (version.starts_with("HTTP/")) throw HttpError(505, "This service speaks HTTP/1.1");
+    throw HttpError(400, "The request line is not METHOD PATH HTTP/1.1");
+  }
+  if (std::find(kMethods.begin(), kMethods.end(), method) == kMethods.end())
+    throw HttpError(501, "The method " + std::string(method.substr(0, 40)) + " is unknown here");
+  head.method = method;
+  head.target = target;
+  head.minor_version = version.back() - '0';
+}
+
+void parse_header(std::string_view line, Head& head) {
+  if (head.headers.size() == kMaxHeaders)
+    throw HttpError(431, "The request has more than " + std::to_string(kMaxHeaders) + " headers");
+  const std::size_t colon = line.find(':');
+  const std::string_view name = line.substr(0, colon);
+  if (colon == std::string_view::npos || !is_token(name)) throw HttpError(400, "A header is not NAME: VALUE");
+  const std::string_view value = trimmed(line.substr(colon + 1));
+  if (!is_field_text(value)) throw HttpError(400, "The header " + std::string(name.substr(0, 40)) + " has control characters");
+  head.headers.emplace_back(name, value);
+}
+
+// Headers that say where the request ends: who reads them differently than a neighbour reads another request.
+void judge_framing(Head& head) {
+  int hosts = 0;
+  for (const auto& [name, value] : head.headers) {
+    if (equal_ignoring_case(name, "Host")) ++hosts;
+    if (equal_ignoring_case(name, "Transfer-Encoding")) head.chunked = true;
+    if (!equal_ignoring_case(name, "Content-Length")) continue;
+    std::size_t length = 0;
+    const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), length);
+    if (problem != std::errc() || end != value.data() + value.size())
+      throw HttpError(400, "Content-Length is not a number of bytes");
+    if (head.content_length) throw HttpError(400, "Content-Length is given twice");
+    head.content_length = length;
+  }
+  if (head.chunked && head.content_length)
+    throw HttpError(400, "Content-Length and Transfer-Encoding exclude each other");
+  if (hosts > 1 || (hosts == 0 && head.minor_version == 1)) throw HttpError(400, "Expected one Host header");
+}
+
+}  // namespace
+
+Head parse_head(std::string_view bytes) {
+  Head head;
+  bool first = true;
+  while (!bytes.empty()) {
+    const std::size_t end = bytes.find("\r\n");
+    if (end == std::string_view::npos) throw HttpError(400, "A line does not end with CR LF");
+    const std::string_view line = bytes.substr(0, end);
+    bytes.remove_prefix(end + 2);
+    if (line.empty()) break;
+    if (first) parse_request_line(line, head);
+    else parse_header(line, head);
+    first = false;
+  }
+  if (first) throw HttpError(400, "The request is empty");
+  judge_framing(head);
+  const std::string connection = head.header("Connection").value_or("");
+  head.keep_alive = head.minor_version == 1 ? !equal_ignoring_case(connection, "close")
+                                            : equal_ignoring_case(connection, "keep-alive");
+  return head;
+}
+
+}  // namespace orrery

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/http/message.h"
+
+namespace orrery {
+
+inline constexpr std::size_t kMaxHeadBytes = 16 * 1024;
+inline constexpr std::size_t kMaxTargetBytes = 2 * 1024;
+inline constexpr std::size_t kMaxHeaders = 100;
+
+// Request line and headers of a request, checked: whatever stands before a request is read the same way by
+// everyone who sees it.
+struct Head {
+  std::string method, target;
+  int minor_version = 1;  // HTTP/1.0 or 1.1
+  Fields headers;         // values without blanks around them
+  std::optional<std::size_t> content_length;
+  bool chunked = false;    // has a Transfer-Encoding
+  bool keep_alive = true;  // the client does not want the connection closed
+
+  std::optional<std::string> header(std::string_view name) const { return find_field(headers, name); }
+};
+
+// Parses the bytes up to and with the empty line (RFC 9112), strictly: lines end with CR LF, names are tokens,
+// nothing is folded; one Host; at most one Content-Length, digits only, and not beside a Transfer-Encoding.
+// Throws HttpError 400, 414, 431, 501 or 505.
+Head parse_head(std::string_view bytes);
+
+}  // namespace orrery

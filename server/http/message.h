@@ -1,0 +1,84 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+
+// What routes see of HTTP. No library shows through.
+namespace orrery {
+
+// Names and values in the order they came.
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
+// The value of the first field of that name, whatever its case.
+std::optional<std::string> find_field(const Fields& fields, std::string_view name);
+
+struct Request {
+  std::string method;  // "HEAD" is answered as "GET", without the body
+  std::string path;    // decoded
+  std::vector<std::string> segments;  // of the path, each decoded
+  std::string id;      // of this request: sent by the client, or made up; letters, digits, . _ -
+  Fields query;        // decoded; names are unique
+  Fields path_values;  // of the route's {places}
+  Fields headers;
+  std::chrono::steady_clock::time_point start;
+
+  // Reads the whole body, once. Throws HttpError if it is refused or does not come.
+  std::function<std::string()> read_body;
+  // Whether the client has gone. Safe from any thread while the request is being answered.
+  std::function<bool()> gone;
+
+  std::optional<std::string> header(std::string_view name) const { return find_field(headers, name); }
+  // REQUIRES: the route has that place.
+  const std::string& path_value(std::string_view name) const;
+};
+
+// Where the parts of a long answer go.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual bool write(std::string_view bytes) = 0;  // waits; false: the client has gone
+};
+
+struct Response {
+  int status = 200;
+  Fields headers = {};
+  std::string body = {};
+  // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws nothing.
+  std::function<void(Sink&)> stream = {};
+  // For the log: rays traced for this answer, and what went wrong inside.
+  std::uint64_t rays = 0;
+  std::string note = {};
+
+  Response& set(std::string_view name, std::string value);  // replaces
+};
+
+Response text_response(int status, std::string_view type, std::string body);
+Response json_response(int status, std::string json);
+
+// A refusal that is about HTTP itself.
+class HttpError : public Error {
+ public:
+  HttpError(int status, const std::string& detail, Fields headers = {})
+      : Error(detail), status_(status), headers_(std::move(headers)) {}
+  int status() const noexcept { return status_; }
+  const Fields& headers() const noexcept { return headers_; }
+
+ private:
+  int status_;
+  Fields headers_;
+};
+
+// "Not Found"
+std::string_view reason_phrase(int status);
+
+bool equal_ignoring_case(std::string_view a, std::string_view b);
+
+}  // namespace orrery

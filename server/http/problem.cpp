@@ -1,0 +1,75 @@
+#include "server/http/problem.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "server/app/watch.h"
+
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+
+Response respond(int status, std::string_view title, std::string_view detail, std::string_view request_id,
+                 std::string_view type = "about:blank", const ordered_json& more = ordered_json::object()) {
+  ordered_json problem = {{"type", type}, {"title", title}, {"status", status}, {"detail", detail},
+                          {"request_id", request_id}};
+  problem.update(more);
+  Response response = text_response(status, "application/problem+json",
+                                    problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+Response respond(int status, std::string_view detail, std::string_view request_id) {
+  return respond(status, reason_phrase(status), detail, request_id);
+}
+
+ordered_json list_of(const std::vector<Problem>& problems) {
+  ordered_json errors = ordered_json::array();
+  for (const Problem& p : problems) errors.push_back({{"pointer", p.pointer}, {"detail", p.detail}});
+  return {{"errors", std::move(errors)}};
+}
+
+Response malformed(const MalformedJson& error, std::string_view request_id) {
+  ordered_json more = list_of(error.problems());
+  more["offset"] = error.offset();
+  more["line"] = error.line();
+  more["column"] = error.column();
+  return respond(400, "The body is not JSON", error.what(), request_id, "urn:orrery:problem:malformed-json", more);
+}
+
+}  // namespace
+
+Response problem_response(std::exception_ptr error, std::string_view request_id) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const HttpError& e) {
+    Response response = respond(e.status(), e.what(), request_id);
+    for (const auto& [name, value] : e.headers()) response.set(name, value);
+    return response;
+  } catch (const MalformedJson& e) {
+    return malformed(e, request_id);
+  } catch (const InputError& e) {
+    return respond(422, "The input cannot be used", e.what(), request_id, "urn:orrery:problem:invalid-input",
+                   list_of(e.problems()));
+  } catch (const NotFound& e) {
+    return respond(404, e.what(), request_id);
+  } catch (const Busy& e) {
+    Response response = respond(503, e.what(), request_id);
+    response.set("Retry-After", std::to_string(static_cast<int>(std::ceil(e.retry_after_s()))));
+    return response;
+  } catch (const TimedOut& e) {
+    return respond(504, e.what(), request_id);
+  } catch (const Cancelled& e) {
+    return respond(499, e.what(), request_id);
+  } catch (const std::exception& e) {
+    Response response = respond(500, "Something went wrong inside; the log has more under this request's id", request_id);
+    response.note = e.what();
+    return response;
+  } catch (...) {
+    return respond(500, "Something went wrong inside", request_id);
+  }
+}
+
+}  // namespace orrery

@@ -1,0 +1,47 @@
+#include "server/http/router.h"
+
+#include <algorithm>
+
+#include "server/http/target.h"
+
+namespace orrery {
+namespace {
+
+bool is_place(std::string_view segment) { return segment.starts_with('{') && segment.ends_with('}'); }
+
+}  // namespace
+
+void Router::add(std::string_view method, std::string_view pattern, Handler handler) {
+  routes_.push_back({std::string(method), parse_target(pattern).segments, std::move(handler)});
+}
+
+bool Router::matches(const Route& route, Request& request) {
+  request.path_values.clear();
+  if (route.segments.size() != request.segments.size()) return false;
+  for (std::size_t i = 0; i < route.segments.size(); ++i) {
+    const std::string& wanted = route.segments[i];
+    if (is_place(wanted) && !request.segments[i].empty())
+      request.path_values.emplace_back(wanted.substr(1, wanted.size() - 2), request.segments[i]);
+    else if (wanted != request.segments[i])
+      return false;
+  }
+  return true;
+}
+
+Response Router::dispatch(Request& request) const {
+  const std::string method = request.method == "HEAD" ? "GET" : request.method;
+  std::vector<std::string> allowed;
+  for (const Route& route : routes_) {
+    if (!matches(route, request)) continue;
+    if (route.method == method) return route.handler(request);
+    allowed.push_back(route.method);
+    if (route.method == "GET") allowed.push_back("HEAD");
+  }
+  if (allowed.empty()) throw HttpError(404, "There is nothing at " + request.path.substr(0, 200));
+  std::sort(allowed.begin(), allowed.end());
+  std::string list;
+  for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
+  throw HttpError(405, request.method + " is not possible here, only " + list, {{"Allow", list}});
+}
+
+}  // namespace orrery

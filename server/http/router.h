@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/http/message.h"
+
+namespace orrery {
+
+// Finds the handler for a method and a path. Filled once, then const and safe from any thread.
+class Router {
+ public:
+  using Handler = std::function<Response(Request&)>;
+
+  // `pattern` is a path in which {name} stands for any one segment: "/v1/scenes/{id}/frame.png". A GET route
+  // answers HEAD as well. Routes added first are tried first.
+  void add(std::string_view method, std::string_view pattern, Handler handler);
+
+  // Fills request.path_values and calls the handler. Throws HttpError 404 or 405, and what the handler throws.
+  Response dispatch(Request& request) const;
+
+ private:
+  struct Route {
+    std::string method;
+    std::vector<std::string> segments;
+    Handler handler;
+  };
+  static bool matches(const Route& route, Request& request);
+
+  std::vector<Route> routes_;
+};
+
+}  // namespace orrery

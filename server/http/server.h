@@ -1,0 +1,53 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/http/message.h"
+
+namespace orrery {
+
+// An HTTP/1.1 server: sockets, threads and bytes. What requests mean is the handler's matter.
+class HttpServer {
+ public:
+  struct Options {
+    std::string host = "127.0.0.1";
+    int port = 0;  // 0: a free one
+    std::size_t max_body = 8 << 20;
+    std::size_t max_connections = 256;
+    std::chrono::seconds grace{30};  // for running requests once drain() was called
+  };
+
+  // All are called on several threads at once and throw nothing.
+  struct Handler {
+    std::function<Response(Request&)> answer;
+    // For what cannot even be understood as a request: what was thrown about it.
+    std::function<Response(Request&, std::exception_ptr)> refuse;
+    // After the answer: bytes sent, and whether the client had left by then.
+    std::function<void(const Request&, const Response&, std::uint64_t bytes, bool gone)> served;
+    // When the grace after drain() is over: running requests must end now.
+    std::function<void()> grace_over;
+  };
+
+  // Listens at once. Throws Error if the address cannot be had.
+  HttpServer(const Options& options, Handler handler);
+  ~HttpServer();
+
+  int port() const;
+
+  // Accepts connections until drain() was called and the last request was answered.
+  void run();
+
+  // Ends idle connections, and each other one after its next answer. New connections are served until run()
+  // returns, so that those who ask learn that the service ends. From any thread.
+  void drain();
+
+ private:
+  class Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace orrery

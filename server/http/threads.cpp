@@ -1,0 +1,47 @@
+#include "server/http/threads.h"
+
+#include <system_error>
+
+namespace orrery {
+
+ConnectionThreads::~ConnectionThreads() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+bool ConnectionThreads::start(std::function<void()> work) {
+  const std::lock_guard lock(mutex_);
+  if (idle_ <= waiting_.size()) {
+    if (threads_.size() == most_) return false;
+    try {
+      threads_.emplace_back([this] { serve(); });
+    } catch (const std::system_error&) {
+      return false;  // the machine has no more threads
+    }
+    ++idle_;  // it will take this work
+  }
+  waiting_.push_back(std::move(work));
+  changed_.notify_one();
+  return true;
+}
+
+void ConnectionThreads::serve() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [&] { return !waiting_.empty() || closed_; });
+    if (waiting_.empty()) return;
+    const std::function<void()> work = std::move(waiting_.front());
+    waiting_.pop_front();
+    --idle_;
+    lock.unlock();
+    work();
+    lock.lock();
+    ++idle_;
+  }
+}
+
+}  // namespace orrery

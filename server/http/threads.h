@@ -1,0 +1,33 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace orrery {
+
+// A thread a connection, made when first needed and used again.
+class ConnectionThreads {
+ public:
+  explicit ConnectionThreads(std::size_t most) : most_(most) {}
+  ~ConnectionThreads();  // waits for all work to end
+
+  // Starts the work, or returns false if all threads are busy. `work` throws nothing.
+  bool start(std::function<void()> work);
+
+ private:
+  void serve();
+
+  const std::size_t most_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> waiting_;  // never more than idle threads
+  std::size_t idle_ = 0;
+  bool closed_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace orrery

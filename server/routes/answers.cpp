@@ -1,0 +1,141 @@
+#include "server/routes/answers.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "core/params/suggest.h"
+#include "core/plan/plan.h"
+
+namespace orrery {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+// Calls `part` with each piece of a list, without the blanks around it.
+template <class Part>
+void split(std::string_view list, char separator, const Part& part) {
+  while (!list.empty()) {
+    const std::size_t end = list.find(separator);
+    part(trimmed(list.substr(0, end)));
+    list.remove_prefix(end == std::string_view::npos ? list.size() : end + 1);
+  }
+}
+
+void require_json(const Request& request) {
+  if (request.header("Content-Encoding")) throw HttpError(415, "A body must not be compressed (Content-Encoding)");
+  const std::string header = request.header("Content-Type").value_or("");
+  const std::string_view type = trimmed(std::string_view(header).substr(0, header.find(';')));
+  // curl and forms call every body x-www-form-urlencoded; it is read as JSON all the same.
+  constexpr std::array<std::string_view, 4> kTypes{"", "application/json", "application/x-www-form-urlencoded",
+                                                   "text/plain"};
+  const bool known = std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
+  if (!known && !(type.starts_with("application/") && type.ends_with("+json")))
+    throw HttpError(415, "Expected a body of application/json, got " + std::string(type.substr(0, 100)));
+}
+
+// How well one entry of an Accept header, such as "image/*;q=0.5", fits a type: 0..1 by its weight, or none.
+struct Fit {
+  int exactness = -1;  // 2: the type itself, 1: image/*, 0: */*
+  double weight = 0;
+};
+Fit fit_of(std::string_view entry, std::string_view type) {
+  const std::string_view range = trimmed(entry.substr(0, entry.find(';')));
+  Fit fit;
+  if (equal_ignoring_case(range, type)) fit.exactness = 2;
+  else if (range == "*/*") fit.exactness = 0;
+  else if (range.ends_with("/*") && equal_ignoring_case(range.substr(0, range.size() - 1),
+                                                        type.substr(0, type.find('/') + 1))) fit.exactness = 1;
+  if (fit.exactness < 0) return fit;
+  fit.weight = 1;
+  split(entry, ';', [&](std::string_view parameter) {
+    if (parameter.starts_with("q=")) fit.weight = std::strtod(std::string(parameter.substr(2)).c_str(), nullptr);
+  });
+  return fit;
+}
+
+}  // namespace
+
+Document read_json(Request& request) {
+  require_json(request);
+  return parse_document(request.read_body());
+}
+
+RenderRequest read_query(const Request& request, std::span<const std::string_view> more) {
+  std::vector<std::string_view> names(more.begin(), more.end());
+  for (const RenderOption& option : render_options()) names.push_back(option.name);
+  OptionValues values;
+  std::vector<Problem> problems;
+  for (const auto& [name, value] : request.query) {
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      problems.push_back({"/" + name, "unknown parameter" + did_you_mean(name, names)});
+    else if (std::find(more.begin(), more.end(), name) == more.end())
+      values.emplace_back(name, value);
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return with_names_for(Naming::query, [&] { return read_render_options(values); });
+}
+
+Plan plan_of_query(const Scene& scene, const RenderRequest& request) {
+  return with_names_for(Naming::query, [&] { return make_plan(scene, request); });
+}
+
+bool has_current(const Request& request, std::string_view etag) {
+  const auto header = request.header("If-None-Match");
+  if (!header) return false;
+  bool found = false;
+  split(*header, ',', [&](std::string_view known) {
+    if (known.starts_with("W/")) known.remove_prefix(2);
+    found = found || known == etag || known == "*";
+  });
+  return found;
+}
+
+std::string_view negotiate(const Request& request, std::span<const std::string_view> offered) {
+  const auto header = request.header("Accept");
+  if (!header || trimmed(*header).empty()) return offered[0];
+  std::string_view best;
+  double best_weight = 0;
+  for (const std::string_view type : offered) {
+    Fit closest;
+    split(*header, ',', [&](std::string_view entry) {
+      const Fit fit = fit_of(entry, type);
+      if (fit.exactness > closest.exactness) closest = fit;
+    });
+    if (closest.weight > best_weight) {
+      best = type;
+      best_weight = closest.weight;
+    }
+  }
+  if (!best.empty()) return best;
+  std::string all;
+  for (const std::string_view type : offered) all += (all.empty() ? "" : ", ") + std::string(type);
+  throw HttpError(406, "This can be had as " + all);
+}
+
+std::string server_timing(const Timing& timing) {
+  std::string text;
+  const auto add = [&](const char* name, double milliseconds) {
+    char entry[64];
+    std::snprintf(entry, sizeof entry, "%s%s;dur=%.3f", text.empty() ? "" : ", ", name, milliseconds);
+    text += entry;
+  };
+  add("queue", timing.queue);
+  add("load", timing.load);
+  add("plan", timing.plan);
+  add("build", timing.build);
+  add("render", timing.render);
+  add("encode", timing.encode);
+  return text;
+}
+
+Response json_answer(int status, const nlohmann::ordered_json& json) {
+  return json_response(status, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace orrery

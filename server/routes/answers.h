@@ -1,0 +1,37 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/app/app.h"
+#include "server/app/render_options.h"
+#include "server/http/message.h"
+
+// What several routes need to read a request and to write an answer.
+namespace orrery {
+
+// The body as JSON. Throws HttpError for a content type or coding that is not accepted, and what parse_document
+// throws.
+Document read_json(Request& request);
+
+// The options of a render in the query. `more` names what else the query may have; its values are left alone.
+// Throws InputError, with pointers such as "/azimuth".
+RenderRequest read_query(const Request& request, std::span<const std::string_view> more = {});
+
+// As make_plan(), with the names of the query in its errors.
+Plan plan_of_query(const Scene& scene, const RenderRequest& request);
+
+// Whether the client has what the ETag stands for.
+bool has_current(const Request& request, std::string_view etag);
+
+// The type of `offered` that the Accept header likes best; the first of equals. Throws HttpError 406.
+std::string_view negotiate(const Request& request, std::span<const std::string_view> offered);
+
+// "load;dur=1.25, render;dur=40.1": the steps that took any time.
+std::string server_timing(const Timing& timing);
+
+Response json_answer(int status, const nlohmann::ordered_json& json);
+
+}  // namespace orrery

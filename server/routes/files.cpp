@@ -1,0 +1,50 @@
+#include <array>
+
+#include "core/base/hash.h"
+#include "server/http/embedded.h"
+#include "server/http/router.h"
+#include "server/routes/answers.h"
+
+// GET / and the files of the page, GET /scenes/{name}.json: what was built into the program.
+namespace orrery {
+namespace {
+
+std::string_view type_of(std::string_view path) {
+  struct Ending {
+    std::string_view ending, type;
+  };
+  constexpr std::array kEndings{
+      Ending{".html", "text/html; charset=utf-8"},     Ending{".js", "text/javascript; charset=utf-8"},
+      Ending{".css", "text/css; charset=utf-8"},       Ending{".json", "application/json"},
+      Ending{".svg", "image/svg+xml; charset=utf-8"},  Ending{".png", "image/png"},
+      Ending{".ico", "image/x-icon"},                  Ending{".webmanifest", "application/manifest+json"},
+  };
+  for (const auto& [ending, type] : kEndings)
+    if (path.ends_with(ending)) return type;
+  return "application/octet-stream";
+}
+
+void add_file(Router& router, std::string_view address, const EmbeddedFile& file) {
+  const std::string etag = "\"" + sha256_hex(file.bytes).substr(0, 32) + "\"";
+  router.add("GET", address, [file, etag](Request& request) {
+    Response response = has_current(request, etag)
+                            ? Response{.status = 304}
+                            : text_response(200, type_of(file.path), std::string(file.bytes));
+    response.set("ETag", etag).set("Cache-Control", "no-cache");  // kept, but asked about each time
+    return response;
+  });
+}
+
+}  // namespace
+
+void add_files_routes(Router& router, App&) {
+  constexpr std::string_view kPage = "web/", kScenes = "scenes/", kSchemas = "scenes/schema/";
+  for (const EmbeddedFile& file : embedded_files()) {
+    if (file.path == "web/index.html") add_file(router, "/", file);
+    if (file.path.starts_with(kPage)) add_file(router, "/" + std::string(file.path.substr(kPage.size())), file);
+    else if (file.path.starts_with(kScenes) && !file.path.starts_with(kSchemas))
+      add_file(router, "/" + std::string(file.path), file);
+  }
+}
+
+}  // namespace orrery

@@ -1,0 +1,42 @@
+#include "server/app/app.h"
+#include "server/app/picture_key.h"
+#include "server/http/router.h"
+#include "server/routes/answers.h"
+
+// GET /v1/scenes/{id}/frame.png: one picture, a pure function of its address.
+namespace orrery {
+namespace {
+
+Response frame(App& app, Request& request) {
+  const auto scene = app.scenes().find(request.path_value("id"));
+  Timing timing;
+  const auto start = Clock::now();
+  const RenderRequest wanted = read_query(request);
+  const Plan plan = plan_of_query(scene->scene(), wanted);
+  timing.plan = milliseconds_since(start);
+
+  Response response;
+  const std::string etag = etag_of(scene->scene(), wanted);
+  if (has_current(request, etag)) {
+    response.status = 304;
+  } else if (request.method == "HEAD") {
+    response.set("Content-Type", "image/png");
+  } else {
+    Picture picture = app.render(*scene, plan, FileFormat::png, request.gone, timing);
+    response = text_response(200, "image/png", std::move(picture.bytes));
+    response.rays = picture.stats.counts.rays.total();
+    response.set("Server-Timing", server_timing(timing));
+    response.set("X-Rays", std::to_string(response.rays));
+  }
+  response.set("ETag", etag);
+  response.set("Cache-Control", "public, max-age=31536000, immutable");
+  return response;
+}
+
+}  // namespace
+
+void add_frame_routes(Router& router, App& app) {
+  router.add("GET", "/v1/scenes/{id}/frame.png", [&app](Request& request) { return frame(app, request); });
+}
+
+}  // namespace orrery

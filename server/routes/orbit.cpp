@@ -1,0 +1,121 @@
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "server/app/app.h"
+#include "server/app/picture_key.h"
+#include "server/http/router.h"
+#include "server/routes/answers.h"
+
+// GET /v1/scenes/{id}/orbit: the frames of a turn of the camera, as they are rendered.
+namespace orrery {
+namespace {
+
+constexpr std::array<std::string_view, 3> kOwnParameters{"frames", "step", "fps"};
+constexpr std::string_view kMultipart = "multipart/x-mixed-replace", kFrames = "application/x-orrery-frames";
+constexpr std::string_view kBoundary = "orrery-frame";
+
+// The number a parameter has, or `fallback`. Notes what is wrong with it.
+double number_of(const Request& request, std::string_view name, double min, double max, double fallback,
+                 std::vector<Problem>& problems) {
+  for (const auto& [key, text] : request.query) {
+    if (key != name) continue;
+    double number = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (problem == std::errc() && end == text.data() + text.size() && number >= min && number <= max) return number;
+    char range[96];
+    std::snprintf(range, sizeof range, "expected a number >= %g and <= %g, got ", min, max);
+    problems.push_back({"/" + key, range + nlohmann::json(text.substr(0, 40)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+  }
+  return fallback;
+}
+
+OrbitSpec read_orbit(App& app, const Request& request) {
+  OrbitSpec spec;
+  spec.scene = app.scenes().find(request.path_value("id"));
+  spec.request = read_query(request, kOwnParameters);
+  std::vector<Problem> problems;
+  const double frames = number_of(request, "frames", 1, app.settings().orbit_frames, 120, problems);
+  if (frames != std::floor(frames)) problems.push_back({"/frames", "expected a whole number"});
+  spec.frames = static_cast<int>(frames);
+  spec.step_degrees = number_of(request, "step", -360, 360, 360.0 / spec.frames, problems);
+  spec.fps = number_of(request, "fps", 0, 240, 30, problems);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  for (const int frame : {0, spec.frames - 1}) plan_of_query(spec.scene->scene(), spec.request_of(frame));
+  const Scene& scene = spec.scene->scene();
+  spec.key = scene.id + " " + canonical_request(scene, spec.request) + nlohmann::json({spec.frames, spec.step_degrees, spec.fps}).dump();
+  return spec;
+}
+
+// [length of the header, 4 bytes, big-endian][header, JSON][PNG]
+std::string framed(const OrbitFrame& frame, std::int64_t skipped) {
+  const Frame& picture = frame.picture;
+  const std::string header = nlohmann::ordered_json{
+      {"frame", frame.frame},
+      {"azimuth_degrees", frame.orbit.azimuth_degrees},
+      {"elevation_degrees", frame.orbit.elevation_degrees},
+      {"distance", frame.orbit.distance},
+      {"width", frame.width},
+      {"height", frame.height},
+      {"render_ms", picture.stats.build_ms + picture.stats.trace_ms},
+      {"encode_ms", picture.encode_ms},
+      {"skipped", skipped},
+      {"rays", picture.stats.counts.rays.total()},
+      {"bytes", picture.bytes.size()}}.dump();
+  std::string bytes;
+  bytes.reserve(4 + header.size() + picture.bytes.size());
+  for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(header.size() >> shift & 0xFF);
+  bytes += header;
+  bytes += picture.bytes;
+  return bytes;
+}
+
+// A part of a multipart body, with the boundary that ends it: a browser shows a picture when it sees the next one.
+std::string part(const OrbitFrame& frame, bool last) {
+  std::string bytes = "Content-Type: image/png\r\nContent-Length: " + std::to_string(frame.picture.bytes.size()) + "\r\n\r\n";
+  bytes.reserve(bytes.size() + frame.picture.bytes.size() + 32);
+  bytes += frame.picture.bytes;
+  bytes += "\r\n--" + std::string(kBoundary) + (last ? "--\r\n" : "\r\n");
+  return bytes;
+}
+
+void send_frames(OrbitCast::Viewer& viewer, const std::function<bool()>& gone, Sink& sink) {
+  while (const auto frame = viewer.next(gone))
+    if (!sink.write(framed(*frame, viewer.skipped()))) return;
+}
+
+void send_parts(OrbitCast::Viewer& viewer, const std::function<bool()>& gone, Sink& sink) {
+  if (!sink.write("--" + std::string(kBoundary) + "\r\n")) return;
+  bool ended = false;
+  while (const auto frame = viewer.next(gone)) {
+    ended = viewer.at_end();
+    if (!sink.write(part(*frame, ended))) return;
+  }
+  if (!ended) sink.write("\r\n--" + std::string(kBoundary) + "--\r\n");
+}
+
+Response orbit(App& app, Request& request) {
+  app.require_open();
+  const OrbitSpec spec = read_orbit(app, request);
+  const bool multipart = request.header("Accept").value_or("").find(kFrames) == std::string::npos;
+  Response response;
+  response.set("Content-Type", multipart ? std::string(kMultipart) + "; boundary=" + std::string(kBoundary)
+                                         : std::string(kFrames));
+  response.set("Cache-Control", "no-store").set("Vary", "Accept").set("X-Accel-Buffering", "no");
+  if (request.method == "HEAD") return response;
+  const std::shared_ptr<OrbitCast::Viewer> viewer = app.orbits().watch(spec);
+  response.stream = [viewer, multipart, gone = request.gone](Sink& sink) {
+    if (multipart) send_parts(*viewer, gone, sink);
+    else send_frames(*viewer, gone, sink);
+  };
+  return response;
+}
+
+}  // namespace
+
+void add_orbit_routes(Router& router, App& app) {
+  router.add("GET", "/v1/scenes/{id}/orbit", [&app](Request& request) { return orbit(app, request); });
+}
+
+}  // namespace orrery

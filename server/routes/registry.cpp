@@ -1,0 +1,27 @@
+#include "server/routes/routes.h"
+
+namespace orrery {
+
+// One line a file; the paths are in it.
+// clang-format off
+#define ORRERY_ROUTES(add) \
+  add(render)              \
+  add(scenes)              \
+  add(frame)               \
+  add(orbit)               \
+  add(explain)             \
+  add(catalog)             \
+  add(limits)              \
+  add(health)              \
+  add(schema)              \
+  add(files)
+// clang-format on
+
+#define ORRERY_DECLARE(name) void add_##name##_routes(Router& router, App& app);
+#define ORRERY_CALL(name) add_##name##_routes(router, app);
+
+ORRERY_ROUTES(ORRERY_DECLARE)
+
+void add_routes(Router& router, App& app) { ORRERY_ROUTES(ORRERY_CALL) }
+
+}  // namespace orrery

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "server/app/app.h"
+#include "server/http/router.h"
+
+namespace orrery {
+
+// Every endpoint, one line each in registry.cpp. The app outlives the router.
+void add_routes(Router& router, App& app);
+
+}  // namespace orrery

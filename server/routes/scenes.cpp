@@ -1,0 +1,78 @@
+#include <nlohmann/json.hpp>
+
+#include "server/app/app.h"
+#include "server/http/router.h"
+#include "server/routes/answers.h"
+
+// /v1/scenes: scenes that are kept to be rendered again and again, by the hash of what they say.
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json list_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+ordered_json camera_json(const Camera& camera) {
+  const bool perspective = camera.projection == Projection::perspective;
+  ordered_json json = {{"type", perspective ? "perspective" : "orthographic"},
+                       {"eye", list_of(camera.eye)},
+                       {"look_at", list_of(camera.look_at)},
+                       {"up", list_of(camera.up)}};
+  if (perspective) json["fov_degrees"] = camera.fov_degrees;
+  else json["height"] = camera.height;
+  return json;
+}
+
+ordered_json summary(const Scene& scene) {
+  return {{"id", scene.id},
+          {"title", scene.title},
+          {"width", scene.render.width},
+          {"height", scene.render.height},
+          {"camera", camera_json(scene.camera)},
+          {"objects", scene.object_count},
+          {"lights", scene.lights.size()}};
+}
+
+std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }
+
+Response add_scene(App& app, Request& request) {
+  app.require_open();
+  Timing timing;
+  const auto start = Clock::now();
+  const Document document = read_json(request);
+  timing.load = milliseconds_since(start);
+  const SceneStore::Added added = app.scenes().add(app.load(document, timing));
+  const Scene& scene = added.scene->scene();
+  Response response = json_answer(added.known ? 200 : 201, summary(scene));
+  response.set("Location", "/v1/scenes/" + scene.id);
+  response.set("ETag", etag_of_scene(scene));
+  response.set("Server-Timing", server_timing(timing));
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+Response get_scene(App& app, Request& request) {
+  const auto prepared = app.scenes().find(request.path_value("id"));
+  const Scene& scene = prepared->scene();
+  const std::string etag = etag_of_scene(scene);
+  const bool known = has_current(request, etag);
+  Response response = known ? Response{.status = 304} : json_response(200, scene.canonical);
+  response.set("ETag", etag);
+  response.set("Cache-Control", "no-cache");  // it may be gone: ask each time
+  return response;
+}
+
+Response remove_scene(App& app, Request& request) {
+  app.scenes().remove(request.path_value("id"));
+  return {.status = 204};
+}
+
+}  // namespace
+
+void add_scenes_routes(Router& router, App& app) {
+  router.add("POST", "/v1/scenes", [&app](Request& request) { return add_scene(app, request); });
+  router.add("GET", "/v1/scenes/{id}", [&app](Request& request) { return get_scene(app, request); });
+  router.add("DELETE", "/v1/scenes/{id}", [&app](Request& request) { return remove_scene(app, request); });
+}
+
+}  // namespace orrery

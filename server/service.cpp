@@ -1,0 +1,98 @@
+#include "server/service.h"
+
+#include <cmath>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "core/base/version.h"
+#include "server/http/problem.h"
+#include "server/routes/routes.h"
+
+namespace orrery {
+namespace {
+
+// "Sun, 06 Nov 1994 08:49:37 GMT" (RFC 9110, 5.6.7), whatever the locale.
+std::string http_date() {
+  constexpr const char* kDays[] = {"Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"};
+  constexpr const char* kMonths[] = {"Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+  const std::time_t now = std::time(nullptr);
+  std::tm t{};
+  gmtime_r(&now, &t);
+  char text[64];
+  std::snprintf(text, sizeof text, "%s, %02d %s %d %02d:%02d:%02d GMT", kDays[t.tm_wday], t.tm_mday, kMonths[t.tm_mon],
+                t.tm_year + 1900, t.tm_hour, t.tm_min, t.tm_sec);
+  return text;
+}
+
+// What every answer carries.
+void add_common_headers(const Request& request, Response& response) {
+  response.set("X-Request-ID", request.id)
+      .set("Date", http_date())
+      .set("Server", "orrery/" + std::string(kVersion))
+      .set("X-Content-Type-Options", "nosniff")
+      .set("Referrer-Policy", "no-referrer")
+      .set("Content-Security-Policy", "default-src 'self'");
+}
+
+HttpServer::Options options_of(const Settings& settings) {
+  return {.host = settings.host,
+          .port = settings.port,
+          .max_body = settings.body_bytes,
+          .max_connections = settings.connections,
+          .grace = settings.grace};
+}
+
+}  // namespace
+
+Service::Service(const Settings& settings, const Log& log)
+    : log_(log),
+      app_(settings),
+      server_(options_of(settings),
+              {.answer = [this](Request& request) { return answer(request); },
+               .refuse =
+                   [](Request& request, std::exception_ptr error) {
+                     Response response = problem_response(error, request.id);
+                     add_common_headers(request, response);
+                     return response;
+                   },
+               .served = [this](const Request& request, const Response& response, std::uint64_t bytes,
+                                bool gone) { note(request, response, bytes, gone); },
+               .grace_over = [this] { app_.end(); }}) {
+  add_routes(router_, app_);
+}
+
+void Service::run() { server_.run(); }
+
+void Service::stop() {
+  log_.write(LogLevel::info, "draining", nlohmann::ordered_json::object());
+  app_.drain();
+  server_.drain();
+}
+
+Response Service::answer(Request& request) {
+  Response response;
+  try {
+    response = router_.dispatch(request);
+  } catch (...) {
+    response = problem_response(std::current_exception(), request.id);
+  }
+  add_common_headers(request, response);
+  return response;
+}
+
+void Service::note(const Request& request, const Response& response, std::uint64_t bytes, bool gone) const {
+  nlohmann::ordered_json fields = {{"id", request.id},
+                                   {"method", request.method},
+                                   {"path", request.path.substr(0, 200)},
+                                   {"status", response.status},
+                                   {"ms", std::round(milliseconds_since(request.start) * 1000) / 1000},
+                                   {"bytes", bytes}};
+  if (response.rays > 0) fields["rays"] = response.rays;
+  if (gone) fields["client_left"] = true;
+  if (!response.note.empty()) fields["error"] = response.note;
+  const bool health = request.path == "/healthz" || request.path == "/readyz";
+  const LogLevel level = response.status == 500 ? LogLevel::error : health ? LogLevel::debug : LogLevel::info;
+  log_.write(level, "request", fields);
+}
+
+}  // namespace orrery

@@ -1,0 +1,174 @@
+#include "core/math/bounds.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+
+// The box test loses no ray that touches the box.
+namespace orrery {
+namespace {
+
+template <class N>
+struct BoxTest {
+  Vec3<N> lo, hi, origin, direction;
+
+  MaskOf<N> enters_it() const {
+    using T = ScalarOf<N>;
+    const Vec3<N> inverse(T(1) / direction.x, T(1) / direction.y, T(1) / direction.z);
+    return enters(lo, hi, origin, inverse, N(std::numeric_limits<T>::infinity()));
+  }
+};
+
+// The textbook form: near and far planes by min and max, no padding.
+template <class T>
+bool naive(const BoxTest<T>& b) {
+  T near = 0, far = std::numeric_limits<T>::infinity();
+  const auto slab = [&](T lo, T hi, T o, T d) {
+    const T t0 = (lo - o) * (1 / d), t1 = (hi - o) * (1 / d);
+    near = std::max(near, std::min(t0, t1));
+    far = std::min(far, std::max(t0, t1));
+  };
+  slab(b.lo.x, b.hi.x, b.origin.x, b.direction.x);
+  slab(b.lo.y, b.hi.y, b.origin.y, b.direction.y);
+  slab(b.lo.z, b.hi.z, b.origin.z, b.direction.z);
+  return near <= far;
+}
+
+template <class T>
+class Slabs : public testing::Test {
+ public:
+  // A ray that meets a corner of a box exactly at t = 1: all numbers are whole multiples of one unit and leave a
+  // bit free, so that corner - origin is exact. The box has no extent along one axis.
+  static BoxTest<T> ray_through_a_corner(test::Random& random, T unit) {
+    constexpr int kBits = std::numeric_limits<T>::digits - 2;
+    const auto whole = [&](std::int64_t below) { return static_cast<T>(random.bits() % static_cast<std::uint64_t>(below)); };
+    const auto place = [&] { return (whole(std::int64_t{1} << kBits) - static_cast<T>(std::int64_t{1} << (kBits - 1))) * unit; };
+    const auto extent = [&] { return (T(1) + whole(4096)) * unit; };
+    BoxTest<T> b;
+    b.lo = {place(), place(), place()};
+    b.hi = {b.lo.x + extent(), b.lo.y + extent(), b.lo.z + extent()};
+    const int flat = random.below(3);
+    if (flat == 0) b.hi.x = b.lo.x;
+    if (flat == 1) b.hi.y = b.lo.y;
+    if (flat == 2) b.hi.z = b.lo.z;
+    const Vec3<T> corner(random.below(2) ? b.lo.x : b.hi.x, random.below(2) ? b.lo.y : b.hi.y,
+                         random.below(2) ? b.lo.z : b.hi.z);
+    b.origin = {place(), place(), place()};
+    b.direction = corner - b.origin;
+    return b;
+  }
+};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Slabs, Scalars);
+
+TYPED_TEST(Slabs, LoseNoneOfAMillionRaysThroughCorners) {
+  using T = TypeParam;
+  test::covers("A27");
+  test::Random random(7);
+  int lost = 0, lost_by_the_textbook = 0;
+  constexpr int kRays = 1'000'000;
+  for (int i = 0; i < kRays; ++i) {
+    const T unit = std::ldexp(T(1), 1 - std::numeric_limits<T>::digits + random.below(21));  // coordinates 1 .. 1e6
+    const BoxTest<T> b = this->ray_through_a_corner(random, unit);
+    lost += !b.enters_it();
+    lost_by_the_textbook += !naive(b);
+  }
+  EXPECT_EQ(lost, 0);
+  EXPECT_GT(lost_by_the_textbook, kRays / 20) << "these rays are too easy to prove anything";
+}
+
+TYPED_TEST(Slabs, KeepTheRayThatTheTextbookLoses) {
+  using T = TypeParam;
+  test::covers("A27");
+  BoxTest<T> b;
+  b.lo = Vec3<T>(Vec3<float>(.941331983f, .680011868f, 1.49681544f));
+  b.hi = Vec3<T>(Vec3<float>(.94203943f, .680708647f, 1.49681544f));
+  b.origin = Vec3<T>(Vec3<float>(7.3407073f, 7.95443916f, -7.36857891f));
+  b.direction = Vec3<T>(Vec3<float>(-6.39937544f, -7.27442741f, 8.86539459f));
+  EXPECT_TRUE(b.enters_it());
+}
+
+// A ray in the plane of a face gives 0 * infinity there. Four places touch the unit cube, two do not, for each
+// axis of the direction, both of its signs and both signs of its zeros.
+TYPED_TEST(Slabs, KeepRaysInTheFacesAndRefuseTheOthers) {
+  using T = TypeParam;
+  test::covers("A28");
+  struct Place {
+    T across, other;
+    bool touches;
+  };
+  const std::array<Place, 6> places = {{{0, T(.5), true},
+                                        {1, T(.5), true},
+                                        {0, 1, true},
+                                        {T(.25), T(.75), true},
+                                        {2, T(.5), false},
+                                        {T(.5), -1, false}}};
+  const auto permuted = [](T along, T across, T other, int axis) {
+    return axis == 0 ? Vec3<T>(along, across, other) : axis == 1 ? Vec3<T>(other, along, across) : Vec3<T>(across, other, along);
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const T zero : {T(0), -T(0)})
+      for (const T along : {T(1), T(-1)})
+        for (const Place& place : places) {
+          BoxTest<T> b;
+          b.lo = Vec3<T>(T(0));
+          b.hi = Vec3<T>(T(1));
+          b.origin = permuted(along > 0 ? T(-1) : T(2), place.across, place.other, axis);
+          b.direction = permuted(along, zero, zero, axis);
+          EXPECT_EQ(b.enters_it(), place.touches)
+              << "axis " << axis << " zero " << zero << " at " << place.across << ", " << place.other;
+        }
+}
+
+TYPED_TEST(Slabs, LanesEqualScalarsToTheBit) {
+  using T = TypeParam;
+  using N = Lanes<T>;
+  test::Random random(9);
+  for (int i = 0; i < 5'000; ++i) {
+    BoxTest<N> lanes;
+    std::array<BoxTest<T>, N::size()> each;
+    for (std::size_t lane = 0; lane < N::size(); ++lane) {
+      each[lane] = this->ray_through_a_corner(random, T(1));
+      each[lane].direction = each[lane].direction + Vec3<T>(random.direction());
+      if (random.below(4) == 0) each[lane].direction.y = -T(0);
+      const auto set = [&](Vec3<N> BoxTest<N>::* to, const Vec3<T>& v) {
+        (lanes.*to).x[lane] = v.x, (lanes.*to).y[lane] = v.y, (lanes.*to).z[lane] = v.z;
+      };
+      set(&BoxTest<N>::lo, each[lane].lo);
+      set(&BoxTest<N>::hi, each[lane].hi);
+      set(&BoxTest<N>::origin, each[lane].origin);
+      set(&BoxTest<N>::direction, each[lane].direction);
+    }
+    const auto entered = lanes.enters_it();
+    for (std::size_t lane = 0; lane < N::size(); ++lane) EXPECT_EQ(entered[lane], each[lane].enters_it());
+  }
+}
+
+TYPED_TEST(Slabs, LookOnlyAheadAndNoFurtherThanTheEnd) {
+  using T = TypeParam;
+  const Vec3<T> lo(T(1)), hi(T(2)), origin(T(0)), inverse(T(1), T(1), T(1));
+  EXPECT_TRUE(enters(lo, hi, origin, inverse, T(1)));
+  EXPECT_FALSE(enters(lo, hi, origin, inverse, T(0.99)));
+  EXPECT_FALSE(enters(lo, hi, origin, inverse, T(-1))) << "an inactive ray";
+  EXPECT_FALSE(enters(lo, hi, origin, Vec3<T>(T(-1)), T(100)));
+  EXPECT_TRUE(enters(lo, hi, Vec3<T>(T(1.5)), inverse, T(0.1))) << "starts inside";
+}
+
+TEST(Bounds, PaddingCoversTheRoundingToFloat) {
+  test::Random random(11);
+  for (int i = 0; i < 10'000; ++i) {
+    const double scale = random.magnitude(1e-6, 1e6);
+    Boundsd b;
+    b.include(random.in_cube(scale));
+    b.include(random.in_cube(scale));
+    const Bounds<float> grown = padded<float>(b);
+    EXPECT_LT(static_cast<double>(grown.lo.x), b.lo.x);
+    EXPECT_GT(static_cast<double>(grown.hi.z), b.hi.z);
+  }
+}
+
+}  // namespace
+}  // namespace orrery

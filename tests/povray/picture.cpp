@@ -1,0 +1,152 @@
+#include "tests/povray/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "core/image/files.h"
+#include "core/model/technique.h"
+#include "core/render/prepare.h"
+
+namespace orrery {
+
+Picture render_picture(const PreparedScene& scene, const Plan& plan) {
+  WorkerPool pool(1);
+  const RenderResult result = render_frame(scene, plan, PixelFormat::linear32, pool);
+  Picture picture(plan.width, plan.height);
+  for (int y = 0; y < plan.height; ++y)
+    for (int x = 0; x < plan.width; ++x) picture.at(x, y) = result.image.linear(x, y);
+  return picture;
+}
+
+namespace {
+
+const World<double>& world_of(const PreparedScene& scene, const Plan& plan) {
+  double build_ms = 0;
+  return world_for<double>(scene.parts(), *plan.accelerator, build_ms);
+}
+
+// Calls visit(rays, put) for each tile, its rays (dx, dy) pixels off the pixels' centres; put(pixels, slot, value)
+// sets the pixel of a slot.
+template <class Visit>
+void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
+  TileSamples samples;
+  samples.u.values.fill(0.5f + dx);
+  samples.v.values.fill(0.5f + dy);
+  const auto rays = std::make_unique<RayBatch<double>>();
+  for (int y0 = 0; y0 < plan.height; y0 += kTileSide)
+    for (int x0 = 0; x0 < plan.width; x0 += kTileSide) {
+      generate_rays(plan.camera, plan.width, plan.height, x0, y0, samples, *rays);
+      visit(*rays, [&](auto& pixels, int slot, const auto& value) {
+        const int x = x0 + tile_pixel(slot).x, y = y0 + tile_pixel(slot).y;
+        if (x < plan.width && y < plan.height) pixels[static_cast<std::size_t>(y * plan.width + x)] = value;
+      });
+    }
+}
+
+}  // namespace
+
+Picture render_shifted(const PreparedScene& scene, const Plan& plan, float dx, float dy) {
+  const TracerPtr<double> tracer = make_tracer(*plan.technique, world_of(scene, plan), plan);
+  const auto result = std::make_unique<TraceResult<double>>();
+  TraceCounts counts;
+  Picture picture(plan.width, plan.height);
+  for_each_tile(plan, dx, dy, [&](const RayBatch<double>& rays, const auto& put) {
+    tracer->trace(rays, *result, counts);
+    const Vec3Array<double>& radiance = result->radiance;
+    for (int slot = 0; slot < kBatch; ++slot)
+      put(picture.pixels, slot, Vec3f(Vec3d(radiance.x[slot], radiance.y[slot], radiance.z[slot])));
+  });
+  return picture;
+}
+
+std::vector<bool> normals_facing_away(const PreparedScene& scene, const Plan& plan) {
+  const World<double>& world = world_of(scene, plan);
+  const Groups all = Groups::covering(0, kBatch, kWidth<double>);
+  const auto hits = std::make_unique<HitBatch<double>>();
+  const auto surface = std::make_unique<SurfaceBatch<double>>();
+  AcceleratorCounts counts;
+  std::vector<bool> away(static_cast<std::size_t>(plan.width) * static_cast<std::size_t>(plan.height));
+  for_each_tile(plan, 0, 0, [&](const RayBatch<double>& rays, const auto& put) {
+    hits->t = rays.t_max;
+    hits->primitive.values.fill(kNoPrimitive);
+    world.accelerator->closest(rays, all, *hits, counts);
+    for (const auto& shapes : world.shapes) shapes->surface(rays, *hits, all, *surface);
+    for (int i = 0; i < kBatch; ++i) {
+      const Vec3d direction(rays.direction.x[i], rays.direction.y[i], rays.direction.z[i]);
+      const Vec3d normal(surface->normal.x[i], surface->normal.y[i], surface->normal.z[i]);
+      put(away, i, hits->primitive[i] != kNoPrimitive && dot(direction, normal) > 0);
+    }
+  });
+  return away;
+}
+
+namespace {
+
+Vec3f difference_by_channel(const Vec3f& a, const Vec3f& b, float brightest) {
+  const auto one = [&](float x, float y) { return std::min(x, brightest) - std::min(y, brightest); };
+  return abs(Vec3f(one(a.x, b.x), one(a.y, b.y), one(a.z, b.z)));
+}
+
+}  // namespace
+
+float difference(const Vec3f& a, const Vec3f& b, float brightest) {
+  return max_component(difference_by_channel(a, b, brightest));
+}
+
+Comparison compare(const Picture& a, const Picture& b, const std::vector<bool>& edges, float brightest) {
+  Comparison result;
+  double inside = 0, all = 0;
+  std::size_t edge_count = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      const Vec3d d(difference_by_channel(a.at(x, y), b.at(x, y), brightest));
+      all += dot(d, d);
+      if (edges[static_cast<std::size_t>(y * a.width + x)]) {
+        ++edge_count;
+        continue;
+      }
+      inside += dot(d, d);
+      if (max_component(d) > result.largest) {
+        result.largest = max_component(d);
+        result.largest_x = x;
+        result.largest_y = y;
+      }
+    }
+  const auto count = static_cast<double>(a.pixels.size()), edge = static_cast<double>(edge_count);
+  result.rms = std::sqrt(inside / (3 * (count - edge)));
+  result.rms_of_all = std::sqrt(all / (3 * count));
+  result.edge_share = edge / count;
+  return result;
+}
+
+Picture difference_picture(const Picture& a, const Picture& b, const std::vector<bool>& edges, float brightest,
+                           float gain) {
+  Picture out(a.width, a.height);
+  for (std::size_t i = 0; i < out.pixels.size(); ++i)
+    out.pixels[i] =
+        edges[i] ? Vec3f(0, 0, 0.3f) : difference_by_channel(a.pixels[i], b.pixels[i], brightest) * gain;
+  return out;
+}
+
+void write_png(const Picture& picture, const std::string& path) {
+  Image image(picture.width, picture.height, PixelFormat::srgb8);
+  constexpr int kRun = 16;
+  struct alignas(64) Run {
+    float values[kRun] = {};
+  } red, green, blue;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; x += kRun) {
+      const int count = std::min(kRun, picture.width - x);
+      for (int i = 0; i < count; ++i) {
+        const Vec3f& pixel = picture.at(x + i, y);
+        red.values[i] = pixel.x;
+        green.values[i] = pixel.y;
+        blue.values[i] = pixel.z;
+      }
+      image.set_row(x, y, count, red.values, green.values, blue.values);
+    }
+  std::ofstream(path, std::ios::binary) << encode_png(image);
+}
+
+}  // namespace orrery

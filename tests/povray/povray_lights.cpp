@@ -1,0 +1,49 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tests/povray/povray_scene.h"
+#include "tests/povray/povray_text.h"
+
+namespace orrery::povray {
+namespace {
+
+constexpr double kFarAway = 1e5;  // a directional light's place, beyond every shadow that a picture shows
+
+struct Fading {
+  double factor;  // of the light's colour
+  std::string keywords;
+};
+
+// POV-Ray's light fades as 2 / (1 + (d / distance)^power): our 1 / (c0 + c1 d + c2 d^2) where c1 or c2 is 0.
+// Ours never exceeds 1 and POV-Ray's does, so that the two agree only where c0 + c1 d + c2 d^2 >= 1.
+Fading fading_of(const Json& light) {
+  const Vec3d c = vector_of(light, "attenuation", {1, 0, 0});
+  if (c.y == 0 && c.z == 0) return {std::min(1.0, 1 / c.x), ""};
+  if (c.x == 0 || (c.y != 0 && c.z != 0)) throw Inexpressible("an attenuation of this form");
+  const double power = c.y != 0 ? 1 : 2;
+  const double distance = c.y != 0 ? c.x / c.y : std::sqrt(c.x / c.z);
+  return {0.5 / c.x, " fade_power " + text(power) + " fade_distance " + text(distance)};
+}
+
+// Between the two angles POV-Ray's beam falls as a smooth step in the cosine, too; tightness would narrow it.
+std::string cone_of(const Json& light) {
+  const Vec3d aim = vector_of(light, "position") + normalize(vector_of(light, "direction"));
+  return " spotlight point_at " + text(aim) + " radius " + text(light.value("inner_degrees", 15.0)) + " falloff " +
+         text(light.value("outer_degrees", 30.0)) + " tightness 0";
+}
+
+}  // namespace
+
+std::string light_of(const Json& light, double exposure) {
+  const std::string type = light.at("type");
+  const Vec3d intensity = vector_of(light, "intensity", Vec3d(1)) * exposure;
+  if (type == "directional")
+    return "light_source { " + text(normalize(vector_of(light, "from")) * kFarAway) + " rgb " + text(intensity) +
+           " parallel point_at 0 }\n";
+  if (type != "point" && type != "spot") throw Inexpressible("the light type " + type);
+  const Fading fading = fading_of(light);
+  return "light_source { " + text(vector_of(light, "position")) + " rgb " + text(intensity * fading.factor) +
+         (type == "spot" ? cone_of(light) : "") + fading.keywords + " }\n";
+}
+
+}  // namespace orrery::povray

@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tests/povray/povray_scene.h"
+#include "tests/povray/povray_text.h"
+
+namespace orrery::povray {
+namespace {
+
+// a / b for each channel, where POV-Ray knows only multiples of the pigment `b`.
+Vec3d ratio(const Vec3d& a, const Vec3d& b) {
+  const auto one = [](double x, double of) {
+    if (of == 0 && x != 0) throw Inexpressible("ambient light from a channel that is not in the pigment");
+    return of == 0 ? 0 : x / of;
+  };
+  return {one(a.x, b.x), one(a.y, b.y), one(a.z, b.z)};
+}
+
+// The pigment is our diffuse colour. POV-Ray's highlights have the light's colour: `phong` is a power of the
+// mirrored direction's cosine as ours is, `specular` a power 1 / roughness of the half vector's.
+Material rough(const Json& m) {
+  const Vec3d cd = vector_of(m, "cd", Vec3d(1));
+  const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8));
+  const Vec3d ambient = ratio(coefficient_of(m, "ka", kd) * cd, kd * cd);
+  const Vec3d highlight = coefficient_of(m, "ks", Vec3d(0)) * vector_of(m, "cs", Vec3d(1));
+  if (highlight.x != highlight.y || highlight.y != highlight.z) throw Inexpressible("a coloured highlight");
+  const double shininess = m.value("shininess", 20.0);
+  if (shininess == 0 && highlight.x > 0) throw Inexpressible("a highlight of shininess 0");
+  std::string finish = "diffuse 1 ambient rgb " + text(ambient);
+  if (highlight.x > 0)
+    finish += m.value("shading", "blinn-phong") == "phong"
+                  ? " phong " + text(highlight.x) + " phong_size " + text(shininess)
+                  : " specular " + text(highlight.x) + " roughness " + text(1 / shininess);
+  return {"pigment { rgb " + text(kd * cd) + " } finish { " + finish + " } ", false};
+}
+
+// Schlick's approximation is a reflection that rises from F0 to 1 with the fifth power of 1 - cos.
+Material reflective(const Json& m) {
+  if (m.value("fresnel", "schlick") != "schlick") throw Inexpressible("Fresnel's equations of a metal");
+  const Vec3d n = vector_of(m, "n"), k = vector_of(m, "k"), one(1);
+  const Vec3d top = (n - one) * (n - one) + k * k, bottom = (n + one) * (n + one) + k * k;
+  const Vec3d f0(top.x / bottom.x, top.y / bottom.y, top.z / bottom.z);
+  return {"pigment { rgb 0 } finish { ambient 0 diffuse 0 reflection { rgb " + text(f0) +
+              ", rgb 1 falloff 5 } } ",
+          false};
+}
+
+// Filtering is a medium that only absorbs. (An interior's fade_color spares the light mirrored inside.)
+Material refractive(const Json& m) {
+  if (m.value("fresnel", "schlick") != "exact") throw Inexpressible("Schlick's approximation by the outer cosine");
+  const Vec3d filter = vector_of(m, "filter", Vec3d(1));
+  if (std::min({filter.x, filter.y, filter.z}) <= 0) throw Inexpressible("a filter that lets nothing pass");
+  const Vec3d absorption(-std::log(filter.x), -std::log(filter.y), -std::log(filter.z));
+  std::string interior = "ior " + text(m.at("ior").get<double>());
+  if (filter != Vec3d(1)) interior += " media { absorption rgb " + text(absorption) + " }";
+  return {"pigment { rgbt 1 } finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy } "
+          "interior { " + interior + " } hollow ",
+          true};
+}
+
+}  // namespace
+
+Material material_of(const Json& material) {
+  const std::string type = material.at("type");
+  if (type == "rough") return rough(material);
+  if (type == "reflective") return reflective(material);
+  if (type == "refractive") return refractive(material);
+  throw Inexpressible("the material type " + type);
+}
+
+}  // namespace orrery::povray

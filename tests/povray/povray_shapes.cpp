@@ -1,0 +1,62 @@
+#include "tests/povray/povray_scene.h"
+#include "tests/povray/povray_text.h"
+
+namespace orrery::povray {
+namespace {
+
+std::string plane(const Json& o) {
+  const Vec3d normal = normalize(vector_of(o, "normal"));
+  return "plane { " + text(normal) + ", " + text(dot(normal, vector_of(o, "point"))) + " ";
+}
+
+std::string triangle(const Json& o) {
+  const Json& v = o.at("vertices");
+  return "triangle { " + text(vector_of(v[0])) + ", " + text(vector_of(v[1])) + ", " + text(vector_of(v[2])) + " ";
+}
+
+std::string list(const char* name, const Json& triples) {
+  std::string out = std::string(name) + " { " + std::to_string(triples.size());
+  for (const Json& triple : triples) out += ",\n    " + text(vector_of(triple));
+  return out + " }\n";
+}
+
+std::string mesh(const Json& o) {
+  std::string out = "mesh2 {\n  " + list("vertex_vectors", o.at("positions"));
+  if (o.contains("normals") && !o.at("normals").empty()) out += "  " + list("normal_vectors", o.at("normals"));
+  return out + "  " + list("face_indices", o.at("indices"));
+}
+
+// |p - c|^2 - ((p - c) . a)^2 = r^2 as a quadric: the matrix is M = 1 - a a^T.
+std::string infinite_cylinder(const Json& o) {
+  const Vec3d c = vector_of(o, "point"), a = normalize(vector_of(o, "axis"));
+  const double radius = o.at("radius");
+  const Vec3d squares(1 - a.x * a.x, 1 - a.y * a.y, 1 - a.z * a.z);
+  const Vec3d products(-2 * a.x * a.y, -2 * a.x * a.z, -2 * a.y * a.z);
+  const Vec3d across = c - a * dot(c, a);  // M c
+  return "quadric { " + text(squares) + ", " + text(products) + ", " + text(across * -2.0) + ", " +
+         text(dot(c, across) - radius * radius) + " ";
+}
+
+std::string cylinder(const Json& o) {
+  if (o.contains("axis")) return infinite_cylinder(o);
+  return "cylinder { " + text(vector_of(o, "base")) + ", " + text(vector_of(o, "top")) + ", " +
+         text(o.at("radius").get<double>()) + " ";
+}
+
+}  // namespace
+
+std::string shape_of(const Json& o) {
+  const std::string type = o.at("type");
+  if (type == "sphere") return "sphere { " + text(vector_of(o, "center")) + ", " + text(o.at("radius").get<double>()) + " ";
+  if (type == "box") return "box { " + text(vector_of(o, "min")) + ", " + text(vector_of(o, "max")) + " ";
+  if (type == "disk")
+    return "disc { " + text(vector_of(o, "center")) + ", " + text(vector_of(o, "normal")) + ", " +
+           text(o.at("radius").get<double>()) + " ";
+  if (type == "plane") return plane(o);
+  if (type == "triangle") return triangle(o);
+  if (type == "mesh") return mesh(o);
+  if (type == "cylinder") return cylinder(o);
+  throw Inexpressible("the shape " + type);
+}
+
+}  // namespace orrery::povray

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/math/vec3.h"
+
+// How numbers, points and members of a JSON object are read and written by the parts of povray_scene().
+namespace orrery::povray {
+
+using Json = nlohmann::json;
+
+inline std::string text(double x) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.17g", x);
+  return buffer;
+}
+inline std::string text(const Vec3d& v) { return "<" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + ">"; }
+
+inline Vec3d vector_of(const Json& numbers) { return {numbers.at(0), numbers.at(1), numbers.at(2)}; }
+inline Vec3d vector_of(const Json& object, const char* key) { return vector_of(object.at(key)); }
+inline Vec3d vector_of(const Json& object, const char* key, const Vec3d& otherwise) {
+  return object.contains(key) ? vector_of(object.at(key)) : otherwise;
+}
+// A coefficient: one number for all channels, or a colour.
+inline Vec3d coefficient_of(const Json& object, const char* key, const Vec3d& otherwise) {
+  if (!object.contains(key)) return otherwise;
+  const Json& value = object.at(key);
+  return value.is_number() ? Vec3d(value.get<double>()) : vector_of(value);
+}
+
+// What stands inside the braces of an object that has this material, and whether light passes through it.
+struct Material {
+  std::string modifiers;
+  bool transparent;
+};
+Material material_of(const Json& material);
+
+// The object without its closing brace, so that modifiers can follow.
+std::string shape_of(const Json& object);
+
+std::string light_of(const Json& light, double exposure);
+
+}  // namespace orrery::povray

@@ -1,0 +1,121 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+#include "tests/support/shapes.h"
+
+// Rays that leave a surface, as shadow rays, mirrored and refracted rays do, never meet the place they left.
+namespace orrery::test {
+namespace {
+
+template <class T>
+std::vector<Placement> places_of_sizes() {
+  std::vector<Placement> places;
+  for (const double offset : {0.0, 1.0, 1e3, 1e6})
+    for (const double size : {1e-5, 1.0, 1e6})
+      if (std::is_same_v<T, double> || offset <= 1e3 * size) places.push_back({size, Vec3d(offset, offset, offset)});
+  return places;
+}
+
+struct Tally {
+  int rays = 0, self_hits = 0, leaks = 0;
+};
+
+template <class T>
+class Leaver {
+ public:
+  Leaver(const Json& object, const Placement& placement, int count)
+      : shape_(scene_of(Json::array({placement.of(object)}), Json::object())) {
+    for (const auto& ray : rays_at<T>(object, placement, count, 5))
+      if (shape_.closest(ray).met()) rays_.push_back(ray);
+    hits_ = shape_.closest(rays_);
+    spots_ = shape_.surfaces(rays_, hits_);
+  }
+
+  // Half of the rays leave within a millionth of the surface, the others anywhere above it.
+  void leave(Random& random, Tally& tally) const {
+    Rays<T> outward, inward;
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const Vec3d normal(spots_[i].geometric);
+      Vec3d direction = random.direction_above(normal);
+      const Vec3d along = direction - normal * dot(direction, normal);
+      if (i % 2) direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(1e-6, 0.1));
+      outward.push_back(spots_[i].leaving(Vec3<T>(direction)));
+      inward.push_back(spots_[i].leaving(Vec3<T>(direction - normal * (2 * dot(direction, normal)))));
+    }
+    const auto again = shape_.closest(outward), through = shape_.closest(inward);
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const int primitive = hits_[i].primitive;
+      const bool closed = shape_.traits(primitive).closed;
+      ++tally.rays;
+      if (closed && spots_[i].side < 0) continue;  // within it, other places may be met or not
+      tally.self_hits += again[i].primitive == primitive;
+      if (closed)
+        tally.leaks += !through[i].met();
+      else
+        tally.self_hits += through[i].primitive == primitive;
+    }
+  }
+
+ private:
+  Target<T> shape_;
+  Rays<T> rays_;
+  std::vector<Hit<T>> hits_;
+  std::vector<Spot<T>> spots_;
+};
+
+class Respawn : public testing::TestWithParam<std::string> {
+ protected:
+  template <class T>
+  void check(int total) {
+    const auto places = places_of_sizes<T>();
+    const auto& samples = shape_samples(GetParam());
+    Tally tally;
+    Random random(31);
+    for (const Json& object : samples)
+      for (const Placement& placement : places) {
+        const Tally before = tally;
+        const Leaver<T> leaver(object, placement, 1000);
+        const int target = tally.rays + total / static_cast<int>(samples.size() * places.size());
+        while (tally.rays < target) leaver.leave(random, tally);
+        EXPECT_EQ(tally.self_hits - before.self_hits, 0) << object << " of size " << placement.size << " at " << placement.offset.x;
+        EXPECT_EQ(tally.leaks - before.leaks, 0) << object << " of size " << placement.size << " at " << placement.offset.x;
+      }
+    EXPECT_GE(tally.rays, total * 9 / 10);
+  }
+};
+
+// Together with the other types more than a million rays in each precision.
+TEST_P(Respawn, NoDoubleRayMeetsThePlaceItLeft) {
+  covers("A16 A17 A11");
+  check<double>(150'000);
+}
+TEST_P(Respawn, NoFloatRayMeetsThePlaceItLeft) {
+  covers("A16");
+  check<float>(150'000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Respawn, testing::ValuesIn(shape_names()), by_name);
+
+TEST(Step, IsBelowTwoNanometresAThousandKilometresAway) {
+  covers("A17");
+  for (const std::string& type : shape_names())
+    for (const Json& object : shape_samples(type)) {
+      const Placement far{1, Vec3d(1e6, -1e6, 1e6)};
+      const Json scene = scene_of(Json::array({far.of(object)}), Json::object());
+      const Target<double> shape(scene);
+      for (const auto& ray : rays_at<double>(object, far, 200, 3)) {
+        const auto hit = shape.closest(ray);
+        if (!hit.met()) continue;
+        const auto spot = shape.surface(ray, hit);
+        const double largest = std::max(1e6 + 1, max_component(abs(spot.position)));
+        EXPECT_LE(spot.step, 8.01 * std::numeric_limits<double>::epsilon() * largest) << object;
+        if (largest < 1.1e6) {
+          EXPECT_LE(spot.step, 2e-9) << object;
+        }
+      }
+    }
+}
+
+}  // namespace
+}  // namespace orrery::test

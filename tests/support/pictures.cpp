@@ -1,0 +1,85 @@
+#include "tests/support/pictures.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace orrery::test {
+namespace {
+
+// Largest difference of a channel; infinite if one of the two is no number.
+double distance(const Vec3f& a, const Vec3f& b) {
+  const Vec3d d = abs(Vec3d(a) - Vec3d(b));
+  return std::isfinite(d.x + d.y + d.z) ? max_component(d) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double Picture::sum(float Vec3f::* channel) const {
+  double total = 0;
+  for (const Vec3f& pixel : pixels) total += static_cast<double>(pixel.*channel);
+  return total;
+}
+
+int Picture::brighter_than(float level) const {
+  int count = 0;
+  for (const Vec3f& pixel : pixels) count += max_component(pixel) > level;
+  return count;
+}
+
+WorkerPool& shared_pool() {
+  static WorkerPool pool(2);
+  return pool;
+}
+
+Picture render(const Json& scene, const RenderRequest& request, int threads) {
+  return render(load(scene), request, threads);
+}
+
+Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request, int threads) {
+  const PreparedScene prepared(scene);
+  const Plan plan = make_plan(*scene, request);
+  std::unique_ptr<WorkerPool> own;
+  if (threads > 0) own = std::make_unique<WorkerPool>(threads);
+  const RenderResult result = render_frame(prepared, plan, PixelFormat::linear32, own ? *own : shared_pool());
+  Picture picture{plan.width, plan.height, {}, result.stats};
+  picture.pixels.resize(static_cast<std::size_t>(plan.width * plan.height));
+  std::memcpy(static_cast<void*>(picture.pixels.data()), result.image.bytes().data(), result.image.bytes().size());
+  return picture;
+}
+
+double largest_difference(const Picture& a, const Picture& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) largest = std::max(largest, distance(a.pixels[i], b.pixels[i]));
+  return largest;
+}
+
+bool identical(const Picture& a, const Picture& b) {
+  return a.pixels.size() == b.pixels.size() &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(Vec3f)) == 0;
+}
+
+int differing_pixels(const Picture& a, const Picture& b, double tolerance) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) count += !(distance(a.pixels[i], b.pixels[i]) <= tolerance);
+  return count;
+}
+
+RenderRequest size(int width, int height) {
+  RenderRequest request;
+  request.width = width;
+  request.height = height;
+  return request;
+}
+
+RenderRequest in_double(RenderRequest request) {
+  request.precision = Precision::double_precision;
+  return request;
+}
+
+RenderRequest in_float(RenderRequest request) {
+  request.precision = Precision::single_precision;
+  return request;
+}
+
+}  // namespace orrery::test

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/plan/plan.h"
+#include "core/render/renderer.h"
+#include "tests/support/scenes.h"
+
+// Whole pictures, through plan, tiles and pool as a user gets them.
+namespace orrery::test {
+
+struct Picture {
+  int width, height;
+  std::vector<Vec3f> pixels;  // linear, row 0 at the top
+  RenderStats stats;
+
+  const Vec3f& at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
+  // Sum over pixels of one channel.
+  double sum(float Vec3f::* channel = &Vec3f::x) const;
+  // How many pixels are brighter than `level` in some channel.
+  int brighter_than(float level) const;
+};
+
+// threads 0: the shared pool of two.
+Picture render(const Json& scene, const RenderRequest& request = {}, int threads = 0);
+Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {}, int threads = 0);
+
+// The pool that tests share.
+WorkerPool& shared_pool();
+
+// Largest difference of two pictures of one size in any channel.
+double largest_difference(const Picture& a, const Picture& b);
+// Equal to the bit (and so NaN equals NaN).
+bool identical(const Picture& a, const Picture& b);
+// How many pixels differ by more than `tolerance` in some channel.
+int differing_pixels(const Picture& a, const Picture& b, double tolerance);
+
+RenderRequest size(int width, int height);
+RenderRequest in_double(RenderRequest request = {});
+RenderRequest in_float(RenderRequest request = {});
+
+}  // namespace orrery::test

@@ -1,0 +1,164 @@
+#include "tests/support/scenes.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/load/load.h"
+#include "core/params/json.h"
+
+namespace orrery::test {
+namespace {
+
+constexpr std::string_view kEmptyScene = R"({
+  "version": 1,
+  "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]},
+  "image": {"width": 64, "height": 64},
+  "materials": {"white": {"type": "rough", "kd": 1}}
+})";
+
+// What the keys of the scene format mean.
+const std::set<std::string> kPoints = {"eye", "look_at", "center", "point", "base", "top", "min", "max", "position"};
+const std::set<std::string> kPointLists = {"vertices", "positions"};
+const std::set<std::string> kLengths = {"radius", "height"};
+const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
+
+using Change = std::function<void(const std::string& key, Json& value)>;
+
+// Calls `change` for each key and value of `object`.
+void change_members(Json& object, const Change& change) {
+  for (auto& [key, value] : object.items()) change(key, value);
+}
+
+// The same for the camera, the objects and the lights of a scene: all that has a place.
+void change_places(Json& scene, const Change& change) {
+  change_members(scene["camera"], change);
+  for (const char* list : {"objects", "lights"})
+    if (scene.contains(list))
+      for (Json& entry : scene[list]) change_members(entry, change);
+}
+
+void change_points(const std::string& key, Json& value, const std::function<Vec3d(Vec3d)>& map) {
+  if (kPoints.contains(key)) value = numbers(map(vector(value)));
+  if (kPointLists.contains(key))
+    for (Json& point : value) point = numbers(map(vector(point)));
+}
+
+Change scale_by(double factor) {
+  return [factor](const std::string& key, Json& value) {
+    change_points(key, value, [factor](const Vec3d& p) { return p * factor; });
+    if (kLengths.contains(key)) value = value.get<double>() * factor;
+    if (key == "attenuation") {
+      value[1] = value[1].get<double>() / factor;
+      value[2] = value[2].get<double>() / factor / factor;
+    }
+  };
+}
+
+Change move_by(const Vec3d& offset) {
+  return [offset](const std::string& key, Json& value) {
+    change_points(key, value, [offset](const Vec3d& p) { return p + offset; });
+  };
+}
+
+void mirror_mesh(Json& object) {
+  if (object.contains("vertices")) std::swap(object["vertices"][1], object["vertices"][2]);
+  if (object.contains("indices"))
+    for (Json& corners : object["indices"]) std::swap(corners[1], corners[2]);
+  if (object.contains("normals"))
+    for (Json& normal : object["normals"]) normal[0] = -normal[0].get<double>();
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("cannot read " + file.string() + ": tests run in the repository root");
+  return (std::stringstream() << in.rdbuf()).str();
+}
+
+}  // namespace
+
+Json json(std::string_view text) {
+  std::string quoted(text);
+  std::replace(quoted.begin(), quoted.end(), '\'', '"');
+  return Json::parse(quoted);
+}
+
+Json scene_of(std::string_view objects, std::string_view patch) { return scene_of(json(objects), json(patch)); }
+
+Json scene_of(const Json& objects, const Json& patch) {
+  Json scene = json(kEmptyScene);
+  scene["objects"] = objects;
+  if (patch.contains("camera") && patch["camera"].contains("type")) scene.erase("camera");
+  scene.merge_patch(patch);
+  for (Json& object : scene["objects"])
+    if (!object.contains("material")) object["material"] = "white";
+  return scene;
+}
+
+std::shared_ptr<const Scene> load(const Json& scene) { return load_scene(document_of(scene)); }
+
+std::string first_problem(const Json& scene) { return first_problem_in_text(scene.dump()); }
+
+std::string first_problem_in_text(std::string_view text) {
+  try {
+    load_scene(text);
+  } catch (const InputError& error) {
+    return error.problems().front().pointer;
+  }
+  return "accepted";
+}
+
+Json sample(std::string_view name) { return Json::parse(text_of("scenes/" + std::string(name) + ".json")); }
+
+std::vector<std::string> sample_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("scenes"))
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Json scaled(Json scene, double factor) {
+  change_places(scene, scale_by(factor));
+  return scene;
+}
+
+bool has_filter(const Json& scene) {
+  const Json none = Json::object();
+  const Json& materials = scene.contains("materials") ? scene["materials"] : none;
+  return std::any_of(materials.begin(), materials.end(), [](const Json& m) { return m.contains("filter"); });
+}
+
+Json moved(Json scene, const Vec3d& offset) {
+  change_places(scene, move_by(offset));
+  return scene;
+}
+
+Json placed(Json object, double factor, const Vec3d& offset) {
+  change_members(object, scale_by(factor));
+  change_members(object, move_by(offset));
+  return object;
+}
+
+Json mirrored(Json scene) {
+  const auto flip = [](const Vec3d& v) { return Vec3d(-v.x, v.y, v.z); };
+  change_places(scene, [&](const std::string& key, Json& value) {
+    change_points(key, value, flip);
+    if (kDirections.contains(key)) value = numbers(flip(vector(value)));
+  });
+  for (Json& object : scene["objects"]) {
+    mirror_mesh(object);
+    if (object.contains("min")) std::swap(object["min"][0], object["max"][0]);
+  }
+  return scene;
+}
+
+Json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
+Vec3d vector(const Json& three) { return {three[0].get<double>(), three[1].get<double>(), three[2].get<double>()}; }
+
+}  // namespace orrery::test

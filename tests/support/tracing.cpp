@@ -1,0 +1,121 @@
+#include "tests/support/tracing.h"
+
+#include <cassert>
+
+namespace orrery::test {
+
+// Passes everything on to the accelerator that the plan chose, and keeps what it was asked. Each batch of rays
+// is asked for in one call, because the batches of these tests are no larger than a slice.
+class Tracing::Recorder final : public Accelerator<double> {
+ public:
+  explicit Recorder(AcceleratorPtr<double> real) : real_(std::move(real)) {}
+
+  void closest(const RayBatch<double>& rays, const Groups& groups, HitBatch<double>& hits,
+               AcceleratorCounts& counts) const override {
+    std::vector<Ray<double>> generation;
+    collect(rays, groups, generation);
+    generations.push_back(std::move(generation));
+    real_->closest(rays, groups, hits, counts);
+  }
+  void occlude(RayBatch<double>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    collect(rays, groups, shadow);
+    real_->occlude(rays, groups, counts);
+  }
+
+  mutable Generations generations;
+  mutable std::vector<Ray<double>> shadow;
+
+ private:
+  static void collect(const RayBatch<double>& rays, const Groups& groups, std::vector<Ray<double>>& into) {
+    for (const int first : groups)
+      for (int i = first; i < first + kWidth<double>; ++i)
+        if (rays.t_max[i] > 0)
+          into.push_back({{rays.origin.x[i], rays.origin.y[i], rays.origin.z[i]},
+                          {rays.direction.x[i], rays.direction.y[i], rays.direction.z[i]}});
+  }
+  AcceleratorPtr<double> real_;
+};
+
+Tracing::Tracing(const Json& scene_json, RenderRequest request) {
+  const std::shared_ptr<const Scene> scene = load(scene_json);
+  request.precision = Precision::double_precision;
+  request.slice = kBatch;
+  plan_ = make_plan(*scene, request);
+  world_.scene = scene;
+  world_.ambient = scene->ambient;
+  world_.background = scene->background;
+  world_.material_of.assign(scene->material_of.begin(), scene->material_of.end());
+  for (const auto& shapes : scene->shapes) {
+    if (shapes->size() == 0) continue;
+    world_.shapes.push_back(shapes->kernel(double(), static_cast<int>(world_.primitives.size())));
+    for (int i = 0; i < shapes->size(); ++i)
+      world_.primitives.push_back({world_.shapes.back().get(), i, shapes->bounds(i)});
+  }
+  int first = 0;
+  for (const auto& materials : scene->materials) {
+    const int last = first + materials->size();
+    world_.materials.push_back({materials->kernel(double(), first), first, last, materials->traits()});
+    first = last;
+  }
+  auto recorder = std::make_unique<Recorder>(build(*plan_.accelerator, world_.primitives));
+  recorder_ = recorder.get();
+  world_.accelerator = std::move(recorder);
+  tracer_ = make_tracer(*plan_.technique, world_, plan_);
+}
+
+Tracing::~Tracing() = default;
+
+Answer Tracing::trace(const Ray<double>& ray) { return trace(std::vector<Ray<double>>{ray}).front(); }
+
+std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
+  assert(rays.size() <= static_cast<std::size_t>(kBatch));
+  const auto batch = std::make_unique<RayBatch<double>>();
+  const auto result = std::make_unique<TraceResult<double>>();
+  batch->count = kBatch;
+  for (int i = 0; i < kBatchRoom; ++i) {
+    const bool real = static_cast<std::size_t>(i) < rays.size();
+    const Ray<double>& ray = rays[real ? static_cast<std::size_t>(i) : 0];
+    batch->origin.x[i] = ray.origin.x, batch->origin.y[i] = ray.origin.y, batch->origin.z[i] = ray.origin.z;
+    batch->direction.x[i] = ray.direction.x, batch->direction.y[i] = ray.direction.y;
+    batch->direction.z[i] = ray.direction.z;
+    batch->t_max[i] = real ? std::numeric_limits<double>::infinity() : -1;
+  }
+  recorder_->generations.clear();
+  recorder_->shadow.clear();
+  tracer_->trace(*batch, *result, counts_);
+  std::vector<Answer> answers;
+  for (int i = 0; i < static_cast<int>(rays.size()); ++i)
+    answers.push_back({{result->radiance.x[i], result->radiance.y[i], result->radiance.z[i]}, result->cut[i]});
+  return answers;
+}
+
+const Tracing::Generations& Tracing::rays() const { return recorder_->generations; }
+const std::vector<Ray<double>>& Tracing::shadow_rays() const { return recorder_->shadow; }
+
+std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request) {
+  Tracing tracing(scene, request);
+  const Plan plan = make_plan(tracing.world().scene.operator*(), request);
+  const auto batch = std::make_unique<RayBatch<double>>();
+  TileSamples centre;
+  centre.u.values.fill(0.5f);
+  centre.v.values.fill(0.5f);
+  std::vector<Vec3d> pixels(static_cast<std::size_t>(plan.width * plan.height));
+  for (int y0 = 0; y0 < plan.height; y0 += kTileSide)
+    for (int x0 = 0; x0 < plan.width; x0 += kTileSide) {
+      generate_rays(plan.camera, plan.width, plan.height, x0, y0, centre, *batch);
+      std::vector<Ray<double>> rays;
+      std::vector<std::size_t> places;
+      for (int slot = 0; slot < kBatch; ++slot) {
+        if (batch->t_max[slot] < 0) continue;
+        const TilePixel p = tile_pixel(slot);
+        places.push_back(static_cast<std::size_t>((y0 + p.y) * plan.width + x0 + p.x));
+        rays.push_back({{batch->origin.x[slot], batch->origin.y[slot], batch->origin.z[slot]},
+                        {batch->direction.x[slot], batch->direction.y[slot], batch->direction.z[slot]}});
+      }
+      const std::vector<Answer> answers = tracing.trace(rays);
+      for (std::size_t i = 0; i < places.size(); ++i) pixels[places[i]] = answers[i].radiance;
+    }
+  return pixels;
+}
+
+}  // namespace orrery::test

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/model/technique.h"
+#include "core/model/world.h"
+#include "core/plan/plan.h"
+#include "tests/support/scenes.h"
+
+// Single rays through the technique itself, in double precision: no camera, no picture, no rounding to float;
+// and every ray that it sends on the way.
+namespace orrery::test {
+
+struct Answer {
+  Vec3d radiance;
+  double cut;  // the ledger: weight of the rays that were not traced
+};
+
+class Tracing {
+ public:
+  // The request's precision is ignored.
+  explicit Tracing(const Json& scene, RenderRequest request = {});
+  ~Tracing();
+
+  Answer trace(const Ray<double>& ray);
+  // Up to kBatch rays at once, as a tile would be.
+  std::vector<Answer> trace(const std::vector<Ray<double>>& rays);
+
+  // The rays of the last trace by depth, shadow rays apart.
+  using Generations = std::vector<std::vector<Ray<double>>>;
+  const Generations& rays() const;
+  const std::vector<Ray<double>>& shadow_rays() const;
+  const TraceCounts& counts() const { return counts_; }  // of all traces so far
+  const World<double>& world() const { return world_; }
+
+ private:
+  class Recorder;
+  Plan plan_;
+  World<double> world_;
+  Recorder* recorder_ = nullptr;  // the world's accelerator
+  TracerPtr<double> tracer_;
+  TraceCounts counts_;
+};
+
+// Radiance of every pixel in double precision, without the picture's rounding to float.
+std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request);
+
+}  // namespace orrery::test
