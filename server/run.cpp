@@ -2,14 +2,19 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <optional>
+
 #include "core/base/version.h"
+#include "core/params/suggest.h"
 #include "server/commands/commands.h"
 #include "server/commands/scene_file.h"
 
 namespace orrery {
 namespace {
 
-constexpr auto kCommands = {add_serve, add_render, add_orbit, add_check, add_explain, add_catalog, add_schema};
+constexpr auto kCommands = {add_serve,   add_render,  add_orbit, add_check,
+                            add_explain, add_catalog, add_schema};
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -24,6 +29,17 @@ Status: 0 done, 1 failed, 2 wrong input or usage, 130 interrupted. `orrery COMMA
 int fail(int status, const std::string& message) {
   std::cerr << "orrery: " << message << "\n";
   return status;
+}
+
+// What is wrong with the first word, if it names no command.
+std::optional<std::string> unknown_command(int argc, char** argv, const std::vector<Command>& commands) {
+  if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+  const std::string word = argv[1];
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.push_back(command.app->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return std::nullopt;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return "there is no command " + word + did_you_mean(word, views) + "; see orrery --help";
 }
 
 int run_chosen(const std::vector<Command>& commands) {
@@ -55,6 +71,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     std::vector<Command> commands;
     for (const auto& add : kCommands) commands.push_back(add(app));
+    if (const auto problem = unknown_command(argc, argv, commands)) return fail(kBadInput, *problem);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -10,6 +10,7 @@ import { Hud } from "./hud.js";
 import { Options } from "./options.js";
 import { Player } from "./player.js";
 import { hide_problem, show_problem } from "./problem.js";
+import { quality } from "./quality.js";
 import { SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
 import { picture_size } from "./size.js";
@@ -39,7 +40,7 @@ let opening = 0; // counts scene changes, so that a slow answer to an old one is
 let save_timer = 0;
 
 const player = new Player(camera, view, {
-  picture: (purpose, preview_part) => scene && picture(purpose, preview_part, camera.view),
+  picture: (purpose, level) => scene && picture(purpose, level, camera.view),
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
@@ -71,24 +72,24 @@ const editor = new Editor(
   },
 );
 
-function picture(purpose, preview_part, at) {
+function picture(purpose, level, at) {
+  const { part, samples } = quality(purpose, level, state);
   const size = picture_size({
     mode: state.size,
     purpose,
-    preview_part,
+    part,
     box: view.box,
     pixel_ratio: devicePixelRatio,
     scene,
     limits,
   });
-  const samples = purpose === "preview" ? 1 : state.samples;
   return { id: scene.id, ...at, ...size, technique: state.technique, samples };
 }
 
 // What a download or a copied command shows: the view at full size, where it is or will come to rest.
 function current_picture() {
   if (!scene) return null;
-  return { picture: picture("still", 1, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
+  return { picture: picture("still", 0, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
 }
 
 // ---- scenes ----

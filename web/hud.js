@@ -48,7 +48,7 @@ export class Hud {
 
   #write() {
     this.#last_write = performance.now();
-    const { render_ms, encode_ms, rays, width, height, skipped } = this.#figures;
+    const { render_ms, encode_ms, rays, width, height, draft, skipped } = this.#figures;
     const first = this.#times[0];
     const rate = ((this.#times.length - 1) * 1000) / (this.#times.at(-1) - first);
     const texts = {
@@ -56,7 +56,7 @@ export class Hud {
       render: milliseconds(render_ms),
       encode: milliseconds(encode_ms),
       rays: rays > 0 && render_ms > 0 ? short((rays * 1000) / render_ms) : "–",
-      size: `${width} × ${height}`,
+      size: `${width} × ${height}${draft ? ", draft" : ""}`,
       skipped: String(skipped ?? 0),
     };
     for (const [name, text] of Object.entries(texts)) {

@@ -1,19 +1,18 @@
 // Decides what the canvas shows: the orbit's stream while playing, small quick pictures while the view
 // moves under the user's hand, and one full picture once it rests. At most one of them is at work.
 
-import { ApiError, get_frame, is_abort, request } from "./api.js";
+import { get_frame, is_abort } from "./api.js";
 import { Backoff } from "./backoff.js";
-import { kFrameType, read_frames } from "./stream.js";
+import { play_stream } from "./orbit_stream.js";
+import { Pace } from "./pace.js";
 import { frame_url, orbit_url } from "./urls.js";
 import { decode } from "./view.js";
 
 const kRestMs = 100; // without input for this long, the view counts as at rest
 const kRestartMs = 150; // changes of size or speed are gathered this long
-const kStreamFps = 30;
 const kQuickMs = 60; // previews slower than this get a quarter of each side instead of a half
-const kPreviewParts = [1 / 2, 1 / 4];
 
-// `on` has: picture(purpose, preview_part) -> picture or null, missing() -> promise (post the scene again),
+// `on` has: picture(purpose, level) -> picture or null, missing() -> promise (post the scene again),
 // stats(kind, figures), waiting(error, seconds), problem(error), busy(bool), settled().
 export class Player {
   speed = 20; // degrees per second
@@ -31,7 +30,9 @@ export class Player {
   #shown = ""; // address of the still on the canvas
   #preview_busy = false;
   #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
-  #preview_slow = 0; // index into kPreviewParts
+  #preview_slow = 0; // level of previews
+  #pace = new Pace();
+  #paced = ""; // what the pace was found for
   #backoff = new Backoff();
   #timer = 0;
   #reposts = 0; // scenes posted again since the last picture
@@ -120,9 +121,7 @@ export class Player {
 
   // One in flight; whatever the camera does meanwhile is caught up with by the next.
   async #preview() {
-    const picture = this.#preview_busy
-      ? null
-      : this.#on.picture("preview", kPreviewParts[this.#preview_slow]);
+    const picture = this.#preview_busy ? null : this.#on.picture("preview", this.#preview_slow);
     const url = picture && frame_url(picture);
     if (!url || url === this.#shown) return;
     this.#preview_busy = true;
@@ -142,7 +141,7 @@ export class Player {
   }
 
   #start_still() {
-    const picture = this.#on.picture("still");
+    const picture = this.#on.picture("still", 0);
     if (!picture) return;
     const url = frame_url(picture);
     if (this.#work?.kind === "still" && this.#work.key === url) return;
@@ -150,54 +149,45 @@ export class Player {
     if (url === this.#shown) return this.#on.stats("still", { width: picture.width, height: picture.height });
     this.#run("still", url, async (signal) => {
       const frame = await get_frame(url, signal);
-      const bitmap = await decode_or_explain(frame.png);
+      const bitmap = await decode(frame.png);
       signal.throwIfAborted();
       this.#draw(url, bitmap, picture, "still", frame.stats);
     });
   }
 
   #start_stream() {
-    const picture = this.#on.picture("stream");
+    const picture = this.#on.picture("stream", 0);
     if (!picture) return;
     const key = JSON.stringify({ ...picture, azimuth: 0, speed: this.speed });
     if (this.#work?.kind === "stream" && this.#work.key === key) return;
     this.#stop();
-    this.#run("stream", key, async (signal) => {
-      for (let azimuth = picture.azimuth; ; azimuth = this.#camera.view.azimuth) {
-        await this.#stream_once({ ...picture, azimuth }, signal);
-      }
-    });
+    const { id, width, height, technique, samples } = picture;
+    const paced = [id, width, height, technique, samples].join();
+    if (this.#paced !== paced) this.#pace.reset();
+    this.#paced = paced;
+    this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
-  async #stream_once(picture, signal) {
-    const rate = { frames: this.stream_frames, fps: kStreamFps, step: this.speed / kStreamFps };
-    const response = await request(orbit_url(picture, rate), { headers: { Accept: kFrameType }, signal });
-    let newest = null;
-    let painting = false;
-    let failure = null;
-    let seen = 0;
-    let late = 0; // frames that came while an older one was being decoded, and gave way to a newer one
-    const paint = async () => {
-      painting = true;
-      while (newest && !failure) {
-        const { header, png } = newest;
-        newest = null;
-        const bitmap = await decode_or_explain(png).catch((error) => void (failure = error));
-        if (!bitmap) break;
-        if (signal.aborted) return bitmap.close();
+  // One stream after the other: each has a limited number of frames, and the pace may want another one.
+  async #stream(signal) {
+    const pace = this.#pace;
+    for (let azimuth = this.#camera.view.azimuth; ; azimuth = this.#camera.view.azimuth) {
+      const picture = { ...this.#on.picture("stream", pace.level), azimuth };
+      const coarser = this.#differs(picture, pace.level + 1);
+      const rate = { frames: this.stream_frames, fps: pace.fps, step: this.speed / pace.fps };
+      pace.restart();
+      await play_stream(orbit_url(picture, rate), signal, (bitmap, header) => {
         this.#camera.follow(header.azimuth_degrees);
-        this.#draw("", bitmap, picture, "stream", { ...header, skipped: (header.skipped ?? 0) + late });
-      }
-      painting = false;
-    };
-    for await (const frame of read_frames(response.body)) {
-      if (failure) throw failure;
-      if (newest) late += 1;
-      newest = frame;
-      seen += 1;
-      if (!painting) paint();
+        this.#draw("", bitmap, picture, "stream", header);
+        const work_ms = Math.max(header.render_ms, header.encode_ms);
+        return !pace.note(performance.now(), work_ms, this.speed, coarser);
+      });
     }
-    if (seen === 0) throw new ApiError({ status: 0, title: "The stream ended before its first frame" });
+  }
+
+  #differs(picture, level) {
+    const other = this.#on.picture("stream", level);
+    return other.width !== picture.width || other.samples !== picture.samples;
   }
 
   #draw(url, bitmap, picture, kind, figures) {
@@ -207,7 +197,8 @@ export class Player {
     this.#reposts = 0;
     this.#backoff.reset();
     this.#on.busy(false);
-    this.#on.stats(kind, { ...figures, width, height });
+    const draft = kind === "preview" || (kind === "stream" && this.#pace.level > 0);
+    this.#on.stats(kind, { ...figures, width, height, draft });
   }
 
   async #run(kind, key, task) {
@@ -244,17 +235,5 @@ export class Player {
     this.#on.waiting(error, seconds);
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.refresh(), 1000 * seconds);
-  }
-}
-
-async function decode_or_explain(png) {
-  try {
-    return await decode(png);
-  } catch {
-    throw new ApiError({
-      status: 200,
-      title: "This picture cannot be shown",
-      detail: "The browser could not decode it.",
-    });
   }
 }

@@ -33,7 +33,7 @@ export function show_problem(card, error, on_place) {
   close.addEventListener("click", () => hide_problem(card));
   const parts = [close, title];
   const places = places_of(error);
-  const repeated = places.length === 1 && places[0].detail && error.detail?.includes(places[0].detail);
+  const repeated = places[0]?.detail && error.detail?.includes(places[0].detail);
   if (error.detail && !repeated) parts.push(element("p", error.detail));
   if (places.length > 0) {
     const list = element("ul");

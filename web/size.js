@@ -22,10 +22,10 @@ export function within(size, side, pixels) {
   };
 }
 
-// Size of the picture for `purpose` "still", "stream" or "preview": {width, height, fills, fov}.
-// `preview_part` is the part of each side a preview gets. `fov` is set where the box is narrower than the
-// scene's own picture: its angle is vertical, so it has to grow for the sides to stay in view.
-export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, preview_part }) {
+// Size of the picture for `purpose` "still", "stream" or "preview": {width, height, fills, fov}. `part` is a
+// factor of each side. `fov` is set where the box is narrower than the scene's own picture: its angle is
+// vertical, so it has to grow for the sides to stay in view.
+export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, part = 1 }) {
   const own = { width: scene.width, height: scene.height };
   const fills = mode === "fit" || mode === "half";
   let size = fixed_size(mode) ?? own;
@@ -37,13 +37,9 @@ export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, p
   }
   const most = purpose === "stream" && fills ? Math.min(kStreamPixels, limits.pixels) : limits.pixels;
   size = within(size, limits.side, most);
-  if (purpose === "preview") {
-    size = {
-      width: Math.max(1, Math.round(size.width * preview_part)),
-      height: Math.max(1, Math.round(size.height * preview_part)),
-    };
-  }
-  return { ...size, fov, fills };
+  const width = Math.max(1, Math.round(size.width * part));
+  const height = Math.max(1, Math.round(size.height * part));
+  return { width, height, fov, fills };
 }
 
 const aspect = (size) => size.width / size.height;

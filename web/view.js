@@ -1,5 +1,7 @@
 // The canvas: draws pictures and knows the box it fills.
 
+import { ApiError } from "./api.js";
+
 export class View {
   #canvas;
   #stage;
@@ -38,7 +40,13 @@ export class View {
   }
 }
 
-export function decode(png) {
+// Throws ApiError for bytes that are no picture.
+export async function decode(png) {
   const blob = png instanceof Blob ? png : new Blob([png], { type: "image/png" });
-  return createImageBitmap(blob);
+  try {
+    return await createImageBitmap(blob);
+  } catch {
+    const detail = "The browser could not decode it.";
+    throw new ApiError({ status: 200, title: "This picture cannot be shown", detail });
+  }
 }

@@ -54,18 +54,19 @@ template <class T>
 // Lanes that may enter `box` at a distance in [0, t_max]; conservative: a ray that touches it is never lost.
 // Near and far planes are chosen by the sign bit of the direction; a NaN (0 * infinity, a ray in the plane of
 // a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray Traversal",
-// JCGT 2013). `inverse` is 1 / direction, infinite where that is 0.
+// JCGT 2013), and so does t_max: what lies in the box may be as near as the hit so far, or nearer by rounding.
+// `inverse` is 1 / direction, infinite where that is 0.
 template <class N>
 [[gnu::always_inline]] inline MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin,
                                                const Vec3<N>& inverse, const N& t_max) {
   using T = ScalarOf<N>;
-  N near = N(T(0)), far = t_max;
+  constexpr T kFarPad = 1 + 4 * std::numeric_limits<T>::epsilon();
+  N near = N(T(0)), far = t_max * kFarPad;
   const auto fold = [&](const N& lo_i, const N& hi_i, const N& o, const N& inv) {
     using std::signbit;
     const auto negative = signbit(inv);
     const N t0 = (lo_i - o) * inv, t1 = (hi_i - o) * inv;
     near = max_first(near, select(negative, t1, t0));
-    constexpr T kFarPad = 1 + 4 * std::numeric_limits<T>::epsilon();
     far = min_first(far, N(select(negative, t0, t1) * kFarPad));
   };
   fold(lo.x, hi.x, origin.x, inverse.x);

@@ -46,7 +46,9 @@ struct Box {
     slab(lo.y, hi.y, ray.origin.y, ray.direction.y);
     slab(lo.z, hi.z, ray.origin.z, ray.direction.z);
     const N t = select(enter > N(T(0)), enter, leave);
-    return select(enter <= leave && t > N(T(0)), t, infinity);
+    const Vec3<N> sum = ray.origin + ray.direction;
+    const N whole = sum.x + sum.y + sum.z;  // NaN if the ray itself holds one, which must not lose: it is no ray
+    return select(enter <= leave && t > N(T(0)) && whole == whole, t, infinity);
   }
 
   // The face is the one that lies nearest, measured in half edges.

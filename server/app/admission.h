@@ -30,8 +30,8 @@ class Admission {
 
   using Stop = std::function<bool()>;
 
-  // Waits for a place. Throws Busy if too many wait already; Cancelled once `stop` says so, which is asked every
-  // 20 ms while waiting.
+  // Waits for a place. Throws Busy if too many wait already; Cancelled once `stop` says so, which is asked
+  // every 20 ms while waiting.
   Ticket enter(const Stop& stop);
   // As enter(), for work that began and must go on: never too many wait.
   Ticket enter_again(const Stop& stop);
@@ -45,8 +45,8 @@ class Admission {
   std::mutex mutex_;
   std::condition_variable changed_;
   int running_ = 0;
-  std::list<int> waiting_;    // one entry each, the first is next
-  double mean_ms_ = 100;      // of a render, recent ones counting more
+  std::list<int> waiting_;  // one entry each, the first is next
+  double mean_ms_ = 100;    // of a render, recent ones counting more
 };
 
 }  // namespace orrery

@@ -19,8 +19,8 @@ std::shared_ptr<const Scene> App::load(const Document& document, Timing& timing)
   return scene;
 }
 
-Picture App::render(const PreparedScene& scene, const Plan& plan, FileFormat format, std::function<bool()> gone,
-                    Timing& timing) {
+Picture App::render(const PreparedScene& scene, const Plan& plan, FileFormat format,
+                    std::function<bool()> gone, Timing& timing) {
   require_open();
   const Watch watch(std::move(gone), ends_, settings_.request_time);
   const auto stop = [&] { return watch.stop(); };
@@ -28,7 +28,8 @@ Picture App::render(const PreparedScene& scene, const Plan& plan, FileFormat for
     auto start = Clock::now();
     const auto ticket = admission_.enter(stop);
     timing.queue = milliseconds_since(start);
-    RenderResult rendered = render_frame(scene, plan, pixels_of(format), pool_, {.stop = stop, .progress = {}});
+    RenderResult rendered =
+        render_frame(scene, plan, pixels_of(format), pool_, {.stop = stop, .progress = {}});
     timing.build = rendered.stats.build_ms;
     timing.render = rendered.stats.trace_ms;
     start = Clock::now();

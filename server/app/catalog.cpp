@@ -27,7 +27,8 @@ ordered_json samples() {
   ordered_json samples = ordered_json::array();
   for (const EmbeddedFile& file : embedded_files()) {
     if (!file.path.starts_with(kFolder) || !file.path.ends_with(kEnding)) continue;
-    const std::string name(file.path.substr(kFolder.size(), file.path.size() - kFolder.size() - kEnding.size()));
+    const std::string name(
+        file.path.substr(kFolder.size(), file.path.size() - kFolder.size() - kEnding.size()));
     if (name.find('/') != std::string::npos) continue;  // the schema
     const auto scene = nlohmann::json::parse(file.bytes, nullptr, false);
     if (!scene.is_object()) continue;
@@ -41,19 +42,26 @@ ordered_json samples() {
 
 ordered_json defaults() {
   const RenderSettings own;
-  return {{"width", own.width},         {"height", own.height},
-          {"samples", own.samples},     {"technique", own.technique},
-          {"max_depth", own.max_depth}, {"min_contribution", own.min_contribution},
-          {"seed", own.seed},           {"accelerator", own.accelerator},
-          {"precision", "auto"},        {"azimuth", Orbit{}.azimuth_degrees},
-          {"elevation", Orbit{}.elevation_degrees}, {"distance", Orbit{}.distance}};
+  return {{"width", own.width},
+          {"height", own.height},
+          {"samples", own.samples},
+          {"technique", own.technique},
+          {"max_depth", own.max_depth},
+          {"min_contribution", own.min_contribution},
+          {"seed", own.seed},
+          {"accelerator", own.accelerator},
+          {"precision", "auto"},
+          {"azimuth", Orbit{}.azimuth_degrees},
+          {"elevation", Orbit{}.elevation_degrees},
+          {"distance", Orbit{}.distance}};
 }
 
 }  // namespace
 
 ordered_json catalog_json() {
-  const ordered_json cameras = {{{"type", "perspective"}, {"summary", "Everything is seen from one point."}},
-                                {{"type", "orthographic"}, {"summary", "Everything is seen along parallel rays."}}};
+  const ordered_json cameras = {
+      {{"type", "perspective"}, {"summary", "Everything is seen from one point."}},
+      {{"type", "orthographic"}, {"summary", "Everything is seen along parallel rays."}}};
   return {{"samples", samples()},
           {"shapes", entries_of(shape_types())},
           {"materials", entries_of(material_types())},

@@ -25,8 +25,11 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
   ordered_json decisions = ordered_json::array();
   for (const Decision& d : plan.decisions)
     decisions.push_back({{"subject", d.subject}, {"choice", d.choice}, {"reason", d.reason}});
-  return {{"scene", {{"id", scene.id}, {"objects", scene.object_count}, {"primitives", scene.primitive_count()},
-                     {"lights", scene.lights.size()}}},
+  return {{"scene",
+           {{"id", scene.id},
+            {"objects", scene.object_count},
+            {"primitives", scene.primitive_count()},
+            {"lights", scene.lights.size()}}},
           {"image", {{"width", plan.width}, {"height", plan.height}}},
           {"technique", plan.technique->name},
           {"accelerator", plan.accelerator->name},
@@ -35,25 +38,30 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
           {"max_depth", plan.max_depth},
           {"min_contribution", plan.min_contribution},
           {"seed", plan.seed},
-          {"stages", {{"direct_light", plan.direct_light}, {"shadows", plan.shadows}, {"specular", plan.specular},
-                      {"filters", plan.filters}}},
+          {"stages",
+           {{"direct_light", plan.direct_light},
+            {"shadows", plan.shadows},
+            {"specular", plan.specular},
+            {"filters", plan.filters}}},
           {"camera_rays", camera_rays(plan)},
           {"decisions", std::move(decisions)}};
 }
 
 std::string explain_text(const Scene& scene, const Plan& plan) {
   std::string text = std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels, " +
-                     std::to_string(plan.samples) + (plan.samples == 1 ? " sample" : " samples") + " each, of " +
-                     std::to_string(scene.object_count) + (scene.object_count == 1 ? " object" : " objects") +
-                     " in the light of " + std::to_string(scene.lights.size()) + ": " +
-                     std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "\n";
+                     std::to_string(plan.samples) + (plan.samples == 1 ? " sample" : " samples") +
+                     " each, of " + std::to_string(scene.object_count) +
+                     (scene.object_count == 1 ? " object" : " objects") + " in the light of " +
+                     std::to_string(scene.lights.size()) + ": " + std::to_string(camera_rays(plan)) +
+                     " camera rays, " + plan.technique->name + "\n";
   std::size_t subject_width = 0, choice_width = 0;
   for (const Decision& d : plan.decisions) {
     subject_width = std::max(subject_width, d.subject.size());
     choice_width = std::max(choice_width, d.choice.size());
   }
   for (const Decision& d : plan.decisions)
-    text += "  " + padded(d.subject, subject_width) + "  " + padded(d.choice, choice_width) + "  " + d.reason + "\n";
+    text += "  " + padded(d.subject, subject_width) + "  " + padded(d.choice, choice_width) + "  " +
+            d.reason + "\n";
   return text;
 }
 

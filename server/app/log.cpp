@@ -27,7 +27,8 @@ std::string dumped(const ordered_json& value) {
 std::string text_of(std::string_view event, const ordered_json& fields) {
   std::string text(event);
   for (const auto& [name, value] : fields.items()) {
-    const bool plain = value.is_string() && value.get_ref<const std::string&>().find_first_of(" \"=\\") == std::string::npos;
+    const bool plain =
+        value.is_string() && value.get_ref<const std::string&>().find_first_of(" \"=\\") == std::string::npos;
     const std::string shown = dumped(value);
     text += " " + name + "=" + (plain ? shown.substr(1, shown.size() - 2) : shown);
   }
@@ -41,9 +42,9 @@ Log::Log(LogForm form, LogLevel lowest)
       logger_(std::make_unique<spdlog::logger>("orrery", std::make_shared<spdlog::sinks::stderr_sink_mt>())) {
   logger_->set_level(level_of(lowest));
   // Time in UTC with milliseconds, and the level; the rest is ours.
-  logger_->set_pattern(form == LogForm::json ? R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l",%v})"
-                                             : "%H:%M:%S.%e %-7l %v",
-                       form == LogForm::json ? spdlog::pattern_time_type::utc : spdlog::pattern_time_type::local);
+  logger_->set_pattern(
+      form == LogForm::json ? R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l",%v})" : "%H:%M:%S.%e %-7l %v",
+      form == LogForm::json ? spdlog::pattern_time_type::utc : spdlog::pattern_time_type::local);
 }
 
 Log::~Log() = default;

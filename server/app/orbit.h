@@ -12,7 +12,7 @@ namespace orrery {
 // A turn of the camera about a scene.
 struct OrbitSpec {
   std::shared_ptr<const PreparedScene> scene;
-  RenderRequest request;    // of the first frame
+  RenderRequest request;  // of the first frame
   int frames = 120;
   double step_degrees = 3;  // of azimuth, from frame to frame
   double fps = 30;          // at most; 0: as fast as the fastest viewer takes them

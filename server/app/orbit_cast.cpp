@@ -38,10 +38,11 @@ void OrbitCast::wake() {
 }
 
 void OrbitCast::run() {
-  const Pipeline pipeline{.next = [this] { return next(); },
-                          .render = [this](std::int64_t n) { return render(n); },
-                          .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
-                          .deliver = [this](std::int64_t n, Frame&& frame) { return deliver(n, std::move(frame)); }};
+  const Pipeline pipeline{
+      .next = [this] { return next(); },
+      .render = [this](std::int64_t n) { return render(n); },
+      .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
+      .deliver = [this](std::int64_t n, Frame&& frame) { return deliver(n, std::move(frame)); }};
   try {
     pipeline.run();
   } catch (const std::exception&) {
@@ -90,8 +91,10 @@ std::optional<std::int64_t> OrbitCast::next() {
       const auto on_time = static_cast<std::int64_t>((now - start_) / period);
       std::int64_t end = 0;
       for (const Mailbox& m : mailboxes_) end = std::max(end, m.end);
-      if (waited) next_ = std::clamp(on_time, next_, end - 1);
-      else if (on_time > next_) start_ += now - due(next_);
+      if (waited)
+        next_ = std::clamp(on_time, next_, end - 1);
+      else if (on_time > next_)
+        start_ += now - due(next_);
       return next_++;
     }
   }
@@ -101,7 +104,8 @@ RenderResult OrbitCast::render(std::int64_t number) {
   const Watch watch([this] { return pointless(); }, means_.ends, means_.frame_time);
   const auto stop = [&] { return watch.stop(); };
   const auto ticket = means_.admission.enter_again(stop);
-  const Plan plan = make_plan(spec_.scene->scene(), spec_.request_of(static_cast<int>(number % spec_.frames)));
+  const Plan plan =
+      make_plan(spec_.scene->scene(), spec_.request_of(static_cast<int>(number % spec_.frames)));
   return render_frame(*spec_.scene, plan, PixelFormat::srgb8, means_.pool, {.stop = stop, .progress = {}});
 }
 
@@ -109,11 +113,12 @@ bool OrbitCast::deliver(std::int64_t number, Frame&& picture) {
   const int frame = static_cast<int>(number % spec_.frames);
   const RenderRequest request = spec_.request_of(frame);
   const RenderSettings& own = spec_.scene->scene().render;
-  const auto shared = std::make_shared<const OrbitFrame>(OrbitFrame{.frame = frame,
-                                                                   .orbit = request.orbit,
-                                                                   .width = request.width.value_or(own.width),
-                                                                   .height = request.height.value_or(own.height),
-                                                                   .picture = std::move(picture)});
+  const auto shared =
+      std::make_shared<const OrbitFrame>(OrbitFrame{.frame = frame,
+                                                    .orbit = request.orbit,
+                                                    .width = request.width.value_or(own.width),
+                                                    .height = request.height.value_or(own.height),
+                                                    .picture = std::move(picture)});
   std::unique_lock lock(mutex_);
   while (spec_.fps == 0 && anyone_wants(number) && !anyone_free(number) && !means_.draining && !means_.ends)
     changed_.wait_for(lock, kAsk);

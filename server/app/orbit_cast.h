@@ -11,10 +11,11 @@
 
 namespace orrery {
 
-// Renders an orbit once for all who watch it. The frames run in a circle, numbered on and on; each viewer gets as
-// many as the orbit has, from the one where it came in. A viewer has a mailbox for one frame: a newer frame takes
-// the place of one that was not fetched in time. Nothing is rendered that nobody would see: the cast waits while
-// all mailboxes are full. With fps 0 it then goes on where it was; else with the frame whose time has come.
+// Renders an orbit once for all who watch it. The frames run in a circle, numbered on and on; each viewer
+// gets as many as the orbit has, from the one where it came in. A viewer has a mailbox for one frame: a newer
+// frame takes the place of one that was not fetched in time. Nothing is rendered that nobody would see: the
+// cast waits while all mailboxes are full. With fps 0 it then goes on where it was; else with the frame whose
+// time has come.
 class OrbitCast {
  public:
   // All it uses lives longer. `ends` becomes true when the program ends.
@@ -42,8 +43,8 @@ class OrbitCast {
   struct Mailbox {
     std::int64_t begin, end;  // numbers of the frames this viewer gets
     std::shared_ptr<const OrbitFrame> frame;
-    std::int64_t number = 0;     // of `frame`
-    std::int64_t fetched = 0;    // how many
+    std::int64_t number = 0;   // of `frame`
+    std::int64_t fetched = 0;  // how many
     bool wants(std::int64_t n) const { return n >= begin && n < end; }
   };
 

@@ -20,7 +20,9 @@ std::string text_of(double number) {
 std::string canonical_request(const Scene& scene, const RenderRequest& request) {
   const RenderSettings& own = scene.render;
   std::string text;
-  const auto add = [&](const char* name, const std::string& value) { text += std::string(name) + "=" + value + ";"; };
+  const auto add = [&](const char* name, const std::string& value) {
+    text += std::string(name) + "=" + value + ";";
+  };
   add("width", std::to_string(request.width.value_or(own.width)));
   add("height", std::to_string(request.height.value_or(own.height)));
   add("samples", std::to_string(request.samples.value_or(own.samples)));

@@ -7,8 +7,8 @@
 
 namespace orrery {
 
-// One text for all requests that lead to the same picture of the scene, however they were written: what is not
-// given takes the scene's value; what changes no pixel (accelerator, slice) is left out.
+// One text for all requests that lead to the same picture of the scene, however they were written: what is
+// not given takes the scene's value; what changes no pixel (accelerator, slice) is left out.
 std::string canonical_request(const Scene& scene, const RenderRequest& request);
 
 // A strong ETag, quotes included: the hash of scene, canonical request and program version.

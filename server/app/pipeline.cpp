@@ -86,7 +86,8 @@ void Pipeline::run() const {
   Handoff handoff;
   Encoding encoding(handoff, [&] {
     while (auto rendered = handoff.take())
-      if (!deliver(rendered->number, encode_frame(std::move(rendered->result), rendered->render_ms, encode))) return;
+      if (!deliver(rendered->number, encode_frame(std::move(rendered->result), rendered->render_ms, encode)))
+        return;
   });
   while (const auto number = next()) {
     const auto start = Clock::now();

@@ -11,8 +11,9 @@
 
 namespace orrery {
 
-// One thing that a render may be asked beside its scene. It has three names: one in the query of an address, one
-// in the JSON of a request and one on the command line; all three are read by the same code, read_request().
+// One thing that a render may be asked beside its scene. It has three names: one in the query of an address,
+// one in the JSON of a request and one on the command line; all three are read by the same code,
+// read_request().
 struct RenderOption {
   std::string_view name;          // "azimuth"
   std::string_view section, key;  // "camera", "azimuth_degrees"

@@ -8,7 +8,8 @@ namespace {
 // What a scene and all that rendering builds for it are expected to take.
 std::size_t estimated_bytes(const Scene& scene) {
   constexpr std::size_t kBytesAPrimitive = 1024;  // record, boxes and tree, in both precisions
-  return 4096 + 2 * scene.canonical.size() + kBytesAPrimitive * static_cast<std::size_t>(scene.primitive_count());
+  return 4096 + 2 * scene.canonical.size() +
+         kBytesAPrimitive * static_cast<std::size_t>(scene.primitive_count());
 }
 
 }  // namespace

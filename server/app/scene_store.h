@@ -10,8 +10,8 @@
 
 namespace orrery {
 
-// Scenes by id, with what rendering has built for them. Once they take more than the limit, those not used for
-// longest are forgotten; who still renders one keeps it alive. Safe from any thread.
+// Scenes by id, with what rendering has built for them. Once they take more than the limit, those not used
+// for longest are forgotten; who still renders one keeps it alive. Safe from any thread.
 class SceneStore {
  public:
   using Prepared = std::shared_ptr<const PreparedScene>;

@@ -14,8 +14,8 @@ class TimedOut : public Error {
   using Error::Error;
 };
 
-// Says when the work for a request should end early: the client has gone, its time is up, or the program ends.
-// Safe from any thread.
+// Says when the work for a request should end early: the client has gone, its time is up, or the program
+// ends. Safe from any thread.
 class Watch {
  public:
   Watch(std::function<bool()> gone, const std::atomic<bool>& program_ends, std::chrono::seconds limit)

@@ -5,7 +5,8 @@
 
 namespace orrery {
 
-// File names of numbered frames, from a pattern such as "frame-%04d.png": %d or %0<width>d becomes the number,
+// File names of numbered frames, from a pattern such as "frame-%04d.png": %d or %0<width>d becomes the
+// number,
 // %% a percent sign.
 class FrameNames {
  public:

@@ -61,10 +61,11 @@ nlohmann::ordered_json json_of(const Totals& t, int threads) {
 }
 
 void print(const Totals& t, int threads) {
-  std::printf("%d frames in %.2f s, %.1f a second, threads %d\n", t.frames, t.seconds, t.frames / t.seconds, threads);
+  std::printf("%d frames in %.2f s, %.1f a second, threads %d\n", t.frames, t.seconds, t.frames / t.seconds,
+              threads);
   std::printf("a frame: %.2f ms rendering, %.2f ms encoding, %.0f bytes, %.0f rays, %.2f ms of processor\n",
-              t.render_ms / t.frames, t.encode_ms / t.frames, double(t.bytes) / t.frames, double(t.rays) / t.frames,
-              1000 * t.cpu_s / t.frames);
+              t.render_ms / t.frames, t.encode_ms / t.frames, double(t.bytes) / t.frames,
+              double(t.rays) / t.frames, 1000 * t.cpu_s / t.frames);
 }
 
 // One turn of the camera: what is rendered, and where it goes.
@@ -77,8 +78,10 @@ class Turn {
         request_(read_render_flags(options.render)),
         scene_(load_scene_file(options.scene)),
         pool_(options.threads) {
-    if (options.step_given->count() == 0) step_ = 360.0 / options.frames;
-    else step_ = options.step;
+    if (options.step_given->count() == 0)
+      step_ = 360.0 / options.frames;
+    else
+      step_ = options.step;
     for (const int frame : {0, options.frames - 1}) plan(frame);  // complains before any work
   }
 
@@ -93,13 +96,17 @@ class Turn {
     const Pipeline pipeline{
         .next = [&] { return next < options_.frames ? std::optional(next++) : std::nullopt; },
         .render = [&](std::int64_t n) { return render(n); },
-        .encode = [&](const Image& i) { return format_ == FileFormat::png ? encode_png(i, kFrameOfStream) : encode(i, format_); },
-        .deliver = [&](std::int64_t n, Frame&& frame) {
-          if (!options_.discard) write_file(names_.of(n), frame.bytes);
-          totals.add(frame);
-          bar.update(totals.frames, options_.frames);
-          return true;
-        }};
+        .encode =
+            [&](const Image& i) {
+              return format_ == FileFormat::png ? encode_png(i, kFrameOfStream) : encode(i, format_);
+            },
+        .deliver =
+            [&](std::int64_t n, Frame&& frame) {
+              if (!options_.discard) write_file(names_.of(n), frame.bytes);
+              totals.add(frame);
+              bar.update(totals.frames, options_.frames);
+              return true;
+            }};
     pipeline.run();
     totals.seconds = milliseconds_since(start) / 1000;
     totals.cpu_s = cpu_seconds() - cpu_before;
@@ -154,9 +161,11 @@ Command add_orbit(CLI::App& root) {
       app->add_option("--step", options->step, "Degrees from frame to frame; without it, one full turn")
           ->check(CLI::Range(-360.0, 360.0))
           ->type_name("DEGREES");
-  auto* output = app->add_option("-o,--output", options->output, "Names of the frames; %04d becomes the number")
-                     ->type_name("NAME-%04d.{png,jpg,exr}");
-  app->add_flag("--discard", options->discard, "Render and encode, but write nothing: prints how fast that is")
+  auto* output =
+      app->add_option("-o,--output", options->output, "Names of the frames; %04d becomes the number")
+          ->type_name("NAME-%04d.{png,jpg,exr}");
+  app->add_flag("--discard", options->discard,
+                "Render and encode, but write nothing: prints how fast that is")
       ->excludes(output);
   app->add_flag("--stats{text}", options->stats, "Print what it took; --stats=json for programs");
   app->add_option("--threads", options->threads, "Threads that render; 0: one a core")

@@ -25,7 +25,8 @@ void write_file(const std::string& path, std::string_view bytes) {
   // Where the name is no plain file (a device, a pipe), there is nothing to put in its place.
   std::error_code ignored;
   const auto kind = std::filesystem::status(path, ignored).type();
-  const bool replace = kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
+  const bool replace =
+      kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
   const std::string written = replace ? path + ".part-" + std::to_string(getpid()) : path;
   errno = 0;
   std::ofstream out(written, std::ios::binary);

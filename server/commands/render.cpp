@@ -27,8 +27,8 @@ struct Options {
   RenderFlags render;
 };
 
-RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
-                                  const SignalWatch& signals) {
+RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, PixelFormat format,
+                                  WorkerPool& pool, const SignalWatch& signals) {
   ProgressBar bar("tiles");
   return render_frame(scene, plan, format, pool,
                       {.stop = [&] { return signals.interrupted(); },
@@ -73,7 +73,8 @@ Command add_render(CLI::App& root) {
   app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
   app->add_option("-o,--output", options->output, "The picture; its ending chooses PNG, JPEG or EXR")
       ->type_name("FILE.{png,jpg,exr}");
-  app->add_flag("--stats{text}", options->stats, "Print what was traced and what it took; --stats=json for programs");
+  app->add_flag("--stats{text}", options->stats,
+                "Print what was traced and what it took; --stats=json for programs");
   app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");

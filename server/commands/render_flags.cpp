@@ -10,7 +10,8 @@ void add_render_flags(CLI::App& app, RenderFlags& flags) {
   const auto options = render_options();
   flags.values.resize(options.size());
   for (std::size_t i = 0; i < options.size(); ++i) {
-    CLI::Option* option = app.add_option(std::string(options[i].flags), flags.values[i], std::string(options[i].help));
+    CLI::Option* option =
+        app.add_option(std::string(options[i].flags), flags.values[i], std::string(options[i].help));
     option->type_name(std::string(options[i].value))->group("Picture");
     flags.options.push_back(option);
   }

@@ -15,8 +15,8 @@ namespace orrery {
 
 // The options of every command that renders or plans. Must stay where it is once added to a command line.
 struct RenderFlags {
-  std::vector<std::string> values;     // as render_options()
-  std::vector<CLI::Option*> options;   // likewise
+  std::vector<std::string> values;    // as render_options()
+  std::vector<CLI::Option*> options;  // likewise
   bool full_model = false;
   int slice = Plan{}.slice;
 };

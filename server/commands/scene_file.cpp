@@ -29,7 +29,8 @@ std::string read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes;
   if (in) bytes = read_all(in);
-  if (!in || in.bad()) throw FileError("cannot read " + path + (errno ? ": " + std::string(std::strerror(errno)) : ""));
+  if (!in || in.bad())
+    throw FileError("cannot read " + path + (errno ? ": " + std::string(std::strerror(errno)) : ""));
   return bytes;
 }
 

@@ -35,8 +35,9 @@ int serve(const Options& options) {
   settings.request_time = std::chrono::seconds(options.request_seconds);
   settings.grace = std::chrono::seconds(options.grace_seconds);
   if (!options.insecure && !is_loopback(settings.host))
-    throw InputError("--host", settings.host + " can be reached from other machines, and everyone who reaches it may "
-                               "render; give --insecure if that is meant");
+    throw InputError("--host", settings.host +
+                                   " can be reached from other machines, and everyone who reaches it may "
+                                   "render; give --insecure if that is meant");
   // The signals are taken before the service starts threads; it learns of them once it is there.
   std::mutex mutex;
   Service* running = nullptr;  // guarded by mutex
@@ -53,9 +54,10 @@ int serve(const Options& options) {
     if (signals.interrupted()) service.stop();
   }
   const bool v6 = settings.host.find(':') != std::string::npos;
-  std::cout << "orrery listens on http://" << (v6 ? "[" + settings.host + "]" : settings.host) << ":" << service.port()
-            << std::endl;
-  log.write(LogLevel::info, "start", {{"version", kVersion}, {"instructions", kInstructionLevel}, {"port", service.port()}});
+  std::cout << "orrery listens on http://" << (v6 ? "[" + settings.host + "]" : settings.host) << ":"
+            << service.port() << std::endl;
+  log.write(LogLevel::info, "start",
+            {{"version", kVersion}, {"instructions", kInstructionLevel}, {"port", service.port()}});
   service.run();
   {
     const std::lock_guard lock(mutex);
@@ -68,7 +70,11 @@ int serve(const Options& options) {
 void add_limit_options(CLI::App& app, Options& options) {
   Settings& settings = options.settings;
   const auto add = [&](const char* name, auto& value, double most, const char* help) {
-    app.add_option(name, value, help)->check(CLI::Range(1.0, most))->type_name("N")->capture_default_str()->group("Limits");
+    app.add_option(name, value, help)
+        ->check(CLI::Range(1.0, most))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Limits");
   };
   add("--max-body", settings.body_bytes, 1e9, "Bytes of a request's body");
   add("--max-store", settings.store_bytes, 1e12, "Bytes of scenes kept, by estimate");

@@ -42,7 +42,8 @@ SignalWatch::SignalWatch(std::function<void()> on_first) : parts_(std::make_uniq
   pthread_sigmask(SIG_BLOCK, &taken, &parts_->before);
   parts_->signals = signalfd(-1, &taken, SFD_CLOEXEC);
   parts_->end = eventfd(0, EFD_CLOEXEC);
-  if (parts_->signals < 0 || parts_->end < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
+  if (parts_->signals < 0 || parts_->end < 0)
+    throw std::system_error(errno, std::generic_category(), "signalfd");
   parts_->thread = std::thread([parts = parts_.get()] { parts->watch(); });
 }
 

@@ -7,8 +7,8 @@
 namespace orrery {
 
 // Takes SIGINT and SIGTERM for itself while it lives. The first one calls `on_first` on a thread of its own;
-// a second one ends the process at once with status 130. Threads started meanwhile leave the signals to it, so
-// make one before any other thread.
+// a second one ends the process at once with status 130. Threads started meanwhile leave the signals to it,
+// so make one before any other thread.
 class SignalWatch {
  public:
   explicit SignalWatch(std::function<void()> on_first = {});

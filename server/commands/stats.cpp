@@ -17,7 +17,8 @@ using nlohmann::ordered_json;
 ordered_json by_depth(const RayCounts::ByDepth& counts) {
   std::size_t size = counts.size();
   while (size > 0 && counts[size - 1] == 0) --size;
-  return ordered_json(std::vector<std::uint64_t>(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(size)));
+  return ordered_json(
+      std::vector<std::uint64_t>(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(size)));
 }
 
 double mrays_per_s(const RenderStats& stats) {
@@ -63,9 +64,12 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"precision", plan.double_precision ? "double" : "float"},
           {"instructions", kInstructionLevel},
           {"threads", stats.threads},
-          {"rays", {{"camera", counts.rays.camera}, {"reflected", by_depth(counts.rays.reflected)},
-                    {"refracted", by_depth(counts.rays.refracted)}, {"shadow", by_depth(counts.rays.shadow)},
-                    {"total", counts.rays.total()}}},
+          {"rays",
+           {{"camera", counts.rays.camera},
+            {"reflected", by_depth(counts.rays.reflected)},
+            {"refracted", by_depth(counts.rays.refracted)},
+            {"shadow", by_depth(counts.rays.shadow)},
+            {"total", counts.rays.total()}}},
           {"box_tests", counts.accelerator.box_tests},
           {"primitive_tests", counts.accelerator.primitive_tests},
           {"cut_rays", counts.cut_rays},
@@ -97,7 +101,8 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
     line(text, "%-12s %14llu", "not finite", static_cast<unsigned long long>(stats.render.non_finite_pixels));
   line(text, "%-12s %11.1f ms loading", "time", stats.load_ms);
   line(text, "%-12s %11.1f ms building", "", stats.render.build_ms);
-  line(text, "%-12s %11.1f ms tracing, %.2f million rays/s", "", stats.render.trace_ms, mrays_per_s(stats.render));
+  line(text, "%-12s %11.1f ms tracing, %.2f million rays/s", "", stats.render.trace_ms,
+       mrays_per_s(stats.render));
   line(text, "%-12s %11.1f ms encoding", "", stats.encode_ms);
   line(text, "%-12s %12.3f s rendering, %.3f s in all", "processor", stats.render_cpu_s, cpu_seconds());
   return text;

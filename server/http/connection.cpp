@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <limits>
+#include <utility>
 
 namespace orrery {
 namespace {
@@ -31,7 +32,8 @@ bool wait_for(int fd, short events, Clock::time_point deadline) {
 
 }  // namespace
 
-Connection::Connection(int fd, int wake, const Patience& patience) : fd_(fd), wake_(wake), patience_(patience) {}
+Connection::Connection(int fd, int wake, const Patience& patience)
+    : fd_(fd), wake_(wake), patience_(patience) {}
 
 Connection::~Connection() {
   // Closing while the client still sends would make it see a broken connection instead of the answer.
@@ -49,14 +51,16 @@ void Connection::drain() {
 }
 
 bool Connection::wait_for_request() {
+  constexpr std::chrono::milliseconds kLastCall{200};  // for who has connected, but not said anything yet
+  const bool fresh = std::exchange(fresh_, false);
   if (!received_.empty()) return true;
   pollfd ready[] = {{fd_, POLLIN, 0}, {wake_, POLLIN, 0}};
   const auto deadline = Clock::now() + patience_.idle;
-  int count = 0;
-  do count = poll(ready, 2, milliseconds_until(deadline));
-  while (count < 0 && errno == EINTR);
+  while (poll(ready, 2, milliseconds_until(deadline)) < 0)
+    if (errno != EINTR) return false;
   // A request that is here already is answered even if idle connections are to end.
-  return count > 0 && ready[0].revents != 0 && receive(deadline);
+  if (ready[0].revents != 0) return receive(deadline);
+  return ready[1].revents != 0 && fresh && receive(Clock::now() + kLastCall);
 }
 
 bool Connection::receive(Clock::time_point deadline) {
@@ -83,7 +87,8 @@ Head Connection::read_head() {
   for (;;) {
     const std::size_t end = received_.find(kEnd, searched);
     if (std::min(end, received_.size()) + kEnd.size() > kMaxHeadBytes)
-      throw HttpError(431, "The request's headers have more than " + std::to_string(kMaxHeadBytes) + " bytes");
+      throw HttpError(431,
+                      "The request's headers have more than " + std::to_string(kMaxHeadBytes) + " bytes");
     if (end != std::string::npos) {
       const std::string bytes = received_.substr(0, end + kEnd.size());
       received_.erase(0, bytes.size());
@@ -101,10 +106,11 @@ std::string Connection::read_body(const Head& head, std::size_t limit) {
   if (head.chunked || !head.content_length) throw HttpError(411, "A body must come with its Content-Length");
   const std::size_t length = *head.content_length;
   if (length > limit)
-    throw HttpError(413, "The body has " + std::to_string(length) + " bytes, at most " + std::to_string(limit) +
-                             " are allowed (body_bytes)");
+    throw HttpError(413, "The body has " + std::to_string(length) + " bytes, at most " +
+                             std::to_string(limit) + " are allowed (body_bytes)");
   if (const auto expect = head.header("Expect")) {
-    if (!equal_ignoring_case(*expect, "100-continue")) throw HttpError(417, "Expected no Expect but 100-continue");
+    if (!equal_ignoring_case(*expect, "100-continue"))
+      throw HttpError(417, "Expected no Expect but 100-continue");
     if (received_.empty() && length > 0) httplib::Stream::write(std::string("HTTP/1.1 100 Continue\r\n\r\n"));
   }
   const auto deadline =

@@ -13,16 +13,16 @@ namespace orrery {
 
 // How long a client may take. The limits hold from the first byte of a request.
 struct Patience {
-  std::chrono::milliseconds idle{15'000};     // between two requests
-  std::chrono::milliseconds head{5'000};      // for request line and headers
+  std::chrono::milliseconds idle{15'000};  // between two requests
+  std::chrono::milliseconds head{5'000};   // for request line and headers
   std::chrono::milliseconds body_stall{10'000};
-  std::size_t body_bytes_per_s = 1024;        // or better
+  std::size_t body_bytes_per_s = 1024;  // or better
   std::chrono::milliseconds write_stall{10'000};
 };
 
-// One client's socket as a stream for httplib. The stream yields only a request line of ours, because what the
-// client sends is read and judged here, once: no second parser can understand it differently. Writing goes to the
-// socket. For the thread that serves the connection, except gone() and abandon().
+// One client's socket as a stream for httplib. The stream yields only a request line of ours, because what
+// the client sends is read and judged here, once: no second parser can understand it differently. Writing
+// goes to the socket. For the thread that serves the connection, except gone() and abandon().
 class Connection final : public httplib::Stream {
  public:
   // Takes the socket, which must not block. `wake` becomes readable when idle connections are to end.
@@ -42,8 +42,8 @@ class Connection final : public httplib::Stream {
   // Whether bytes of this request may still be under way; then nothing after it can be understood.
   bool body_unread() const { return body_left_ > 0; }
 
-  bool gone() const;       // the client has closed its side, or the connection is broken
-  void abandon() const;    // breaks it off, from any thread
+  bool gone() const;     // the client has closed its side, or the connection is broken
+  void abandon() const;  // breaks it off, from any thread
   std::uint64_t bytes_written() const { return written_; }
 
   bool is_readable() const override { return !offered_.empty(); }
@@ -66,6 +66,7 @@ class Connection final : public httplib::Stream {
   std::string received_;  // read from the socket, not used yet
   std::string offered_;   // for httplib
   std::size_t body_left_ = 0;
+  bool fresh_ = true;  // no request was waited for yet
   std::uint64_t written_ = 0;
   mutable std::atomic<bool> broken_{false};
 };

@@ -34,13 +34,15 @@ std::string_view trimmed(std::string_view text) {
 
 void parse_request_line(std::string_view line, Head& head) {
   const std::size_t first = line.find(' '), last = line.rfind(' ');
-  if (first == std::string_view::npos || first == last) throw HttpError(400, "The request line is not METHOD PATH HTTP/1.1");
+  if (first == std::string_view::npos || first == last)
+    throw HttpError(400, "The request line is not METHOD PATH HTTP/1.1");
   const std::string_view method = line.substr(0, first), version = line.substr(last + 1);
   const std::string_view target = line.substr(first + 1, last - first - 1);
   if (!is_token(method)) throw HttpError(400, "The method is no word");
   if (target.size() > kMaxTargetBytes)
     throw HttpError(414, "The address has more than " + std::to_string(kMaxTargetBytes) + " bytes");
-  const bool visible = std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c != 0x7F; });
+  const bool visible =
+      std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c != 0x7F; });
   if (target.empty() || !visible) throw HttpError(400, "The address has a character that needs a %-escape");
   if (version != "HTTP/1.1" && version != "HTTP/1.0") {
     if (version.starts_with("HTTP/")) throw HttpError(505, "This service speaks HTTP/1.1");
@@ -60,7 +62,8 @@ void parse_header(std::string_view line, Head& head) {
   const std::string_view name = line.substr(0, colon);
   if (colon == std::string_view::npos || !is_token(name)) throw HttpError(400, "A header is not NAME: VALUE");
   const std::string_view value = trimmed(line.substr(colon + 1));
-  if (!is_field_text(value)) throw HttpError(400, "The header " + std::string(name.substr(0, 40)) + " has control characters");
+  if (!is_field_text(value))
+    throw HttpError(400, "The header " + std::string(name.substr(0, 40)) + " has control characters");
   head.headers.emplace_back(name, value);
 }
 
@@ -94,8 +97,10 @@ Head parse_head(std::string_view bytes) {
     const std::string_view line = bytes.substr(0, end);
     bytes.remove_prefix(end + 2);
     if (line.empty()) break;
-    if (first) parse_request_line(line, head);
-    else parse_header(line, head);
+    if (first)
+      parse_request_line(line, head);
+    else
+      parse_header(line, head);
     first = false;
   }
   if (first) throw HttpError(400, "The request is empty");

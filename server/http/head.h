@@ -26,9 +26,9 @@ struct Head {
   std::optional<std::string> header(std::string_view name) const { return find_field(headers, name); }
 };
 
-// Parses the bytes up to and with the empty line (RFC 9112), strictly: lines end with CR LF, names are tokens,
-// nothing is folded; one Host; at most one Content-Length, digits only, and not beside a Transfer-Encoding.
-// Throws HttpError 400, 414, 431, 501 or 505.
+// Parses the bytes up to and with the empty line (RFC 9112), strictly: lines end with CR LF, names are
+// tokens, nothing is folded; one Host; at most one Content-Length, digits only, and not beside a
+// Transfer-Encoding. Throws HttpError 400, 414, 431, 501 or 505.
 Head parse_head(std::string_view bytes);
 
 }  // namespace orrery

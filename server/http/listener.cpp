@@ -65,6 +65,10 @@ int Listener::accept() const {
   if (fd < 0) return -1;
   const int on = 1;
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  // Bytes that the kernel takes before the client's network can: more would only grow old there, and a slow
+  // viewer would see every frame late instead of missing some.
+  const int most_unsent = 128 * 1024;
+  setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &most_unsent, sizeof most_unsent);
   return fd;
 }
 

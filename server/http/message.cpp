@@ -6,7 +6,8 @@ namespace orrery {
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::optional<std::string> find_field(const Fields& fields, std::string_view name) {
@@ -16,7 +17,8 @@ std::optional<std::string> find_field(const Fields& fields, std::string_view nam
 }
 
 const std::string& Request::path_value(std::string_view name) const {
-  return std::find_if(path_values.begin(), path_values.end(), [&](const auto& p) { return p.first == name; })->second;
+  return std::find_if(path_values.begin(), path_values.end(), [&](const auto& p) { return p.first == name; })
+      ->second;
 }
 
 Response& Response::set(std::string_view name, std::string value) {

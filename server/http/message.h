@@ -21,8 +21,8 @@ using Fields = std::vector<std::pair<std::string, std::string>>;
 std::optional<std::string> find_field(const Fields& fields, std::string_view name);
 
 struct Request {
-  std::string method;  // "HEAD" is answered as "GET", without the body
-  std::string path;    // decoded
+  std::string method;                 // "HEAD" is answered as "GET", without the body
+  std::string path;                   // decoded
   std::vector<std::string> segments;  // of the path, each decoded
   std::string id;      // of this request: sent by the client, or made up; letters, digits, . _ -
   Fields query;        // decoded; names are unique
@@ -51,7 +51,8 @@ struct Response {
   int status = 200;
   Fields headers = {};
   std::string body = {};
-  // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws nothing.
+  // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws
+  // nothing.
   std::function<void(Sink&)> stream = {};
   // For the log: rays traced for this answer, and what went wrong inside.
   std::uint64_t rays = 0;

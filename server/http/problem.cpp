@@ -12,11 +12,12 @@ using nlohmann::ordered_json;
 
 Response respond(int status, std::string_view title, std::string_view detail, std::string_view request_id,
                  std::string_view type = "about:blank", const ordered_json& more = ordered_json::object()) {
-  ordered_json problem = {{"type", type}, {"title", title}, {"status", status}, {"detail", detail},
-                          {"request_id", request_id}};
+  ordered_json problem = {
+      {"type", type}, {"title", title}, {"status", status}, {"detail", detail}, {"request_id", request_id}};
   problem.update(more);
-  Response response = text_response(status, "application/problem+json",
-                                    problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  Response response =
+      text_response(status, "application/problem+json",
+                    problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
   response.set("Cache-Control", "no-store");
   return response;
 }
@@ -36,7 +37,8 @@ Response malformed(const MalformedJson& error, std::string_view request_id) {
   more["offset"] = error.offset();
   more["line"] = error.line();
   more["column"] = error.column();
-  return respond(400, "The body is not JSON", error.what(), request_id, "urn:orrery:problem:malformed-json", more);
+  return respond(400, "The body is not JSON", error.what(), request_id, "urn:orrery:problem:malformed-json",
+                 more);
 }
 
 }  // namespace
@@ -64,7 +66,8 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
   } catch (const Cancelled& e) {
     return respond(499, e.what(), request_id);
   } catch (const std::exception& e) {
-    Response response = respond(500, "Something went wrong inside; the log has more under this request's id", request_id);
+    Response response =
+        respond(500, "Something went wrong inside; the log has more under this request's id", request_id);
     response.note = e.what();
     return response;
   } catch (...) {

@@ -18,7 +18,8 @@ class Router {
   // answers HEAD as well. Routes added first are tried first.
   void add(std::string_view method, std::string_view pattern, Handler handler);
 
-  // Fills request.path_values and calls the handler. Throws HttpError 404 or 405, and what the handler throws.
+  // Fills request.path_values and calls the handler. Throws HttpError 404 or 405, and what the handler
+  // throws.
   Response dispatch(Request& request) const;
 
  private:

@@ -31,7 +31,8 @@ struct Exchange {
   bool keep_alive = false;
 };
 
-// How the handlers inside httplib get at the exchange: it rides on a callback that only httplib's client uses.
+// How the handlers inside httplib get at the exchange: it rides on a callback that only httplib's client
+// uses.
 struct Rider {
   Exchange* exchange;
   bool operator()(std::uint64_t, std::uint64_t) const { return true; }
@@ -61,7 +62,8 @@ void fill(Exchange& exchange, httplib::Response& out) {
       return true;
     };
     if (exchange.head.minor_version == 1) return out.set_chunked_content_provider(type, provider);
-    exchange.keep_alive = false;  // HTTP/1.0 knows no chunks: the end of the connection is the end of the body
+    exchange.keep_alive =
+        false;  // HTTP/1.0 knows no chunks: the end of the connection is the end of the body
     return out.set_content_provider(type, provider);
   }
   if (!type.empty()) out.set_header("Content-Type", type);
@@ -72,14 +74,16 @@ void fill(Exchange& exchange, httplib::Response& out) {
 void finish_headers(Exchange& exchange, httplib::Response& out) {
   if (exchange.connection.body_unread()) exchange.keep_alive = false;
   for (const char* name : {"Keep-Alive", "Connection", "Accept-Ranges"}) out.headers.erase(name);
-  if (!exchange.keep_alive) out.set_header("Connection", "close");
-  else if (exchange.head.minor_version == 0) out.set_header("Connection", "keep-alive");
+  if (!exchange.keep_alive)
+    out.set_header("Connection", "close");
+  else if (exchange.head.minor_version == 0)
+    out.set_header("Connection", "keep-alive");
   const bool length_unknown = exchange.request.method == "HEAD" && out.body.empty();
   if (length_unknown || out.status == 204 || out.status == 304) out.headers.erase("Content-Length");
 }
 
-// httplib as a writer of answers: it gets a request line of ours (see Connection), asks for the answer before it
-// would route, and writes it.
+// httplib as a writer of answers: it gets a request line of ours (see Connection), asks for the answer before
+// it would route, and writes it.
 class Engine final : public httplib::Server {
  public:
   explicit Engine(const HttpServer::Handler& handler) {
@@ -217,7 +221,9 @@ class HttpServer::Parts {
     request.segments = std::move(target.segments);
     request.query = std::move(target.query);
     request.gone = [&connection = exchange.connection] { return connection.gone(); };
-    request.read_body = [this, &exchange] { return exchange.connection.read_body(exchange.head, options_.max_body); };
+    request.read_body = [this, &exchange] {
+      return exchange.connection.read_body(exchange.head, options_.max_body);
+    };
     exchange.keep_alive = head.keep_alive && !draining_;
   }
 
@@ -231,7 +237,7 @@ class HttpServer::Parts {
   std::atomic<int> busy_{0};  // requests being read or answered
   std::mutex mutex_;
   std::list<const Connection*> open_;  // guarded by mutex_
-  ConnectionThreads threads_;         // last: its threads use the others
+  ConnectionThreads threads_;          // last: its threads use the others
 };
 
 HttpServer::HttpServer(const Options& options, Handler handler)

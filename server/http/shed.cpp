@@ -12,7 +12,8 @@ std::string answer() {
   const std::string body =
       R"~({"type":"about:blank","title":"Service Unavailable","status":503,"detail":"Too many connections (connections)"})~";
   return "HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/problem+json\r\nRetry-After: 1\r\n"
-         "Connection: close\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+         "Connection: close\r\nContent-Length: " +
+         std::to_string(body.size()) + "\r\n\r\n" + body;
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 
 namespace orrery {
 
-// Turns connections away that no thread is free for: answers 503 without reading what they ask. For one thread.
+// Turns connections away that no thread is free for: answers 503 without reading what they ask. For one
+// thread.
 class Shed {
  public:
   ~Shed();

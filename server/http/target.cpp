@@ -47,7 +47,8 @@ std::string decode(std::string_view text, bool plus_is_space) {
     } else {
       const int high = i + 2 < text.size() ? digit_of(text[i + 1]) : -1;
       const int low = i + 2 < text.size() ? digit_of(text[i + 2]) : -1;
-      if (high < 0 || low < 0) throw HttpError(400, "The address has a % that no two hexadecimal digits follow");
+      if (high < 0 || low < 0)
+        throw HttpError(400, "The address has a % that no two hexadecimal digits follow");
       decoded += static_cast<char>(high * 16 + low);
       i += 2;
     }
@@ -91,7 +92,8 @@ Target parse_target(std::string_view target) {
   Target parsed;
   parsed.path = decode(path, false);
   path.remove_prefix(1);
-  if (!path.empty()) split(path, '/', [&](std::string_view segment) { parsed.segments.push_back(decode(segment, false)); });
+  if (!path.empty())
+    split(path, '/', [&](std::string_view segment) { parsed.segments.push_back(decode(segment, false)); });
   if (mark != std::string_view::npos) parsed.query = parse_query(target.substr(mark + 1));
   return parsed;
 }

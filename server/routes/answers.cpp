@@ -28,15 +28,31 @@ void split(std::string_view list, char separator, const Part& part) {
 }
 
 void require_json(const Request& request) {
-  if (request.header("Content-Encoding")) throw HttpError(415, "A body must not be compressed (Content-Encoding)");
+  if (request.header("Content-Encoding"))
+    throw HttpError(415, "A body must not be compressed (Content-Encoding)");
   const std::string header = request.header("Content-Type").value_or("");
   const std::string_view type = trimmed(std::string_view(header).substr(0, header.find(';')));
   // curl and forms call every body x-www-form-urlencoded; it is read as JSON all the same.
-  constexpr std::array<std::string_view, 4> kTypes{"", "application/json", "application/x-www-form-urlencoded",
-                                                   "text/plain"};
-  const bool known = std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
+  constexpr std::array<std::string_view, 4> kTypes{"", "application/json",
+                                                   "application/x-www-form-urlencoded", "text/plain"};
+  const bool known =
+      std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
   if (!known && !(type.starts_with("application/") && type.ends_with("+json")))
     throw HttpError(415, "Expected a body of application/json, got " + std::string(type.substr(0, 100)));
+}
+
+// The query as an object: "/azimuth" (RFC 6901).
+std::string pointer_to(std::string_view name) {
+  std::string pointer = "/";
+  for (const char c : name.substr(0, 100)) {
+    if (c == '~')
+      pointer += "~0";
+    else if (c == '/')
+      pointer += "~1";
+    else
+      pointer += c;
+  }
+  return pointer;
 }
 
 // How well one entry of an Accept header, such as "image/*;q=0.5", fits a type: 0..1 by its weight, or none.
@@ -47,14 +63,18 @@ struct Fit {
 Fit fit_of(std::string_view entry, std::string_view type) {
   const std::string_view range = trimmed(entry.substr(0, entry.find(';')));
   Fit fit;
-  if (equal_ignoring_case(range, type)) fit.exactness = 2;
-  else if (range == "*/*") fit.exactness = 0;
-  else if (range.ends_with("/*") && equal_ignoring_case(range.substr(0, range.size() - 1),
-                                                        type.substr(0, type.find('/') + 1))) fit.exactness = 1;
+  if (equal_ignoring_case(range, type))
+    fit.exactness = 2;
+  else if (range == "*/*")
+    fit.exactness = 0;
+  else if (range.ends_with("/*") &&
+           equal_ignoring_case(range.substr(0, range.size() - 1), type.substr(0, type.find('/') + 1)))
+    fit.exactness = 1;
   if (fit.exactness < 0) return fit;
   fit.weight = 1;
   split(entry, ';', [&](std::string_view parameter) {
-    if (parameter.starts_with("q=")) fit.weight = std::strtod(std::string(parameter.substr(2)).c_str(), nullptr);
+    if (parameter.starts_with("q="))
+      fit.weight = std::strtod(std::string(parameter.substr(2)).c_str(), nullptr);
   });
   return fit;
 }
@@ -73,7 +93,7 @@ RenderRequest read_query(const Request& request, std::span<const std::string_vie
   std::vector<Problem> problems;
   for (const auto& [name, value] : request.query) {
     if (std::find(names.begin(), names.end(), name) == names.end())
-      problems.push_back({"/" + name, "unknown parameter" + did_you_mean(name, names)});
+      problems.push_back({pointer_to(name), "unknown parameter" + did_you_mean(name, names)});
     else if (std::find(more.begin(), more.end(), name) == more.end())
       values.emplace_back(name, value);
   }

@@ -12,8 +12,8 @@
 // What several routes need to read a request and to write an answer.
 namespace orrery {
 
-// The body as JSON. Throws HttpError for a content type or coding that is not accepted, and what parse_document
-// throws.
+// The body as JSON. Throws HttpError for a content type or coding that is not accepted, and what
+// parse_document throws.
 Document read_json(Request& request);
 
 // The options of a render in the query. `more` names what else the query may have; its values are left alone.

@@ -14,10 +14,14 @@ std::string_view type_of(std::string_view path) {
     std::string_view ending, type;
   };
   constexpr std::array kEndings{
-      Ending{".html", "text/html; charset=utf-8"},     Ending{".js", "text/javascript; charset=utf-8"},
-      Ending{".css", "text/css; charset=utf-8"},       Ending{".json", "application/json"},
-      Ending{".svg", "image/svg+xml; charset=utf-8"},  Ending{".png", "image/png"},
-      Ending{".ico", "image/x-icon"},                  Ending{".webmanifest", "application/manifest+json"},
+      Ending{".html", "text/html; charset=utf-8"},
+      Ending{".js", "text/javascript; charset=utf-8"},
+      Ending{".css", "text/css; charset=utf-8"},
+      Ending{".json", "application/json"},
+      Ending{".svg", "image/svg+xml; charset=utf-8"},
+      Ending{".png", "image/png"},
+      Ending{".ico", "image/x-icon"},
+      Ending{".webmanifest", "application/manifest+json"},
   };
   for (const auto& [ending, type] : kEndings)
     if (path.ends_with(ending)) return type;
@@ -41,7 +45,8 @@ void add_files_routes(Router& router, App&) {
   constexpr std::string_view kPage = "web/", kScenes = "scenes/", kSchemas = "scenes/schema/";
   for (const EmbeddedFile& file : embedded_files()) {
     if (file.path == "web/index.html") add_file(router, "/", file);
-    if (file.path.starts_with(kPage)) add_file(router, "/" + std::string(file.path.substr(kPage.size())), file);
+    if (file.path.starts_with(kPage))
+      add_file(router, "/" + std::string(file.path.substr(kPage.size())), file);
     else if (file.path.starts_with(kScenes) && !file.path.starts_with(kSchemas))
       add_file(router, "/" + std::string(file.path), file);
   }

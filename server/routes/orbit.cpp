@@ -23,10 +23,13 @@ double number_of(const Request& request, std::string_view name, double min, doub
     if (key != name) continue;
     double number = 0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (problem == std::errc() && end == text.data() + text.size() && number >= min && number <= max) return number;
+    if (problem == std::errc() && end == text.data() + text.size() && number >= min && number <= max)
+      return number;
     char range[96];
     std::snprintf(range, sizeof range, "expected a number >= %g and <= %g, got ", min, max);
-    problems.push_back({"/" + key, range + nlohmann::json(text.substr(0, 40)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+    problems.push_back(
+        {"/" + key, range + nlohmann::json(text.substr(0, 40))
+                                .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
   }
   return fallback;
 }
@@ -44,7 +47,8 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   if (!problems.empty()) throw InputError(std::move(problems));
   for (const int frame : {0, spec.frames - 1}) plan_of_query(spec.scene->scene(), spec.request_of(frame));
   const Scene& scene = spec.scene->scene();
-  spec.key = scene.id + " " + canonical_request(scene, spec.request) + nlohmann::json({spec.frames, spec.step_degrees, spec.fps}).dump();
+  spec.key = scene.id + " " + canonical_request(scene, spec.request) +
+             nlohmann::json({spec.frames, spec.step_degrees, spec.fps}).dump();
   return spec;
 }
 
@@ -62,7 +66,8 @@ std::string framed(const OrbitFrame& frame, std::int64_t skipped) {
       {"encode_ms", picture.encode_ms},
       {"skipped", skipped},
       {"rays", picture.stats.counts.rays.total()},
-      {"bytes", picture.bytes.size()}}.dump();
+      {"bytes",
+       picture.bytes.size()}}.dump();
   std::string bytes;
   bytes.reserve(4 + header.size() + picture.bytes.size());
   for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(header.size() >> shift & 0xFF);
@@ -71,9 +76,11 @@ std::string framed(const OrbitFrame& frame, std::int64_t skipped) {
   return bytes;
 }
 
-// A part of a multipart body, with the boundary that ends it: a browser shows a picture when it sees the next one.
+// A part of a multipart body, with the boundary that ends it: a browser shows a picture when it sees the next
+// one.
 std::string part(const OrbitFrame& frame, bool last) {
-  std::string bytes = "Content-Type: image/png\r\nContent-Length: " + std::to_string(frame.picture.bytes.size()) + "\r\n\r\n";
+  std::string bytes =
+      "Content-Type: image/png\r\nContent-Length: " + std::to_string(frame.picture.bytes.size()) + "\r\n\r\n";
   bytes.reserve(bytes.size() + frame.picture.bytes.size() + 32);
   bytes += frame.picture.bytes;
   bytes += "\r\n--" + std::string(kBoundary) + (last ? "--\r\n" : "\r\n");
@@ -106,8 +113,10 @@ Response orbit(App& app, Request& request) {
   if (request.method == "HEAD") return response;
   const std::shared_ptr<OrbitCast::Viewer> viewer = app.orbits().watch(spec);
   response.stream = [viewer, multipart, gone = request.gone](Sink& sink) {
-    if (multipart) send_parts(*viewer, gone, sink);
-    else send_frames(*viewer, gone, sink);
+    if (multipart)
+      send_parts(*viewer, gone, sink);
+    else
+      send_frames(*viewer, gone, sink);
   };
   return response;
 }

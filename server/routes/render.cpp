@@ -42,7 +42,8 @@ Order read_order(App& app, const Document& document, Timing& timing) {
     order.scene = prepare(*scene);
   } else {
     const std::string text = id->canonical();  // in quotes if it is one
-    if (!text.starts_with('"')) throw InputError("/scene_id", "expected the id of a scene in quotes, got " + text.substr(0, 40));
+    if (!text.starts_with('"'))
+      throw InputError("/scene_id", "expected the id of a scene in quotes, got " + text.substr(0, 40));
     order.scene = app.scenes().find(text.substr(1, text.size() - 2));
   }
   return order;

@@ -18,8 +18,10 @@ ordered_json camera_json(const Camera& camera) {
                        {"eye", list_of(camera.eye)},
                        {"look_at", list_of(camera.look_at)},
                        {"up", list_of(camera.up)}};
-  if (perspective) json["fov_degrees"] = camera.fov_degrees;
-  else json["height"] = camera.height;
+  if (perspective)
+    json["fov_degrees"] = camera.fov_degrees;
+  else
+    json["height"] = camera.height;
   return json;
 }
 

@@ -20,6 +20,8 @@ const { persist, wake_all } = await load("backoff.js");
 const { OrbitCamera, elevation_of } = await load("camera.js");
 const { locate, offset_of } = await load("pointer.js");
 const { pretty } = await load("scenes.js");
+const { Pace } = await load("pace.js");
+const { quality } = await load("quality.js");
 const { picture_size, within } = await load("size.js");
 const { format_hash, parse_hash } = await load("state.js");
 const { FrameParser, read_frames } = await load("stream.js");
@@ -153,7 +155,7 @@ test("a picture fits its box and the limits", () => {
       ...more,
     });
   assert.deepEqual(size(), { width: 1600, height: 800, fov: undefined, fills: true });
-  assert.deepEqual(size({ purpose: "preview", preview_part: 0.25 }), {
+  assert.deepEqual(size({ purpose: "preview", part: 0.25 }), {
     width: 400,
     height: 200,
     fov: undefined,
@@ -164,6 +166,43 @@ test("a picture fits its box and the limits", () => {
   const narrow = size({ box: { width: 400, height: 800 } });
   assert.ok(Math.abs(narrow.fov - (2 * Math.atan(2) * 180) / Math.PI) < 1e-9, "the sides stay in view");
   assert.deepEqual(within({ width: 8192, height: 100 }, 4096, 2 ** 24), { width: 4096, height: 50 });
+});
+
+// Plays an orbit whose frames take `frame_ms(level)`, for `seconds`; returns its pace.
+function paced(frame_ms, coarsest, seconds, speed = 20) {
+  const pace = new Pace();
+  for (let now = 0; now < 1000 * seconds; now += Math.max(1000 / pace.fps, frame_ms(pace.level, now))) {
+    if (pace.note(now, frame_ms(pace.level, now), speed, pace.level < coarsest)) pace.restart();
+  }
+  return pace;
+}
+
+test("an orbit gets coarser until it runs smoothly, and no coarser", () => {
+  const ms = [400, 100, 30, 8];
+  const { level, fps } = paced((at) => ms[at], 3, 20);
+  assert.deepEqual({ level, fps: Math.round(fps) }, { level: 2, fps: 30 });
+});
+
+test("an orbit that cannot get coarser keeps its speed with fewer frames", () => {
+  const { level, fps } = paced(() => 125, 0, 20);
+  assert.deepEqual({ level, fps }, { level: 0, fps: 8 });
+});
+
+test("an orbit never turns into a slide show, and fast frames are left alone", () => {
+  assert.equal(paced(() => 5000, 0, 60).fps, 2);
+  assert.equal(paced(() => 5, 3, 20).level, 0);
+});
+
+test("an orbit takes up speed when frames get faster again", () => {
+  assert.equal(paced((level, now) => (now < 5000 ? 125 : 4), 0, 20).fps, 30);
+});
+
+test("an orbit gives up nothing that the user has chosen", () => {
+  const own = { samples: 0, size: "fit" };
+  assert.deepEqual(quality("stream", 0, own), { part: 1, samples: 0 });
+  assert.deepEqual(quality("stream", 3, own), { part: 0.25, samples: 1 });
+  assert.deepEqual(quality("stream", 3, { samples: 16, size: "scene" }), { part: 1, samples: 16 });
+  assert.deepEqual(quality("still", 3, { samples: 16, size: "fit" }), { part: 1, samples: 16 });
 });
 
 test("addresses are the same for the same view and safe in a shell", () => {

@@ -26,8 +26,8 @@ const World<double>& world_of(const PreparedScene& scene, const Plan& plan) {
   return world_for<double>(scene.parts(), *plan.accelerator, build_ms);
 }
 
-// Calls visit(rays, put) for each tile, its rays (dx, dy) pixels off the pixels' centres; put(pixels, slot, value)
-// sets the pixel of a slot.
+// Calls visit(rays, put) for each tile, its rays (dx, dy) pixels off the pixels' centres; put(pixels, slot,
+// value) sets the pixel of a slot.
 template <class Visit>
 void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
   TileSamples samples;
@@ -46,18 +46,21 @@ void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
 
 }  // namespace
 
-Picture render_shifted(const PreparedScene& scene, const Plan& plan, float dx, float dy) {
+Samples render_shifted(const PreparedScene& scene, const Plan& plan, float dx, float dy) {
   const TracerPtr<double> tracer = make_tracer(*plan.technique, world_of(scene, plan), plan);
   const auto result = std::make_unique<TraceResult<double>>();
   TraceCounts counts;
-  Picture picture(plan.width, plan.height);
+  Samples samples{Picture(plan.width, plan.height), {}};
+  samples.cut.resize(samples.picture.pixels.size());
   for_each_tile(plan, dx, dy, [&](const RayBatch<double>& rays, const auto& put) {
     tracer->trace(rays, *result, counts);
     const Vec3Array<double>& radiance = result->radiance;
-    for (int slot = 0; slot < kBatch; ++slot)
-      put(picture.pixels, slot, Vec3f(Vec3d(radiance.x[slot], radiance.y[slot], radiance.z[slot])));
+    for (int slot = 0; slot < kBatch; ++slot) {
+      put(samples.picture.pixels, slot, Vec3f(Vec3d(radiance.x[slot], radiance.y[slot], radiance.z[slot])));
+      put(samples.cut, slot, result->cut[slot] > 0);
+    }
   });
-  return picture;
+  return samples;
 }
 
 std::vector<bool> normals_facing_away(const PreparedScene& scene, const Plan& plan) {
@@ -94,16 +97,16 @@ float difference(const Vec3f& a, const Vec3f& b, float brightest) {
   return max_component(difference_by_channel(a, b, brightest));
 }
 
-Comparison compare(const Picture& a, const Picture& b, const std::vector<bool>& edges, float brightest) {
+Comparison compare(const Picture& a, const Picture& b, const std::vector<bool>& left_out, float brightest) {
   Comparison result;
   double inside = 0, all = 0;
-  std::size_t edge_count = 0;
+  std::size_t left_out_count = 0;
   for (int y = 0; y < a.height; ++y)
     for (int x = 0; x < a.width; ++x) {
       const Vec3d d(difference_by_channel(a.at(x, y), b.at(x, y), brightest));
       all += dot(d, d);
-      if (edges[static_cast<std::size_t>(y * a.width + x)]) {
-        ++edge_count;
+      if (left_out[static_cast<std::size_t>(y * a.width + x)]) {
+        ++left_out_count;
         continue;
       }
       inside += dot(d, d);
@@ -113,19 +116,19 @@ Comparison compare(const Picture& a, const Picture& b, const std::vector<bool>& 
         result.largest_y = y;
       }
     }
-  const auto count = static_cast<double>(a.pixels.size()), edge = static_cast<double>(edge_count);
-  result.rms = std::sqrt(inside / (3 * (count - edge)));
+  const auto count = static_cast<double>(a.pixels.size()), without = static_cast<double>(left_out_count);
+  result.rms = std::sqrt(inside / (3 * (count - without)));
   result.rms_of_all = std::sqrt(all / (3 * count));
-  result.edge_share = edge / count;
+  result.left_out = without / count;
   return result;
 }
 
-Picture difference_picture(const Picture& a, const Picture& b, const std::vector<bool>& edges, float brightest,
-                           float gain) {
+Picture difference_picture(const Picture& a, const Picture& b, const std::vector<bool>& left_out,
+                           float brightest, float gain) {
   Picture out(a.width, a.height);
   for (std::size_t i = 0; i < out.pixels.size(); ++i)
     out.pixels[i] =
-        edges[i] ? Vec3f(0, 0, 0.3f) : difference_by_channel(a.pixels[i], b.pixels[i], brightest) * gain;
+        left_out[i] ? Vec3f(0, 0, 0.3f) : difference_by_channel(a.pixels[i], b.pixels[i], brightest) * gain;
   return out;
 }
 

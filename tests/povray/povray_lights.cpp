@@ -28,8 +28,8 @@ Fading fading_of(const Json& light) {
 // Between the two angles POV-Ray's beam falls as a smooth step in the cosine, too; tightness would narrow it.
 std::string cone_of(const Json& light) {
   const Vec3d aim = vector_of(light, "position") + normalize(vector_of(light, "direction"));
-  return " spotlight point_at " + text(aim) + " radius " + text(light.value("inner_degrees", 15.0)) + " falloff " +
-         text(light.value("outer_degrees", 30.0)) + " tightness 0";
+  return " spotlight point_at " + text(aim) + " radius " + text(light.value("inner_degrees", 15.0)) +
+         " falloff " + text(light.value("outer_degrees", 30.0)) + " tightness 0";
 }
 
 }  // namespace
@@ -38,8 +38,8 @@ std::string light_of(const Json& light, double exposure) {
   const std::string type = light.at("type");
   const Vec3d intensity = vector_of(light, "intensity", Vec3d(1)) * exposure;
   if (type == "directional")
-    return "light_source { " + text(normalize(vector_of(light, "from")) * kFarAway) + " rgb " + text(intensity) +
-           " parallel point_at 0 }\n";
+    return "light_source { " + text(normalize(vector_of(light, "from")) * kFarAway) + " rgb " +
+           text(intensity) + " parallel point_at 0 }\n";
   if (type != "point" && type != "spot") throw Inexpressible("the light type " + type);
   const Fading fading = fading_of(light);
   return "light_source { " + text(vector_of(light, "position")) + " rgb " + text(intensity * fading.factor) +

@@ -47,15 +47,18 @@ Material reflective(const Json& m) {
 
 // Filtering is a medium that only absorbs. (An interior's fade_color spares the light mirrored inside.)
 Material refractive(const Json& m) {
-  if (m.value("fresnel", "schlick") != "exact") throw Inexpressible("Schlick's approximation by the outer cosine");
+  if (m.value("fresnel", "schlick") != "exact")
+    throw Inexpressible("Schlick's approximation by the outer cosine");
   const Vec3d filter = vector_of(m, "filter", Vec3d(1));
   if (std::min({filter.x, filter.y, filter.z}) <= 0) throw Inexpressible("a filter that lets nothing pass");
   const Vec3d absorption(-std::log(filter.x), -std::log(filter.y), -std::log(filter.z));
   std::string interior = "ior " + text(m.at("ior").get<double>());
   if (filter != Vec3d(1)) interior += " media { absorption rgb " + text(absorption) + " }";
-  return {"pigment { rgbt 1 } finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy } "
-          "interior { " + interior + " } hollow ",
-          true};
+  return {
+      "pigment { rgbt 1 } finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy } "
+      "interior { " +
+          interior + " } hollow ",
+      true};
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ Picture read_ppm(const std::string& path) {
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!in) throw std::runtime_error(path + " is too short");
   const auto value = [&](std::size_t i) {
-    const auto high = static_cast<unsigned char>(bytes[2 * i]), low = static_cast<unsigned char>(bytes[2 * i + 1]);
+    const auto high = static_cast<unsigned char>(bytes[2 * i]),
+               low = static_cast<unsigned char>(bytes[2 * i + 1]);
     return static_cast<float>(high * 256 + low) / 65535.0f;
   };
   for (std::size_t i = 0; i < picture.pixels.size(); ++i)
@@ -44,11 +45,13 @@ bool povray_is_installed() { return std::system("command -v povray >/dev/null 2>
 
 Picture run_povray(const std::string& folder, int width, int height) {
   const std::string base = folder + "/povray", log = base + ".log";
-  const std::string command = "povray +I" + base + ".pov +O" + base + ".ppm +FP16 File_Gamma=1.0 -A -D -GA +W" +
-                              std::to_string(width) + " +H" + std::to_string(height) + " >" + log + " 2>&1";
+  const std::string command = "povray +I" + base + ".pov +O" + base +
+                              ".ppm +FP16 File_Gamma=1.0 -A -D -GA +W" + std::to_string(width) + " +H" +
+                              std::to_string(height) + " >" + log + " 2>&1";
   if (std::system(command.c_str()) != 0) throw std::runtime_error("povray failed, see " + log);
   Picture picture = read_ppm(base + ".ppm");
-  if (picture.width != width || picture.height != height) throw std::runtime_error("povray's picture has another size");
+  if (picture.width != width || picture.height != height)
+    throw std::runtime_error("povray's picture has another size");
   return picture;
 }
 

@@ -12,8 +12,8 @@ using povray::Json;
 using povray::text;
 using povray::vector_of;
 
-// All directions are written out, so POV-Ray's left-handed defaults have no say: `right` is the picture's right,
-// its length and that of `up` are what the picture shows at the end of `direction`.
+// All directions are written out, so POV-Ray's left-handed defaults have no say: `right` is the picture's
+// right, its length and that of `up` are what the picture shows at the end of `direction`.
 std::string camera_of(const Json& camera, double aspect) {
   const Vec3d eye = vector_of(camera, "eye");
   const Vec3d forward = normalize(vector_of(camera, "look_at") - eye);
@@ -22,8 +22,8 @@ std::string camera_of(const Json& camera, double aspect) {
   const bool perspective = camera.at("type") == "perspective";
   const double half_angle = camera.value("fov_degrees", 45.0) / 2 * std::numbers::pi / 180;
   const double height = perspective ? 2 * std::tan(half_angle) : camera.at("height").get<double>();
-  return "camera {\n  " + std::string(perspective ? "perspective" : "orthographic") + "\n  location " + text(eye) +
-         "\n  direction " + text(forward) + "\n  up " + text(up * height) + "\n  right " +
+  return "camera {\n  " + std::string(perspective ? "perspective" : "orthographic") + "\n  location " +
+         text(eye) + "\n  direction " + text(forward) + "\n  up " + text(up * height) + "\n  right " +
          text(right * (height * aspect)) + "\n}\n";
 }
 
@@ -36,8 +36,8 @@ std::string settings_of(const Json& scene, const PovrayOptions& options) {
          "\n}\nbackground { rgb " + text(background) + " }\n";
 }
 
-// Our bodies of glass cast the shadow of an opaque body; in POV-Ray light passes straight through them. So glass
-// casts none there, and an invisible black body in its place does.
+// Our bodies of glass cast the shadow of an opaque body; in POV-Ray light passes straight through them. So
+// glass casts none there, and an invisible black body in its place does.
 std::string object_of(const Json& object, const povray::Material& material) {
   const std::string shape = povray::shape_of(object);
   if (!material.transparent) return shape + material.modifiers + "}\n";
@@ -49,11 +49,13 @@ std::string object_of(const Json& object, const povray::Material& material) {
 
 std::string povray_scene(const Json& scene, const PovrayOptions& options) {
   std::string out = settings_of(scene, options) + camera_of(scene.at("camera"), options.aspect);
-  for (const Json& light : scene.value("lights", Json::array())) out += povray::light_of(light, options.exposure);
+  for (const Json& light : scene.value("lights", Json::array()))
+    out += povray::light_of(light, options.exposure);
   std::map<std::string, povray::Material> materials;
   for (const auto& [name, material] : scene.at("materials").items())
     materials.emplace(name, povray::material_of(material));
-  for (const Json& object : scene.at("objects")) out += object_of(object, materials.at(object.at("material")));
+  for (const Json& object : scene.at("objects"))
+    out += object_of(object, materials.at(object.at("material")));
   return out;
 }
 

@@ -16,12 +16,13 @@ class Inexpressible : public std::runtime_error {
 struct PovrayOptions {
   double aspect = 1;  // width over height
   int max_depth = 5;
-  // Every light source, the ambient light and the background are multiplied by it: POV-Ray's pictures end at 1.
+  // Every light source, the ambient light and the background are multiplied by it: POV-Ray's pictures end
+  // at 1.
   double exposure = 1;
 };
 
-// The same scene for POV-Ray 3.7, written from the JSON alone: nothing of the renderer that it checks takes part.
-// Throws Inexpressible. REQUIRES: load_scene accepts the scene.
+// The same scene for POV-Ray 3.7, written from the JSON alone: nothing of the renderer that it checks takes
+// part. Throws Inexpressible. REQUIRES: load_scene accepts the scene.
 std::string povray_scene(const nlohmann::json& scene, const PovrayOptions& options);
 
 }  // namespace orrery

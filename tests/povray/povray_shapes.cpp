@@ -11,7 +11,8 @@ std::string plane(const Json& o) {
 
 std::string triangle(const Json& o) {
   const Json& v = o.at("vertices");
-  return "triangle { " + text(vector_of(v[0])) + ", " + text(vector_of(v[1])) + ", " + text(vector_of(v[2])) + " ";
+  return "triangle { " + text(vector_of(v[0])) + ", " + text(vector_of(v[1])) + ", " + text(vector_of(v[2])) +
+         " ";
 }
 
 std::string list(const char* name, const Json& triples) {
@@ -22,7 +23,8 @@ std::string list(const char* name, const Json& triples) {
 
 std::string mesh(const Json& o) {
   std::string out = "mesh2 {\n  " + list("vertex_vectors", o.at("positions"));
-  if (o.contains("normals") && !o.at("normals").empty()) out += "  " + list("normal_vectors", o.at("normals"));
+  if (o.contains("normals") && !o.at("normals").empty())
+    out += "  " + list("normal_vectors", o.at("normals"));
   return out + "  " + list("face_indices", o.at("indices"));
 }
 
@@ -47,7 +49,8 @@ std::string cylinder(const Json& o) {
 
 std::string shape_of(const Json& o) {
   const std::string type = o.at("type");
-  if (type == "sphere") return "sphere { " + text(vector_of(o, "center")) + ", " + text(o.at("radius").get<double>()) + " ";
+  if (type == "sphere")
+    return "sphere { " + text(vector_of(o, "center")) + ", " + text(o.at("radius").get<double>()) + " ";
   if (type == "box") return "box { " + text(vector_of(o, "min")) + ", " + text(vector_of(o, "max")) + " ";
   if (type == "disk")
     return "disc { " + text(vector_of(o, "center")) + ", " + text(vector_of(o, "normal")) + ", " +

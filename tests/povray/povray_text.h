@@ -16,7 +16,9 @@ inline std::string text(double x) {
   std::snprintf(buffer, sizeof buffer, "%.17g", x);
   return buffer;
 }
-inline std::string text(const Vec3d& v) { return "<" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + ">"; }
+inline std::string text(const Vec3d& v) {
+  return "<" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + ">";
+}
 
 inline Vec3d vector_of(const Json& numbers) { return {numbers.at(0), numbers.at(1), numbers.at(2)}; }
 inline Vec3d vector_of(const Json& object, const char* key) { return vector_of(object.at(key)); }

@@ -25,40 +25,50 @@ template <class T>
 class Leaver {
  public:
   Leaver(const Json& object, const Placement& placement, int count)
-      : shape_(scene_of(Json::array({placement.of(object)}), Json::object())) {
+      : scene_(scene_of(Json::array({placement.of(object)}), Json::object())), shape_(scene_), exact_(scene_) {
     for (const auto& ray : rays_at<T>(object, placement, count, 5))
       if (shape_.closest(ray).met()) rays_.push_back(ray);
     hits_ = shape_.closest(rays_);
     spots_ = shape_.surfaces(rays_, hits_);
   }
 
-  // Half of the rays leave within a millionth of the surface, the others anywhere above it.
+  // Every ray sends one up from its spot and one down into the shape: half of them nearly along the surface.
   void leave(Random& random, Tally& tally) const {
-    Rays<T> outward, inward;
+    Rays<T> up, down;
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-      const Vec3d normal(spots_[i].geometric);
+      const Vec3d normal = safe_normalize(Vec3d(spots_[i].geometric));
       Vec3d direction = random.direction_above(normal);
       const Vec3d along = direction - normal * dot(direction, normal);
-      if (i % 2) direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(1e-6, 0.1));
-      outward.push_back(spots_[i].leaving(Vec3<T>(direction)));
-      inward.push_back(spots_[i].leaving(Vec3<T>(direction - normal * (2 * dot(direction, normal)))));
+      if (i % 2) direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(kLeastTilt, 0.1));
+      up.push_back(spots_[i].leaving(Vec3<T>(direction)));
+      down.push_back(spots_[i].leaving(Vec3<T>(direction - normal * (2 * dot(direction, normal)))));
     }
-    const auto again = shape_.closest(outward), through = shape_.closest(inward);
+    const auto above = shape_.closest(up), below = shape_.closest(down);
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const int primitive = hits_[i].primitive;
       const bool closed = shape_.traits(primitive).closed;
       ++tally.rays;
       if (closed && spots_[i].side < 0) continue;  // within it, other places may be met or not
-      tally.self_hits += again[i].primitive == primitive;
+      tally.self_hits += above[i].primitive == primitive;
       if (closed)
-        tally.leaks += !through[i].met();
+        tally.leaks += !below[i].met() && runs_inside(down[i], spots_[i].step);
       else
-        tally.self_hits += through[i].primitive == primitive;
+        tally.self_hits += below[i].primitive == primitive;
     }
   }
 
  private:
+  static constexpr double kLeastTilt = 256 * static_cast<double>(std::numeric_limits<T>::epsilon());
+
+  // Not so where a ray goes down at an edge and comes out of the next face at once.
+  bool runs_inside(const Ray<T>& ray, T step) const {
+    const auto way = exact_.closest(convert_ray<long double>(ray));
+    return way.met() && way.t > static_cast<long double>(step);
+  }
+
+  Json scene_;
   Target<T> shape_;
+  Target<long double> exact_;
   Rays<T> rays_;
   std::vector<Hit<T>> hits_;
   std::vector<Spot<T>> spots_;

@@ -3,37 +3,9 @@
 #include <cassert>
 #include <numeric>
 
+#include "tests/support/batches.h"
+
 namespace orrery::test {
-namespace {
-
-// Rays from..from+count of the list, as a batch whose last register is padded with inactive rays.
-template <class T>
-void fill_batch(std::span<const Ray<T>> rays, T t_max, RayBatch<T>& batch) {
-  const auto put = [](Vec3Array<T>& to, int i, const Vec3<T>& v) { to.x[i] = v.x, to.y[i] = v.y, to.z[i] = v.z; };
-  batch.count = static_cast<int>(rays.size());
-  for (int i = 0; i < batch.count + 16; ++i) {
-    const bool real = i < batch.count;
-    const Ray<T>& ray = rays[static_cast<std::size_t>(real ? i : 0)];
-    put(batch.origin, i, ray.origin);
-    put(batch.direction, i, ray.direction);
-    batch.t_max[i] = real ? t_max : T(-1);
-  }
-}
-
-template <class T>
-Vec3<T> get(const Vec3Array<T>& from, int i) {
-  return {from.x[i], from.y[i], from.z[i]};
-}
-
-// Calls visit(part of the rays, index of its first one) for parts that fit a batch.
-template <class T, class Visit>
-void for_each_batch(std::span<const Ray<T>> rays, const Visit& visit) {
-  for (std::size_t from = 0; from < rays.size(); from += kBatch)
-    visit(rays.subspan(from, std::min<std::size_t>(kBatch, rays.size() - from)), from);
-}
-
-}  // namespace
-
 template <class T>
 Target<T>::Target(const Json& scene) : scene_(load(scene)) {
   int first = 0;
@@ -79,7 +51,7 @@ std::vector<Hit<T>> Target<T>::closest(std::span<const Ray<T>> rays, std::span<c
     fill_batch(some, std::numeric_limits<T>::infinity(), *batch);
     hits->t.values = batch->t_max.values;
     hits->primitive.values.fill(kNoPrimitive);
-    const Groups groups = Groups::covering(0, batch->count, kWidth<T>);
+    const Groups groups = groups_of(*batch);
     for (const int primitive : only) {
       const Part& part = part_of(primitive);
       part.kernel->closest(primitive - part.first, *batch, groups, *hits);
@@ -96,7 +68,7 @@ std::vector<char> Target<T>::occluded(std::span<const Ray<T>> rays, T t_max) con
   const auto batch = std::make_unique<RayBatch<T>>();
   for_each_batch(rays, [&](std::span<const Ray<T>> some, std::size_t from) {
     fill_batch(some, t_max, *batch);
-    const Groups groups = Groups::covering(0, batch->count, kWidth<T>);
+    const Groups groups = groups_of(*batch);
     for (const Part& part : parts_)
       for (int i = 0; i < part.last - part.first; ++i) part.kernel->occlude(i, *batch, groups);
     for (int i = 0; i < batch->count; ++i) found[from + static_cast<std::size_t>(i)] = batch->t_max[i] < T(0);
@@ -117,7 +89,7 @@ std::vector<Spot<T>> Target<T>::surfaces(std::span<const Ray<T>> rays, std::span
       hit_batch->t[i] = hits[from + static_cast<std::size_t>(i)].t;
       hit_batch->primitive[i] = hits[from + static_cast<std::size_t>(i)].primitive;
     }
-    const Groups groups = Groups::covering(0, batch->count, kWidth<T>);
+    const Groups groups = groups_of(*batch);
     for (const Part& part : parts_) part.kernel->surface(*batch, *hit_batch, groups, *surface);
     for (int i = 0; i < batch->count; ++i)
       found[from + static_cast<std::size_t>(i)] = {get(surface->position, i), get(surface->geometric, i),

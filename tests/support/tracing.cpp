@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "tests/support/batches.h"
+
 namespace orrery::test {
 
 // Passes everything on to the accelerator that the plan chose, and keeps what it was asked. Each batch of rays
@@ -30,8 +32,7 @@ class Tracing::Recorder final : public Accelerator<double> {
     for (const int first : groups)
       for (int i = first; i < first + kWidth<double>; ++i)
         if (rays.t_max[i] > 0)
-          into.push_back({{rays.origin.x[i], rays.origin.y[i], rays.origin.z[i]},
-                          {rays.direction.x[i], rays.direction.y[i], rays.direction.z[i]}});
+          into.push_back({get(rays.origin, i), get(rays.direction, i)});
   }
   AcceleratorPtr<double> real_;
 };
@@ -71,21 +72,14 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
   assert(rays.size() <= static_cast<std::size_t>(kBatch));
   const auto batch = std::make_unique<RayBatch<double>>();
   const auto result = std::make_unique<TraceResult<double>>();
+  fill_batch(std::span<const Ray<double>>(rays), std::numeric_limits<double>::infinity(), *batch);
   batch->count = kBatch;
-  for (int i = 0; i < kBatchRoom; ++i) {
-    const bool real = static_cast<std::size_t>(i) < rays.size();
-    const Ray<double>& ray = rays[real ? static_cast<std::size_t>(i) : 0];
-    batch->origin.x[i] = ray.origin.x, batch->origin.y[i] = ray.origin.y, batch->origin.z[i] = ray.origin.z;
-    batch->direction.x[i] = ray.direction.x, batch->direction.y[i] = ray.direction.y;
-    batch->direction.z[i] = ray.direction.z;
-    batch->t_max[i] = real ? std::numeric_limits<double>::infinity() : -1;
-  }
   recorder_->generations.clear();
   recorder_->shadow.clear();
   tracer_->trace(*batch, *result, counts_);
   std::vector<Answer> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
-    answers.push_back({{result->radiance.x[i], result->radiance.y[i], result->radiance.z[i]}, result->cut[i]});
+    answers.push_back({get(result->radiance, i), result->cut[i]});
   return answers;
 }
 
@@ -109,8 +103,7 @@ std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request
         if (batch->t_max[slot] < 0) continue;
         const TilePixel p = tile_pixel(slot);
         places.push_back(static_cast<std::size_t>((y0 + p.y) * plan.width + x0 + p.x));
-        rays.push_back({{batch->origin.x[slot], batch->origin.y[slot], batch->origin.z[slot]},
-                        {batch->direction.x[slot], batch->direction.y[slot], batch->direction.z[slot]}});
+        rays.push_back({get(batch->origin, slot), get(batch->direction, slot)});
       }
       const std::vector<Answer> answers = tracing.trace(rays);
       for (std::size_t i = 0; i < places.size(); ++i) pixels[places[i]] = answers[i].radiance;

@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+#include "tests/support/shapes.h"
+#include "tests/support/structures.h"
+
+// Every registered structure finds what testing every primitive finds: the same primitive at the same distance,
+// to the bit, and the same shadows.
+namespace orrery::test {
+namespace {
+
+// All registered shapes, many times, in a cube of half width 8; `kinds` names the types left in.
+Json cloud(int count, std::uint64_t seed, bool bounded_only = false) {
+  Random random(seed);
+  Json objects = Json::array();
+  for (int i = 0; i < count; ++i)
+    for (const std::string& type : shape_names())
+      for (const Json& object : shape_samples(type)) {
+        if (bounded_only && (type == "plane" || object.contains("axis"))) continue;
+        objects.push_back(placed(object, random.magnitude(0.01, 1), random.in_cube(8)));
+      }
+  return scene_of(objects, Json::object());
+}
+
+// Coplanar, touching and coincident: every tie and near tie there is.
+Json stack() {
+  Json objects = Json::array();
+  for (int i = 0; i < 6; ++i) {
+    const double z = 0.3 * i;
+    objects.push_back({{"type", "box"}, {"min", {-1, -1, z}}, {"max", {1, 1, z + 0.3}}});
+    objects.push_back({{"type", "disk"}, {"center", {0, 0, z}}, {"normal", {0, 0, 1}}, {"radius", 1}});
+    objects.push_back({{"type", "triangle"}, {"vertices", {{-1, -1, z}, {1, -1, z}, {0, 1, z}}}});
+    objects.push_back({{"type", "triangle"}, {"vertices", {{-0.9, -1, z}, {0.7, -1, z}, {0.1, 1, z}}}});
+    objects.push_back({{"type", "cylinder"}, {"base", {0, 0, z}}, {"top", {0, 0, z + 0.3}}, {"radius", 1}});
+    objects.push_back({{"type", "sphere"}, {"center", {0, 0, z}}, {"radius", 0.3}});
+  }
+  return scene_of(objects, Json::object());
+}
+
+template <class T>
+Rays<T> rays_through(double half, double from, int count, std::uint64_t seed) {
+  Random random(seed);
+  Rays<T> rays;
+  for (int i = 0; i < count; ++i) {
+    const Vec3d at = random.in_cube(half);
+    Vec3d direction = random.direction();
+    if (i % 4 == 1) direction = Vec3d(0, 0, random.below(2) ? 1 : -1);
+    if (i % 4 == 2) direction = safe_normalize(Vec3d(1, 0, 0) + random.direction() * random.magnitude(1e-6, 1e-2));
+    rays.push_back({Vec3<T>(at - direction * random.between(0, from)), Vec3<T>(direction)});
+  }
+  return rays;
+}
+
+// Rays from far away that touch the shape to within a few ulp of the distance, where kernels decide by rounding.
+template <class T>
+Rays<T> touching_rays(const Json& object, double distance, int count) {
+  const Target<double> shape(scene_of(Json::array({object}), Json::object()));
+  const Rays<double> probes = rays_at<double>(object, {1, Vec3d()}, count, 4);
+  const auto hits = shape.closest(probes);
+  const auto spots = shape.surfaces(probes, hits);
+  const double rounding = distance * static_cast<double>(std::numeric_limits<T>::epsilon());
+  Random random(4);
+  Rays<T> rays;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    if (!hits[i].met()) continue;
+    const Vec3d along = safe_normalize(cross(spots[i].geometric, random.direction()));
+    const Vec3d near = spots[i].position + spots[i].outward() * (random.between(-8, 8) * rounding);
+    rays.push_back({Vec3<T>(near - along * distance), Vec3<T>(along)});
+  }
+  return rays;
+}
+
+class Accelerators : public testing::TestWithParam<std::string> {
+ protected:
+  template <class T>
+  void agree(const Json& scene, const Rays<T>& rays) {
+    Structure<T> reference(scene, "list"), structure(scene, GetParam());
+    const auto expected = reference.closest(rays), found = structure.closest(rays);
+    int wrong = 0, met = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      wrong += found[i].primitive != expected[i].primitive || found[i].t != expected[i].t;
+      met += found[i].met();
+    }
+    EXPECT_EQ(wrong, 0) << "of " << met << " hits";
+    for (const T t_max : {T(0.5), T(20), std::numeric_limits<T>::infinity()})
+      EXPECT_EQ(structure.occluded(rays, t_max), reference.occluded(rays, t_max)) << t_max;
+  }
+  template <class T>
+  void agree(const Json& scene, double half, double from, int count) {
+    agree<T>(scene, rays_through<T>(half, from, count, 3));
+  }
+};
+
+TEST_P(Accelerators, AgreeWithTheListOnACloudOfAllShapes) {
+  covers("F1 F5");
+  agree<float>(cloud(20, 1), 8, 30, 100'000);
+  agree<double>(cloud(20, 1), 8, 30, 100'000);
+  agree<float>(cloud(20, 2, true), 8, 30, 50'000);
+}
+
+TEST_P(Accelerators, AgreeWithTheListWhereSurfacesCoincide) {
+  covers("F1");
+  for (const double from : {2.0, 100.0, 3000.0}) {
+    agree<float>(stack(), 1.2, from, 100'000);
+    agree<double>(stack(), 1.2, from, 100'000);
+  }
+}
+
+// Silhouettes seen from afar: the kernels themselves decide by a few ulp of the distance, and no box may be more
+// certain than they are.
+TEST_P(Accelerators, AgreeWithTheListFromAfar) {
+  covers("F1");
+  for (const std::string& type : shape_names())
+    for (const Json& object : shape_samples(type)) {
+      SCOPED_TRACE(object.dump());
+      const Json scene = scene_of(Json::array({object}), Json::object());
+      for (const double from : {10.0, 1e3, 1e5}) {
+        agree<float>(scene, touching_rays<float>(object, from, 10'000));
+        agree<double>(scene, touching_rays<double>(object, from, 10'000));
+      }
+    }
+}
+
+TEST_P(Accelerators, AgreeWithTheListOnGrazingRays) {
+  covers("F1");
+  for (const std::string& type : shape_names())
+    for (const Json& object : shape_samples(type)) {
+      SCOPED_TRACE(object.dump());
+      agree<float>(scene_of(Json::array({object}), Json::object()), rays_at<float>(object, {1, Vec3d()}, 20'000, 8));
+      agree<double>(scene_of(Json::array({object}), Json::object()), rays_at<double>(object, {1, Vec3d()}, 20'000, 8));
+    }
+}
+
+// Rays exactly along an axis may cost at most three times what jittered ones do.
+TEST_P(Accelerators, AxisAlignedRaysCostNoMore) {
+  covers("A29");
+  const auto work = [&](double jitter) {
+    Structure<float> structure(cloud(20, 5, true), GetParam());
+    Random random(6);
+    Rays<float> rays;
+    for (int i = 0; i < 20'000; ++i)
+      rays.push_back({Vec3f(static_cast<float>(random.between(-8, 8)), static_cast<float>(random.between(-8, 8)), -20),
+                      Vec3f(safe_normalize(Vec3d(0, 0, 1) + random.direction() * jitter))});
+    structure.closest(rays);
+    return static_cast<double>(structure.counts().primitive_tests + structure.counts().box_tests);
+  };
+  EXPECT_LE(work(0), 3 * work(1e-3));
+}
+
+TEST_P(Accelerators, RaysThatAreNoNumbersMeetNothing) {
+  covers("A36");
+  Structure<float> structure(cloud(2, 7), GetParam());
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const Rays<float> rays = {{{nan, 0, 0}, {0, 0, 1}}, {{0, 0, -20}, {nan, nan, nan}}, {{nan, nan, nan}, {nan, 1, 0}}};
+  for (const auto& hit : structure.closest(rays)) EXPECT_FALSE(hit.met());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Accelerators, testing::ValuesIn(accelerator_names()), by_name);
+
+}  // namespace
+}  // namespace orrery::test

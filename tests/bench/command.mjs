@@ -1,0 +1,35 @@
+// Programs, and the processor time they take.
+
+import { spawnSync } from "node:child_process";
+
+export const kOrrery = process.env.ORRERY_BIN ?? "build/orrery";
+
+export function exists_program(name) {
+  return spawnSync("bash", ["-c", 'command -v "$1"', "bash", name]).status === 0;
+}
+
+// Runs a command to its end, its output discarded. bash reports the child's user and system
+// seconds, of all its threads, to the millisecond, as the kernel counted them.
+export function run_command(command) {
+  const script = 'TIMEFORMAT="%3R %3U %3S"; time "$@" >/dev/null 2>&1';
+  const done = spawnSync("bash", ["-c", script, "bash", ...command], { encoding: "utf8" });
+  if (done.status !== 0) throw new Error(`${command.join(" ")} ended with ${done.status}`);
+  const [wall_s, user_s, system_s] = done.stderr.trim().split(" ").map(Number);
+  return { wall_s, cpu_s: user_s + system_s };
+}
+
+// One run whose cost is its processor time.
+export function cpu_run(command) {
+  const { cpu_s } = run_command(command);
+  return { cost: cpu_s, cpu_s };
+}
+
+// Ours and POV-Ray's: one thread, one sample a pixel, no picture written. `width` and `height` in pixels.
+export function orrery_command(scene, width, height, depth) {
+  const options = { width, height, depth, samples: 1, threads: 1 };
+  const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]);
+  return [kOrrery, "render", scene, ...words];
+}
+export function povray_command(scene, width, height) {
+  return ["povray", `+I${scene}`, `+W${width}`, `+H${height}`, "+WT1", "-A", "-D", "-GA", "-F"];
+}

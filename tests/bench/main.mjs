@@ -1,0 +1,97 @@
+// Runs the benchmarks and prints their table. A ratio above 1 means that ours is better.
+
+import { writeFileSync } from "node:fs";
+import { loadavg } from "node:os";
+import { exists_program, kOrrery } from "./command.mjs";
+import { kFlakeVsPovray } from "./flake_vs_povray.mjs";
+import { measure } from "./measure.mjs";
+import { kNoise } from "./noise.mjs";
+import { kOrbitHttp } from "./orbit_http.mjs";
+import { kPaperVsPovray } from "./paper_vs_povray.mjs";
+
+// Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
+// reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
+// makes ready and returns {ours(), theirs(), stop()}. One call of ours or theirs is one run: {cost, cpu_s}.
+const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp];
+
+const kQuietLoad = 0.3; // above it others work on this machine too
+const kUsage = "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--list]";
+
+function fail(message) {
+  console.error(`bench: ${message}\n${kUsage}`);
+  process.exit(2);
+}
+
+function read_arguments(words) {
+  const options = { names: [], pairs: 7, json: null, list: false };
+  for (let i = 0; i < words.length; ++i) {
+    if (words[i] === "--list") options.list = true;
+    else if (words[i] === "--pairs") options.pairs = Number(words[++i]);
+    else if (words[i] === "--json") options.json = words[++i];
+    else if (words[i].startsWith("-")) fail(`unknown option ${words[i]}`);
+    else if (kBenchmarks.some((b) => b.name === words[i])) options.names.push(words[i]);
+    else fail(`no benchmark is called ${words[i]}; there are ${kBenchmarks.map((b) => b.name).join(", ")}`);
+  }
+  if (!Number.isInteger(options.pairs) || options.pairs < 1) fail("--pairs expects a whole number > 0");
+  if (options.json === undefined) fail("--json expects a file name");
+  return options;
+}
+
+const kColumns = [
+  ["name", 18, (r) => r.name],
+  ["ours CPU s", 11, (r) => r.ours_cpu_s.toFixed(3)],
+  ["theirs CPU s", 13, (r) => r.theirs_cpu_s.toFixed(3)],
+  ["ratio", 8, (r) => r.ratio.toFixed(2)],
+  ["min .. max", 18, (r) => `${r.ratio_min.toFixed(2)} .. ${r.ratio_max.toFixed(2)}`],
+  ["reach", 7, (r) => r.reach ?? "-"],
+  ["aim", 6, (r) => r.aim ?? "-"],
+];
+
+function table_row(cell_of) {
+  return kColumns
+    .map(([name, width, value], i) => {
+      const text = String(cell_of(name, value));
+      return i === 0 ? text.padEnd(width) : text.padStart(width);
+    })
+    .join("");
+}
+
+async function run_benchmark(benchmark, pairs) {
+  const missing = benchmark.needs.filter((program) => !exists_program(program));
+  if (missing.length > 0) {
+    console.log(`${benchmark.name} skipped: ${missing.join(", ")} is not installed`);
+    return null;
+  }
+  try {
+    const result = await measure(benchmark, pairs);
+    console.log(table_row((_, value) => value(result)));
+    return result;
+  } catch (error) {
+    console.log(`${benchmark.name} failed: ${error.message}`);
+    process.exitCode = 1;
+    return null;
+  }
+}
+
+async function main() {
+  const options = read_arguments(process.argv.slice(2));
+  if (options.list) {
+    for (const { name, what } of kBenchmarks) console.log(`${name.padEnd(18)}${what}`);
+    return;
+  }
+  if (!exists_program(kOrrery)) fail(`${kOrrery} is not built`);
+  const load = loadavg()[0];
+  if (load > kQuietLoad) console.log(`warning: the machine is not idle, its load is ${load.toFixed(2)}`);
+  console.log(table_row((name) => name));
+  const chosen = kBenchmarks.filter((b) => options.names.length === 0 || options.names.includes(b.name));
+  const results = [];
+  for (const benchmark of chosen) {
+    const result = await run_benchmark(benchmark, options.pairs);
+    if (result) results.push(result);
+  }
+  for (const { name, what, cost, runs } of results)
+    console.log(`${name}: ${what}; ${runs} pairs, ratio of ${cost}`);
+  if (options.json) writeFileSync(options.json, JSON.stringify(results, null, 2) + "\n");
+}
+
+await main();

@@ -1,0 +1,173 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+// The program as its users run it.
+namespace orrery {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class CommandLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("orrery-cli-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string program() {
+    const char* path = std::getenv("ORRERY_BIN");
+    return path ? path : "orrery";
+  }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
+    const int status = std::system((program() + " " + arguments + " >" + out + " 2>" + err).c_str());
+    return {WEXITSTATUS(status), bytes_of(out), bytes_of(err)};
+  }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return file(name);
+  }
+
+  fs::path folder_;
+};
+
+const std::string kScene =
+    R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]},
+ "image": {"width": 40, "height": 30}, "materials": {"m": {"type": "rough"}},
+ "lights": [{"type": "directional", "from": [1, 1, 1]}],
+ "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "m"}]})";
+
+TEST_F(CommandLine, RenderWritesTheFormatOfTheEnding) {
+  const std::string scene = write("s.json", kScene);
+  const std::pair<const char*, const char*> formats[] = {
+      {"a.png", "\x89PNG"}, {"a.jpg", "\xFF\xD8\xFF"}, {"a.exr", "\x76\x2f\x31\x01"}};
+  for (const auto& [name, magic] : formats) {
+    EXPECT_EQ(run("render " + scene + " -o " + file(name)).status, 0);
+    EXPECT_EQ(bytes_of(file(name)).rfind(magic, 0), 0u) << name;
+  }
+  EXPECT_EQ(run("render " + scene + " -o " + file("a.bmp")).status, 2);
+  EXPECT_EQ(run("render " + scene + " -o " + file("nosuch/a.png")).status, 1);
+}
+
+TEST_F(CommandLine, StatsCountEveryRay) {
+  const Outcome result = run("render " + write("s.json", kScene) + " --stats=json --samples 4 --width 20");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto stats = nlohmann::json::parse(result.out);
+  EXPECT_EQ(stats.at("rays").at("camera"), 20 * 30 * 4);
+  EXPECT_EQ(stats.at("samples"), 4);
+  for (const char* name : {"load_ms", "build_ms", "trace_ms", "mrays_per_s", "cpu_s"})
+    EXPECT_GE(stats.at(name), 0.0) << name;
+}
+
+TEST_F(CommandLine, SceneComesFromStandardInputToo) {
+  const std::string scene = write("s.json", kScene);
+  EXPECT_EQ(run("render - -o " + file("a.png") + " <" + scene).status, 0);
+  EXPECT_EQ(run("render " + scene + " -o " + file("b.png")).status, 0);
+  EXPECT_EQ(bytes_of(file("a.png")), bytes_of(file("b.png")));
+}
+
+TEST_F(CommandLine, CheckNamesFilePlaceAndProblem) {
+  const std::string good = write("good.json", kScene);
+  std::string text = kScene;
+  text.replace(text.find("\"radius\": 1"), 11, "\"radius\": -1");
+  const std::string bad = write("bad.json", text);
+  EXPECT_EQ(run("check " + good).status, 0);
+  const Outcome result = run("check " + good + " " + bad);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.out.rfind(bad + ": /objects/0/radius: expected", 0), 0u) << result.out;
+  const auto problems = nlohmann::json::parse(run("check --json " + good + " " + bad).out);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].at("file"), bad);
+  EXPECT_EQ(problems[0].at("pointer"), "/objects/0/radius");
+}
+
+TEST_F(CommandLine, WrongOptionsAreNamedAsTheyWereGiven) {
+  const std::string scene = write("s.json", kScene);
+  const Outcome number = run("render " + scene + " --azimuth x --width 5000");
+  EXPECT_EQ(number.status, 2);
+  EXPECT_NE(number.err.find("--azimuth: expected a number"), std::string::npos) << number.err;
+  EXPECT_NE(number.err.find("--width: "), std::string::npos) << number.err;
+  const Outcome word = run("render " + scene + " --technique witted");
+  EXPECT_NE(word.err.find("did you mean \"whitted\""), std::string::npos) << word.err;
+  const Outcome command = run("redner " + scene);
+  EXPECT_EQ(command.status, 2);
+  EXPECT_NE(command.err.find("did you mean \"render\""), std::string::npos) << command.err;
+  EXPECT_EQ(run("render nosuch.json").status, 1);
+  EXPECT_EQ(run("render").status, 2);
+}
+
+TEST_F(CommandLine, EveryCommandExplainsItself) {
+  EXPECT_EQ(run("--help").status, 0);
+  for (const char* command : {"serve", "render", "orbit", "check", "explain"}) {
+    const Outcome help = run(std::string(command) + " --help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_NE(help.out.find("Examples:"), std::string::npos) << command;
+  }
+}
+
+TEST_F(CommandLine, SchemaCatalogAndExplainPrintJson) {
+  EXPECT_TRUE(nlohmann::json::accept(run("schema").out));
+  EXPECT_TRUE(nlohmann::json::parse(run("catalog").out).contains("shapes"));
+  const std::string scene = write("s.json", kScene);
+  EXPECT_FALSE(nlohmann::json::parse(run("explain --json " + scene).out).at("decisions").empty());
+  EXPECT_NE(run("explain " + scene).out.find("shadows"), std::string::npos);
+}
+
+TEST_F(CommandLine, OrbitWritesNumberedFrames) {
+  const std::string scene = write("s.json", kScene);
+  ASSERT_EQ(run("orbit " + scene + " --frames 3 --step 90 -o " + file("f-%03d.png")).status, 0);
+  for (const char* name : {"f-000.png", "f-001.png", "f-002.png"})
+    EXPECT_TRUE(fs::exists(file(name))) << name;
+  EXPECT_FALSE(fs::exists(file("f-003.png")));
+  const auto stats = nlohmann::json::parse(run("orbit " + scene + " --frames 5 --discard --stats=json").out);
+  EXPECT_EQ(stats.at("frames"), 5);
+  for (const char* pattern : {"plain.png", "%d-%d.png", "%s.png", "%5d.png"})
+    EXPECT_EQ(run("orbit " + scene + " --frames 1 -o " + file(pattern)).status, 2) << pattern;
+}
+
+TEST_F(CommandLine, InterruptedRenderLeavesNoFile) {
+  const std::string scene = write("s.json", kScene), picture = file("never.png");
+  const std::string self = program();
+  const pid_t child = fork();
+  if (child == 0) {
+    const int null = open("/dev/null", O_WRONLY);
+    dup2(null, STDERR_FILENO);
+    execl(self.c_str(), self.c_str(), "render", scene.c_str(), "-o", picture.c_str(), "--width", "4096",
+          "--height", "4096", "--samples", "4096", nullptr);
+    _exit(127);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  for (const auto& entry : fs::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().filename().string().find("never"), std::string::npos) << entry.path();
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,231 @@
+#include "tests/http/daemon.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace orrery {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The first line the daemon prints says where it listens.
+int port_from(int output) {
+  std::string line;
+  for (char c; read(output, &c, 1) == 1 && c != '\n';) line += c;
+  const std::size_t colon = line.rfind(':');
+  return line.rfind("orrery listens on http://", 0) == 0 ? std::stoi(line.substr(colon + 1)) : 0;
+}
+
+}  // namespace
+
+std::string program() {
+  const char* path = std::getenv("ORRERY_BIN");
+  if (!path) throw std::runtime_error("ORRERY_BIN names no program");
+  return path;
+}
+
+Daemon::Daemon(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{program(), "serve", "--port", "0", "--quiet"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+  pid_ = fork();
+  if (pid_ == 0) {
+    dup2(ends[1], STDOUT_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  ::close(ends[1]);
+  output_ = ends[0];
+  port_ = port_from(output_);
+  if (port_ == 0) throw std::runtime_error("the daemon does not start");
+}
+
+Daemon::~Daemon() {
+  if (pid_ > 0) {
+    kill(pid_, SIGKILL);
+    wait();
+  }
+  ::close(output_);
+}
+
+httplib::Client Daemon::client() const {
+  httplib::Client client("127.0.0.1", port_);
+  client.set_read_timeout(120, 0);
+  client.set_keep_alive(true);
+  client.set_tcp_nodelay(true);
+  return client;
+}
+
+void Daemon::signal(int number) const { kill(pid_, number); }
+
+int Daemon::wait() {
+  int status = 0;
+  waitpid(pid_, &status, 0);
+  pid_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool Daemon::running() const { return kill(pid_, 0) == 0; }
+
+double Daemon::cpu_seconds() const {
+  std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
+  std::string text((std::istreambuf_iterator<char>(stat)), {});
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::string skipped;
+  for (int i = 3; i < 14; ++i) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+bool Daemon::wait_until_working(double limit_s) const {
+  const auto start = Clock::now();
+  const double before = cpu_seconds();
+  while (seconds_since(start) < limit_s) {
+    if (cpu_seconds() - before >= 0.1) return true;
+    pause();
+  }
+  return false;
+}
+
+bool Daemon::wait_until_idle(double limit_s) const {
+  const auto start = Clock::now();
+  while (seconds_since(start) < limit_s) {
+    const double before = cpu_seconds();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    if (cpu_seconds() - before <= 0.021) return true;
+  }
+  return false;
+}
+
+RawClient::RawClient(int port, int receive_buffer) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
+  if (receive_buffer > 0) setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+    throw std::runtime_error("cannot connect");
+}
+
+RawClient::~RawClient() { close(); }
+
+void RawClient::close() {
+  if (fd_ >= 0) ::close(fd_);
+  fd_ = -1;
+}
+
+void RawClient::send(const std::string& bytes) const {
+  std::size_t sent = 0;
+  while (sent < bytes.size()) {
+    const ssize_t count = ::send(fd_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    if (count <= 0) return;  // the daemon has had enough: its answer says why
+    sent += static_cast<std::size_t>(count);
+  }
+}
+
+std::string RawClient::receive_some() const {
+  pollfd ready{fd_, POLLIN, 0};
+  if (poll(&ready, 1, 5000) <= 0) return {};
+  std::string bytes(64 * 1024, '\0');
+  const ssize_t count = recv(fd_, bytes.data(), bytes.size(), 0);
+  bytes.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  return bytes;
+}
+
+std::string RawClient::receive_all() const {
+  std::string all;
+  for (std::string part; !(part = receive_some()).empty();) all += part;
+  return all;
+}
+
+Daemon* HttpTest::daemon_ = nullptr;
+
+std::string HttpTest::post_scene(const std::string& scene) {
+  const auto result = client_.Post("/v1/scenes", scene, "application/json");
+  if (!result || (result->status != 200 && result->status != 201)) {
+    ADD_FAILURE() << (result ? result->body : "no answer");
+    return {};
+  }
+  return nlohmann::json::parse(result->body).at("id");
+}
+
+nlohmann::json small_scene(const nlohmann::json& more) {
+  nlohmann::json scene = {
+      {"version", 1},
+      {"camera", {{"type", "perspective"}, {"eye", {0, 1, 4}}, {"look_at", {0, 0, 0}}}},
+      {"image", {{"width", 48}, {"height", 32}}},
+      {"background", {0.2, 0.3, 0.4}},
+      {"materials",
+       {{"plum", {{"type", "rough"}, {"kd", {0.6, 0.1, 0.4}}, {"ks", 0.5}}},
+        {"silver", {{"type", "reflective"}, {"n", {0.14, 0.16, 0.13}}, {"k", {4.1, 2.3, 3.1}}}}}},
+      {"lights", {{{"type", "directional"}, {"from", {1, 2, 1}}}}},
+      {"objects",
+       {{{"type", "sphere"}, {"center", {0.4, 0, 0}}, {"radius", 0.7}, {"material", "plum"}},
+        {{"type", "plane"}, {"point", {0, -0.7, 0}}, {"normal", {0, 1, 0}}, {"material", "silver"}}}}};
+  scene.update(more);
+  return scene;
+}
+
+nlohmann::json expect_problem(const httplib::Result& result, int status) {
+  if (!result) {
+    ADD_FAILURE() << "no answer: " << httplib::to_string(result.error());
+    return {};
+  }
+  EXPECT_EQ(result->status, status) << result->body;
+  EXPECT_EQ(result->get_header_value("Content-Type"), "application/problem+json");
+  const auto problem = nlohmann::json::parse(result->body, nullptr, false);
+  if (!problem.is_object()) {
+    ADD_FAILURE() << result->body;
+    return {};
+  }
+  EXPECT_EQ(problem.value("status", 0), status);
+  EXPECT_EQ(problem.value("request_id", ""), result->get_header_value("X-Request-ID"));
+  for (const char* member : {"type", "title", "detail"})
+    EXPECT_FALSE(problem.value(member, "").empty()) << member;
+  return problem;
+}
+
+std::vector<StreamedFrame> parse_frames(const std::string& body) {
+  std::vector<StreamedFrame> frames;
+  std::size_t at = 0;
+  while (at < body.size()) {
+    if (at + 4 > body.size()) return ADD_FAILURE() << "a length breaks off", frames;
+    std::size_t length = 0;
+    for (int i = 0; i < 4; ++i) length = length << 8 | static_cast<unsigned char>(body[at++]);
+    if (at + length > body.size()) return ADD_FAILURE() << "a header breaks off", frames;
+    StreamedFrame frame{nlohmann::json::parse(body.substr(at, length)), {}};
+    at += length;
+    const std::size_t bytes = frame.header.at("bytes");
+    if (at + bytes > body.size()) return ADD_FAILURE() << "a picture breaks off", frames;
+    frame.png = body.substr(at, bytes);
+    at += bytes;
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+bool is_png(const std::string& bytes) { return bytes.rfind("\x89PNG\r\n\x1a\n", 0) == 0; }
+
+}  // namespace orrery

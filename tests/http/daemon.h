@@ -1,0 +1,95 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace orrery {
+
+// A running `orrery serve` on a free port.
+class Daemon {
+ public:
+  explicit Daemon(const std::vector<std::string>& arguments = {});
+  ~Daemon();
+  Daemon(const Daemon&) = delete;
+
+  int port() const { return port_; }
+  httplib::Client client() const;
+
+  void signal(int number) const;
+  // Waits for the end and returns the exit status, or 128 + the signal that ended it.
+  int wait();
+  bool running() const;
+
+  // Processor time used so far, seconds.
+  double cpu_seconds() const;
+  // Waits until it uses the processor, or until it no longer does. False after `limit_s`.
+  bool wait_until_working(double limit_s = 20) const;
+  bool wait_until_idle(double limit_s = 20) const;
+
+ private:
+  pid_t pid_ = -1;
+  int port_ = 0;
+  int output_ = -1;
+};
+
+// The program under test.
+std::string program();
+
+// A plain TCP connection to the daemon, for requests that no HTTP library would send.
+class RawClient {
+ public:
+  // receive_buffer: bytes that the kernel keeps for us, 0 for its own choice.
+  explicit RawClient(int port, int receive_buffer = 0);
+  ~RawClient();
+  RawClient(const RawClient&) = delete;
+
+  void send(const std::string& bytes) const;
+  // All that comes until the daemon closes, or until nothing came for 5 s.
+  std::string receive_all() const;
+  std::string receive_some() const;
+  void close();
+
+ private:
+  int fd_ = -1;
+};
+
+// Tests of one suite share a daemon.
+class HttpTest : public ::testing::Test {
+ public:
+  static void SetUpTestSuite() { daemon_ = new Daemon; }
+  static void TearDownTestSuite() {
+    delete daemon_;
+    daemon_ = nullptr;
+  }
+
+ protected:
+  static Daemon& daemon() { return *daemon_; }
+  httplib::Client client_ = daemon_->client();
+
+  // Posts the scene and returns its id.
+  std::string post_scene(const std::string& scene);
+
+ private:
+  static Daemon* daemon_;
+};
+
+// A ball on a mirror, small enough to render in no time. `more` replaces or adds members.
+nlohmann::json small_scene(const nlohmann::json& more = nlohmann::json::object());
+
+// The body is problem details that agree with the status; returns it.
+nlohmann::json expect_problem(const httplib::Result& result, int status);
+
+struct StreamedFrame {
+  nlohmann::json header;
+  std::string png;
+};
+// Takes apart a body of application/x-orrery-frames; fails the test if it is not one.
+std::vector<StreamedFrame> parse_frames(const std::string& body);
+
+bool is_png(const std::string& bytes);
+
+}  // namespace orrery

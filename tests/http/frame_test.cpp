@@ -1,0 +1,92 @@
+#include "tests/http/daemon.h"
+
+namespace orrery {
+namespace {
+
+class FramePng : public HttpTest {
+ protected:
+  std::string path(const std::string& query = "") {
+    return "/v1/scenes/" + post_scene(small_scene().dump()) + "/frame.png" + query;
+  }
+};
+
+TEST_F(FramePng, IsAPictureThatMayBeKeptForEver) {
+  const auto result = client_.Get(path("?azimuth=30&width=40&height=30"));
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->status, 200) << result->body;
+  EXPECT_TRUE(is_png(result->body));
+  EXPECT_EQ(result->body.substr(16, 8), std::string("\0\0\0\x28\0\0\0\x1e", 8));  // width and height
+  EXPECT_EQ(result->get_header_value("Cache-Control"), "public, max-age=31536000, immutable");
+  EXPECT_FALSE(result->get_header_value("X-Rays").empty());
+}
+
+TEST_F(FramePng, EqualAddressesGiveEqualBytes) {
+  const auto first = client_.Get(path("?azimuth=75&samples=4"));
+  const auto second = client_.Get(path("?azimuth=75&samples=4"));
+  EXPECT_EQ(first->body, second->body);
+  EXPECT_NE(first->body, client_.Get(path("?azimuth=76&samples=4"))->body);
+}
+
+TEST_F(FramePng, ETagNamesThePictureHoweverItIsAskedFor) {
+  const auto etag = [&](const std::string& query) {
+    return client_.Head(path(query))->get_header_value("ETag");
+  };
+  const std::string plain = etag("");
+  EXPECT_EQ(plain.front(), '"');
+  EXPECT_EQ(etag("?width=48&azimuth=0.0"), plain);
+  EXPECT_EQ(etag("?azimuth=-0"), plain);
+  EXPECT_EQ(etag("?technique=whitted&height=32"), plain);
+  for (const char* query :
+       {"?azimuth=1", "?elevation=1", "?distance=2", "?fov=46", "?width=49", "?height=33", "?samples=2",
+        "?technique=raycast", "?max_depth=1", "?min_contribution=0.5", "?seed=1", "?precision=double"})
+    EXPECT_NE(etag(query), plain) << query;
+}
+
+TEST_F(FramePng, KnownPictureIsNotRenderedAgain) {
+  const auto first = client_.Get(path());
+  const std::string etag = first->get_header_value("ETag");
+  for (const std::string& known : {etag, "\"x\", " + etag, std::string("*")}) {
+    const auto again = client_.Get(path(), {{"If-None-Match", known}});
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->status, 304) << known;
+    EXPECT_TRUE(again->body.empty());
+    EXPECT_FALSE(again->has_header("X-Rays"));
+    EXPECT_FALSE(again->has_header("Content-Length"));
+    EXPECT_EQ(again->get_header_value("ETag"), etag);
+  }
+  EXPECT_EQ(client_.Get(path(), {{"If-None-Match", "\"other\""}})->status, 200);
+}
+
+TEST_F(FramePng, HeadDoesNotRender) {
+  const auto head = client_.Head(path("?width=4096&height=4096&samples=4096"));  // would take hours
+  ASSERT_TRUE(head);
+  EXPECT_EQ(head->status, 200);
+  EXPECT_EQ(head->get_header_value("Content-Type"), "image/png");
+  EXPECT_FALSE(head->has_header("X-Rays"));
+}
+
+TEST_F(FramePng, BadQueriesAreToldWhatIsWrong) {
+  const auto pointer_for = [&](const std::string& query, int status = 422) {
+    const auto problem = expect_problem(client_.Get(path(query)), status);
+    return problem.contains("errors") ? problem["errors"][0].value("pointer", "?") : "";
+  };
+  EXPECT_EQ(pointer_for("?azimuth=1abc"), "/azimuth");
+  EXPECT_EQ(pointer_for("?azimuth=nan"), "/azimuth");
+  EXPECT_EQ(pointer_for("?azimuth=inf"), "/azimuth");
+  EXPECT_EQ(pointer_for("?azimuth=1e999"), "/azimuth");
+  EXPECT_EQ(pointer_for("?azimuth="), "/azimuth");
+  EXPECT_EQ(pointer_for("?width=4097"), "/width");
+  EXPECT_EQ(pointer_for("?width=10.5"), "/width");
+  EXPECT_EQ(pointer_for("?distance=0"), "/distance");
+  EXPECT_EQ(pointer_for("?fov=180"), "/fov");
+  EXPECT_EQ(pointer_for("?accelerator=tree"), "/accelerator");
+  EXPECT_EQ(pointer_for("?frames=3"), "/frames");
+  EXPECT_EQ(pointer_for("?azimuth=1&azimuth=2", 400), "");
+  EXPECT_EQ(pointer_for("?azimuth=%zz", 400), "");
+  EXPECT_EQ(pointer_for("?azimuth=%ff", 400), "");
+  const auto problem = expect_problem(client_.Get(path("?azimut=1")), 422);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("did you mean \"azimuth\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace orrery

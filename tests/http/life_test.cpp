@@ -1,0 +1,175 @@
+#include <signal.h>
+
+#include <future>
+
+#include "tests/http/daemon.h"
+
+// Work that nobody waits for any more, and the end of the daemon.
+namespace orrery {
+namespace {
+
+constexpr const char* kEndless = "?width=4096&height=4096&samples=4096&precision=double";
+
+std::string post(Daemon& daemon, const nlohmann::json& scene) {
+  const auto result = daemon.client().Post("/v1/scenes", scene.dump(), "application/json");
+  return "/v1/scenes/" + nlohmann::json::parse(result->body).at("id").get<std::string>();
+}
+
+std::string get(const std::string& path) { return "GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n"; }
+
+TEST(ClientThatLeaves, EndsItsRender) {
+  Daemon daemon;
+  const std::string scene = post(daemon, small_scene());
+  RawClient raw(daemon.port());
+  raw.send(get(scene + "/frame.png" + kEndless));
+  ASSERT_TRUE(daemon.wait_until_working());
+  raw.close();
+  EXPECT_TRUE(daemon.wait_until_idle());
+  EXPECT_EQ(daemon.client().Get(scene + "/frame.png")->status, 200);
+}
+
+TEST(ClientThatLeaves, EndsItsPostedRender) {
+  Daemon daemon;
+  const std::string body =
+      small_scene({{"image", {{"width", 4096}, {"height", 4096}}}, {"render", {{"samples", 4096}}}}).dump();
+  RawClient raw(daemon.port());
+  raw.send("POST /v1/render HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(body.size()) +
+           "\r\n\r\n" + body);
+  ASSERT_TRUE(daemon.wait_until_working());
+  raw.close();
+  EXPECT_TRUE(daemon.wait_until_idle());
+}
+
+TEST(ClientThatLeaves, EndsItsOrbit) {
+  Daemon daemon;
+  RawClient raw(daemon.port());
+  raw.send(get(post(daemon, small_scene()) + "/orbit?frames=3600&fps=0&width=4096&height=4096&samples=4096"));
+  ASSERT_TRUE(daemon.wait_until_working());
+  raw.close();
+  EXPECT_TRUE(daemon.wait_until_idle());
+}
+
+TEST(ClientThatLeaves, LeavesTheQueueToo) {
+  Daemon daemon({"--threads", "1", "--max-queue", "1"});
+  const std::string path = post(daemon, small_scene()) + "/frame.png";
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 3; ++i) {  // two render, one waits
+    clients.push_back(std::make_unique<RawClient>(daemon.port()));
+    clients.back()->send(get(path + kEndless));
+    ASSERT_TRUE(daemon.wait_until_working());
+  }
+  const auto refused = daemon.client().Get(path);
+  const auto problem = expect_problem(refused, 503);
+  EXPECT_GE(std::stoi(refused->get_header_value("Retry-After")), 1);
+  clients.clear();
+  EXPECT_TRUE(daemon.wait_until_idle());
+  EXPECT_EQ(daemon.client().Get(path)->status, 200);
+}
+
+TEST(Deadline, EndsARenderThatTakesTooLong) {
+  Daemon daemon({"--max-seconds", "1"});
+  const auto result = daemon.client().Get(post(daemon, small_scene()) + "/frame.png" + kEndless);
+  const auto problem = expect_problem(result, 504);
+  EXPECT_NE(problem.value("detail", "").find("request_seconds"), std::string::npos);
+  EXPECT_TRUE(daemon.wait_until_idle());
+}
+
+// A picture that takes about two seconds here.
+std::string slow_picture(Daemon& daemon, const std::string& scene) {
+  const double before = daemon.cpu_seconds();
+  daemon.client().Get(scene + "/frame.png?width=1000&height=1000&samples=4");
+  const double seconds = std::max(daemon.cpu_seconds() - before, 0.02);
+  const int samples = static_cast<int>(std::clamp(4 * 4 / seconds, 1.0, 4096.0));
+  return scene + "/frame.png?width=1000&height=1000&samples=" + std::to_string(samples);
+}
+
+TEST(Terminated, AnswersWhatRunsRefusesWhatComesAndExitsWithZero) {
+  Daemon daemon;
+  const std::string scene = post(daemon, small_scene());
+  const std::string path = slow_picture(daemon, scene);
+  auto running = std::async(std::launch::async, [&] { return daemon.client().Get(path); });
+  httplib::Client late = daemon.client();
+  ASSERT_TRUE(daemon.wait_until_working());
+  daemon.signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const auto ready = late.Get("/readyz");
+  ASSERT_TRUE(ready);
+  EXPECT_EQ(ready->status, 503);
+  const auto refused = daemon.client().Get(scene + "/frame.png");
+  expect_problem(refused, 503);
+  EXPECT_FALSE(refused->get_header_value("Retry-After").empty());
+  const auto answer = running.get();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 200);
+  EXPECT_TRUE(is_png(answer->body));
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST(Terminated, EndsStreamsAtAFrame) {
+  Daemon daemon;
+  const std::string path = post(daemon, small_scene()) + "/orbit?frames=3600&fps=30";
+  std::string body;
+  std::atomic<bool> begun{false};
+  auto watching = std::async(std::launch::async, [&] {
+    return daemon.client().Get(path, {{"Accept", "application/x-orrery-frames"}},
+                               [&](const char* bytes, std::size_t count) {
+                                 body.append(bytes, count);
+                                 begun = true;
+                                 return true;
+                               });
+  });
+  while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  daemon.signal(SIGTERM);
+  const auto answer = watching.get();
+  EXPECT_TRUE(answer) << httplib::to_string(answer.error());
+  const auto frames = parse_frames(body);
+  EXPECT_GE(frames.size(), 1u);
+  EXPECT_LT(frames.size(), 3600u);
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST(Terminated, DoesNotWaitForIdleConnections) {
+  Daemon daemon;
+  httplib::Client idle = daemon.client();
+  EXPECT_EQ(idle.Get("/healthz")->status, 200);
+  const RawClient silent(daemon.port());
+  daemon.signal(SIGINT);
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST(Terminated, GivesUpWhatOutlastsTheGrace) {
+  Daemon daemon({"--grace", "1"});
+  const std::string path = post(daemon, small_scene()) + "/frame.png" + kEndless;
+  auto running = std::async(std::launch::async, [&] { return daemon.client().Get(path); });
+  ASSERT_TRUE(daemon.wait_until_working());
+  daemon.signal(SIGTERM);
+  expect_problem(running.get(), 503);
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST(Terminated, TwiceEndsAtOnce) {
+  Daemon daemon;
+  RawClient raw(daemon.port());
+  raw.send(get(post(daemon, small_scene()) + "/frame.png" + kEndless));
+  ASSERT_TRUE(daemon.wait_until_working());
+  daemon.signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_TRUE(daemon.running());
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 130);
+}
+
+TEST(Addresses, ThatOthersReachNeedLeave) {
+  EXPECT_EQ(WEXITSTATUS(std::system((program() + " serve --port 0 --host 0.0.0.0 2>/dev/null").c_str())), 2);
+  Daemon daemon({"--host", "0.0.0.0", "--insecure"});
+  EXPECT_EQ(daemon.client().Get("/healthz")->status, 200);
+}
+
+TEST(Addresses, InUseAreAnError) {
+  Daemon daemon;
+  const std::string command = program() + " serve --port " + std::to_string(daemon.port()) + " 2>/dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,152 @@
+#include <future>
+
+#include "tests/http/daemon.h"
+
+namespace orrery {
+namespace {
+
+const httplib::Headers kFrames{{"Accept", "application/x-orrery-frames"}};
+
+class OrbitStream : public HttpTest {
+ protected:
+  std::string path(const std::string& query) {
+    return "/v1/scenes/" + post_scene(small_scene().dump()) + "/orbit?" + query;
+  }
+};
+
+TEST_F(OrbitStream, FramesComeInOrderWithTheirHeaders) {
+  const auto result = client_.Get(path("frames=6&step=30&azimuth=10&elevation=5&fps=0"), kFrames);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->get_header_value("Content-Type"), "application/x-orrery-frames");
+  const auto frames = parse_frames(result->body);
+  ASSERT_EQ(frames.size(), 6u);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto& header = frames[i].header;
+    EXPECT_EQ(header.at("frame"), i);
+    EXPECT_EQ(header.at("azimuth_degrees"), 10 + 30.0 * static_cast<double>(i));
+    EXPECT_EQ(header.at("elevation_degrees"), 5);
+    EXPECT_EQ(header.at("distance"), 1);
+    EXPECT_EQ(header.at("width"), 48);
+    EXPECT_EQ(header.at("height"), 32);
+    EXPECT_EQ(header.at("skipped"), 0);
+    EXPECT_GE(header.at("rays"), 48 * 32);
+    EXPECT_GE(header.at("render_ms"), 0);
+    EXPECT_GE(header.at("encode_ms"), 0);
+    EXPECT_TRUE(is_png(frames[i].png));
+  }
+}
+
+TEST_F(OrbitStream, StepIsAFullTurnByDefault) {
+  const auto frames = parse_frames(client_.Get(path("frames=8&fps=0"), kFrames)->body);
+  ASSERT_EQ(frames.size(), 8u);
+  EXPECT_EQ(frames[7].header.at("azimuth_degrees"), 315);
+}
+
+TEST_F(OrbitStream, BrowsersGetPartsEachFollowedByItsBoundary) {
+  const auto result = client_.Get(path("frames=3&fps=0"), {{"Accept", "image/avif,image/*,*/*;q=0.8"}});
+  ASSERT_TRUE(result);
+  const std::string type = result->get_header_value("Content-Type");
+  const std::string prefix = "multipart/x-mixed-replace; boundary=";
+  ASSERT_EQ(type.substr(0, prefix.size()), prefix);
+  const std::string boundary = "--" + type.substr(prefix.size());
+  std::string rest = result->body;
+  ASSERT_EQ(rest.rfind(boundary + "\r\n", 0), 0u);
+  rest.erase(0, boundary.size() + 2);
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t blank = rest.find("\r\n\r\n");
+    ASSERT_NE(blank, std::string::npos);
+    const std::string head = rest.substr(0, blank);
+    EXPECT_NE(head.find("Content-Type: image/png"), std::string::npos);
+    const std::size_t length = std::stoul(head.substr(head.find("Content-Length: ") + 16));
+    EXPECT_TRUE(is_png(rest.substr(blank + 4)));
+    rest.erase(0, blank + 4 + length);
+    const std::string end = "\r\n" + boundary + (i == 2 ? "--\r\n" : "\r\n");
+    ASSERT_EQ(rest.substr(0, end.size()), end);
+    rest.erase(0, end.size());
+  }
+  EXPECT_TRUE(rest.empty());
+}
+
+TEST_F(OrbitStream, FramesAreThePicturesOfTheirAngles) {
+  const auto scene = small_scene();
+  const auto frames = parse_frames(client_.Get(path("frames=4&fps=0"), kFrames)->body);
+  ASSERT_EQ(frames.size(), 4u);
+  EXPECT_NE(frames[0].png, frames[1].png);
+  const auto again = parse_frames(client_.Get(path("frames=2&fps=0&azimuth=90"), kFrames)->body);
+  ASSERT_EQ(again.size(), 2u);
+  EXPECT_EQ(again[0].png, frames[1].png);
+}
+
+TEST_F(OrbitStream, BadParametersAreRefusedBeforeTheStream) {
+  for (const char* query :
+       {"frames=0", "frames=3601", "frames=1.5", "frames=abc", "fps=-1", "fps=241", "step=361", "step=nan",
+        "width=0", "samples=1e9", "speed=3", "azimuth=1e9&step=1"})
+    expect_problem(client_.Get(path(query), kFrames), 422);
+}
+
+TEST_F(OrbitStream, HeadStartsNothing) {
+  const auto head = client_.Head(path("frames=3600&width=4096&height=4096&samples=4096"));
+  ASSERT_TRUE(head);
+  EXPECT_EQ(head->status, 200);
+  EXPECT_TRUE(daemon().wait_until_idle());
+}
+
+TEST_F(OrbitStream, EqualOrbitsAreRenderedOnce) {
+  const std::string url = path("frames=30&fps=20&distance=1.25");
+  const auto watch = [&] {
+    httplib::Client client = daemon().client();
+    return client.Get(url, kFrames)->body;
+  };
+  auto other = std::async(std::launch::async, watch);
+  const auto mine = parse_frames(watch()), others = parse_frames(other.get());
+  std::map<int, nlohmann::json> by_number;
+  for (const auto& frame : mine) by_number[frame.header.at("frame")] = frame.header;
+  int shared = 0;
+  for (const auto& frame : others) {
+    const auto& twin = by_number[frame.header.at("frame")];
+    // Two renders of a frame never take equally long to the last digit.
+    if (!twin.is_null() && twin.at("render_ms") == frame.header.at("render_ms") &&
+        twin.at("encode_ms") == frame.header.at("encode_ms"))
+      ++shared;
+  }
+  EXPECT_GE(shared, 15);
+}
+
+TEST_F(OrbitStream, WhoComesLateStillGetsAWholeOrbit) {
+  const std::string url = path("frames=20&fps=20&distance=1.5");
+  auto first = std::async(std::launch::async, [&] { return daemon().client().Get(url, kFrames)->body; });
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  const auto late = parse_frames(client_.Get(url, kFrames)->body);
+  EXPECT_EQ(parse_frames(first.get()).size(), 20u);
+  ASSERT_FALSE(late.empty());
+  EXPECT_EQ(late.size() + late.back().header.at("skipped").get<std::size_t>(), 20u);
+}
+
+TEST_F(OrbitStream, SlowViewerMissesFramesAndTheFastOneNone) {
+  // Frames of noise, so that they do not fit into the kernel's buffers.
+  const std::string url = path("frames=40&fps=20&width=1600&height=1200&distance=1.1");
+  RawClient slow(daemon().port(), 8 * 1024);
+  slow.send("GET " + url +
+            " HTTP/1.1\r\nHost: x\r\nAccept: application/x-orrery-frames\r\nConnection: close\r\n\r\n");
+  const auto fast = parse_frames(client_.Get(url, kFrames)->body);
+  const std::string answer = slow.receive_all();  // only now
+  ASSERT_FALSE(fast.empty());
+  EXPECT_EQ(fast.back().header.at("skipped"), 0);
+
+  std::string body;  // out of its chunks
+  for (std::size_t at = answer.find("\r\n\r\n") + 4; at < answer.size();) {
+    const std::size_t length = std::stoul(answer.substr(at), nullptr, 16);
+    at = answer.find("\r\n", at) + 2;
+    body += answer.substr(at, length);
+    at += length + 2;
+  }
+  const auto seen = parse_frames(body);
+  ASSERT_FALSE(seen.empty());
+  const int skipped = seen.back().header.at("skipped");
+  EXPECT_GT(skipped, 0);
+  EXPECT_EQ(seen.back().header.at("frame"), 39);
+  EXPECT_EQ(seen.size() + static_cast<std::size_t>(skipped), 40u);
+}
+
+}  // namespace
+}  // namespace orrery

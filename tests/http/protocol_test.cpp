@@ -1,0 +1,121 @@
+#include "tests/http/daemon.h"
+
+// Requests that no HTTP library would send.
+namespace orrery {
+namespace {
+
+class Protocol : public HttpTest {
+ protected:
+  // The status of the answer to these bytes, after which the daemon closes; 0 for none.
+  int status_of(const std::string& bytes) {
+    const RawClient raw(daemon().port());
+    raw.send(bytes);
+    const std::string answer = raw.receive_all();
+    if (answer.rfind("HTTP/1.1 ", 0) != 0) return 0;
+    EXPECT_NE(answer.find("application/problem+json"), std::string::npos) << answer;
+    EXPECT_NE(answer.find("Connection: close"), std::string::npos) << answer;
+    return std::stoi(answer.substr(9));
+  }
+};
+
+TEST_F(Protocol, ChunkedBodiesAreRefused) {
+  EXPECT_EQ(
+      status_of(
+          "POST /v1/render HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n"),
+      411);
+  EXPECT_EQ(status_of("POST /v1/render HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n-2\r\n"),
+            411);
+}
+
+TEST_F(Protocol, BodiesWithoutALengthAreRefused) {
+  const RawClient raw(daemon().port());
+  raw.send("POST /v1/scenes HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  EXPECT_EQ(raw.receive_all().substr(9, 3), "411");
+}
+
+TEST_F(Protocol, DoubtfulFramingIsRefused) {
+  const std::string line = "POST /v1/render HTTP/1.1\r\nHost: x\r\n";
+  EXPECT_EQ(status_of(line + "Content-Length: 2\r\nContent-Length: 3\r\n\r\n{}"), 400);
+  EXPECT_EQ(status_of(line + "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n\r\n{}"), 400);
+  EXPECT_EQ(status_of(line + "Content-Length: -1\r\n\r\n"), 400);
+  EXPECT_EQ(status_of(line + "Content-Length: 2, 2\r\n\r\n{}"), 400);
+  EXPECT_EQ(status_of(line + "Content-Length: 99999999999999999999\r\n\r\n"), 400);
+  EXPECT_EQ(status_of(line + "Content-Length : 2\r\n\r\n{}"), 400);
+  EXPECT_EQ(status_of(line + "A: b\r\n folded: c\r\n\r\n"), 400);
+}
+
+TEST_F(Protocol, WhatIsNoRequestIsRefused) {
+  EXPECT_EQ(status_of("hello\r\n\r\n"), 400);
+  EXPECT_EQ(status_of("\r\n\r\n"), 400);
+  EXPECT_EQ(status_of("GET / HTTP/1.1\r\n\r\n"), 400);  // no Host
+  EXPECT_EQ(status_of("GET nopath HTTP/1.1\r\nHost: x\r\n\r\n"), 400);
+  EXPECT_EQ(status_of("BREW / HTTP/1.1\r\nHost: x\r\n\r\n"), 501);
+  EXPECT_EQ(status_of("GET / HTTP/2.0\r\nHost: x\r\n\r\n"), 505);
+}
+
+TEST_F(Protocol, SizesOfTheHeadAreLimited) {
+  EXPECT_EQ(status_of("GET /" + std::string(3000, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n"), 414);
+  EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: x\r\nA: " + std::string(20'000, 'a') + "\r\n\r\n"), 431);
+  std::string many;
+  for (int i = 0; i < 200; ++i) many += "A: b\r\n";
+  EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: x\r\n" + many + "\r\n"), 431);
+}
+
+TEST_F(Protocol, BodyOfARequestToNowhereIsNotReadAsTheNextRequest) {
+  const RawClient raw(daemon().port());
+  const std::string inner = "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
+  raw.send("POST /nosuch HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(inner.size()) +
+           "\r\n\r\n" + inner);
+  const std::string answer = raw.receive_all();
+  EXPECT_EQ(answer.substr(9, 3), "404");
+  EXPECT_EQ(answer.find("HTTP/1.1", 1), std::string::npos) << answer;
+}
+
+TEST_F(Protocol, RequestsInARowAreAnsweredInOrder) {
+  const RawClient raw(daemon().port());
+  raw.send(
+      "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\nGET /nosuch HTTP/1.1\r\nHost: x\r\n\r\n"
+      "GET /readyz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  const std::string answer = raw.receive_all();
+  const std::size_t first = answer.find("200 OK"), second = answer.find("404 "),
+                    third = answer.rfind("200 OK");
+  EXPECT_LT(first, second);
+  EXPECT_LT(second, third);
+}
+
+TEST_F(Protocol, ClientThatWaitsForLeaveToSendGetsIt) {
+  const RawClient raw(daemon().port());
+  const std::string scene = small_scene().dump();
+  raw.send(
+      "POST /v1/render HTTP/1.1\r\nHost: x\r\nExpect: 100-continue\r\nConnection: close\r\nContent-Length: " +
+      std::to_string(scene.size()) + "\r\n\r\n");
+  EXPECT_EQ(raw.receive_some(), "HTTP/1.1 100 Continue\r\n\r\n");
+  raw.send(scene);
+  EXPECT_EQ(raw.receive_all().substr(9, 3), "200");
+}
+
+TEST_F(Protocol, OldClientsGetStreamsThatEndWithTheConnection) {
+  const std::string id = post_scene(small_scene().dump());
+  const RawClient raw(daemon().port());
+  raw.send("GET /v1/scenes/" + id +
+           "/orbit?frames=2&fps=0 HTTP/1.0\r\nAccept: application/x-orrery-frames\r\n\r\n");
+  const std::string answer = raw.receive_all();
+  EXPECT_EQ(answer.find("Transfer-Encoding"), std::string::npos);
+  EXPECT_EQ(parse_frames(answer.substr(answer.find("\r\n\r\n") + 4)).size(), 2u);
+}
+
+TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
+  Daemon daemon({"--max-connections", "2"});
+  const RawClient first(daemon.port()), second(daemon.port());
+  for (const RawClient* raw : {&first, &second}) {
+    raw->send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+    EXPECT_EQ(raw->receive_some().substr(9, 3), "200");
+  }
+  const RawClient third(daemon.port());
+  const std::string answer = third.receive_all();
+  EXPECT_EQ(answer.substr(9, 3), "503");
+  EXPECT_NE(answer.find("Retry-After: "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,108 @@
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/http/daemon.h"
+
+namespace orrery {
+namespace {
+
+class Render : public HttpTest {
+ protected:
+  httplib::Result render(const nlohmann::json& body, const httplib::Headers& headers = {}) {
+    return client_.Post("/v1/render", headers, body.dump(), "application/json");
+  }
+};
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(Render, PostedSceneIsAnsweredWithItsPicture) {
+  const auto result = render(small_scene());
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->status, 200) << result->body;
+  EXPECT_EQ(result->get_header_value("Content-Type"), "image/png");
+  EXPECT_TRUE(is_png(result->body));
+  EXPECT_GE(std::stoull(result->get_header_value("X-Rays")), 48u * 32u);
+  const std::string timing = result->get_header_value("Server-Timing");
+  for (const char* step : {"load;dur=", "plan;dur=", "build;dur=", "render;dur=", "encode;dur="})
+    EXPECT_NE(timing.find(step), std::string::npos) << timing;
+}
+
+TEST_F(Render, PictureHasTheSameBytesAsFromTheCommandLine) {
+  const auto folder = std::filesystem::temp_directory_path() / ("orrery-render-" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  const auto scene = folder / "scene.json", picture = folder / "picture.png";
+  std::ofstream(scene) << small_scene();
+  const std::string command = program() + " render " + scene.string() + " -o " + picture.string() +
+                              " --azimuth 40 --samples 4 --width 100";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const auto result = render({{"scene", small_scene()},
+                              {"camera", {{"azimuth_degrees", 40}}},
+                              {"image", {{"width", 100}}},
+                              {"render", {{"samples", 4}}}});
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->body, bytes_of(picture));
+  std::filesystem::remove_all(folder);
+}
+
+TEST_F(Render, BodyOfAFormIsReadAsJson) {  // as `curl --data-binary` labels it
+  std::string scene = small_scene().dump();
+  scene.resize(20'000, ' ');  // longer than httplib allows for forms
+  const auto result = client_.Post("/v1/render", scene, "application/x-www-form-urlencoded");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->status, 200) << result->body;
+}
+
+TEST_F(Render, AcceptChoosesTheFormat) {
+  const auto type_for = [&](const char* accept) {
+    const auto result = render(small_scene(), {{"Accept", accept}});
+    EXPECT_EQ(result->status, 200);
+    return result->get_header_value("Content-Type");
+  };
+  EXPECT_EQ(type_for("image/jpeg"), "image/jpeg");
+  EXPECT_EQ(type_for("image/x-exr"), "image/x-exr");
+  EXPECT_EQ(type_for("image/*"), "image/png");
+  EXPECT_EQ(type_for("image/png;q=0.1, image/jpeg;q=0.9"), "image/jpeg");
+  EXPECT_EQ(type_for("text/html, */*;q=0.5"), "image/png");
+  EXPECT_EQ(type_for("image/png;q=0, image/*"), "image/jpeg");
+  expect_problem(render(small_scene(), {{"Accept", "text/html"}}), 406);
+}
+
+TEST_F(Render, StoredSceneIsNamedById) {
+  const auto inline_scene = render(small_scene());
+  const auto stored = render({{"scene_id", post_scene(small_scene().dump())}});
+  ASSERT_TRUE(inline_scene && stored);
+  EXPECT_EQ(stored->status, 200);
+  EXPECT_EQ(stored->body, inline_scene->body);
+  expect_problem(render({{"scene_id", std::string(64, '0')}}), 404);
+}
+
+TEST_F(Render, ErrorsInsideARequestPointFromItsRoot) {
+  auto scene = small_scene();
+  scene["objects"][0]["radius"] = -1;
+  const auto problem = expect_problem(render({{"scene", scene}}), 422);
+  EXPECT_EQ(problem.at("errors")[0].at("pointer"), "/scene/objects/0/radius");
+}
+
+TEST_F(Render, OptionsOfARequestAreChecked) {
+  const auto pointer_of = [&](const nlohmann::json& more) {
+    nlohmann::json body = {{"scene", small_scene()}};
+    body.update(more);
+    const auto problem = expect_problem(render(body), 422);
+    return problem.is_object() ? problem.at("errors")[0].value("pointer", "?") : "none";
+  };
+  EXPECT_EQ(pointer_of({{"image", {{"width", 4097}}}}), "/image/width");
+  EXPECT_EQ(pointer_of({{"image", {{"width", 2.5}}}}), "/image/width");
+  EXPECT_EQ(pointer_of({{"render", {{"samples", 0}}}}), "/render/samples");
+  EXPECT_EQ(pointer_of({{"render", {{"technique", "witted"}}}}), "/render/technique");
+  EXPECT_EQ(pointer_of({{"camera", {{"azimuth", 1}}}}), "/camera");
+  EXPECT_EQ(pointer_of({{"camera", {{"fov_degrees", 180}}}}), "/camera/fov_degrees");
+  EXPECT_EQ(pointer_of({{"scene_id", "x"}}), "/scene_id");
+  EXPECT_EQ(pointer_of({{"colour", "x"}}), "");
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,209 @@
+#include "core/model/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/plan/plan.h"
+#include "tests/support/batches.h"
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace orrery::test {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+Camera looking_at_origin(const Vec3d& eye = {0, 0, 4}) {
+  Camera camera;
+  camera.eye = eye;
+  return camera;
+}
+
+// The ray through a place of the picture; (0.5, 0.5) is the middle of the first pixel.
+Ray<double> ray_through(const CameraFrame& frame, int width, int height, int x, int y) {
+  const auto rays = std::make_unique<RayBatch<double>>();
+  const auto samples = std::make_unique<TileSamples>();
+  samples->u.values.fill(0.5f);
+  samples->v.values.fill(0.5f);
+  const int x0 = x / kTileSide * kTileSide, y0 = y / kTileSide * kTileSide;
+  generate_rays(frame, width, height, x0, y0, *samples, *rays);
+  for (int slot = 0; slot < kBatch; ++slot)
+    if (x0 + tile_pixel(slot).x == x && y0 + tile_pixel(slot).y == y) return {get(rays->origin, slot), get(rays->direction, slot)};
+  return {};
+}
+
+void expect_near(const Vec3d& a, const Vec3d& b, double tolerance) {
+  EXPECT_NEAR(a.x, b.x, tolerance);
+  EXPECT_NEAR(a.y, b.y, tolerance);
+  EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+TEST(Orbit, TurnsAsTheFormulaOfTheSourceDoes) {
+  for (const double dt : {0.0, 10.0, 45.0, 90.0, 123.0, -60.0, 270.0}) {
+    const Camera camera = looking_at_origin({1, 2, 3});
+    const double c = std::cos(dt * kRadians), s = std::sin(dt * kRadians);
+    expect_near(frame_at(camera, {dt, 0, 1}).eye, Vec3d(1 * c + 3 * s, 2, -1 * s + 3 * c), 1e-14);
+  }
+}
+
+TEST(Orbit, KeepsTheCameraOfTheSceneToTheBit) {
+  const Camera camera = looking_at_origin({0.1, 0.7, 3.3});
+  EXPECT_EQ(frame_at(camera, {}).eye, camera.eye);
+  EXPECT_EQ(frame_at(camera, {360, 0, 1}).eye, camera.eye);
+}
+
+TEST(Orbit, FullTurnsEndWhereTheyBegan) {
+  covers("E10");
+  const Camera camera = looking_at_origin({1, 2, 3});
+  for (const double azimuth : {0.0, 33.5, -17.25, 180.0})
+    for (const double turns : {1.0, 100.0, 2777.0}) {  // up to a million degrees
+      const CameraFrame a = frame_at(camera, {azimuth, 10, 1}), b = frame_at(camera, {azimuth + 360 * turns, 10, 1});
+      EXPECT_EQ(a.eye, b.eye) << azimuth << " and " << turns << " turns";
+      EXPECT_EQ(a.right, b.right);
+    }
+}
+
+TEST(Orbit, LooksStraightDownWithoutLosingItsSense) {
+  covers("E8");
+  for (const double azimuth : {0.0, 30.0, 90.0, 200.0}) {
+    const CameraFrame top = frame_at(looking_at_origin(), {azimuth, 90, 1});
+    expect_near(top.back, Vec3d(0, 1, 0), 1e-15);
+    expect_near(top.right, Vec3d(std::cos(azimuth * kRadians), 0, -std::sin(azimuth * kRadians)), 1e-15);
+    expect_near(top.eye, Vec3d(0, 4, 0), 1e-14);
+    const CameraFrame bottom = frame_at(looking_at_origin(), {azimuth, -90, 1});
+    expect_near(bottom.back, Vec3d(0, -1, 0), 1e-15);
+    expect_near(bottom.right, top.right, 1e-15);
+    const CameraFrame near = frame_at(looking_at_origin(), {azimuth, 90 - 1e-9, 1});
+    expect_near(near.up, top.up, 1e-10);
+    expect_near(near.eye, top.eye, 1e-9);
+  }
+}
+
+TEST(Orbit, LiftStopsAtThePoles) {
+  const Camera camera = looking_at_origin({0, 3, 4});  // 36.87 degrees above the equator
+  expect_near(frame_at(camera, {0, 60, 1}).back, Vec3d(0, 1, 0), 1e-15);
+  expect_near(frame_at(camera, {0, 180, 1}).back, Vec3d(0, 1, 0), 1e-15);
+  expect_near(frame_at(camera, {0, -180, 1}).back, Vec3d(0, -1, 0), 1e-15);
+  expect_near(frame_at(camera, {0, -36.86989764584402, 1}).eye, Vec3d(0, 0, 5), 1e-14);
+}
+
+TEST(Orbit, DirectionsAreUnitAndUpright) {
+  covers("E8");
+  Random random(1);
+  for (int i = 0; i < 10'000; ++i) {
+    Camera camera;
+    camera.eye = random.in_cube(10);
+    camera.look_at = random.in_cube(10);
+    camera.up = random.direction() * random.magnitude(1e-3, 1e3);
+    const CameraFrame f = frame_at(camera, {random.between(-1e6, 1e6), random.between(-180, 180), random.magnitude(1e-3, 1e3)});
+    for (const Vec3d& v : {f.right, f.up, f.back}) EXPECT_NEAR(length(v), 1, 1e-14);
+    EXPECT_NEAR(dot(f.right, f.up), 0, 1e-14);
+    EXPECT_NEAR(dot(f.up, f.back), 0, 1e-14);
+    EXPECT_NEAR(dot(cross(f.right, f.up), f.back), 1, 1e-14) << "right-handed";
+    EXPECT_GE(dot(f.up, safe_normalize(camera.up)), -1e-14) << "never upside down";
+  }
+}
+
+TEST(CameraRays, OnePixelLooksAlongTheAxis) {
+  covers("E11");
+  expect_near(ray_through(frame_at(looking_at_origin(), {}), 1, 1, 0, 0).direction, Vec3d(0, 0, -1), 1e-15);
+  const Camera slanted = looking_at_origin({1, 2, 3});
+  expect_near(ray_through(frame_at(slanted, {}), 1, 1, 0, 0).direction, safe_normalize(Vec3d(-1, -2, -3)), 1e-15);
+}
+
+// The height decides the scale of both axes, whatever the aspect.
+TEST(CameraRays, HeightScalesBothAxes) {
+  covers("E9");
+  const CameraFrame frame = frame_at(looking_at_origin(), {});
+  const auto slope = [&](int width, int height, int x, int y) {
+    const Vec3d d = ray_through(frame, width, height, x, y).direction;
+    return Vec3d(d.x / -d.z, d.y / -d.z, 0);
+  };
+  const double top = std::tan(22.5 * kRadians);
+  const Vec3d corner = slope(640, 360, 0, 0);
+  EXPECT_NEAR(corner.y, top * (1 - 1 / 360.0), 1e-14);
+  EXPECT_NEAR(corner.x, -top * 640 / 360 * (1 - 1 / 640.0), 1e-14);
+  EXPECT_NEAR(slope(360, 640, 359, 639).y, -top * (1 - 1 / 640.0), 1e-14);
+  EXPECT_NEAR(slope(360, 640, 359, 639).x, top * 360 / 640 * (1 - 1 / 360.0), 1e-14);
+}
+
+TEST(CameraRays, MirrorAboutTheMiddleToTheBit) {
+  const CameraFrame frame = frame_at(looking_at_origin(), {});
+  for (const int width : {5, 64, 99})
+    for (int x = 0; x < width; x += 3) {
+      const Vec3d left = ray_through(frame, width, 40, x, 7).direction, right = ray_through(frame, width, 40, width - 1 - x, 7).direction;
+      EXPECT_EQ(left, Vec3d(-right.x, right.y, right.z)) << x << " of " << width;
+    }
+}
+
+TEST(CameraRays, OrthographicRaysAreParallelAndSpacedByTheHeight) {
+  Camera camera = looking_at_origin();
+  camera.projection = Projection::orthographic;
+  camera.height = 3;
+  const CameraFrame frame = frame_at(camera, {});
+  const Ray<double> first = ray_through(frame, 200, 100, 0, 0), last = ray_through(frame, 200, 100, 199, 99);
+  EXPECT_EQ(first.direction, Vec3d(0, 0, -1));
+  expect_near(first.origin, Vec3d(-3 + 0.015, 1.5 - 0.015, 4), 1e-14);
+  expect_near(last.origin, Vec3d(3 - 0.015, -1.5 + 0.015, 4), 1e-14);
+  EXPECT_NEAR(frame_at(camera, {0, 0, 2}).half_extent, 3, 1e-15) << "farther away more is seen";
+}
+
+TEST(CameraRays, PixelsBeyondThePictureAreInactive) {
+  const auto rays = std::make_unique<RayBatch<float>>();
+  const auto samples = std::make_unique<TileSamples>();
+  samples->u.values.fill(0.5f);
+  samples->v.values.fill(0.5f);
+  generate_rays(frame_at(looking_at_origin(), {}), 37, 35, 32, 32, *samples, *rays);
+  EXPECT_EQ(active_rays(*rays, groups_of(*rays)), 5u * 3u);
+}
+
+TEST(Camera, RefusesWhatItCannotLookThrough) {
+  covers("E10");
+  const auto problem = [](const char* camera) {
+    return first_problem(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
+                                  std::string("{'camera': ") + camera + "}"));
+  };
+  EXPECT_EQ(problem("{'fov_degrees': 0}"), "/camera/fov_degrees");
+  EXPECT_EQ(problem("{'fov_degrees': 180}"), "/camera/fov_degrees");
+  EXPECT_EQ(problem("{'eye': [1, 2, 3], 'look_at': [1, 2, 3]}"), "/camera/look_at");
+  EXPECT_EQ(problem("{'eye': [0, 5, 0]}"), "/camera/up");
+  EXPECT_EQ(problem("{'up': [0, 0, 0]}"), "/camera/up");
+  EXPECT_EQ(problem("{'fov_degrees': 179.9}"), "accepted");
+}
+
+TEST(Camera, RefusesRequestsItCannotLookThrough) {
+  covers("E10");
+  const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"));
+  const auto problem = [&](const RenderRequest& request) -> std::string {
+    try {
+      make_plan(*scene, request);
+    } catch (const InputError& error) {
+      return error.problems().front().pointer;
+    }
+    return "accepted";
+  };
+  RenderRequest request;
+  request.fov_degrees = 180;
+  EXPECT_EQ(problem(request), "/camera/fov_degrees");
+  request.fov_degrees = std::nan("");
+  EXPECT_EQ(problem(request), "/camera/fov_degrees");
+  request = {};
+  request.orbit.distance = 0;
+  EXPECT_EQ(problem(request), "/camera/distance");
+  request = {};
+  request.orbit.elevation_degrees = std::nan("");
+  EXPECT_EQ(problem(request), "/camera/elevation_degrees");
+  request = {};
+  request.orbit.azimuth_degrees = 1e6;
+  EXPECT_EQ(problem(request), "accepted");
+  request.orbit.azimuth_degrees = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(problem(request), "/camera/azimuth_degrees");
+}
+
+}  // namespace
+}  // namespace orrery::test

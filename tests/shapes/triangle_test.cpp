@@ -1,0 +1,167 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+#include "tests/support/rays.h"
+
+namespace orrery::test {
+namespace {
+
+// A sphere of 24 x 48 facets, with the triangles around each vertex and each edge.
+struct BallMesh {
+  static constexpr int kRings = 24, kSectors = 48;
+  std::vector<Vec3d> positions;
+  std::vector<std::array<int, 3>> triangles;
+
+  BallMesh(double radius, const Vec3d& center) {
+    positions.push_back(center + Vec3d(0, 0, radius));
+    for (int ring = 1; ring < kRings; ++ring)
+      for (int sector = 0; sector < kSectors; ++sector) {
+        const double theta = std::numbers::pi * ring / kRings, phi = 2 * std::numbers::pi * sector / kSectors;
+        positions.push_back(center + Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) * radius);
+      }
+    positions.push_back(center - Vec3d(0, 0, radius));
+    const int last = static_cast<int>(positions.size()) - 1;
+    const auto at = [](int ring, int sector) { return 1 + (ring - 1) * kSectors + sector % kSectors; };
+    for (int sector = 0; sector < kSectors; ++sector) {
+      triangles.push_back({0, at(1, sector), at(1, sector + 1)});
+      triangles.push_back({last, at(kRings - 1, sector + 1), at(kRings - 1, sector)});
+      for (int ring = 1; ring + 1 < kRings; ++ring) {
+        triangles.push_back({at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1)});
+        triangles.push_back({at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1)});
+      }
+    }
+  }
+
+  Json scene() const {
+    Json mesh{{"type", "mesh"}, {"positions", Json::array()}, {"indices", Json::array()}};
+    for (const Vec3d& p : positions) mesh["positions"].push_back(numbers(p));
+    for (const auto& t : triangles) mesh["indices"].push_back(t);
+    return scene_of(Json::array({mesh}), Json::object());
+  }
+  std::vector<int> around(int vertex) const {
+    std::vector<int> found;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if (std::find(triangles[t].begin(), triangles[t].end(), vertex) != triangles[t].end()) found.push_back(static_cast<int>(t));
+    return found;
+  }
+};
+
+// How many of the rays from within the ball, aimed at vertices and at the middles of edges, meet none of the
+// triangles there: each triangle around either end of the edge is tried, so a hit of any neighbour counts.
+template <class T>
+int leaks_of(const Vec3d& center, int rays_at_each) {
+  const BallMesh mesh(2, center);
+  const Target<T> shape(mesh.scene());
+  Random random(7);
+  int leaks = 0;
+  for (int vertex = 0; vertex < static_cast<int>(mesh.positions.size()); ++vertex) {
+    const std::vector<int> fan = mesh.around(vertex);
+    Rays<T> rays;
+    for (int i = 0; i < rays_at_each; ++i) {
+      const auto& triangle = mesh.triangles[static_cast<std::size_t>(fan[static_cast<std::size_t>(random.below(static_cast<int>(fan.size())))])];
+      const int other = triangle[static_cast<std::size_t>(random.below(3))];  // may be the vertex itself
+      const Vec3<T> a(mesh.positions[static_cast<std::size_t>(vertex)]), b(mesh.positions[static_cast<std::size_t>(other)]);
+      const Vec3<T> origin(center + random.in_cube(0.57));
+      rays.push_back({origin, (a + b) * T(0.5) - origin});
+    }
+    for (const auto& hit : shape.closest(rays, fan)) leaks += !hit.met();
+  }
+  return leaks;
+}
+
+TEST(Mesh, DoesNotLeakAtEdgesAndVertices) {
+  covers("A12");
+  EXPECT_EQ(leaks_of<double>(Vec3d(), 1000), 0);  // 1106 vertices: 1.1 million rays
+  EXPECT_EQ(leaks_of<float>(Vec3d(), 1000), 0);
+}
+
+TEST(Mesh, DoesNotLeakFarFromTheOrigin) {
+  covers("A12");
+  const Vec3d far(148376, 1234, -223423);
+  EXPECT_EQ(leaks_of<double>(far, 1000), 0);
+  EXPECT_EQ(leaks_of<float>(far, 200), 0) << "in float its vertices lie on a coarse grid, but they are shared";
+}
+
+TEST(Triangle, MayBeAsSmallAsAPicometre) {
+  covers("A13");
+  for (double s = 9.9e-4; s > 0.9e-12; s /= 10) {
+    const Json object{{"type", "triangle"}, {"vertices", {{0, 0, 0}, {s, 0, 0}, {0, s, 0}}}};
+    const Json scene = scene_of(Json::array({object}), Json::object());
+    EXPECT_DOUBLE_EQ(Target<double>(scene).closest(Ray<double>{{s / 4, s / 4, 1}, {0, 0, -1}}).t, 1) << s;
+    const auto q = static_cast<float>(s / 4);
+    EXPECT_FLOAT_EQ(Target<float>(scene).closest(Ray<float>{{q, q, 1}, {0, 0, -1}}).t, 1) << s;
+  }
+}
+
+TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
+  covers("A14");
+  const auto problem = [](const char* vertices) {
+    return first_problem(scene_of(Json::array({Json{{"type", "triangle"}, {"vertices", json(vertices)}}}), Json::object()));
+  };
+  EXPECT_EQ(problem("[[1, 2, 3], [1, 2, 3], [0, 5, 0]]"), "/objects/0/vertices");
+  EXPECT_EQ(problem("[[0, 0, 0], [1, 1, 1], [2, 2, 2]]"), "/objects/0/vertices");
+  EXPECT_EQ(problem("[[-1113.45459, -79.049614, -56.2431908], [-1113.45459, -87.0922699, -56.2431908],"
+                    " [-1113.45459, -79.2090149, -56.2431908]]"), "/objects/0/vertices");
+
+  // A mesh may hold such triangles; this one also holds a triangle far away, for it must not be empty.
+  const auto mesh = Target<double>::of_objects(
+      R"([{'type': 'mesh', 'indices': [[0, 1, 2], [0, 0, 1], [3, 4, 5]],
+           'positions': [[-1113.45459, -79.049614, -56.2431908], [-1113.45459, -87.0922699, -56.2431908],
+                         [-1113.45459, -79.2090149, -56.2431908], [0, 1e6, 0], [1, 1e6, 0], [0, 1e6, 1]]}])");
+  EXPECT_EQ(mesh.primitive_count(), 1);
+  EXPECT_FALSE(mesh.closest(Ray<double>{{-1081.47925, 99.9999542, 87.7701111}, {-32.1072998, -183.355865, -144.607635}}).met());
+
+  // Nearly on a line, in double and float: whatever is answered, it is a number.
+  const char* thin = R"([{'type': 'mesh', 'indices': [[0, 1, 2]],
+                          'positions': [[0.1, 0.2, 0.3], [0.2, 0.4, 0.6], [0.3, 0.6, 0.9000000000000001]]}])";
+  const auto slim = Target<double>::of_objects(thin);
+  const auto slim_float = Target<float>::of_objects(thin);
+  Random random(3);
+  for (int i = 0; i < 10'000; ++i) {
+    const Vec3d at = Vec3d(0.1, 0.2, 0.3) * random.between(1, 3), direction = random.direction();
+    const Ray<double> ray{at - direction * random.between(0, 2), direction};
+    const auto hit = slim.closest(ray);
+    EXPECT_FALSE(std::isnan(hit.t));
+    EXPECT_FALSE(std::isnan(slim_float.closest(convert_ray<float>(ray)).t));
+    if (!hit.met()) continue;
+    const auto spot = slim.surface(ray, hit);
+    EXPECT_FALSE(std::isnan(spot.normal.x + spot.position.x));
+  }
+}
+
+// A sliver with sides 11.2, 9.8 and 1.4, grazed at half a degree and less: the point at t is near the triangle.
+TEST(Triangle, SliversAreMetWhereTheyAre) {
+  covers("A15");
+  constexpr double kAngle = 0.52 * std::numbers::pi / 180, kFar = 600;
+  const Vec3d a(0, 0, 0), b(11.2, 0, 0), c(9.79, 0.05, 0);
+  const Json object{{"type", "triangle"}, {"vertices", {numbers(a), numbers(b), numbers(c)}}};
+  const Target<double> shape(scene_of(Json::array({object}), Json::object()));
+  Random random(5);
+  int hits = 0;
+  double worst = 0;
+  Rays<double> rays;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const double around = random.between(0, 2 * std::numbers::pi), lift = i % 2 ? kAngle : random.magnitude(1e-6, kAngle);
+    const Vec3d direction = safe_normalize(Vec3d(std::cos(around), std::sin(around), -std::sin(lift)));
+    double u = random.unit(), v = random.unit();
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    rays.push_back({a + (b - a) * u + (c - a) * v - direction * random.between(1, kFar), direction});
+  }
+  const auto found = shape.closest(rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!found[i].met()) continue;
+    ++hits;
+    const Vec3d at = rays[i].at(found[i].t);
+    const auto beyond = [](double p, double lo, double hi) { return std::max({lo - p, p - hi, 0.0}); };
+    worst = std::max({worst, beyond(at.x, 0, 11.2), beyond(at.y, 0, c.y), beyond(at.z, 0, 0)});
+  }
+  EXPECT_GT(hits, 900'000);
+  EXPECT_LE(worst, 1e-9 * kFar);
+}
+
+}  // namespace
+}  // namespace orrery::test

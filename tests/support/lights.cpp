@@ -1,0 +1,21 @@
+#include "tests/support/lights.h"
+
+#include "tests/support/batches.h"
+
+namespace orrery::test {
+
+template <class T>
+Arrival<T> arrival(const Json& light, const Vec3<T>& at) {
+  const auto scene = load(scene_of(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
+                                   Json{{"lights", Json::array({light})}}));
+  const auto surface = std::make_unique<SurfaceBatch<T>>();
+  const auto out = std::make_unique<LightBatch<T>>();
+  for (int i = 0; i < kWidth<T>; ++i) put(surface->position, i, at);
+  scene->lights.front()->illuminate(*surface, Groups::single(0), *out);
+  return {get(out->shadow.direction, 0), out->shadow.t_max[0], get(out->incident, 0)};
+}
+
+template Arrival<float> arrival(const Json&, const Vec3<float>&);
+template Arrival<double> arrival(const Json&, const Vec3<double>&);
+
+}  // namespace orrery::test

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/model/light.h"
+#include "tests/support/scenes.h"
+
+// One light, asked directly about single points.
+namespace orrery::test {
+
+// What arrives at a point.
+template <class T>
+struct Arrival {
+  Vec3<T> direction;  // toward the light
+  T t_max;            // metres to it, infinite for a distant one, -1: no light arrives
+  Vec3<T> incident;
+};
+
+template <class T>
+Arrival<T> arrival(const Json& light, const Vec3<T>& at);
+
+}  // namespace orrery::test

@@ -1,0 +1,92 @@
+#include "tests/support/materials.h"
+
+#include "tests/support/batches.h"
+
+namespace orrery::test {
+namespace {
+
+template <class T>
+struct Batches {
+  RayBatch<T> rays;
+  HitBatch<T> hits;
+  SurfaceBatch<T> surface;
+  LightBatch<T> light;
+  SpecularBatch<T> specular;
+  Vec3Array<T> radiance;
+  Groups groups;
+};
+
+// Lanes past the cases hold another material, none at all.
+template <class T>
+void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
+  const int count = static_cast<int>(cases.size());
+  b.groups = Groups::covering(0, count, kWidth<T>);
+  for (int i = 0; i < kBatchRoom; ++i) {
+    const auto& one = cases[static_cast<std::size_t>(i < count ? i : 0)];
+    put(b.rays.direction, i, one.direction);
+    put(b.surface.normal, i, one.normal);
+    put(b.surface.geometric, i, one.geometric);
+    put(b.light.shadow.direction, i, one.light);
+    put(b.light.incident, i, Vec3<T>(T(1)));
+    put(b.light.radiance, i, Vec3<T>());
+    b.light.shadow.t_max[i] = 1;
+    b.surface.side[i] = one.side;
+    b.hits.t[i] = one.t;
+    b.surface.material[i] = i < count ? 0 : -1;
+  }
+}
+
+}  // namespace
+
+template <class T>
+Probe<T>::Probe(const Json& material)
+    : scene_(load(scene_of(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),
+                           Json{{"materials", {{"white", nullptr}, {"it", material}}}}))) {
+  for (const auto& set : scene_->materials)
+    if (set->size() > 0) kernel_ = set->kernel(T(), 0);
+}
+
+template <class T>
+std::vector<Vec3<T>> Probe<T>::reflected(std::span<const Case> cases) const {
+  const auto b = std::make_unique<Batches<T>>();
+  std::vector<Vec3<T>> found;
+  while (!cases.empty()) {
+    const auto some = cases.first(std::min<std::size_t>(cases.size(), kBatch));
+    fill<T>(some, *b);
+    kernel_->reflect(b->rays, b->surface, b->groups, b->light);
+    for (int i = 0; i < static_cast<int>(some.size()); ++i)
+      found.push_back(b->light.shadow.t_max[i] > 0 ? get(b->light.radiance, i) : Vec3<T>());
+    cases = cases.subspan(some.size());
+  }
+  return found;
+}
+
+template <class T>
+std::vector<typename Probe<T>::Specular> Probe<T>::specular(std::span<const Case> cases) const {
+  const auto b = std::make_unique<Batches<T>>();
+  std::vector<Specular> found;
+  while (!cases.empty()) {
+    const auto some = cases.first(std::min<std::size_t>(cases.size(), kBatch));
+    fill<T>(some, *b);
+    kernel_->specular(b->rays, b->hits, b->surface, b->groups, b->specular);
+    const SpecularBatch<T>& s = b->specular;
+    for (int i = 0; i < static_cast<int>(some.size()); ++i)
+      found.push_back({get(s.reflectance, i), get(s.transmittance, i), get(s.refracted, i), get(s.filter, i)});
+    cases = cases.subspan(some.size());
+  }
+  return found;
+}
+
+template <class T>
+Vec3<T> Probe<T>::ambient() const {
+  const auto b = std::make_unique<Batches<T>>();
+  const Case one;
+  fill<T>(std::span(&one, 1), *b);
+  kernel_->ambient(b->surface, b->groups, Vec3<T>(T(1)), b->radiance);
+  return get(b->radiance, 0);
+}
+
+template class Probe<float>;
+template class Probe<double>;
+
+}  // namespace orrery::test

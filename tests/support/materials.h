@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/model/material.h"
+#include "tests/support/scenes.h"
+
+// One material, asked directly about single directions.
+namespace orrery::test {
+
+template <class T>
+class Probe {
+ public:
+  // `material` as it stands in a scene.
+  explicit Probe(const Json& material);
+  explicit Probe(const char* material) : Probe(json(material)) {}
+
+  // A ray that met the surface, and a light.
+  struct Case {
+    Vec3<T> direction{0, 0, -1};  // of the ray, unit
+    Vec3<T> light{0, 0, 1};       // toward the light, unit
+    Vec3<T> normal{0, 0, 1};      // for shading, on the ray's side
+    Vec3<T> geometric{0, 0, 1};
+    T side = 1;  // -1: the ray comes from the inside
+    T t = 1;     // metres it came
+  };
+  struct Specular {
+    Vec3<T> reflectance, transmittance, refracted, filter;
+  };
+
+  // What leaves toward the ray's origin of a light of intensity 1; 0 where the material leaves the light out.
+  std::vector<Vec3<T>> reflected(std::span<const Case> cases) const;
+  Vec3<T> reflected(const Case& one) const { return reflected(std::span(&one, 1)).front(); }
+  std::vector<Specular> specular(std::span<const Case> cases) const;
+  Specular specular(const Case& one) const { return specular(std::span(&one, 1)).front(); }
+  // What leaves under ambient light of 1.
+  Vec3<T> ambient() const;
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  MaterialKernelPtr<T> kernel_;
+};
+
+extern template class Probe<float>;
+extern template class Probe<double>;
+
+}  // namespace orrery::test

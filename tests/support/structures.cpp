@@ -1,0 +1,58 @@
+#include "tests/support/structures.h"
+
+#include <stdexcept>
+
+#include "core/accelerators/registry.h"
+#include "tests/support/batches.h"
+
+namespace orrery::test {
+
+std::vector<std::string> accelerator_names() {
+  std::vector<std::string> names;
+  for (const auto& type : accelerator_types()) names.push_back(type.name);
+  return names;
+}
+
+template <class T>
+Structure<T>::Structure(const Json& scene, const std::string& accelerator) : scene_(load(scene)) {
+  for (const auto& set : scene_->shapes) {
+    kernels_.push_back(set->kernel(T(), static_cast<int>(primitives_.size())));
+    for (int i = 0; i < set->size(); ++i) primitives_.push_back({kernels_.back().get(), i, set->bounds(i)});
+  }
+  for (const auto& type : accelerator_types())
+    if (type.name == accelerator) accelerator_ = build(type, primitives_);
+  if (!accelerator_) throw std::invalid_argument(accelerator);
+}
+
+template <class T>
+std::vector<Hit<T>> Structure<T>::closest(std::span<const Ray<T>> rays) {
+  std::vector<Hit<T>> found(rays.size());
+  const auto batch = std::make_unique<RayBatch<T>>();
+  const auto hits = std::make_unique<HitBatch<T>>();
+  for_each_batch(rays, [&](std::span<const Ray<T>> some, std::size_t from) {
+    fill_batch(some, std::numeric_limits<T>::infinity(), *batch);
+    hits->t.values = batch->t_max.values;
+    hits->primitive.values.fill(kNoPrimitive);
+    accelerator_->closest(*batch, groups_of(*batch), *hits, counts_);
+    for (int i = 0; i < batch->count; ++i)
+      found[from + static_cast<std::size_t>(i)] = {hits->t[i], static_cast<int>(hits->primitive[i])};
+  });
+  return found;
+}
+
+template <class T>
+std::vector<char> Structure<T>::occluded(std::span<const Ray<T>> rays, T t_max) {
+  std::vector<char> found(rays.size());
+  const auto batch = std::make_unique<RayBatch<T>>();
+  for_each_batch(rays, [&](std::span<const Ray<T>> some, std::size_t from) {
+    fill_batch(some, t_max, *batch);
+    accelerator_->occlude(*batch, groups_of(*batch), counts_);
+    for (int i = 0; i < batch->count; ++i) found[from + static_cast<std::size_t>(i)] = batch->t_max[i] < T(0);
+  });
+  return found;
+}
+
+template class Structure<float>;
+template class Structure<double>;
+
+}  // namespace orrery::test

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "core/model/accelerator.h"
+#include "tests/support/rays.h"
+
+// Registered accelerators over the shapes of a scene.
+namespace orrery::test {
+
+std::vector<std::string> accelerator_names();
+
+template <class T>
+class Structure {
+ public:
+  Structure(const Json& scene, const std::string& accelerator);
+
+  std::vector<Hit<T>> closest(std::span<const Ray<T>> rays);
+  std::vector<char> occluded(std::span<const Ray<T>> rays, T t_max);
+  const AcceleratorCounts& counts() const { return counts_; }  // of all calls so far
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  std::vector<ShapeKernelPtr<T>> kernels_;
+  PrimitiveList<T> primitives_;
+  AcceleratorPtr<T> accelerator_;
+  AcceleratorCounts counts_;
+};
+
+extern template class Structure<float>;
+extern template class Structure<double>;
+
+}  // namespace orrery::test
