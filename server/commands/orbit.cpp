@@ -154,12 +154,12 @@ Command add_orbit(CLI::App& root) {
   app->footer(kExamples);
   app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
   app->add_option("--frames", options->frames, "How many")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(CLI::Range(1, 1'000'000).description(""))
       ->type_name("N")
       ->capture_default_str();
   options->step_given =
       app->add_option("--step", options->step, "Degrees from frame to frame; without it, one full turn")
-          ->check(CLI::Range(-360.0, 360.0))
+          ->check(CLI::Range(-360.0, 360.0).description(""))
           ->type_name("DEGREES");
   auto* output =
       app->add_option("-o,--output", options->output, "Names of the frames; %04d becomes the number")
@@ -169,7 +169,7 @@ Command add_orbit(CLI::App& root) {
       ->excludes(output);
   app->add_flag("--stats{text}", options->stats, "Print what it took; --stats=json for programs");
   app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024))
+      ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N");
   add_render_flags(*app, options->render);
   return {app, [options] { return orbit(*options); }};

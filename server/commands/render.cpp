@@ -76,7 +76,7 @@ Command add_render(CLI::App& root) {
   app->add_flag("--stats{text}", options->stats,
                 "Print what was traced and what it took; --stats=json for programs");
   app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024))
+      ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N");
   add_render_flags(*app, options->render);
   return {app, [options] { return render(*options); }};

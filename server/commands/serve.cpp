@@ -71,7 +71,7 @@ void add_limit_options(CLI::App& app, Options& options) {
   Settings& settings = options.settings;
   const auto add = [&](const char* name, auto& value, double most, const char* help) {
     app.add_option(name, value, help)
-        ->check(CLI::Range(1.0, most))
+        ->check(CLI::Range(1.0, most).description(""))
         ->type_name("N")
         ->capture_default_str()
         ->group("Limits");
@@ -94,16 +94,16 @@ Command add_serve(CLI::App& root) {
   app->footer(kExamples);
   app->add_option("--host", options->settings.host, "Name or address to listen on")->capture_default_str();
   app->add_option("--port", options->settings.port, "Port; 0: a free one")
-      ->check(CLI::Range(0, 65535))
+      ->check(CLI::Range(0, 65535).description(""))
       ->type_name("N")
       ->capture_default_str();
   app->add_option("--threads", options->settings.threads, "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024))
+      ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N");
   app->add_flag("--insecure", options->insecure, "Allow an address that other machines can reach");
   app->add_flag("--quiet", options->quiet, "Log warnings and errors only");
   app->add_option("--log", options->log, "Form of the log on standard error; text on a terminal, else json")
-      ->check(CLI::IsMember({"text", "json"}))
+      ->check(CLI::IsMember({"text", "json"}).description(""))
       ->type_name("text|json");
   add_limit_options(*app, *options);
   return {app, [options] { return serve(*options); }};

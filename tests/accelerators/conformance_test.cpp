@@ -20,7 +20,7 @@ Json cloud(int count, std::uint64_t seed, bool bounded_only = false) {
         if (bounded_only && (type == "plane" || object.contains("axis"))) continue;
         objects.push_back(placed(object, random.magnitude(0.01, 1), random.in_cube(8)));
       }
-  return scene_of(objects, Json::object());
+  return scene_with(objects);
 }
 
 // Coplanar, touching and coincident: every tie and near tie there is.
@@ -35,7 +35,7 @@ Json stack() {
     objects.push_back({{"type", "cylinder"}, {"base", {0, 0, z}}, {"top", {0, 0, z + 0.3}}, {"radius", 1}});
     objects.push_back({{"type", "sphere"}, {"center", {0, 0, z}}, {"radius", 0.3}});
   }
-  return scene_of(objects, Json::object());
+  return scene_with(objects);
 }
 
 template <class T>
@@ -55,7 +55,7 @@ Rays<T> rays_through(double half, double from, int count, std::uint64_t seed) {
 // Rays from far away that touch the shape to within a few ulp of the distance, where kernels decide by rounding.
 template <class T>
 Rays<T> touching_rays(const Json& object, double distance, int count) {
-  const Target<double> shape(scene_of(Json::array({object}), Json::object()));
+  const Target<double> shape(scene_with(object));
   const Rays<double> probes = rays_at<double>(object, {1, Vec3d()}, count, 4);
   const auto hits = shape.closest(probes);
   const auto spots = shape.surfaces(probes, hits);
@@ -114,7 +114,7 @@ TEST_P(Accelerators, AgreeWithTheListFromAfar) {
   for (const std::string& type : shape_names())
     for (const Json& object : shape_samples(type)) {
       SCOPED_TRACE(object.dump());
-      const Json scene = scene_of(Json::array({object}), Json::object());
+      const Json scene = scene_with(object);
       for (const double from : {10.0, 1e3, 1e5}) {
         agree<float>(scene, touching_rays<float>(object, from, 10'000));
         agree<double>(scene, touching_rays<double>(object, from, 10'000));
@@ -127,8 +127,8 @@ TEST_P(Accelerators, AgreeWithTheListOnGrazingRays) {
   for (const std::string& type : shape_names())
     for (const Json& object : shape_samples(type)) {
       SCOPED_TRACE(object.dump());
-      agree<float>(scene_of(Json::array({object}), Json::object()), rays_at<float>(object, {1, Vec3d()}, 20'000, 8));
-      agree<double>(scene_of(Json::array({object}), Json::object()), rays_at<double>(object, {1, Vec3d()}, 20'000, 8));
+      agree<float>(scene_with(object), rays_at<float>(object, {1, Vec3d()}, 20'000, 8));
+      agree<double>(scene_with(object), rays_at<double>(object, {1, Vec3d()}, 20'000, 8));
     }
 }
 

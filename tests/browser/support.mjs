@@ -1,4 +1,4 @@
-// What the browser tests and the screenshot helper share: a daemon of their own and a Chromium of their own.
+// What the browser tests and screenshot.mjs share: a daemon of their own and a Chromium of their own.
 
 import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";

@@ -41,7 +41,7 @@ TEST_F(Scenes, SceneComesBackInCanonicalForm) {
   EXPECT_EQ(nlohmann::json::parse(got->body), scene);
   EXPECT_EQ(got->body.find('\n'), std::string::npos);
   EXPECT_EQ(post_scene(got->body), id);
-  const auto known = client_.Get("/v1/scenes/" + id, {{"If-None-Match", got->get_header_value("ETag")}});
+  const auto known = get_known("/v1/scenes/" + id, got->get_header_value("ETag"));
   EXPECT_EQ(known->status, 304);
   const auto head = client_.Head("/v1/scenes/" + id);
   EXPECT_EQ(head->status, 200);

@@ -21,7 +21,7 @@ double weakened(const Vec3d& attenuation, double distance) {
   return arrival<double>(point_light(attenuation), Vec3d(distance, 0, 0)).incident.x;
 }
 std::string problem(const Json& light) {
-  return first_problem(scene_of(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
+  return first_problem(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
                                 Json{{"lights", Json::array({light})}}));
 }
 

@@ -66,7 +66,7 @@ TEST(Cylinder, RaysAlongASlantedAxisMeetTheCapsToo) {
   for (int i = 0; i < 2'000; ++i) {
     const Vec3d axis = random.direction(), beside = safe_normalize(cross(axis, random.direction()));
     const Json object{{"type", "cylinder"}, {"base", numbers(Vec3d())}, {"top", numbers(axis)}, {"radius", 1}};
-    const Target<double> shape(scene_of(Json::array({object}), Json::object()));
+    const Target<double> shape(scene_with(object));
     EXPECT_NEAR(shape.closest(Ray<double>{beside * 0.5 - axis * 5, axis}).t, 5, 1e-12);
     EXPECT_FALSE(shape.closest(Ray<double>{beside * 1.5 - axis * 5, axis}).met());
   }

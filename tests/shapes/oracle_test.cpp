@@ -60,7 +60,7 @@ struct Verdict {
 
 template <class T>
 Verdict judge(const Json& object, const Placement& placement, int count, std::uint64_t seed) {
-  const Json scene = scene_of(Json::array({placement.of(object)}), Json::object());
+  const Json scene = scene_with(placement.of(object));
   const Target<T> shape(scene);
   const Target<long double> exact_shape(scene);
   const Rays<T> rays = rays_at<T>(object, placement, count, seed);

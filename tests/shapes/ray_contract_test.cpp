@@ -16,7 +16,7 @@ class RayContract : public testing::TestWithParam<std::string> {
   void for_each_sample(const Check& check) {
     for (const Json& object : shape_samples(GetParam())) {
       SCOPED_TRACE(object.dump());
-      check(scene_of(Json::array({object}), Json::object()), rays_at<T>(object, {1, Vec3d()}, 2000, 9));
+      check(scene_with(object), rays_at<T>(object, {1, Vec3d()}, 2000, 9));
     }
   }
 
@@ -93,8 +93,8 @@ TEST_P(RayContract, LanesDoNotMatter) {
 // The same object three times: the lowest number wins, wherever it stands in the order of the tests.
 TEST_P(RayContract, EqualHitsGoToTheLowestNumber) {
   for (const Json& object : shape_samples(GetParam())) {
-    const Target<double> one(scene_of(Json::array({object}), Json::object()));
-    const Target<double> three(scene_of(Json::array({object, object, object}), Json::object()));
+    const Target<double> one(scene_with(object));
+    const Target<double> three(scene_with(Json::array({object, object, object})));
     std::vector<int> backwards;
     for (int i = three.primitive_count(); i-- > 0;) backwards.push_back(i);
     const auto rays = rays_at<double>(object, {1, Vec3d()}, 1000, 9);

@@ -25,7 +25,7 @@ template <class T>
 class Leaver {
  public:
   Leaver(const Json& object, const Placement& placement, int count)
-      : scene_(scene_of(Json::array({placement.of(object)}), Json::object())), shape_(scene_), exact_(scene_) {
+      : scene_(scene_with(placement.of(object))), shape_(scene_), exact_(scene_) {
     for (const auto& ray : rays_at<T>(object, placement, count, 5))
       if (shape_.closest(ray).met()) rays_.push_back(ray);
     hits_ = shape_.closest(rays_);
@@ -112,7 +112,7 @@ TEST(Step, IsBelowTwoNanometresAThousandKilometresAway) {
   for (const std::string& type : shape_names())
     for (const Json& object : shape_samples(type)) {
       const Placement far{1, Vec3d(1e6, -1e6, 1e6)};
-      const Json scene = scene_of(Json::array({far.of(object)}), Json::object());
+      const Json scene = scene_with(far.of(object));
       const Target<double> shape(scene);
       for (const auto& ray : rays_at<double>(object, far, 200, 3)) {
         const auto hit = shape.closest(ray);

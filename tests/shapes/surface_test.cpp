@@ -25,7 +25,7 @@ struct Sitting {
   std::vector<Spot<T>> spots;
 
   Sitting(const Json& object, const Placement& placement, int count)
-      : scene(scene_of(Json::array({placement.of(object)}), Json::object())), shape(scene), exact(scene) {
+      : scene(scene_with(placement.of(object))), shape(scene), exact(scene) {
     for (const auto& ray : rays_at<T>(object, placement, count, 17))
       if (shape.closest(ray).met()) rays.push_back(ray);
     hits = shape.closest(rays);

@@ -40,7 +40,7 @@ struct BallMesh {
     Json mesh{{"type", "mesh"}, {"positions", Json::array()}, {"indices", Json::array()}};
     for (const Vec3d& p : positions) mesh["positions"].push_back(numbers(p));
     for (const auto& t : triangles) mesh["indices"].push_back(t);
-    return scene_of(Json::array({mesh}), Json::object());
+    return scene_with(mesh);
   }
   std::vector<int> around(int vertex) const {
     std::vector<int> found;
@@ -90,7 +90,7 @@ TEST(Triangle, MayBeAsSmallAsAPicometre) {
   covers("A13");
   for (double s = 9.9e-4; s > 0.9e-12; s /= 10) {
     const Json object{{"type", "triangle"}, {"vertices", {{0, 0, 0}, {s, 0, 0}, {0, s, 0}}}};
-    const Json scene = scene_of(Json::array({object}), Json::object());
+    const Json scene = scene_with(object);
     EXPECT_DOUBLE_EQ(Target<double>(scene).closest(Ray<double>{{s / 4, s / 4, 1}, {0, 0, -1}}).t, 1) << s;
     const auto q = static_cast<float>(s / 4);
     EXPECT_FLOAT_EQ(Target<float>(scene).closest(Ray<float>{{q, q, 1}, {0, 0, -1}}).t, 1) << s;
@@ -100,7 +100,7 @@ TEST(Triangle, MayBeAsSmallAsAPicometre) {
 TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
   covers("A14");
   const auto problem = [](const char* vertices) {
-    return first_problem(scene_of(Json::array({Json{{"type", "triangle"}, {"vertices", json(vertices)}}}), Json::object()));
+    return first_problem(scene_with(Json{{"type", "triangle"}, {"vertices", json(vertices)}}));
   };
   EXPECT_EQ(problem("[[1, 2, 3], [1, 2, 3], [0, 5, 0]]"), "/objects/0/vertices");
   EXPECT_EQ(problem("[[0, 0, 0], [1, 1, 1], [2, 2, 2]]"), "/objects/0/vertices");
@@ -139,7 +139,7 @@ TEST(Triangle, SliversAreMetWhereTheyAre) {
   constexpr double kAngle = 0.52 * std::numbers::pi / 180, kFar = 600;
   const Vec3d a(0, 0, 0), b(11.2, 0, 0), c(9.79, 0.05, 0);
   const Json object{{"type", "triangle"}, {"vertices", {numbers(a), numbers(b), numbers(c)}}};
-  const Target<double> shape(scene_of(Json::array({object}), Json::object()));
+  const Target<double> shape(scene_with(object));
   Random random(5);
   int hits = 0;
   double worst = 0;

@@ -40,7 +40,7 @@ void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
 
 template <class T>
 Probe<T>::Probe(const Json& material)
-    : scene_(load(scene_of(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),
+    : scene_(load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),
                            Json{{"materials", {{"white", nullptr}, {"it", material}}}}))) {
   for (const auto& set : scene_->materials)
     if (set->size() > 0) kernel_ = set->kernel(T(), 0);

@@ -88,17 +88,17 @@ Json json(std::string_view text) {
   return Json::parse(quoted);
 }
 
-Json scene_of(std::string_view objects, std::string_view patch) { return scene_of(json(objects), json(patch)); }
-
-Json scene_of(const Json& objects, const Json& patch) {
+Json scene_with(const Json& objects, const Json& patch) {
   Json scene = json(kEmptyScene);
-  scene["objects"] = objects;
+  scene["objects"] = objects.is_array() ? objects : Json::array({objects});
   if (patch.contains("camera") && patch["camera"].contains("type")) scene.erase("camera");
   scene.merge_patch(patch);
   for (Json& object : scene["objects"])
     if (!object.contains("material")) object["material"] = "white";
   return scene;
 }
+
+Json scene_of(std::string_view objects, std::string_view patch) { return scene_with(json(objects), json(patch)); }
 
 std::shared_ptr<const Scene> load(const Json& scene) { return load_scene(document_of(scene)); }
 

@@ -16,11 +16,11 @@ using Json = nlohmann::json;
 // Parses a snippet; for brevity ' may stand for ".
 Json json(std::string_view text);
 
-// A scene of these objects (a JSON list, whose objects need not name a material) seen from [0, 0, 4]; `patch`
-// is merged over it (RFC 7386): it may bring lights, materials, another camera. Objects without a material get
+// A scene of this object or these (a JSON list), which need not name a material, seen from [0, 0, 4]; `patch` is
+// merged over it (RFC 7386): it may bring lights, materials, another camera. Objects without a material get
 // "white", which is rough with kd 1 and ka 1.
-Json scene_of(std::string_view objects, std::string_view patch = "{}");
-Json scene_of(const Json& objects, const Json& patch);
+Json scene_with(const Json& objects, const Json& patch = Json::object());
+Json scene_of(std::string_view objects, std::string_view patch = "{}");  // the same from snippets
 
 std::shared_ptr<const Scene> load(const Json& scene);
 

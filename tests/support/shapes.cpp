@@ -86,7 +86,7 @@ std::span<const Placement> double_placements() { return kDoublePlacements; }
 
 template <class T>
 Rays<T> rays_at(const Json& object, const Placement& placement, int count, std::uint64_t seed) {
-  const Target<double> target(scene_of(Json::array({placement.of(object)}), Json::object()));
+  const Target<double> target(scene_with(placement.of(object)));
   Boundsd bounds = Boundsd::everything();
   if (target.bounds(0).bounded()) {
     bounds = Boundsd();

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Every sample scene gives one and the same PNG for any number of threads, rays a slice and instruction level. The
+# levels of the release are forced through the loader's tunables; a build of one level compares the rest.
+set -euo pipefail
+orrery=${ORRERY_BIN:-build/orrery}
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+level_with() { # TUNABLES: the level that the loader then picks
+  GLIBC_TUNABLES=$1 "$orrery" render scenes/shape-plane.json --width 8 --height 8 --stats | grep -o 'x86-64-v[234]\|plain'
+}
+
+lower=("glibc.cpu.hwcaps=-AVX512F" "glibc.cpu.hwcaps=-AVX512F,-AVX2")
+levels="$(level_with '') $(level_with "${lower[0]}") $(level_with "${lower[1]}")"
+echo "levels: $levels"
+if [ -d "$(dirname "$orrery")/glibc-hwcaps" ] && [ "$levels" = "x86-64-v4 x86-64-v4 x86-64-v4" ]; then
+  echo "the loader did not take the lower levels"
+  exit 1
+fi
+
+failed=0
+for scene in scenes/*.json; do
+  render() { # NAME TUNABLES OPTIONS...
+    GLIBC_TUNABLES=$2 "$orrery" render "$scene" --width 150 --height 110 "${@:3}" -o "$scratch/$1.png" 2>/dev/null
+    cmp -s "$scratch/first.png" "$scratch/$1.png" || { echo "$scene: $1 differs"; failed=1; }
+  }
+  "$orrery" render "$scene" --width 150 --height 110 --threads 1 -o "$scratch/first.png" 2>/dev/null
+  render threads-2 "" --threads 2
+  render threads-8 "" --threads 8
+  render slice-64 "" --threads 1 --slice 64
+  render slice-1024 "" --threads 1 --slice 1024
+  render lower-level "${lower[0]}" --threads 2
+  render lowest-level "${lower[1]}" --threads 2
+done
+[ $failed = 0 ] && echo "$(ls scenes/*.json | wc -l) scenes, 7 ways each: the same bytes"
+exit $failed

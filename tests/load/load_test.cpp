@@ -1,0 +1,142 @@
+#include "core/load/load.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/lights/registry.h"
+#include "core/materials/registry.h"
+#include "core/shapes/registry.h"
+#include "tests/support/covers.h"
+#include "tests/support/scenes.h"
+
+namespace orrery::test {
+namespace {
+
+std::string problem_of_object(const char* object) { return first_problem(scene_of(object)); }
+
+// The same scene as text, with `what` replaced, for what no JSON tree can hold.
+std::string problem_of_text(const char* what, const char* by) {
+  std::string text = scene_of("[{'type': 'sphere', 'center': [0.125, 0, 0], 'radius': 0.375}]").dump();
+  text.replace(text.find(what), std::string_view(what).size(), by);
+  return first_problem_in_text(text);
+}
+
+TEST(Load, RefusesRadiiThatAreNone) {
+  covers("A6");
+  EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 0}]"), "/objects/0/radius");
+  EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': -1}]"), "/objects/0/radius");
+  EXPECT_EQ(problem_of_object("[{'type': 'cylinder', 'base': [0, 0, 0], 'top': [0, 1, 0], 'radius': 0}]"), "/objects/0/radius");
+  EXPECT_EQ(problem_of_object("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': -1e-9}]"), "/objects/0/radius");
+  EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1e-12}]"), "accepted");
+  EXPECT_NE(problem_of_text("0.375", "NaN"), "accepted");
+}
+
+TEST(Load, RefusesBadNumbersByName) {
+  covers("A36");
+  for (const char* bad : {"NaN", "Infinity", "-Infinity", "1e999", "1,5", "0x10", "1.", ".5", "+1", "null", "\"1\"", "true"})
+    EXPECT_NE(problem_of_text("0.375", bad), "accepted") << bad;
+  EXPECT_EQ(problem_of_text("0.375", "1e999"), "/objects/0/radius");
+  EXPECT_EQ(problem_of_text("0.125", "1e13"), "/objects/0/center/0");
+  EXPECT_EQ(problem_of_text("\"width\":64", "\"width\":65536"), "/image/width");
+  EXPECT_EQ(problem_of_text("\"width\":64", "\"width\":0"), "/image/width");
+  EXPECT_EQ(problem_of_object("[]"), "/objects");
+  EXPECT_EQ(first_problem_in_text("{}"), "");
+  EXPECT_NE(first_problem_in_text(""), "accepted");
+}
+
+TEST(Load, KnowsEveryRegisteredType) {
+  const std::string schema = scene_schema();
+  const auto named = [&](const auto& types) {
+    for (const auto& type : types) EXPECT_NE(schema.find("\"" + std::string(type.name) + "\""), std::string::npos) << type.name;
+  };
+  named(shape_types());
+  named(material_types());
+  named(light_types());
+}
+
+TEST(Load, GivesEachPrimitiveItsMaterial) {
+  const auto scene = load(scene_of(R"([{'type': 'box', 'min': [0, 0, 0], 'max': [1, 1, 1], 'material': 'glass'},
+      {'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'b'},
+      {'type': 'mesh', 'positions': [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], 'indices': [[0, 1, 2], [1, 3, 2]], 'material': 'a'},
+      {'type': 'sphere', 'center': [3, 0, 0], 'radius': 1, 'material': 'silver'}])",
+      R"({'materials': {'white': null, 'a': {'type': 'rough'}, 'b': {'type': 'rough'}, 'glass': {'type': 'refractive', 'ior': 1.5},
+          'silver': {'type': 'reflective', 'n': [0, 0, 0], 'k': [0, 0, 0]}}})"));
+  EXPECT_EQ(scene->object_count, 4);
+  ASSERT_EQ(scene->primitive_count(), 5);
+  std::vector<int> first(scene->materials.size() + 1, 0);  // number of the first material of each set
+  for (std::size_t set = 0; set < scene->materials.size(); ++set) first[set + 1] = first[set] + scene->materials[set]->size();
+  const auto set_of = [&](std::string_view type) {
+    for (std::size_t i = 0; i < material_types().size(); ++i)
+      if (material_types()[i].name == type) return first[i];
+    return -1;
+  };
+  // Primitives are numbered shape type by shape type: spheres stand before meshes, meshes before boxes.
+  EXPECT_EQ(scene->material_of[0], set_of("rough") + 1);
+  EXPECT_EQ(scene->material_of[1], set_of("reflective"));
+  EXPECT_EQ(scene->material_of[2], set_of("rough"));
+  EXPECT_EQ(scene->material_of[3], set_of("rough"));
+  EXPECT_EQ(scene->material_of[4], set_of("refractive"));
+}
+
+TEST(Load, GathersTheFactsThePlanNeeds) {
+  const auto scene = load(scene_of(R"([{'type': 'plane', 'point': [0, -1e6, 0], 'normal': [0, 1, 0]},
+      {'type': 'sphere', 'center': [100, 0, 0], 'radius': 2}, {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5}])"));
+  EXPECT_EQ(scene->facts.magnitude, 102) << "unbounded shapes have no largest coordinate";
+  EXPECT_NEAR(scene->facts.smallest_feature, std::sqrt(3.0), 1e-15);
+  EXPECT_TRUE(scene->facts.materials.lit);
+  EXPECT_FALSE(scene->facts.materials.mirrors);
+}
+
+TEST(Load, IdDependsOnMeaningAndNotOnLayout) {
+  const auto id = [](const char* text) { return load_scene(json(text).dump(2))->id; };
+  const char* plain = "{'version': 1, 'camera': {'type': 'perspective', 'eye': [0, 0, 4], 'look_at': [0, 0, 0]},"
+                      " 'materials': {'m': {'type': 'rough'}}, 'objects': [{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'm'}]}";
+  const char* spaced = "{'objects': [{'radius': 1.0, 'material': 'm', 'type': 'sphere', 'center': [0, 0, -0.0]}],"
+                       " 'materials': {'m': {'type': 'rough'}}, 'camera': {'look_at': [0, 0, 0], 'eye': [0, 0, 4e0], 'type': 'perspective'}, 'version': 1}";
+  EXPECT_EQ(id(plain), id(spaced));
+  EXPECT_EQ(id(plain).size(), 64u);
+}
+
+TEST(Request, TakesOnlyWhatIsGiven) {
+  const auto read = [](const char* text) { return read_request(parse_document(json(text).dump())); };
+  const RenderRequest none = read("{}");
+  EXPECT_FALSE(none.width || none.samples || none.technique || none.precision || none.fov_degrees || none.seed || none.min_contribution);
+  EXPECT_EQ(none.orbit.distance, 1);
+  const RenderRequest all = read(R"({'camera': {'azimuth_degrees': 30, 'elevation_degrees': -10, 'distance': 2, 'fov_degrees': 60},
+      'image': {'width': 320, 'height': 200}, 'scene_id': 'x',
+      'render': {'technique': 'raycast', 'max_depth': 3, 'min_contribution': 0.01, 'samples': 16, 'accelerator': 'list', 'precision': 'double', 'seed': 7}})");
+  EXPECT_EQ(all.orbit.azimuth_degrees, 30);
+  EXPECT_EQ(all.orbit.elevation_degrees, -10);
+  EXPECT_EQ(all.orbit.distance, 2);
+  EXPECT_EQ(all.fov_degrees, 60);
+  EXPECT_EQ(all.width, 320);
+  EXPECT_EQ(all.height, 200);
+  EXPECT_EQ(all.technique, "raycast");
+  EXPECT_EQ(all.max_depth, 3);
+  EXPECT_EQ(all.min_contribution, 0.01);
+  EXPECT_EQ(all.samples, 16);
+  EXPECT_EQ(all.accelerator, "list");
+  EXPECT_EQ(all.precision, Precision::double_precision);
+  EXPECT_EQ(all.seed, 7u);
+}
+
+TEST(Request, RefusesWhatNoSceneMayAskEither) {
+  const auto problem = [](const char* text) -> std::string {
+    try {
+      read_request(parse_document(json(text).dump()));
+    } catch (const InputError& error) {
+      return error.problems().front().pointer;
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(problem("{'image': {'width': 5000}}"), "/image/width");
+  EXPECT_EQ(problem("{'camera': {'fov_degrees': 180}}"), "/camera/fov_degrees");
+  EXPECT_EQ(problem("{'camera': {'distance': 0}}"), "/camera/distance");
+  EXPECT_EQ(problem("{'render': {'technique': 'magic'}}"), "/render/technique");
+  EXPECT_EQ(problem("{'render': {'depth': 3}}"), "/render");
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,186 @@
+#include "core/plan/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/accelerators/registry.h"
+#include "core/base/error.h"
+#include "core/techniques/registry.h"
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+
+// What the plan leaves out, why, and what the counters say about it.
+namespace orrery::test {
+namespace {
+
+constexpr const char* kBall = "{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}";
+constexpr const char* kSun = "[{'type': 'directional', 'from': [1, 1, 1]}]";
+
+Plan plan_of(const Json& scene, const RenderRequest& request = {}) { return make_plan(*load(scene), request); }
+
+Json scene_of_materials(std::initializer_list<const char*> materials, const char* lights = kSun) {
+  Json scene = scene_of("[]", "{'materials': {'white': null}}");
+  scene["lights"] = json(lights);
+  int i = 0;
+  for (const char* text : materials) {
+    const std::string name = "m" + std::to_string(i);
+    scene["materials"][name] = json(text);
+    scene["objects"].push_back({{"type", "sphere"}, {"center", {1.5 * i++, 0, 0}}, {"radius", 0.7}, {"material", name}});
+  }
+  return scene;
+}
+constexpr const char* kRough = "{'type': 'rough'}";
+constexpr const char* kMirror = "{'type': 'reflective', 'n': [0.2, 0.2, 0.2], 'k': [3, 3, 3]}";
+constexpr const char* kGlass = "{'type': 'refractive', 'ior': 1.5}";
+constexpr const char* kAmber = "{'type': 'refractive', 'ior': 1.5, 'filter': [0.9, 0.5, 0.1]}";
+
+std::uint64_t sum(const RayCounts::ByDepth& counts) {
+  std::uint64_t total = 0;
+  for (const std::uint64_t count : counts) total += count;
+  return total;
+}
+
+TEST(Plan, LeavesOutLightThatNothingAnswers) {
+  const Json no_light = scene_of_materials({kRough, kRough}, "[]");
+  EXPECT_FALSE(plan_of(no_light).direct_light);
+  const Json dark_light = scene_of_materials({kRough, kRough}, "[{'type': 'directional', 'from': [1, 1, 1], 'intensity': [0, 0, 0]}]");
+  EXPECT_FALSE(plan_of(dark_light).direct_light);
+  const Json all_mirrors = scene_of_materials({kMirror, kGlass});
+  EXPECT_FALSE(plan_of(all_mirrors).direct_light);
+  for (const Json& scene : {no_light, dark_light, all_mirrors}) EXPECT_EQ(sum(render(scene).stats.counts.rays.shadow), 0u);
+  EXPECT_GT(sum(render(scene_of_materials({kRough, kMirror})).stats.counts.rays.shadow), 0u);
+}
+
+TEST(Plan, LeavesOutShadowsOfALonelyConvexBody) {
+  Json scene = scene_of_materials({kRough});
+  EXPECT_FALSE(plan_of(scene).shadows);
+  EXPECT_EQ(sum(render(scene).stats.counts.rays.shadow), 0u);
+  scene["camera"]["eye"] = {0, 0, 0.5};  // inside it
+  scene["camera"]["look_at"] = {0, 0, -1};
+  EXPECT_TRUE(plan_of(scene).shadows);
+  EXPECT_TRUE(plan_of(scene_of_materials({kRough, kRough})).shadows);
+  EXPECT_FALSE(plan_of(scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", "{'lights': [{'type': 'point', 'position': [0, 0, 2]}]}")).shadows);
+}
+
+TEST(Plan, LeavesOutMirroredAndRefractedRays) {
+  const Json rough = scene_of_materials({kRough, kRough}), metal = scene_of_materials({kRough, kMirror}),
+             glass = scene_of_materials({kRough, kGlass}), amber = scene_of_materials({kRough, kAmber});
+  EXPECT_FALSE(plan_of(rough).specular);
+  EXPECT_EQ(plan_of(rough).max_depth, 0);
+  EXPECT_EQ(render(rough).stats.counts.rays.total() - render(rough).stats.counts.rays.camera - sum(render(rough).stats.counts.rays.shadow), 0u);
+  EXPECT_TRUE(plan_of(metal).specular);
+  EXPECT_FALSE(plan_of(metal).filters);
+  EXPECT_EQ(sum(render(metal).stats.counts.rays.refracted), 0u);
+  EXPECT_GT(sum(render(metal).stats.counts.rays.reflected), 0u);
+  EXPECT_FALSE(plan_of(glass).filters);
+  EXPECT_GT(sum(render(glass).stats.counts.rays.refracted), 0u);
+  EXPECT_TRUE(plan_of(amber).filters);
+}
+
+TEST(Plan, MaterialsNobodyUsesCostNothing) {
+  Json scene = scene_of_materials({kRough, kRough});
+  scene["materials"]["unused"] = json(kAmber);
+  EXPECT_FALSE(plan_of(scene).specular);
+  EXPECT_FALSE(plan_of(scene).filters);
+}
+
+TEST(Plan, LonelyMirrorNeedsNoDepth) {
+  EXPECT_EQ(plan_of(scene_of_materials({kMirror})).max_depth, 1);
+  EXPECT_EQ(plan_of(scene_of_materials({kMirror, kMirror})).max_depth, 5);
+  EXPECT_EQ(plan_of(scene_of_materials({kGlass})).max_depth, 5) << "what goes in comes out later";
+}
+
+TEST(Plan, RaycastSendsNoSecondaryRays) {
+  RenderRequest request;
+  request.technique = "raycast";
+  const Json scene = scene_of_materials({kRough, kMirror, kAmber});
+  EXPECT_FALSE(plan_of(scene, request).specular);
+  const RayCounts rays = render(scene, request).stats.counts.rays;
+  EXPECT_EQ(sum(rays.reflected) + sum(rays.refracted), 0u);
+}
+
+// Float while 8 ulp of the largest coordinate stay under a tenth of the smallest shape and of a pixel.
+TEST(Plan, ChoosesDoubleWhereFloatWouldShow) {
+  covers("A18");
+  const auto is_double = [](const Vec3d& at, double radius, double distance) {
+    const Json ball{{"type", "sphere"}, {"center", numbers(at)}, {"radius", radius}};
+    return plan_of(scene_with(ball, Json{{"camera", {{"eye", numbers(at + Vec3d(0, 0, distance))}, {"look_at", numbers(at)}}}})).double_precision;
+  };
+  EXPECT_FALSE(is_double(Vec3d(), 1, 4));
+  EXPECT_FALSE(is_double(Vec3d(100, 0, 0), 1, 4));
+  EXPECT_TRUE(is_double(Vec3d(1e6, 1e6, 1e6), 1, 4));
+  EXPECT_TRUE(is_double(Vec3d(0, 0, 0), 1e-5, 4)) << "a speck far from the eye";
+  EXPECT_FALSE(is_double(Vec3d(0, 0, 0), 1e-5, 4e-5)) << "only ratios count";
+  RenderRequest request;
+  request.precision = Precision::single_precision;
+  EXPECT_FALSE(plan_of(scene_of("[{'type': 'sphere', 'center': [1e9, 0, 0], 'radius': 1}]"), request).double_precision) << "as asked";
+}
+
+TEST(Plan, ChoosesTheListForAFewPrimitives) {
+  Json objects = Json::array();
+  for (int i = 0; i < 8; ++i) objects.push_back(placed(json(kBall), 0.1, Vec3d(i, 0, 0)));
+  EXPECT_STREQ(plan_of(scene_with(objects)).accelerator->name, "list");
+  objects.push_back(json(kBall));
+  EXPECT_STRNE(plan_of(scene_with(objects)).accelerator->name, "list");
+  for (const auto& type : accelerator_types()) {
+    RenderRequest request;
+    request.accelerator = type.name;
+    EXPECT_STREQ(plan_of(scene_with(objects), request).accelerator->name, type.name) << "as asked";
+  }
+}
+
+TEST(Plan, GivesAReasonForEveryDecision) {
+  for (const std::string& name : sample_names())
+    for (const Decision& decision : plan_of(sample(name)).decisions) {
+      EXPECT_FALSE(decision.subject.empty() || decision.choice.empty() || decision.reason.empty()) << name;
+    }
+}
+
+TEST(Plan, RefusesRequestsOutOfRange) {
+  const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"));
+  const auto problem = [&](const std::function<void(RenderRequest&)>& ask) -> std::string {
+    RenderRequest request;
+    ask(request);
+    try {
+      make_plan(*scene, request);
+    } catch (const InputError& error) {
+      return error.problems().front().pointer;
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(problem([](auto& r) { r.width = 0; }), "/image/width");
+  EXPECT_EQ(problem([](auto& r) { r.height = 65536; }), "/image/height");
+  EXPECT_EQ(problem([](auto& r) { r.samples = 0; }), "/render/samples");
+  EXPECT_EQ(problem([](auto& r) { r.max_depth = -1; }), "/render/max_depth");
+  EXPECT_EQ(problem([](auto& r) { r.max_depth = 33; }), "/render/max_depth");
+  EXPECT_EQ(problem([](auto& r) { r.min_contribution = std::nan(""); }), "/render/min_contribution");
+  EXPECT_EQ(problem([](auto& r) { r.technique = "radiosity"; }), "/render/technique");
+  EXPECT_EQ(problem([](auto& r) { r.accelerator = ""; }), "/render/accelerator");
+  EXPECT_EQ(problem([](auto& r) { r.orbit.elevation_degrees = 181; }), "/camera/elevation_degrees");
+  EXPECT_EQ(problem([](auto& r) { r.width = r.height = 4096; }), "accepted");
+}
+
+TEST(Plan, TakesFromTheSceneWhatTheRequestLeavesOut) {
+  Json scene = scene_of_materials({kRough, kGlass});
+  scene["image"] = {{"width", 123}, {"height", 45}};
+  scene["render"] = {{"max_depth", 7}, {"samples", 3}, {"technique", "raycast"}, {"precision", "double"}, {"seed", 99}};
+  Plan plan = plan_of(scene);
+  EXPECT_EQ(plan.width, 123);
+  EXPECT_EQ(plan.samples, 3);
+  EXPECT_EQ(plan.seed, 99u);
+  EXPECT_TRUE(plan.double_precision);
+  EXPECT_STREQ(plan.technique->name, "raycast");
+  RenderRequest request = size(10, 20);
+  request.technique = "whitted";
+  request.max_depth = 2;
+  plan = plan_of(scene, request);
+  EXPECT_EQ(plan.width, 10);
+  EXPECT_EQ(plan.max_depth, 2);
+  EXPECT_EQ(plan.samples, 3);
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+#include "tests/support/tracing.h"
+
+// How the tree of rays grows and ends: by depth, by weight, and by the law of its counters.
+namespace orrery::test {
+namespace {
+
+RenderRequest limits(int max_depth, double min_contribution = 0) {
+  RenderRequest request;
+  request.max_depth = max_depth;
+  request.min_contribution = min_contribution;
+  return request;
+}
+
+// The index of a dielectric that mirrors this share of light that meets it upright.
+double index_of(double reflectance) { return (1 + std::sqrt(reflectance)) / (1 - std::sqrt(reflectance)); }
+
+// Two mirrors that face each other.
+Json mirrors(double reflectance, double ambient) {
+  const double n = reflectance == 1 ? 0 : index_of(reflectance);
+  return scene_with(json("[{'type': 'plane', 'point': [0, 0, -5], 'normal': [0, 0, 1]}, {'type': 'plane', 'point': [0, 0, 5], 'normal': [0, 0, -1]}]"),
+                    Json{{"ambient", {ambient, ambient, ambient}},
+                         {"materials", {{"white", {{"type", "reflective"}, {"kd", nullptr}, {"n", {n, n, n}}, {"k", {0, 0, 0}}}}}}});
+}
+constexpr auto kUpright = [] { return Ray<double>{{0, 0, 0}, {0, 0, -1}}; };
+
+// `count` slabs of glass, each surface mirrors `reflectance`. The sky is 1 below; above hangs a black plane.
+Json slabs(int count, double reflectance) {
+  Json objects = json("[{'type': 'plane', 'point': [0, 0, 9], 'normal': [0, 0, -1], 'material': 'black'}]");
+  for (int i = 0; i < count; ++i)
+    objects.push_back({{"type", "box"}, {"min", {-50, -50, -2 * i - 1}}, {"max", {50, 50, -2 * i}}, {"material", "glass"}});
+  return scene_with(objects, Json{{"materials", {{"glass", {{"type", "refractive"}, {"ior", index_of(reflectance)}, {"fresnel", "exact"}}},
+                                                 {"black", {{"type", "rough"}, {"kd", 0}}}}},
+                                  {"background", {1, 1, 1}}});
+}
+const Ray<double> kDown{{0, 0, 5}, {0, 0, -1}};
+
+// Between mirrors of .9 at depth 5, .53 of the light is left out; of .99 at depth 10, .90. The ledger says so, and
+// ambient light stands in for it.
+TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
+  covers("E1");
+  for (const auto& [reflectance, depth] : {std::pair{.5, 5}, {.9, 5}, {.99, 10}, {.9, 32}}) {
+    const double left = std::pow(reflectance, depth + 1);
+    const Answer answer = Tracing(mirrors(reflectance, 0.25), limits(depth)).trace(kUpright());
+    EXPECT_NEAR(answer.cut, left, 1e-13);
+    EXPECT_NEAR(answer.radiance.x, left * 0.25, 1e-13);
+  }
+  EXPECT_NEAR(Tracing(mirrors(.9, 0), limits(5)).trace(kUpright()).cut, .53, .005);
+  EXPECT_NEAR(Tracing(mirrors(.99, 0), limits(10)).trace(kUpright()).cut, .90, .005);
+}
+
+TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
+  covers("E4");
+  const Picture picture = render(mirrors(1, 0), [] { RenderRequest r = limits(32); r.width = r.height = 32; return r; }());
+  const RayCounts& rays = picture.stats.counts.rays;
+  EXPECT_EQ(rays.camera, 1024u);
+  for (std::size_t depth = 1; depth <= 32; ++depth) EXPECT_EQ(rays.reflected[depth], 1024u);
+  EXPECT_EQ(rays.total(), 1024u * 33);
+  EXPECT_EQ(picture.stats.counts.cut_rays, 1024u);
+  EXPECT_NEAR(picture.stats.max_cut, 1, 1e-6);
+  EXPECT_EQ(picture.stats.non_finite_pixels, 0u);
+}
+
+// At a threshold of 1/255 a tree that splits evenly ends everywhere at depth 8, where every branch carries 1/256.
+// The ledger knows: the picture is off by no more than the sum of the branches. With all of its four surfaces
+// mirroring half, two slabs let 1/5 through.
+TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
+  covers("E2");
+  const Answer coarse = Tracing(slabs(2, .5), limits(32, 1.0 / 255)).trace(kDown);
+  EXPECT_GT(std::abs(coarse.radiance.x - .2), 1.0 / 255) << "each branch is small, together they are not";
+  EXPECT_LE(std::abs(coarse.radiance.x - .2), coarse.cut);
+  const Answer fine = Tracing(slabs(2, .5), limits(32, 1e-5)).trace(kDown);
+  EXPECT_LE(std::abs(fine.radiance.x - .2), fine.cut);
+  EXPECT_LT(fine.cut, coarse.cut / 5);
+}
+
+// One strong branch: .9 mirrored at each surface of a slab. Without a threshold the error is that of the depth alone.
+TEST(Threshold, NoneIsTheDefaultAndCostsNothingOfASingleBranch) {
+  covers("E3");
+  EXPECT_EQ(load(slabs(1, .9))->render.min_contribution, 0);
+  const double exact = (1 - .9) / (1 + .9);
+  const Answer with = Tracing(slabs(1, .9), limits(32, 1.0 / 255)).trace(kDown);
+  EXPECT_LE(std::abs(with.radiance.x - exact), with.cut);
+  const Answer without = Tracing(slabs(1, .9), limits(32)).trace(kDown);
+  EXPECT_LE(std::abs(without.radiance.x - exact), without.cut);
+  EXPECT_LE(without.cut, .1 * std::pow(.9, 30)) << "what is still between the surfaces after 30 of them";
+  // A corridor that does end: six mirrors of .9 and then the sky is .9^6, to the last bit or so.
+  EXPECT_NEAR(Tracing(mirrors(.9, 1), limits(5)).trace(kUpright()).radiance.x, std::pow(.9, 6), 1e-4);
+}
+
+// Rays are traced while they carry the threshold or more in some channel, and no longer: of a slab's series
+// (1 - R) R^j as many as the formula says.
+TEST(Threshold, IsMetRayByRay) {
+  constexpr double kR = .5;
+  for (const double threshold : {0.4, 0.2, 0.1, 0.01, 0.0011}) {
+    Tracing tracing(slabs(1, kR), limits(32, threshold));
+    tracing.trace(kDown);
+    std::uint64_t inside = 0, up_and_down = kR >= threshold;  // the ray mirrored at the top carries R
+    for (int j = 0; j < 32; ++j) {
+      if ((1 - kR) * std::pow(kR, j) < threshold) break;
+      ++inside;
+      up_and_down += (1 - kR) * std::pow(kR, j) * (1 - kR) >= threshold;
+    }
+    const RayCounts& rays = tracing.counts().rays;
+    EXPECT_EQ(rays.total() - rays.camera, inside + up_and_down) << threshold;
+  }
+}
+
+// The tree of rays at most doubles from one depth to the next where each surface sends two on; it does not grow
+// with the number of objects.
+TEST(Growth, IsByBranchesAndNotByObjects) {
+  Tracing tracing(slabs(3, .3), limits(10));
+  tracing.trace(kDown);
+  const RayCounts& rays = tracing.counts().rays;
+  std::uint64_t last = 1;
+  for (std::size_t depth = 1; depth <= 10; ++depth) {
+    const std::uint64_t now = rays.reflected[depth] + rays.refracted[depth];
+    EXPECT_LE(now, 2 * last) << depth;
+    EXPECT_GT(now, 0u) << depth;
+    last = now;
+  }
+  Json crowded = slabs(3, .3);
+  for (int i = 0; i < 100; ++i)  // out of everybody's way
+    crowded["objects"].push_back({{"type", "sphere"}, {"center", {200 + 3 * i, 0, 0}}, {"radius", 1}, {"material", "black"}});
+  Tracing among(crowded, limits(10));
+  among.trace(kDown);
+  EXPECT_EQ(among.counts().rays.total(), rays.total());
+}
+
+// (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays where it hits a surface that light sources
+// light. Rough surfaces end the path here and mirrors are lit by nothing but what they mirror, so d is 1 without
+// mirrors; behind k mirrors the pixel costs k + 1 rays and m shadow rays.
+TEST(Growth, CountersObeyTheLawOfTheSlides) {
+  const auto counts = [](int mirrors_on_the_way, int lights) {
+    Json scene = json("{'version': 1, 'camera': {'type': 'orthographic', 'eye': [0, 0, 0], 'look_at': [0, 0, -1], 'height': 1}}");
+    scene["materials"] = json("{'silver': {'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 4, 4]}, 'paint': {'type': 'rough'}}");
+    // A periscope: each mirror turns the view upright or level again, and a wall of paint stands at its end.
+    Vec3d at(0, 0, 0), direction(0, 0, -1);
+    for (int i = 0; i < mirrors_on_the_way; ++i) {
+      const Vec3d turned = direction.z != 0 ? Vec3d(0, 1, 0) : Vec3d(0, 0, -1);
+      at = at + direction * 10;
+      scene["objects"].push_back({{"type", "disk"}, {"center", numbers(at)}, {"normal", numbers(turned - direction)}, {"radius", 3}, {"material", "silver"}});
+      direction = turned;
+    }
+    at = at + direction * 10;
+    scene["objects"].push_back({{"type", "disk"}, {"center", numbers(at)}, {"normal", numbers(-direction)}, {"radius", 3}, {"material", "paint"}});
+    for (int i = 0; i < lights; ++i)
+      scene["lights"].push_back({{"type", "point"}, {"position", numbers(at - direction * (2 + i))}});
+    RenderRequest request = limits(8);
+    request.width = 80;
+    request.height = 60;
+    request.full_model = true;  // the plan would see that a wall alone needs no shadow rays
+    return render(scene, request).stats.counts.rays;
+  };
+  constexpr std::uint64_t kPixels = 80 * 60;
+  for (const int lights : {1, 2, 3}) {
+    EXPECT_EQ(counts(0, lights).total(), (static_cast<std::uint64_t>(lights) + 1) * kPixels) << "d = 1";
+    for (const int mirrors_on_the_way : {1, 2, 5}) {
+      const RayCounts rays = counts(mirrors_on_the_way, lights);
+      const auto k = static_cast<std::size_t>(mirrors_on_the_way);
+      EXPECT_EQ(rays.total(), (k + 1 + static_cast<std::uint64_t>(lights)) * kPixels);
+      for (std::size_t depth = 1; depth <= k; ++depth) EXPECT_EQ(rays.reflected[depth], kPixels);
+      EXPECT_EQ(rays.shadow[k], static_cast<std::uint64_t>(lights) * kPixels) << "counted at the depth that sent them";
+    }
+  }
+}
+
+// However faint light becomes, every bounce costs one ray and one test of each primitive.
+TEST(Growth, FaintRaysCostWhatBrightOnesDo) {
+  covers("A35");
+  for (const double reflectance : {.5, 1e-4}) {  // 1e-4 ^ 33 is below the smallest float
+    RenderRequest request = in_float(limits(32));
+    request.width = request.height = 32;
+    request.accelerator = "list";
+    const Picture picture = render(mirrors(reflectance, 1), request);
+    EXPECT_EQ(picture.stats.counts.rays.reflected[10], picture.stats.counts.rays.reflected[2]);
+    EXPECT_EQ(picture.stats.non_finite_pixels, 0u);
+    if (reflectance == .5) {
+      EXPECT_EQ(picture.stats.counts.rays.reflected[32], 1024u);
+      EXPECT_EQ(picture.stats.counts.accelerator.primitive_tests, 33u * 1024 * 2);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orrery::test
