@@ -11,10 +11,13 @@ class Raycast final : public Wavefront<T> {
   using Wavefront<T>::Wavefront;
 
  private:
+  using N = Lanes<T>;
+
   void scatter(const Groups& groups) override {
+    const auto& specular = this->stage_->specular;
     for (const int i : groups)
-      this->cut(i, this->specular_lanes(i),
-                this->stage_->specular.reflectance.at(i) + this->stage_->specular.transmittance.at(i));
+      for (const Vec3<N>& weight : {specular.reflectance.at(i), specular.transmittance.at(i)})
+        this->cut(i, this->specular_lanes(i) && max_component(weight) > N(T(0)), weight);
   }
 };
 

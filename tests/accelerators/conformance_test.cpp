@@ -5,8 +5,8 @@
 #include "tests/support/shapes.h"
 #include "tests/support/structures.h"
 
-// Every registered structure finds what testing every primitive finds: the same primitive at the same distance,
-// to the bit, and the same shadows.
+// Every registered structure finds what testing every primitive finds: the same primitive at the same
+// distance, to the bit, and the same shadows.
 namespace orrery::test {
 namespace {
 
@@ -46,13 +46,15 @@ Rays<T> rays_through(double half, double from, int count, std::uint64_t seed) {
     const Vec3d at = random.in_cube(half);
     Vec3d direction = random.direction();
     if (i % 4 == 1) direction = Vec3d(0, 0, random.below(2) ? 1 : -1);
-    if (i % 4 == 2) direction = safe_normalize(Vec3d(1, 0, 0) + random.direction() * random.magnitude(1e-6, 1e-2));
+    if (i % 4 == 2)
+      direction = safe_normalize(Vec3d(1, 0, 0) + random.direction() * random.magnitude(1e-6, 1e-2));
     rays.push_back({Vec3<T>(at - direction * random.between(0, from)), Vec3<T>(direction)});
   }
   return rays;
 }
 
-// Rays from far away that touch the shape to within a few ulp of the distance, where kernels decide by rounding.
+// Rays from far away that touch the shape to within a few ulp of the distance, where kernels decide by
+// rounding.
 template <class T>
 Rays<T> touching_rays(const Json& object, double distance, int count) {
   const Target<double> shape(scene_with(object));
@@ -107,8 +109,8 @@ TEST_P(Accelerators, AgreeWithTheListWhereSurfacesCoincide) {
   }
 }
 
-// Silhouettes seen from afar: the kernels themselves decide by a few ulp of the distance, and no box may be more
-// certain than they are.
+// Silhouettes seen from afar: the kernels themselves decide by a few ulp of the distance, and no box may be
+// more certain than they are.
 TEST_P(Accelerators, AgreeWithTheListFromAfar) {
   covers("F1");
   for (const std::string& type : shape_names())
@@ -140,8 +142,9 @@ TEST_P(Accelerators, AxisAlignedRaysCostNoMore) {
     Random random(6);
     Rays<float> rays;
     for (int i = 0; i < 20'000; ++i)
-      rays.push_back({Vec3f(static_cast<float>(random.between(-8, 8)), static_cast<float>(random.between(-8, 8)), -20),
-                      Vec3f(safe_normalize(Vec3d(0, 0, 1) + random.direction() * jitter))});
+      rays.push_back(
+          {Vec3f(static_cast<float>(random.between(-8, 8)), static_cast<float>(random.between(-8, 8)), -20),
+           Vec3f(safe_normalize(Vec3d(0, 0, 1) + random.direction() * jitter))});
     structure.closest(rays);
     return static_cast<double>(structure.counts().primitive_tests + structure.counts().box_tests);
   };
@@ -152,7 +155,8 @@ TEST_P(Accelerators, RaysThatAreNoNumbersMeetNothing) {
   covers("A36");
   Structure<float> structure(cloud(2, 7), GetParam());
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const Rays<float> rays = {{{nan, 0, 0}, {0, 0, 1}}, {{0, 0, -20}, {nan, nan, nan}}, {{nan, nan, nan}, {nan, 1, 0}}};
+  const Rays<float> rays = {
+      {{nan, 0, 0}, {0, 0, 1}}, {{0, 0, -20}, {nan, nan, nan}}, {{nan, nan, nan}, {nan, 1, 0}}};
   for (const auto& hit : structure.closest(rays)) EXPECT_FALSE(hit.met());
 }
 

@@ -22,7 +22,7 @@ double weakened(const Vec3d& attenuation, double distance) {
 }
 std::string problem(const Json& light) {
   return first_problem(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
-                                Json{{"lights", Json::array({light})}}));
+                                  Json{{"lights", Json::array({light})}}));
 }
 
 // The direction (1, 1, 1) taken as it stands would light a surface with a cosine of up to 1.732.
@@ -48,11 +48,14 @@ TEST(Attenuation, IsTheFormulaCutAtOne) {
 
 TEST(Attenuation, StaysInTheUnitIntervalAtAnyDistance) {
   covers("B9 B10");
-  for (const Vec3d& c : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1), Vec3d(0, 0, 1e12), Vec3d(.25, .1, .01), Vec3d(1e-300, 0, 0)})
+  for (const Vec3d& c : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1), Vec3d(0, 0, 1e12),
+                         Vec3d(.25, .1, .01), Vec3d(1e-300, 0, 0)})
     for (const double distance : {1e-300, 1e-30, 1e-4, 1.0, 1e4, 1e154, 1e300}) {
       const double f = weakened(c, distance);
       EXPECT_TRUE(f >= 0 && f <= 1) << f << " at " << distance;
-      const float single = arrival<float>(point_light(c), Vec3f(static_cast<float>(std::min(distance, 1e30)), 0, 0)).incident.x;
+      const float single =
+          arrival<float>(point_light(c), Vec3f(static_cast<float>(std::min(distance, 1e30)), 0, 0))
+              .incident.x;
       EXPECT_TRUE(single >= 0 && single <= 1) << single << " at " << distance;
     }
 }
@@ -72,7 +75,11 @@ TEST(Attenuation, RefusesWhatHasNoMeaning) {
 }
 
 Json spot(double inner, double outer) {
-  return {{"type", "spot"}, {"position", {0, 0, 0}}, {"direction", {0, 0, -7}}, {"inner_degrees", inner}, {"outer_degrees", outer}};
+  return {{"type", "spot"},
+          {"position", {0, 0, 0}},
+          {"direction", {0, 0, -7}},
+          {"inner_degrees", inner},
+          {"outer_degrees", outer}};
 }
 Arrival<double> in_beam(const Json& light, double degrees) {
   const double a = degrees * std::numbers::pi / 180;
@@ -111,14 +118,17 @@ TEST(Spot, BeamGoesWhereItPointsWhateverTheLengthOfThat) {
   covers("B14");
   Json light = spot(20, 40);
   light["direction"] = {0, 0, -1e-9};
-  for (const double degrees : {0.0, 25.0, 35.0}) EXPECT_EQ(in_beam(light, degrees).incident.x, in_beam(spot(20, 40), degrees).incident.x);
+  for (const double degrees : {0.0, 25.0, 35.0})
+    EXPECT_EQ(in_beam(light, degrees).incident.x, in_beam(spot(20, 40), degrees).incident.x);
 }
 
 // Every registered light: unit directions, no light below 0 or above its intensity, float like double.
 TEST(AllLights, SendUnitDirectionsAndNoMoreThanTheirIntensity) {
-  const std::vector<Json> lights = {json("{'type': 'directional', 'from': [1, 2, 3], 'intensity': [1, 2, 3]}"),
-                                    json("{'type': 'point', 'position': [1, 2, 3], 'intensity': [1, 2, 3], 'attenuation': [0.5, 0.1, 0.1]}"),
-                                    json("{'type': 'spot', 'position': [1, 2, 3], 'direction': [-1, -2, -3], 'intensity': [1, 2, 3]}")};
+  const std::vector<Json> lights = {
+      json("{'type': 'directional', 'from': [1, 2, 3], 'intensity': [1, 2, 3]}"),
+      json(
+          "{'type': 'point', 'position': [1, 2, 3], 'intensity': [1, 2, 3], 'attenuation': [0.5, 0.1, 0.1]}"),
+      json("{'type': 'spot', 'position': [1, 2, 3], 'direction': [-1, -2, -3], 'intensity': [1, 2, 3]}")};
   ASSERT_EQ(lights.size(), light_types().size()) << "a light type without a test";
   Random random(1);
   for (const Json& light : lights)

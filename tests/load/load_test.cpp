@@ -26,16 +26,21 @@ std::string problem_of_text(const char* what, const char* by) {
 TEST(Load, RefusesRadiiThatAreNone) {
   covers("A6");
   EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 0}]"), "/objects/0/radius");
-  EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': -1}]"), "/objects/0/radius");
-  EXPECT_EQ(problem_of_object("[{'type': 'cylinder', 'base': [0, 0, 0], 'top': [0, 1, 0], 'radius': 0}]"), "/objects/0/radius");
-  EXPECT_EQ(problem_of_object("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': -1e-9}]"), "/objects/0/radius");
+  EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': -1}]"),
+            "/objects/0/radius");
+  EXPECT_EQ(problem_of_object("[{'type': 'cylinder', 'base': [0, 0, 0], 'top': [0, 1, 0], 'radius': 0}]"),
+            "/objects/0/radius");
+  EXPECT_EQ(
+      problem_of_object("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': -1e-9}]"),
+      "/objects/0/radius");
   EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1e-12}]"), "accepted");
   EXPECT_NE(problem_of_text("0.375", "NaN"), "accepted");
 }
 
 TEST(Load, RefusesBadNumbersByName) {
   covers("A36");
-  for (const char* bad : {"NaN", "Infinity", "-Infinity", "1e999", "1,5", "0x10", "1.", ".5", "+1", "null", "\"1\"", "true"})
+  for (const char* bad :
+       {"NaN", "Infinity", "-Infinity", "1e999", "1,5", "0x10", "1.", ".5", "+1", "null", "\"1\"", "true"})
     EXPECT_NE(problem_of_text("0.375", bad), "accepted") << bad;
   EXPECT_EQ(problem_of_text("0.375", "1e999"), "/objects/0/radius");
   EXPECT_EQ(problem_of_text("0.125", "1e13"), "/objects/0/center/0");
@@ -49,7 +54,8 @@ TEST(Load, RefusesBadNumbersByName) {
 TEST(Load, KnowsEveryRegisteredType) {
   const std::string schema = scene_schema();
   const auto named = [&](const auto& types) {
-    for (const auto& type : types) EXPECT_NE(schema.find("\"" + std::string(type.name) + "\""), std::string::npos) << type.name;
+    for (const auto& type : types)
+      EXPECT_NE(schema.find("\"" + std::string(type.name) + "\""), std::string::npos) << type.name;
   };
   named(shape_types());
   named(material_types());
@@ -57,7 +63,8 @@ TEST(Load, KnowsEveryRegisteredType) {
 }
 
 TEST(Load, GivesEachPrimitiveItsMaterial) {
-  const auto scene = load(scene_of(R"([{'type': 'box', 'min': [0, 0, 0], 'max': [1, 1, 1], 'material': 'glass'},
+  const auto scene = load(scene_of(
+      R"([{'type': 'box', 'min': [0, 0, 0], 'max': [1, 1, 1], 'material': 'glass'},
       {'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'b'},
       {'type': 'mesh', 'positions': [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], 'indices': [[0, 1, 2], [1, 3, 2]], 'material': 'a'},
       {'type': 'sphere', 'center': [3, 0, 0], 'radius': 1, 'material': 'silver'}])",
@@ -66,7 +73,8 @@ TEST(Load, GivesEachPrimitiveItsMaterial) {
   EXPECT_EQ(scene->object_count, 4);
   ASSERT_EQ(scene->primitive_count(), 5);
   std::vector<int> first(scene->materials.size() + 1, 0);  // number of the first material of each set
-  for (std::size_t set = 0; set < scene->materials.size(); ++set) first[set + 1] = first[set] + scene->materials[set]->size();
+  for (std::size_t set = 0; set < scene->materials.size(); ++set)
+    first[set + 1] = first[set] + scene->materials[set]->size();
   const auto set_of = [&](std::string_view type) {
     for (std::size_t i = 0; i < material_types().size(); ++i)
       if (material_types()[i].name == type) return first[i];
@@ -91,10 +99,14 @@ TEST(Load, GathersTheFactsThePlanNeeds) {
 
 TEST(Load, IdDependsOnMeaningAndNotOnLayout) {
   const auto id = [](const char* text) { return load_scene(json(text).dump(2))->id; };
-  const char* plain = "{'version': 1, 'camera': {'type': 'perspective', 'eye': [0, 0, 4], 'look_at': [0, 0, 0]},"
-                      " 'materials': {'m': {'type': 'rough'}}, 'objects': [{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'm'}]}";
-  const char* spaced = "{'objects': [{'radius': 1.0, 'material': 'm', 'type': 'sphere', 'center': [0, 0, -0.0]}],"
-                       " 'materials': {'m': {'type': 'rough'}}, 'camera': {'look_at': [0, 0, 0], 'eye': [0, 0, 4e0], 'type': 'perspective'}, 'version': 1}";
+  const char* plain =
+      "{'version': 1, 'camera': {'type': 'perspective', 'eye': [0, 0, 4], 'look_at': [0, 0, 0]},"
+      " 'materials': {'m': {'type': 'rough'}}, 'objects': [{'type': 'sphere', 'center': [0, 0, 0], 'radius': "
+      "1, 'material': 'm'}]}";
+  const char* spaced =
+      "{'objects': [{'radius': 1.0, 'material': 'm', 'type': 'sphere', 'center': [0, 0, -0.0]}],"
+      " 'materials': {'m': {'type': 'rough'}}, 'camera': {'look_at': [0, 0, 0], 'eye': [0, 0, 4e0], 'type': "
+      "'perspective'}, 'version': 1}";
   EXPECT_EQ(id(plain), id(spaced));
   EXPECT_EQ(id(plain).size(), 64u);
 }
@@ -102,9 +114,11 @@ TEST(Load, IdDependsOnMeaningAndNotOnLayout) {
 TEST(Request, TakesOnlyWhatIsGiven) {
   const auto read = [](const char* text) { return read_request(parse_document(json(text).dump())); };
   const RenderRequest none = read("{}");
-  EXPECT_FALSE(none.width || none.samples || none.technique || none.precision || none.fov_degrees || none.seed || none.min_contribution);
+  EXPECT_FALSE(none.width || none.samples || none.technique || none.precision || none.fov_degrees ||
+               none.seed || none.min_contribution);
   EXPECT_EQ(none.orbit.distance, 1);
-  const RenderRequest all = read(R"({'camera': {'azimuth_degrees': 30, 'elevation_degrees': -10, 'distance': 2, 'fov_degrees': 60},
+  const RenderRequest all =
+      read(R"({'camera': {'azimuth_degrees': 30, 'elevation_degrees': -10, 'distance': 2, 'fov_degrees': 60},
       'image': {'width': 320, 'height': 200}, 'scene_id': 'x',
       'render': {'technique': 'raycast', 'max_depth': 3, 'min_contribution': 0.01, 'samples': 16, 'accelerator': 'list', 'precision': 'double', 'seed': 7}})");
   EXPECT_EQ(all.orbit.azimuth_degrees, 30);

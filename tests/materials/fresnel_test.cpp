@@ -18,7 +18,8 @@ Probe<double> glass(double ior, const char* fresnel) {
   return Probe<double>(Json{{"type", "refractive"}, {"ior", ior}, {"fresnel", fresnel}});
 }
 Probe<double> metal(double n, double k, const char* fresnel) {
-  return Probe<double>(Json{{"type", "reflective"}, {"n", {n, n, n}}, {"k", {k, k, k}}, {"fresnel", fresnel}});
+  return Probe<double>(
+      Json{{"type", "reflective"}, {"n", {n, n, n}}, {"k", {k, k, k}}, {"fresnel", fresnel}});
 }
 
 Case arriving(long double degrees, double side = 1) {
@@ -48,7 +49,8 @@ TEST(Fresnel, ExactDielectricIsTheTextbook) {
       EXPECT_NEAR(reflectance(exact, degrees), static_cast<double>(textbook(1, ior, degrees)), 1e-12) << ior;
       const long double sine = std::sin(degrees * std::numbers::pi_v<long double> / 180);
       if (sine * ior > 0.999L) continue;
-      EXPECT_NEAR(reflectance(exact, degrees, -1), static_cast<double>(textbook(ior, 1, degrees)), 1e-12) << ior;
+      EXPECT_NEAR(reflectance(exact, degrees, -1), static_cast<double>(textbook(ior, 1, degrees)), 1e-12)
+          << ior;
     }
   }
 }
@@ -61,11 +63,12 @@ TEST(Fresnel, NumbersOfTheCatalogue) {
   EXPECT_NEAR(reflectance(exact, 40, -1), .2453, 5e-5);
   EXPECT_NEAR(reflectance(exact, 41.8, -1), .8908, 5e-5);
   EXPECT_NEAR(reflectance(exact, 0), 0.04, 1e-15);
-  for (const long double degrees : {0.0L, 30.0L, 60.0L, 89.0L}) EXPECT_NEAR(reflectance(glass(1, "exact"), degrees), 0, 1e-15);
+  for (const long double degrees : {0.0L, 30.0L, 60.0L, 89.0L})
+    EXPECT_NEAR(reflectance(glass(1, "exact"), degrees), 0, 1e-15);
 }
 
-// Schlick's approximation is good to the stated error, no better and no worse: both ways through the surface, for
-// its cosine is that of the thinner side.
+// Schlick's approximation is good to the stated error, no better and no worse: both ways through the surface,
+// for its cosine is that of the thinner side.
 TEST(Fresnel, SchlickIsOffByWhatTheCatalogueSays) {
   covers("D6 D7");
   const auto worst = [](const Probe<double>& schlick, const Probe<double>& exact, double side) {
@@ -82,12 +85,14 @@ TEST(Fresnel, SchlickIsOffByWhatTheCatalogueSays) {
   };
   for (const Row& row : {Row{1.01, .55}, Row{1.1, .21}, Row{1.333, .059}, Row{1.5, .036}, Row{2.417, .075}}) {
     EXPECT_NEAR(worst(glass(row.ior, "schlick"), glass(row.ior, "exact"), 1), row.error, 0.006) << row.ior;
-    EXPECT_NEAR(worst(glass(row.ior, "schlick"), glass(row.ior, "exact"), -1), row.error, 0.02) << row.ior << " inside";
+    EXPECT_NEAR(worst(glass(row.ior, "schlick"), glass(row.ior, "exact"), -1), row.error, 0.02)
+        << row.ior << " inside";
   }
   EXPECT_NEAR(worst(metal(1.10, 6.79, "schlick"), metal(1.10, 6.79, "exact"), 1), .10, 0.006) << "aluminium";
   EXPECT_NEAR(worst(metal(3.2, 3.3, "schlick"), metal(3.2, 3.3, "exact"), 1), .20, 0.006) << "chromium";
   EXPECT_NEAR(reflectance(glass(1, "schlick"), 89.9L), 1, 0.01) << "with n = 1 grazing rays are all wrong";
-  EXPECT_LE(std::abs(reflectance(glass(1.5, "schlick"), 41.8, -1) - .8908), .06) << "the inside cosine would give .0410";
+  EXPECT_LE(std::abs(reflectance(glass(1.5, "schlick"), 41.8, -1) - .8908), .06)
+      << "the inside cosine would give .0410";
 }
 
 TEST(Fresnel, ExactConductorIsTheTextbook) {
@@ -95,7 +100,9 @@ TEST(Fresnel, ExactConductorIsTheTextbook) {
   for (const auto& [n, k] : {std::pair{1.10, 6.79}, {3.2, 3.3}, {0.14, 4.1}, {0.2, 3.9}, {1.5, 0.0}}) {
     const Probe<double> exact = metal(n, k, "exact");
     for (long double degrees = 0; degrees < 90; degrees += 0.37L)
-      EXPECT_NEAR(reflectance(exact, degrees), static_cast<double>(textbook(1, Complex(n, k), degrees)), 1e-12) << n << " " << k;
+      EXPECT_NEAR(reflectance(exact, degrees), static_cast<double>(textbook(1, Complex(n, k), degrees)),
+                  1e-12)
+          << n << " " << k;
   }
 }
 
@@ -103,9 +110,9 @@ TEST(Fresnel, GrazingMirrorsAllAndNothingLeavesTheUnitInterval) {
   covers("A32");
   Random random(1);
   for (const char* fresnel : {"schlick", "exact"})
-    for (const Probe<double>& material : {glass(1.5, fresnel), glass(0.01, fresnel), glass(100, fresnel), metal(0, 0, fresnel),
-                                          metal(0, 5, fresnel), metal(1e6, 1e6, fresnel), metal(0.14, 4.1, fresnel)})
-    {
+    for (const Probe<double>& material :
+         {glass(1.5, fresnel), glass(0.01, fresnel), glass(100, fresnel), metal(0, 0, fresnel),
+          metal(0, 5, fresnel), metal(1e6, 1e6, fresnel), metal(0.14, 4.1, fresnel)}) {
       std::vector<Case> cases(10'000);
       for (Case& c : cases) {
         c.direction = -random.direction_above(c.normal);
@@ -121,13 +128,15 @@ TEST(Fresnel, GrazingMirrorsAllAndNothingLeavesTheUnitInterval) {
   EXPECT_NEAR(reflectance(metal(0.14, 4.1, "exact"), 90), 1, 1e-15);
 }
 
-// An interpolated normal may face away from the ray that meets the surface. (1 - cosine) is then above 1, and its
-// fifth power would make a mirror that shines: up to 32 times what it receives.
+// An interpolated normal may face away from the ray that meets the surface. (1 - cosine) is then above 1, and
+// its fifth power would make a mirror that shines: up to 32 times what it receives.
 TEST(Fresnel, NormalsThatFaceAwayCreateNoLight) {
-  for (const Probe<double>& material : {metal(0.14, 4.1, "schlick"), metal(0.14, 4.1, "exact"), glass(1.5, "schlick"), glass(1.5, "exact")})
+  for (const Probe<double>& material :
+       {metal(0.14, 4.1, "schlick"), metal(0.14, 4.1, "exact"), glass(1.5, "schlick"), glass(1.5, "exact")})
     for (double degrees = 0; degrees <= 180; degrees += 5) {
       Case c;
-      c.normal = Vec3d(std::sin(degrees * std::numbers::pi / 180), 0, std::cos(degrees * std::numbers::pi / 180));
+      c.normal =
+          Vec3d(std::sin(degrees * std::numbers::pi / 180), 0, std::cos(degrees * std::numbers::pi / 180));
       const auto s = material.specular(c);
       EXPECT_LE(s.reflectance.x + s.transmittance.x, 1 + 1e-12) << degrees;
       EXPECT_GE(s.reflectance.x, 0) << degrees;

@@ -78,8 +78,9 @@ TEST(Refraction, BeyondTheCriticalAngleAllIsMirrored) {
 
 TEST(Refraction, NoEnergyIsLostOrMade) {
   covers("D3");
-  for (const char* text : {kGlass, "{'type': 'refractive', 'ior': 1.5}", "{'type': 'refractive', 'ior': 2.417}",
-                           "{'type': 'refractive', 'ior': 0.7, 'fresnel': 'exact'}"}) {
+  for (const char* text :
+       {kGlass, "{'type': 'refractive', 'ior': 1.5}", "{'type': 'refractive', 'ior': 2.417}",
+        "{'type': 'refractive', 'ior': 0.7, 'fresnel': 'exact'}"}) {
     const Probe<double> glass(text);
     std::vector<Case> cases;
     for (int i = 0; i < 10'000; ++i)

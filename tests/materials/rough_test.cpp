@@ -39,13 +39,15 @@ TEST(Lambert, IsTheCosineAndNeverNegative) {
 
 TEST(Rough, ColoursAreCoefficientTimesColour) {
   const Probe<double> paint(
-      "{'type': 'rough', 'ka': 0.5, 'kd': [0.1, 0.2, 0.3], 'cd': [1, 0.5, 2], 'ks': 0.4, 'cs': [0, 1, 0.5], 'shininess': 1}");
+      "{'type': 'rough', 'ka': 0.5, 'kd': [0.1, 0.2, 0.3], 'cd': [1, 0.5, 2], 'ks': 0.4, 'cs': [0, 1, 0.5], "
+      "'shininess': 1}");
   const Vec3d got = paint.reflected(Case{});  // light, viewer and normal are one: every cosine is 1
   EXPECT_NEAR(got.x, 0.1, 1e-15);
   EXPECT_NEAR(got.y, 0.1 + 0.4, 1e-15);
   EXPECT_NEAR(got.z, 0.6 + 0.2, 1e-15);
   EXPECT_EQ(paint.ambient(), Vec3d(0.5, 0.25, 1));
-  EXPECT_EQ(Probe<double>("{'type': 'rough', 'kd': 0.25}").ambient(), Vec3d(0.25)) << "ka is kd where left out";
+  EXPECT_EQ(Probe<double>("{'type': 'rough', 'kd': 0.25}").ambient(), Vec3d(0.25))
+      << "ka is kd where left out";
 }
 
 TEST(Highlight, IsThePowerOfItsCosine) {
@@ -53,7 +55,8 @@ TEST(Highlight, IsThePowerOfItsCosine) {
   for (double light = -80; light <= 80; light += 20)
     for (double viewer = -80; viewer <= 80; viewer += 10) {
       const double off = (light + viewer) * std::numbers::pi / 180;  // mirrored direction against viewer
-      EXPECT_NEAR(phong.reflected(lit_from(light, viewer)).x, std::pow(std::max(0.0, std::cos(off)), 50), 1e-12);
+      EXPECT_NEAR(phong.reflected(lit_from(light, viewer)).x, std::pow(std::max(0.0, std::cos(off)), 50),
+                  1e-12);
       EXPECT_NEAR(blinn.reflected(lit_from(light, viewer)).x, std::pow(std::cos(off / 2), 50), 1e-12);
     }
 }
@@ -61,7 +64,8 @@ TEST(Highlight, IsThePowerOfItsCosine) {
 TEST(Highlight, HasNoNumberlessCorner) {
   covers("B3 B4 B5");
   const auto of = [](const char* shading, double shininess) {
-    return Probe<double>(Json{{"type", "rough"}, {"kd", 0}, {"ks", 1}, {"shininess", shininess}, {"shading", shading}});
+    return Probe<double>(
+        Json{{"type", "rough"}, {"kd", 0}, {"ks", 1}, {"shininess", shininess}, {"shading", shading}});
   };
   for (const char* shading : {"phong", "blinn-phong"}) {
     // A negative cosine to a broken power; an exponent of 0 behind the surface and in front of it.
@@ -87,8 +91,8 @@ TEST(Highlight, HasNoNumberlessCorner) {
   }
 }
 
-// Half the height is reached 9.52 degrees from the mirrored direction by Phong and 19.04 by Blinn-Phong; with the
-// exponent 4.02 n the two agree to 0.002.
+// Half the height is reached 9.52 degrees from the mirrored direction by Phong and 19.04 by Blinn-Phong; with
+// the exponent 4.02 n the two agree to 0.002.
 TEST(Highlight, BlinnNeedsFourTimesTheExponentOfPhong) {
   covers("B7");
   const Probe<double> phong(kPhong), blinn(kBlinn);
@@ -97,7 +101,8 @@ TEST(Highlight, BlinnNeedsFourTimesTheExponentOfPhong) {
   const Probe<double> matched("{'type': 'rough', 'kd': 0, 'ks': 1, 'shininess': 201}");
   double largest = 0;
   for (double viewer = -89; viewer < 90; viewer += 0.05)
-    largest = std::max(largest, std::abs(phong.reflected(lit_from(0, viewer)).x - matched.reflected(lit_from(0, viewer)).x));
+    largest = std::max(
+        largest, std::abs(phong.reflected(lit_from(0, viewer)).x - matched.reflected(lit_from(0, viewer)).x));
   EXPECT_LE(largest, 0.002);
   EXPECT_GE(largest, 0.001) << "4.02 is an approximation";
 }

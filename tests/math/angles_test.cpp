@@ -18,8 +18,10 @@ TEST(Angles, SineAndCosineAreGoodToOneUlp) {
     const double degrees = random.between(-720, 720);
     const long double radians = std::remainder(static_cast<long double>(degrees), 360.0L) * kRadians;
     const SineCosine a = sine_cosine_degrees(degrees);
-    EXPECT_NEAR(static_cast<double>(static_cast<long double>(a.sine) - std::sin(radians)), 0, 2.3e-16) << degrees;
-    EXPECT_NEAR(static_cast<double>(static_cast<long double>(a.cosine) - std::cos(radians)), 0, 2.3e-16) << degrees;
+    EXPECT_NEAR(static_cast<double>(static_cast<long double>(a.sine) - std::sin(radians)), 0, 2.3e-16)
+        << degrees;
+    EXPECT_NEAR(static_cast<double>(static_cast<long double>(a.cosine) - std::cos(radians)), 0, 2.3e-16)
+        << degrees;
   }
 }
 

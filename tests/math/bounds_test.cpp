@@ -40,12 +40,16 @@ bool naive(const BoxTest<T>& b) {
 template <class T>
 class Slabs : public testing::Test {
  public:
-  // A ray that meets a corner of a box exactly at t = 1: all numbers are whole multiples of one unit and leave a
-  // bit free, so that corner - origin is exact. The box has no extent along one axis.
+  // A ray that meets a corner of a box exactly at t = 1: all numbers are whole multiples of one unit and
+  // leave a bit free, so that corner - origin is exact. The box has no extent along one axis.
   static BoxTest<T> ray_through_a_corner(test::Random& random, T unit) {
     constexpr int kBits = std::numeric_limits<T>::digits - 2;
-    const auto whole = [&](std::int64_t below) { return static_cast<T>(random.bits() % static_cast<std::uint64_t>(below)); };
-    const auto place = [&] { return (whole(std::int64_t{1} << kBits) - static_cast<T>(std::int64_t{1} << (kBits - 1))) * unit; };
+    const auto whole = [&](std::int64_t below) {
+      return static_cast<T>(random.bits() % static_cast<std::uint64_t>(below));
+    };
+    const auto place = [&] {
+      return (whole(std::int64_t{1} << kBits) - static_cast<T>(std::int64_t{1} << (kBits - 1))) * unit;
+    };
     const auto extent = [&] { return (T(1) + whole(4096)) * unit; };
     BoxTest<T> b;
     b.lo = {place(), place(), place()};
@@ -71,7 +75,8 @@ TYPED_TEST(Slabs, LoseNoneOfAMillionRaysThroughCorners) {
   int lost = 0, lost_by_the_textbook = 0;
   constexpr int kRays = 1'000'000;
   for (int i = 0; i < kRays; ++i) {
-    const T unit = std::ldexp(T(1), 1 - std::numeric_limits<T>::digits + random.below(21));  // coordinates 1 .. 1e6
+    const T unit =
+        std::ldexp(T(1), 1 - std::numeric_limits<T>::digits + random.below(21));  // coordinates 1 .. 1e6
     const BoxTest<T> b = this->ray_through_a_corner(random, unit);
     lost += !b.enters_it();
     lost_by_the_textbook += !naive(b);
@@ -91,8 +96,8 @@ TYPED_TEST(Slabs, KeepTheRayThatTheTextbookLoses) {
   EXPECT_TRUE(b.enters_it());
 }
 
-// A ray in the plane of a face gives 0 * infinity there. Four places touch the unit cube, two do not, for each
-// axis of the direction, both of its signs and both signs of its zeros.
+// A ray in the plane of a face gives 0 * infinity there. Four places touch the unit cube, two do not, for
+// each axis of the direction, both of its signs and both signs of its zeros.
 TYPED_TEST(Slabs, KeepRaysInTheFacesAndRefuseTheOthers) {
   using T = TypeParam;
   test::covers("A28");
@@ -107,7 +112,9 @@ TYPED_TEST(Slabs, KeepRaysInTheFacesAndRefuseTheOthers) {
                                         {2, T(.5), false},
                                         {T(.5), -1, false}}};
   const auto permuted = [](T along, T across, T other, int axis) {
-    return axis == 0 ? Vec3<T>(along, across, other) : axis == 1 ? Vec3<T>(other, along, across) : Vec3<T>(across, other, along);
+    return axis == 0   ? Vec3<T>(along, across, other)
+           : axis == 1 ? Vec3<T>(other, along, across)
+                       : Vec3<T>(across, other, along);
   };
   for (int axis = 0; axis < 3; ++axis)
     for (const T zero : {T(0), -T(0)})
@@ -134,7 +141,7 @@ TYPED_TEST(Slabs, LanesEqualScalarsToTheBit) {
       each[lane] = this->ray_through_a_corner(random, T(1));
       each[lane].direction = each[lane].direction + Vec3<T>(random.direction());
       if (random.below(4) == 0) each[lane].direction.y = -T(0);
-      const auto set = [&](Vec3<N> BoxTest<N>::* to, const Vec3<T>& v) {
+      const auto set = [&](Vec3<N> BoxTest<N>::*to, const Vec3<T>& v) {
         (lanes.*to).x[lane] = v.x, (lanes.*to).y[lane] = v.y, (lanes.*to).z[lane] = v.z;
       };
       set(&BoxTest<N>::lo, each[lane].lo);

@@ -32,9 +32,12 @@ TYPED_TEST(Elementary, Log2IsGoodToTwoUlpOfItsLargestPart) {
     EXPECT_LE(error, 2 * this->kUlp * std::max(1.0L, std::abs(exact))) << "log2 of " << x;
   };
   for (int i = 0; i < 100'000; ++i)
-    check(static_cast<T>(random.magnitude(static_cast<double>(this->kSmallest), static_cast<double>(this->kLargest) / 2)));
+    check(static_cast<T>(
+        random.magnitude(static_cast<double>(this->kSmallest), static_cast<double>(this->kLargest) / 2)));
   for (int i = 0; i < 100'000; ++i) check(static_cast<T>(random.between(0.5, 2.0)));
-  for (const T x : {this->kSmallest, T(1), T(2), T(0.5), std::nextafter(T(1), T(2)), std::nextafter(T(1), T(0))}) check(x);
+  for (const T x :
+       {this->kSmallest, T(1), T(2), T(0.5), std::nextafter(T(1), T(2)), std::nextafter(T(1), T(0))})
+    check(x);
   EXPECT_EQ(log2_normal(T(1)), T(0));
   EXPECT_EQ(log2_normal(T(1024)), T(10));
 }
@@ -46,7 +49,8 @@ TYPED_TEST(Elementary, Exp2IsGoodToTwoUlp) {
   for (int i = 0; i < 200'000; ++i) {
     const T y = static_cast<T>(random.between(lowest, -lowest - 1));
     const long double exact = std::exp2(static_cast<long double>(y));
-    EXPECT_LE(std::abs(static_cast<long double>(exp2_flushed(y)) - exact), 2 * this->kUlp * exact) << "2^" << y;
+    EXPECT_LE(std::abs(static_cast<long double>(exp2_flushed(y)) - exact), 2 * this->kUlp * exact)
+        << "2^" << y;
   }
   EXPECT_EQ(exp2_flushed(T(0)), T(1));
   EXPECT_EQ(exp2_flushed(T(-7)), T(0x1p-7));
@@ -70,7 +74,8 @@ TYPED_TEST(Elementary, PowersOfTheUnitIntervalKeepTheStatedError) {
     if (exact < 1.0001L * static_cast<long double>(this->kSmallest)) {
       EXPECT_LE(got, 1.001L * static_cast<long double>(this->kSmallest));
     } else {
-      const long double stated = 2 * static_cast<long double>(y) * std::abs(std::log2(static_cast<long double>(x)));
+      const long double stated =
+          2 * static_cast<long double>(y) * std::abs(std::log2(static_cast<long double>(x)));
       EXPECT_LE(std::abs(got - exact), exact * std::min(most, (stated + 3) * this->kUlp)) << x << "^" << y;
     }
   }

@@ -21,9 +21,11 @@ TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
       std::set<std::pair<int, int>> taken;
       for (int sample = 0; sample < count; ++sample) {
         const SamplePoint p = stratified_point(static_cast<std::uint32_t>(sample), mix_bits(stream));
-        taken.insert({static_cast<int>(p.u * static_cast<float>(across)), static_cast<int>(p.v * static_cast<float>(down))});
+        taken.insert({static_cast<int>(p.u * static_cast<float>(across)),
+                      static_cast<int>(p.v * static_cast<float>(down))});
       }
-      EXPECT_EQ(taken.size(), static_cast<std::size_t>(count)) << across << " x " << down << ", stream " << stream;
+      EXPECT_EQ(taken.size(), static_cast<std::size_t>(count))
+          << across << " x " << down << ", stream " << stream;
     }
   }
 }
@@ -36,7 +38,8 @@ TEST_P(Stratification, HoldsForEveryAlignedBlock) {
     std::set<std::pair<int, int>> taken;
     for (int i = 0; i < count; ++i) {
       const SamplePoint p = stratified_point(static_cast<std::uint32_t>(block * count + i), 12345);
-      taken.insert({static_cast<int>(p.u * static_cast<float>(side)), static_cast<int>(p.v * static_cast<float>(side))});
+      taken.insert({static_cast<int>(p.u * static_cast<float>(side)),
+                    static_cast<int>(p.v * static_cast<float>(side))});
     }
     EXPECT_EQ(taken.size(), static_cast<std::size_t>(count)) << "block " << block;
   }
@@ -71,7 +74,8 @@ TEST(Sampling, StreamsAreIndependent) {
   constexpr int kPairs = 100'000;
   double sum = 0;
   for (std::uint32_t pixel = 0; pixel < kPairs; ++pixel) {
-    const SamplePoint a = stratified_point(0, combine_bits(7, pixel)), b = stratified_point(0, combine_bits(7, pixel + 1));
+    const SamplePoint a = stratified_point(0, combine_bits(7, pixel)),
+                      b = stratified_point(0, combine_bits(7, pixel + 1));
     sum += (static_cast<double>(a.u) - 0.5) * (static_cast<double>(b.u) - 0.5) * 12;
   }
   EXPECT_LT(std::abs(sum) / kPairs, 4 / std::sqrt(static_cast<double>(kPairs)));

@@ -18,7 +18,8 @@ TYPED_TEST(Normalize, GivesUnitVectorsAtAnyMagnitude) {
   using T = TypeParam;
   test::covers("A31");
   const long double tolerance = 2 * static_cast<long double>(std::numeric_limits<T>::epsilon());
-  const T tiny = std::sqrt(std::numeric_limits<T>::min()) / 16, huge = std::sqrt(std::numeric_limits<T>::max()) * 16;
+  const T tiny = std::sqrt(std::numeric_limits<T>::min()) / 16,
+          huge = std::sqrt(std::numeric_limits<T>::max()) * 16;
   test::Random random(1);
   for (int i = 0; i < 100'000; ++i) {
     const Vec3<T> v = Vec3<T>(random.direction()) * (i % 3 == 0 ? tiny : i % 3 == 1 ? huge : T(1));

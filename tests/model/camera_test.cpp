@@ -33,7 +33,8 @@ Ray<double> ray_through(const CameraFrame& frame, int width, int height, int x, 
   const int x0 = x / kTileSide * kTileSide, y0 = y / kTileSide * kTileSide;
   generate_rays(frame, width, height, x0, y0, *samples, *rays);
   for (int slot = 0; slot < kBatch; ++slot)
-    if (x0 + tile_pixel(slot).x == x && y0 + tile_pixel(slot).y == y) return {get(rays->origin, slot), get(rays->direction, slot)};
+    if (x0 + tile_pixel(slot).x == x && y0 + tile_pixel(slot).y == y)
+      return {get(rays->origin, slot), get(rays->direction, slot)};
   return {};
 }
 
@@ -62,7 +63,8 @@ TEST(Orbit, FullTurnsEndWhereTheyBegan) {
   const Camera camera = looking_at_origin({1, 2, 3});
   for (const double azimuth : {0.0, 33.5, -17.25, 180.0})
     for (const double turns : {1.0, 100.0, 2777.0}) {  // up to a million degrees
-      const CameraFrame a = frame_at(camera, {azimuth, 10, 1}), b = frame_at(camera, {azimuth + 360 * turns, 10, 1});
+      const CameraFrame a = frame_at(camera, {azimuth, 10, 1}),
+                        b = frame_at(camera, {azimuth + 360 * turns, 10, 1});
       EXPECT_EQ(a.eye, b.eye) << azimuth << " and " << turns << " turns";
       EXPECT_EQ(a.right, b.right);
     }
@@ -100,7 +102,8 @@ TEST(Orbit, DirectionsAreUnitAndUpright) {
     camera.eye = random.in_cube(10);
     camera.look_at = random.in_cube(10);
     camera.up = random.direction() * random.magnitude(1e-3, 1e3);
-    const CameraFrame f = frame_at(camera, {random.between(-1e6, 1e6), random.between(-180, 180), random.magnitude(1e-3, 1e3)});
+    const CameraFrame f =
+        frame_at(camera, {random.between(-1e6, 1e6), random.between(-180, 180), random.magnitude(1e-3, 1e3)});
     for (const Vec3d& v : {f.right, f.up, f.back}) EXPECT_NEAR(length(v), 1, 1e-14);
     EXPECT_NEAR(dot(f.right, f.up), 0, 1e-14);
     EXPECT_NEAR(dot(f.up, f.back), 0, 1e-14);
@@ -113,7 +116,8 @@ TEST(CameraRays, OnePixelLooksAlongTheAxis) {
   covers("E11");
   expect_near(ray_through(frame_at(looking_at_origin(), {}), 1, 1, 0, 0).direction, Vec3d(0, 0, -1), 1e-15);
   const Camera slanted = looking_at_origin({1, 2, 3});
-  expect_near(ray_through(frame_at(slanted, {}), 1, 1, 0, 0).direction, safe_normalize(Vec3d(-1, -2, -3)), 1e-15);
+  expect_near(ray_through(frame_at(slanted, {}), 1, 1, 0, 0).direction, safe_normalize(Vec3d(-1, -2, -3)),
+              1e-15);
 }
 
 // The height decides the scale of both axes, whatever the aspect.
@@ -136,7 +140,8 @@ TEST(CameraRays, MirrorAboutTheMiddleToTheBit) {
   const CameraFrame frame = frame_at(looking_at_origin(), {});
   for (const int width : {5, 64, 99})
     for (int x = 0; x < width; x += 3) {
-      const Vec3d left = ray_through(frame, width, 40, x, 7).direction, right = ray_through(frame, width, 40, width - 1 - x, 7).direction;
+      const Vec3d left = ray_through(frame, width, 40, x, 7).direction,
+                  right = ray_through(frame, width, 40, width - 1 - x, 7).direction;
       EXPECT_EQ(left, Vec3d(-right.x, right.y, right.z)) << x << " of " << width;
     }
 }

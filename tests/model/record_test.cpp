@@ -32,7 +32,8 @@ TYPED_TEST(Records, EachLaneGetsItsOwn) {
     for (std::size_t lane = 0; lane < N::size(); ++lane) {
       mask[lane] = trial % 5 == 0 || random.below(3) > 0;
       // Lanes that are left out may hold anything at all.
-      index[lane] = mask[lane] ? static_cast<IndexOf<T>>(trial % 2 ? 7 : random.below(50)) : IndexOf<T>(-1000);
+      index[lane] =
+          mask[lane] ? static_cast<IndexOf<T>>(trial % 2 ? 7 : random.below(50)) : IndexOf<T>(-1000);
     }
     if (!any(mask)) continue;
     const Body<N> got = fetch_records<Body, T>(table, index, mask);

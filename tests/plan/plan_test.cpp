@@ -19,7 +19,9 @@ namespace {
 constexpr const char* kBall = "{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}";
 constexpr const char* kSun = "[{'type': 'directional', 'from': [1, 1, 1]}]";
 
-Plan plan_of(const Json& scene, const RenderRequest& request = {}) { return make_plan(*load(scene), request); }
+Plan plan_of(const Json& scene, const RenderRequest& request = {}) {
+  return make_plan(*load(scene), request);
+}
 
 Json scene_of_materials(std::initializer_list<const char*> materials, const char* lights = kSun) {
   Json scene = scene_of("[]", "{'materials': {'white': null}}");
@@ -28,7 +30,8 @@ Json scene_of_materials(std::initializer_list<const char*> materials, const char
   for (const char* text : materials) {
     const std::string name = "m" + std::to_string(i);
     scene["materials"][name] = json(text);
-    scene["objects"].push_back({{"type", "sphere"}, {"center", {1.5 * i++, 0, 0}}, {"radius", 0.7}, {"material", name}});
+    scene["objects"].push_back(
+        {{"type", "sphere"}, {"center", {1.5 * i++, 0, 0}}, {"radius", 0.7}, {"material", name}});
   }
   return scene;
 }
@@ -46,11 +49,13 @@ std::uint64_t sum(const RayCounts::ByDepth& counts) {
 TEST(Plan, LeavesOutLightThatNothingAnswers) {
   const Json no_light = scene_of_materials({kRough, kRough}, "[]");
   EXPECT_FALSE(plan_of(no_light).direct_light);
-  const Json dark_light = scene_of_materials({kRough, kRough}, "[{'type': 'directional', 'from': [1, 1, 1], 'intensity': [0, 0, 0]}]");
+  const Json dark_light = scene_of_materials(
+      {kRough, kRough}, "[{'type': 'directional', 'from': [1, 1, 1], 'intensity': [0, 0, 0]}]");
   EXPECT_FALSE(plan_of(dark_light).direct_light);
   const Json all_mirrors = scene_of_materials({kMirror, kGlass});
   EXPECT_FALSE(plan_of(all_mirrors).direct_light);
-  for (const Json& scene : {no_light, dark_light, all_mirrors}) EXPECT_EQ(sum(render(scene).stats.counts.rays.shadow), 0u);
+  for (const Json& scene : {no_light, dark_light, all_mirrors})
+    EXPECT_EQ(sum(render(scene).stats.counts.rays.shadow), 0u);
   EXPECT_GT(sum(render(scene_of_materials({kRough, kMirror})).stats.counts.rays.shadow), 0u);
 }
 
@@ -62,7 +67,9 @@ TEST(Plan, LeavesOutShadowsOfALonelyConvexBody) {
   scene["camera"]["look_at"] = {0, 0, -1};
   EXPECT_TRUE(plan_of(scene).shadows);
   EXPECT_TRUE(plan_of(scene_of_materials({kRough, kRough})).shadows);
-  EXPECT_FALSE(plan_of(scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", "{'lights': [{'type': 'point', 'position': [0, 0, 2]}]}")).shadows);
+  EXPECT_FALSE(plan_of(scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
+                                "{'lights': [{'type': 'point', 'position': [0, 0, 2]}]}"))
+                   .shadows);
 }
 
 TEST(Plan, LeavesOutMirroredAndRefractedRays) {
@@ -70,7 +77,9 @@ TEST(Plan, LeavesOutMirroredAndRefractedRays) {
              glass = scene_of_materials({kRough, kGlass}), amber = scene_of_materials({kRough, kAmber});
   EXPECT_FALSE(plan_of(rough).specular);
   EXPECT_EQ(plan_of(rough).max_depth, 0);
-  EXPECT_EQ(render(rough).stats.counts.rays.total() - render(rough).stats.counts.rays.camera - sum(render(rough).stats.counts.rays.shadow), 0u);
+  EXPECT_EQ(render(rough).stats.counts.rays.total() - render(rough).stats.counts.rays.camera -
+                sum(render(rough).stats.counts.rays.shadow),
+            0u);
   EXPECT_TRUE(plan_of(metal).specular);
   EXPECT_FALSE(plan_of(metal).filters);
   EXPECT_EQ(sum(render(metal).stats.counts.rays.refracted), 0u);
@@ -97,7 +106,7 @@ TEST(Plan, RaycastSendsNoSecondaryRays) {
   RenderRequest request;
   request.technique = "raycast";
   const Json scene = scene_of_materials({kRough, kMirror, kAmber});
-  EXPECT_FALSE(plan_of(scene, request).specular);
+  EXPECT_EQ(plan_of(scene, request).max_depth, 0);
   const RayCounts rays = render(scene, request).stats.counts.rays;
   EXPECT_EQ(sum(rays.reflected) + sum(rays.refracted), 0u);
 }
@@ -107,7 +116,10 @@ TEST(Plan, ChoosesDoubleWhereFloatWouldShow) {
   covers("A18");
   const auto is_double = [](const Vec3d& at, double radius, double distance) {
     const Json ball{{"type", "sphere"}, {"center", numbers(at)}, {"radius", radius}};
-    return plan_of(scene_with(ball, Json{{"camera", {{"eye", numbers(at + Vec3d(0, 0, distance))}, {"look_at", numbers(at)}}}})).double_precision;
+    return plan_of(scene_with(ball, Json{{"camera",
+                                          {{"eye", numbers(at + Vec3d(0, 0, distance))},
+                                           {"look_at", numbers(at)}}}}))
+        .double_precision;
   };
   EXPECT_FALSE(is_double(Vec3d(), 1, 4));
   EXPECT_FALSE(is_double(Vec3d(100, 0, 0), 1, 4));
@@ -116,7 +128,9 @@ TEST(Plan, ChoosesDoubleWhereFloatWouldShow) {
   EXPECT_FALSE(is_double(Vec3d(0, 0, 0), 1e-5, 4e-5)) << "only ratios count";
   RenderRequest request;
   request.precision = Precision::single_precision;
-  EXPECT_FALSE(plan_of(scene_of("[{'type': 'sphere', 'center': [1e9, 0, 0], 'radius': 1}]"), request).double_precision) << "as asked";
+  EXPECT_FALSE(
+      plan_of(scene_of("[{'type': 'sphere', 'center': [1e9, 0, 0], 'radius': 1}]"), request).double_precision)
+      << "as asked";
 }
 
 TEST(Plan, ChoosesTheListForAFewPrimitives) {
@@ -166,7 +180,8 @@ TEST(Plan, RefusesRequestsOutOfRange) {
 TEST(Plan, TakesFromTheSceneWhatTheRequestLeavesOut) {
   Json scene = scene_of_materials({kRough, kGlass});
   scene["image"] = {{"width", 123}, {"height", 45}};
-  scene["render"] = {{"max_depth", 7}, {"samples", 3}, {"technique", "raycast"}, {"precision", "double"}, {"seed", 99}};
+  scene["render"] = {
+      {"max_depth", 7}, {"samples", 3}, {"technique", "raycast"}, {"precision", "double"}, {"seed", 99}};
   Plan plan = plan_of(scene);
   EXPECT_EQ(plan.width, 123);
   EXPECT_EQ(plan.samples, 3);

@@ -65,7 +65,8 @@ TEST(Cylinder, RaysAlongASlantedAxisMeetTheCapsToo) {
   Random random(1);
   for (int i = 0; i < 2'000; ++i) {
     const Vec3d axis = random.direction(), beside = safe_normalize(cross(axis, random.direction()));
-    const Json object{{"type", "cylinder"}, {"base", numbers(Vec3d())}, {"top", numbers(axis)}, {"radius", 1}};
+    const Json object{
+        {"type", "cylinder"}, {"base", numbers(Vec3d())}, {"top", numbers(axis)}, {"radius", 1}};
     const Target<double> shape(scene_with(object));
     EXPECT_NEAR(shape.closest(Ray<double>{beside * 0.5 - axis * 5, axis}).t, 5, 1e-12);
     EXPECT_FALSE(shape.closest(Ray<double>{beside * 1.5 - axis * 5, axis}).met());
@@ -83,7 +84,8 @@ TEST(Cylinder, OriginIsNoSentinel) {
   EXPECT_NEAR(met(kEndless).t, 4, 1e-12);
 }
 
-// Rays that enter through the rim itself cross the surface twice: neither cap nor wall may leave it to the other.
+// Rays that enter through the rim itself cross the surface twice: neither cap nor wall may leave it to the
+// other.
 TEST(Cylinder, RimDoesNotLeak) {
   covers("A10");
   const auto capped = Target<double>::of_objects(kCapped);
@@ -93,15 +95,18 @@ TEST(Cylinder, RimDoesNotLeak) {
     const double angle = random.between(0, 2 * std::numbers::pi);
     const Vec3d outward(std::cos(angle), std::sin(angle), 0), rim = outward + Vec3d(0, 0, 1);
     const Vec3d aside(-outward.y, outward.x, 0);
-    const Vec3d direction = safe_normalize(outward * -random.magnitude(1e-3, 1) + Vec3d(0, 0, -random.magnitude(1e-3, 1)) +
-                                           aside * random.between(-0.2, 0.2) * random.unit());
+    const Vec3d direction =
+        safe_normalize(outward * -random.magnitude(1e-3, 1) + Vec3d(0, 0, -random.magnitude(1e-3, 1)) +
+                       aside * random.between(-0.2, 0.2) * random.unit());
     // It runs into the body if it is inside both the wall and the cap a little later.
     const Vec3d later = rim + direction * 1e-4;
     if (later.x * later.x + later.y * later.y > 1 - 1e-9) continue;
     const Ray<double> ray{rim - direction * random.between(0.5, 5), direction};
     leaks += !capped.closest(ray).met();
-    const auto back = capped.closest(Ray<double>{later, -direction}), on = capped.closest(Ray<double>{later, direction});
-    odd += std::abs(back.t - 1e-4) > 1e-12 || !on.met() || capped.closest(Ray<double>{later + direction * (on.t + 1e-9), direction}).met();
+    const auto back = capped.closest(Ray<double>{later, -direction}),
+               on = capped.closest(Ray<double>{later, direction});
+    odd += std::abs(back.t - 1e-4) > 1e-12 || !on.met() ||
+           capped.closest(Ray<double>{later + direction * (on.t + 1e-9), direction}).met();
   }
   EXPECT_EQ(leaks, 0);
   EXPECT_EQ(odd, 0);
@@ -109,7 +114,8 @@ TEST(Cylinder, RimDoesNotLeak) {
 
 TEST(Cylinder, IsMetFromWithin) {
   covers("A11");
-  const auto shape = Target<double>::of_objects("[{'type': 'cylinder', 'point': [0, 0, 0], 'axis': [0, 1, 0], 'radius': 0.5}]");
+  const auto shape = Target<double>::of_objects(
+      "[{'type': 'cylinder', 'point': [0, 0, 0], 'axis': [0, 1, 0], 'radius': 0.5}]");
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const double angle = random.between(0, 2 * std::numbers::pi);

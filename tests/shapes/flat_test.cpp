@@ -26,7 +26,8 @@ TYPED_TEST(Flat, RaysAlongAPlaneMissIt) {
   EXPECT_FALSE(plane.closest(Ray<T>{{0, 0, 1}, {1, 0, 0}}).met());
   EXPECT_FALSE(plane.closest(Ray<T>{{0, 0, 1}, {1, 0, -T(0)}}).met());
   EXPECT_FALSE(plane.closest(Ray<T>{{0, 0, 0}, {1, 0, 0}}).met()) << "within the plane";
-  const auto disk = Target<T>::of_objects("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': 1}]");
+  const auto disk =
+      Target<T>::of_objects("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': 1}]");
   EXPECT_FALSE(disk.closest(Ray<T>{{-5, 0, 0}, {1, 0, 0}}).met()) << "within the disk's plane";
   EXPECT_FALSE(disk.closest(Ray<T>{{-5, 0, 1}, {1, 0, 0}}).met());
 }
@@ -59,17 +60,20 @@ TEST(Plane, HasNoHorizonOfNotANumbers) {
 
 TYPED_TEST(Flat, DisksEndAtTheirRadius) {
   using T = TypeParam;
-  const auto disk = Target<T>::of_objects("[{'type': 'disk', 'center': [1, 0, 0], 'normal': [0, 0, 1], 'radius': 2}]");
+  const auto disk =
+      Target<T>::of_objects("[{'type': 'disk', 'center': [1, 0, 0], 'normal': [0, 0, 1], 'radius': 2}]");
   Random random(1);
   for (int i = 0; i < 10'000; ++i) {
     const double angle = random.between(0, 2 * std::numbers::pi), from_center = random.between(0, 3);
     if (std::abs(from_center - 2) < 1e-5) continue;
-    const Ray<T> ray{Vec3<T>(Vec3d(1 + from_center * std::cos(angle), from_center * std::sin(angle), 5)), {0, 0, -1}};
+    const Ray<T> ray{Vec3<T>(Vec3d(1 + from_center * std::cos(angle), from_center * std::sin(angle), 5)),
+                     {0, 0, -1}};
     EXPECT_EQ(disk.closest(ray).met(), from_center < 2);
   }
 }
 
-// Rays in the plane of a face give 0 * infinity. The six places of the catalogue for each axis, sign and zero.
+// Rays in the plane of a face give 0 * infinity. The six places of the catalogue for each axis, sign and
+// zero.
 TYPED_TEST(Flat, BoxesAreMetByRaysWithinTheirFaces) {
   using T = TypeParam;
   covers("A28");
@@ -78,15 +82,16 @@ TYPED_TEST(Flat, BoxesAreMetByRaysWithinTheirFaces) {
     T across, other;
     bool touches;
   };
-  for (const Place& place : {Place{0, T(.5), true}, Place{1, T(.5), true}, Place{0, 1, true}, Place{1, 0, true},
-                             Place{2, T(.5), false}, Place{T(.5), -1, false}})
+  for (const Place& place : {Place{0, T(.5), true}, Place{1, T(.5), true}, Place{0, 1, true},
+                             Place{1, 0, true}, Place{2, T(.5), false}, Place{T(.5), -1, false}})
     for (int axis = 0; axis < 3; ++axis)
       for (const T zero : {T(0), -T(0)})
         for (const T along : {T(1), T(-1)}) {
           const auto turned = [axis](T a, T b, T c) {
             return axis == 0 ? Vec3<T>(a, b, c) : axis == 1 ? Vec3<T>(c, a, b) : Vec3<T>(b, c, a);
           };
-          const Ray<T> ray{turned(along > 0 ? T(-1) : T(2), place.across, place.other), turned(along, zero, zero)};
+          const Ray<T> ray{turned(along > 0 ? T(-1) : T(2), place.across, place.other),
+                           turned(along, zero, zero)};
           const auto hit = cube.closest(ray);
           EXPECT_EQ(hit.met(), place.touches) << axis << " " << along << " " << zero << " " << place.across;
           if (hit.met()) {

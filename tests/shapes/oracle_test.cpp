@@ -5,9 +5,10 @@
 #include "tests/support/covers.h"
 #include "tests/support/shapes.h"
 
-// Every registered shape, in float and in double, against its own formula in long double. The measure is backward
-// stability: what a kernel answers must be the exact answer for some ray that differs from the one asked by a few
-// ulp. So nothing is excused near a silhouette but what rounding of the input alone would change.
+// Every registered shape, in float and in double, against its own formula in long double. The measure is
+// backward stability: what a kernel answers must be the exact answer for some ray that differs from the one
+// asked by a few ulp. So nothing is excused near a silhouette but what rounding of the input alone would
+// change.
 namespace orrery::test {
 namespace {
 
@@ -44,14 +45,16 @@ struct Range {
   bool unanimous() const { return hits == 0 || hits == kCopies; }
 };
 
-// Whether the shape is met within `reach` of the point: along the normal there, or from one of the points that lie
-// about it (a hit may be just past an edge).
+// Whether the shape is met within `reach` of the point: along the normal there, or from one of the points
+// that lie about it (a hit may be just past an edge).
 bool lies_on(const Target<long double>& shape, const Vec& point, const Vec& normal, long double reach) {
   Rays<long double> probes;
-  for (const Vec& shift : {Vec(), Vec(1, 0, 0), Vec(-1, 0, 0), Vec(0, 1, 0), Vec(0, -1, 0), Vec(0, 0, 1), Vec(0, 0, -1)})
+  for (const Vec& shift :
+       {Vec(), Vec(1, 0, 0), Vec(-1, 0, 0), Vec(0, 1, 0), Vec(0, -1, 0), Vec(0, 0, 1), Vec(0, 0, -1)})
     probes.push_back({point + shift * reach + normal * (2 * reach), -normal});
   const auto hits = shape.closest(probes);
-  return std::any_of(hits.begin(), hits.end(), [&](const auto& hit) { return hit.met() && hit.t <= 4 * reach; });
+  return std::any_of(hits.begin(), hits.end(),
+                     [&](const auto& hit) { return hit.met() && hit.t <= 4 * reach; });
 }
 
 struct Verdict {
@@ -69,7 +72,8 @@ Verdict judge(const Json& object, const Placement& placement, int count, std::ui
   std::vector<long double> shifts;
   for (const auto& ray : rays) {
     const auto exact = convert_ray<long double>(ray);
-    const auto largest = std::max(static_cast<long double>(placement.magnitude()), max_component(abs(exact.origin)));
+    const auto largest =
+        std::max(static_cast<long double>(placement.magnitude()), max_component(abs(exact.origin)));
     shifts.push_back(kShift * kUlp<T> * largest);
     add_copies(exact, shifts.back(), kShift * kUlp<T>, copies);
   }
@@ -105,7 +109,8 @@ class ShapeOracle : public testing::TestWithParam<std::string> {
     for (std::size_t s = 0; s < samples.size(); ++s)
       for (std::size_t p = 0; p < places.size(); ++p) {
         const Verdict verdict = judge<T>(samples[s], places[p], each, 100 * s + p);
-        EXPECT_EQ(verdict.wrong, 0) << samples[s] << " of size " << places[p].size << " at " << places[p].offset.x;
+        EXPECT_EQ(verdict.wrong, 0) << samples[s] << " of size " << places[p].size << " at "
+                                    << places[p].offset.x;
         EXPECT_LT(verdict.undecided, verdict.rays / 4) << "too few rays decide anything";
       }
   }

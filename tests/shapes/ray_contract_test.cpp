@@ -98,7 +98,8 @@ TEST_P(RayContract, EqualHitsGoToTheLowestNumber) {
     std::vector<int> backwards;
     for (int i = three.primitive_count(); i-- > 0;) backwards.push_back(i);
     const auto rays = rays_at<double>(object, {1, Vec3d()}, 1000, 9);
-    const auto expected = one.closest(rays), forwards = three.closest(rays), reversed = three.closest(rays, backwards);
+    const auto expected = one.closest(rays), forwards = three.closest(rays),
+               reversed = three.closest(rays, backwards);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(forwards[i].primitive, expected[i].primitive);
       EXPECT_EQ(reversed[i].primitive, expected[i].primitive);

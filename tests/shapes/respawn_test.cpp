@@ -13,7 +13,8 @@ std::vector<Placement> places_of_sizes() {
   std::vector<Placement> places;
   for (const double offset : {0.0, 1.0, 1e3, 1e6})
     for (const double size : {1e-5, 1.0, 1e6})
-      if (std::is_same_v<T, double> || offset <= 1e3 * size) places.push_back({size, Vec3d(offset, offset, offset)});
+      if (std::is_same_v<T, double> || offset <= 1e3 * size)
+        places.push_back({size, Vec3d(offset, offset, offset)});
   return places;
 }
 
@@ -39,7 +40,8 @@ class Leaver {
       const Vec3d normal = safe_normalize(Vec3d(spots_[i].geometric));
       Vec3d direction = random.direction_above(normal);
       const Vec3d along = direction - normal * dot(direction, normal);
-      if (i % 2) direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(kLeastTilt, 0.1));
+      if (i % 2)
+        direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(kLeastTilt, 0.1));
       up.push_back(spots_[i].leaving(Vec3<T>(direction)));
       down.push_back(spots_[i].leaving(Vec3<T>(direction - normal * (2 * dot(direction, normal)))));
     }
@@ -88,8 +90,10 @@ class Respawn : public testing::TestWithParam<std::string> {
         const Leaver<T> leaver(object, placement, 1000);
         const int target = tally.rays + total / static_cast<int>(samples.size() * places.size());
         while (tally.rays < target) leaver.leave(random, tally);
-        EXPECT_EQ(tally.self_hits - before.self_hits, 0) << object << " of size " << placement.size << " at " << placement.offset.x;
-        EXPECT_EQ(tally.leaks - before.leaks, 0) << object << " of size " << placement.size << " at " << placement.offset.x;
+        EXPECT_EQ(tally.self_hits - before.self_hits, 0)
+            << object << " of size " << placement.size << " at " << placement.offset.x;
+        EXPECT_EQ(tally.leaks - before.leaks, 0)
+            << object << " of size " << placement.size << " at " << placement.offset.x;
       }
     EXPECT_GE(tally.rays, total * 9 / 10);
   }

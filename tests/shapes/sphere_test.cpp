@@ -32,7 +32,8 @@ TEST(Sphere, IsRightFromAMillionRadiiAway) {
       if (h > 1) continue;
       const long double exact = static_cast<long double>(rays[i].origin.z) - std::sqrt((1 - h) * (1 + h));
       // 1e-12 radii, or 2 ulp of t where they are more.
-      ASSERT_LE(std::abs(static_cast<long double>(hits[i].t) - exact), std::max(1e-12, distance * 4.5e-16)) << h;
+      ASSERT_LE(std::abs(static_cast<long double>(hits[i].t) - exact), std::max(1e-12, distance * 4.5e-16))
+          << h;
     }
   }
 }
@@ -52,8 +53,8 @@ TEST(Sphere, IsRightFromAfarInAnyDirection) {
   EXPECT_EQ(wrong, 0);
 }
 
-// In float the residue is known to a few ulp of the distance: with h away from 1 by more than that, nothing is wrong.
-// The textbook discriminant decides 29 % of these wrongly at a distance of 10,000.
+// In float the residue is known to a few ulp of the distance: with h away from 1 by more than that, nothing
+// is wrong. The textbook discriminant decides 29 % of these wrongly at a distance of 10,000.
 TEST(Sphere, IsRightInFloatToAFewUlpOfTheDistance) {
   covers("A1");
   const auto shape = sphere<float>(Vec3d(), 1);
@@ -62,7 +63,8 @@ TEST(Sphere, IsRightInFloatToAFewUlpOfTheDistance) {
     const double margin = 4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * distance;
     int wrong = 0;
     for (int i = 0; i < 20'000; ++i) {
-      const Vec3d direction = random.direction(), across = safe_normalize(cross(direction, random.direction()));
+      const Vec3d direction = random.direction(),
+                  across = safe_normalize(cross(direction, random.direction()));
       const Ray<float> ray{Vec3f(across * random.between(0, 1.2) - direction * distance), Vec3f(direction)};
       const Vec3d o(ray.origin), d = safe_normalize(Vec3d(ray.direction));
       const double h = length(o - d * dot(o, d));
@@ -89,7 +91,8 @@ TEST(Sphere, ServesAsTheGround) {
 TEST(Sphere, NestedShellsStayApart) {
   covers("A4");
   const auto shells = Target<double>::of_objects(
-      "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}, {'type': 'sphere', 'center': [0, 0, 0], 'radius': 1.00004}]");
+      "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}, {'type': 'sphere', 'center': [0, 0, 0], "
+      "'radius': 1.00004}]");
   Random random(4);
   for (int i = 0; i < 1000; ++i) {
     const Vec3d inward = random.direction();

@@ -32,7 +32,8 @@ struct Sitting {
     spots = shape.surfaces(rays, hits);
   }
   long double magnitude(std::size_t i, const Placement& placement) const {
-    return std::max(static_cast<long double>(placement.magnitude()), max_component(abs(Vec(spots[i].position))));
+    return std::max(static_cast<long double>(placement.magnitude()),
+                    max_component(abs(Vec(spots[i].position))));
   }
 };
 
@@ -69,7 +70,8 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
             if (!on) on = beside(axis * (sign * reach)).t <= 3 * reach;
         off += !on;
         turned += dot(s.spots[i].geometric, s.rays[i].direction) > 0;
-        long_or_short += std::abs(length(normal) - 1) > 4 * kUlp<T> || std::abs(length(shading) - 1) > 4 * kUlp<T>;
+        long_or_short +=
+            std::abs(length(normal) - 1) > 4 * kUlp<T> || std::abs(length(shading) - 1) > 4 * kUlp<T>;
       }
       EXPECT_EQ(off, 0) << "positions are off the surface";
       EXPECT_EQ(turned, 0) << "normals face away from the ray";
@@ -91,14 +93,17 @@ TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
       const Vec normal(s.spots[i].geometric);
       if (std::abs(dot(normal, ray.direction)) < 0.3L) continue;
       const Vec across = Vec(perpendicular(Vec3d(ray.direction))), other = cross(across, ray.direction);
-      const Rays<long double> near = {ray, {ray.origin + across * h, ray.direction}, {ray.origin + other * h, ray.direction}};
+      const Rays<long double> near = {
+          ray, {ray.origin + across * h, ray.direction}, {ray.origin + other * h, ray.direction}};
       const auto hits = s.exact.closest(near);
       const auto spots = s.exact.surfaces(near, hits);
       bool same_face = true;
-      for (std::size_t k = 0; k < 3; ++k) same_face = same_face && hits[k].met() && dot(spots[k].geometric, normal) > 0.999L;
+      for (std::size_t k = 0; k < 3; ++k)
+        same_face = same_face && hits[k].met() && dot(spots[k].geometric, normal) > 0.999L;
       if (!same_face) continue;
       ++judged;
-      // For a curved surface the secant leaves the tangent by h / (2 radius of curvature), 1/16 of the size or more.
+      // For a curved surface the secant leaves the tangent by h / (2 radius of curvature), 1/16 of the size
+      // or more.
       for (std::size_t k = 1; k < 3; ++k) {
         const Vec secant = near[k].at(hits[k].t) - near[0].at(hits[0].t);
         slanted += std::abs(dot(secant, normal)) > 1e-4L * length(secant);
@@ -109,7 +114,8 @@ TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
   });
 }
 
-// Of a closed convex shape nothing lies on the outer side of the surface, and all ways inward end at it again.
+// Of a closed convex shape nothing lies on the outer side of the surface, and all ways inward end at it
+// again.
 TEST_P(ShapeSurface, NormalsOfClosedShapesPointOutward) {
   covers("A38");
   for_each_sitting<double>(1000, [](const Sitting<double>& s, const Placement& placement) {
@@ -145,10 +151,19 @@ TEST(OpenShapes, FaceAsTheyWereGiven) {
   };
   for (const double side : {1.0, -1.0}) {  // seen from the front and from the back
     const Vec3d from(0.1, 0.2, 5 * side), direction(0, 0, -side);
-    EXPECT_EQ(outward("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 3]}]", from, direction), Vec3d(0, 0, 1));
-    EXPECT_EQ(outward("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, -2], 'radius': 1}]", from, direction), Vec3d(0, 0, -1));
-    EXPECT_EQ(outward("[{'type': 'triangle', 'vertices': [[-1, -1, 0], [1, -1, 0], [0, 2, 0]]}]", from, direction), Vec3d(0, 0, 1));
-    EXPECT_EQ(outward("[{'type': 'mesh', 'positions': [[-1, -1, 0], [0, 2, 0], [1, -1, 0]], 'indices': [[0, 1, 2]]}]", from, direction), Vec3d(0, 0, -1));
+    EXPECT_EQ(outward("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 3]}]", from, direction),
+              Vec3d(0, 0, 1));
+    EXPECT_EQ(outward("[{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, -2], 'radius': 1}]", from,
+                      direction),
+              Vec3d(0, 0, -1));
+    EXPECT_EQ(
+        outward("[{'type': 'triangle', 'vertices': [[-1, -1, 0], [1, -1, 0], [0, 2, 0]]}]", from, direction),
+        Vec3d(0, 0, 1));
+    EXPECT_EQ(
+        outward(
+            "[{'type': 'mesh', 'positions': [[-1, -1, 0], [0, 2, 0], [1, -1, 0]], 'indices': [[0, 1, 2]]}]",
+            from, direction),
+        Vec3d(0, 0, -1));
   }
 }
 

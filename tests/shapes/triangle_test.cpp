@@ -21,7 +21,9 @@ struct BallMesh {
     for (int ring = 1; ring < kRings; ++ring)
       for (int sector = 0; sector < kSectors; ++sector) {
         const double theta = std::numbers::pi * ring / kRings, phi = 2 * std::numbers::pi * sector / kSectors;
-        positions.push_back(center + Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) * radius);
+        positions.push_back(center + Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                                           std::cos(theta)) *
+                                         radius);
       }
     positions.push_back(center - Vec3d(0, 0, radius));
     const int last = static_cast<int>(positions.size()) - 1;
@@ -45,7 +47,8 @@ struct BallMesh {
   std::vector<int> around(int vertex) const {
     std::vector<int> found;
     for (std::size_t t = 0; t < triangles.size(); ++t)
-      if (std::find(triangles[t].begin(), triangles[t].end(), vertex) != triangles[t].end()) found.push_back(static_cast<int>(t));
+      if (std::find(triangles[t].begin(), triangles[t].end(), vertex) != triangles[t].end())
+        found.push_back(static_cast<int>(t));
     return found;
   }
 };
@@ -62,9 +65,11 @@ int leaks_of(const Vec3d& center, int rays_at_each) {
     const std::vector<int> fan = mesh.around(vertex);
     Rays<T> rays;
     for (int i = 0; i < rays_at_each; ++i) {
-      const auto& triangle = mesh.triangles[static_cast<std::size_t>(fan[static_cast<std::size_t>(random.below(static_cast<int>(fan.size())))])];
+      const auto& triangle = mesh.triangles[static_cast<std::size_t>(
+          fan[static_cast<std::size_t>(random.below(static_cast<int>(fan.size())))])];
       const int other = triangle[static_cast<std::size_t>(random.below(3))];  // may be the vertex itself
-      const Vec3<T> a(mesh.positions[static_cast<std::size_t>(vertex)]), b(mesh.positions[static_cast<std::size_t>(other)]);
+      const Vec3<T> a(mesh.positions[static_cast<std::size_t>(vertex)]),
+          b(mesh.positions[static_cast<std::size_t>(other)]);
       const Vec3<T> origin(center + random.in_cube(0.57));
       rays.push_back({origin, (a + b) * T(0.5) - origin});
     }
@@ -83,7 +88,8 @@ TEST(Mesh, DoesNotLeakFarFromTheOrigin) {
   covers("A12");
   const Vec3d far(148376, 1234, -223423);
   EXPECT_EQ(leaks_of<double>(far, 1000), 0);
-  EXPECT_EQ(leaks_of<float>(far, 200), 0) << "in float its vertices lie on a coarse grid, but they are shared";
+  EXPECT_EQ(leaks_of<float>(far, 200), 0)
+      << "in float its vertices lie on a coarse grid, but they are shared";
 }
 
 TEST(Triangle, MayBeAsSmallAsAPicometre) {
@@ -105,7 +111,8 @@ TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
   EXPECT_EQ(problem("[[1, 2, 3], [1, 2, 3], [0, 5, 0]]"), "/objects/0/vertices");
   EXPECT_EQ(problem("[[0, 0, 0], [1, 1, 1], [2, 2, 2]]"), "/objects/0/vertices");
   EXPECT_EQ(problem("[[-1113.45459, -79.049614, -56.2431908], [-1113.45459, -87.0922699, -56.2431908],"
-                    " [-1113.45459, -79.2090149, -56.2431908]]"), "/objects/0/vertices");
+                    " [-1113.45459, -79.2090149, -56.2431908]]"),
+            "/objects/0/vertices");
 
   // A mesh may hold such triangles; this one also holds a triangle far away, for it must not be empty.
   const auto mesh = Target<double>::of_objects(
@@ -113,7 +120,9 @@ TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
            'positions': [[-1113.45459, -79.049614, -56.2431908], [-1113.45459, -87.0922699, -56.2431908],
                          [-1113.45459, -79.2090149, -56.2431908], [0, 1e6, 0], [1, 1e6, 0], [0, 1e6, 1]]}])");
   EXPECT_EQ(mesh.primitive_count(), 1);
-  EXPECT_FALSE(mesh.closest(Ray<double>{{-1081.47925, 99.9999542, 87.7701111}, {-32.1072998, -183.355865, -144.607635}}).met());
+  EXPECT_FALSE(mesh.closest(Ray<double>{{-1081.47925, 99.9999542, 87.7701111},
+                                        {-32.1072998, -183.355865, -144.607635}})
+                   .met());
 
   // Nearly on a line, in double and float: whatever is answered, it is a number.
   const char* thin = R"([{'type': 'mesh', 'indices': [[0, 1, 2]],
@@ -133,7 +142,8 @@ TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
   }
 }
 
-// A sliver with sides 11.2, 9.8 and 1.4, grazed at half a degree and less: the point at t is near the triangle.
+// A sliver with sides 11.2, 9.8 and 1.4, grazed at half a degree and less: the point at t is near the
+// triangle.
 TEST(Triangle, SliversAreMetWhereTheyAre) {
   covers("A15");
   constexpr double kAngle = 0.52 * std::numbers::pi / 180, kFar = 600;
@@ -145,7 +155,8 @@ TEST(Triangle, SliversAreMetWhereTheyAre) {
   double worst = 0;
   Rays<double> rays;
   for (int i = 0; i < 1'000'000; ++i) {
-    const double around = random.between(0, 2 * std::numbers::pi), lift = i % 2 ? kAngle : random.magnitude(1e-6, kAngle);
+    const double around = random.between(0, 2 * std::numbers::pi),
+                 lift = i % 2 ? kAngle : random.magnitude(1e-6, kAngle);
     const Vec3d direction = safe_normalize(Vec3d(std::cos(around), std::sin(around), -std::sin(lift)));
     double u = random.unit(), v = random.unit();
     if (u + v > 1) u = 1 - u, v = 1 - v;

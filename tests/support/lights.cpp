@@ -7,7 +7,7 @@ namespace orrery::test {
 template <class T>
 Arrival<T> arrival(const Json& light, const Vec3<T>& at) {
   const auto scene = load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
-                                   Json{{"lights", Json::array({light})}}));
+                                     Json{{"lights", Json::array({light})}}));
   const auto surface = std::make_unique<SurfaceBatch<T>>();
   const auto out = std::make_unique<LightBatch<T>>();
   for (int i = 0; i < kWidth<T>; ++i) put(surface->position, i, at);

@@ -41,7 +41,7 @@ void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
 template <class T>
 Probe<T>::Probe(const Json& material)
     : scene_(load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),
-                           Json{{"materials", {{"white", nullptr}, {"it", material}}}}))) {
+                             Json{{"materials", {{"white", nullptr}, {"it", material}}}}))) {
   for (const auto& set : scene_->materials)
     if (set->size() > 0) kernel_ = set->kernel(T(), 0);
 }
@@ -71,7 +71,8 @@ std::vector<typename Probe<T>::Specular> Probe<T>::specular(std::span<const Case
     kernel_->specular(b->rays, b->hits, b->surface, b->groups, b->specular);
     const SpecularBatch<T>& s = b->specular;
     for (int i = 0; i < static_cast<int>(some.size()); ++i)
-      found.push_back({get(s.reflectance, i), get(s.transmittance, i), get(s.refracted, i), get(s.filter, i)});
+      found.push_back(
+          {get(s.reflectance, i), get(s.transmittance, i), get(s.refracted, i), get(s.filter, i)});
     cases = cases.subspan(some.size());
   }
   return found;

@@ -15,7 +15,7 @@ double distance(const Vec3f& a, const Vec3f& b) {
 
 }  // namespace
 
-double Picture::sum(float Vec3f::* channel) const {
+double Picture::sum(float Vec3f::*channel) const {
   double total = 0;
   for (const Vec3f& pixel : pixels) total += static_cast<double>(pixel.*channel);
   return total;
@@ -44,13 +44,15 @@ Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& r
   const RenderResult result = render_frame(prepared, plan, PixelFormat::linear32, own ? *own : shared_pool());
   Picture picture{plan.width, plan.height, {}, result.stats};
   picture.pixels.resize(static_cast<std::size_t>(plan.width * plan.height));
-  std::memcpy(static_cast<void*>(picture.pixels.data()), result.image.bytes().data(), result.image.bytes().size());
+  std::memcpy(static_cast<void*>(picture.pixels.data()), result.image.bytes().data(),
+              result.image.bytes().size());
   return picture;
 }
 
 double largest_difference(const Picture& a, const Picture& b) {
   double largest = 0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) largest = std::max(largest, distance(a.pixels[i], b.pixels[i]));
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    largest = std::max(largest, distance(a.pixels[i], b.pixels[i]));
   return largest;
 }
 
@@ -61,7 +63,8 @@ bool identical(const Picture& a, const Picture& b) {
 
 int differing_pixels(const Picture& a, const Picture& b, double tolerance) {
   int count = 0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) count += !(distance(a.pixels[i], b.pixels[i]) <= tolerance);
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    count += !(distance(a.pixels[i], b.pixels[i]) <= tolerance);
   return count;
 }
 

@@ -16,7 +16,7 @@ struct Picture {
 
   const Vec3f& at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
   // Sum over pixels of one channel.
-  double sum(float Vec3f::* channel = &Vec3f::x) const;
+  double sum(float Vec3f::*channel = &Vec3f::x) const;
   // How many pixels are brighter than `level` in some channel.
   int brighter_than(float level) const;
 };

@@ -23,7 +23,8 @@ constexpr std::string_view kEmptyScene = R"({
 })";
 
 // What the keys of the scene format mean.
-const std::set<std::string> kPoints = {"eye", "look_at", "center", "point", "base", "top", "min", "max", "position"};
+const std::set<std::string> kPoints = {"eye", "look_at", "center", "point",   "base",
+                                       "top", "min",     "max",    "position"};
 const std::set<std::string> kPointLists = {"vertices", "positions"};
 const std::set<std::string> kLengths = {"radius", "height"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
@@ -98,7 +99,9 @@ Json scene_with(const Json& objects, const Json& patch) {
   return scene;
 }
 
-Json scene_of(std::string_view objects, std::string_view patch) { return scene_with(json(objects), json(patch)); }
+Json scene_of(std::string_view objects, std::string_view patch) {
+  return scene_with(json(objects), json(patch));
+}
 
 std::shared_ptr<const Scene> load(const Json& scene) { return load_scene(document_of(scene)); }
 
@@ -128,10 +131,9 @@ Json scaled(Json scene, double factor) {
   return scene;
 }
 
-bool has_filter(const Json& scene) {
-  const Json none = Json::object();
-  const Json& materials = scene.contains("materials") ? scene["materials"] : none;
-  return std::any_of(materials.begin(), materials.end(), [](const Json& m) { return m.contains("filter"); });
+Json without_filters(Json scene) {
+  for (Json& material : scene["materials"]) material.erase("filter");
+  return scene;
 }
 
 Json moved(Json scene, const Vec3d& offset) {
@@ -159,6 +161,8 @@ Json mirrored(Json scene) {
 }
 
 Json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
-Vec3d vector(const Json& three) { return {three[0].get<double>(), three[1].get<double>(), three[2].get<double>()}; }
+Vec3d vector(const Json& three) {
+  return {three[0].get<double>(), three[1].get<double>(), three[2].get<double>()};
+}
 
 }  // namespace orrery::test

@@ -16,9 +16,9 @@ using Json = nlohmann::json;
 // Parses a snippet; for brevity ' may stand for ".
 Json json(std::string_view text);
 
-// A scene of this object or these (a JSON list), which need not name a material, seen from [0, 0, 4]; `patch` is
-// merged over it (RFC 7386): it may bring lights, materials, another camera. Objects without a material get
-// "white", which is rough with kd 1 and ka 1.
+// A scene of this object or these (a JSON list), which need not name a material, seen from [0, 0, 4]; `patch`
+// is merged over it (RFC 7386): it may bring lights, materials, another camera. Objects without a material
+// get "white", which is rough with kd 1 and ka 1.
 Json scene_with(const Json& objects, const Json& patch = Json::object());
 Json scene_of(std::string_view objects, std::string_view patch = "{}");  // the same from snippets
 
@@ -36,7 +36,7 @@ std::vector<std::string> sample_names();
 // Everything `factor` times as far from the origin and as large, lights as bright at what they light.
 // REQUIRES: no material filters light (what remains after one metre does not scale).
 Json scaled(Json scene, double factor);
-bool has_filter(const Json& scene);
+Json without_filters(Json scene);
 // Everything moved by `offset`.
 Json moved(Json scene, const Vec3d& offset);
 // One object alone, scaled about the origin and then moved.

@@ -65,11 +65,11 @@ Ray<T> unit_ray(const Ray<double>& ray) {
 const Placement kFloatPlacements[] = {
     {1, Vec3d()}, {0x1p-10, Vec3d()}, {1024, Vec3d()}, {1, Vec3d(96, -32, 64)}, {1, Vec3d(1000, 500, -250)}};
 const Placement kDoublePlacements[] = {{1, Vec3d()},
-                                           {0x1p-17, Vec3d()},
-                                           {0x1p20, Vec3d()},
-                                           {1, Vec3d(1000, 500, -250)},
-                                           {1, Vec3d(1e6, 1e6, 1e6)},
-                                           {0x1p-17, Vec3d(1000, -1000, 0)}};
+                                       {0x1p-17, Vec3d()},
+                                       {0x1p20, Vec3d()},
+                                       {1, Vec3d(1000, 500, -250)},
+                                       {1, Vec3d(1e6, 1e6, 1e6)},
+                                       {0x1p-17, Vec3d(1000, -1000, 0)}};
 
 }  // namespace
 

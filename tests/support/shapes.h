@@ -32,8 +32,9 @@ std::span<const Placement> placements() {
   return std::is_same_v<T, float> ? float_placements() : double_placements();
 }
 
-// Rays from outside, from inside and from afar, at random points, along axes, and grazing the surface: at angles
-// down to 1e-6 in double and 2e-4 in float, where a direction itself is known to 6e-8. Unit directions.
+// Rays from outside, from inside and from afar, at random points, along axes, and grazing the surface: at
+// angles down to 1e-6 in double and 2e-4 in float, where a direction itself is known to 6e-8. Unit
+// directions.
 template <class T>
 Rays<T> rays_at(const Json& object, const Placement& placement, int count, std::uint64_t seed);
 

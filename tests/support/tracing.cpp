@@ -6,8 +6,8 @@
 
 namespace orrery::test {
 
-// Passes everything on to the accelerator that the plan chose, and keeps what it was asked. Each batch of rays
-// is asked for in one call, because the batches of these tests are no larger than a slice.
+// Passes everything on to the accelerator that the plan chose, and keeps what it was asked. Each batch of
+// rays is asked for in one call, because the batches of these tests are no larger than a slice.
 class Tracing::Recorder final : public Accelerator<double> {
  public:
   explicit Recorder(AcceleratorPtr<double> real) : real_(std::move(real)) {}
@@ -31,8 +31,7 @@ class Tracing::Recorder final : public Accelerator<double> {
   static void collect(const RayBatch<double>& rays, const Groups& groups, std::vector<Ray<double>>& into) {
     for (const int first : groups)
       for (int i = first; i < first + kWidth<double>; ++i)
-        if (rays.t_max[i] > 0)
-          into.push_back({get(rays.origin, i), get(rays.direction, i)});
+        if (rays.t_max[i] > 0) into.push_back({get(rays.origin, i), get(rays.direction, i)});
   }
   AcceleratorPtr<double> real_;
 };

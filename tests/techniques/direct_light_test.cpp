@@ -23,7 +23,8 @@ Vec3d seen(const Json& scene, const Vec3d& from, const Vec3d& toward) {
 TEST(Ambient, EvenSkyShowsTheAlbedo) {
   covers("R1");
   for (const double albedo : {1.0, .5, .18}) {
-    const Json scene = scene_with(json(kBall), Json{{"ambient", {1, 1, 1}}, {"materials", {{"white", {{"kd", albedo}}}}}});
+    const Json scene =
+        scene_with(json(kBall), Json{{"ambient", {1, 1, 1}}, {"materials", {{"white", {{"kd", albedo}}}}}});
     Random random(1);
     for (int i = 0; i < 50; ++i) EXPECT_EQ(seen(scene, random.direction() * 4, random.in_cube(.5)).x, albedo);
   }
@@ -35,17 +36,20 @@ TEST(Ambient, FillsAClosedRoom) {
   const Json room = scene_of("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
                              "{'ambient': [2, 2, 2], 'materials': {'white': {'ka': 0.5, 'kd': 0}}}");
   Random random(2);
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(seen(room, Vec3d(1, 0, -1), Vec3d(1, 0, -1) + random.direction()).x, 1);
+  for (int i = 0; i < 100; ++i)
+    EXPECT_EQ(seen(room, Vec3d(1, 0, -1), Vec3d(1, 0, -1) + random.direction()).x, 1);
 }
 
 TEST(Point, LightFallsByTheCubeOfTheCosine) {
   covers("R6");
   const double height = 2;
-  const Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
-                              "{'lights': [{'type': 'point', 'position': [0, 0, 2], 'attenuation': [0, 0, 1]}]}");
+  const Json scene =
+      scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
+               "{'lights': [{'type': 'point', 'position': [0, 0, 2], 'attenuation': [0, 0, 1]}]}");
   for (const double degrees : {0.0, 15.0, 45.0, 60.0, 85.0}) {
     const Vec3d at(height * std::tan(degrees * kRadians), 0, 0);
-    EXPECT_NEAR(seen(scene, at + Vec3d(0, 1, 1), at).x, std::pow(std::cos(degrees * kRadians), 3) / (height * height), 1e-12);
+    EXPECT_NEAR(seen(scene, at + Vec3d(0, 1, 1), at).x,
+                std::pow(std::cos(degrees * kRadians), 3) / (height * height), 1e-12);
   }
 }
 
@@ -56,8 +60,11 @@ TEST(Directional, PhasesOfABallAreThoseOfTheMoon) {
   request.samples = 16;
   const auto mean = [&](double phase) {
     const double a = phase * kRadians;
-    const Json scene = scene_with(json(kBall), Json{{"camera", json("{'type': 'orthographic', 'eye': [0, 0, 5], 'look_at': [0, 0, 0], 'height': 2}")},
-                                                    {"lights", {{{"type", "directional"}, {"from", {std::sin(a), 0, std::cos(a)}}}}}});
+    const Json scene = scene_with(
+        json(kBall),
+        Json{
+            {"camera", json("{'type': 'orthographic', 'eye': [0, 0, 5], 'look_at': [0, 0, 0], 'height': 2}")},
+            {"lights", {{{"type", "directional"}, {"from", {std::sin(a), 0, std::cos(a)}}}}}});
     return render(scene, request).sum() / (std::numbers::pi * 128 * 128);
   };
   EXPECT_NEAR(mean(0), .66667, 2e-4);
@@ -69,8 +76,10 @@ TEST(Directional, PhasesOfABallAreThoseOfTheMoon) {
 TEST(Directional, ShadowsReachToInfinity) {
   covers("B18");
   const auto lit = [](double distance, double radius) {
-    Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", "{'lights': [{'type': 'directional', 'from': [0, 0, 1]}]}");
-    scene["objects"].push_back({{"type", "sphere"}, {"center", {0, 0, distance}}, {"radius", radius}, {"material", "white"}});
+    Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
+                          "{'lights': [{'type': 'directional', 'from': [0, 0, 1]}]}");
+    scene["objects"].push_back(
+        {{"type", "sphere"}, {"center", {0, 0, distance}}, {"radius", radius}, {"material", "white"}});
     return seen(scene, Vec3d(0, 1, 1), Vec3d()).x;
   };
   EXPECT_EQ(lit(1e12, 1e3), 0);
@@ -80,8 +89,13 @@ TEST(Directional, ShadowsReachToInfinity) {
 
 TEST(Point, ShadowsEndAtTheLight) {
   const auto lit = [](double z) {
-    Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", "{'lights': [{'type': 'point', 'position': [0, 0, 2]}]}");
-    scene["objects"].push_back({{"type", "disk"}, {"center", {0, 0, z}}, {"normal", {0, 0, 1}}, {"radius", 0.5}, {"material", "white"}});
+    Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
+                          "{'lights': [{'type': 'point', 'position': [0, 0, 2]}]}");
+    scene["objects"].push_back({{"type", "disk"},
+                                {"center", {0, 0, z}},
+                                {"normal", {0, 0, 1}},
+                                {"radius", 0.5},
+                                {"material", "white"}});
     return seen(scene, Vec3d(0, 1, 1), Vec3d()).x;
   };
   EXPECT_EQ(lit(1.999999), 0);
@@ -93,7 +107,8 @@ TEST(Lights, AreSummedAndAmbientIsAddedOnce) {
   const auto with = [](const std::vector<double>& intensities) {
     Json scene = scene_of(kBall, "{'ambient': [0.125, 0.125, 0.125]}");
     scene["lights"] = Json::array();
-    for (const double i : intensities) scene["lights"].push_back({{"type", "directional"}, {"from", {0.3, 0.2, 1}}, {"intensity", {i, i, i}}});
+    for (const double i : intensities)
+      scene["lights"].push_back({{"type", "directional"}, {"from", {0.3, 0.2, 1}}, {"intensity", {i, i, i}}});
     return seen(scene, Vec3d(0, 0, 4), Vec3d(.3, .2, 0)).x;
   };
   EXPECT_EQ(with({}), .125);
@@ -104,15 +119,16 @@ TEST(Lights, AreSummedAndAmbientIsAddedOnce) {
 
 TEST(Lights, ValuesAboveOneStayWhatTheyAre) {
   covers("B12");
-  const Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
-                              R"({'lights': [{'type': 'directional', 'from': [0, 0, 1], 'intensity': [1, 0.5, 0.5]},
+  const Json scene =
+      scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
+               R"({'lights': [{'type': 'directional', 'from': [0, 0, 1], 'intensity': [1, 0.5, 0.5]},
                                              {'type': 'directional', 'from': [0, 0, 1], 'intensity': [1, 0.5, 0.5]}]})");
   const Picture picture = render(scene, size(8, 8));
   EXPECT_EQ(picture.at(4, 4), Vec3f(2, 1, 1));
 }
 
-// A plane of 2 x 2 seen from 1 above its centre by a distant light above: with one half vector for all of it the
-// corners would shine like the centre.
+// A plane of 2 x 2 seen from 1 above its centre by a distant light above: with one half vector for all of it
+// the corners would shine like the centre.
 TEST(Highlight, HalfVectorIsThatOfEachPoint) {
   covers("B6");
   const Json scene = scene_of("[{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 0]}]",
@@ -127,8 +143,10 @@ TEST(Highlight, HalfVectorIsThatOfEachPoint) {
 
 TEST(Lights, NoneMakesAnythingNegative) {
   covers("B1 B4");
-  Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}, {'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]}]",
-                        R"({'materials': {'white': {'kd': 1, 'ks': 1, 'shininess': 3}},
+  Json scene = scene_of(
+      "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}, {'type': 'plane', 'point': [0, -1, 0], "
+      "'normal': [0, 1, 0]}]",
+      R"({'materials': {'white': {'kd': 1, 'ks': 1, 'shininess': 3}},
                             'lights': [{'type': 'directional', 'from': [0, 0, -1]}, {'type': 'point', 'position': [0, -3, 0]},
                                        {'type': 'directional', 'from': [-0.8, -0.01, 0]}]})");
   for (const char* shading : {"phong", "blinn-phong"}) {
@@ -137,12 +155,14 @@ TEST(Lights, NoneMakesAnythingNegative) {
   }
 }
 
-// Whitted's model has no caustics: glass throws a black shadow. That is a known error of the model, pinned here.
+// Whitted's model has no caustics: glass throws a black shadow. That is a known error of the model, pinned
+// here.
 TEST(Glass, ThrowsABlackShadow) {
   covers("E6");
-  const Json scene = scene_with(json(R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]},
+  const Json scene =
+      scene_with(json(R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]},
                                          {'type': 'sphere', 'center': [0, 0, 2], 'radius': 1, 'material': 'glass'}])"),
-                                json(R"({'ambient': [0.25, 0.25, 0.25], 'lights': [{'type': 'point', 'position': [0, 0, 6]}],
+                 json(R"({'ambient': [0.25, 0.25, 0.25], 'lights': [{'type': 'point', 'position': [0, 0, 6]}],
                                          'materials': {'glass': {'type': 'refractive', 'ior': 1.5}}})"));
   EXPECT_EQ(seen(scene, Vec3d(3, 0, .5), Vec3d()).x, .25);
   EXPECT_GT(seen(scene, Vec3d(3, 0, .5), Vec3d(4, 0, 0)).x, .25);

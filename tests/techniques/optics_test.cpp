@@ -7,7 +7,8 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Where mirrored and refracted rays go, by the laws of optics: closed forms against the rays that were traced.
+// Where mirrored and refracted rays go, by the laws of optics: closed forms against the rays that were
+// traced.
 namespace orrery::test {
 namespace {
 
@@ -27,7 +28,8 @@ Json one_body(const char* object, double ior) {
 }
 Json unit_ball(double ior) { return one_body("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]", ior); }
 
-constexpr const char* kMirror = "{'materials': {'white': {'type': 'reflective', 'kd': null, 'n': [0, 0, 0], 'k': [0, 0, 0]}}}";
+constexpr const char* kMirror =
+    "{'materials': {'white': {'type': 'reflective', 'kd': null, 'n': [0, 0, 0], 'k': [0, 0, 0]}}}";
 
 double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) / kRadians;
@@ -43,7 +45,8 @@ std::vector<Ray<double>> leaving(const Tracing& tracing, std::size_t depth) {
 
 TEST(Slab, LightLeavesParallelAndShifted) {
   covers("R18 D4");
-  Tracing tracing(one_body("[{'type': 'box', 'min': [-50, -50, -0.5], 'max': [50, 50, 0.5]}]", 1.5), depth(2));
+  Tracing tracing(one_body("[{'type': 'box', 'min': [-50, -50, -0.5], 'max': [50, 50, 0.5]}]", 1.5),
+                  depth(2));
   for (const double degrees : {10.0, 30.0, 60.0, 80.0}) {
     const double sine = std::sin(degrees * kRadians), cosine = std::cos(degrees * kRadians);
     const Ray<double> in{Vec3d(0, 0, 0.5) - Vec3d(sine, 0, -cosine) * 3, Vec3d(sine, 0, -cosine)};
@@ -66,18 +69,23 @@ TEST(Prism, DeviatesLeastWhereTheWayIsSymmetric) {
   covers("R19");
   // An equilateral prism along y; its edge is up at z = sqrt 3, its base lies in z = 0.
   const double edge = std::sqrt(3.0);
-  Json mesh = json("{'type': 'mesh', 'indices': [[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4], [2, 0, 5], [0, 3, 5], [0, 2, 1], [3, 4, 5]]}");
+  Json mesh = json(
+      "{'type': 'mesh', 'indices': [[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4], [2, 0, 5], [0, 3, 5], [0, 2, "
+      "1], [3, 4, 5]]}");
   for (const double y : {-5.0, 5.0})
-    for (const Vec3d& corner : {Vec3d(-1, y, 0), Vec3d(0, y, edge), Vec3d(1, y, 0)}) mesh["positions"].push_back(numbers(corner));
+    for (const Vec3d& corner : {Vec3d(-1, y, 0), Vec3d(0, y, edge), Vec3d(1, y, 0)})
+      mesh["positions"].push_back(numbers(corner));
   Tracing tracing(one_body(Json::array({mesh}).dump().c_str(), 1.5), depth(2));
   const auto deviation = [&](double incidence_degrees) {
-    // Enters the left face, whose inward normal is 30 degrees below +x, in its middle, and runs along the base.
+    // Enters the left face, whose inward normal is 30 degrees below +x, in its middle, and runs along the
+    // base.
     const double a = (incidence_degrees - 30) * kRadians;
     const Vec3d direction(std::cos(a), 0, std::sin(a)), middle(-0.5, 0.1, edge / 2);
     const Ray<double> in{middle - direction * 2, direction};
     tracing.trace(in);
     for (const auto& ray : tracing.rays().at(2))
-      if (ray.origin.x > 0 && ray.direction.x * std::cos(30 * kRadians) + ray.direction.z * std::sin(30 * kRadians) > 0)
+      if (ray.origin.x > 0 &&
+          ray.direction.x * std::cos(30 * kRadians) + ray.direction.z * std::sin(30 * kRadians) > 0)
         return angle_between(in.direction, ray.direction);
     return -1.0;
   };
@@ -109,7 +117,8 @@ TEST(BallLens, CrossesTheAxisWhereItShould) {
   const auto crossing = [&](double h) {
     tracing.trace(Ray<double>{{h, 0, 5}, {0, 0, -1}});
     const auto out = leaving(tracing, 2);
-    return out.size() == 1 ? -(out[0].origin.z - out[0].origin.x * out[0].direction.z / out[0].direction.x) : -1.0;
+    return out.size() == 1 ? -(out[0].origin.z - out[0].origin.x * out[0].direction.z / out[0].direction.x)
+                           : -1.0;
   };
   EXPECT_NEAR(crossing(1e-5), 1.5, 1e-9);
   EXPECT_NEAR(crossing(.5), 1.3915729, 5e-8);
@@ -133,10 +142,13 @@ TEST(CornerReflector, ReturnsEveryRayTheWayItCame) {
   covers("R23");
   Tracing tracing(scene_of(R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [1, 0, 0]},
                                {'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},
-                               {'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}])", kMirror), depth(5));
+                               {'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}])",
+                           kMirror),
+                  depth(5));
   Random random(1);
   for (int i = 0; i < 2'000; ++i) {
-    const Vec3d direction = safe_normalize(Vec3d(-random.between(0.1, 1), -random.between(0.1, 1), -random.between(0.1, 1)));
+    const Vec3d direction =
+        safe_normalize(Vec3d(-random.between(0.1, 1), -random.between(0.1, 1), -random.between(0.1, 1)));
     tracing.trace(Ray<double>{{random.between(1, 2), random.between(1, 2), random.between(1, 2)}, direction});
     ASSERT_EQ(tracing.rays().size(), 4u);
     EXPECT_LE(max_component(abs(tracing.rays()[3][0].direction + direction)), 1e-14);
@@ -148,11 +160,14 @@ TEST(WaterSurface, ShowsTheSkyInAWindow) {
   covers("R25");
   Json scene = one_body("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", 1.333);
   scene["materials"]["black"] = {{"type", "rough"}, {"kd", 0}};
-  scene["objects"].push_back(json("{'type': 'plane', 'point': [0, 0, -10], 'normal': [0, 0, 1], 'material': 'black'}"));
+  scene["objects"].push_back(
+      json("{'type': 'plane', 'point': [0, 0, -10], 'normal': [0, 0, 1], 'material': 'black'}"));
   scene["background"] = {1, 1, 1};
   Tracing tracing(scene, depth(4));
   const auto sky = [&](double degrees) {
-    return tracing.trace(Ray<double>{{0, 0, -1}, {std::sin(degrees * kRadians), 0, std::cos(degrees * kRadians)}}).radiance.x;
+    return tracing
+        .trace(Ray<double>{{0, 0, -1}, {std::sin(degrees * kRadians), 0, std::cos(degrees * kRadians)}})
+        .radiance.x;
   };
   double lowest = 20, highest = 80;
   for (int i = 0; i < 50; ++i) {
@@ -161,7 +176,8 @@ TEST(WaterSurface, ShowsTheSkyInAWindow) {
   }
   EXPECT_NEAR(lowest, 48.606626, 5e-7);
   EXPECT_NEAR(sky(0), 1 - std::pow(.333 / 2.333, 2), 1e-12);
-  EXPECT_NEAR(std::pow(std::sin(lowest * kRadians), 2), .562781, 5e-7) << "the window's share of the light that arrives";
+  EXPECT_NEAR(std::pow(std::sin(lowest * kRadians), 2), .562781, 5e-7)
+      << "the window's share of the light that arrives";
 }
 
 }  // namespace

@@ -24,9 +24,12 @@ double index_of(double reflectance) { return (1 + std::sqrt(reflectance)) / (1 -
 // Two mirrors that face each other.
 Json mirrors(double reflectance, double ambient) {
   const double n = reflectance == 1 ? 0 : index_of(reflectance);
-  return scene_with(json("[{'type': 'plane', 'point': [0, 0, -5], 'normal': [0, 0, 1]}, {'type': 'plane', 'point': [0, 0, 5], 'normal': [0, 0, -1]}]"),
-                    Json{{"ambient", {ambient, ambient, ambient}},
-                         {"materials", {{"white", {{"type", "reflective"}, {"kd", nullptr}, {"n", {n, n, n}}, {"k", {0, 0, 0}}}}}}});
+  return scene_with(
+      json("[{'type': 'plane', 'point': [0, 0, -5], 'normal': [0, 0, 1]}, {'type': 'plane', 'point': [0, 0, "
+           "5], 'normal': [0, 0, -1]}]"),
+      Json{{"ambient", {ambient, ambient, ambient}},
+           {"materials",
+            {{"white", {{"type", "reflective"}, {"kd", nullptr}, {"n", {n, n, n}}, {"k", {0, 0, 0}}}}}}});
 }
 constexpr auto kUpright = [] { return Ray<double>{{0, 0, 0}, {0, 0, -1}}; };
 
@@ -34,15 +37,19 @@ constexpr auto kUpright = [] { return Ray<double>{{0, 0, 0}, {0, 0, -1}}; };
 Json slabs(int count, double reflectance) {
   Json objects = json("[{'type': 'plane', 'point': [0, 0, 9], 'normal': [0, 0, -1], 'material': 'black'}]");
   for (int i = 0; i < count; ++i)
-    objects.push_back({{"type", "box"}, {"min", {-50, -50, -2 * i - 1}}, {"max", {50, 50, -2 * i}}, {"material", "glass"}});
-  return scene_with(objects, Json{{"materials", {{"glass", {{"type", "refractive"}, {"ior", index_of(reflectance)}, {"fresnel", "exact"}}},
-                                                 {"black", {{"type", "rough"}, {"kd", 0}}}}},
-                                  {"background", {1, 1, 1}}});
+    objects.push_back(
+        {{"type", "box"}, {"min", {-50, -50, -2 * i - 1}}, {"max", {50, 50, -2 * i}}, {"material", "glass"}});
+  return scene_with(
+      objects,
+      Json{{"materials",
+            {{"glass", {{"type", "refractive"}, {"ior", index_of(reflectance)}, {"fresnel", "exact"}}},
+             {"black", {{"type", "rough"}, {"kd", 0}}}}},
+           {"background", {1, 1, 1}}});
 }
 const Ray<double> kDown{{0, 0, 5}, {0, 0, -1}};
 
-// Between mirrors of .9 at depth 5, .53 of the light is left out; of .99 at depth 10, .90. The ledger says so, and
-// ambient light stands in for it.
+// Between mirrors of .9 at depth 5, .53 of the light is left out; of .99 at depth 10, .90. The ledger says
+// so, and ambient light stands in for it.
 TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
   covers("E1");
   for (const auto& [reflectance, depth] : {std::pair{.5, 5}, {.9, 5}, {.99, 10}, {.9, 32}}) {
@@ -57,7 +64,11 @@ TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
 
 TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
   covers("E4");
-  const Picture picture = render(mirrors(1, 0), [] { RenderRequest r = limits(32); r.width = r.height = 32; return r; }());
+  const Picture picture = render(mirrors(1, 0), [] {
+    RenderRequest r = limits(32);
+    r.width = r.height = 32;
+    return r;
+  }());
   const RayCounts& rays = picture.stats.counts.rays;
   EXPECT_EQ(rays.camera, 1024u);
   for (std::size_t depth = 1; depth <= 32; ++depth) EXPECT_EQ(rays.reflected[depth], 1024u);
@@ -67,9 +78,9 @@ TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
   EXPECT_EQ(picture.stats.non_finite_pixels, 0u);
 }
 
-// At a threshold of 1/255 a tree that splits evenly ends everywhere at depth 8, where every branch carries 1/256.
-// The ledger knows: the picture is off by no more than the sum of the branches. With all of its four surfaces
-// mirroring half, two slabs let 1/5 through.
+// At a threshold of 1/255 a tree that splits evenly ends everywhere at depth 8, where every branch carries
+// 1/256. The ledger knows: the picture is off by no more than the sum of the branches. With all of its four
+// surfaces mirroring half, two slabs let 1/5 through.
 TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
   covers("E2");
   const Answer coarse = Tracing(slabs(2, .5), limits(32, 1.0 / 255)).trace(kDown);
@@ -80,7 +91,8 @@ TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
   EXPECT_LT(fine.cut, coarse.cut / 5);
 }
 
-// One strong branch: .9 mirrored at each surface of a slab. Without a threshold the error is that of the depth alone.
+// One strong branch: .9 mirrored at each surface of a slab. Without a threshold the error is that of the
+// depth alone.
 TEST(Threshold, NoneIsTheDefaultAndCostsNothingOfASingleBranch) {
   covers("E3");
   EXPECT_EQ(load(slabs(1, .9))->render.min_contribution, 0);
@@ -112,8 +124,8 @@ TEST(Threshold, IsMetRayByRay) {
   }
 }
 
-// The tree of rays at most doubles from one depth to the next where each surface sends two on; it does not grow
-// with the number of objects.
+// The tree of rays at most doubles from one depth to the next where each surface sends two on; it does not
+// grow with the number of objects.
 TEST(Growth, IsByBranchesAndNotByObjects) {
   Tracing tracing(slabs(3, .3), limits(10));
   tracing.trace(kDown);
@@ -127,29 +139,42 @@ TEST(Growth, IsByBranchesAndNotByObjects) {
   }
   Json crowded = slabs(3, .3);
   for (int i = 0; i < 100; ++i)  // out of everybody's way
-    crowded["objects"].push_back({{"type", "sphere"}, {"center", {200 + 3 * i, 0, 0}}, {"radius", 1}, {"material", "black"}});
+    crowded["objects"].push_back(
+        {{"type", "sphere"}, {"center", {200 + 3 * i, 0, 0}}, {"radius", 1}, {"material", "black"}});
   Tracing among(crowded, limits(10));
   among.trace(kDown);
   EXPECT_EQ(among.counts().rays.total(), rays.total());
 }
 
-// (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays where it hits a surface that light sources
-// light. Rough surfaces end the path here and mirrors are lit by nothing but what they mirror, so d is 1 without
-// mirrors; behind k mirrors the pixel costs k + 1 rays and m shadow rays.
+// (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays where it hits a surface that light
+// sources light. Rough surfaces end the path here and mirrors are lit by nothing but what they mirror, so d
+// is 1 without mirrors; behind k mirrors the pixel costs k + 1 rays and m shadow rays.
 TEST(Growth, CountersObeyTheLawOfTheSlides) {
   const auto counts = [](int mirrors_on_the_way, int lights) {
-    Json scene = json("{'version': 1, 'camera': {'type': 'orthographic', 'eye': [0, 0, 0], 'look_at': [0, 0, -1], 'height': 1}}");
-    scene["materials"] = json("{'silver': {'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 4, 4]}, 'paint': {'type': 'rough'}}");
+    Json scene = json(
+        "{'version': 1, 'camera': {'type': 'orthographic', 'eye': [0, 0, 0], 'look_at': [0, 0, -1], "
+        "'height': 1}}");
+    scene["materials"] = json(
+        "{'silver': {'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 4, 4]}, 'paint': {'type': "
+        "'rough'}}");
     // A periscope: each mirror turns the view upright or level again, and a wall of paint stands at its end.
     Vec3d at(0, 0, 0), direction(0, 0, -1);
     for (int i = 0; i < mirrors_on_the_way; ++i) {
       const Vec3d turned = direction.z != 0 ? Vec3d(0, 1, 0) : Vec3d(0, 0, -1);
       at = at + direction * 10;
-      scene["objects"].push_back({{"type", "disk"}, {"center", numbers(at)}, {"normal", numbers(turned - direction)}, {"radius", 3}, {"material", "silver"}});
+      scene["objects"].push_back({{"type", "disk"},
+                                  {"center", numbers(at)},
+                                  {"normal", numbers(turned - direction)},
+                                  {"radius", 3},
+                                  {"material", "silver"}});
       direction = turned;
     }
     at = at + direction * 10;
-    scene["objects"].push_back({{"type", "disk"}, {"center", numbers(at)}, {"normal", numbers(-direction)}, {"radius", 3}, {"material", "paint"}});
+    scene["objects"].push_back({{"type", "disk"},
+                                {"center", numbers(at)},
+                                {"normal", numbers(-direction)},
+                                {"radius", 3},
+                                {"material", "paint"}});
     for (int i = 0; i < lights; ++i)
       scene["lights"].push_back({{"type", "point"}, {"position", numbers(at - direction * (2 + i))}});
     RenderRequest request = limits(8);
@@ -166,7 +191,8 @@ TEST(Growth, CountersObeyTheLawOfTheSlides) {
       const auto k = static_cast<std::size_t>(mirrors_on_the_way);
       EXPECT_EQ(rays.total(), (k + 1 + static_cast<std::uint64_t>(lights)) * kPixels);
       for (std::size_t depth = 1; depth <= k; ++depth) EXPECT_EQ(rays.reflected[depth], kPixels);
-      EXPECT_EQ(rays.shadow[k], static_cast<std::uint64_t>(lights) * kPixels) << "counted at the depth that sent them";
+      EXPECT_EQ(rays.shadow[k], static_cast<std::uint64_t>(lights) * kPixels)
+          << "counted at the depth that sent them";
     }
   }
 }

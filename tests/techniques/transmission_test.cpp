@@ -21,11 +21,17 @@ RenderRequest depth(int max_depth) {
 
 // A slab of glass between z = -1/2 and 1/2. The sky is 1 below it and 0 above (a black plane hangs there).
 Json slab(double filter = 1) {
-  return scene_with(json(R"([{'type': 'box', 'min': [-90, -90, -0.5], 'max': [90, 90, 0.5], 'material': 'glass'},
+  return scene_with(
+      json(R"([{'type': 'box', 'min': [-90, -90, -0.5], 'max': [90, 90, 0.5], 'material': 'glass'},
                              {'type': 'plane', 'point': [0, 0, 9], 'normal': [0, 0, -1], 'material': 'black'}])"),
-                    Json{{"materials", {{"glass", {{"type", "refractive"}, {"ior", 1.5}, {"fresnel", "exact"}, {"filter", {filter, filter, filter}}}},
-                                        {"black", {{"type", "rough"}, {"kd", 0}}}}},
-                         {"background", {1, 1, 1}}});
+      Json{{"materials",
+            {{"glass",
+              {{"type", "refractive"},
+               {"ior", 1.5},
+               {"fresnel", "exact"},
+               {"filter", {filter, filter, filter}}}},
+             {"black", {{"type", "rough"}, {"kd", 0}}}}},
+           {"background", {1, 1, 1}}});
 }
 Ray<double> slanted(double degrees) {
   const Vec3d direction(std::sin(degrees * kRadians), 0, -std::cos(degrees * kRadians));
@@ -75,26 +81,34 @@ TEST(Ball, WeakensByTheChord) {
   covers("R24");
   const double sigma = .5;
   Json scene = scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'fog'}]"),
-                          Json{{"materials", {{"fog", {{"type", "refractive"}, {"ior", 1}, {"fresnel", "exact"},
-                                                       {"filter", {std::exp(-sigma), 1, std::exp(-2 * sigma)}}}}}},
+                          Json{{"materials",
+                                {{"fog",
+                                  {{"type", "refractive"},
+                                   {"ior", 1},
+                                   {"fresnel", "exact"},
+                                   {"filter", {std::exp(-sigma), 1, std::exp(-2 * sigma)}}}}}},
                                {"background", {1, 1, 1}}});
   Tracing tracing(scene, depth(5));
   const Vec3d centre = tracing.trace(Ray<double>{{0, 0, 5}, {0, 0, -1}}).radiance;
   EXPECT_NEAR(centre.x, .36787944117144, 1e-12);
   EXPECT_NEAR(centre.y, 1, 1e-12);
   EXPECT_NEAR(centre.z, std::exp(-4 * sigma), 1e-12);
-  EXPECT_NEAR(tracing.trace(Ray<double>{{.6, 0, 5}, {0, 0, -1}}).radiance.x, std::exp(-2 * sigma * .8), 1e-12);
+  EXPECT_NEAR(tracing.trace(Ray<double>{{.6, 0, 5}, {0, 0, -1}}).radiance.x, std::exp(-2 * sigma * .8),
+              1e-12);
 }
 
 // Lossless glass of any closed shape under a sky of 1 is invisible, however light finds its way.
 TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
   covers("R3 D11");
-  for (const char* object : {"{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}", "{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}",
+  for (const char* object : {"{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}",
+                             "{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}",
                              "{'type': 'cylinder', 'base': [0, -1, 0], 'top': [0, 1, 0], 'radius': 0.7}"})
     for (const char* fresnel : {"schlick", "exact"})
       for (const double ior : {1.1, 1.5, 2.417, 0.7}) {
-        const Json materials{{"white", {{"type", "refractive"}, {"kd", nullptr}, {"ior", ior}, {"fresnel", fresnel}}}};
-        const Json scene = scene_with(json(object), Json{{"materials", materials}, {"background", {1, 1, 1}}});
+        const Json materials{
+            {"white", {{"type", "refractive"}, {"kd", nullptr}, {"ior", ior}, {"fresnel", fresnel}}}};
+        const Json scene =
+            scene_with(json(object), Json{{"materials", materials}, {"background", {1, 1, 1}}});
         Json lit = scene;
         lit["ambient"] = {1, 1, 1};  // stands in for the rays that are cut
         RenderRequest request = depth(12);
@@ -106,17 +120,20 @@ TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
           const Vec3d direction = random.direction();
           rays.push_back({random.in_cube(0.9) - direction * 5, direction});
         }
-        for (const Answer& answer : dark.trace(rays)) EXPECT_NEAR(answer.radiance.x + answer.cut, 1, 1e-12) << object << ior;
-        for (const Answer& answer : even.trace(rays)) EXPECT_NEAR(answer.radiance.x, 1, 1e-12) << object << ior;
+        for (const Answer& answer : dark.trace(rays))
+          EXPECT_NEAR(answer.radiance.x + answer.cut, 1, 1e-12) << object << ior;
+        for (const Answer& answer : even.trace(rays))
+          EXPECT_NEAR(answer.radiance.x, 1, 1e-12) << object << ior;
       }
 }
 
-// The mean over the disc of a ball falls short by 7.3 % without internal reflections, by 1.15 % with one and by
-// .081 % with four; the ledger says so exactly.
+// The mean over the disc of a ball falls short by 7.3 % without internal reflections, by 1.15 % with one and
+// by .081 % with four; the ledger says so exactly.
 TEST(Furnace, BallFallsShortByWhatItsDepthLeavesOut) {
   covers("D11");
-  const Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
-                              R"({'background': [1, 1, 1], 'materials': {'white': {'type': 'refractive', 'kd': null, 'ior': 1.5, 'fresnel': 'exact'}}})");
+  const Json scene = scene_of(
+      "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
+      R"({'background': [1, 1, 1], 'materials': {'white': {'type': 'refractive', 'kd': null, 'ior': 1.5, 'fresnel': 'exact'}}})");
   const auto shortfall = [&](int internal_reflections) {
     Tracing tracing(scene, depth(internal_reflections + 2));
     std::vector<Ray<double>> rays;

@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/image/files.h"
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+
+// Pictures as they were: tests/golden/<scene>.png, compared byte by byte. When a change is meant,
+//   ORRERY_UPDATE_GOLDEN=1 script/test render
+// writes them anew; look at every one that changed before it is kept.
+namespace orrery::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image picture_of(const std::string& name) {
+  const auto scene = load(sample(name));
+  RenderRequest request = size(128, 96);
+  request.samples = 4;
+  return std::move(
+      render_frame(PreparedScene(scene), make_plan(*scene, request), PixelFormat::srgb8, shared_pool())
+          .image);
+}
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Golden : public testing::TestWithParam<std::string> {};
+
+TEST_P(Golden, PictureIsAsItWas) {
+  const fs::path file = fs::path("tests/golden") / (GetParam() + ".png");
+  const Image now = picture_of(GetParam());
+  if (std::getenv("ORRERY_UPDATE_GOLDEN")) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << encode_png(now, {.level = 9});
+    GTEST_SKIP() << "written anew: " << file;
+  }
+  const std::string bytes = read(file);
+  ASSERT_FALSE(bytes.empty()) << file << " is missing: see the head of this test";
+  const Image then = decode_image(std::as_bytes(std::span(bytes)));
+  ASSERT_EQ(then.width(), now.width());
+  ASSERT_EQ(then.height(), now.height());
+  int differing = 0, largest = 0;
+  for (std::size_t i = 0; i < now.bytes().size(); ++i) {
+    const int difference = std::abs(static_cast<int>(now.bytes()[i]) - static_cast<int>(then.bytes()[i]));
+    differing += difference > 0;
+    largest = std::max(largest, difference);
+  }
+  EXPECT_EQ(differing, 0) << "bytes differ, by " << largest << " at most";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Golden,
+                         testing::Values("paper", "glass", "mirrors", "light-many", "material-reflective",
+                                         "shape-mesh", "shape-infinite-cylinder"),
+                         by_name);
+
+}  // namespace
+}  // namespace orrery::test
