@@ -54,8 +54,8 @@ template <class T>
 // Lanes that may enter `box` at a distance in [0, t_max]; conservative: a ray that touches it is never lost.
 // Near and far planes are chosen by the sign bit of the direction; a NaN (0 * infinity, a ray in the plane of
 // a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray Traversal",
-// JCGT 2013), and so does t_max: what lies in the box may be as near as the hit so far, or nearer by rounding.
-// `inverse` is 1 / direction, infinite where that is 0.
+// JCGT 2013), and so does t_max: what lies in the box may be as near as the hit so far, or nearer by
+// rounding. `inverse` is 1 / direction, infinite where that is 0.
 template <class N>
 [[gnu::always_inline]] inline MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin,
                                                const Vec3<N>& inverse, const N& t_max) {

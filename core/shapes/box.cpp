@@ -47,7 +47,8 @@ struct Box {
     slab(lo.z, hi.z, ray.origin.z, ray.direction.z);
     const N t = select(enter > N(T(0)), enter, leave);
     const Vec3<N> sum = ray.origin + ray.direction;
-    const N whole = sum.x + sum.y + sum.z;  // NaN if the ray itself holds one, which must not lose: it is no ray
+    const N whole =
+        sum.x + sum.y + sum.z;  // NaN if the ray itself holds one, which must not lose: it is no ray
     return select(enter <= leave && t > N(T(0)) && whole == whole, t, infinity);
   }
 
