@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "core/math/lanes.h"
@@ -30,6 +31,14 @@ struct Bounds {
   // Largest absolute coordinate.
   T magnitude() const { return std::max(max_component(abs(lo)), max_component(abs(hi))); }
 
+  static Bounds of(std::initializer_list<Vec3<T>> points) {
+    Bounds b;
+    for (const Vec3<T>& p : points) b.include(p);
+    return b;
+  }
+  static Bounds around(const Vec3<T>& center, const Vec3<T>& half) {
+    return of({center - half, center + half});
+  }
   static Bounds everything() {
     Bounds b;
     b.lo = Vec3<T>(-std::numeric_limits<T>::infinity());

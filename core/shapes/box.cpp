@@ -16,18 +16,10 @@ struct Box {
     const Vec3d hi = p.point("max", "Corner with the largest coordinates, in metres.");
     if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
       p.fail("max", "expected every coordinate to be larger than that of min");
-    Boundsd b;
-    b.include(lo);
-    b.include(hi);
-    out.push_back({lo, hi, b.magnitude()});
+    out.push_back({lo, hi, Boundsd::of({lo, hi}).magnitude()});
   }
 
-  Boundsd bounds() const {
-    Boundsd b;
-    b.include(lo);
-    b.include(hi);
-    return b;
-  }
+  Boundsd bounds() const { return Boundsd::of({lo, hi}); }
 
   // The nearer face ahead of the origin: of the interval inside all three slabs, the entry, or from within
   // the exit. A ray in the plane of a face gives NaN there (0 * infinity), which loses against the other

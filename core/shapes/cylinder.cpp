@@ -35,11 +35,7 @@ struct Cylinder {
     const auto reach = [&](double a) {
       return std::abs(a) * half_length + radius * std::sqrt(std::max(0.0, 1 - a * a));
     };
-    const Vec3d half(reach(axis.x), reach(axis.y), reach(axis.z));
-    Boundsd b;
-    b.include(center - half);
-    b.include(center + half);
-    return b;
+    return Boundsd::around(center, {reach(axis.x), reach(axis.y), reach(axis.z)});
   }
 
   // A capped cylinder is where an infinite one and a slab overlap: the hit is the entry into that interval,

@@ -21,11 +21,7 @@ struct Disk {
 
   Boundsd bounds() const {
     const auto reach = [&](double n) { return radius * std::sqrt(std::max(0.0, 1 - n * n)); };
-    const Vec3d half(reach(normal.x), reach(normal.y), reach(normal.z));
-    Boundsd b;
-    b.include(center - half);
-    b.include(center + half);
-    return b;
+    return Boundsd::around(center, {reach(normal.x), reach(normal.y), reach(normal.z)});
   }
 
   N distance(const Ray<N>& ray) const {

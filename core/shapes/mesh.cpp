@@ -48,11 +48,7 @@ struct MeshTriangle {
     }
   }
 
-  Boundsd bounds() const {
-    Boundsd box;
-    for (const Vec3d& vertex : {a, b, c}) box.include(vertex);
-    return box;
-  }
+  Boundsd bounds() const { return Boundsd::of({a, b, c}); }
 
   N distance(const Ray<N>& ray) const { return intersect_triangle(ray, a, b, c).t; }
 

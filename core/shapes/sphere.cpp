@@ -18,12 +18,7 @@ struct Sphere {
     out.push_back({center, radius, max_component(abs(center)) + radius});
   }
 
-  Boundsd bounds() const {
-    Boundsd b;
-    b.include(center - Vec3d(radius));
-    b.include(center + Vec3d(radius));
-    return b;
-  }
+  Boundsd bounds() const { return Boundsd::around(center, Vec3d(radius)); }
 
   // The discriminant is taken from the part of origin - centre perpendicular to the ray, and the constant
   // term as a product: neither cancels when the origin is far away or close to a huge sphere (Haines,

@@ -19,16 +19,10 @@ struct Triangle {
     v.resize(3);
     const Vec3d normal = safe_normalize(cross(v[1] - v[0], v[2] - v[0]));
     if (normal == Vec3d()) p.fail("vertices", "expected three vertices that are not on one line");
-    Boundsd b;
-    for (const Vec3d& vertex : v) b.include(vertex);
-    out.push_back({v[0], v[1], v[2], normal, b.magnitude()});
+    out.push_back({v[0], v[1], v[2], normal, Boundsd::of({v[0], v[1], v[2]}).magnitude()});
   }
 
-  Boundsd bounds() const {
-    Boundsd box;
-    for (const Vec3d& vertex : {a, b, c}) box.include(vertex);
-    return box;
-  }
+  Boundsd bounds() const { return Boundsd::of({a, b, c}); }
 
   N distance(const Ray<N>& ray) const { return intersect_triangle(ray, a, b, c).t; }
 
