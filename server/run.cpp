@@ -77,7 +77,9 @@ int run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return app.exit(error) == 0 ? kDone : kBadInput;
     }
-    return run_chosen(commands);
+    const int status = run_chosen(commands);
+    if (!std::cout.flush()) return fail(kFailed, "cannot write to standard output");
+    return status;
   } catch (const std::exception& error) {
     return fail(kFailed, error.what());
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "core/model/counts.h"
 #include "core/model/plan.h"
 #include "core/model/world.h"
@@ -18,8 +20,10 @@ template <class T>
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  // Follows the camera rays to the end. Slots of inactive rays get the background.
-  virtual void trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts) = 0;
+  // Follows the camera rays to the end. Slots of inactive rays get the background. `stop` (if there is one)
+  // is asked now and then; once it says yes the rest is left, the result means nothing and false is returned.
+  virtual bool trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
+                     const std::function<bool()>& stop = {}) = 0;
 };
 
 template <class T>

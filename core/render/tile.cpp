@@ -21,7 +21,8 @@ void TileRenderer<T>::render(int x0, int y0, const std::function<bool()>& stop, 
     if (stopped_) return;
     if (plan_.samples > 1) place_samples(x0, y0, sample);
     generate_rays(plan_.camera, plan_.width, plan_.height, x0, y0, samples_, rays_);
-    tracer_->trace(rays_, result_, stats_.counts);
+    stopped_ = !tracer_->trace(rays_, result_, stats_.counts, stop);
+    if (stopped_) return;
     if (plan_.samples > 1) add_sample();
   }
   take_mean();

@@ -14,8 +14,8 @@ class TileRenderer {
  public:
   TileRenderer(const World<T>& world, const Plan& plan);
 
-  // Sets the pixels of the tile whose first pixel is (x0, y0). Asks `stop` (if there is one) before each
-  // sample after the first; once it says yes the tile is left unfinished and stopped() is true.
+  // Sets the pixels of the tile whose first pixel is (x0, y0). Asks `stop` (if there is one) now and then;
+  // once it says yes the tile is left unfinished and stopped() is true.
   void render(int x0, int y0, const std::function<bool()>& stop, Image& image);
   bool stopped() const { return stopped_; }
 

@@ -7,7 +7,8 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
     : world_(world), plan_(plan), stage_(std::make_unique<Stage>()) {}
 
 template <class T>
-void Wavefront<T>::trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts) {
+bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
+                         const std::function<bool()>& stop) {
   out_ = &out;
   counts_ = &counts;
   const Groups all = Groups::covering(0, kBatch, kWidth<T>);
@@ -19,12 +20,18 @@ void Wavefront<T>::trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, Tr
   for (int i = 0; i < kBatch; ++i) camera->slot[i] = static_cast<IndexOf<T>>(i);
   for (const int i : all) camera->throughput.put(i, Vec3<N>(N(T(1))));
   waiting_.push_back(std::move(camera));
-  while (!waiting_.empty()) {
+  constexpr int kAskEvery = 16;  // batches: a tree of glass in glass can grow to billions of rays
+  for (int batches = 1; !waiting_.empty(); ++batches) {
     auto batch = std::move(waiting_.back());
     waiting_.pop_back();
     run(*batch);
     spare_.push_back(std::move(batch));
+    if (batches % kAskEvery == 0 && stop && stop()) {
+      waiting_.clear();
+      return false;
+    }
   }
+  return true;
 }
 
 template <class T>

@@ -17,7 +17,8 @@ class Wavefront : public Tracer<T> {
   using N = Lanes<T>;
 
   Wavefront(const World<T>& world, const Plan& plan);
-  void trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts) final;
+  bool trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
+             const std::function<bool()>& stop) final;
 
  protected:
   // What the current batch met, for scatter(). Groups name the registers with a specular surface.

@@ -129,8 +129,8 @@ class Turn {
   FileFormat format_;
   double step_ = 0;
   RenderRequest request_;
-  SignalWatch signals_;  // before the pool, whose threads leave the signals to it
   PreparedScene scene_;
+  SignalWatch signals_;  // after reading the scene, before the pool, whose threads leave the signals to it
   WorkerPool pool_;
 };
 

@@ -38,11 +38,11 @@ RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, 
 int render(const Options& options) {
   const FileFormat format = options.output.empty() ? FileFormat::png : format_of(options.output);
   const RenderRequest request = read_render_flags(options.render);
-  const SignalWatch signals;
   RunStats stats;
   auto start = Clock::now();
   const PreparedScene scene(load_scene_file(options.scene));
   stats.load_ms = milliseconds_since(start);
+  const SignalWatch signals;  // after reading, which a signal ends as it would any program
   const Plan plan = plan_for(scene.scene(), request);
   WorkerPool pool(options.threads);
   stats.threads = pool.threads();

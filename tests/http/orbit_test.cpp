@@ -166,7 +166,9 @@ TEST_F(OrbitStream, SlowViewerMissesFramesAndTheFastOneNone) {
 
 TEST_F(OrbitStream, SlowViewerAloneIsShownWhatIsDueNow) {
   const SlowViewer slow(daemon().port(), path(kLargeFrames));
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // longer than the orbit
+  std::this_thread::sleep_for(std::chrono::milliseconds(1300));  // longer than the orbit
+  ASSERT_TRUE(daemon().wait_until_idle());  // where rendering is slow: until none is taken
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // 10 frames are due meanwhile
   expect_some_skipped(slow.receive());
 }
 
