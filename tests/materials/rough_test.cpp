@@ -78,6 +78,8 @@ TEST(Highlight, HasNoNumberlessCorner) {
     under.light = safe_normalize(Vec3d(.8, -.01, 0));
     under.direction = -safe_normalize(Vec3d(-1, .1, 0));
     EXPECT_EQ(of(shading, 50).reflected(under).x, 0);
+    // Seen from below an interpolated normal, lit from above it: no highlight either.
+    EXPECT_EQ(of(shading, 2).reflected(lit_from(10, 95)).x, 0) << shading;
     // Light exactly opposite to the viewer: the half vector has no direction.
     for (const double degrees : {-90.0, 0.0, 90.0}) {
       Case opposite = lit_from(degrees, 0);

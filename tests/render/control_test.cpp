@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/load/load.h"
 #include "tests/support/pictures.h"
 
 // What a caller may do to a render while it runs, and several renders at once.
@@ -42,6 +43,26 @@ TEST(Control, StopEndsTheRenderAtOnce) {
       render_frame(prepared, make_plan(*paper(), request), PixelFormat::srgb8, shared_pool(), control),
       Cancelled);
   EXPECT_LT(asked, 100) << "tiles were begun after the stop";
+}
+
+// Glass among glass: the tree of one camera ray can grow to billions, so a stop must not wait for its end.
+TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
+  std::string spheres;
+  for (int i = 0; i < 27; ++i)
+    spheres += std::string(i ? "," : "") + R"({"type":"sphere","material":"glass","radius":0.49,"center":[)" +
+               std::to_string(i % 3 - 1) + "," + std::to_string(i / 3 % 3 - 1) + "," +
+               std::to_string(i / 9 - 1) + "]}";
+  const auto scene =
+      load_scene(R"({"version":1,"camera":{"type":"perspective","eye":[3,2,4],"look_at":[0,0,0]},
+      "materials":{"glass":{"type":"refractive","ior":1.5}},"render":{"max_depth":32},"objects":[)" +
+                 spheres + "]}");
+  std::atomic<int> asked = 0;
+  RenderControl control;
+  control.stop = [&] { return ++asked > 3; };  // the one tile, then within its tree
+  EXPECT_THROW(render_frame(PreparedScene(scene), make_plan(*scene, size(8, 8)), PixelFormat::srgb8,
+                            shared_pool(), control),
+               Cancelled);
+  EXPECT_LT(asked, 10);
 }
 
 TEST(Control, AStoppedRenderLeavesTheNextOneWhole) {
