@@ -29,6 +29,7 @@ struct WorkerPool::Parts {
 WorkerPool::WorkerPool(int threads) : parts_(std::make_unique<Parts>(threads)) {}
 WorkerPool::~WorkerPool() = default;
 int WorkerPool::threads() const { return parts_->arena.max_concurrency(); }
+void WorkerPool::enqueue(std::function<void()> task) { parts_->arena.enqueue(std::move(task)); }
 
 namespace {
 

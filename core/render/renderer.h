@@ -36,6 +36,9 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   int threads() const;
 
+  // Has `task` done by one of the threads, soon. It must not throw and must not wait.
+  void enqueue(std::function<void()> task);
+
   struct Parts;
   Parts& parts() const { return *parts_; }
 

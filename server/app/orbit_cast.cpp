@@ -10,6 +10,7 @@ namespace orrery {
 namespace {
 
 constexpr std::chrono::milliseconds kAsk{20};  // how often those who wait look whether it is still worth it
+constexpr std::int64_t kAhead = 3;             // frames rendered before a mailbox takes the first of them
 
 }  // namespace
 
@@ -38,11 +39,11 @@ void OrbitCast::wake() {
 }
 
 void OrbitCast::run() {
-  const Pipeline pipeline{
-      .next = [this] { return next(); },
-      .render = [this](std::int64_t n) { return render(n); },
-      .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
-      .deliver = [this](std::int64_t n, Frame&& frame) { return deliver(n, std::move(frame)); }};
+  const Pipeline pipeline{.pool = means_.pool,
+                          .next = [this] { return next(); },
+                          .render = [this](std::int64_t n) { return render(n); },
+                          .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
+                          .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
   try {
     pipeline.run();
   } catch (const std::exception&) {
@@ -60,6 +61,10 @@ bool OrbitCast::anyone_wants(std::int64_t number) const {
 bool OrbitCast::anyone_free(std::int64_t number) const {
   return std::any_of(mailboxes_.begin(), mailboxes_.end(),
                      [&](const Mailbox& m) { return m.wants(number) && !m.frame; });
+}
+
+bool OrbitCast::at_end(const Mailbox& mailbox) const {
+  return delivered_ >= mailbox.end || (over_ && finished_.empty());
 }
 
 bool OrbitCast::pointless() const {
@@ -80,9 +85,11 @@ std::optional<std::int64_t> OrbitCast::next() {
       closed_ = true;
       return std::nullopt;
     }
-    if (spec_.fps == 0) return next_++;
     const auto now = Clock::now();
-    if (now < due(next_)) {
+    if (spec_.fps == 0) {
+      if (next_ - delivered_ < kAhead) return next_++;
+      changed_.wait_for(lock, kAsk);
+    } else if (now < due(next_)) {
       changed_.wait_until(lock, due(next_));
     } else if (!anyone_free(next_)) {
       waited = true;
@@ -109,7 +116,7 @@ RenderResult OrbitCast::render(std::int64_t number) {
   return render_frame(*spec_.scene, plan, PixelFormat::srgb8, means_.pool, {.stop = stop, .progress = {}});
 }
 
-bool OrbitCast::deliver(std::int64_t number, Frame&& picture) {
+void OrbitCast::deliver(std::int64_t number, Frame&& picture) {
   const int frame = static_cast<int>(number % spec_.frames);
   const RenderRequest request = spec_.request_of(frame);
   const RenderSettings& own = spec_.scene->scene().render;
@@ -119,30 +126,35 @@ bool OrbitCast::deliver(std::int64_t number, Frame&& picture) {
                                                     .width = request.width.value_or(own.width),
                                                     .height = request.height.value_or(own.height),
                                                     .picture = std::move(picture)});
-  std::unique_lock lock(mutex_);
-  while (spec_.fps == 0 && anyone_wants(number) && !anyone_free(number) && !means_.draining && !means_.ends)
-    changed_.wait_for(lock, kAsk);
-  for (Mailbox& mailbox : mailboxes_) {
-    if (!mailbox.wants(number)) continue;
-    mailbox.frame = shared;
-    mailbox.number = number;
+  const std::lock_guard lock(mutex_);
+  finished_.emplace_back(number, shared);
+  post();
+}
+
+void OrbitCast::post() {
+  for (; !finished_.empty(); finished_.pop_front()) {
+    const auto& [number, frame] = finished_.front();
+    if (spec_.fps == 0 && anyone_wants(number) && !anyone_free(number)) break;
+    for (Mailbox& mailbox : mailboxes_) {
+      if (!mailbox.wants(number)) continue;
+      mailbox.frame = frame;
+      mailbox.number = number;
+    }
+    delivered_ = number + 1;
   }
-  delivered_ = number + 1;
   changed_.notify_all();
-  return true;
 }
 
 OrbitCast::Viewer::~Viewer() {
   const std::lock_guard lock(cast_->mutex_);
   cast_->mailboxes_.erase(mailbox_);
-  cast_->changed_.notify_all();
+  cast_->post();
 }
 
 std::shared_ptr<const OrbitFrame> OrbitCast::Viewer::next(const std::function<bool()>& gone) {
   std::unique_lock lock(cast_->mutex_);
   while (!mailbox_->frame) {
-    const bool all_sent = cast_->delivered_ >= mailbox_->end;
-    if (cast_->over_ || all_sent || cast_->means_.ends) return nullptr;
+    if (cast_->at_end(*mailbox_) || cast_->means_.ends) return nullptr;
     cast_->changed_.wait_for(lock, kAsk);
     lock.unlock();
     const bool left = gone();
@@ -153,8 +165,8 @@ std::shared_ptr<const OrbitFrame> OrbitCast::Viewer::next(const std::function<bo
   mailbox_->frame = nullptr;
   mailbox_->fetched += 1;
   skipped_ = mailbox_->number - mailbox_->begin + 1 - mailbox_->fetched;
-  at_end_ = mailbox_->number + 1 == mailbox_->end || cast_->over_;
-  cast_->changed_.notify_all();
+  cast_->post();
+  at_end_ = !mailbox_->frame && cast_->at_end(*mailbox_);
   return frame;
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <list>
 #include <mutex>
 #include <thread>
@@ -51,17 +52,21 @@ class OrbitCast {
   void run();
   std::optional<std::int64_t> next();
   RenderResult render(std::int64_t number);
-  bool deliver(std::int64_t number, Frame&& frame);
+  bool pointless() const;
+  void deliver(std::int64_t number, Frame&& frame);
+  // Below: with mutex_ held.
+  void post();  // puts finished frames into the mailboxes, as far as they may
   bool anyone_free(std::int64_t number) const;
   bool anyone_wants(std::int64_t number) const;
-  bool pointless() const;
+  bool at_end(const Mailbox& mailbox) const;  // nothing more will be put into it
 
   const OrbitSpec spec_;
   const Means means_;
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
   std::list<Mailbox> mailboxes_;
-  std::int64_t next_ = 0;       // number of the frame to render next
+  std::int64_t next_ = 0;  // number of the frame to render next
+  std::deque<std::pair<std::int64_t, std::shared_ptr<const OrbitFrame>>> finished_;  // not delivered yet
   std::int64_t delivered_ = 0;  // all before it are in the mailboxes or lost
   Clock::time_point start_;     // when frame 0 was due; moves on when rendering is slower than fps
   bool closed_ = false;         // no frames will be rendered any more

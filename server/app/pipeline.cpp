@@ -2,99 +2,103 @@
 
 #include <condition_variable>
 #include <exception>
+#include <map>
+#include <memory>
 #include <mutex>
-#include <thread>
 
 namespace orrery {
 namespace {
 
-struct Rendered {
-  std::int64_t number;
-  RenderResult result;
-  double render_ms;
-};
+constexpr std::int64_t kUnderWay = 3;  // frames in memory at once: one being rendered, two being encoded
 
-// Hands one thing at a time from one thread to another.
-class Handoff {
+// The frames between rendering and delivery. They are encoded at once and end in any order, but leave in the
+// order in which they came.
+class Line {
  public:
-  // Waits until the last thing was taken. False if nothing will be taken any more.
-  bool put(Rendered&& rendered) {
+  explicit Line(const Pipeline& pipeline) : pipeline_(pipeline) {}
+  ~Line() { wait_until_empty(); }
+
+  // Waits until one more frame may be rendered. False if one before failed.
+  bool wait_for_room() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return !slot_ || closed_; });
-    if (closed_) return false;
-    slot_.emplace(std::move(rendered));
-    changed_.notify_all();
-    return true;
+    changed_.wait(lock, [&] { return entered_ - left_ < kUnderWay; });
+    return !error_;
   }
 
-  // Waits for a thing. None once it is closed and empty.
-  std::optional<Rendered> take() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return slot_ || closed_; });
-    std::optional<Rendered> taken = std::move(slot_);
-    slot_.reset();
-    changed_.notify_all();
-    return taken;
+  void enter(std::int64_t number, RenderResult&& rendered, double render_ms) {
+    const std::int64_t place = [&] {
+      const std::lock_guard lock(mutex_);
+      return entered_++;
+    }();
+    const auto shared = std::make_shared<RenderResult>(std::move(rendered));
+    pipeline_.pool.enqueue([this, place, number, shared, render_ms] {
+      Encoded encoded{.number = number, .frame = {}, .error = {}};
+      try {
+        encoded.frame = encode_frame(std::move(*shared), render_ms, pipeline_.encode);
+      } catch (...) {
+        encoded.error = std::current_exception();
+      }
+      leave(place, std::move(encoded));
+    });
   }
 
-  void close() {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-    changed_.notify_all();
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::optional<Rendered> slot_;
-  bool closed_ = false;
-};
-
-// Closes the handoff and waits for the thread at the other end, however the scope is left.
-class Encoding {
- public:
-  Encoding(Handoff& handoff, std::function<void()> work)
-      : handoff_(handoff), thread_([this, work = std::move(work)] {
-          try {
-            work();
-          } catch (...) {
-            error_ = std::current_exception();
-          }
-          handoff_.close();
-        }) {}
-  ~Encoding() { join(); }
-
+  // Waits for all that entered. Throws what the first of them that failed threw.
   void finish() {
-    join();
+    wait_until_empty();
     if (error_) std::rethrow_exception(error_);
   }
 
  private:
-  void join() {
-    handoff_.close();
-    if (thread_.joinable()) thread_.join();
+  struct Encoded {
+    std::int64_t number;
+    Frame frame;
+    std::exception_ptr error;
+  };
+
+  void wait_until_empty() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return entered_ == left_; });
   }
 
-  Handoff& handoff_;
+  void leave(std::int64_t place, Encoded&& encoded) {
+    const std::lock_guard lock(mutex_);
+    waiting_.emplace(place, std::move(encoded));
+    for (; !waiting_.empty() && waiting_.begin()->first == left_; ++left_, waiting_.erase(waiting_.begin()))
+      deliver(std::move(waiting_.begin()->second));
+    changed_.notify_all();
+  }
+
+  void deliver(Encoded&& encoded) {
+    if (error_) return;
+    error_ = encoded.error;
+    if (error_) return;
+    try {
+      pipeline_.deliver(encoded.number, std::move(encoded.frame));
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+  }
+
+  const Pipeline& pipeline_;
+  std::mutex mutex_;  // guards all below
+  std::condition_variable changed_;
+  std::int64_t entered_ = 0, left_ = 0;
+  std::map<std::int64_t, Encoded> waiting_;  // by place in the line, for those before them
   std::exception_ptr error_;
-  std::thread thread_;  // last: it uses the others
 };
 
 }  // namespace
 
 void Pipeline::run() const {
-  Handoff handoff;
-  Encoding encoding(handoff, [&] {
-    while (auto rendered = handoff.take())
-      if (!deliver(rendered->number, encode_frame(std::move(rendered->result), rendered->render_ms, encode)))
-        return;
-  });
-  while (const auto number = next()) {
+  Line line(*this);
+  while (line.wait_for_room()) {
+    const auto number = next();
+    if (!number) break;
     const auto start = Clock::now();
     RenderResult result = render(*number);
-    if (!handoff.put({*number, std::move(result), milliseconds_since(start)})) break;
+    line.enter(*number, std::move(result), milliseconds_since(start));
   }
-  encoding.finish();
+  line.finish();
 }
 
 }  // namespace orrery

@@ -94,6 +94,7 @@ class Turn {
     const auto start = Clock::now();
     const double cpu_before = cpu_seconds();
     const Pipeline pipeline{
+        .pool = pool_,
         .next = [&] { return next < options_.frames ? std::optional(next++) : std::nullopt; },
         .render = [&](std::int64_t n) { return render(n); },
         .encode =
@@ -105,7 +106,6 @@ class Turn {
               if (!options_.discard) write_file(names_.of(n), frame.bytes);
               totals.add(frame);
               bar.update(totals.frames, options_.frames);
-              return true;
             }};
     pipeline.run();
     totals.seconds = milliseconds_since(start) / 1000;
