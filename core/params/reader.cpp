@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/params/json.h"
 #include "core/params/suggest.h"
@@ -11,6 +12,21 @@ namespace orrery {
 namespace {
 
 using nlohmann::json;
+
+// The value, if it is a whole number: 3 or 3.0. A double would round those above 2^53, so they are not looked
+// at as one.
+std::optional<std::int64_t> integer_of(const json& value) {
+  constexpr double kExact = 9007199254740992.0;  // 2^53
+  if (value.is_number_float()) {
+    const double x = value.get<double>();
+    return std::abs(x) <= kExact && x == std::trunc(x) ? std::optional(static_cast<std::int64_t>(x))
+                                                       : std::nullopt;
+  }
+  if (!value.is_number_integer()) return std::nullopt;
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max())
+    return std::nullopt;
+  return value.get<std::int64_t>();
+}
 
 }  // namespace
 
@@ -76,15 +92,14 @@ double Reader::do_number(Key key, Doc, const Range& range, const Fallback<double
 
 std::int64_t Reader::do_integer(Key key, Doc, std::int64_t min, std::int64_t max,
                                 const Fallback<std::int64_t>& fallback) {
-  const Range range{.min = static_cast<double>(min), .max = static_cast<double>(max)};
   const auto expected = [&] {
     return min == max ? std::to_string(min)
                       : "an integer >= " + std::to_string(min) + " and <= " + std::to_string(max);
   };
   const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
   if (!value) return fallback.value.value_or(min);
-  const std::optional<double> number = number_in(*value, range);
-  if (number && *number == std::trunc(*number)) return static_cast<std::int64_t>(*number);
+  const std::optional<std::int64_t> number = integer_of(*value);
+  if (number && *number >= min && *number <= max) return *number;
   note_value(pointer(key), expected(), *value);
   return fallback.value.value_or(min);
 }

@@ -36,8 +36,12 @@ constexpr std::array kOptions{
 
 // A number if the text is one and nothing else, or else the text, which the reader then refuses in words.
 nlohmann::json value_of(const std::string& text) {
-  double number = 0;
   const char* const end = text.data() + text.size();
+  std::int64_t whole = 0;  // a double would round it
+  if (const auto [rest, problem] = std::from_chars(text.data(), end, whole);
+      problem == std::errc() && rest == end)
+    return whole;
+  double number = 0;
   const auto [rest, problem] = std::from_chars(text.data(), end, number);
   if (problem == std::errc() && rest == end && std::isfinite(number)) return number;
   return text;

@@ -22,7 +22,8 @@ Examples:
 )";
 
 struct Options {
-  std::string scene, output, stats;
+  std::string scene, stats;
+  std::optional<std::string> output;
   int threads = 0;
   RenderFlags render;
 };
@@ -36,7 +37,7 @@ RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, 
 }
 
 int render(const Options& options) {
-  const FileFormat format = options.output.empty() ? FileFormat::png : format_of(options.output);
+  const FileFormat format = options.output ? format_of(*options.output) : FileFormat::png;
   const RenderRequest request = read_render_flags(options.render);
   RunStats stats;
   auto start = Clock::now();
@@ -51,15 +52,15 @@ int render(const Options& options) {
   const RenderResult result = render_with_progress(scene, plan, pixels_of(format), pool, signals);
   stats.render_cpu_s = cpu_seconds() - cpu_before;
   stats.render = result.stats;
-  if (!options.output.empty()) {
+  if (options.output) {
     start = Clock::now();
     const std::string bytes = encode(result.image, format);
     stats.encode_ms = milliseconds_since(start);
-    write_file(options.output, bytes);
+    write_file(*options.output, bytes);
   }
   if (options.stats == "json")
     std::cout << stats_json(plan, stats).dump() << "\n";
-  else if (!options.stats.empty() || options.output.empty())
+  else if (!options.stats.empty() || !options.output)
     std::cout << stats_text(plan, stats);
   return kDone;
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/model/batch.h"
 #include "server/app/render_options.h"
 
 namespace orrery {
@@ -18,6 +19,7 @@ void add_render_flags(CLI::App& app, RenderFlags& flags) {
   app.add_flag("--full-model", flags.full_model, "Leave no stage out, even where the scene does not need it")
       ->group("Advanced");
   app.add_option("--slice", flags.slice, "Rays that pass the stages together; changes no result")
+      ->check(CLI::Range(16, kBatch).description(""))
       ->type_name("N")
       ->capture_default_str()
       ->group("Advanced");

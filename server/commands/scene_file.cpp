@@ -1,10 +1,10 @@
 #include "server/commands/scene_file.h"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 
 #include "core/load/load.h"
 
@@ -13,7 +13,17 @@ namespace {
 
 std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : path; }
 
-std::string read_all(std::istream& in) { return {std::istreambuf_iterator<char>(in), {}}; }
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
+std::string read_all(std::istream& in, const std::string& name) {
+  std::string bytes;
+  std::array<char, 64 * 1024> block;
+  while (bytes.size() <= kMostBytes && (in.read(block.data(), block.size()), in.gcount() > 0))
+    bytes.append(block.data(), static_cast<std::size_t>(in.gcount()));
+  if (bytes.size() > kMostBytes)
+    throw FileError("cannot read " + name + ": it has more than " + std::to_string(kMostBytes) + " bytes");
+  return bytes;
+}
 
 }  // namespace
 
@@ -24,12 +34,12 @@ BadScene::BadScene(const std::string& file, const InputError& error) : InputErro
 }
 
 std::string read_file(const std::string& path) {
-  if (path == "-") return read_all(std::cin);
+  if (path == "-") return read_all(std::cin, shown_name(path));
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   std::string bytes;
-  if (in) bytes = read_all(in);
-  if (!in || in.bad())
+  if (in.is_open()) bytes = read_all(in, path);
+  if (!in.is_open() || in.bad())
     throw FileError("cannot read " + path + (errno ? ": " + std::string(std::strerror(errno)) : ""));
   return bytes;
 }

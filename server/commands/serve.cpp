@@ -69,21 +69,21 @@ int serve(const Options& options) {
 
 void add_limit_options(CLI::App& app, Options& options) {
   Settings& settings = options.settings;
-  const auto add = [&](const char* name, auto& value, double most, const char* help) {
+  const auto add = [&](const char* name, auto& value, std::int64_t most, const char* help) {
     app.add_option(name, value, help)
-        ->check(CLI::Range(1.0, most).description(""))
+        ->check(CLI::Range(std::int64_t{1}, most).description(""))
         ->type_name("N")
         ->capture_default_str()
         ->group("Limits");
   };
-  add("--max-body", settings.body_bytes, 1e9, "Bytes of a request's body");
-  add("--max-store", settings.store_bytes, 1e12, "Bytes of scenes kept, by estimate");
+  add("--max-body", settings.body_bytes, 1'000'000'000, "Bytes of a request's body");
+  add("--max-store", settings.store_bytes, 1'000'000'000'000, "Bytes of scenes kept, by estimate");
   add("--max-connections", settings.connections, 10000, "Connections at once");
-  add("--max-queue", settings.queue, 1e6, "Renders that wait for their turn");
-  add("--max-orbits", settings.orbits, 1e4, "Different orbits streamed at once");
-  add("--max-frames", settings.orbit_frames, 1e6, "Frames of an orbit");
-  add("--max-seconds", options.request_seconds, 1e6, "Seconds that one picture may take");
-  add("--grace", options.grace_seconds, 1e6, "Seconds that running requests get when the service ends");
+  add("--max-queue", settings.queue, 1'000'000, "Renders that wait for their turn");
+  add("--max-orbits", settings.orbits, 10'000, "Different orbits streamed at once");
+  add("--max-frames", settings.orbit_frames, 1'000'000, "Frames of an orbit");
+  add("--max-seconds", options.request_seconds, 1'000'000, "Seconds that one picture may take");
+  add("--grace", options.grace_seconds, 1'000'000, "Seconds that running requests get when the service ends");
 }
 
 }  // namespace

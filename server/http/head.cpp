@@ -86,6 +86,20 @@ void judge_framing(Head& head) {
   if (hosts > 1 || (hosts == 0 && head.minor_version == 1)) throw HttpError(400, "Expected one Host header");
 }
 
+// Whether a Connection header lists `word`.
+bool connection_says(const Head& head, std::string_view word) {
+  for (const auto& [name, value] : head.headers) {
+    if (!equal_ignoring_case(name, "Connection")) continue;
+    for (std::string_view rest = value;;) {
+      const std::size_t comma = rest.find(',');
+      if (equal_ignoring_case(trimmed(rest.substr(0, comma)), word)) return true;
+      if (comma == std::string_view::npos) break;
+      rest.remove_prefix(comma + 1);
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Head parse_head(std::string_view bytes) {
@@ -105,9 +119,8 @@ Head parse_head(std::string_view bytes) {
   }
   if (first) throw HttpError(400, "The request is empty");
   judge_framing(head);
-  const std::string connection = head.header("Connection").value_or("");
-  head.keep_alive = head.minor_version == 1 ? !equal_ignoring_case(connection, "close")
-                                            : equal_ignoring_case(connection, "keep-alive");
+  head.keep_alive =
+      head.minor_version == 1 ? !connection_says(head, "close") : connection_says(head, "keep-alive");
   return head;
 }
 

@@ -117,6 +117,30 @@ TEST_F(CommandLine, WrongOptionsAreNamedAsTheyWereGiven) {
   EXPECT_NE(command.err.find("did you mean \"render\""), std::string::npos) << command.err;
   EXPECT_EQ(run("render nosuch.json").status, 1);
   EXPECT_EQ(run("render").status, 2);
+  EXPECT_EQ(run("render " + scene + " -o ''").status, 2);
+  const Outcome slice = run("render " + scene + " --slice 0");
+  EXPECT_NE(slice.err.find("--slice: Value 0 not in range 16 to 1024"), std::string::npos) << slice.err;
+  const Outcome limit = run("serve --max-connections 0");
+  EXPECT_NE(limit.err.find("not in range 1 to 10000"), std::string::npos) << limit.err;
+}
+
+TEST_F(CommandLine, WholeNumbersAreNotRounded) {
+  const std::string scene = write("s.json", kScene);
+  EXPECT_EQ(run("render " + scene + " --seed 9007199254740992").status, 0);
+  const Outcome beyond = run("render " + scene + " --seed 9007199254740993");
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.err.find("--seed: expected an integer >= 0 and <= 9007199254740992, got 9007199254740993"),
+            std::string::npos)
+      << beyond.err;
+}
+
+TEST_F(CommandLine, WhatIsNoSceneFileIsRefused) {
+  const Outcome folder = run("render " + folder_.string());
+  EXPECT_EQ(folder.status, 1);
+  EXPECT_EQ(folder.err, "orrery: cannot read " + folder_.string() + ": Is a directory\n");
+  const Outcome endless = run("check /dev/zero");
+  EXPECT_EQ(endless.status, 1);
+  EXPECT_NE(endless.err.find("it has more than 1073741824 bytes"), std::string::npos) << endless.err;
 }
 
 TEST_F(CommandLine, EveryCommandExplainsItself) {

@@ -22,6 +22,8 @@ TEST(Head, ConnectionsLastByVersion) {
   EXPECT_FALSE(parse_head("GET / HTTP/1.0\r\n\r\n").keep_alive);
   EXPECT_TRUE(parse_head("GET / HTTP/1.0\r\nConnection: Keep-Alive\r\n\r\n").keep_alive);
   EXPECT_FALSE(parse_head("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n").keep_alive);
+  EXPECT_FALSE(parse_head("GET / HTTP/1.1\r\nHost: x\r\nConnection: a, Close ,b\r\n\r\n").keep_alive);
+  EXPECT_TRUE(parse_head("GET / HTTP/1.1\r\nHost: x\r\nConnection: closed\r\n\r\n").keep_alive);
 }
 
 TEST(Head, ValuesAreNotDecoded) {
