@@ -28,6 +28,7 @@ inline double small_cosine(double x) {
 }  // namespace detail
 
 inline SineCosine sine_cosine_degrees(double degrees) {
+  if (!std::isfinite(degrees)) return {degrees - degrees, degrees - degrees};
   const double turn = std::remainder(degrees, 360.0);  // exact
   const double quarter = std::nearbyint(turn / 90.0);
   const double x = (turn - quarter * 90.0) * (std::numbers::pi / 180.0);

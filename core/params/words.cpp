@@ -105,6 +105,11 @@ void append_canonical(const nlohmann::json& value, std::string& out, std::size_t
     case json::value_t::boolean: out += value.get<bool>() ? "true" : "false"; break;
     case json::value_t::number_integer:
     case json::value_t::number_unsigned:
+      if (std::abs(value.get<double>()) >= kExactIntegers) {  // a double may round it
+        out += value.dump();
+        break;
+      }
+      [[fallthrough]];
     case json::value_t::number_float: append_number(value.get<double>(), out); break;
     default: out += "null";
   }

@@ -5,6 +5,9 @@
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
+#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // first steps on a worker, before Handover::take()
+#else
+#define ORRERY_UNSEEN
 #endif
 
 #include <atomic>
@@ -15,21 +18,6 @@
 #include "core/render/tile.h"
 
 namespace orrery {
-
-struct WorkerPool::Parts {
-  explicit Parts(int threads)
-      : allowed(
-            tbb::global_control::max_allowed_parallelism,
-            1 + static_cast<std::size_t>(threads > 0 ? threads : tbb::this_task_arena::max_concurrency())),
-        arena(threads > 0 ? threads : tbb::task_arena::automatic, 0) {}
-  tbb::global_control allowed;  // the caller and its workers, more than the cores if asked for
-  tbb::task_arena arena;
-};
-
-WorkerPool::WorkerPool(int threads) : parts_(std::make_unique<Parts>(threads)) {}
-WorkerPool::~WorkerPool() = default;
-int WorkerPool::threads() const { return parts_->arena.max_concurrency(); }
-void WorkerPool::enqueue(std::function<void()> task) { parts_->arena.enqueue(std::move(task)); }
 
 namespace {
 
@@ -46,6 +34,38 @@ class Handover {
 #endif
 };
 
+}  // namespace
+
+struct WorkerPool::Parts {
+  explicit Parts(int threads)
+      : allowed(
+            tbb::global_control::max_allowed_parallelism,
+            1 + static_cast<std::size_t>(threads > 0 ? threads : tbb::this_task_arena::max_concurrency())),
+        arena(threads > 0 ? threads : tbb::task_arena::automatic, 0) {}
+  tbb::global_control allowed;  // the caller and its workers, more than the cores if asked for
+  tbb::task_arena arena;
+};
+
+WorkerPool::WorkerPool(int threads) : parts_(std::make_unique<Parts>(threads)) {}
+WorkerPool::~WorkerPool() = default;
+int WorkerPool::threads() const { return parts_->arena.max_concurrency(); }
+void WorkerPool::enqueue(std::function<void()> task) {
+  struct Job {
+    Handover to_worker;
+    std::function<void()> task;
+    void run() {
+      to_worker.take();
+      const std::unique_ptr<Job> owned(this);
+      task();
+    }
+  };
+  Job* const job = new Job{{}, std::move(task)};
+  job->to_worker.give();
+  parts_->arena.enqueue([job]() ORRERY_UNSEEN { job->run(); });
+}
+
+namespace {
+
 template <class T>
 RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
                     const RenderControl& control) {
@@ -61,23 +81,23 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   const auto start = std::chrono::steady_clock::now();
   tbb::task_group_context context;
   Handover to_workers, from_workers;
+  const auto render_tile = [&](int tile) {
+    if (control.stop && control.stop()) {
+      stopped = true;
+      context.cancel_group_execution();
+    }
+    if (stopped) return;
+    renderers.local()->render(tile % across * kTileSide, tile / across * kTileSide, control.stop, image);
+    if (control.progress) control.progress(++done, across * down);
+    from_workers.give();
+  };
+  const auto on_worker = [&](int tile) ORRERY_UNSEEN {
+    to_workers.take();
+    render_tile(tile);
+  };
   to_workers.give();
-  pool.parts().arena.execute([&] {
-    tbb::parallel_for(
-        0, across * down,
-        [&](int tile) {
-          to_workers.take();
-          if (control.stop && control.stop()) {
-            stopped = true;
-            context.cancel_group_execution();
-          }
-          if (stopped) return;
-          renderers.local()->render(tile % across * kTileSide, tile / across * kTileSide, control.stop,
-                                    image);
-          if (control.progress) control.progress(++done, across * down);
-          from_workers.give();
-        },
-        tbb::auto_partitioner(), context);
+  pool.parts().arena.execute([&]() ORRERY_UNSEEN {
+    tbb::parallel_for(0, across * down, on_worker, tbb::auto_partitioner(), context);
   });
   from_workers.take();
   for (const auto& renderer : renderers) {

@@ -51,6 +51,25 @@ TEST(Load, RefusesBadNumbersByName) {
   EXPECT_NE(first_problem_in_text(""), "accepted");
 }
 
+// No surface scatters less than nothing, and no body makes light stronger.
+TEST(Load, HoldsSharesOfLightBetweenNothingAndAll) {
+  const auto problem = [](const char* material) {
+    Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
+    scene["materials"]["it"] = json(material);
+    return first_problem(scene);
+  };
+  for (const char* key : {"ka", "kd", "ks"}) {
+    const std::string start = std::string("{'type': 'rough', '") + key + "': ";
+    EXPECT_EQ(problem((start + "0}").c_str()), "accepted") << key;
+    EXPECT_EQ(problem((start + "1}").c_str()), "accepted") << key;
+    EXPECT_EQ(problem((start + "-0.5}").c_str()), std::string("/materials/it/") + key);
+  }
+  EXPECT_EQ(problem("{'type': 'refractive', 'ior': 1.5, 'filter': [0, 1, 0.5]}"), "accepted");
+  EXPECT_EQ(problem("{'type': 'refractive', 'ior': 1.5, 'filter': [1, 1.001, 1]}"), "/materials/it/filter/1");
+  EXPECT_EQ(problem("{'type': 'refractive', 'ior': 1.5, 'filter': [-0.001, 1, 1]}"),
+            "/materials/it/filter/0");
+}
+
 TEST(Load, KnowsEveryRegisteredType) {
   const std::string schema = scene_schema();
   const auto named = [&](const auto& types) {

@@ -140,6 +140,7 @@ TEST(Fresnel, NormalsThatFaceAwayCreateNoLight) {
       const auto s = material.specular(c);
       EXPECT_LE(s.reflectance.x + s.transmittance.x, 1 + 1e-12) << degrees;
       EXPECT_GE(s.reflectance.x, 0) << degrees;
+      EXPECT_GE(s.transmittance.x, 0) << degrees;
     }
 }
 

@@ -40,8 +40,9 @@ bool naive(const BoxTest<T>& b) {
 template <class T>
 class Slabs : public testing::Test {
  public:
-  // A ray that meets a corner of a box exactly at t = 1: all numbers are whole multiples of one unit and
-  // leave a bit free, so that corner - origin is exact. The box has no extent along one axis.
+  // A ray that meets a corner of a box exactly, at a t that is a power of two: all numbers are whole
+  // multiples of one unit and leave a bit free, so that corner - origin is exact. The box has no extent along
+  // one axis.
   static BoxTest<T> ray_through_a_corner(test::Random& random, T unit) {
     constexpr int kBits = std::numeric_limits<T>::digits - 2;
     const auto whole = [&](std::int64_t below) {
@@ -61,7 +62,7 @@ class Slabs : public testing::Test {
     const Vec3<T> corner(random.below(2) ? b.lo.x : b.hi.x, random.below(2) ? b.lo.y : b.hi.y,
                          random.below(2) ? b.lo.z : b.hi.z);
     b.origin = {place(), place(), place()};
-    b.direction = corner - b.origin;
+    b.direction = (corner - b.origin) * std::ldexp(T(1), -random.below(61));
     return b;
   }
 };

@@ -112,6 +112,23 @@ TEST(Cylinder, RimDoesNotLeak) {
   EXPECT_EQ(odd, 0);
 }
 
+// In the plane of a cap the distance to that cap is 0 / 0: it has no say.
+TEST(Cylinder, RaysInThePlaneOfACapMeetTheWall) {
+  const auto check = [](const auto& capped, auto number) {
+    using T = decltype(number);
+    for (const T side : {T(1), T(-1)}) {
+      for (const T height : {T(0), T(1)}) {
+        EXPECT_EQ(capped.closest(Ray<T>{{-5 * side, 0, height}, {side, 0, 0}}).t, 4) << height;
+        EXPECT_EQ(capped.closest(Ray<T>{{0, 0, height}, {0, side, 0}}).t, 1) << "from within, " << height;
+      }
+      for (const T height : {T(-1), T(2)})
+        EXPECT_FALSE(capped.closest(Ray<T>{{-5 * side, 0, height}, {side, 0, 0}}).met()) << height;
+    }
+  };
+  check(Target<double>::of_objects(kCapped), double());
+  check(Target<float>::of_objects(kCapped), float());
+}
+
 TEST(Cylinder, IsMetFromWithin) {
   covers("A11");
   const auto shape = Target<double>::of_objects(

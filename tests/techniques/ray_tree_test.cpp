@@ -146,6 +146,34 @@ TEST(Growth, IsByBranchesAndNotByObjects) {
   EXPECT_EQ(among.counts().rays.total(), rays.total());
 }
 
+// From the middle of so many slabs no ray gets out in time, and every surface sends two on: 2^d rays.
+TEST(Growth, DoublesWhereEverySurfaceSendsTwo) {
+  constexpr int kDepth = 10;
+  Tracing tracing(slabs(24, .3), limits(kDepth));
+  tracing.trace(Ray<double>{{0, 0, -23.5}, {0, 0, -1}});
+  const RayCounts& rays = tracing.counts().rays;
+  for (std::size_t depth = 1; depth <= kDepth; ++depth) {
+    EXPECT_EQ(rays.reflected[depth], std::uint64_t{1} << (depth - 1)) << depth;
+    EXPECT_EQ(rays.refracted[depth], std::uint64_t{1} << (depth - 1)) << depth;
+  }
+}
+
+// Without a structure every ray is tested against every object once: neither more nor less than linear.
+TEST(Growth, IsLinearInObjectsForTheList) {
+  for (const int balls : {0, 1, 10, 100}) {
+    Json scene = mirrors(.5, 1);
+    for (int i = 0; i < balls; ++i)  // out of everybody's way
+      scene["objects"].push_back(
+          {{"type", "sphere"}, {"center", {200 + 3 * i, 0, 0}}, {"radius", 1}, {"material", "white"}});
+    RenderRequest request = limits(5);
+    request.accelerator = "list";
+    Tracing tracing(scene, request);
+    tracing.trace(kUpright());
+    EXPECT_EQ(tracing.counts().rays.total(), 6u) << balls;
+    EXPECT_EQ(tracing.counts().accelerator.primitive_tests, 6u * (2u + static_cast<unsigned>(balls)));
+  }
+}
+
 // (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays where it hits a surface that light
 // sources light. Rough surfaces end the path here and mirrors are lit by nothing but what they mirror, so d
 // is 1 without mirrors; behind k mirrors the pixel costs k + 1 rays and m shadow rays.
