@@ -2,8 +2,10 @@
 
 #include <memory>
 
+#include <span>
+
 #include "core/math/bounds.h"
-#include "core/model/batch.h"
+#include "core/model/lone_ray.h"
 
 // Shapes. A scene keeps all shapes of one type together (a ShapeSet, in double precision); for rendering each
 // set makes a ShapeKernel in the plan's number type, whose calls take whole batches.
@@ -20,6 +22,31 @@ struct Surface {
   N magnitude;  // largest absolute coordinate of the shape, at least near the hit: the scale of rounding
 };
 
+// Primitives of one kernel in an order that a structure chose, laid out so that a register of rays meets one
+// of them, or one ray a block of kBlock<T> of them, at once. Hits and ties are those of
+// ShapeKernel::closest(), bit for bit. Each call takes the blocks first..last-1 and returns the number of
+// primitives in them. Const and free of state.
+template <class T>
+class PackedPrimitives {
+ public:
+  virtual ~PackedPrimitives() = default;
+
+  virtual int closest(std::uint32_t first, std::uint32_t last, const LoneRay<T>& ray,
+                      LoneHit<T>& hit) const = 0;
+  // Sets t_max to -1 if the ray meets one of them in (0, t_max).
+  virtual int occlude(std::uint32_t first, std::uint32_t last, const LoneRay<T>& ray, T& t_max) const = 0;
+  // The same for the rays of the register that starts at `group`.
+  virtual int closest(std::uint32_t first, std::uint32_t last, const RayBatch<T>& rays, int group,
+                      HitBatch<T>& hits) const = 0;
+  virtual int occlude(std::uint32_t first, std::uint32_t last, RayBatch<T>& rays, int group) const = 0;
+
+  virtual std::size_t bytes() const = 0;
+};
+template <class T>
+using PackedPrimitivesPtr = std::unique_ptr<PackedPrimitives<T>>;
+
+inline constexpr int kNothing = -1;  // an empty place in a block
+
 // Const and free of state: any number of threads may call it at once.
 template <class T>
 class ShapeKernel {
@@ -32,6 +59,10 @@ class ShapeKernel {
 
   // Sets t_max to -1 for the rays of `groups` that meet primitive `index` in (0, t_max).
   virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups) const = 0;
+
+  // The primitives with these indices, in this order, or kNothing, as many as fill whole blocks. No block is
+  // empty. They do not refer to the kernel afterwards.
+  virtual PackedPrimitivesPtr<T> pack(std::span<const int> indices) const = 0;
 
   // Fills the surface of every hit in `groups` that belongs to this set, other lanes stay as they are.
   virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,

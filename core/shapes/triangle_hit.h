@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/model/batch.h"
+#include "core/math/bounds.h"
+#include "core/model/lone_ray.h"
 
 namespace orrery {
 
@@ -12,12 +13,6 @@ struct TriangleHit {
 };
 
 namespace detail {
-
-// x of the component named by the masks.
-template <class N>
-[[gnu::always_inline]] inline N pick(const MaskOf<N>& x, const MaskOf<N>& y, const Vec3<N>& v) {
-  return select(x, v.x, select(y, v.y, v.z));
-}
 
 // a * b - c * d with the right sign: rounding cannot turn the sign of a difference of rounded products, only
 // make it 0, and then the rounding errors of the products decide.
@@ -33,33 +28,60 @@ template <class N>
 
 }  // namespace detail
 
-// Watertight: a ray through a shared edge or vertex meets one of the triangles around it, in any precision.
-// The ray is turned and sheared to run along its largest axis, and each edge is judged by the sign of a 2D
-// edge function that its two triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight
-// Ray/Triangle Intersection", JCGT 2013).
+// A ray turned and sheared to run along its largest axis z, as it sees points: x and y follow z cyclically.
 template <class N>
-[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Ray<N>& ray, const Vec3<N>& a,
+struct Sheared {
+  N x, y, z;
+};
+
+// Each lane has its own ray and so its own axes.
+template <class N>
+class RayShear {
+ public:
+  [[gnu::always_inline]] explicit RayShear(const Ray<N>& ray) : origin_(ray.origin), axes_(ray.direction) {
+    along_ = axes_.z(ray.direction);
+    x_ = axes_.x(ray.direction) / along_;
+    y_ = axes_.y(ray.direction) / along_;
+  }
+  [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
+    const Vec3<N> v = vertex - origin_;
+    const N z = axes_.z(v);
+    return {axes_.x(v) - x_ * z, axes_.y(v) - y_ * z, z};
+  }
+  [[gnu::always_inline]] N along() const { return along_; }
+
+ private:
+  Vec3<N> origin_;
+  RayAxes<N> axes_;
+  N along_, x_, y_;
+};
+
+// One ray for all lanes.
+template <class N>
+class LoneShear {
+ public:
+  [[gnu::always_inline]] explicit LoneShear(const LoneRay<ScalarOf<N>>& ray) : ray_(ray) {}
+  [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
+    const auto [x, y, z] = ray_.axis;
+    const N vx = moved(vertex, x), vy = moved(vertex, y), vz = moved(vertex, z);
+    return {vx - N(ray_.shear_x) * vz, vy - N(ray_.shear_y) * vz, vz};
+  }
+  [[gnu::always_inline]] N along() const { return N(ray_.along); }
+
+ private:
+  [[gnu::always_inline]] N moved(const Vec3<N>& v, int i) const { return (&v.x)[i] - N((&ray_.origin.x)[i]); }
+  const LoneRay<ScalarOf<N>>& ray_;
+};
+
+// Watertight: a ray through a shared edge or vertex meets one of the triangles around it, in any precision.
+// Each edge is judged by the sign of a 2D edge function that its two triangles compute from the same numbers
+// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013).
+template <class N, class Shear>
+[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Shear& shear, const Vec3<N>& a,
                                                                 const Vec3<N>& b, const Vec3<N>& c) {
   using T = ScalarOf<N>;
   const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
-  const Vec3<N> size = abs(ray.direction);
-  const auto z_is_x = size.x >= size.y && size.x >= size.z;
-  const auto z_is_y = !z_is_x && size.y >= size.z;
-  const auto z_is_z = !z_is_x && !z_is_y;
-  const N dz = detail::pick(z_is_x, z_is_y, ray.direction);
-  const N shear_x =
-      detail::pick(z_is_z, z_is_x, ray.direction) / dz;  // x follows z cyclically: zxy, xyz, yzx
-  const N shear_y = detail::pick(z_is_y, z_is_z, ray.direction) / dz;
-  struct Sheared {
-    N x, y, z;
-  };
-  const auto shear = [&](const Vec3<N>& vertex) {
-    const Vec3<N> v = vertex - ray.origin;
-    const N z = detail::pick(z_is_x, z_is_y, v);
-    return Sheared{detail::pick(z_is_z, z_is_x, v) - shear_x * z,
-                   detail::pick(z_is_y, z_is_z, v) - shear_y * z, z};
-  };
-  const Sheared sa = shear(a), sb = shear(b), sc = shear(c);
+  const Sheared<N> sa = shear(a), sb = shear(b), sc = shear(c);
   const N u = detail::difference_of_products(sc.x, sb.y, sc.y, sb.x);
   const N v = detail::difference_of_products(sa.x, sc.y, sa.y, sc.x);
   const N w = detail::difference_of_products(sb.x, sa.y, sb.y, sa.x);
@@ -67,9 +89,28 @@ template <class N>
   const N determinant = u + v + w;
   if (!any(inside && determinant != zero)) return {infinity, zero, zero, zero};
   const N inverse = N(T(1)) / determinant;
-  const N t = (u * sa.z + v * sb.z + w * sc.z) * inverse / dz;
+  const N t = (u * sa.z + v * sb.z + w * sc.z) * inverse / shear.along();
   return {select(inside && determinant != zero && t > zero, t, infinity), u * inverse, v * inverse,
           w * inverse};
 }
+
+// What stands at the corners of a triangle; if it is where they are, all that a test of a ray needs.
+template <class N>
+struct Corners {
+  Vec3<N> a, b, c;
+
+  Boundsd bounds() const { return Boundsd::of({a, b, c}); }
+
+  N distance(const Ray<N>& ray) const { return intersect_triangle(RayShear<N>(ray), a, b, c).t; }
+  N distance(const LoneRay<ScalarOf<N>>& ray) const {
+    return intersect_triangle(LoneShear<N>(ray), a, b, c).t;
+  }
+  // Barycentric weights where the ray crosses.
+  Vec3<N> weights(const Ray<N>& ray) const {
+    const TriangleHit<N> hit = intersect_triangle(RayShear<N>(ray), a, b, c);
+    return {hit.weight_a, hit.weight_b, hit.weight_c};
+  }
+  Vec3<N> mix(const Vec3<N>& weights) const { return a * weights.x + b * weights.y + c * weights.z; }
+};
 
 }  // namespace orrery
