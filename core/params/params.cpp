@@ -14,8 +14,7 @@ double Params::positive(Key key, Doc doc, Fallback<double> fallback) {
 
 std::int64_t Params::integer(Key key, Doc doc, std::int64_t min, std::int64_t max,
                              Fallback<std::int64_t> fallback) {
-  [[maybe_unused]] constexpr std::int64_t kExact = std::int64_t{1} << 53;
-  assert(-kExact <= min && min <= max && max <= kExact);
+  assert(-kMaxInteger <= static_cast<double>(min) && min <= max && static_cast<double>(max) <= kMaxInteger);
   return do_integer(key, doc, min, max, fallback);
 }
 

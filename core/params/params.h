@@ -37,7 +37,8 @@ inline constexpr double kMaxCoordinate = 1e12;  // metres; beyond it squares of 
 inline constexpr double kMinLength = 1e-12;
 inline constexpr double kMaxLength = 1e12;
 inline constexpr double kMaxColor = 1e6;
-inline constexpr std::size_t kMaxNameLength = 128;  // characters of a name in each_named()
+inline constexpr double kMaxInteger = 9007199254740992.0;  // 2^53: up to here a double holds every integer
+inline constexpr std::size_t kMaxNameLength = 128;         // characters of a name in each_named()
 
 // The numbers allowed; an infinite end is no limit.
 struct Range {

@@ -16,11 +16,10 @@ using nlohmann::json;
 // The value, if it is a whole number: 3 or 3.0. A double would round those above 2^53, so they are not looked
 // at as one.
 std::optional<std::int64_t> integer_of(const json& value) {
-  constexpr double kExact = 9007199254740992.0;  // 2^53
   if (value.is_number_float()) {
     const double x = value.get<double>();
-    return std::abs(x) <= kExact && x == std::trunc(x) ? std::optional(static_cast<std::int64_t>(x))
-                                                       : std::nullopt;
+    return std::abs(x) <= kMaxInteger && x == std::trunc(x) ? std::optional(static_cast<std::int64_t>(x))
+                                                            : std::nullopt;
   }
   if (!value.is_number_integer()) return std::nullopt;
   if (value.is_number_unsigned() && value.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max())

@@ -8,7 +8,6 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kBriefCharacters = 40;
-constexpr double kExactIntegers = 9007199254740992.0;  // 2^53
 
 std::string shortest(double x) {
   char buffer[32];
@@ -17,7 +16,7 @@ std::string shortest(double x) {
 }
 
 void append_number(double x, std::string& out) {
-  if (x == std::trunc(x) && std::abs(x) <= kExactIntegers) {
+  if (x == std::trunc(x) && std::abs(x) <= kMaxInteger) {
     out += std::to_string(static_cast<long long>(x));  // turns -0 into 0
   } else {
     out += shortest(x);
@@ -105,7 +104,7 @@ void append_canonical(const nlohmann::json& value, std::string& out, std::size_t
     case json::value_t::boolean: out += value.get<bool>() ? "true" : "false"; break;
     case json::value_t::number_integer:
     case json::value_t::number_unsigned:
-      if (std::abs(value.get<double>()) >= kExactIntegers) {  // a double may round it
+      if (std::abs(value.get<double>()) >= kMaxInteger) {  // a double may round it
         out += value.dump();
         break;
       }

@@ -163,19 +163,20 @@ function judgeRegistries(contents, complain) {
 
 // ---- self-test ----
 
+const machineFolder = ["", "work", "checkout"].join("/");
+const innerFolder = ["..", "work", "checkout"].join("/");  // begins no path from the root
 const kGoodTree = {
   "core/base/a.h": "#pragma once\n#include <string>\n",
   "core/params/params.cpp": '#include <nlohmann/json.hpp>\n#include "core/base/a.h"\n',
   "core/image/png.cpp": "#include <png.h>\n#include <turbojpeg.h>\n#include <OpenEXR/ImfRgbaFile.h>\n",
   "core/model/shape.h": '#include "core/base/a.h"\n#include "core/base/version.h"\n',
-  "core/shapes/sphere.cpp": '#include "core/model/shape.h"\n// see ../work/paper, docs/home/x\n',
+  "core/shapes/sphere.cpp": `#include "core/model/shape.h"\n// see ${innerFolder}, docs/home/x\n`,
   "core/shapes/shared.h": "#pragma once\n",
   "core/shapes/shared.cpp": '#include "core/shapes/shared.h"\n',
   "core/shapes/registry.cpp": "ShapeType sphere_type();  // one line each\n",
   "server/http/http.cpp": '#include <httplib.h>\n#include "core/model/shape.h"\n',
   "web/app.js": "// one\n".repeat(kMaxLines),
 };
-const machineFolder = ["", "work", "checkout"].join("/");
 const kBadTrees = [
   ["floor", {"core/model/bad.h": '#include "server/http/x.h"\n', "server/http/x.h": ""}],
   ["floor", {"core/base/bad.h": '#include "core/model/shape.h"\n'}],
