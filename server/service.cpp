@@ -92,7 +92,8 @@ void Service::note(const Request& request, const Response& response, std::uint64
   if (gone) fields["client_left"] = true;
   if (!response.note.empty()) fields["error"] = response.note;
   const bool health = request.path == "/healthz" || request.path == "/readyz";
-  const LogLevel level = response.status == 500 ? LogLevel::error : health ? LogLevel::debug : LogLevel::info;
+  const bool failed = response.status == 500 || !response.note.empty();
+  const LogLevel level = failed ? LogLevel::error : health ? LogLevel::debug : LogLevel::info;
   log_.write(level, "request", fields);
 }
 

@@ -33,7 +33,7 @@ class Checks {
   static std::string text(V value) {
     if constexpr (std::is_integral_v<V>) return std::to_string(value);
     char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%g", static_cast<double>(value));
+    std::snprintf(buffer, sizeof buffer, "%.10g", static_cast<double>(value));
     return buffer;
   }
   std::vector<Problem> problems_;

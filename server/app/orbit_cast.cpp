@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kAsk{20};  // how often those who wait look whether it is still worth it
 constexpr std::int64_t kAhead = 3;             // frames rendered before a mailbox takes the first of them
+constexpr double kLongestPeriod_s = 1e6;       // a clock counts no more than 292 years
 
 }  // namespace
 
@@ -23,8 +24,10 @@ OrbitCast::~OrbitCast() {
 std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCast>& cast) {
   const std::lock_guard lock(cast->mutex_);
   if (cast->closed_) return nullptr;
+  const std::int64_t begin = cast->delivered_ - (cast->latest_ ? 1 : 0);
   const auto mailbox = cast->mailboxes_.insert(
-      cast->mailboxes_.end(), {.begin = cast->next_, .end = cast->next_ + cast->spec_.frames, .frame = {}});
+      cast->mailboxes_.end(),
+      {.begin = begin, .end = begin + cast->spec_.frames, .frame = cast->latest_, .number = begin});
   if (!cast->thread_.joinable()) {
     cast->start_ = Clock::now();
     cast->thread_ = std::thread([c = cast.get()] { c->run(); });
@@ -44,12 +47,14 @@ void OrbitCast::run() {
                           .render = [this](std::int64_t n) { return render(n); },
                           .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
                           .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
+  std::exception_ptr failure;
   try {
     pipeline.run();
-  } catch (const std::exception&) {
-    // Nobody watches any more, a frame took too long, or memory is short: the streams end here.
+  } catch (...) {
+    failure = std::current_exception();
   }
   const std::lock_guard lock(mutex_);
+  failure_ = failure;
   closed_ = over_ = true;
   changed_.notify_all();
 }
@@ -75,7 +80,8 @@ bool OrbitCast::pointless() const {
 
 std::optional<std::int64_t> OrbitCast::next() {
   std::unique_lock lock(mutex_);
-  const auto period = std::chrono::duration<double>(spec_.fps > 0 ? 1 / spec_.fps : 0);
+  const auto period =
+      std::chrono::duration<double>(spec_.fps > 0 ? std::min(1 / spec_.fps, kLongestPeriod_s) : 0);
   const auto due = [&](std::int64_t n) {
     return start_ + std::chrono::duration_cast<Clock::duration>(period * static_cast<double>(n));
   };
@@ -110,10 +116,14 @@ std::optional<std::int64_t> OrbitCast::next() {
 RenderResult OrbitCast::render(std::int64_t number) {
   const Watch watch([this] { return pointless(); }, means_.ends, means_.frame_time);
   const auto stop = [&] { return watch.stop(); };
-  const auto ticket = means_.admission.enter_again(stop);
-  const Plan plan =
-      make_plan(spec_.scene->scene(), spec_.request_of(static_cast<int>(number % spec_.frames)));
-  return render_frame(*spec_.scene, plan, PixelFormat::srgb8, means_.pool, {.stop = stop, .progress = {}});
+  try {
+    const auto ticket = means_.admission.enter_again(stop);
+    const Plan plan =
+        make_plan(spec_.scene->scene(), spec_.request_of(static_cast<int>(number % spec_.frames)));
+    return render_frame(*spec_.scene, plan, PixelFormat::srgb8, means_.pool, {.stop = stop, .progress = {}});
+  } catch (const Cancelled&) {
+    watch.explain();
+  }
 }
 
 void OrbitCast::deliver(std::int64_t number, Frame&& picture) {
@@ -141,6 +151,7 @@ void OrbitCast::post() {
       mailbox.number = number;
     }
     delivered_ = number + 1;
+    latest_ = frame;
   }
   changed_.notify_all();
 }
@@ -154,7 +165,10 @@ OrbitCast::Viewer::~Viewer() {
 std::shared_ptr<const OrbitFrame> OrbitCast::Viewer::next(const std::function<bool()>& gone) {
   std::unique_lock lock(cast_->mutex_);
   while (!mailbox_->frame) {
-    if (cast_->at_end(*mailbox_) || cast_->means_.ends) return nullptr;
+    if (cast_->at_end(*mailbox_) || cast_->means_.ends) {
+      if (cast_->failure_) std::rethrow_exception(cast_->failure_);
+      return nullptr;
+    }
     cast_->changed_.wait_for(lock, kAsk);
     lock.unlock();
     const bool left = gone();

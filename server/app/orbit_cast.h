@@ -13,10 +13,10 @@
 namespace orrery {
 
 // Renders an orbit once for all who watch it. The frames run in a circle, numbered on and on; each viewer
-// gets as many as the orbit has, from the one where it came in. A viewer has a mailbox for one frame: a newer
-// frame takes the place of one that was not fetched in time. Nothing is rendered that nobody would see: the
-// cast waits while all mailboxes are full. With fps 0 it then goes on where it was; else with the frame whose
-// time has come.
+// gets as many as the orbit has, beginning with the one that is shown when it comes in. A viewer has a
+// mailbox for one frame: a newer frame takes the place of one that was not fetched in time. Nothing is
+// rendered that nobody would see: the cast waits while all mailboxes are full. With fps 0 it then goes on
+// where it was; else with the frame whose time has come.
 class OrbitCast {
  public:
   // All it uses lives longer. `ends` becomes true when the program ends.
@@ -67,10 +67,12 @@ class OrbitCast {
   std::list<Mailbox> mailboxes_;
   std::int64_t next_ = 0;  // number of the frame to render next
   std::deque<std::pair<std::int64_t, std::shared_ptr<const OrbitFrame>>> finished_;  // not delivered yet
-  std::int64_t delivered_ = 0;  // all before it are in the mailboxes or lost
+  std::int64_t delivered_ = 0;                // all before it are in the mailboxes or lost
+  std::shared_ptr<const OrbitFrame> latest_;  // the one before it; none at first
   Clock::time_point start_;     // when frame 0 was due; moves on when rendering is slower than fps
   bool closed_ = false;         // no frames will be rendered any more
   bool over_ = false;           // none will be delivered any more
+  std::exception_ptr failure_;  // why no frame could follow
   std::thread thread_;          // last: it uses the others
 };
 
@@ -81,7 +83,8 @@ class OrbitCast::Viewer {
   Viewer(const Viewer&) = delete;
 
   // The newest frame not seen yet; waits for it. None at the end of the orbit, when the program ends, or once
-  // `gone` says so, which is asked every 20 ms.
+  // `gone` says so, which is asked every 20 ms. Throws what kept a frame from being rendered, such as
+  // TimedOut.
   std::shared_ptr<const OrbitFrame> next(const std::function<bool()>& gone);
   // Frames of the orbit up to the last one got that this viewer missed.
   std::int64_t skipped() const { return skipped_; }

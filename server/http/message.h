@@ -51,8 +51,9 @@ struct Response {
   int status = 200;
   Fields headers = {};
   std::string body = {};
-  // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws
-  // nothing.
+  // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws if it
+  // cannot go on: the answer is then broken off, so that nobody takes it for a whole one, and the log says
+  // why.
   std::function<void(Sink&)> stream = {};
   // For the log: rays traced for this answer, and what went wrong inside.
   std::uint64_t rays = 0;

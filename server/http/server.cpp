@@ -57,7 +57,12 @@ void fill(Exchange& exchange, httplib::Response& out) {
   if (response.stream && exchange.request.method != "HEAD") {
     const auto provider = [&response](std::size_t, httplib::DataSink& sink) {
       SinkOfHttplib adapter(sink);
-      response.stream(adapter);
+      try {
+        response.stream(adapter);
+      } catch (const std::exception& error) {
+        response.note = error.what();
+        return false;
+      }
       sink.done();
       return true;
     };
@@ -204,8 +209,8 @@ class HttpServer::Parts {
     }
     const std::uint64_t before = connection.bytes_written();
     const bool written = engine_.answer(exchange);
-    handler_.served(exchange.request, exchange.response, connection.bytes_written() - before,
-                    !written || connection.gone());
+    const bool gone = connection.gone() || (!written && exchange.response.note.empty());
+    handler_.served(exchange.request, exchange.response, connection.bytes_written() - before, gone);
     return written && exchange.keep_alive && !draining_;
   }
 

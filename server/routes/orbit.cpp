@@ -87,16 +87,23 @@ std::string part(const OrbitFrame& frame, bool last) {
   return bytes;
 }
 
-void send_frames(OrbitCast::Viewer& viewer, const std::function<bool()>& gone, Sink& sink) {
-  while (const auto frame = viewer.next(gone))
-    if (!sink.write(framed(*frame, viewer.skipped()))) return;
+// What is sent of an orbit whose first frame is there.
+struct Show {
+  std::shared_ptr<OrbitCast::Viewer> viewer;
+  std::shared_ptr<const OrbitFrame> first;
+  std::function<bool()> gone;
+};
+
+void send_frames(const Show& show, Sink& sink) {
+  for (auto frame = show.first; frame; frame = show.viewer->next(show.gone))
+    if (!sink.write(framed(*frame, show.viewer->skipped()))) return;
 }
 
-void send_parts(OrbitCast::Viewer& viewer, const std::function<bool()>& gone, Sink& sink) {
+void send_parts(const Show& show, Sink& sink) {
   if (!sink.write("--" + std::string(kBoundary) + "\r\n")) return;
   bool ended = false;
-  while (const auto frame = viewer.next(gone)) {
-    ended = viewer.at_end();
+  for (auto frame = show.first; frame; frame = show.viewer->next(show.gone)) {
+    ended = show.viewer->at_end();
     if (!sink.write(part(*frame, ended))) return;
   }
   if (!ended) sink.write("\r\n--" + std::string(kBoundary) + "--\r\n");
@@ -105,19 +112,17 @@ void send_parts(OrbitCast::Viewer& viewer, const std::function<bool()>& gone, Si
 Response orbit(App& app, Request& request) {
   app.require_open();
   const OrbitSpec spec = read_orbit(app, request);
-  const bool multipart = request.header("Accept").value_or("").find(kFrames) == std::string::npos;
+  const bool multipart = negotiate(request, std::array{kMultipart, kFrames}) == kMultipart;
   Response response;
   response.set("Content-Type", multipart ? std::string(kMultipart) + "; boundary=" + std::string(kBoundary)
                                          : std::string(kFrames));
   response.set("Cache-Control", "no-store").set("Vary", "Accept").set("X-Accel-Buffering", "no");
   if (request.method == "HEAD") return response;
-  const std::shared_ptr<OrbitCast::Viewer> viewer = app.orbits().watch(spec);
-  response.stream = [viewer, multipart, gone = request.gone](Sink& sink) {
-    if (multipart)
-      send_parts(*viewer, gone, sink);
-    else
-      send_frames(*viewer, gone, sink);
-  };
+  Show show{.viewer = app.orbits().watch(spec), .first = {}, .gone = request.gone};
+  show.first = show.viewer->next(show.gone);  // what fails here has a status of its own
+  if (!show.first && request.gone()) throw Cancelled("the client has gone");
+  if (!show.first) throw Busy("The service ends", 5);
+  response.stream = [show, multipart](Sink& sink) { (multipart ? send_parts : send_frames)(show, sink); };
   return response;
 }
 

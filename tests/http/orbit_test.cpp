@@ -1,5 +1,6 @@
 #include <future>
 
+#include "server/http/server.h"
 #include "tests/http/daemon.h"
 
 namespace orrery {
@@ -82,6 +83,92 @@ TEST_F(OrbitStream, BadParametersAreRefusedBeforeTheStream) {
        {"frames=0", "frames=3601", "frames=1.5", "frames=abc", "fps=-1", "fps=241", "step=361", "step=nan",
         "width=0", "samples=1e9", "speed=3", "azimuth=1e9&step=1"})
     expect_problem(client_.Get(path(query), kFrames), 422);
+}
+
+TEST_F(OrbitStream, AcceptChoosesTheFormat) {
+  const std::string url = path("frames=1");
+  const auto type_for = [&](const char* accept) {
+    return client_.Get(url, {{"Accept", accept}})->get_header_value("Content-Type").substr(0, 27);
+  };
+  EXPECT_EQ(type_for("APPLICATION/X-ORRERY-FRAMES"), "application/x-orrery-frames");
+  EXPECT_EQ(type_for("application/x-orrery-frames;q=0, */*"), "multipart/x-mixed-replace; ");
+  expect_problem(client_.Get(url, {{"Accept", "text/html"}}), 406);
+}
+
+TEST_F(OrbitStream, LeastRateStillIsAPace) {
+  httplib::Client client = daemon().client();
+  client.set_read_timeout(std::chrono::milliseconds(500));
+  std::string body;
+  const auto take = [&](const char* bytes, std::size_t size) {
+    body.append(bytes, size);
+    return true;
+  };
+  EXPECT_FALSE(client.Get(path("frames=40&fps=1e-300"), kFrames, take));  // the second is never due
+  EXPECT_EQ(parse_frames(body).size(), 1u);
+}
+
+TEST_F(OrbitStream, WhoComesLateSeesAtOnceWhatIsShown) {
+  const std::string url = path("frames=40&fps=1e-6");
+  const auto first_frame = [&] {
+    std::string body;
+    httplib::Client client = daemon().client();
+    client.Get(url, kFrames, [&](const char* bytes, std::size_t size) {
+      body.append(bytes, size);
+      return false;
+    });
+    return body;
+  };
+  auto other = daemon().client();
+  std::promise<void> seen;
+  std::atomic<bool> leave{false};
+  auto early = std::async(std::launch::async, [&] {
+    other.set_read_timeout(std::chrono::milliseconds(2000));
+    bool once = false;
+    other.Get(url, kFrames, [&](const char*, std::size_t) {
+      if (!std::exchange(once, true)) seen.set_value();
+      return !leave;
+    });
+  });
+  seen.get_future().wait();
+  const auto late = parse_frames(first_frame());
+  leave = true;
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_EQ(late[0].header.at("frame"), 0);
+}
+
+TEST(OrbitFailure, FrameThatTakesTooLongIsSaidNotHidden) {
+  Daemon daemon({"--max-seconds", "1"});
+  httplib::Client client = daemon.client();
+  const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
+  const std::string id = nlohmann::json::parse(posted->body).at("id");
+  const std::string heavy = "/v1/scenes/" + id + "/orbit?frames=3&width=4096&height=4096&samples=1024";
+  expect_problem(client.Get(heavy, kFrames), 504);
+}
+
+TEST(OrbitFailure, StreamThatFailsIsBrokenOff) {
+  const auto answer = [](Request&) {
+    Response response;
+    response.set("Content-Type", "text/plain");
+    response.stream = [](Sink& sink) {
+      sink.write("begun");
+      throw Error("no more");
+    };
+    return response;
+  };
+  std::promise<std::pair<std::string, bool>> served;  // the note, and whether the client left
+  HttpServer server({.host = "127.0.0.1", .port = 0},
+                    {.answer = answer,
+                     .refuse = [](Request&, std::exception_ptr) { return Response{}; },
+                     .served =
+                         [&](const Request&, const Response& response, std::uint64_t, bool gone) {
+                           served.set_value({response.note, gone});
+                         },
+                     .grace_over = [] {}});
+  std::thread thread([&] { server.run(); });
+  EXPECT_FALSE(httplib::Client("127.0.0.1", server.port()).Get("/"));  // no end of the chunks came
+  EXPECT_EQ(served.get_future().get(), std::pair(std::string("no more"), false));
+  server.drain();
+  thread.join();
 }
 
 TEST_F(OrbitStream, HeadStartsNothing) {
