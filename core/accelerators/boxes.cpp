@@ -1,4 +1,4 @@
-#include "core/model/accelerator.h"
+#include "core/accelerators/unbounded.h"
 
 namespace orrery {
 namespace {
@@ -8,19 +8,15 @@ namespace {
 template <class T>
 class Boxes final : public Accelerator<T> {
  public:
-  explicit Boxes(const PrimitiveList<T>& primitives) {
-    for (const auto& primitive : primitives) {
+  explicit Boxes(const PrimitiveList<T>& primitives) : unbounded_(primitives) {
+    for (const auto& primitive : primitives)
       if (primitive.bounds.bounded())
         boxed_.push_back({padded<T>(primitive.bounds), primitive.kernel, primitive.index});
-      else
-        unbounded_.push_back(primitive);
-    }
   }
 
   void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
-    for (const auto& primitive : unbounded_) primitive.kernel->closest(primitive.index, rays, groups, hits);
-    counts.primitive_tests += unbounded_.size() * active_rays(rays, groups);
+    unbounded_.closest(rays, groups, hits, counts);
     for (const int i : groups) {
       const Ray<N> ray = rays.at(i);
       const Vec3<N> inverse = reciprocal(ray.direction);
@@ -36,12 +32,7 @@ class Boxes final : public Accelerator<T> {
   }
 
   void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
-    Groups open = groups;
-    for (const auto& primitive : unbounded_) {
-      counts.primitive_tests += active_rays(rays, open);
-      primitive.kernel->occlude(primitive.index, rays, open);
-      open = with_active_rays(rays, open);
-    }
+    const Groups open = unbounded_.occlude(rays, groups, counts);
     for (const int i : open) occlude_register(rays, i, counts);
   }
 
@@ -72,7 +63,7 @@ class Boxes final : public Accelerator<T> {
   }
 
   std::vector<Boxed> boxed_;
-  PrimitiveList<T> unbounded_;
+  Unbounded<T> unbounded_;
 };
 
 }  // namespace

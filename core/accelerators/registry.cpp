@@ -8,7 +8,8 @@ namespace orrery {
 // clang-format off
 #define ORRERY_ACCELERATORS(add) \
   add(list)                      \
-  add(boxes)
+  add(boxes)                     \
+  add(bvh)
 // clang-format on
 
 #define ORRERY_DECLARE(name) AcceleratorType name##_type();

@@ -8,6 +8,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/math/registers.h"
+
 // Lanes: several numbers of one type that go through the same formula at once. A formula written over a
 // number type N takes a scalar or lanes alike; the few operations that differ stand here.
 namespace orrery {
@@ -26,6 +28,21 @@ struct LanesOf<long double> {  // oracles: one lane
 // As many numbers as one register of this machine level holds.
 template <class T>
 using Lanes = typename LanesOf<T>::type;
+
+// Primitives that lie together in structures, so that one ray meets all of them at once: half the widest
+// register, because more memory a node or leaf costs more than a wider register saves.
+template <class T>
+inline constexpr int kBlock = std::max(1, std::min(static_cast<int>(Lanes<T>::size()), 8));
+template <class T>
+struct BlockLanesOf {
+  using type = stdx::simd<T, stdx::simd_abi::deduce_t<T, kBlock<T>>>;
+};
+template <>
+struct BlockLanesOf<long double> {
+  using type = Lanes<long double>;
+};
+template <class T>
+using BlockLanes = typename BlockLanesOf<T>::type;
 
 // Integers as wide as T, so that a mask of one serves the other.
 template <class T>
@@ -96,11 +113,35 @@ template <class T, class V>
 // accumulator passed first wins over a NaN (and -0 and +0 count as equal: the first is kept).
 template <class N>
 [[gnu::always_inline]] inline N min_first(const N& accumulator, const N& x) {
-  return select(x < accumulator, x, accumulator);
+  if constexpr (registers::kFits<ScalarOf<N>, N>) {
+    using Raw = registers::RawOf<ScalarOf<N>, N>;
+    return std::bit_cast<N>(registers::min(std::bit_cast<Raw>(x), std::bit_cast<Raw>(accumulator)));
+  } else {
+    return select(x < accumulator, x, accumulator);
+  }
 }
 template <class N>
 [[gnu::always_inline]] inline N max_first(const N& accumulator, const N& x) {
-  return select(x > accumulator, x, accumulator);
+  if constexpr (registers::kFits<ScalarOf<N>, N>) {
+    using Raw = registers::RawOf<ScalarOf<N>, N>;
+    return std::bit_cast<N>(registers::max(std::bit_cast<Raw>(x), std::bit_cast<Raw>(accumulator)));
+  } else {
+    return select(x > accumulator, x, accumulator);
+  }
+}
+
+// a * b - c, rounded once where the machine can and twice elsewhere: only for bounds that are padded for
+// either.
+template <class N>
+[[gnu::always_inline]] inline N multiply_subtract(const N& a, const N& b, const N& c) {
+#if defined(__FMA__)
+  if constexpr (registers::kFits<ScalarOf<N>, N>) {
+    using Raw = registers::RawOf<ScalarOf<N>, N>;
+    return std::bit_cast<N>(
+        registers::fused(std::bit_cast<Raw>(a), std::bit_cast<Raw>(b), std::bit_cast<Raw>(c)));
+  }
+#endif
+  return a * b - c;
 }
 
 }  // namespace orrery

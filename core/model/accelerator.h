@@ -10,10 +10,12 @@ namespace orrery {
 
 // Work of a structure: one ray against one thing, whatever the width of the lanes.
 struct AcceleratorCounts {
+  std::uint64_t node_visits = 0;  // by a ray, or by several that walk together
   std::uint64_t box_tests = 0;
   std::uint64_t primitive_tests = 0;
 
   void add(const AcceleratorCounts& other) {
+    node_visits += other.node_visits;
     box_tests += other.box_tests;
     primitive_tests += other.primitive_tests;
   }

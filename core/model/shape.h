@@ -1,9 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "core/math/bounds.h"
-#include "core/model/batch.h"
+#include "core/model/packet.h"
 
 // Shapes. A scene keeps all shapes of one type together (a ShapeSet, in double precision); for rendering each
 // set makes a ShapeKernel in the plan's number type, whose calls take whole batches.
@@ -20,6 +21,29 @@ struct Surface {
   N magnitude;  // largest absolute coordinate of the shape, at least near the hit: the scale of rounding
 };
 
+// Primitives of one kernel in an order that a structure chose, laid out in blocks of kBlock<T>, so that a
+// packet meets one of them, or a single ray a block of them, at once. Hits and ties are those of
+// ShapeKernel::closest(), bit for bit. A call takes the meetings in their order, with rays and hits at the
+// places they name, and returns the number of tests of a ray against a primitive. Const and free of state.
+template <class T>
+class PackedPrimitives {
+ public:
+  virtual ~PackedPrimitives() = default;
+
+  using Meetings = std::span<const Meeting>;
+  virtual std::uint64_t closest(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits) const = 0;
+  virtual std::uint64_t closest(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits) const = 0;
+  // Sets t to -1 for rays that meet something in (0, t).
+  virtual std::uint64_t occlude(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits) const = 0;
+  virtual std::uint64_t occlude(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits) const = 0;
+
+  virtual std::size_t bytes() const = 0;
+};
+template <class T>
+using PackedPrimitivesPtr = std::unique_ptr<PackedPrimitives<T>>;
+
+inline constexpr int kNothing = -1;  // an empty place in a block
+
 // Const and free of state: any number of threads may call it at once.
 template <class T>
 class ShapeKernel {
@@ -32,6 +56,10 @@ class ShapeKernel {
 
   // Sets t_max to -1 for the rays of `groups` that meet primitive `index` in (0, t_max).
   virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups) const = 0;
+
+  // The primitives with these indices, in this order, or kNothing, as many as fill whole blocks. No block is
+  // empty. They do not refer to the kernel afterwards.
+  virtual PackedPrimitivesPtr<T> pack(std::span<const int> indices) const = 0;
 
   // Fills the surface of every hit in `groups` that belongs to this set, other lanes stay as they are.
   virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,

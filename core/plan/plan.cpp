@@ -133,13 +133,14 @@ class Planner {
       checks_.throw_if_any();
       return decide("accelerator", asked, "as asked");
     }
-    constexpr int kFewPrimitives = 8;
-    const bool few = scene_.primitive_count() <= kFewPrimitives;
-    plan_.accelerator =
-        find_type(accelerator_types(), few ? "list" : "boxes", "/render/accelerator", checks_);
-    decide("accelerator", plan_.accelerator->name,
-           few ? "so few primitives that testing each costs less than any structure"
-               : "more than " + std::to_string(kFewPrimitives) + " primitives");
+    constexpr int kListPays = 8, kBoxesPay = 64;
+    const int count = scene_.primitive_count();
+    const char* name = count <= kListPays ? "list" : count <= kBoxesPay ? "boxes" : "bvh";
+    plan_.accelerator = find_type(accelerator_types(), name, "/render/accelerator", checks_);
+    decide("accelerator", name,
+           count <= kListPays   ? "so few primitives that testing each costs less than any structure"
+           : count <= kBoxesPay ? "so few primitives that a box around each costs less than a tree of boxes"
+                                : "more than " + std::to_string(kBoxesPay) + " primitives");
   }
 
   void choose_lights() {

@@ -16,8 +16,7 @@ constexpr std::size_t kMaxVertices = 10'000'000;
 // One triangle of a mesh, with the normals to interpolate at its vertices.
 template <class N>
 struct MeshTriangle {
-  Vec3<N> a, b, c;
-  Vec3<N> normal_a, normal_b, normal_c;
+  Corners<N> corners, normals;
   Vec3<N> normal;  // of the flat triangle
   N magnitude;     // largest absolute coordinate of the mesh
 
@@ -44,25 +43,24 @@ struct MeshTriangle {
       const Vec3d flat = safe_normalize(cross(b - a, c - a));
       if (flat == Vec3d()) continue;  // no area: no ray can meet it
       const auto at = [&](std::size_t k) { return normals.empty() ? flat : normals[i[k]]; };
-      out.push_back({a, b, c, at(0), at(1), at(2), flat, box.magnitude()});
+      out.push_back({{a, b, c}, {at(0), at(1), at(2)}, flat, box.magnitude()});
     }
   }
 
-  Boundsd bounds() const { return Boundsd::of({a, b, c}); }
+  Boundsd bounds() const { return corners.bounds(); }
 
-  N distance(const Ray<N>& ray) const { return intersect_triangle(ray, a, b, c).t; }
+  using Core = Corners<N>;
+  const Core& core() const { return corners; }
+  N distance(const Ray<N>& ray) const { return corners.distance(ray); }
 
   // The interpolated normal falls back to the flat one where the three cancel.
   Surface<N> surface(const Ray<N>& ray, const N&) const {
-    const TriangleHit<N> hit = intersect_triangle(ray, a, b, c);
-    const auto mix = [&](const Vec3<N>& at_a, const Vec3<N>& at_b, const Vec3<N>& at_c) {
-      return at_a * hit.weight_a + at_b * hit.weight_b + at_c * hit.weight_c;
-    };
-    const Vec3<N> sum = mix(normal_a, normal_b, normal_c);
+    const Vec3<N> weights = corners.weights(ray);
+    const Vec3<N> sum = normals.mix(weights);
     const N size = length(sum);
     const auto usable = size > N(ScalarOf<N>(0.001));  // unit normals: below it they point opposite ways
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
-    return {mix(a, b, c),
+    return {corners.mix(weights),
             normal,
             {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
             magnitude};

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "core/model/record.h"
-#include "core/model/shape.h"
+#include "core/shapes/packed_records.h"
 
 // A shape type is one record, `template <class N> struct Sphere`, with
 //   static constexpr ShapeTraits kTraits;
@@ -11,6 +10,7 @@
 //   Boundsd bounds() const;                                        of a Sphere<double>
 //   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit, or +infinity (or NaN) for none
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
+//   Core, core()                                  if distance() needs only a part: see packed_records.h
 // and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
 namespace orrery {
 
@@ -46,6 +46,10 @@ class PrimitiveKernel final : public ShapeKernel<T> {
       const auto hit = shape.distance(rays.at(i)) < rays.t_max.at(i);
       if (any(hit)) rays.t_max.put(i, hit, N(-1));
     }
+  }
+
+  PackedPrimitivesPtr<T> pack(std::span<const int> indices) const override {
+    return std::make_unique<PackedRecords<Record, T>>(std::span<const Record<T>>(records_), first_, indices);
   }
 
   [[gnu::flatten]] void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,

@@ -7,7 +7,7 @@ namespace {
 
 template <class N>
 struct Triangle {
-  Vec3<N> a, b, c;
+  Corners<N> corners;
   Vec3<N> normal;  // by the right-hand rule over a, b, c
   N magnitude;     // largest absolute coordinate
 
@@ -19,16 +19,17 @@ struct Triangle {
     v.resize(3);
     const Vec3d normal = safe_normalize(cross(v[1] - v[0], v[2] - v[0]));
     if (normal == Vec3d()) p.fail("vertices", "expected three vertices that are not on one line");
-    out.push_back({v[0], v[1], v[2], normal, Boundsd::of({v[0], v[1], v[2]}).magnitude()});
+    out.push_back({{v[0], v[1], v[2]}, normal, Boundsd::of({v[0], v[1], v[2]}).magnitude()});
   }
 
-  Boundsd bounds() const { return Boundsd::of({a, b, c}); }
+  Boundsd bounds() const { return corners.bounds(); }
 
-  N distance(const Ray<N>& ray) const { return intersect_triangle(ray, a, b, c).t; }
+  using Core = Corners<N>;
+  const Core& core() const { return corners; }
+  N distance(const Ray<N>& ray) const { return corners.distance(ray); }
 
   Surface<N> surface(const Ray<N>& ray, const N&) const {
-    const TriangleHit<N> hit = intersect_triangle(ray, a, b, c);
-    return {a * hit.weight_a + b * hit.weight_b + c * hit.weight_c, normal, normal, magnitude};
+    return {corners.mix(corners.weights(ray)), normal, normal, magnitude};
   }
 };
 

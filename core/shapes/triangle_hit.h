@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/model/batch.h"
+#include "core/math/bounds.h"
+#include "core/model/packet.h"
 
 namespace orrery {
 
@@ -12,12 +13,6 @@ struct TriangleHit {
 };
 
 namespace detail {
-
-// x of the component named by the masks.
-template <class N>
-[[gnu::always_inline]] inline N pick(const MaskOf<N>& x, const MaskOf<N>& y, const Vec3<N>& v) {
-  return select(x, v.x, select(y, v.y, v.z));
-}
 
 // a * b - c * d with the right sign: rounding cannot turn the sign of a difference of rounded products, only
 // make it 0, and then the rounding errors of the products decide.
@@ -33,43 +28,121 @@ template <class N>
 
 }  // namespace detail
 
-// Watertight: a ray through a shared edge or vertex meets one of the triangles around it, in any precision.
-// The ray is turned and sheared to run along its largest axis, and each edge is judged by the sign of a 2D
-// edge function that its two triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight
-// Ray/Triangle Intersection", JCGT 2013).
+// A point as a ray sees it that is turned and sheared to run along its largest axis z.
 template <class N>
-[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Ray<N>& ray, const Vec3<N>& a,
+struct Sheared {
+  N x, y, z;
+};
+
+// Each lane has its own ray and so its own axes.
+template <class N>
+class OwnAxes {
+ public:
+  [[gnu::always_inline]] explicit OwnAxes(const Ray<N>& ray)
+      : origin_(ray.origin), axes_(ray.direction), shear_(Shear<N>::of(axes_, ray.direction)) {}
+  [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
+    const Vec3<N> v = vertex - origin_;
+    const N z = axes_.z(v);
+    return {axes_.x(v) - shear_.x * z, axes_.y(v) - shear_.y * z, z};
+  }
+  [[gnu::always_inline]] N along() const { return shear_.z; }
+
+ private:
+  Vec3<N> origin_;
+  RayAxes<N> axes_;
+  Shear<N> shear_;
+};
+
+// All lanes have the same axes: those of a SingleRay or a Packet.
+template <class N, class Rays>
+class SharedAxes {
+ public:
+  [[gnu::always_inline]] explicit SharedAxes(const Rays& rays) : rays_(rays) {}
+  [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
+    const auto [x, y, z] = rays_.axis;
+    const N vx = moved(vertex, x), vy = moved(vertex, y), vz = moved(vertex, z);
+    return {vx - N(rays_.shear.x) * vz, vy - N(rays_.shear.y) * vz, vz};
+  }
+  [[gnu::always_inline]] N along() const { return N(rays_.shear.z); }
+
+ private:
+  [[gnu::always_inline]] N moved(const Vec3<N>& v, int i) const {
+    return (&v.x)[i] - N((&rays_.ray.origin.x)[i]);
+  }
+  const Rays& rays_;
+};
+
+// Watertight: a ray through a shared edge or vertex meets one of the triangles around it, in any precision.
+// Each edge is judged by the sign of a 2D edge function that its two triangles compute from the same numbers
+// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013).
+template <class N, class Axes>
+[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Axes& axes, const Vec3<N>& a,
                                                                 const Vec3<N>& b, const Vec3<N>& c) {
   using T = ScalarOf<N>;
   const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
-  const Vec3<N> size = abs(ray.direction);
-  const auto z_is_x = size.x >= size.y && size.x >= size.z;
-  const auto z_is_y = !z_is_x && size.y >= size.z;
-  const auto z_is_z = !z_is_x && !z_is_y;
-  const N dz = detail::pick(z_is_x, z_is_y, ray.direction);
-  const N shear_x =
-      detail::pick(z_is_z, z_is_x, ray.direction) / dz;  // x follows z cyclically: zxy, xyz, yzx
-  const N shear_y = detail::pick(z_is_y, z_is_z, ray.direction) / dz;
-  struct Sheared {
-    N x, y, z;
-  };
-  const auto shear = [&](const Vec3<N>& vertex) {
-    const Vec3<N> v = vertex - ray.origin;
-    const N z = detail::pick(z_is_x, z_is_y, v);
-    return Sheared{detail::pick(z_is_z, z_is_x, v) - shear_x * z,
-                   detail::pick(z_is_y, z_is_z, v) - shear_y * z, z};
-  };
-  const Sheared sa = shear(a), sb = shear(b), sc = shear(c);
-  const N u = detail::difference_of_products(sc.x, sb.y, sc.y, sb.x);
-  const N v = detail::difference_of_products(sa.x, sc.y, sa.y, sc.x);
-  const N w = detail::difference_of_products(sb.x, sa.y, sb.y, sa.x);
-  const auto inside = (u >= zero && v >= zero && w >= zero) || (u <= zero && v <= zero && w <= zero);
+  const Sheared<N> sa = axes(a), sb = axes(b), sc = axes(c);
+  N u = sc.x * sb.y - sc.y * sb.x, v = sa.x * sc.y - sa.y * sc.x, w = sb.x * sa.y - sb.y * sa.x;
+  if (any(u == zero || v == zero || w == zero)) [[unlikely]] {
+    u = detail::difference_of_products(sc.x, sb.y, sc.y, sb.x);
+    v = detail::difference_of_products(sa.x, sc.y, sa.y, sc.x);
+    w = detail::difference_of_products(sb.x, sa.y, sb.y, sa.x);
+  }
+  const auto inside = min_first(min_first(u, v), w) >= zero || max_first(max_first(u, v), w) <= zero;
   const N determinant = u + v + w;
   if (!any(inside && determinant != zero)) return {infinity, zero, zero, zero};
   const N inverse = N(T(1)) / determinant;
-  const N t = (u * sa.z + v * sb.z + w * sc.z) * inverse / dz;
+  const N t = (u * sa.z + v * sb.z + w * sc.z) * inverse / axes.along();
   return {select(inside && determinant != zero && t > zero, t, infinity), u * inverse, v * inverse,
           w * inverse};
 }
+
+// What stands at the corners of a triangle; if it is where they are, all that a test of a ray needs.
+template <class N>
+struct Corners {
+  Vec3<N> a, b, c;
+
+  Boundsd bounds() const { return Boundsd::of({a, b, c}); }
+
+  N distance(const Ray<N>& ray) const { return distance_by(OwnAxes<N>(ray)); }
+  N distance(const SingleRay<ScalarOf<N>>& single) const {
+    return distance_by(SharedAxes<N, SingleRay<ScalarOf<N>>>(single));
+  }
+  N distance(const Packet<ScalarOf<N>>& packet) const requires std::is_same_v<N, Lanes<ScalarOf<N>>> {
+    return distance_by(SharedAxes<N, Packet<ScalarOf<N>>>(packet));
+  }
+  // Whether an active ray of the packet may cross: not if the corners, as all these rays see them, lie on one
+  // side of an axis. Their rounded shears are between those of the limits, because rounding keeps order.
+  MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
+    if (!packet.one_origin) return MaskOf<N>(true);
+    return !beside(packet, 0) && !beside(packet, 1);
+  }
+  // Barycentric weights where the ray crosses.
+  Vec3<N> weights(const Ray<N>& ray) const {
+    const TriangleHit<N> hit = intersect_triangle(OwnAxes<N>(ray), a, b, c);
+    return {hit.weight_a, hit.weight_b, hit.weight_c};
+  }
+  Vec3<N> mix(const Vec3<N>& weights) const { return a * weights.x + b * weights.y + c * weights.z; }
+
+ private:
+  template <class Axes>
+  [[gnu::always_inline]] N distance_by(const Axes& axes) const {
+    return intersect_triangle(axes, a, b, c).t;
+  }
+  [[gnu::always_inline]] MaskOf<N> beside(const Packet<ScalarOf<N>>& packet, std::size_t side) const {
+    using T = ScalarOf<N>;
+    const auto moved = [&](const Vec3<N>& v, std::size_t i) {
+      const auto axis = static_cast<std::size_t>(packet.axis[i]);
+      return (&v.x)[axis] - N((&packet.origin.x)[axis]);
+    };
+    N least(std::numeric_limits<T>::infinity()), most(-std::numeric_limits<T>::infinity());
+    for (const Vec3<N>* corner : {&a, &b, &c}) {
+      const N x = moved(*corner, side), z = moved(*corner, 2);
+      const N lo = x - N(packet.shear_lo[side]) * z, hi = x - N(packet.shear_hi[side]) * z;
+      least = min_first(least, min_first(lo, hi));
+      most = max_first(most, max_first(lo, hi));
+    }
+    return least > N(T(0)) || most < N(T(0));
+  }
+};
 
 }  // namespace orrery

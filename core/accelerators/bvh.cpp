@@ -1,0 +1,39 @@
+#include "core/accelerators/unbounded.h"
+#include "core/accelerators/walk.h"
+
+namespace orrery {
+namespace {
+
+// A hierarchy of boxes by the surface area heuristic. Unbounded primitives stand apart and are always tested.
+template <class T>
+class Bvh final : public Accelerator<T> {
+ public:
+  explicit Bvh(const PrimitiveList<T>& primitives)
+      : unbounded_(primitives), tree_(SahBuilder<T>::build(items_of(primitives)), primitives) {}
+
+  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+               AcceleratorCounts& counts) const override {
+    unbounded_.closest(rays, groups, hits, counts);
+    if (tree_.empty()) return;
+    Walk<T>(rays, groups, hits.t, &hits.primitive).template run<Query::closest>(tree_, counts);
+  }
+
+  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    const Groups open = unbounded_.occlude(rays, groups, counts);
+    if (tree_.empty()) return;
+    Walk<T>(rays, open, rays.t_max, nullptr).template run<Query::occlude>(tree_, counts);
+  }
+
+ private:
+  Unbounded<T> unbounded_;
+  WideTree<T> tree_;
+};
+
+}  // namespace
+
+AcceleratorType bvh_type() {
+  return {"bvh", "A hierarchy of boxes by the surface area heuristic, wide nodes, packets and single rays.",
+          build_accelerator<Bvh, float>, build_accelerator<Bvh, double>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "core/math/bounds.h"
+#include "core/math/compress.h"
+#include "core/model/packet.h"
+
+// Probes: what a ray, or a packet, is to the boxes of a wide node, which it meets all at once.
+//
+// A probe is conservative: a box in which a primitive's computed hit may lie is never refused. Boxes are
+// grown by padded() for the rounding of what is in them; each probe moves its planes apart by kRounding ulp
+// of the origin's largest coordinate, and stretches the far end by a few ulp, for the rounding of distances
+// in the slab test and in the hits (Ize, "Robust BVH Ray Traversal", JCGT 2013, extended to the hits' own
+// errors).
+namespace orrery {
+
+// Boxes that one register of T holds a side of, 16 at most: the children of a node.
+template <class T>
+inline constexpr int kFan = std::min(16, kWidth<T>);
+template <class T>
+using FanLanes = stdx::simd<T, stdx::simd_abi::deduce_t<T, kFan<T>>>;
+
+template <class T>
+inline constexpr T kRounding = 16 * std::numeric_limits<T>::epsilon();
+template <class T>
+inline constexpr T kFarther = 1 + 8 * std::numeric_limits<T>::epsilon();
+
+// Boxes of the children of one node: planes[2 * axis] holds their low sides, planes[2 * axis + 1] their high
+// sides.
+template <class T>
+using BoxPlanes = std::array<FanLanes<T>, 6>;
+
+template <class T>
+class SingleProbe {
+ public:
+  using F = FanLanes<T>;
+
+  SingleProbe() {}  // says nothing yet
+  explicit SingleProbe(const Ray<T>& ray) {
+    const T pad = max_component(abs(ray.origin)) * kRounding<T>;
+    const T least = max_component(abs(ray.direction)) * T(1e-18);
+    set(0, ray.origin.x, ray.direction.x, pad, least);
+    set(1, ray.origin.y, ray.direction.y, pad, least);
+    set(2, ray.origin.z, ray.direction.z, pad, least);
+  }
+
+  // Signs of the direction, bit by bit.
+  std::uint8_t octant() const {
+    return static_cast<std::uint8_t>((near_[0] & 1) | (near_[1] & 1) << 1 | (near_[2] & 1) << 2);
+  }
+
+  // Where it enters each box; the bits name those it enters in [0, limit].
+  [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, F& near) const {
+    near = F(T(0));
+    F far = F(limit);
+#pragma GCC unroll 3
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const F inverse(inverse_[axis]);
+      near = max_first(near, multiply_subtract(planes[near_[axis]], inverse, F(near_offset_[axis])));
+      far = min_first(far, multiply_subtract(planes[near_[axis] ^ 1], inverse, F(far_offset_[axis])));
+    }
+    return bits_of(near <= far * kFarther<T>);
+  }
+
+ private:
+  // A direction of 0, or next to it, counts as one so small that the ray leaves no box sideways: no infinity
+  // arises.
+  void set(std::size_t axis, T origin, T direction, T pad, T least) {
+    if (std::abs(direction) < least) direction = std::copysign(least, direction);
+    const T inverse = 1 / direction;
+    near_[axis] = 2 * axis + (inverse < 0);
+    inverse_[axis] = inverse;
+    near_offset_[axis] = origin * inverse + pad * std::abs(inverse);
+    far_offset_[axis] = origin * inverse - pad * std::abs(inverse);
+  }
+
+  std::array<std::size_t, 3> near_;
+  std::array<T, 3> inverse_, near_offset_, far_offset_;
+};
+
+// Between the smallest and the largest of the origins and directions of its rays: what one of them enters, it
+// enters.
+template <class T>
+class PacketProbe {
+ public:
+  using F = FanLanes<T>;
+  using N = Lanes<T>;
+
+  PacketProbe() {}  // says nothing yet
+  // For those of `active`. REQUIRES: any(active).
+  PacketProbe(const Ray<N>& rays, const MaskOf<N>& active) {
+    const T pad = largest(active, max_component(abs(rays.origin))) * kRounding<T>;
+    set(0, active, rays.origin.x, rays.direction.x, pad);
+    set(1, active, rays.origin.y, rays.direction.y, pad);
+    set(2, active, rays.origin.z, rays.direction.z, pad);
+  }
+
+  std::uint8_t octant() const {
+    return static_cast<std::uint8_t>((axis_[0].near & 1) | (axis_[1].near & 1) << 1 |
+                                     (axis_[2].near & 1) << 2);
+  }
+  // Whether the rays are so much alike that walking together pays.
+  bool narrow() const { return narrow_; }
+
+  [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, F& near) const {
+    near = F(T(0));
+    F far = F(limit);
+#pragma GCC unroll 3
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Axis& a = axis_[axis];
+      const F in = planes[a.near] - F(a.near_origin), out = planes[a.near ^ 1] - F(a.far_origin);
+      near = max_first(near, min_first(F(in * a.inverse_lo), F(in * a.inverse_hi)));
+      far = min_first(far, max_first(F(out * a.inverse_lo), F(out * a.inverse_hi)));
+    }
+    return bits_of(near <= far * kFarther<T>);
+  }
+
+ private:
+  struct Axis {
+    std::size_t near;
+    T inverse_lo, inverse_hi, near_origin, far_origin;
+  };
+
+  static T largest(const MaskOf<N>& active, const N& v) {
+    return stdx::hmax(select(active, v, N(-std::numeric_limits<T>::infinity())));
+  }
+  static T smallest(const MaskOf<N>& active, const N& v) {
+    return stdx::hmin(select(active, v, N(std::numeric_limits<T>::infinity())));
+  }
+
+  void set(std::size_t axis, const MaskOf<N>& active, const N& origin, const N& direction, T pad) {
+    constexpr T kLeast = T(1e-18), kWidest = T(0.25);
+    const T lo = smallest(active, direction), hi = largest(active, direction);
+    const bool negative = hi < 0;
+    narrow_ = narrow_ && (lo > kLeast || hi < -kLeast) && hi - lo < kWidest;
+    const T origin_lo = smallest(active, origin) - pad, origin_hi = largest(active, origin) + pad;
+    axis_[axis] = {2 * axis + negative, 1 / hi, 1 / lo, negative ? origin_lo : origin_hi,
+                   negative ? origin_hi : origin_lo};
+  }
+
+  std::array<Axis, 3> axis_;
+  bool narrow_ = true;
+};
+
+}  // namespace orrery

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "core/accelerators/wide_tree.h"
+
+namespace orrery {
+
+// Rays, or packets, that walk a tree side by side, with their probes and hits.
+template <class T, class Rays, class Probe, class Hit, int kMost>
+struct Walkers {
+  std::array<Rays, kMost> rays;
+  std::array<Probe, kMost> probes;
+  std::array<Hit, kMost> hits;
+  std::array<int, kMost> place;            // in the batch
+  std::array<std::uint8_t, kMost> octant;  // signs of the direction
+  int count = 0;
+};
+
+enum class Query { closest, occlude };
+
+// Takes many walkers through a tree together: each node is opened once for all that enter it, so that the
+// machine finds long loops instead of guesses (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream
+// Tracing", HPG 2009). For Query::closest they go on in the order of distance, as those agree about it.
+template <Query kQuery, class T, class Walking>
+class Stream {
+ public:
+  Stream(const WideTree<T>& tree, Walking& walkers, AcceleratorCounts& counts)
+      : tree_(tree), walkers_(walkers), counts_(counts) {}
+
+  // Those of `ids`.
+  void run(const std::int32_t* ids, int count) {
+    std::copy(ids, ids + count, room_.data());
+    visit(tree_.root(), room_.data(), count, room_.data() + count + kPad);
+  }
+
+ private:
+  using Id = stdx::native_simd<std::int32_t>;
+  using Child = typename WideTree<T>::Child;
+  static constexpr std::size_t kFanSize = static_cast<std::size_t>(kFan<T>);
+  static constexpr int kStep = static_cast<int>(Id::size());
+  static constexpr int kPad = 16;  // lists are read and written by whole registers
+
+  // The walkers that enter one child of a node.
+  struct List {
+    T near;
+    Child child;
+    std::int32_t* ids;
+    int count;
+  };
+  using Lists = std::array<List, kFanSize>;
+
+  static constexpr int room_for(int count) { return (kFan<T> + 1) * (count + kPad); }
+  static constexpr int kDeepest = 96;  // more than the builders' trees have
+  static constexpr int kReserve = kDeepest * room_for(1), kRoom = kReserve + 2 * room_for(kBatch);
+
+  // `room` is free from there on.
+  void visit(Child at, const std::int32_t* ids, int count, std::int32_t* room) {
+    if (WideTree<T>::is_leaf(at)) {
+      meet(at, ids, count);
+      return flush();
+    }
+    if (count > 1 && room + room_for(count) > room_.data() + (kRoom - kReserve)) {
+      const int half = count / 2;
+      visit(at, ids, half, room);
+      return visit(at, ids + half, count - half, room);
+    }
+    Lists lists;
+    const std::size_t found = enter(tree_.node(at), ids, count, room, lists);
+    for (std::size_t i = 0; i < found; ++i) {
+      const List& list = lists[i];
+      if (WideTree<T>::is_leaf(list.child)) {
+        meet(list.child, list.ids, list.count);
+      } else {
+        flush();
+        visit(list.child, list.ids, list.count, room);
+      }
+    }
+    flush();
+  }
+
+  // Holds the walkers against the children of a node; returns how many of these get a list. Lists go to
+  // `room`, which is moved on.
+  std::size_t enter(const typename WideTree<T>::Node& node, const std::int32_t* ids, int count,
+                    std::int32_t*& room, Lists& lists) {
+    FanLanes<T> nearest(std::numeric_limits<T>::infinity());
+    std::int32_t* masks = room;
+    unsigned all = 0;
+    for (int i = 0; i < count; ++i) {
+      FanLanes<T> near;
+      const auto id = static_cast<std::size_t>(ids[i]);
+      const unsigned entered = walkers_.probes[id].enter(node.planes, walkers_.hits[id].limit(), near);
+      nearest = min_first(nearest, near);
+      all |= entered;
+      masks[i] = static_cast<std::int32_t>(entered);
+    }
+    std::fill(masks + count, masks + count + kPad, 0);
+    counts_.node_visits += static_cast<std::uint64_t>(count);
+    counts_.box_tests += static_cast<std::uint64_t>(count * kFan<T>);
+    room += count + kPad;
+    alignas(64) std::array<T, kFanSize> distance;
+    nearest.copy_to(distance.data(), stdx::vector_aligned);
+    std::size_t found = 0;
+    for (; all != 0; all &= all - 1) {
+      const int c = std::countr_zero(all);
+      const auto child = static_cast<std::size_t>(c);
+      const List list{distance[child], node.child[child], room, collect(1 << c, ids, masks, count, room)};
+      room += list.count;
+      std::size_t place = found++;
+      if constexpr (kQuery == Query::closest)
+        for (; place > 0 && list.near < lists[place - 1].near; --place) lists[place] = lists[place - 1];
+      lists[place] = list;
+    }
+    room += kPad;
+    return found;
+  }
+
+  // Writes those of `ids` that have the bit in their mask to `to`; returns how many.
+  static int collect(std::int32_t bit, const std::int32_t* ids, const std::int32_t* masks, int count,
+                     std::int32_t* to) {
+    std::int32_t* end = to;
+    for (int i = 0; i < count; i += kStep) {
+      const Id mask(masks + i, stdx::element_aligned);
+      const unsigned chosen = bits_of((mask & Id(bit)) != 0);
+      compress_store(Id(ids + i, stdx::element_aligned), chosen, end);
+      end += std::popcount(chosen);
+    }
+    return static_cast<int>(end - to);
+  }
+
+  // Notes that the walkers have to be tested with a block.
+  void meet(Child leaf, const std::int32_t* ids, int count) {
+    if (met_ > 0 && !WideTree<T>::same_pack(leaf, leaf_)) flush();
+    leaf_ = leaf;
+    for (int i = 0; i < count; ++i) {
+      if (met_ == meetings_.size()) flush();
+      meetings_[met_++] = {WideTree<T>::block_of(leaf), ids[i]};
+    }
+  }
+
+  void flush() {
+    if (met_ == 0) return;
+    const auto& pack = tree_.pack_of(leaf_);
+    const std::span<const Meeting> meetings(meetings_.data(), met_);
+    if constexpr (kQuery == Query::closest)
+      counts_.primitive_tests += pack.closest(meetings, walkers_.rays.data(), walkers_.hits.data());
+    else
+      counts_.primitive_tests += pack.occlude(meetings, walkers_.rays.data(), walkers_.hits.data());
+    met_ = 0;
+  }
+
+  const WideTree<T>& tree_;
+  Walking& walkers_;
+  AcceleratorCounts& counts_;
+  Child leaf_ = 0;  // one of the pack that meetings_ are with
+  std::size_t met_ = 0;
+  std::array<Meeting, 1024> meetings_;
+  alignas(64) std::array<std::int32_t, kRoom> room_;
+};
+
+}  // namespace orrery

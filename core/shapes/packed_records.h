@@ -1,0 +1,187 @@
+#pragma once
+
+#include <bit>
+#include <vector>
+
+#include "core/math/compress.h"
+#include "core/model/record.h"
+#include "core/model/shape.h"
+
+namespace orrery {
+
+// The part of a record that distance() needs: what it names as Core, or all of it.
+template <template <class> class Record, class N>
+struct CoreOf {
+  using type = Record<N>;
+  static const type& of(const Record<N>& record) { return record; }
+};
+template <template <class> class Record, class N>
+requires requires { typename Record<N>::Core; }
+struct CoreOf<Record, N> {
+  using type = typename Record<N>::Core;
+  static const type& of(const Record<N>& record) { return record.core(); }
+};
+
+// See PackedPrimitives. A core that has a distance() for a SingleRay or a Packet is asked that way, others
+// see the rays as they are.
+template <template <class> class Record, class T>
+class PackedRecords final : public PackedPrimitives<T> {
+ public:
+  PackedRecords(std::span<const Record<T>> records, int first, std::span<const int> indices) {
+    blocks_.resize(indices.size() / kB);
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      fill(blocks_[b], records, first, indices.subspan(b * kB, kB));
+  }
+
+  using Meetings = typename PackedPrimitives<T>::Meetings;
+
+  [[gnu::flatten]] std::uint64_t closest(Meetings meetings, const SingleRay<T>* rays,
+                                         SingleHit<T>* hits) const override {
+    std::uint64_t tested = 0;
+    for (const Meeting& meeting : meetings) {
+      const Block& block = blocks_[meeting.block];
+      tested += block.count;
+      SingleHit<T>& hit = hits[meeting.ray];
+      const B t = distance(block.core, rays[meeting.ray]);
+      const unsigned reached = bits_of(t <= B(std::min(hit.t, kFar))) & block.filled();
+      if (reached != 0) take_nearest(block, t, reached, hit);
+    }
+    return tested;
+  }
+
+  [[gnu::flatten]] std::uint64_t occlude(Meetings meetings, const SingleRay<T>* rays,
+                                         SingleHit<T>* hits) const override {
+    std::uint64_t tested = 0;
+    for (const Meeting& meeting : meetings) {
+      const Block& block = blocks_[meeting.block];
+      SingleHit<T>& hit = hits[meeting.ray];
+      if (hit.t < 0) continue;
+      tested += block.count;
+      if ((bits_of(distance(block.core, rays[meeting.ray]) < B(hit.t)) & block.filled()) != 0) hit.t = T(-1);
+    }
+    return tested;
+  }
+
+  [[gnu::flatten]] std::uint64_t closest(Meetings meetings, const Packet<T>* packets,
+                                         PacketHit<T>* hits) const override {
+    std::uint64_t tested = 0;
+    for (const Meeting& meeting : meetings) {
+      const Block& block = blocks_[meeting.block];
+      PacketHit<T>& hit = hits[meeting.ray];
+      tested += block.count * active_in(hit);
+      for_each(block, packets[meeting.ray], [&](const Core<N>& core, IndexOf<T> id) {
+        const N t = distance(core, packets[meeting.ray]);
+        if (!any(t <= min_first(hit.t, N(kFar)))) return;
+        const auto lower = mask_cast<N>(IndexLanes<T>(id) < hit.primitive || hit.primitive == kNoPrimitive);
+        const auto nearer = t < hit.t || (t == hit.t && lower && t <= kFar);
+        stdx::where(nearer, hit.t) = t;
+        stdx::where(mask_cast<IndexLanes<T>>(nearer), hit.primitive) = IndexLanes<T>(id);
+      });
+      hit.farthest = stdx::hmax(hit.t);
+    }
+    return tested;
+  }
+
+  [[gnu::flatten]] std::uint64_t occlude(Meetings meetings, const Packet<T>* packets,
+                                         PacketHit<T>* hits) const override {
+    std::uint64_t tested = 0;
+    for (const Meeting& meeting : meetings) {
+      const Block& block = blocks_[meeting.block];
+      PacketHit<T>& hit = hits[meeting.ray];
+      if (hit.farthest < 0) continue;
+      tested += block.count * active_in(hit);
+      for_each(block, packets[meeting.ray], [&](const Core<N>& core, IndexOf<T>) {
+        stdx::where(distance(core, packets[meeting.ray]) < hit.t, hit.t) = N(T(-1));
+      });
+      hit.farthest = stdx::hmax(hit.t);
+    }
+    return tested;
+  }
+
+  std::size_t bytes() const override { return blocks_.size() * sizeof(Block); }
+
+ private:
+  using N = Lanes<T>;
+  using B = BlockLanes<T>;
+  template <class M>
+  using Core = typename CoreOf<Record, M>::type;
+  static constexpr T kFar = std::numeric_limits<T>::max();  // no hit is farther
+  static constexpr std::size_t kB = static_cast<std::size_t>(kBlock<T>);
+  static constexpr std::size_t kCoreFields = sizeof(Core<T>) / sizeof(T);
+
+  struct Block {
+    Core<B> core;  // empty places repeat another
+    std::array<IndexOf<T>, kB> id;
+    unsigned count;  // filled places, which come first
+    unsigned filled() const { return (1u << count) - 1u; }
+  };
+
+  static void fill(Block& block, std::span<const Record<T>> records, int first,
+                   std::span<const int> indices) {
+    block.count = 0;
+    std::array<std::array<T, kB>, kCoreFields> columns;
+    for (const int index : indices) {
+      if (index == kNothing) continue;
+      const auto lane = static_cast<std::size_t>(block.count++);
+      std::array<T, kCoreFields> row;
+      std::memcpy(row.data(), &CoreOf<Record, T>::of(records[static_cast<std::size_t>(index)]), sizeof row);
+      for (std::size_t rest = lane; rest < kB; ++rest) {
+        for (std::size_t field = 0; field < kCoreFields; ++field) columns[field][rest] = row[field];
+        block.id[rest] = static_cast<IndexOf<T>>(first + index);
+      }
+    }
+    static_assert(sizeof columns == sizeof block.core);
+    std::memcpy(static_cast<void*>(&block.core), columns.data(), sizeof columns);
+  }
+
+  static B distance(const Core<B>& core, const SingleRay<T>& single) {
+    if constexpr (requires { core.distance(single); })
+      return core.distance(single);
+    else
+      return core.distance(Ray<B>{Vec3<B>(single.ray.origin), Vec3<B>(single.ray.direction)});
+  }
+  static N distance(const Core<N>& core, const Packet<T>& packet) {
+    if constexpr (requires { core.distance(packet); })
+      return core.distance(packet);
+    else
+      return core.distance(packet.ray);
+  }
+
+  static unsigned active_in(const PacketHit<T>& hit) {
+    return static_cast<unsigned>(stdx::popcount(hit.t > N(T(0))));
+  }
+
+  // Of the lanes `reached`, which lie at hit.t or nearer, the nearest one with the lowest number.
+  static void take_nearest(const Block& block, const B& t, unsigned reached, SingleHit<T>& hit) {
+    for (; reached != 0; reached &= reached - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
+      const T t_lane = t[lane];
+      const bool lower = block.id[lane] < hit.primitive || hit.primitive == kNoPrimitive;
+      if (t_lane < hit.t || (t_lane == hit.t && lower)) hit = {t_lane, block.id[lane]};
+    }
+  }
+
+  // Calls `visit` with the core of each primitive that the packet may meet, in every lane, and its number.
+  template <class Visit>
+  [[gnu::always_inline]] static void for_each(const Block& block, const Packet<T>& packet,
+                                              const Visit& visit) {
+    unsigned chosen = block.filled();
+    if constexpr (requires { block.core.may_meet(packet); }) chosen &= bits_of(block.core.may_meet(packet));
+    for (; chosen != 0; chosen &= chosen - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(chosen));
+      std::array<N, kCoreFields> lanes;
+      for (std::size_t field = 0; field < kCoreFields; ++field) {
+        T value;
+        std::memcpy(&value, reinterpret_cast<const T*>(&block.core) + field * kB + k, sizeof value);
+        lanes[field] = N(value);
+      }
+      Core<N> core;
+      std::memcpy(static_cast<void*>(&core), lanes.data(), sizeof core);
+      visit(core, block.id[k]);
+    }
+  }
+
+  std::vector<Block> blocks_;
+};
+
+}  // namespace orrery
