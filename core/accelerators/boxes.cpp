@@ -36,6 +36,10 @@ class Boxes final : public Accelerator<T> {
     for (const int i : open) occlude_register(rays, i, counts);
   }
 
+  AcceleratorFacts facts() const override {
+    return {.bytes = boxed_.size() * sizeof(Boxed) + unbounded_.bytes(), .depth = 1};
+  }
+
  private:
   using N = Lanes<T>;
   struct Boxed {

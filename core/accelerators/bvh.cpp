@@ -24,6 +24,10 @@ class Bvh final : public Accelerator<T> {
     Walk<T>(rays, open, rays.t_max, nullptr).template run<Query::occlude>(tree_, counts);
   }
 
+  AcceleratorFacts facts() const override {
+    return {.bytes = tree_.bytes() + unbounded_.bytes(), .depth = tree_.depth()};
+  }
+
  private:
   Unbounded<T> unbounded_;
   WideTree<T> tree_;

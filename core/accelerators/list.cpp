@@ -23,6 +23,8 @@ class List final : public Accelerator<T> {
     }
   }
 
+  AcceleratorFacts facts() const override { return {}; }
+
  private:
   const PrimitiveList<T>& primitives_;
 };

@@ -31,6 +31,8 @@ class Unbounded {
     return open;
   }
 
+  std::size_t bytes() const { return primitives_.size() * sizeof(Primitive<T>); }
+
  private:
   PrimitiveList<T> primitives_;
 };

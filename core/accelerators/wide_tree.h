@@ -22,11 +22,18 @@ class WideTree {
   WideTree(const BoxTree<T>& tree, const PrimitiveList<T>& primitives) {
     if (tree.empty()) return;
     std::vector<Making> packs;
-    root_ = convert(tree, 0, primitives, packs);
+    root_ = convert(tree, 0, primitives, packs, 1);
+    nodes_.shrink_to_fit();
     for (const Making& pack : packs) packs_.push_back(pack.kernel->pack(pack.indices));
   }
 
   bool empty() const { return packs_.empty(); }
+  int depth() const { return depth_; }
+  std::size_t bytes() const {
+    std::size_t bytes = nodes_.size() * sizeof(Node);
+    for (const auto& pack : packs_) bytes += pack->bytes();
+    return bytes;
+  }
   Child root() const { return root_; }
   const Node& node(Child child) const { return nodes_[child]; }
 
@@ -49,7 +56,8 @@ class WideTree {
   };
 
   Child convert(const BoxTree<T>& tree, std::uint32_t at, const PrimitiveList<T>& primitives,
-                std::vector<Making>& packs) {
+                std::vector<Making>& packs, int level) {
+    depth_ = std::max(depth_, level);
     using F = FanLanes<T>;
     if (tree.nodes[at].leaf) return add_leaf(tree, tree.nodes[at], primitives, packs);
     const std::vector<std::uint32_t> children = children_of(tree, at);
@@ -62,7 +70,7 @@ class WideTree {
       const Bounds<T>& box = tree.nodes[children[i]].box;
       const std::array<T, 6> sides{box.lo.x, box.hi.x, box.lo.y, box.hi.y, box.lo.z, box.hi.z};
       for (std::size_t side = 0; side < 6; ++side) node.planes[side][i] = sides[side];
-      node.child[i] = convert(tree, children[i], primitives, packs);
+      node.child[i] = convert(tree, children[i], primitives, packs, level + 1);
     }
     nodes_[me] = node;
     return static_cast<Child>(me);
@@ -103,6 +111,7 @@ class WideTree {
   static constexpr T kInfinite = std::numeric_limits<T>::infinity();
 
   Child root_ = 0;
+  int depth_ = 0;
   std::vector<Node> nodes_;
   std::vector<PackedPrimitivesPtr<T>> packs_;
 };

@@ -31,12 +31,20 @@ struct Primitive {
 template <class T>
 using PrimitiveList = std::vector<Primitive<T>>;
 
+// What a structure is, once built.
+struct AcceleratorFacts {
+  std::size_t bytes = 0;  // held beside the scene itself
+  int depth = 0;          // nodes on the longest way to a primitive
+};
+
 // Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive,
 // equal distances going to the lower number. Immutable once built; calls may run on any number of threads.
 template <class T>
 class Accelerator {
  public:
   virtual ~Accelerator() = default;
+
+  virtual AcceleratorFacts facts() const = 0;
 
   // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max, hits.primitive kNoPrimitive.
   virtual void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,

@@ -71,6 +71,7 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
                     const RenderControl& control) {
   RenderStats stats;
   const World<T>& world = world_for<T>(scene.parts(), *plan.accelerator, stats.build_ms);
+  stats.structure = world.accelerator->facts();
   Image image(plan.width, plan.height, format);
   tbb::enumerable_thread_specific<std::unique_ptr<TileRenderer<T>>> renderers(
       [&] { return std::make_unique<TileRenderer<T>>(world, plan); });

@@ -55,6 +55,7 @@ struct RenderControl {
 struct RenderStats {
   TraceCounts counts;
   double mean_cut = 0, max_cut = 0;  // weight of rays not traced, a pixel: mean and largest
+  AcceleratorFacts structure;        // what the rays were traced with
   double build_ms = 0;               // making the scene ready, where it was not yet
   double trace_ms = 0;               // wall clock
   std::uint64_t non_finite_pixels = 0;

@@ -70,6 +70,9 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
             {"refracted", by_depth(counts.rays.refracted)},
             {"shadow", by_depth(counts.rays.shadow)},
             {"total", counts.rays.total()}}},
+          {"structure_bytes", stats.render.structure.bytes},
+          {"structure_depth", stats.render.structure.depth},
+          {"node_visits", counts.accelerator.node_visits},
           {"box_tests", counts.accelerator.box_tests},
           {"primitive_tests", counts.accelerator.primitive_tests},
           {"cut_rays", counts.cut_rays},
@@ -92,6 +95,10 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   line(text, "%-12s %s, %s, %s, %s, threads %d", "rendered by", plan.technique->name, plan.accelerator->name,
        plan.double_precision ? "double" : "float", std::string(kInstructionLevel).c_str(), stats.threads);
   rays_text(text, counts.rays);
+  line(text, "%-12s %14zu bytes, %d nodes deep", "structure", stats.render.structure.bytes,
+       stats.render.structure.depth);
+  line(text, "%-12s %14llu of nodes", "visits",
+       static_cast<unsigned long long>(counts.accelerator.node_visits));
   line(text, "%-12s %14llu of boxes, %llu of primitives", "tests",
        static_cast<unsigned long long>(counts.accelerator.box_tests),
        static_cast<unsigned long long>(counts.accelerator.primitive_tests));

@@ -3,6 +3,7 @@
 import { writeFileSync } from "node:fs";
 import { loadavg } from "node:os";
 import { exists_program, kOrrery } from "./command.mjs";
+import { kEmbree } from "./embree.mjs";
 import { kFlakeVsPovray } from "./flake_vs_povray.mjs";
 import { measure } from "./measure.mjs";
 import { kNoise } from "./noise.mjs";
@@ -11,8 +12,8 @@ import { kPaperVsPovray } from "./paper_vs_povray.mjs";
 
 // Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
 // reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
-// makes ready and returns {ours(), theirs(), stop()}. One call of ours or theirs is one run: {cost, cpu_s}.
-const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp];
+// makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
+const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree];
 
 const kQuietLoad = 0.3; // above it others work on this machine too
 const kUsage = "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--list]";
@@ -38,7 +39,7 @@ function read_arguments(words) {
 }
 
 const kColumns = [
-  ["name", 18, (r) => r.name],
+  ["name", 22, (r) => r.name],
   ["ours CPU s", 11, (r) => r.ours_cpu_s.toFixed(3)],
   ["theirs CPU s", 13, (r) => r.theirs_cpu_s.toFixed(3)],
   ["ratio", 8, (r) => r.ratio.toFixed(2)],
@@ -76,7 +77,7 @@ async function run_benchmark(benchmark, pairs) {
 async function main() {
   const options = read_arguments(process.argv.slice(2));
   if (options.list) {
-    for (const { name, what } of kBenchmarks) console.log(`${name.padEnd(18)}${what}`);
+    for (const { name, what } of kBenchmarks) console.log(`${name.padEnd(22)}${what}`);
     return;
   }
   if (!exists_program(kOrrery)) fail(`${kOrrery} is not built`);
@@ -89,8 +90,8 @@ async function main() {
     const result = await run_benchmark(benchmark, options.pairs);
     if (result) results.push(result);
   }
-  for (const { name, what, cost, runs } of results)
-    console.log(`${name}: ${what}; ${runs} pairs, ratio of ${cost}`);
+  for (const { name, what, cost, runs, remark } of results)
+    console.log(`${name}: ${what}; ${runs} pairs, ratio of ${cost}${remark ? `; ${remark}` : ""}`);
   if (options.json) writeFileSync(options.json, JSON.stringify(results, null, 2) + "\n");
 }
 

@@ -45,5 +45,6 @@ export async function measure(benchmark, pairs) {
     runs: pairs,
     ours_cpu_s: median(ours_cpu_s),
     theirs_cpu_s: median(theirs_cpu_s),
+    remark: sides.remark,
   };
 }

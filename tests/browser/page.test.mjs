@@ -114,14 +114,14 @@ page_test(
     await rest(page);
     const box = await page.locator("#stage").boundingBox();
     const asked = [];
-    let flying = 0;
+    const flying = new Set(); // not those that were under way before
     let most_flying = 0;
     page.on("request", (request) => {
       if (!request.url().includes("frame.png")) return;
       asked.push(new URL(request.url()).searchParams);
-      most_flying = Math.max(most_flying, (flying += 1));
+      most_flying = Math.max(most_flying, flying.add(request).size);
     });
-    const landed = (request) => request.url().includes("frame.png") && (flying -= 1);
+    const landed = (request) => flying.delete(request);
     page.on("requestfinished", landed);
     page.on("requestfailed", landed);
     await drag(page, 120, 0);

@@ -78,6 +78,8 @@ TEST_F(CommandLine, StatsCountEveryRay) {
   const auto stats = nlohmann::json::parse(result.out);
   EXPECT_EQ(stats.at("rays").at("camera"), 20 * 30 * 4);
   EXPECT_EQ(stats.at("samples"), 4);
+  for (const char* name : {"structure_bytes", "structure_depth", "node_visits", "box_tests"})
+    EXPECT_TRUE(stats.at(name).is_number_unsigned() || stats.at(name).is_number_integer()) << name;
   for (const char* name : {"load_ms", "build_ms", "trace_ms", "mrays_per_s", "cpu_s"})
     EXPECT_GE(stats.at(name), 0.0) << name;
 }

@@ -12,6 +12,7 @@ class Tracing::Recorder final : public Accelerator<double> {
  public:
   explicit Recorder(AcceleratorPtr<double> real) : real_(std::move(real)) {}
 
+  AcceleratorFacts facts() const override { return real_->facts(); }
   void closest(const RayBatch<double>& rays, const Groups& groups, HitBatch<double>& hits,
                AcceleratorCounts& counts) const override {
     std::vector<Ray<double>> generation;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "tests/bench/subject.h"
+
+// Embree 3 on one thread. Times are CPU seconds of that thread.
+namespace orrery::bench {
+
+double cpu_seconds();
+
+class Embree {
+ public:
+  // Builds in high quality. `robust`: its watertight mode.
+  Embree(const Mesh& mesh, bool robust);
+  ~Embree();
+  Embree(const Embree&) = delete;
+
+  double build_s() const;
+  std::size_t bytes() const;  // held after building
+
+  double closest_in_packets(const Rays& rays) const;  // of 16, coherent
+  // One by one. `found`: how many met something.
+  double closest(const Rays& rays, std::size_t& found) const;
+  double occluded(const Rays& rays, float t_max, std::size_t& found) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace orrery::bench

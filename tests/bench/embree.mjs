@@ -1,0 +1,62 @@
+import { spawn } from "node:child_process";
+import { createInterface } from "node:readline";
+
+const kProgram = "build/bench";
+const kBunny = 70_000; // triangles, as many as the Stanford bunny has
+
+// A process that holds the mesh and both structures; each line asks it for one run.
+async function start(kind, triangles, mode) {
+  const child = spawn(kProgram, [kind, String(triangles), mode], { stdio: ["pipe", "pipe", "inherit"] });
+  const ended = new Promise((resolve) => child.once("close", resolve));
+  const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
+  const next_line = async () => {
+    const { value, done } = await lines.next();
+    if (done) throw new Error(`${kProgram} ended with ${await ended}`);
+    return value;
+  };
+  let facts;
+  try {
+    facts = JSON.parse(await next_line());
+  } catch (error) {
+    child.kill();
+    throw error;
+  }
+  const run = async (side) => {
+    child.stdin.write(`${side}\n`);
+    const cpu_s = Number(await next_line());
+    return { cost: cpu_s, cpu_s };
+  };
+  const per_triangle = (bytes) => (bytes / facts.triangles).toFixed(0);
+  return {
+    ours: () => run("ours"),
+    theirs: () => run("theirs"),
+    stop: async () => {
+      child.stdin.end();
+      await ended;
+    },
+    remark:
+      `${facts.triangles} triangles` +
+      (kind === "build" ? "" : `, ${facts.rays} rays`) +
+      `, bytes a triangle: ours ${per_triangle(facts.our_bytes)}, theirs ${per_triangle(facts.their_bytes)}`,
+  };
+}
+
+function comparison(kind, what, reach, aim, mode = "default") {
+  return {
+    name: mode === "robust" ? `embree-robust-${kind}` : `embree-${kind}`,
+    what,
+    cost: "CPU s of one thread",
+    reach,
+    aim,
+    needs: [kProgram],
+    start: () => start(kind, kBunny, mode),
+  };
+}
+
+export const kEmbree = [
+  comparison("primary", "coherent camera rays, ours watertight, against Embree's packets of 16", 0.8, 1),
+  comparison("bounce", "cosine-weighted rays off the surface, ours watertight, against Embree's single rays", 0.9, 1.1),
+  comparison("anyhit", "the same rays, occlusion within half a radius, against Embree's single rays", 0.9, 1.1),
+  comparison("build", "building the hierarchy, against Embree's high quality", 1, 2),
+  comparison("bounce", "as embree-bounce, against Embree's ROBUST mode, which is watertight too", 0.9, 1.1, "robust"),
+];
