@@ -17,6 +17,7 @@ class Structure {
 
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays);
   std::vector<char> occluded(std::span<const Ray<T>> rays, T t_max);
+  AcceleratorFacts facts() const { return accelerator_->facts(); }
   const AcceleratorCounts& counts() const { return counts_; }  // of all calls so far
 
  private:

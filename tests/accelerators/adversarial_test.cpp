@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+#include "tests/support/shapes.h"
+#include "tests/support/structures.h"
+
+// Scenes that break careless structures, and the sample scenes: all find what the list finds, to the bit.
+namespace orrery::test {
+namespace {
+
+// Sixteen rays at a time run alike, as those of neighbouring pixels or towards one lamp: they may walk
+// together. The rays of every other sixteen start at one point, those of the rest end at one.
+template <class T>
+Rays<T> alike_rays(const Vec3d& middle, double half, int count, double spread, std::uint64_t seed) {
+  Random random(seed);
+  Rays<T> rays;
+  while (static_cast<int>(rays.size()) < count) {
+    const Vec3d target = middle + random.in_cube(half), eye = middle + random.direction() * (2.5 * half);
+    const bool one_origin = random.below(2) == 0;
+    for (int i = 0; i < 16; ++i) {
+      const Vec3d other = target + random.in_cube(half * spread);
+      const Vec3d from = one_origin ? eye : other, to = one_origin ? other : eye;
+      rays.push_back({Vec3<T>(from), Vec3<T>(safe_normalize(to - from))});
+    }
+  }
+  return rays;
+}
+
+template <class T>
+Rays<T> any_rays(const Vec3d& middle, double half, int count, std::uint64_t seed) {
+  Random random(seed);
+  Rays<T> rays;
+  for (int i = 0; i < count; ++i)
+    rays.push_back({Vec3<T>(middle + random.in_cube(1.5 * half)), Vec3<T>(random.direction())});
+  return rays;
+}
+
+class Adversaries : public testing::TestWithParam<std::string> {
+ protected:
+  template <class T>
+  void agree(const Json& scene, const Rays<T>& rays) {
+    Structure<T> reference(scene, "list"), structure(scene, GetParam());
+    const auto expected = reference.closest(rays), found = structure.closest(rays);
+    int wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      wrong += found[i].primitive != expected[i].primitive || found[i].t != expected[i].t;
+    EXPECT_EQ(wrong, 0) << "of " << rays.size() << " rays";
+    for (const T t_max : {T(0.7), std::numeric_limits<T>::infinity()})
+      EXPECT_EQ(structure.occluded(rays, t_max), reference.occluded(rays, t_max)) << t_max;
+    depth_ = structure.facts().depth;
+  }
+  // `count` rays of each kind in a cube of that half width.
+  void agree(const Json& scene, const Vec3d& middle, double half, int count) {
+    agree<float>(scene, any_rays<float>(middle, half, count, 1));
+    agree<double>(scene, any_rays<double>(middle, half, count, 1));
+    for (const double spread : {1e-3, 0.03, 0.2}) {
+      agree<float>(scene, alike_rays<float>(middle, half, count, spread, 2));
+      agree<double>(scene, alike_rays<double>(middle, half, count, spread, 2));
+    }
+  }
+  int depth_ = 0;
+};
+
+Json sphere(const Vec3d& center, double radius) {
+  return {{"type", "sphere"}, {"center", {center.x, center.y, center.z}}, {"radius", radius}};
+}
+
+// A sheet of 2 * side * side triangles over [-1, 1]^2; `height` gives z.
+template <class Height>
+Json sheet(int side, const Height& height) {
+  Json positions = Json::array(), indices = Json::array();
+  for (int row = 0; row <= side; ++row)
+    for (int column = 0; column <= side; ++column) {
+      const double x = 2.0 * column / side - 1, y = 2.0 * row / side - 1;
+      positions.push_back({x, y, height(x, y)});
+    }
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column) {
+      const int a = row * (side + 1) + column, b = a + 1, c = a + side + 1, d = c + 1;
+      indices.push_back({a, b, c});
+      indices.push_back({b, d, c});
+    }
+  return {{"type", "mesh"}, {"positions", positions}, {"indices", indices}};
+}
+
+TEST_P(Adversaries, WavesOfTriangles) {
+  covers("F1");
+  agree(scene_with({sheet(24, [](double x, double y) { return 0.3 * std::sin(5 * x) * std::cos(4 * y); })}),
+        {}, 1.2, 30'000);
+}
+
+TEST_P(Adversaries, FlatSheet) {
+  covers("F4");
+  agree(scene_with({sheet(12, [](double, double) { return 0.0; })}), {}, 1.2, 20'000);
+}
+
+TEST_P(Adversaries, FewPrimitives) {
+  covers("F4");
+  for (int count = 1; count < 5; ++count) {
+    Json objects = Json::array();
+    for (int i = 0; i < count; ++i) objects.push_back(sphere(Vec3d(0.4 * i, 0, 0), 0.3));
+    agree(scene_with(objects), {}, 1.5, 5'000);
+  }
+}
+
+TEST_P(Adversaries, IdenticalTrianglesStayShallow) {
+  covers("F2");
+  Json indices = Json::array();
+  constexpr int kCount = 20'000;
+  for (int i = 0; i < kCount; ++i) indices.push_back({0, 1, 2});
+  const Json mesh = {
+      {"type", "mesh"}, {"positions", {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}}, {"indices", indices}};
+  agree<float>(scene_with({mesh}), any_rays<float>({}, 1.2, 200, 3));
+  EXPECT_LE(depth_, 2 * std::log2(kCount) + 32);
+}
+
+TEST_P(Adversaries, ConcentricSpheres) {
+  covers("F2");
+  Json objects = Json::array();
+  for (int i = 0; i < 1000; ++i) objects.push_back(sphere({}, 0.001 * (i + 1)));
+  agree(scene_with(objects), {}, 1.2, 2'000);
+  EXPECT_LE(depth_, 2 * std::log2(1000) + 32);
+}
+
+TEST_P(Adversaries, SpheresThatHalveAndHalve) {
+  covers("F3");
+  Json objects = Json::array();
+  for (int i = -19; i < 37; ++i)
+    objects.push_back(sphere(Vec3d(std::ldexp(1, -i), 0, 0), std::ldexp(0.25, -i)));
+  for (const double half : {1e6, 1.0, 1e-6}) agree(scene_with(objects), {}, half, 10'000);
+}
+
+TEST_P(Adversaries, FarFromTheOrigin) {
+  covers("F1");
+  Random random(5);
+  const Vec3d far(1e5, -3e4, 2e5);
+  Json objects = Json::array();
+  for (int i = 0; i < 200; ++i) objects.push_back(sphere(far + random.in_cube(10), random.between(0.1, 2)));
+  agree(scene_with(objects), far, 12, 10'000);
+}
+
+TEST_P(Adversaries, SampleScenes) {
+  covers("F1");
+  for (const auto& entry : std::filesystem::directory_iterator("scenes")) {
+    if (entry.path().extension() != ".json") continue;
+    SCOPED_TRACE(entry.path());
+    const Json scene = Json::parse(std::ifstream(entry.path()));
+    const bool many = load(scene)->primitive_count() > 500;  // the list takes its time
+    agree(scene, {0, 1, 0}, 4, many ? 2'000 : 20'000);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Adversaries, testing::ValuesIn(accelerator_names()), by_name);
+
+}  // namespace
+}  // namespace orrery::test
