@@ -9,7 +9,8 @@ namespace orrery {
 #define ORRERY_ACCELERATORS(add) \
   add(list)                      \
   add(boxes)                     \
-  add(bvh)
+  add(bvh)                       \
+  add(bottom_up)
 // clang-format on
 
 #define ORRERY_DECLARE(name) AcceleratorType name##_type();

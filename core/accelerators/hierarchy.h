@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/accelerators/unbounded.h"
+#include "core/accelerators/walk.h"
+
+namespace orrery {
+
+// A hierarchy of boxes: Builder::build() makes a BoxTree of TreeItems. Unbounded primitives stand apart and
+// are always tested.
+template <class T, class Builder>
+class Hierarchy final : public Accelerator<T> {
+ public:
+  explicit Hierarchy(const PrimitiveList<T>& primitives)
+      : unbounded_(primitives), tree_(Builder::build(items_of(primitives)), primitives) {}
+
+  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+               AcceleratorCounts& counts) const override {
+    unbounded_.closest(rays, groups, hits, counts);
+    if (tree_.empty()) return;
+    Walk<T>(rays, groups, hits.t, &hits.primitive).template run<Query::closest>(tree_, counts);
+  }
+
+  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    const Groups open = unbounded_.occlude(rays, groups, counts);
+    if (tree_.empty()) return;
+    Walk<T>(rays, open, rays.t_max, nullptr).template run<Query::occlude>(tree_, counts);
+  }
+
+  AcceleratorFacts facts() const override {
+    return {.bytes = tree_.bytes() + unbounded_.bytes(), .depth = tree_.depth()};
+  }
+
+ private:
+  Unbounded<T> unbounded_;
+  WideTree<T> tree_;
+};
+
+}  // namespace orrery
