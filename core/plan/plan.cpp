@@ -135,7 +135,7 @@ class Planner {
     }
     constexpr int kListPays = 8, kBoxesPay = 64;
     const int count = scene_.primitive_count();
-    const char* name = count <= kListPays ? "list" : count <= kBoxesPay ? "boxes" : "bvh";
+    const char* name = count <= kListPays ? "list" : count <= kBoxesPay ? "boxes" : "bottom-up";
     plan_.accelerator = find_type(accelerator_types(), name, "/render/accelerator", checks_);
     decide("accelerator", name,
            count <= kListPays   ? "so few primitives that testing each costs less than any structure"

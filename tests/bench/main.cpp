@@ -24,7 +24,7 @@ class Ours {
  public:
   explicit Ours(const Mesh& mesh) : prepared_(load_scene(scene_json(mesh))) {
     for (const auto& type : accelerator_types())
-      if (std::string_view(type.name) == "bvh") type_ = &type;
+      if (std::string_view(type.name) == "bottom-up") type_ = &type;
     double build_ms = 0;
     world_ = &world_for<float>(prepared_.parts(), *type_, build_ms);
   }
