@@ -90,8 +90,8 @@ Json sheet(int side, const Height& height) {
 
 TEST_P(Adversaries, WavesOfTriangles) {
   covers("F1");
-  agree(scene_with({sheet(24, [](double x, double y) { return 0.3 * std::sin(5 * x) * std::cos(4 * y); })}),
-        {}, 1.2, 30'000);
+  agree(scene_with({sheet(12, [](double x, double y) { return 0.3 * std::sin(5 * x) * std::cos(4 * y); })}),
+        {}, 1.2, 20'000);
 }
 
 TEST_P(Adversaries, FlatSheet) {
