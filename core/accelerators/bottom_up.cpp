@@ -23,8 +23,7 @@ class Grouping {
 
  private:
   static constexpr std::uint32_t kMixed = ~0u, kSingle = ~0u;
-  static constexpr int kReach = 8;        // neighbours looked at on each side
-  static constexpr int kDepthGuard = 48;  // below it items are halved, so that no input makes a deeper tree
+  static constexpr int kReach = 8;  // neighbours looked at on each side
 
   struct Group {
     Bounds<T> box;

@@ -1,4 +1,4 @@
-#include "core/model/accelerator.h"
+#include "core/accelerators/exhaustive.h"
 
 namespace orrery {
 namespace {
@@ -10,17 +10,11 @@ class List final : public Accelerator<T> {
 
   void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
-    for (const auto& primitive : primitives_) primitive.kernel->closest(primitive.index, rays, groups, hits);
-    counts.primitive_tests += primitives_.size() * active_rays(rays, groups);
+    closest_exhaustive(primitives_, rays, groups, hits, counts);
   }
 
   void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
-    Groups open = groups;
-    for (const auto& primitive : primitives_) {
-      counts.primitive_tests += active_rays(rays, open);
-      primitive.kernel->occlude(primitive.index, rays, open);
-      open = with_active_rays(rays, open);
-    }
+    occlude_exhaustive(primitives_, rays, groups, counts);
   }
 
   AcceleratorFacts facts() const override { return {}; }

@@ -16,12 +16,6 @@
 // errors).
 namespace orrery {
 
-// Boxes that one register of T holds a side of, 16 at most: the children of a node.
-template <class T>
-inline constexpr int kFan = std::min(16, kWidth<T>);
-template <class T>
-using FanLanes = stdx::simd<T, stdx::simd_abi::deduce_t<T, kFan<T>>>;
-
 template <class T>
 inline constexpr T kRounding = 16 * std::numeric_limits<T>::epsilon();
 template <class T>
@@ -30,14 +24,23 @@ inline constexpr T kFarther = 1 + 8 * std::numeric_limits<T>::epsilon();
 // Boxes of the children of one node: planes[2 * axis] holds their low sides, planes[2 * axis + 1] their high
 // sides.
 template <class T>
-using BoxPlanes = std::array<FanLanes<T>, 6>;
+using BoxPlanes = std::array<Lanes<T>, 6>;
+
+// Of the active lanes. REQUIRES: any(active).
+template <class N>
+inline ScalarOf<N> largest(const MaskOf<N>& active, const N& v) {
+  return stdx::hmax(select(active, v, N(-std::numeric_limits<ScalarOf<N>>::infinity())));
+}
+template <class N>
+inline ScalarOf<N> smallest(const MaskOf<N>& active, const N& v) {
+  return stdx::hmin(select(active, v, N(std::numeric_limits<ScalarOf<N>>::infinity())));
+}
 
 template <class T>
 class SingleProbe {
  public:
-  using F = FanLanes<T>;
+  using N = Lanes<T>;
 
-  SingleProbe() {}  // says nothing yet
   explicit SingleProbe(const Ray<T>& ray) {
     const T pad = max_component(abs(ray.origin)) * kRounding<T>;
     const T least = max_component(abs(ray.direction)) * T(1e-18);
@@ -52,14 +55,14 @@ class SingleProbe {
   }
 
   // Where it enters each box; the bits name those it enters in [0, limit].
-  [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, F& near) const {
-    near = F(T(0));
-    F far = F(limit);
+  [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, N& near) const {
+    near = N(T(0));
+    N far = N(limit);
 #pragma GCC unroll 3
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const F inverse(inverse_[axis]);
-      near = max_first(near, multiply_subtract(planes[near_[axis]], inverse, F(near_offset_[axis])));
-      far = min_first(far, multiply_subtract(planes[near_[axis] ^ 1], inverse, F(far_offset_[axis])));
+      const N inverse(inverse_[axis]);
+      near = max_first(near, multiply_subtract(planes[near_[axis]], inverse, N(near_offset_[axis])));
+      far = min_first(far, multiply_subtract(planes[near_[axis] ^ 1], inverse, N(far_offset_[axis])));
     }
     return bits_of(near <= far * kFarther<T>);
   }
@@ -85,10 +88,8 @@ class SingleProbe {
 template <class T>
 class PacketProbe {
  public:
-  using F = FanLanes<T>;
   using N = Lanes<T>;
 
-  PacketProbe() {}  // says nothing yet
   // For those of `active`. REQUIRES: any(active).
   PacketProbe(const Ray<N>& rays, const MaskOf<N>& active) {
     const T pad = largest(active, max_component(abs(rays.origin))) * kRounding<T>;
@@ -104,15 +105,15 @@ class PacketProbe {
   // Whether the rays are so much alike that walking together pays.
   bool narrow() const { return narrow_; }
 
-  [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, F& near) const {
-    near = F(T(0));
-    F far = F(limit);
+  [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, N& near) const {
+    near = N(T(0));
+    N far = N(limit);
 #pragma GCC unroll 3
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Axis& a = axis_[axis];
-      const F in = planes[a.near] - F(a.near_origin), out = planes[a.near ^ 1] - F(a.far_origin);
-      near = max_first(near, min_first(F(in * a.inverse_lo), F(in * a.inverse_hi)));
-      far = min_first(far, max_first(F(out * a.inverse_lo), F(out * a.inverse_hi)));
+      const N in = planes[a.near] - N(a.near_origin), out = planes[a.near ^ 1] - N(a.far_origin);
+      near = max_first(near, min_first(N(in * a.inverse_lo), N(in * a.inverse_hi)));
+      far = min_first(far, max_first(N(out * a.inverse_lo), N(out * a.inverse_hi)));
     }
     return bits_of(near <= far * kFarther<T>);
   }
@@ -122,13 +123,6 @@ class PacketProbe {
     std::size_t near;
     T inverse_lo, inverse_hi, near_origin, far_origin;
   };
-
-  static T largest(const MaskOf<N>& active, const N& v) {
-    return stdx::hmax(select(active, v, N(-std::numeric_limits<T>::infinity())));
-  }
-  static T smallest(const MaskOf<N>& active, const N& v) {
-    return stdx::hmin(select(active, v, N(std::numeric_limits<T>::infinity())));
-  }
 
   void set(std::size_t axis, const MaskOf<N>& active, const N& origin, const N& direction, T pad) {
     constexpr T kLeast = T(1e-18), kWidest = T(0.25);

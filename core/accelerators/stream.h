@@ -3,20 +3,44 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "core/accelerators/wide_tree.h"
 
 namespace orrery {
 
+// Room for things that are put there one by one; what was not put there is not initialised.
+template <class X, int kMost>
+class Slots {
+ public:
+  static_assert(std::is_trivially_destructible_v<X> && std::is_trivially_copyable_v<X>);
+  Slots() {}
+  void put(int i, const X& x) { std::construct_at(data() + i, x); }
+  X* data() { return items_.data(); }
+  X& operator[](int i) { return items_[static_cast<std::size_t>(i)]; }
+
+ private:
+  union {
+    std::array<X, static_cast<std::size_t>(kMost)> items_;
+  };
+};
+
 // Rays, or packets, that walk a tree side by side, with their probes and hits.
-template <class T, class Rays, class Probe, class Hit, int kMost>
+template <class RaysOf, class ProbeOf, class HitOf, int kMost>
 struct Walkers {
-  std::array<Rays, kMost> rays;
-  std::array<Probe, kMost> probes;
-  std::array<Hit, kMost> hits;
-  std::array<int, kMost> place;            // in the batch
-  std::array<std::uint8_t, kMost> octant;  // signs of the direction
+  static constexpr int kCapacity = kMost;
+  Slots<RaysOf, kMost> rays;
+  Slots<ProbeOf, kMost> probes;
+  Slots<HitOf, kMost> hits;
+  Slots<int, kMost> place;  // in the batch
   int count = 0;
+
+  void add(const RaysOf& ray, const ProbeOf& probe, const HitOf& hit, int at) {
+    rays.put(count, ray);
+    probes.put(count, probe);
+    hits.put(count, hit);
+    place.put(count++, at);
+  }
 };
 
 enum class Query { closest, occlude };
@@ -30,18 +54,15 @@ class Stream {
   Stream(const WideTree<T>& tree, Walking& walkers, AcceleratorCounts& counts)
       : tree_(tree), walkers_(walkers), counts_(counts) {}
 
-  // Those of `ids`.
-  void run(const std::int32_t* ids, int count) {
-    std::copy(ids, ids + count, room_.data());
-    visit(tree_.root(), room_.data(), count, room_.data() + count + kPad);
-  }
+  // The walkers with these numbers. REQUIRES: kPad more can be read behind them.
+  static constexpr int kPad = 16;
+  void run(const std::int32_t* ids, int count) { visit(tree_.root(), ids, count, room_.data()); }
 
  private:
   using Id = stdx::native_simd<std::int32_t>;
   using Child = typename WideTree<T>::Child;
-  static constexpr std::size_t kFanSize = static_cast<std::size_t>(kFan<T>);
+  static constexpr std::size_t kLists = static_cast<std::size_t>(kWidth<T>);
   static constexpr int kStep = static_cast<int>(Id::size());
-  static constexpr int kPad = 16;  // lists are read and written by whole registers
 
   // The walkers that enter one child of a node.
   struct List {
@@ -50,11 +71,12 @@ class Stream {
     std::int32_t* ids;
     int count;
   };
-  using Lists = std::array<List, kFanSize>;
+  using Lists = std::array<List, kLists>;
 
-  static constexpr int room_for(int count) { return (kFan<T> + 1) * (count + kPad); }
-  static constexpr int kDeepest = 96;  // more than the builders' trees have
-  static constexpr int kReserve = kDeepest * room_for(1), kRoom = kReserve + 2 * room_for(kBatch);
+  // Lists are read and written by whole registers, so each has kPad places more than it needs.
+  static constexpr int room_for(int count) { return (kWidth<T> + 1) * (count + kPad); }
+  static constexpr int kReserve = (kDeepestTree + 1) * room_for(1);
+  static constexpr int kRoom = kReserve + 2 * room_for(kBatch);
 
   // `room` is free from there on.
   void visit(Child at, const std::int32_t* ids, int count, std::int32_t* room) {
@@ -85,22 +107,22 @@ class Stream {
   // `room`, which is moved on.
   std::size_t enter(const typename WideTree<T>::Node& node, const std::int32_t* ids, int count,
                     std::int32_t*& room, Lists& lists) {
-    FanLanes<T> nearest(std::numeric_limits<T>::infinity());
+    Lanes<T> nearest(std::numeric_limits<T>::infinity());
     std::int32_t* masks = room;
     unsigned all = 0;
     for (int i = 0; i < count; ++i) {
-      FanLanes<T> near;
-      const auto id = static_cast<std::size_t>(ids[i]);
-      const unsigned entered = walkers_.probes[id].enter(node.planes, walkers_.hits[id].limit(), near);
+      Lanes<T> near;
+      const unsigned entered =
+          walkers_.probes[ids[i]].enter(node.planes, walkers_.hits[ids[i]].limit(), near);
       nearest = min_first(nearest, near);
       all |= entered;
       masks[i] = static_cast<std::int32_t>(entered);
     }
     std::fill(masks + count, masks + count + kPad, 0);
     counts_.node_visits += static_cast<std::uint64_t>(count);
-    counts_.box_tests += static_cast<std::uint64_t>(count * kFan<T>);
+    counts_.box_tests += static_cast<std::uint64_t>(count * kWidth<T>);
     room += count + kPad;
-    alignas(64) std::array<T, kFanSize> distance;
+    alignas(64) std::array<T, kLists> distance;
     nearest.copy_to(distance.data(), stdx::vector_aligned);
     std::size_t found = 0;
     for (; all != 0; all &= all - 1) {
@@ -132,17 +154,17 @@ class Stream {
 
   // Notes that the walkers have to be tested with a block.
   void meet(Child leaf, const std::int32_t* ids, int count) {
-    if (met_ > 0 && !WideTree<T>::same_pack(leaf, leaf_)) flush();
+    if (met_ > 0 && Blocks<T>::pack_number(leaf) != Blocks<T>::pack_number(leaf_)) flush();
     leaf_ = leaf;
     for (int i = 0; i < count; ++i) {
       if (met_ == meetings_.size()) flush();
-      meetings_[met_++] = {WideTree<T>::block_of(leaf), ids[i]};
+      meetings_[met_++] = {Blocks<T>::block_of(leaf), ids[i]};
     }
   }
 
   void flush() {
     if (met_ == 0) return;
-    const auto& pack = tree_.pack_of(leaf_);
+    const auto& pack = tree_.blocks().pack_of(leaf_);
     const std::span<const Meeting> meetings(meetings_.data(), met_);
     if constexpr (kQuery == Query::closest)
       counts_.primitive_tests += pack.closest(meetings, walkers_.rays.data(), walkers_.hits.data());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/accelerator.h"
+#include "core/accelerators/exhaustive.h"
 
 namespace orrery {
 
@@ -15,20 +15,12 @@ class Unbounded {
 
   void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const {
-    if (primitives_.empty()) return;
-    for (const auto& primitive : primitives_) primitive.kernel->closest(primitive.index, rays, groups, hits);
-    counts.primitive_tests += primitives_.size() * active_rays(rays, groups);
+    closest_exhaustive(primitives_, rays, groups, hits, counts);
   }
 
   // Returns the registers with rays that met none of them.
   Groups occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const {
-    Groups open = groups;
-    for (const auto& primitive : primitives_) {
-      counts.primitive_tests += active_rays(rays, open);
-      primitive.kernel->occlude(primitive.index, rays, open);
-      open = with_active_rays(rays, open);
-    }
-    return open;
+    return occlude_exhaustive(primitives_, rays, groups, counts);
   }
 
   std::size_t bytes() const { return primitives_.size() * sizeof(Primitive<T>); }

@@ -135,6 +135,15 @@ struct HitBatch {
   Array<IndexOf<T>> primitive;
 };
 
+// Where a hit at t on primitive `id` takes the place of (best, best_id): it is nearer, or as near and of a
+// lower number. Neither NaN nor infinity is a hit.
+template <class N, class I>
+[[gnu::always_inline]] inline MaskOf<N> takes_over(const N& t, const I& id, const N& best, const I& best_id) {
+  constexpr auto kFarthest = std::numeric_limits<ScalarOf<N>>::max();
+  const auto lower = mask_cast<N>(id < best_id || best_id == I(kNoPrimitive));
+  return t < best || (t == best && lower && t <= N(kFarthest));
+}
+
 // The surface at each hit. Unit normals stand on the side the ray came from.
 template <class T>
 struct SurfaceBatch {

@@ -72,8 +72,7 @@ class PackedRecords final : public PackedPrimitives<T> {
       for_each(block, packets[meeting.ray], [&](const Core<N>& core, IndexOf<T> id) {
         const N t = distance(core, packets[meeting.ray]);
         if (!any(t <= min_first(hit.t, N(kFar)))) return;
-        const auto lower = mask_cast<N>(IndexLanes<T>(id) < hit.primitive || hit.primitive == kNoPrimitive);
-        const auto nearer = t < hit.t || (t == hit.t && lower && t <= kFar);
+        const auto nearer = takes_over(t, IndexLanes<T>(id), hit.t, hit.primitive);
         stdx::where(nearer, hit.t) = t;
         stdx::where(mask_cast<IndexLanes<T>>(nearer), hit.primitive) = IndexLanes<T>(id);
       });

@@ -31,10 +31,8 @@ class PrimitiveKernel final : public ShapeKernel<T> {
     for (const int i : groups) {
       const N best = hits.t.at(i);
       const N t = shape.distance(rays.at(i));
-      if (!any(t <= best)) continue;
-      const IndexLanes<T> best_id = load_index<T>(hits.primitive, i);
-      const auto lower = mask_cast<N>(id < best_id || best_id == kNoPrimitive);
-      const auto nearer = t < best || (t == best && lower && t < std::numeric_limits<T>::infinity());
+      if (!any(t <= min_first(best, N(std::numeric_limits<T>::max())))) continue;
+      const auto nearer = takes_over(t, id, best, load_index<T>(hits.primitive, i));
       hits.t.put(i, nearer, t);
       hits.primitive.put(i, mask_cast<IndexLanes<T>>(nearer), id);
     }

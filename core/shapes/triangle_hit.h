@@ -26,6 +26,12 @@ template <class N>
   return select(undecided, N(fma(a, b, -ab) - fma(c, d, -cd)), difference);
 }
 
+// One coordinate of a point as seen from `origin`.
+template <class N, class O>
+[[gnu::always_inline]] inline N moved(const Vec3<N>& point, const Vec3<O>& origin, int axis) {
+  return (&point.x)[axis] - N((&origin.x)[axis]);
+}
+
 }  // namespace detail
 
 // A point as a ray sees it that is turned and sheared to run along its largest axis z.
@@ -60,15 +66,13 @@ class SharedAxes {
   [[gnu::always_inline]] explicit SharedAxes(const Rays& rays) : rays_(rays) {}
   [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
     const auto [x, y, z] = rays_.axis;
-    const N vx = moved(vertex, x), vy = moved(vertex, y), vz = moved(vertex, z);
+    const auto moved = [&](int axis) { return detail::moved(vertex, rays_.ray.origin, axis); };
+    const N vx = moved(x), vy = moved(y), vz = moved(z);
     return {vx - N(rays_.shear.x) * vz, vy - N(rays_.shear.y) * vz, vz};
   }
   [[gnu::always_inline]] N along() const { return N(rays_.shear.z); }
 
  private:
-  [[gnu::always_inline]] N moved(const Vec3<N>& v, int i) const {
-    return (&v.x)[i] - N((&rays_.ray.origin.x)[i]);
-  }
   const Rays& rays_;
 };
 
@@ -131,8 +135,7 @@ struct Corners {
   [[gnu::always_inline]] MaskOf<N> beside(const Packet<ScalarOf<N>>& packet, std::size_t side) const {
     using T = ScalarOf<N>;
     const auto moved = [&](const Vec3<N>& v, std::size_t i) {
-      const auto axis = static_cast<std::size_t>(packet.axis[i]);
-      return (&v.x)[axis] - N((&packet.origin.x)[axis]);
+      return detail::moved(v, packet.origin, packet.axis[i]);
     };
     N least(std::numeric_limits<T>::infinity()), most(-std::numeric_limits<T>::infinity());
     for (const Vec3<N>* corner : {&a, &b, &c}) {

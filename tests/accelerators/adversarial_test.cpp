@@ -1,13 +1,11 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/agreement.h"
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
-#include "tests/support/structures.h"
 
 // Scenes that break careless structures, and the sample scenes: all find what the list finds, to the bit.
 namespace orrery::test {
@@ -40,30 +38,22 @@ Rays<T> any_rays(const Vec3d& middle, double half, int count, std::uint64_t seed
   return rays;
 }
 
-class Adversaries : public testing::TestWithParam<std::string> {
+class Adversaries : public StructureTest {
  protected:
   template <class T>
-  void agree(const Json& scene, const Rays<T>& rays) {
-    Structure<T> reference(scene, "list"), structure(scene, GetParam());
-    const auto expected = reference.closest(rays), found = structure.closest(rays);
-    int wrong = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      wrong += found[i].primitive != expected[i].primitive || found[i].t != expected[i].t;
-    EXPECT_EQ(wrong, 0) << "of " << rays.size() << " rays";
-    for (const T t_max : {T(0.7), std::numeric_limits<T>::infinity()})
-      EXPECT_EQ(structure.occluded(rays, t_max), reference.occluded(rays, t_max)) << t_max;
-    depth_ = structure.facts().depth;
+  AcceleratorFacts agree(const Json& scene, const Rays<T>& rays) {
+    return StructureTest::agree<T>(scene, rays, {T(0.7), std::numeric_limits<T>::infinity()});
   }
   // `count` rays of each kind in a cube of that half width.
-  void agree(const Json& scene, const Vec3d& middle, double half, int count) {
-    agree<float>(scene, any_rays<float>(middle, half, count, 1));
+  AcceleratorFacts agree(const Json& scene, const Vec3d& middle, double half, int count) {
+    const auto facts = agree<float>(scene, any_rays<float>(middle, half, count, 1));
     agree<double>(scene, any_rays<double>(middle, half, count, 1));
     for (const double spread : {1e-3, 0.03, 0.2}) {
       agree<float>(scene, alike_rays<float>(middle, half, count, spread, 2));
       agree<double>(scene, alike_rays<double>(middle, half, count, spread, 2));
     }
+    return facts;
   }
-  int depth_ = 0;
 };
 
 Json sphere(const Vec3d& center, double radius) {
@@ -115,16 +105,15 @@ TEST_P(Adversaries, IdenticalTrianglesStayShallow) {
   for (int i = 0; i < kCount; ++i) indices.push_back({0, 1, 2});
   const Json mesh = {
       {"type", "mesh"}, {"positions", {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}}, {"indices", indices}};
-  agree<float>(scene_with({mesh}), any_rays<float>({}, 1.2, 200, 3));
-  EXPECT_LE(depth_, 2 * std::log2(kCount) + 32);
+  const auto facts = agree<float>(scene_with({mesh}), any_rays<float>({}, 1.2, 200, 3));
+  EXPECT_LE(facts.depth, 2 * std::log2(kCount) + 32);
 }
 
 TEST_P(Adversaries, ConcentricSpheres) {
   covers("F2");
   Json objects = Json::array();
   for (int i = 0; i < 1000; ++i) objects.push_back(sphere({}, 0.001 * (i + 1)));
-  agree(scene_with(objects), {}, 1.2, 2'000);
-  EXPECT_LE(depth_, 2 * std::log2(1000) + 32);
+  EXPECT_LE(agree(scene_with(objects), {}, 1.2, 2'000).depth, 2 * std::log2(1000) + 32);
 }
 
 TEST_P(Adversaries, SpheresThatHalveAndHalve) {

@@ -1,9 +1,7 @@
-#include <gtest/gtest.h>
-
+#include "tests/support/agreement.h"
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
-#include "tests/support/structures.h"
 
 // Every registered structure finds what testing every primitive finds: the same primitive at the same
 // distance, to the bit, and the same shadows.
@@ -73,20 +71,11 @@ Rays<T> touching_rays(const Json& object, double distance, int count) {
   return rays;
 }
 
-class Accelerators : public testing::TestWithParam<std::string> {
+class Accelerators : public StructureTest {
  protected:
   template <class T>
   void agree(const Json& scene, const Rays<T>& rays) {
-    Structure<T> reference(scene, "list"), structure(scene, GetParam());
-    const auto expected = reference.closest(rays), found = structure.closest(rays);
-    int wrong = 0, met = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      wrong += found[i].primitive != expected[i].primitive || found[i].t != expected[i].t;
-      met += found[i].met();
-    }
-    EXPECT_EQ(wrong, 0) << "of " << met << " hits";
-    for (const T t_max : {T(0.5), T(20), std::numeric_limits<T>::infinity()})
-      EXPECT_EQ(structure.occluded(rays, t_max), reference.occluded(rays, t_max)) << t_max;
+    StructureTest::agree<T>(scene, rays, {T(0.5), T(20), std::numeric_limits<T>::infinity()});
   }
   template <class T>
   void agree(const Json& scene, double half, double from, int count) {

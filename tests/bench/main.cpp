@@ -8,6 +8,7 @@
 #include "core/load/load.h"
 #include "core/render/prepare.h"
 #include "tests/bench/embree.h"
+#include "tests/support/batches.h"
 
 // Our hierarchy beside Embree's: the same mesh, the same rays, one thread.
 //   bench build|primary|bounce|anyhit TRIANGLES default|robust
@@ -47,7 +48,7 @@ class Ours {
     AcceleratorCounts counts;
     const double start = cpu_seconds();
     for (std::size_t b = 0; b < batches.size(); ++b)
-      world_->accelerator->closest(batches[b], groups_of(batches[b]), hits[b], counts);
+      world_->accelerator->closest(batches[b], test::groups_of(batches[b]), hits[b], counts);
     const double seconds = cpu_seconds() - start;
     triangle.clear();
     t.clear();
@@ -64,7 +65,7 @@ class Ours {
     auto batches = batches_of(rays, kReach);
     AcceleratorCounts counts;
     const double start = cpu_seconds();
-    for (auto& batch : batches) world_->accelerator->occlude(batch, groups_of(batch), counts);
+    for (auto& batch : batches) world_->accelerator->occlude(batch, test::groups_of(batch), counts);
     const double seconds = cpu_seconds() - start;
     found = 0;
     for (const auto& batch : batches)
@@ -73,25 +74,11 @@ class Ours {
   }
 
  private:
-  static Groups groups_of(const RayBatch<float>& batch) {
-    return Groups::covering(0, batch.count, kWidth<float>);
-  }
-
   static std::vector<RayBatch<float>> batches_of(const Rays& rays, float t_max) {
     std::vector<RayBatch<float>> batches((rays.size() + kBatch - 1) / kBatch);
-    for (auto& batch : batches) {
-      batch.t_max.values.fill(-1);
-      batch.direction.z.values.fill(1);
-    }
-    for (std::size_t n = 0; n < rays.size(); ++n) {
-      RayBatch<float>& batch = batches[n / kBatch];
-      const int i = batch.count++;
-      const auto& [origin, direction] = rays[n];
-      batch.origin.x[i] = origin.x, batch.origin.y[i] = origin.y, batch.origin.z[i] = origin.z;
-      batch.direction.x[i] = direction.x, batch.direction.y[i] = direction.y;
-      batch.direction.z[i] = direction.z;
-      batch.t_max[i] = t_max;
-    }
+    test::for_each_batch<float>(rays, [&](std::span<const Ray<float>> some, std::size_t from) {
+      test::fill_batch(some, t_max, batches[from / kBatch]);
+    });
     return batches;
   }
 

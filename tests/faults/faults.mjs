@@ -443,9 +443,9 @@ const growth = [
   {
     fault: 10,
     about: "the list's tests of objects grow by their square",
-    file: "core/accelerators/list.cpp",
-    from: "counts.primitive_tests += primitives_.size() * active_rays(rays, groups);",
-    to: "counts.primitive_tests += primitives_.size() * primitives_.size() * active_rays(rays, groups);",
+    file: "core/accelerators/exhaustive.h",
+    from: "counts.primitive_tests += primitives.size() * active_rays(rays, groups);",
+    to: "counts.primitive_tests += primitives.size() * primitives.size() * active_rays(rays, groups);",
     target: "test_techniques",
     tests: ["Growth.IsLinearInObjectsForTheList"],
   },

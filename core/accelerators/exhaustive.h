@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/model/accelerator.h"
+
+// Every ray against every primitive of a list.
+namespace orrery {
+
+template <class T>
+void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const Groups& groups,
+                        HitBatch<T>& hits, AcceleratorCounts& counts) {
+  if (primitives.empty()) return;
+  for (const auto& primitive : primitives) primitive.kernel->closest(primitive.index, rays, groups, hits);
+  counts.primitive_tests += primitives.size() * active_rays(rays, groups);
+}
+
+// Returns the registers with rays that met none of them.
+template <class T>
+Groups occlude_exhaustive(const PrimitiveList<T>& primitives, RayBatch<T>& rays, const Groups& groups,
+                          AcceleratorCounts& counts) {
+  Groups open = groups;
+  for (const auto& primitive : primitives) {
+    counts.primitive_tests += active_rays(rays, open);
+    primitive.kernel->occlude(primitive.index, rays, open);
+    open = with_active_rays(rays, open);
+  }
+  return open;
+}
+
+}  // namespace orrery
