@@ -22,6 +22,7 @@ class Blocks {
   // Adds a block of 1 to kSize primitives of one kernel, named by their places in `primitives`.
   BlockName add(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places) {
     const auto* kernel = primitives[places.front()].kernel;
+    references_ += places.size();
     auto making = std::find_if(makings_.begin(), makings_.end(),
                                [kernel](const Making& m) { return m.kernel == kernel; });
     if (making == makings_.end()) making = makings_.insert(making, {kernel, {}});
@@ -31,6 +32,18 @@ class Blocks {
     indices.resize((block + 1) * kSize, kNothing);
     return static_cast<BlockName>(making - makings_.begin()) << kBlockBits | block;
   }
+  // Adds as many blocks as these primitives need, in any number, and their names to `names`. REQUIRES: places
+  // ascend, so that primitives of one kernel follow each other.
+  void add_all(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places,
+               std::vector<BlockName>& names) {
+    while (!places.empty()) {
+      const auto* kernel = primitives[places.front()].kernel;
+      std::size_t count = 1;
+      while (count < std::min(kSize, places.size()) && primitives[places[count]].kernel == kernel) ++count;
+      names.push_back(add(primitives, places.first(count)));
+      places = places.subspan(count);
+    }
+  }
   // To be called once all are added, before any is asked for.
   void pack() {
     for (const Making& making : makings_) packs_.push_back(making.kernel->pack(making.indices));
@@ -38,6 +51,7 @@ class Blocks {
   }
 
   bool empty() const { return packs_.empty(); }
+  std::size_t references() const { return references_; }
   const PackedPrimitives<T>& pack_of(BlockName name) const { return *packs_[pack_number(name)]; }
   std::size_t bytes() const {
     std::size_t bytes = 0;
@@ -55,6 +69,7 @@ class Blocks {
   };
   std::vector<Making> makings_;
   std::vector<PackedPrimitivesPtr<T>> packs_;
+  std::size_t references_ = 0;
 };
 
 }  // namespace orrery

@@ -37,7 +37,9 @@ class Boxes final : public Accelerator<T> {
   }
 
   AcceleratorFacts facts() const override {
-    return {.bytes = boxed_.size() * sizeof(Boxed) + unbounded_.bytes(), .depth = 1};
+    return {.bytes = boxed_.size() * sizeof(Boxed) + unbounded_.bytes(),
+            .depth = 1,
+            .references = boxed_.size() + unbounded_.size()};
   }
 
  private:

@@ -2,8 +2,12 @@
 
 #include "core/model/accelerator.h"
 
-// Every ray against every primitive of a list.
 namespace orrery {
+
+// What is asked for rays: the nearest hit, or whether there is one.
+enum class Query { closest, occlude };
+
+// Every ray against every primitive of a list.
 
 template <class T>
 void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const Groups& groups,

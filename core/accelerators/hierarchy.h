@@ -27,7 +27,9 @@ class Hierarchy final : public Accelerator<T> {
   }
 
   AcceleratorFacts facts() const override {
-    return {.bytes = tree_.bytes() + unbounded_.bytes(), .depth = tree_.depth()};
+    return {.bytes = tree_.bytes() + unbounded_.bytes(),
+            .depth = tree_.depth(),
+            .references = tree_.blocks().references() + unbounded_.size()};
   }
 
  private:

@@ -67,6 +67,20 @@ class SingleProbe {
     return bits_of(near <= far * kFarther<T>);
   }
 
+  bool descending(std::size_t axis) const { return (near_[axis] & 1) != 0; }
+  // Where it crosses a plane of an axis, at the earliest and at the latest.
+  T earliest(std::size_t axis, T plane) const { return plane * inverse_[axis] - near_offset_[axis]; }
+  T latest(std::size_t axis, T plane) const { return plane * inverse_[axis] - far_offset_[axis]; }
+  // Leaves what of from..to lies in the box; false if nothing does.
+  bool clip(const Bounds<T>& box, T& from, T& to) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) clip(axis, (&box.lo.x)[axis], (&box.hi.x)[axis], from, to);
+    return from <= to;
+  }
+  void clip(std::size_t axis, T lo, T hi, T& from, T& to) const {
+    from = max_first(from, earliest(axis, descending(axis) ? hi : lo));
+    to = min_first(to, T(latest(axis, descending(axis) ? lo : hi) * kFarther<T>));
+  }
+
  private:
   // A direction of 0, or next to it, counts as one so small that the ray leaves no box sideways: no infinity
   // arises.

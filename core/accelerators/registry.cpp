@@ -9,8 +9,15 @@ namespace orrery {
 #define ORRERY_ACCELERATORS(add) \
   add(list)                      \
   add(boxes)                     \
+  add(oriented_boxes)            \
   add(bvh)                       \
-  add(bottom_up)
+  add(bottom_up)                 \
+  add(obb_tree)                  \
+  add(grid)                      \
+  add(adaptive_grid)             \
+  add(octree)                    \
+  add(kd_median)                 \
+  add(kd_sah)
 // clang-format on
 
 #define ORRERY_DECLARE(name) AcceleratorType name##_type();

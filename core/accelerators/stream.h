@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/accelerators/exhaustive.h"
 #include "core/accelerators/wide_tree.h"
 
 namespace orrery {
@@ -42,8 +43,6 @@ struct Walkers {
     place.put(count++, at);
   }
 };
-
-enum class Query { closest, occlude };
 
 // Takes many walkers through a tree together: each node is opened once for all that enter it, so that the
 // machine finds long loops instead of guesses (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream

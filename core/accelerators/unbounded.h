@@ -23,6 +23,7 @@ class Unbounded {
     return occlude_exhaustive(primitives_, rays, groups, counts);
   }
 
+  std::size_t size() const { return primitives_.size(); }
   std::size_t bytes() const { return primitives_.size() * sizeof(Primitive<T>); }
 
  private:

@@ -33,8 +33,9 @@ using PrimitiveList = std::vector<Primitive<T>>;
 
 // What a structure is, once built.
 struct AcceleratorFacts {
-  std::size_t bytes = 0;  // held beside the scene itself
-  int depth = 0;          // nodes on the longest way to a primitive
+  std::size_t bytes = 0;       // held beside the scene itself
+  int depth = 0;               // nodes on the longest way to a primitive
+  std::size_t references = 0;  // places that name a primitive: more than there are, where cells share some
 };
 
 // Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive,

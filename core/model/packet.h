@@ -43,6 +43,11 @@ struct SingleRay {
   Ray<T> ray;
   std::array<int, 3> axis;  // places of x, y and z
   Shear<T> shear;
+
+  static SingleRay of(const Ray<T>& ray) {
+    const RayAxes<T> axes(ray.direction);
+    return {ray, kCyclicAxes[axes.z_is_x ? 0 : axes.z_is_y ? 1 : 2], Shear<T>::of(axes, ray.direction)};
+  }
 };
 
 template <class T>

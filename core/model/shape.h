@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/math/bounds.h"
 #include "core/model/packet.h"
@@ -44,6 +46,9 @@ using PackedPrimitivesPtr = std::unique_ptr<PackedPrimitives<T>>;
 
 inline constexpr int kNothing = -1;  // an empty place in a block
 
+// A triangle of a surface, by its corners.
+using HullTriangle = std::array<Vec3d, 3>;
+
 // Const and free of state: any number of threads may call it at once.
 template <class T>
 class ShapeKernel {
@@ -56,6 +61,10 @@ class ShapeKernel {
 
   // Sets t_max to -1 for the rays of `groups` that meet primitive `index` in (0, t_max).
   virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups) const = 0;
+
+  // A surface whose convex hull holds a bounded primitive but for rounding, or nothing if its box along the
+  // axes tells as much.
+  virtual std::vector<HullTriangle> hull(int index) const = 0;
 
   // The primitives with these indices, in this order, or kNothing, as many as fill whole blocks. No block is
   // empty. They do not refer to the kernel afterwards.

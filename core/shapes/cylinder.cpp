@@ -1,5 +1,6 @@
 #include "core/params/params.h"
 #include "core/shapes/primitive_set.h"
+#include "core/shapes/round_hull.h"
 
 namespace orrery {
 namespace {
@@ -36,6 +37,10 @@ struct Cylinder {
       return std::abs(a) * half_length + radius * std::sqrt(std::max(0.0, 1 - a * a));
     };
     return Boundsd::around(center, {reach(axis.x), reach(axis.y), reach(axis.z)});
+  }
+
+  std::vector<HullTriangle> hull() const {
+    return round_hull(Vec3d(center), Vec3d(axis), double(radius), double(half_length));
   }
 
   // A capped cylinder is where an infinite one and a slab overlap: the hit is the entry into that interval,

@@ -1,5 +1,6 @@
 #include "core/params/params.h"
 #include "core/shapes/primitive_set.h"
+#include "core/shapes/round_hull.h"
 
 namespace orrery {
 namespace {
@@ -22,6 +23,10 @@ struct Disk {
   Boundsd bounds() const {
     const auto reach = [&](double n) { return radius * std::sqrt(std::max(0.0, 1 - n * n)); };
     return Boundsd::around(center, {reach(normal.x), reach(normal.y), reach(normal.z)});
+  }
+
+  std::vector<HullTriangle> hull() const {
+    return round_hull(Vec3d(center), Vec3d(normal), double(radius), 0);
   }
 
   N distance(const Ray<N>& ray) const {

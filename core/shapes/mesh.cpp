@@ -48,6 +48,7 @@ struct MeshTriangle {
   }
 
   Boundsd bounds() const { return corners.bounds(); }
+  std::vector<HullTriangle> hull() const { return corners.hull(); }
 
   using Core = Corners<N>;
   const Core& core() const { return corners; }

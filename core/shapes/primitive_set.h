@@ -10,6 +10,7 @@
 //   Boundsd bounds() const;                                        of a Sphere<double>
 //   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit, or +infinity (or NaN) for none
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
+//   std::vector<HullTriangle> hull() const;       if it knows better than bounds(): see ShapeKernel
 //   Core, core()                                  if distance() needs only a part: see packed_records.h
 // and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
 namespace orrery {
@@ -44,6 +45,13 @@ class PrimitiveKernel final : public ShapeKernel<T> {
       const auto hit = shape.distance(rays.at(i)) < rays.t_max.at(i);
       if (any(hit)) rays.t_max.put(i, hit, N(-1));
     }
+  }
+
+  std::vector<HullTriangle> hull(int index) const override {
+    if constexpr (requires { records_.front().hull(); })
+      return records_[static_cast<std::size_t>(index)].hull();
+    else
+      return {};
   }
 
   PackedPrimitivesPtr<T> pack(std::span<const int> indices) const override {

@@ -23,6 +23,7 @@ struct Triangle {
   }
 
   Boundsd bounds() const { return corners.bounds(); }
+  std::vector<HullTriangle> hull() const { return corners.hull(); }
 
   using Core = Corners<N>;
   const Core& core() const { return corners; }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/math/bounds.h"
-#include "core/model/packet.h"
+#include "core/model/shape.h"
 
 namespace orrery {
 
@@ -106,6 +106,7 @@ struct Corners {
   Vec3<N> a, b, c;
 
   Boundsd bounds() const { return Boundsd::of({a, b, c}); }
+  std::vector<HullTriangle> hull() const { return {{Vec3d(a), Vec3d(b), Vec3d(c)}}; }
 
   N distance(const Ray<N>& ray) const { return distance_by(OwnAxes<N>(ray)); }
   N distance(const SingleRay<ScalarOf<N>>& single) const {

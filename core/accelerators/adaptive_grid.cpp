@@ -1,0 +1,20 @@
+#include "core/accelerators/grid_tree.h"
+
+namespace orrery {
+namespace {
+
+// The grain follows the local density, as the survey proposes: crowded cells hold grids of their own
+// (Jevans and Wyvill, "Adaptive Voxel Subdivision for Ray Tracing", 1989).
+constexpr GridOptions kNested{.cells = 0.25, .references = 12, .most = 12, .levels = 8};
+
+template <class T>
+using AdaptiveGrid = SingleWalk<T, GridTree<T, kNested>>;
+
+}  // namespace
+
+AcceleratorType adaptive_grid_type() {
+  return {"adaptive-grid", "Cells with grids of their own where many primitives are.",
+          build_accelerator<AdaptiveGrid, float>, build_accelerator<AdaptiveGrid, double>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,19 @@
+#include "core/accelerators/grid_tree.h"
+
+namespace orrery {
+namespace {
+
+// The uniform grid (Fujimoto et al., "ARTS: Accelerated Ray-Tracing System", 1986).
+constexpr GridOptions kUniform{.cells = 2, .references = 16, .most = 0, .levels = 1};
+
+template <class T>
+using UniformGrid = SingleWalk<T, GridTree<T, kUniform>>;
+
+}  // namespace
+
+AcceleratorType grid_type() {
+  return {"grid", "Space cut into equal cells, which a ray visits in order.",
+          build_accelerator<UniformGrid, float>, build_accelerator<UniformGrid, double>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,53 @@
+#include "core/accelerators/space_tree.h"
+
+namespace orrery {
+namespace {
+
+// A cell is cut into eight like ones at its middle (Glassner, "Space Subdivision for Fast Ray Tracing",
+// 1984), kept as three planes, one an axis.
+template <class T>
+class OctantSplitter {
+ public:
+  static constexpr std::size_t kReferences = 8;
+
+  explicit OctantSplitter(const std::vector<TreeItem<T>>& items) : items_(items) {}
+
+  std::optional<SpacePlane> split(const SpaceCell<T>& cell) const {
+    const auto axis = static_cast<std::size_t>(cell.depth % 3);
+    if (axis == 0 && !pays(cell)) return {};
+    const auto lo = double{(&cell.box.lo.x)[axis]}, hi = double{(&cell.box.hi.x)[axis]};
+    return SpacePlane{axis, (lo + hi) / 2};
+  }
+
+ private:
+  static constexpr int kDeepest = 3 * 24;
+
+  // Not where most of the items would be in many of the eight.
+  bool pays(const SpaceCell<T>& cell) const {
+    if (cell.items.size() <= Blocks<T>::kSize || cell.depth >= kDeepest) return false;
+    const Vec3<T> middle = (cell.box.lo + cell.box.hi) * T(0.5);
+    std::size_t copies = 0;
+    for (const std::uint32_t item : cell.items) {
+      const Bounds<T>& box = items_[item].box;
+      std::size_t octants = 1;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if ((&box.lo.x)[axis] <= (&middle.x)[axis] && (&box.hi.x)[axis] >= (&middle.x)[axis]) octants *= 2;
+      copies += octants;
+    }
+    return copies < 3 * cell.items.size();
+  }
+
+  const std::vector<TreeItem<T>>& items_;
+};
+
+template <class T>
+using Octree = SingleWalk<T, SpaceTree<T, OctantSplitter<T>>>;
+
+}  // namespace
+
+AcceleratorType octree_type() {
+  return {"octree", "Cells cut into eight, again and again, where many primitives are.",
+          build_accelerator<Octree, float>, build_accelerator<Octree, double>};
+}
+
+}  // namespace orrery

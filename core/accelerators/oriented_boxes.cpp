@@ -1,0 +1,75 @@
+#include "core/accelerators/oriented_box.h"
+
+namespace orrery {
+namespace {
+
+// One box a primitive, turned as the primitive lies where that makes it much smaller.
+template <class T>
+class OneEach {
+ public:
+  explicit OneEach(const PrimitiveList<T>& primitives) {
+    for (std::uint32_t i = 0; i < primitives.size(); ++i)
+      if (primitives[i].bounds.bounded()) add(primitives, i);
+    blocks_.pack();
+  }
+
+  bool empty() const { return boxed_.empty(); }
+  AcceleratorFacts facts() const {
+    return {
+        .bytes = boxed_.size() * sizeof(Boxed) + oriented_.size() * sizeof(OrientedBox<T>) + blocks_.bytes(),
+        .depth = 1,
+        .references = blocks_.references()};
+  }
+
+  template <Query kQuery>
+  void walk(Trip<T>& trip) const {
+    for (const Boxed& boxed : boxed_) {
+      T from(0), to = trip.hit.t;
+      if (to < 0) return;
+      ++trip.counts.box_tests;
+      if (!trip.probe.clip(boxed.box, from, to)) continue;
+      if (boxed.oriented != kNone) {
+        ++trip.counts.box_tests;
+        if (!oriented_[boxed.oriented].clip(trip.ray.ray, from, to)) continue;
+      }
+      trip.template meet<kQuery>(blocks_, std::span(&boxed.block, 1));
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0u;
+  struct Boxed {
+    Bounds<T> box;
+    std::uint32_t oriented;  // its place, or kNone
+    BlockName block;
+  };
+
+  void add(const PrimitiveList<T>& primitives, std::uint32_t place) {
+    const auto hull = hull_of(primitives[place]);
+    SurfaceMoments moments;
+    for (const auto& triangle : hull) moments.add(triangle);
+    const auto oriented = OrientedBox<T>::around(principal_axes(moments), hull);
+    Boxed boxed{padded<T>(primitives[place].bounds), kNone, blocks_.add(primitives, std::span(&place, 1))};
+    if (oriented_pays(oriented, boxed.box)) {
+      boxed.oriented = static_cast<std::uint32_t>(oriented_.size());
+      oriented_.push_back(oriented);
+    }
+    boxed_.push_back(boxed);
+  }
+
+  std::vector<Boxed> boxed_;
+  std::vector<OrientedBox<T>> oriented_;
+  Blocks<T> blocks_;
+};
+
+template <class T>
+using OrientedBoxes = SingleWalk<T, OneEach<T>>;
+
+}  // namespace
+
+AcceleratorType oriented_boxes_type() {
+  return {"oriented-boxes", "A box around each primitive, turned as it lies, is tested first.",
+          build_accelerator<OrientedBoxes, float>, build_accelerator<OrientedBoxes, double>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "core/accelerators/blocks.h"
+#include "core/accelerators/probes.h"
+#include "core/accelerators/unbounded.h"
+
+namespace orrery {
+
+// One ray on its way through a structure.
+template <class T>
+struct Trip {
+  SingleRay<T> ray;
+  SingleProbe<T> probe;
+  SingleHit<T> hit;
+  AcceleratorCounts& counts;
+
+  // Whether what it meets at `from` or beyond may still matter. (Occluded rays have t -1.)
+  bool open(T from) const { return from <= hit.t * kFarther<T>; }
+
+  template <Query kQuery>
+  void meet(const Blocks<T>& blocks, std::span<const BlockName> names) {
+    for (const BlockName name : names) {
+      const Meeting meeting{Blocks<T>::block_of(name), 0};
+      const auto& pack = blocks.pack_of(name);
+      if constexpr (kQuery == Query::closest)
+        counts.primitive_tests += pack.closest(std::span(&meeting, 1), &ray, &hit);
+      else
+        counts.primitive_tests += pack.occlude(std::span(&meeting, 1), &ray, &hit);
+    }
+  }
+};
+
+// A structure that rays walk one by one: Tree is built from a PrimitiveList and has
+//   template <Query> void walk(Trip<T>&) const;   takes a ray through it
+//   bool empty() const; AcceleratorFacts facts() const;
+// Unbounded primitives stand apart and are always tested.
+template <class T, class Tree>
+class SingleWalk final : public Accelerator<T> {
+ public:
+  explicit SingleWalk(const PrimitiveList<T>& primitives) : unbounded_(primitives), tree_(primitives) {}
+
+  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+               AcceleratorCounts& counts) const override {
+    unbounded_.closest(rays, groups, hits, counts);
+    for_each_active(groups, hits.t, [&](int i) {
+      Trip<T> trip = begin(rays, i, {hits.t[i], hits.primitive[i]}, counts);
+      tree_.template walk<Query::closest>(trip);
+      hits.t[i] = trip.hit.t;
+      hits.primitive[i] = trip.hit.primitive;
+    });
+  }
+
+  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    const Groups open = unbounded_.occlude(rays, groups, counts);
+    for_each_active(open, rays.t_max, [&](int i) {
+      Trip<T> trip = begin(rays, i, {rays.t_max[i], kNoPrimitive}, counts);
+      tree_.template walk<Query::occlude>(trip);
+      rays.t_max[i] = trip.hit.t;
+    });
+  }
+
+  AcceleratorFacts facts() const override {
+    AcceleratorFacts facts = tree_.facts();
+    facts.bytes += unbounded_.bytes();
+    facts.references += unbounded_.size();
+    return facts;
+  }
+
+ private:
+  template <class Visit>
+  void for_each_active(const Groups& groups, const Array<T>& t, const Visit& visit) const {
+    if (tree_.empty()) return;
+    for (const int group : groups)
+      for (int i = group; i < group + kWidth<T>; ++i)
+        if (t[i] > 0) visit(i);
+  }
+
+  static Trip<T> begin(const RayBatch<T>& rays, int i, const SingleHit<T>& hit, AcceleratorCounts& counts) {
+    const Ray<T> ray{{rays.origin.x[i], rays.origin.y[i], rays.origin.z[i]},
+                     {rays.direction.x[i], rays.direction.y[i], rays.direction.z[i]}};
+    return {SingleRay<T>::of(ray), SingleProbe<T>(ray), hit, counts};
+  }
+
+  Unbounded<T> unbounded_;
+  Tree tree_;
+};
+
+}  // namespace orrery

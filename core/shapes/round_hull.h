@@ -1,0 +1,27 @@
+#pragma once
+
+#include "core/model/shape.h"
+
+namespace orrery {
+
+// The box around a cylinder, turned as its axis is; flat where half_length is 0.
+inline std::vector<HullTriangle> round_hull(const Vec3d& center, const Vec3d& axis, double radius,
+                                            double half_length) {
+  const Vec3d w = safe_normalize(axis), size = abs(w);
+  const Vec3d least = size.x <= size.y && size.x <= size.z ? Vec3d(1, 0, 0)
+                      : size.y <= size.z                   ? Vec3d(0, 1, 0)
+                                                           : Vec3d(0, 0, 1);
+  const Vec3d u = safe_normalize(cross(w, least)), v = cross(w, u);
+  const std::array<Vec3d, 3> half{u * radius, v * radius, w * half_length};
+  std::vector<HullTriangle> hull;
+  for (std::size_t side = 0; side < 3; ++side)
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec3d middle = center + half[side] * sign;
+      const Vec3d a = half[(side + 1) % 3], b = half[(side + 2) % 3];
+      hull.push_back({middle - a - b, middle + a - b, middle + a + b});
+      hull.push_back({middle - a - b, middle + a + b, middle - a + b});
+    }
+  return hull;
+}
+
+}  // namespace orrery
