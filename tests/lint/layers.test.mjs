@@ -10,7 +10,7 @@ import {fileURLToPath} from "node:url";
 
 const kFloors = [
   ["core/base", "core/math"],
-  ["core/params", "core/image"],
+  ["core/params", "core/image", "core/meshes"],
   ["core/model"],
   ["core/shapes", "core/materials", "core/textures", "core/lights", "core/accelerators", "core/techniques"],
   ["core/plan"],
@@ -27,7 +27,7 @@ const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", "
 const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ""]);
 const kUnread = new Set(["package-lock.json", "LICENSE"]);
 const kLibraries = [
-  {name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|server)\// },
+  {name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
   {name: "libpng", header: /^png\.h$/, rooms: /^core\/image\// },
   {name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\// },
   {name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\// },

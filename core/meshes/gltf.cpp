@@ -1,0 +1,248 @@
+#include <algorithm>
+
+#include "core/meshes/affine.h"
+#include "core/meshes/formats.h"
+#include "core/meshes/gltf_file.h"
+#include "core/meshes/text.h"
+
+// glTF 2.0 (Khronos, ISO/IEC 12113:2022): sections 3.5 (scenes) and 3.7 (meshes). Skins and morph targets are
+// left aside: a mesh stands as it is stored.
+namespace orrery {
+namespace {
+
+// A mesh may be placed by many nodes: what that may cost beside triangles.
+constexpr std::size_t kMaxPlaced = 250'000;
+
+// Extensions that change no geometry, or in a way that is read anyhow (quantized attributes).
+bool is_harmless(std::string_view extension) {
+  constexpr std::string_view kPrefixes[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
+                                            "KHR_mesh_quantization"};
+  return std::any_of(std::begin(kPrefixes), std::end(kPrefixes),
+                     [&](std::string_view prefix) { return extension.starts_with(prefix); });
+}
+
+template <std::size_t count>
+std::array<double, count> numbers_of(const GltfValue& value) {
+  if (value.size() != count)
+    value.fail("expected " + std::to_string(count) + " numbers, got " + std::to_string(value.size()));
+  std::array<double, count> numbers;
+  for (std::size_t i = 0; i < count; ++i) numbers[i] = value.item(i).number();
+  return numbers;
+}
+
+Vec3d three_or(const GltfValue& node, const char* key, const Vec3d& fallback) {
+  const auto value = node.find(key);
+  if (!value) return fallback;
+  const auto n = numbers_of<3>(*value);
+  return {n[0], n[1], n[2]};
+}
+
+// The rotation of a quaternion (x, y, z, w) of any length but 0.
+Affine rotation_of(const GltfValue& value) {
+  auto q = numbers_of<4>(value);
+  double largest = 0;
+  for (const double part : q) largest = std::max(largest, std::abs(part));
+  if (!(largest > 0)) value.fail("expected a quaternion other than 0, got 0");
+  double square = 0;
+  for (double& part : q) square += (part / largest) * (part / largest);
+  for (double& part : q) part = part / largest / std::sqrt(square);
+  const auto [x, y, z, w] = q;
+  return {{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+          {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+          {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)},
+          {}};
+}
+
+// matrix, or translation * rotation * scale.
+Affine transform_of(const GltfValue& node) {
+  if (const auto matrix = node.find("matrix")) {
+    const auto m = numbers_of<16>(*matrix);  // column by column
+    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+      matrix->fail("expected 0, 0, 0 and 1 as the last row, got a projection");
+    return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+  }
+  const auto quaternion = node.find("rotation");
+  Affine transform = quaternion ? rotation_of(*quaternion) : Affine{};
+  const Vec3d scale = three_or(node, "scale", {1, 1, 1});
+  transform.x = transform.x * scale.x;
+  transform.y = transform.y * scale.y;
+  transform.z = transform.z * scale.z;
+  transform.origin = three_or(node, "translation", {});
+  return transform;
+}
+
+class SceneReader {
+ public:
+  SceneReader(std::string_view bytes, const MeshLimits& limits) : file_(bytes), limits_(limits) {}
+
+  TriangleMesh read() {
+    if (const auto required = file_.root().find("extensionsRequired"))
+      for (std::size_t i = 0; i < required->size(); ++i)
+        if (const GltfValue extension = required->item(i); !is_harmless(extension.text()))
+          extension.fail("expected an extension that geometry can do without, got " +
+                         excerpt(extension.text()));
+    const GltfValue nodes = file_.root().at("nodes");
+    place(nodes, roots(nodes));
+    if (!all_normals_) mesh_.normals.clear();
+    if (!all_uvs_) mesh_.uvs.clear();
+    return std::move(mesh_);
+  }
+
+ private:
+  // Those of the scene to show; if the file names none, every node that is no other's child.
+  std::vector<std::size_t> roots(const GltfValue& nodes) const {
+    std::vector<std::size_t> found;
+    if (const auto scene = file_.root().find("scene")) {
+      const auto listed = file_.root().at("scenes").item(scene->integer()).find("nodes");
+      for (std::size_t i = 0; listed && i < listed->size(); ++i) found.push_back(listed->item(i).integer());
+      return found;
+    }
+    std::vector<bool> is_child(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for_children(nodes.item(i), [&](std::size_t child) {
+        if (child < is_child.size()) is_child[child] = true;
+      });
+    for (std::size_t i = 0; i < is_child.size(); ++i)
+      if (!is_child[i]) found.push_back(i);
+    return found;
+  }
+
+  template <class Visit>
+  static void for_children(const GltfValue& node, const Visit& visit) {
+    const auto children = node.find("children");
+    for (std::size_t i = 0; children && i < children->size(); ++i) visit(children->item(i).integer());
+  }
+
+  // Depth first, in the order of the file. A tree reaches each node once; a cycle, or a node of two parents,
+  // reaches one again.
+  void place(const GltfValue& nodes, const std::vector<std::size_t>& roots) {
+    struct Visit {
+      std::size_t node;
+      Affine world_from_parent;
+    };
+    std::vector<Visit> stack;
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
+    std::vector<bool> reached(nodes.size());
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const GltfValue node = nodes.item(visit.node);
+      if (reached[visit.node]) node.fail("expected a tree of nodes, got this one twice");
+      reached[visit.node] = true;
+      const Affine world_from_node = compose(visit.world_from_parent, transform_of(node));
+      if (const auto mesh = node.find("mesh")) {
+        const GltfValue primitives = file_.root().at("meshes").item(mesh->integer()).at("primitives");
+        for (std::size_t i = 0; i < primitives.size(); ++i)
+          add_primitive(primitives.item(i), world_from_node);
+      }
+      const std::size_t first = stack.size();
+      for_children(node, [&](std::size_t child) { stack.push_back({child, world_from_node}); });
+      std::reverse(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end());
+    }
+  }
+
+  void add_primitive(const GltfValue& primitive, const Affine& world_from_node) {
+    if (++placed_ > kMaxPlaced)
+      primitive.fail("expected at most " + std::to_string(kMaxPlaced) + " placed primitives, got more");
+    const std::uint64_t mode = integer_or(primitive, "mode", 4);
+    if (mode > 6) primitive.fail("expected a mode from 0 to 6, got " + std::to_string(mode));
+    if (mode < 4) return;  // points and lines have no surface
+    const GltfValue attributes = primitive.at("attributes");
+    const std::size_t first = mesh_.positions.size();
+    add_vertices(attributes, world_from_node);
+    const auto indices = primitive.find("indices");
+    std::vector<std::uint32_t> order = indices ? read_indices(*indices, first) : std::vector<std::uint32_t>();
+    if (!indices)
+      for (std::size_t i = first; i < mesh_.positions.size(); ++i)
+        order.push_back(static_cast<std::uint32_t>(i));
+    add_triangles(primitive, mode, order, world_from_node.mirrors());
+  }
+
+  void add_vertices(const GltfValue& attributes, const Affine& world_from_node) {
+    const GltfNumbers positions = file_.accessor(attributes.at("POSITION"), "VEC3");
+    check_vertices(mesh_.positions.size() + positions.count, limits_);
+    for (std::size_t i = 0; i < positions.count; ++i) {
+      const Vec3d p =
+          world_from_node.point({positions.value(i, 0), positions.value(i, 1), positions.value(i, 2)});
+      if (!is_finite(p))
+        attributes.fail("expected finite positions, got " + text_of(p) + " at vertex " + std::to_string(i));
+      mesh_.positions.push_back(p);
+    }
+    const auto normals = optional_accessor(attributes, "NORMAL", "VEC3", positions.count);
+    all_normals_ = all_normals_ && normals;
+    for (std::size_t i = 0; all_normals_ && i < positions.count; ++i) {
+      const Vec3d n(normals->value(i, 0), normals->value(i, 1), normals->value(i, 2));
+      const Vec3d turned = world_from_node.normal(n);
+      if (!is_finite(turned))
+        attributes.fail("expected finite normals, got " + text_of(n) + " at vertex " + std::to_string(i));
+      mesh_.normals.push_back(turned);
+    }
+    const auto uvs = optional_accessor(attributes, "TEXCOORD_0", "VEC2", positions.count);
+    all_uvs_ = all_uvs_ && uvs;
+    for (std::size_t i = 0; all_uvs_ && i < positions.count; ++i) {
+      const double u = uvs->value(i, 0), v = uvs->value(i, 1);
+      if (!std::isfinite(u) || !std::isfinite(v))
+        attributes.fail("expected finite uvs, got others at vertex " + std::to_string(i));
+      mesh_.uvs.push_back({u, 1 - v});
+    }
+  }
+
+  std::optional<GltfNumbers> optional_accessor(const GltfValue& attributes, const char* name,
+                                               const char* type, std::size_t count) {
+    const auto index = attributes.find(name);
+    if (!index) return std::nullopt;
+    const GltfNumbers numbers = file_.accessor(*index, type);
+    if (numbers.count != count)
+      index->fail("expected as many as positions (" + std::to_string(count) + "), got " +
+                  std::to_string(numbers.count));
+    return numbers;
+  }
+
+  // Indices into the mesh's positions, of which this primitive's begin at `first`.
+  std::vector<std::uint32_t> read_indices(const GltfValue& user, std::size_t first) {
+    const GltfNumbers numbers = file_.accessor(user, "SCALAR");
+    check_triangles(mesh_.triangles.size() + numbers.count / 3, limits_);
+    const double count = static_cast<double>(mesh_.positions.size() - first);
+    std::vector<std::uint32_t> indices;
+    indices.reserve(numbers.count);
+    for (std::size_t i = 0; i < numbers.count; ++i) {
+      const double index = numbers.value(i, 0);
+      if (!(index >= 0 && index < count && index == std::floor(index)))
+        user.fail("expected indices from 0 to below " + std::to_string(mesh_.positions.size() - first) +
+                  ", got " + text_of(index) + " at " + std::to_string(i));
+      indices.push_back(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(index));
+    }
+    return indices;
+  }
+
+  void add_triangles(const GltfValue& primitive, std::uint64_t mode, const std::vector<std::uint32_t>& order,
+                     bool mirrored) {
+    const std::size_t n = order.size();
+    if (n < 3 || (mode == 4 && n % 3 != 0))
+      primitive.fail("expected 3 vertices or more, and of single triangles a multiple of 3, got " +
+                     std::to_string(n));
+    const std::size_t count = mode == 4 ? n / 3 : n - 2;
+    check_triangles(mesh_.triangles.size() + count, limits_);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<std::size_t, 3> corners = {3 * i, 3 * i + 1, 3 * i + 2};
+      if (mode == 5) corners = {i, i + 1 + i % 2, i + 2 - i % 2};  // a strip: every other one turns round
+      if (mode == 6) corners = {i + 1, i + 2, 0};
+      if (mirrored) std::swap(corners[1], corners[2]);
+      mesh_.triangles.push_back({order[corners[0]], order[corners[1]], order[corners[2]]});
+    }
+  }
+
+  GltfFile file_;
+  const MeshLimits& limits_;
+  TriangleMesh mesh_;
+  bool all_normals_ = true, all_uvs_ = true;  // so far
+  std::size_t placed_ = 0;
+};
+
+}  // namespace
+
+TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits) {
+  return SceneReader(bytes, limits).read();
+}
+
+}  // namespace orrery

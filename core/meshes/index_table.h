@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace orrery {
+
+// Finds entries 0, 1, 2, ... of a list kept elsewhere by their content: a hash table of entry numbers alone
+// (open addressing, at most half full). Which number an entry gets never depends on the hash, so the hash is
+// keyed at random: a file cannot be made to collide.
+class IndexTable {
+ public:
+  // Equal words, equal hash.
+  std::uint32_t hash(std::span<const std::uint64_t> words) const {
+    std::uint64_t h = key_;
+    for (const std::uint64_t word : words) h = mix(h ^ word);
+    return static_cast<std::uint32_t>(h);
+  }
+
+  // The entry e with this hash and same(e); if there is none, `size`, which the table knows from now on and
+  // the caller adds to the list. REQUIRES: size is the number of entries so far, below 2^31.
+  template <class Same>
+  std::uint32_t find_or_add(std::uint32_t hash, std::size_t size, const Same& same) {
+    if (2 * (size + 1) > slots_.size()) grow();
+    std::size_t at = first_slot(hash);
+    for (; slots_[at].entry != kNone; at = (at + 1) & (slots_.size() - 1))
+      if (slots_[at].hash == hash && same(slots_[at].entry)) return slots_[at].entry;
+    slots_[at] = {static_cast<std::uint32_t>(size), hash};
+    return slots_[at].entry;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  struct Slot {
+    std::uint32_t entry = kNone;
+    std::uint32_t hash = 0;
+  };
+  __extension__ using Wide = unsigned __int128;
+
+  // Both halves of the product with a secret factor (the mixing step of wyhash, Wang Yi).
+  std::uint64_t mix(std::uint64_t x) const {
+    const auto product = static_cast<Wide>(x) * factor_;
+    return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
+  }
+  static std::uint64_t random_word() {
+    std::random_device device;
+    return std::uint64_t{device()} << 32 | device();
+  }
+
+  std::size_t first_slot(std::uint32_t hash) const { return hash & (slots_.size() - 1); }
+  void grow() {
+    std::vector<Slot> old(std::max<std::size_t>(64, 2 * slots_.size()));
+    std::swap(old, slots_);
+    for (const Slot& slot : old) {
+      if (slot.entry == kNone) continue;
+      std::size_t at = first_slot(slot.hash);
+      while (slots_[at].entry != kNone) at = (at + 1) & (slots_.size() - 1);
+      slots_[at] = slot;
+    }
+  }
+
+  std::uint64_t key_ = random_word(), factor_ = random_word() | 1;
+  std::vector<Slot> slots_;  // a power of two
+};
+
+}  // namespace orrery

@@ -1,0 +1,133 @@
+#include "core/meshes/formats.h"
+#include "core/meshes/index_table.h"
+#include "core/meshes/text.h"
+
+// Wavefront OBJ: v, vt, vn and f; every other keyword (groups, materials, lines, free-form curves) is passed
+// over. Format: Wavefront, Advanced Visualizer Manual, appendix B1.
+namespace orrery {
+namespace {
+
+// Entries of the lists that a corner names, counted from 0.
+struct Corner {
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint32_t position = kNone, uv = kNone, normal = kNone;
+
+  bool operator==(const Corner&) const = default;
+};
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view bytes, const MeshLimits& limits) : text_(bytes, true), limits_(limits) {}
+
+  TriangleMesh read() {
+    do {
+      const std::string_view keyword = text_.word_of_line();
+      if (keyword == "v") {
+        positions_.push_back(read_three("v"));
+        check_vertices(positions_.size(), limits_);
+      } else if (keyword == "vn") {
+        normals_.push_back(read_three("vn"));
+      } else if (keyword == "vt") {
+        uvs_.push_back(read_uv());
+      } else if (keyword == "f") {
+        read_face();
+      }
+    } while (text_.next_line());
+    return build();
+  }
+
+ private:
+  // Words past the third (a weight, a colour) are left aside.
+  Vec3d read_three(const char* what) {
+    const double x = read_number(what), y = read_number(what);
+    return {x, y, read_number(what)};
+  }
+  double read_number(const char* what) { return text_.number_in(text_.word_of_line(), what); }
+
+  std::array<double, 2> read_uv() {
+    const double u = read_number("vt");
+    const std::string_view v = text_.word_of_line();
+    return {u, v.empty() ? 0.0 : text_.number_in(v, "vt")};
+  }
+
+  // One of "7", "7/2", "7//3", "7/2/3". Corners that name the same entries are one vertex.
+  std::uint32_t read_corner(std::string_view word) {
+    std::array<std::string_view, 3> parts;
+    std::size_t count = 0;
+    for (std::string_view rest = word; count < 3; ++count) {
+      const std::size_t slash = rest.find('/');
+      parts[count] = rest.substr(0, slash);
+      if (slash == rest.npos) break;
+      rest.remove_prefix(slash + 1);
+    }
+    if (count == 3) text_.fail("expected position/uv/normal for a corner, got " + excerpt(word));
+    Corner corner;
+    corner.position = read_index(parts[0], positions_.size(), "v");
+    if (!parts[1].empty()) corner.uv = read_index(parts[1], uvs_.size(), "vt");
+    if (!parts[2].empty()) corner.normal = read_index(parts[2], normals_.size(), "vn");
+
+    const std::array<std::uint64_t, 2> words = {corner.position | std::uint64_t{corner.uv} << 32,
+                                                corner.normal};
+    const std::uint32_t vertex = table_.find_or_add(
+        table_.hash(words), corners_.size(), [&](std::uint32_t entry) { return corners_[entry] == corner; });
+    if (vertex == corners_.size()) corners_.push_back(corner);
+    check_vertices(corners_.size(), limits_);
+    return vertex;
+  }
+
+  // From 1, or from -1 backwards from the last entry so far.
+  std::uint32_t read_index(std::string_view word, std::size_t count, const char* what) const {
+    const std::int64_t index = text_.integer_in(word, std::string(what) + " of a corner");
+    const auto size = static_cast<std::int64_t>(count);
+    if (index == 0 || index > size || index < -size)
+      text_.fail(std::string("expected a ") + what + " of a corner from 1 to " + std::to_string(size) +
+                 " or -1 to -" + std::to_string(size) + ", got " + std::to_string(index));
+    return static_cast<std::uint32_t>(index > 0 ? index - 1 : size + index);
+  }
+
+  void read_face() {
+    std::array<std::uint32_t, 3> fan{};
+    std::size_t count = 0;
+    for (std::string_view word = text_.word_of_line(); !word.empty(); word = text_.word_of_line()) {
+      if (word[0] == '#') break;
+      const std::uint32_t vertex = read_corner(word);
+      fan[std::min<std::size_t>(count, 2)] = vertex;
+      if (++count < 3) continue;
+      triangles_.push_back(fan);
+      check_triangles(triangles_.size(), limits_);
+      fan[1] = vertex;
+    }
+    if (count < 3) text_.fail("expected a face of 3 corners or more, got " + std::to_string(count));
+  }
+
+  TriangleMesh build() {
+    TriangleMesh mesh;
+    mesh.triangles = std::move(triangles_);
+    const auto fill = [&](auto& out, const auto& values, std::uint32_t Corner::*entry) {
+      for (const Corner& corner : corners_)
+        if (corner.*entry == Corner::kNone) return;
+      out.reserve(corners_.size());
+      for (const Corner& corner : corners_) out.push_back(values[corner.*entry]);
+    };
+    fill(mesh.positions, positions_, &Corner::position);
+    fill(mesh.normals, normals_, &Corner::normal);
+    fill(mesh.uvs, uvs_, &Corner::uv);
+    return mesh;
+  }
+
+  TextReader text_;
+  const MeshLimits& limits_;
+  std::vector<Vec3d> positions_, normals_;
+  std::vector<std::array<double, 2>> uvs_;
+  std::vector<Corner> corners_;  // the vertices of the mesh
+  IndexTable table_;             // of corners_
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+}  // namespace
+
+TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits) {
+  return ObjReader(bytes, limits).read();
+}
+
+}  // namespace orrery

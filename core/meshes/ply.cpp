@@ -1,0 +1,293 @@
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "core/meshes/formats.h"
+#include "core/meshes/ply_header.h"
+
+namespace orrery {
+namespace {
+
+// One value of type T as a double, which holds each of them exactly.
+template <class T, std::endian order>
+double load(const char* bytes) {
+  std::array<char, sizeof(T)> copy;
+  std::memcpy(copy.data(), bytes, sizeof(T));
+  if constexpr (order != std::endian::native) std::reverse(copy.begin(), copy.end());
+  return static_cast<double>(std::bit_cast<T>(copy));
+}
+using Load = double (*)(const char*);
+
+template <std::endian order>
+Load load_as(PlyType type) {
+  constexpr Load kLoads[] = {load<std::int8_t, order>,  load<std::uint8_t, order>,
+                             load<std::int16_t, order>, load<std::uint16_t, order>,
+                             load<std::int32_t, order>, load<std::uint32_t, order>,
+                             load<float, order>,        load<double, order>};
+  return kLoads[static_cast<std::size_t>(type)];
+}
+Load load_of(PlyType type, PlyEncoding encoding) {
+  return encoding == PlyEncoding::big_endian ? load_as<std::endian::big>(type)
+                                             : load_as<std::endian::little>(type);
+}
+
+// Where the values come from: words of a text, or bytes. Both are asked with what describe() made.
+class AsciiBody {
+ public:
+  struct Value {};
+  static constexpr bool kBinary = false;
+
+  explicit AsciiBody(const PlyHeader& header) : text_(header.body) {}
+  Value describe(PlyType) const { return {}; }
+  // Fewest bytes that `values` of these types take: a digit and a blank, where the last blank may lack.
+  static std::size_t fewest_bytes(PlyType) { return 2; }
+  std::size_t bytes_left() const { return text_.rest().size() + 1; }
+
+  double read(Value) { return text_.number("a value"); }
+  void skip(Value) {
+    if (text_.word().empty()) fail("expected a value, got the end of the file");
+  }
+  [[noreturn]] void fail(const std::string& detail) const { text_.fail(detail); }
+
+ private:
+  TextReader text_;
+};
+
+class BinaryBody {
+ public:
+  struct Value {
+    Load load;
+    std::size_t size;
+  };
+  static constexpr bool kBinary = true;
+
+  explicit BinaryBody(const PlyHeader& header) : encoding_(header.encoding), rest_(header.body.rest()) {
+    total_ = rest_.size();
+  }
+  Value describe(PlyType type) const { return {load_of(type, encoding_), size_of(type)}; }
+  static std::size_t fewest_bytes(PlyType type) { return size_of(type); }
+  std::size_t bytes_left() const { return rest_.size(); }
+
+  double read(const Value& value) {
+    const char* at = rest_.data();
+    skip(value);
+    return value.load(at);
+  }
+  void skip(const Value& value) {
+    if (value.size > rest_.size()) fail("expected " + std::to_string(value.size) + " bytes, got the end");
+    rest_.remove_prefix(value.size);
+  }
+  const char* take(std::size_t bytes) {  // REQUIRES: as many are left
+    const char* at = rest_.data();
+    rest_.remove_prefix(bytes);
+    return at;
+  }
+  [[noreturn]] void fail(const std::string& detail) const {
+    fail_at("byte " + std::to_string(total_ - rest_.size()) + " after the header", detail);
+  }
+
+ private:
+  PlyEncoding encoding_;
+  std::string_view rest_;
+  std::size_t total_;
+};
+
+// The values of a vertex that a mesh keeps.
+enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
+struct SlotName {
+  std::string_view name;
+  Slot slot;
+};
+constexpr SlotName kSlotNames[] = {{"x", kX},   {"y", kY},   {"z", kZ},         {"nx", kNx},
+                                   {"ny", kNy}, {"nz", kNz}, {"u", kU},         {"v", kV},
+                                   {"s", kU},   {"t", kV},   {"texture_u", kU}, {"texture_v", kV}};
+
+Slot slot_of(const PlyProperty& property) {
+  for (const auto& [name, slot] : kSlotNames)
+    if (name == property.name && !property.count_type) return slot;
+  return kSlots;
+}
+
+bool is_polygon(const PlyProperty& property) {
+  return property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+template <class Body>
+class PlyReader {
+ public:
+  PlyReader(const PlyHeader& header, const MeshLimits& limits)
+      : header_(header), limits_(limits), body_(header) {}
+
+  TriangleMesh read() {
+    count_vertices();
+    for (const PlyElement& element : header_.elements) {
+      check_bytes(element);
+      if (element.name == "vertex")
+        read_vertices(element);
+      else if (element.name == "face")
+        read_faces(element);
+      else
+        for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) skip_row(element);
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void count_vertices() {
+    const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
+    const auto count = std::count_if(header_.elements.begin(), header_.elements.end(), is_vertex);
+    if (count != 1) body_.fail("expected one element \"vertex\", got " + std::to_string(count));
+    vertices_ = std::find_if(header_.elements.begin(), header_.elements.end(), is_vertex)->count;
+    check_vertices(vertices_, limits_);
+  }
+
+  // Before anything is taken for the element.
+  void check_bytes(const PlyElement& element) const {
+    std::size_t fewest = 0;
+    for (const PlyProperty& property : element.properties) {
+      fewest += Body::fewest_bytes(property.count_type.value_or(property.type));
+      if (element.name == "face" && is_polygon(property)) fewest += 3 * Body::fewest_bytes(property.type);
+    }
+    if (fewest > 0 && element.count > body_.bytes_left() / fewest)
+      body_.fail("expected " + std::to_string(element.count) + " of element " + excerpt(element.name) +
+                 ", each of " + std::to_string(fewest) + " bytes or more, got " +
+                 std::to_string(body_.bytes_left()) + " bytes");
+  }
+
+  void read_vertices(const PlyElement& element) {
+    std::array<bool, kSlots + 1> has{};
+    for (const PlyProperty& property : element.properties) has[slot_of(property)] = true;
+    if (!has[kX] || !has[kY] || !has[kZ]) body_.fail("expected properties x, y and z of a vertex, got fewer");
+    has_normals_ = has[kNx] && has[kNy] && has[kNz];
+    has_uvs_ = has[kU] && has[kV];
+    mesh_.positions.reserve(element.count);
+    if (has_normals_) mesh_.normals.reserve(element.count);
+    if (has_uvs_) mesh_.uvs.reserve(element.count);
+    const bool lists = std::any_of(element.properties.begin(), element.properties.end(),
+                                   [](const PlyProperty& p) { return p.count_type.has_value(); });
+    if constexpr (Body::kBinary)
+      if (!lists) return read_fixed_rows(element);
+    read_any_rows(element);
+  }
+
+  // Rows of one size: each value is at a known place.
+  void read_fixed_rows(const PlyElement& element) {
+    struct Field {
+      Slot slot;
+      std::size_t offset;
+      Load load;
+    };
+    std::vector<Field> fields;
+    std::size_t size = 0;
+    for (const PlyProperty& property : element.properties) {
+      if (slot_of(property) != kSlots)
+        fields.push_back({slot_of(property), size, load_of(property.type, header_.encoding)});
+      size += size_of(property.type);
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      const char* row = body_.take(size);
+      std::array<double, kSlots> values{};
+      for (const Field& field : fields) values[field.slot] = field.load(row + field.offset);
+      add_vertex(values);
+    }
+  }
+
+  void read_any_rows(const PlyElement& element) {
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      std::array<double, kSlots + 1> values{};
+      for (const PlyProperty& property : element.properties) {
+        if (property.count_type)
+          skip_list(property);
+        else
+          values[slot_of(property)] = body_.read(body_.describe(property.type));
+      }
+      std::array<double, kSlots> kept;
+      std::copy_n(values.begin(), kept.size(), kept.begin());
+      add_vertex(kept);
+    }
+  }
+
+  void add_vertex(const std::array<double, kSlots>& values) {
+    const Vec3d position(values[kX], values[kY], values[kZ]), normal(values[kNx], values[kNy], values[kNz]);
+    if (!is_finite(position) || !is_finite(normal) || !std::isfinite(values[kU]) ||
+        !std::isfinite(values[kV]))
+      body_.fail("expected finite values for vertex " + std::to_string(mesh_.positions.size()) + ", got " +
+                 text_of(position));
+    mesh_.positions.push_back(position);
+    if (has_normals_) mesh_.normals.push_back(normal);
+    if (has_uvs_) mesh_.uvs.push_back({values[kU], values[kV]});
+  }
+
+  void read_faces(const PlyElement& element) {
+    const auto polygon = std::find_if(element.properties.begin(), element.properties.end(), is_polygon);
+    if (polygon == element.properties.end())
+      body_.fail("expected a list \"vertex_indices\" of a face, got none");
+    check_triangles(mesh_.triangles.size() + element.count, limits_);
+    mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
+    for (std::uint64_t i = 0; i < element.count; ++i)
+      for (const PlyProperty& property : element.properties) {
+        if (&property == &*polygon)
+          read_polygon(property, i);
+        else
+          skip_property(property);
+      }
+  }
+
+  void read_polygon(const PlyProperty& property, std::uint64_t face) {
+    const std::uint64_t count = list_length(property);
+    if (count < 3)
+      body_.fail("expected 3 corners or more of face " + std::to_string(face) + ", got " +
+                 std::to_string(count));
+    check_triangles(mesh_.triangles.size() + count - 2, limits_);
+    const auto value = body_.describe(property.type);
+    std::array<std::uint32_t, 3> fan{};
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const double index = body_.read(value);
+      if (!(index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)))
+        body_.fail("expected a vertex from 0 to below " + std::to_string(vertices_) + " of face " +
+                   std::to_string(face) + ", got " + text_of(index));
+      fan[std::min<std::uint64_t>(i, 2)] = static_cast<std::uint32_t>(index);
+      if (i < 2) continue;
+      mesh_.triangles.push_back(fan);
+      fan[1] = fan[2];
+    }
+  }
+
+  std::uint64_t list_length(const PlyProperty& property) {
+    const double count = body_.read(body_.describe(*property.count_type));
+    constexpr double kMost = 4294967295.0;  // what the widest type holds
+    if (!(count >= 0 && count <= kMost && count == std::floor(count)))
+      body_.fail("expected a length of a list, got " + text_of(count));
+    return static_cast<std::uint64_t>(count);
+  }
+  void skip_list(const PlyProperty& property) {
+    const auto value = body_.describe(property.type);
+    for (std::uint64_t left = list_length(property); left > 0; --left) body_.skip(value);
+  }
+  void skip_property(const PlyProperty& property) {
+    if (property.count_type)
+      skip_list(property);
+    else
+      body_.skip(body_.describe(property.type));
+  }
+  void skip_row(const PlyElement& element) {
+    for (const PlyProperty& property : element.properties) skip_property(property);
+  }
+
+  const PlyHeader& header_;
+  const MeshLimits& limits_;
+  Body body_;
+  std::uint64_t vertices_ = 0;  // as the header has it: faces may come before them
+  bool has_normals_ = false, has_uvs_ = false;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits) {
+  const PlyHeader header = read_ply_header(bytes);
+  return header.encoding == PlyEncoding::ascii ? PlyReader<AsciiBody>(header, limits).read()
+                                               : PlyReader<BinaryBody>(header, limits).read();
+}
+
+}  // namespace orrery

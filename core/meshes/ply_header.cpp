@@ -1,0 +1,96 @@
+#include "core/meshes/ply_header.h"
+
+#include <array>
+#include <string>
+
+namespace orrery {
+namespace {
+
+constexpr std::size_t kMaxProperties = 1000;  // of all elements; scans have a dozen
+
+struct TypeName {
+  std::string_view name;
+  PlyType type;
+};
+constexpr TypeName kTypeNames[] = {
+    {"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
+    {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
+    {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},   {"int", PlyType::int32},
+    {"int32", PlyType::int32},    {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
+    {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
+    {"float64", PlyType::float64}};
+
+PlyType read_type(TextReader& text) {
+  const std::string_view word = text.word_of_line();
+  for (const auto& [name, type] : kTypeNames)
+    if (name == word) return type;
+  text.fail("expected a type from char to double, got " + excerpt(word));
+}
+
+PlyEncoding read_encoding(TextReader& text) {
+  const std::string_view name = text.word_of_line(), version = text.word_of_line();
+  if (version != "1.0") text.fail("expected version 1.0, got " + excerpt(version));
+  if (name == "ascii") return PlyEncoding::ascii;
+  if (name == "binary_little_endian") return PlyEncoding::little_endian;
+  if (name == "binary_big_endian") return PlyEncoding::big_endian;
+  text.fail("expected ascii, binary_little_endian or binary_big_endian, got " + excerpt(name));
+}
+
+PlyElement read_element(TextReader& text) {
+  const std::string_view name = text.word_of_line();
+  const std::int64_t count = text.integer_in(text.word_of_line(), "the number of elements");
+  if (count < 0) text.fail("expected a number of elements of at least 0, got " + std::to_string(count));
+  return {name, static_cast<std::uint64_t>(count), {}};
+}
+
+PlyProperty read_property(TextReader& text) {
+  TextReader ahead = text;
+  if (ahead.word_of_line() != "list") {
+    const PlyType type = read_type(text);
+    return {text.word_of_line(), type};
+  }
+  text.word_of_line();
+  const PlyType count_type = read_type(text);
+  if (count_type == PlyType::float32 || count_type == PlyType::float64)
+    text.fail("expected an integer type for the length of a list, got float or double");
+  const PlyType type = read_type(text);
+  return {text.word_of_line(), type, count_type};
+}
+
+}  // namespace
+
+std::size_t size_of(PlyType type) {
+  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+
+PlyHeader read_ply_header(std::string_view bytes) {
+  TextReader text(bytes);
+  std::optional<PlyEncoding> encoding;
+  std::vector<PlyElement> elements;
+  std::size_t properties = 0;
+  while (text.next_line()) {  // past "ply"
+    const std::string_view keyword = text.word_of_line();
+    if (keyword == "end_header") {
+      if (!encoding) text.fail("expected a line \"format\" before it");
+      text.end_text(bytes.starts_with("ply\r") && !bytes.starts_with("ply\r\n"));
+      return {*encoding, std::move(elements), text};
+    }
+    if (keyword == "format") {
+      encoding = read_encoding(text);
+    } else if (keyword == "element") {
+      elements.push_back(read_element(text));
+    } else if (keyword == "property") {
+      if (elements.empty()) text.fail("expected an element before a property");
+      elements.back().properties.push_back(read_property(text));
+      ++properties;
+    } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+      text.fail("expected a keyword of a PLY header, got " + excerpt(keyword));
+    }
+    if (properties + elements.size() > kMaxProperties)
+      text.fail("expected at most " + std::to_string(kMaxProperties) + " elements and properties, got more");
+  }
+  text.fail("expected \"end_header\", got the end of the file");
+}
+
+}  // namespace orrery

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/meshes/text.h"
+
+namespace orrery {
+
+enum class PlyEncoding { ascii, little_endian, big_endian };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::size_t size_of(PlyType type);
+
+struct PlyProperty {
+  std::string_view name;
+  PlyType type;                            // of the value, or of each entry of a list
+  std::optional<PlyType> count_type = {};  // of the length of a list: an integer type
+};
+
+struct PlyElement {
+  std::string_view name;
+  std::uint64_t count;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding;
+  std::vector<PlyElement> elements;
+  TextReader body;  // at the first byte after the header
+};
+
+// The header of a PLY file (Turk, The PLY Polygon File Format, 1994). Throws InputError with the line if it
+// is wrong. Views point into `bytes`.
+PlyHeader read_ply_header(std::string_view bytes);
+
+}  // namespace orrery

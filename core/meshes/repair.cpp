@@ -1,0 +1,28 @@
+#include "core/meshes/repair.h"
+
+#include "core/meshes/vertex_list.h"
+
+namespace orrery {
+
+std::size_t drop_degenerate(TriangleMesh& mesh) {
+  return std::erase_if(mesh.triangles, [&](const auto& t) {
+    const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    return safe_normalize(cross(b - a, c - a)) == Vec3d();
+  });
+}
+
+std::size_t weld(TriangleMesh& mesh) {
+  const TriangleMesh old = std::move(mesh);
+  VertexList vertices(!old.normals.empty(), !old.uvs.empty());
+  std::vector<std::uint32_t> renumbered;
+  renumbered.reserve(old.positions.size());
+  for (std::size_t i = 0; i < old.positions.size(); ++i)
+    renumbered.push_back(vertices.add(vertex_of(old, i)));
+  mesh = vertices.take();
+  mesh.triangles = old.triangles;
+  for (auto& triangle : mesh.triangles)
+    for (std::uint32_t& corner : triangle) corner = renumbered[corner];
+  return old.positions.size() - mesh.positions.size();
+}
+
+}  // namespace orrery

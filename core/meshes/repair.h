@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/meshes/mesh_file.h"
+
+// What a mesh may need before it is used. Each function keeps the order of what stays.
+// REQUIRES: indices within positions, coordinates finite; as read_mesh gives them.
+namespace orrery {
+
+// Takes out the triangles without area, whose normal safe_normalize(cross(b - a, c - a)) is zero: no ray can
+// meet them. Returns how many. Vertices stay.
+std::size_t drop_degenerate(TriangleMesh& mesh);
+
+// Makes one vertex of those with equal positions (-0 equals 0), normals and uvs: neighbouring triangles then
+// share their edges. Returns how many vertices went.
+std::size_t weld(TriangleMesh& mesh);
+
+// Gives the mesh vertex normals: at each corner, the mean of the normals of the triangles around its position
+// whose normals differ from its own triangle's by less than `crease_degrees` (in [0, 180]), each weighted by
+// its angle there (Thuermer and Wuethrich, Computing Vertex Normals from Polygonal Facets, 1998). A vertex
+// whose corners differ becomes several; vertices that are equal become one, and those that no triangle uses
+// go. Replaces normals, keeps uvs. Throws InputError if so many triangles meet at vertices that comparing
+// them all would take more than 2^31 steps.
+void smooth_normals(TriangleMesh& mesh, double crease_degrees);
+
+}  // namespace orrery

@@ -1,0 +1,118 @@
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/math/angles.h"
+#include "core/meshes/repair.h"
+#include "core/meshes/vertex_list.h"
+
+namespace orrery {
+namespace {
+
+constexpr std::uint64_t kMaxSteps = std::uint64_t{1} << 31;
+
+// Angle between unit vectors, in radians: 2 atan(|u - v| / |u + v|) (Kahan), which is exact to a few ulps for
+// all angles. The arctangent is halved three times, then its series; IEEE operations alone, so that every
+// machine gives the same bits.
+double angle_between(const Vec3d& u, const Vec3d& v) {
+  const double opposite = length(u - v), adjacent = length(u + v);
+  double tangent = opposite / (adjacent + std::sqrt(opposite * opposite + adjacent * adjacent));
+  for (int halving = 0; halving < 2; ++halving) tangent /= 1 + std::sqrt(1 + tangent * tangent);
+  const double square = tangent * tangent;  // at most tan(pi/16)^2 < 0.04
+  double series = 0;
+  for (int k = 12; k >= 0; --k) series = 1.0 / (2 * k + 1) - square * series;
+  return 16 * tangent * series;
+}
+
+// The corners (3 * triangle + 0, 1 or 2) at each position: those of position p are
+// list[first[p]] .. list[first[p + 1] - 1], in rising order.
+struct Corners {
+  std::vector<std::uint32_t> position;  // of each corner, equal ones counted once
+  std::vector<std::uint32_t> first, list;
+
+  explicit Corners(const TriangleMesh& mesh) {
+    VertexList positions(false, false);
+    std::vector<std::uint32_t> of_vertex;
+    of_vertex.reserve(mesh.positions.size());
+    for (const Vec3d& p : mesh.positions) of_vertex.push_back(positions.add({p, {}, {}}));
+    position.reserve(3 * mesh.triangles.size());
+    first.assign(positions.size() + 1, 0);
+    for (const auto& triangle : mesh.triangles)
+      for (const std::uint32_t vertex : triangle) {
+        position.push_back(of_vertex[vertex]);
+        ++first[position.back() + 1];
+      }
+    for (std::size_t p = 1; p < first.size(); ++p) first[p] += first[p - 1];
+    list.resize(position.size());
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (std::uint32_t corner = 0; corner < position.size(); ++corner)
+      list[next[position[corner]]++] = corner;
+  }
+
+  void check_steps() const {
+    std::uint64_t steps = 0;
+    for (std::size_t p = 0; p + 1 < first.size(); ++p) {
+      const std::uint64_t count = first[p + 1] - first[p];
+      steps += count * count;
+    }
+    if (steps > kMaxSteps)
+      throw InputError("", "expected a mesh whose triangles around each vertex can be compared in " +
+                               std::to_string(kMaxSteps) + " steps to smooth it, got " +
+                               std::to_string(steps));
+  }
+};
+
+struct Facets {
+  std::vector<Vec3d> normals;   // of each triangle; 0 without area
+  std::vector<Vec3d> weighted;  // of each corner: the normal times the angle there
+
+  explicit Facets(const TriangleMesh& mesh) {
+    normals.reserve(mesh.triangles.size());
+    weighted.reserve(3 * mesh.triangles.size());
+    for (const auto& t : mesh.triangles) {
+      const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+      const Vec3d normal = safe_normalize(cross(b - a, c - a));
+      const Vec3d ab = safe_normalize(b - a), bc = safe_normalize(c - b), ca = safe_normalize(a - c);
+      normals.push_back(normal);
+      weighted.push_back(normal * angle_between(ab, -ca));
+      weighted.push_back(normal * angle_between(bc, -ab));
+      weighted.push_back(normal * angle_between(ca, -bc));
+    }
+  }
+};
+
+// A triangle without area takes what all around it give.
+Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& facets, double min_cosine) {
+  const Vec3d own = facets.normals[corner / 3];
+  const bool flat = own == Vec3d();
+  const std::uint32_t position = corners.position[corner];
+  Vec3d sum;
+  for (std::uint32_t i = corners.first[position]; i < corners.first[position + 1]; ++i) {
+    const std::uint32_t other = corners.list[i];
+    if (flat || other == corner || dot(own, facets.normals[other / 3]) > min_cosine)
+      sum = sum + facets.weighted[other];
+  }
+  for (const Vec3d& candidate : {sum, own})
+    if (const Vec3d unit = safe_normalize(candidate); unit != Vec3d()) return unit;
+  return {0, 0, 1};  // nothing but triangles without area, which no ray meets
+}
+
+}  // namespace
+
+void smooth_normals(TriangleMesh& mesh, double crease_degrees) {
+  const Corners corners(mesh);
+  corners.check_steps();
+  const Facets facets(mesh);
+  const double min_cosine = sine_cosine_degrees(crease_degrees).cosine;
+  VertexList vertices(true, !mesh.uvs.empty());
+  std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      Vertex vertex = vertex_of(mesh, triangles[t][k]);
+      vertex.normal = corner_normal(3 * t + k, corners, facets, min_cosine);
+      triangles[t][k] = vertices.add(vertex);
+    }
+  mesh = vertices.take();
+  mesh.triangles = std::move(triangles);
+}
+
+}  // namespace orrery

@@ -1,0 +1,123 @@
+#include <bit>
+
+#include "core/meshes/formats.h"
+#include "core/meshes/text.h"
+#include "core/meshes/vertex_list.h"
+
+// Stereolithography files (3D Systems, 1989). The facets' own normals, which many writers leave at 0, are not
+// read: the order of the corners says which side is the front.
+namespace orrery {
+namespace {
+
+// Binary: 80 bytes of anything, the number of facets, and each as 12 floats and 2 bytes, little-endian.
+constexpr std::size_t kHeader = 84, kFacet = 50, kCorner = 12;
+
+std::uint32_t little_endian(const char* bytes) {
+  std::uint32_t value = 0;
+  for (int i = 3; i >= 0; --i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
+
+class Builder {
+ public:
+  explicit Builder(const MeshLimits& limits) : limits_(limits) {}
+
+  void reserve(std::size_t triangles) { triangles_.reserve(triangles); }
+  void add(const std::array<Vec3d, 3>& corners) {
+    check_triangles(triangles_.size() + 1, limits_);
+    auto& triangle = triangles_.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertices_.add({corners[k], {}, {}});
+    check_vertices(vertices_.size(), limits_);
+  }
+  TriangleMesh take() {
+    TriangleMesh mesh = vertices_.take();
+    mesh.triangles = std::move(triangles_);
+    return mesh;
+  }
+
+ private:
+  const MeshLimits& limits_;
+  VertexList vertices_{false, false};
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
+  const std::size_t count = binary_stl_triangles(bytes);
+  check_triangles(count, limits);
+  Builder builder(limits);
+  builder.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* facet = bytes.data() + kHeader + i * kFacet + kCorner;  // past its normal
+    std::array<Vec3d, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto value = [&](std::size_t c) -> double {
+        return std::bit_cast<float>(little_endian(facet + k * kCorner + c * 4));
+      };
+      corners[k] = {value(0), value(1), value(2)};
+      if (!is_finite(corners[k]))
+        fail_at("facet " + std::to_string(i) + " at byte " + std::to_string(kHeader + i * kFacet),
+                "expected finite coordinates, got " + text_of(corners[k]));
+    }
+    builder.add(corners);
+  }
+  return builder.take();
+}
+
+void expect(TextReader& text, std::string_view wanted) {
+  const std::string_view word = text.word();
+  if (!is_keyword(word, wanted))
+    text.fail("expected " + excerpt(wanted) + ", got " +
+              (word.empty() ? "the end of the file" : excerpt(word)));
+}
+
+// facet normal i j k  outer loop  vertex x y z (3 times)  endloop  endfacet; past its first word.
+std::array<Vec3d, 3> read_facet(TextReader& text) {
+  expect(text, "normal");
+  for (int i = 0; i < 3; ++i) text.word();
+  expect(text, "outer");
+  expect(text, "loop");
+  std::array<Vec3d, 3> corners;
+  for (Vec3d& corner : corners) {
+    expect(text, "vertex");
+    corner.x = text.number("x");
+    corner.y = text.number("y");
+    corner.z = text.number("z");
+  }
+  expect(text, "endloop");
+  expect(text, "endfacet");
+  return corners;
+}
+
+// One solid or several: "solid", anything up to the end of the line, facets, "endsolid", anything.
+TriangleMesh read_ascii(std::string_view bytes, const MeshLimits& limits) {
+  TextReader text(bytes);
+  Builder builder(limits);
+  bool inside = false;
+  for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
+    if (is_keyword(word, inside ? "endsolid" : "solid")) {
+      inside = !inside;
+      text.next_line();
+    } else if (inside && is_keyword(word, "facet")) {
+      builder.add(read_facet(text));
+    } else {
+      text.fail(std::string("expected ") + (inside ? "\"facet\" or \"endsolid\"" : "\"solid\"") + ", got " +
+                excerpt(word));
+    }
+  }
+  if (inside) text.fail("expected \"endsolid\", got the end of the file");
+  return builder.take();
+}
+
+}  // namespace
+
+std::size_t binary_stl_triangles(std::string_view bytes) {
+  if (bytes.size() <= kHeader) return 0;
+  const std::size_t count = little_endian(bytes.data() + kHeader - 4);
+  return bytes.size() == kHeader + count * kFacet ? count : 0;
+}
+
+TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits) {
+  return binary_stl_triangles(bytes) > 0 ? read_binary(bytes, limits) : read_ascii(bytes, limits);
+}
+
+}  // namespace orrery

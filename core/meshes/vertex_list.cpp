@@ -1,0 +1,25 @@
+#include "core/meshes/vertex_list.h"
+
+#include <bit>
+
+namespace orrery {
+
+std::uint32_t VertexList::add(const Vertex& vertex) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 + 0 is 0
+  const Vec3d &p = vertex.position, &n = vertex.normal;
+  const std::array words = {bits(p.x), bits(p.y), bits(p.z),          bits(n.x),
+                            bits(n.y), bits(n.z), bits(vertex.uv[0]), bits(vertex.uv[1])};
+  const std::size_t used = with_normals_ || with_uvs_ ? words.size() : 3;
+  const std::uint32_t hash = table_.hash(std::span(words).first(used));
+  const std::size_t before = size();
+  const std::uint32_t at = table_.find_or_add(
+      hash, before, [&](std::uint32_t entry) { return vertex_of(mesh_, entry) == vertex; });
+  if (at == before) {
+    mesh_.positions.push_back(p);
+    if (with_normals_) mesh_.normals.push_back(n);
+    if (with_uvs_) mesh_.uvs.push_back(vertex.uv);
+  }
+  return at;
+}
+
+}  // namespace orrery

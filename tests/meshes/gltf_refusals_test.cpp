@@ -1,0 +1,145 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/meshes/writers.h"
+
+namespace orrery::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kMesh = R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)";
+
+std::string with(const std::string& rest) {
+  Gltf gltf;
+  gltf.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  gltf.add<std::uint16_t>({0, 1, 3}, "SCALAR", 5123);
+  return problem(gltf.glb(rest));
+}
+std::string with_nodes(const std::string& nodes) { return with(kMesh + "\"nodes\":" + nodes); }
+std::string with_primitive(const std::string& primitive) {
+  return with("\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[" + primitive + "]}]");
+}
+
+// One triangle whose JSON is the caller's from buffers on.
+std::string with_data(const std::string& buffers, const std::string& views, const std::string& accessor) {
+  return problem(R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],)" + kMesh + "\"buffers\":[" + buffers +
+                 "],\"bufferViews\":[" + views + "],\"accessors\":[" + accessor + "]}");
+}
+const std::string kBuffer =
+    "{\"byteLength\":36,\"uri\":\"data:;base64," + base64_of(std::string(36, '\0')) + "\"}";
+const std::string kView = R"({"buffer":0,"byteLength":36})";
+const std::string kAccessor = R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})";
+
+TEST(GltfRefusals, OfNodes) {
+  EXPECT_EQ(with_nodes(R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])"),
+            "/nodes/1: expected a tree of nodes, got this one twice");
+  EXPECT_EQ(with(kMesh + R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"children":[0]}])"),
+            "/nodes/0: expected a tree of nodes, got this one twice");
+  EXPECT_EQ(with_nodes(R"([{"mesh":1}])"), "/meshes: expected entry 1, got 1 entries");
+  EXPECT_EQ(with_nodes(R"([{"children":[7]}])"), "/nodes: expected entry 7, got 1 entries");
+  EXPECT_EQ(with_nodes(R"([{"mesh":0,"matrix":[1,0]}])"), "/nodes/0/matrix: expected 16 numbers, got 2");
+  EXPECT_EQ(with_nodes(R"([{"mesh":0,"matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}])"),
+            "/nodes/0/matrix: expected 0, 0, 0 and 1 as the last row, got a projection");
+  EXPECT_EQ(with_nodes(R"([{"mesh":0,"rotation":[0,0,0,0]}])"),
+            "/nodes/0/rotation: expected a quaternion other than 0, got 0");
+  EXPECT_EQ(with_nodes(R"([{"mesh":0,"scale":[1,"2",3]}])"),
+            "/nodes/0/scale/1: expected a number, got \"2\"");
+  EXPECT_EQ(with_nodes(R"([{"mesh":4294967296}])"), "/meshes: expected entry 4294967296, got 1 entries");
+  EXPECT_EQ(with_nodes(R"([{"mesh":-1}])"), "/nodes/0/mesh: expected an integer of at least 0, got -1");
+  EXPECT_EQ(with_nodes(R"([{"mesh":0.5}])"), "/nodes/0/mesh: expected an integer of at least 0, got 0.5");
+  EXPECT_THAT(
+      with_nodes(R"([{"mesh":0,"scale":[1e308,1,1],"translation":[1e308,0,0]}])"),
+      HasSubstr("/meshes/0/primitives/0/attributes: expected finite positions, got (inf, 0, 0) at vertex 1"));
+}
+
+TEST(GltfRefusals, OfPrimitives) {
+  EXPECT_EQ(with_primitive(R"({"attributes":{"POSITION":0},"mode":7})"),
+            "/meshes/0/primitives/0: expected a mode from 0 to 6, got 7");
+  EXPECT_THAT(with_primitive(R"({"attributes":{}})"),
+              HasSubstr("attributes: expected a member \"POSITION\""));
+  EXPECT_EQ(with_primitive(R"({"attributes":{"POSITION":0},"indices":1})"),
+            "/meshes/0/primitives/0/indices: expected indices from 0 to below 3, got 3 at 2");
+  EXPECT_EQ(with_primitive(R"({"attributes":{"POSITION":1}})"),
+            "/accessors/1/type: expected \"VEC3\", got \"SCALAR\"");
+  EXPECT_EQ(with_primitive(R"({"attributes":{"POSITION":2}})"),
+            "/accessors: expected entry 2, got 2 entries");
+}
+
+TEST(GltfRefusals, OfWhatLiesOutsideTheFile) {
+  for (const char* uri : {"mesh.bin", "/etc/passwd", "http://elsewhere/mesh.bin", "data:text/plain,abc"})
+    EXPECT_THAT(
+        with_data(std::string(R"({"byteLength":36,"uri":")") + uri + "\"}", kView, kAccessor),
+        HasSubstr("/buffers/0/uri: expected a data: URI in base64 (other files are not read), got \"" +
+                  std::string(uri)));
+  EXPECT_THAT(with(kMesh + R"("nodes":[{"mesh":0}],"extensionsRequired":["KHR_draco_mesh_compression"])"),
+              HasSubstr("/extensionsRequired/0: expected an extension that geometry can do without"));
+}
+
+TEST(GltfRefusals, OfRangesThatLeaveTheirBuffer) {
+  EXPECT_EQ(with_data(kBuffer, kView, kAccessor), "accepted");
+  EXPECT_EQ(with_data(R"({"byteLength":37,"uri":"data:;base64,AAAA"})", kView, kAccessor),
+            "/buffers/0/byteLength: expected at most 3 bytes, as are there, got 37");
+  EXPECT_EQ(with_data(R"({"byteLength":3,"uri":"data:;base64,AA*A"})", kView, kAccessor),
+            "/buffers/0/uri: expected base64, got \"*\" at digit 2");
+  EXPECT_EQ(with_data(R"({"byteLength":36})", kView, kAccessor),
+            "/buffers/0/byteLength: expected at most 0 bytes, as are there, got 36");
+  for (const char* view :
+       {R"({"buffer":0,"byteLength":37})", R"({"buffer":0,"byteLength":36,"byteOffset":1})",
+        R"({"buffer":0,"byteLength":36,"byteOffset":18446744073709551600})"})
+    EXPECT_THAT(with_data(kBuffer, view, kAccessor),
+                HasSubstr("/bufferViews/0: expected byteOffset + byteLength of at most 36"));
+  for (const char* rest : {R"("count":4)", R"("count":0)", R"("count":18446744073709551615)",
+                           R"("count":3,"byteOffset":1)", R"("count":3,"byteOffset":18446744073709551615)"})
+    EXPECT_THAT(
+        with_data(kBuffer, kView,
+                  std::string(R"({"bufferView":0,"componentType":5126,"type":"VEC3",)") + rest + "}"),
+        HasSubstr("/accessors/0: expected 1 or more elements of 12 bytes, 12 apart, within the 36 bytes"));
+  EXPECT_THAT(with_data(kBuffer, R"({"buffer":0,"byteLength":36,"byteStride":16})", kAccessor),
+              HasSubstr("16 apart"));
+  for (const char* stride : {"8", "0", "256", "18446744073709551615"})
+    EXPECT_THAT(with_data(kBuffer, std::string(R"({"buffer":0,"byteLength":36,"byteStride":)") + stride + "}",
+                          kAccessor),
+                HasSubstr("expected a byteStride from 12 to 252, got "));
+  EXPECT_THAT(with_data(kBuffer, kView, R"({"bufferView":0,"componentType":5124,"count":3,"type":"VEC3"})"),
+              HasSubstr("/accessors/0/componentType: expected a component type"));
+  EXPECT_THAT(with_data(kBuffer, kView,
+                        R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":{}})"),
+              HasSubstr("/accessors/0: expected an accessor that is not sparse"));
+}
+
+TEST(GltfRefusals, OfTheDocument) {
+  EXPECT_THAT(problem("{"), HasSubstr("expected a glTF document in JSON, got: "));
+  EXPECT_EQ(problem("{}"), "/: expected a member \"asset\", got none");
+  EXPECT_EQ(problem(R"({"asset":{"version":"1.0"}})"), "/asset/version: expected \"2.0\", got \"1.0\"");
+  EXPECT_THAT(problem(R"({"nodes":)" + std::string(100'000, '[')), HasSubstr("nested at most 32 deep"));
+  std::string many = R"({"nodes":[0)";
+  for (int i = 0; i < 1'000'000; ++i) many += ",0";
+  EXPECT_THAT(problem(many + "]}"), HasSubstr("at most 1000000 JSON values"));
+}
+
+TEST(GltfRefusals, OfTheContainer) {
+  const std::string good = gltf_of(cube()).glb(kOneMesh);
+  const auto changed = [&](std::size_t at, std::uint32_t value) {
+    std::string bytes = good, word;
+    append(word, value);
+    return problem(bytes.replace(at, 4, word));
+  };
+  EXPECT_EQ(problem("glTF"), "expected a GLB header of 12 bytes, got fewer");
+  EXPECT_EQ(changed(4, 1), "byte 4: expected GLB version 2, got 1");
+  EXPECT_THAT(changed(8, static_cast<std::uint32_t>(good.size()) + 1),
+              HasSubstr("byte 8: expected a GLB length of at most"));
+  EXPECT_THAT(changed(12, 0xffffffff), HasSubstr("byte 12: expected a GLB chunk of at most"));
+  EXPECT_THAT(changed(16, 0), HasSubstr("byte 12: expected a GLB chunk \"JSON\" with content, got none"));
+  std::uint32_t json;
+  std::memcpy(&json, good.data() + 12, 4);
+  std::uint32_t binary;
+  std::memcpy(&binary, good.data() + 20 + json, 4);
+  EXPECT_THAT(changed(20 + json, binary + 1), HasSubstr("expected a GLB chunk of at most"));
+  EXPECT_THAT(changed(20 + json, binary - 4), HasSubstr("/buffers/0/byteLength: expected at most"));
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,90 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/meshes/writers.h"
+
+namespace orrery::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Triangle = std::array<std::uint32_t, 3>;
+
+const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(Obj, PolygonsBecomeFans) {
+  const TriangleMesh mesh = read_mesh(kFour + "v -1 0.5 0\nf 1 2 3 4 5\n");
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
+}
+
+TEST(Obj, NegativeIndicesCountBackFromTheLastSoFar) {
+  const TriangleMesh mesh = read_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 5 5 5\nf -1 1 -2\n");
+  EXPECT_EQ(corners_of(mesh)[0], (Corners{Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(1, 1, 0)}));
+  EXPECT_EQ(corners_of(mesh)[1], (Corners{Vec3d(5, 5, 5), Vec3d(0, 0, 0), Vec3d(1, 1, 0)}));
+}
+
+TEST(Obj, CornersThatDifferInNormalOrUvAreDifferentVertices) {
+  const TriangleMesh mesh = read_mesh(kFour +
+                                      "vn 0 0 2\nvn 0 3 0\nvt 0.25 0.5\nvt 0.75\n"
+                                      "f 1/1/1 2/1/1 3/1/1\nf 1/1/1 3/2/1 4/1/2\n");
+  ASSERT_EQ(mesh.positions.size(), 5u);
+  EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 3, 4}}));
+  EXPECT_EQ(mesh.positions[2], mesh.positions[3]);
+  EXPECT_EQ(mesh.normals[0], Vec3d(0, 0, 1));
+  EXPECT_EQ(mesh.normals[4], Vec3d(0, 1, 0));
+  EXPECT_EQ(mesh.uvs[0], (std::array<double, 2>{0.25, 0.5}));
+  EXPECT_EQ(mesh.uvs[3], (std::array<double, 2>{0.75, 0}));
+}
+
+TEST(Obj, WhatNotEveryCornerHasIsLeftOut) {
+  const TriangleMesh mesh = read_mesh(kFour + "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1/1/1 3/1/1 4/1/1\n");
+  EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+  EXPECT_TRUE(mesh.uvs.empty());
+}
+
+TEST(Obj, ANormalOfLengthZeroTakesThatOfItsFaces) {
+  const TriangleMesh mesh = read_mesh(kFour + "vn 0 0 0\nvn 0 1 0\nf 1//1 2//2 3//2\n");
+  EXPECT_EQ(mesh.normals[0], Vec3d(0, 0, 1));
+  EXPECT_EQ(mesh.normals[1], Vec3d(0, 1, 0));
+}
+
+TEST(Obj, LayoutOfTheTextDoesNotMatter) {
+  const std::vector<Corners> plain = corners_of(read_mesh("v 0 0 0\nv 1 0 0\nv 1 1.5 0\nf 1 2 3\n"));
+  for (const char* text :
+       {"v 0 0 0\r\nv 1 0 0\r\nv 1 1.5 0\r\nf 1 2 3", "v 0 0 0\rv 1 0 0\rv 1 1.5 0\rf 1 2 3\r",
+        "\xef\xbb\xbfv 0 0 0\nv +1 0 0\nv 1 1.5 0\nf 1 2 3\n",
+        "mtllib a.mtl\n\n\tv  0 0 -0 1 # home\nv 1e0 0 0 0.5 0.5 0.5\nv 1 15e-1 1e-400\nusemtl x\ns off\nl 1 "
+        "2\n"
+        "f 1 2 \\\n 3 # end\n"})
+    EXPECT_EQ(corners_of(read_mesh(text)), plain) << text;
+}
+
+TEST(Obj, NumbersAreTheNearestDoubles) {
+  const TriangleMesh mesh = read_mesh("v 0.1 123456.789012 -8.371950\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  EXPECT_EQ(mesh.positions[0], Vec3d(0.1, 123456.789012, -8.371950));
+}
+
+TEST(Obj, RefusalsNameTheLine) {
+  const auto with = [](const std::string& line) { return problem(kFour + line + "\nf 1 2 3\n"); };
+  EXPECT_EQ(with("v 1 nan 0"), "line 5: expected a finite number for v, got \"nan\"");
+  EXPECT_EQ(with("v 1 0 -inf"), "line 5: expected a finite number for v, got \"-inf\"");
+  EXPECT_EQ(with("v 1 0 1e999"), "line 5: expected a finite number for v, got \"1e999\"");
+  EXPECT_EQ(with("v 1 0"), "line 5: expected a finite number for v, got nothing");
+  EXPECT_EQ(with("vn 1 0 0x1"), "line 5: expected a finite number for vn, got \"0x1\"");
+  EXPECT_EQ(with("vt u"), "line 5: expected a finite number for vt, got \"u\"");
+  EXPECT_EQ(with("f 1 2"), "line 5: expected a face of 3 corners or more, got 2");
+  EXPECT_EQ(with("f 1 2 5"), "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got 5");
+  EXPECT_EQ(with("f 1 2 -5"), "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got -5");
+  EXPECT_EQ(with("f 1 2 0"), "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got 0");
+  EXPECT_EQ(with("f 1 2 4294967299"),
+            "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got 4294967299");
+  EXPECT_EQ(with("f 1 2 99999999999999999999"),
+            "line 5: expected an integer for v of a corner, got \"99999999999999999999\"");
+  EXPECT_EQ(with("f 1/1 2 3"), "line 5: expected a vt of a corner from 1 to 0 or -1 to -0, got 1");
+  EXPECT_EQ(with("f 1/1/1/1 2 3"), "line 5: expected position/uv/normal for a corner, got \"1/1/1/1\"");
+  EXPECT_EQ(with("f \\\n1 2 x"), "line 6: expected an integer for v of a corner, got \"x\"");
+}
+
+}  // namespace
+}  // namespace orrery::test

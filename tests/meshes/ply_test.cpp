@@ -1,0 +1,179 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/meshes/writers.h"
+
+namespace orrery::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Triangle = std::array<std::uint32_t, 3>;
+
+std::string header(const std::string& format, const std::string& elements) {
+  return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n";
+}
+const std::string kVertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
+const std::string kFour = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+// Every scalar type for coordinates, list lengths and indices, in both byte orders.
+template <class T>
+void reads_as(const std::string& type) {
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    const std::string format = order == std::endian::little ? "binary_little_endian" : "binary_big_endian";
+    const bool integer = std::numeric_limits<T>::is_integer;
+    std::string bytes = header(format, "element vertex 3\nproperty " + type + " x\nproperty " + type +
+                                           " y\nproperty " + type + " z\nelement face 1\nproperty list " +
+                                           (integer ? type : "char") + " " + type + " vertex_index\n");
+    for (const int x : {0, 1, 2, 3, 4, 5, 6, 70, 8}) append(bytes, static_cast<T>(x), order);
+    if (integer)
+      append(bytes, static_cast<T>(3), order);
+    else
+      append(bytes, std::int8_t{3}, order);
+    for (const int i : {2, 0, 1}) append(bytes, static_cast<T>(i), order);
+    const TriangleMesh mesh = read_mesh(bytes);
+    EXPECT_EQ(mesh.positions[2], Vec3d(6, 70, 8)) << type << format;
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{2, 0, 1}})) << type << format;
+  }
+}
+TEST(Ply, EveryTypeInBothByteOrders) {
+  reads_as<std::int8_t>("char"), reads_as<std::int8_t>("int8");
+  reads_as<std::uint8_t>("uchar"), reads_as<std::uint8_t>("uint8");
+  reads_as<std::int16_t>("short"), reads_as<std::int16_t>("int16");
+  reads_as<std::uint16_t>("ushort"), reads_as<std::uint16_t>("uint16");
+  reads_as<std::int32_t>("int"), reads_as<std::int32_t>("int32");
+  reads_as<std::uint32_t>("uint"), reads_as<std::uint32_t>("uint32");
+  reads_as<float>("float"), reads_as<float>("float32");
+  reads_as<double>("double"), reads_as<double>("float64");
+}
+
+TEST(Ply, NormalsAndUvsWhateverTheirNameAndPlace) {
+  for (const auto& [u, v] : {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")}) {
+    std::string text = header(
+        "ascii", std::string("element vertex 3\nproperty float ny\nproperty float z\nproperty float ") + v +
+                     "\nproperty float x\nproperty float nx\nproperty uchar red\n"
+                     "property float nz\nproperty float y\nproperty float " +
+                     u + "\n" + kFace);
+    for (int i = 0; i < 3; ++i)
+      text += "0 " + std::to_string(i) + " 0.5 " + std::to_string(i * i) + " 0 255 2 1 0.25\n";
+    const TriangleMesh mesh = read_mesh(text + "3 0 1 2\n");
+    EXPECT_EQ(mesh.positions[2], Vec3d(4, 1, 2));
+    EXPECT_EQ(mesh.normals[2], Vec3d(0, 0, 1));
+    EXPECT_EQ(mesh.uvs[2], (std::array<double, 2>{0.25, 0.5}));
+  }
+}
+
+TEST(Ply, PolygonsBecomeFansAndOtherPropertiesAreSkipped) {
+  const std::string elements =
+      "element material 1\nproperty list uint double shades\nproperty int id\n" + kVertex +
+      "property list uchar short tags\nelement nothing 7\n"
+      "element face 2\nproperty uchar flags\nproperty list ushort uint vertex_index\n"
+      "property list uchar float texcoord\nelement edge 1\nproperty int vertex1\n";
+  const std::vector<Triangle> expected = {{0, 1, 2}, {3, 2, 1}, {3, 1, 0}};
+  EXPECT_EQ(read_mesh(header("ascii", elements) + "2 0.5 nan 9\n0 0 0 0\n1 0 0 2 7 8\n1 1 0 1 9\n0 1 0 0\n"
+                                                  "1 3 0 1 2 0\n1 4 3 2 1 0 2 0.5 0.5\n7\n")
+                .triangles,
+            expected);
+  std::string bytes = header("binary_big_endian", elements);
+  const auto put = [&](auto... values) { (append(bytes, values, std::endian::big), ...); };
+  put(std::uint32_t{2}, 0.5, 0.25, 9);
+  for (int i = 0; i < 4; ++i) {
+    put(static_cast<float>(i), 0.0f, static_cast<float>(i * i), static_cast<std::uint8_t>(i));
+    for (int k = 0; k < i; ++k) put(std::int16_t{-1});
+  }
+  put(std::uint8_t{1}, std::uint16_t{3}, 0u, 1u, 2u, std::uint8_t{0});
+  put(std::uint8_t{1}, std::uint16_t{4}, 3u, 2u, 1u, 0u, std::uint8_t{2}, 0.5f, 0.5f, 7);
+  const TriangleMesh mesh = read_mesh(bytes);
+  EXPECT_EQ(mesh.triangles, expected);
+  EXPECT_EQ(mesh.positions[3], Vec3d(3, 0, 9));
+}
+
+TEST(Ply, FacesMayComeBeforeVertices) {
+  EXPECT_EQ(read_mesh(header("ascii", kFace + kVertex) + "3 0 1 3\n" + kFour).triangles,
+            (std::vector<Triangle>{{0, 1, 3}}));
+}
+
+// A body of bytes begins right after the line, whatever its first byte.
+TEST(Ply, LineEndsOfTheHeaderDoNotTouchTheBody) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string bytes;
+    for (const char c : header("binary_little_endian",
+                               "element vertex 3\nproperty char x\nproperty char y\n"
+                               "property char z\n" +
+                                   kFace))
+      bytes += c == '\n' ? end : std::string(1, c);
+    for (const char c : {'\n', '\r', '\n', ' ', '\r', '\0', '\1', '\2', '\4'}) bytes += c;
+    append(bytes, std::uint8_t{3});
+    for (const int i : {0, 1, 2}) append(bytes, i);
+    EXPECT_EQ(read_mesh(bytes).positions[0], Vec3d(10, 13, 10));
+  }
+}
+
+TEST(Ply, RefusalsOfTheHeaderNameTheLine) {
+  const auto ascii = [](const std::string& elements) { return problem(header("ascii", elements)); };
+  EXPECT_EQ(problem("ply\nformat ascii 2.0\n"), "line 2: expected version 1.0, got \"2.0\"");
+  EXPECT_THAT(problem("ply\nformat binary 1.0\n"), HasSubstr("line 2: expected ascii, binary_little_endian"));
+  EXPECT_THAT(problem("ply\n"), HasSubstr("expected \"end_header\", got the end of the file"));
+  EXPECT_THAT(problem("ply\nend_header\n"), HasSubstr("line 2: expected a line \"format\""));
+  EXPECT_THAT(ascii("elephant 3\n"),
+              HasSubstr("line 3: expected a keyword of a PLY header, got \"elephant\""));
+  EXPECT_THAT(ascii("element vertex -1\n"), HasSubstr("of at least 0, got -1"));
+  EXPECT_THAT(ascii("element vertex many\n"), HasSubstr("expected an integer for the number of elements"));
+  EXPECT_THAT(ascii("property float x\n"), HasSubstr("expected an element before a property"));
+  EXPECT_THAT(ascii("element vertex 1\nproperty half x\n"),
+              HasSubstr("line 4: expected a type from char to double"));
+  EXPECT_THAT(ascii("element face 1\nproperty list float int vertex_index\n"),
+              HasSubstr("an integer type for the length"));
+  EXPECT_THAT(ascii(kFace), HasSubstr("expected one element \"vertex\", got 0"));
+  EXPECT_THAT(ascii("element vertex 0\nproperty float x\n" + kFace), HasSubstr("properties x, y and z"));
+  EXPECT_THAT(ascii(kVertex + kVertex), HasSubstr("expected one element \"vertex\", got 2"));
+  EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty int a\n") + kFour + "1"),
+              HasSubstr("expected a list"));
+  std::string many = "element vertex 1\n";
+  for (int i = 0; i < 1001; ++i) many += "property float a\n";
+  EXPECT_THAT(ascii(many), HasSubstr("at most 1000 elements and properties"));
+}
+
+// A count that the bytes cannot hold is refused before memory is taken for it.
+TEST(Ply, CountsAreCheckedAgainstTheBytes) {
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    EXPECT_THAT(problem(ply_header(format, 9'999'999, 1)),
+                HasSubstr("expected 9999999 of element \"vertex\""));
+    EXPECT_THAT(problem(ply_header(format, 0, 9'999'999)), HasSubstr("expected 9999999 of element \"face\""));
+    EXPECT_THAT(problem(ply_header(format, 9'223'372'036'854'775'807, 1)),
+                HasSubstr("at most 10000000 vertices"));
+    EXPECT_THAT(problem(ply_header(format, 0, 9'223'372'036'854'775'807)), HasSubstr("of element \"face\""));
+    EXPECT_THAT(
+        problem(header(format, "element x 9223372036854775807\nproperty list uint int y\n" + kVertex)),
+        HasSubstr("of element \"x\""));
+  }
+  EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty list uint int vertex_index\n") +
+                      kFour + "4000000000 0 1"),
+              HasSubstr("triangles, got"));
+}
+
+TEST(Ply, RefusalsOfTheBodyNameThePlace) {
+  const auto ascii = [](const std::string& body) { return problem(header("ascii", kVertex + kFace) + body); };
+  EXPECT_EQ(ascii("0 0 0\n1 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
+            "line 12: expected a finite number for a value, got \"nan\"");
+  EXPECT_EQ(ascii(kFour + "2 0 1 2 3\n"), "line 14: expected 3 corners or more of face 0, got 2");
+  EXPECT_THAT(ascii(kFour + "3 0 1 4\n"),
+              HasSubstr("line 14: expected a vertex from 0 to below 4 of face 0, got 4"));
+  EXPECT_THAT(ascii(kFour + "3 0 1 -1\n"), HasSubstr("got -1"));
+  EXPECT_THAT(ascii(kFour + "3 0 1 1.5\n"), HasSubstr("got 1.5"));
+  EXPECT_THAT(ascii(kFour + "-3 0 1 1\n"), HasSubstr("expected a length of a list, got -3"));
+  EXPECT_THAT(ascii(kFour + "4 0 1 2"), HasSubstr("got nothing"));
+  std::string bytes = header("binary_little_endian",
+                             "element vertex 1\nproperty float x\nproperty float y\n"
+                             "property float z\n" +
+                                 kFace);
+  append(bytes, 0.0f), append(bytes, std::numeric_limits<float>::infinity()), append(bytes, 0.0f);
+  append(bytes, std::uint8_t{3});
+  for (int i = 0; i < 3; ++i) append(bytes, 0);
+  EXPECT_THAT(problem(bytes), HasSubstr("expected finite values for vertex 0, got (0, inf, 0)"));
+}
+
+}  // namespace
+}  // namespace orrery::test

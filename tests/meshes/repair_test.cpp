@@ -1,0 +1,134 @@
+#include "core/meshes/repair.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/meshes/writers.h"
+
+namespace orrery::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SmoothNormals, ACubeIsCreasedAt30DegreesAndRoundAt100) {
+  TriangleMesh creased = cube();
+  smooth_normals(creased, 30);
+  EXPECT_EQ(creased.positions.size(), 24u);
+  EXPECT_EQ(corners_of(creased), corners_of(cube()));
+  for (std::size_t i = 0; i < 24; ++i)
+    EXPECT_EQ(max_component(abs(creased.normals[i])), 1) << "a normal along an axis";
+  TriangleMesh round = cube();
+  smooth_normals(round, 100);
+  EXPECT_EQ(round.positions.size(), 8u);
+  // Faces count by their angle at the corner, however they are cut into triangles.
+  for (std::size_t i = 0; i < 8; ++i)
+    EXPECT_LE(length(round.normals[i] - round.positions[i] / std::sqrt(3.0)), 1e-15);
+}
+
+// The crease is sharp at its angle: the cube's faces differ by 90 degrees.
+TEST(SmoothNormals, FacesThatDifferByTheCreaseAngleStayApart) {
+  for (const auto& [degrees, vertices] : {std::pair(89.9, 24u), std::pair(90.0, 24u), std::pair(90.1, 8u)}) {
+    TriangleMesh mesh = cube();
+    smooth_normals(mesh, degrees);
+    EXPECT_EQ(mesh.positions.size(), vertices) << degrees;
+  }
+}
+
+TEST(SmoothNormals, EqualPositionsAreSmoothedAcrossASeamOfUvs) {
+  TriangleMesh mesh = cube();
+  const std::size_t count = mesh.positions.size();
+  for (std::size_t i = 0; i < count; ++i) mesh.positions.push_back(mesh.positions[i]);
+  for (std::size_t i = 0; i < 2 * count; ++i) mesh.uvs.push_back({static_cast<double>(i / count), 0});
+  for (std::size_t t = 6; t < 12; ++t)
+    for (std::uint32_t& i : mesh.triangles[t]) i += 8;
+  smooth_normals(mesh, 100);
+  EXPECT_EQ(mesh.positions.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i)
+    EXPECT_LE(length(mesh.normals[i] - mesh.positions[i] / std::sqrt(3.0)), 1e-15);
+}
+
+// A sphere of rings and segments; the normal is the direction from the centre. The bound is that of the
+// discretisation, which falls with the square of the step.
+TEST(SmoothNormals, ASphereHasTheNormalsOfASphere) {
+  double last = 1;
+  for (const int n : {8, 16, 32, 64}) {
+    TriangleMesh mesh;
+    const auto at = [&](int ring, int segment) {
+      const double theta = std::numbers::pi * ring / n, phi = std::numbers::pi * (segment % (2 * n)) / n;
+      const double across = ring % n == 0 ? 0 : std::sin(theta);
+      mesh.positions.push_back({across * std::cos(phi), std::cos(theta), across * std::sin(phi)});
+      return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+    };
+    for (int ring = 0; ring < n; ++ring)
+      for (int segment = 0; segment < 2 * n; ++segment) {
+        const std::uint32_t a = at(ring, segment), b = at(ring, segment + 1), c = at(ring + 1, segment + 1),
+                            d = at(ring + 1, segment);
+        mesh.triangles.push_back({a, b, c});
+        mesh.triangles.push_back({a, c, d});
+      }
+    EXPECT_EQ(drop_degenerate(mesh), static_cast<std::size_t>(4 * n));  // at the two poles
+    smooth_normals(mesh, 60);
+    EXPECT_EQ(mesh.positions.size(), static_cast<std::size_t>(2 * n * (n - 1) + 2));
+    double worst = 0;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      EXPECT_NEAR(length(mesh.normals[i]), 1, 1e-15);
+      worst = std::max(worst, length(mesh.normals[i] - normalize(mesh.positions[i])));
+    }
+    const double step = std::numbers::pi / n;
+    EXPECT_LT(worst, 0.5 * step * step) << n;
+    EXPECT_LT(worst, 0.3 * last) << n;
+    last = worst;
+  }
+}
+
+TEST(SmoothNormals, OfTrianglesWithoutAreaAreUnitVectors) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {9, 9, 9}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 4, 4}};
+  smooth_normals(mesh, 30);
+  for (const Vec3d& n : mesh.normals) EXPECT_EQ(n, Vec3d(0, 0, 1));
+}
+
+// Where the work would grow with the square of the triangles at a vertex, it is refused.
+TEST(SmoothNormals, AVertexOfTooManyTrianglesIsRefused) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}};
+  for (std::uint32_t i = 1; i <= 50'000; ++i) {
+    mesh.positions.push_back({1, static_cast<double>(i), 0});
+    mesh.positions.push_back({1, static_cast<double>(i), 1});
+    mesh.triangles.push_back({0, 2 * i - 1, 2 * i});
+  }
+  try {
+    smooth_normals(mesh, 30);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("in 2147483648 steps to smooth it, got 2500"));
+  }
+}
+
+TEST(DropDegenerate, TakesOutWhatHasNoArea) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1e-300, 0, 0}, {0, 1e-20, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 0, 3}, {0, 3, 4}, {0, 5, 6}, {0, 1, 4}};
+  EXPECT_EQ(drop_degenerate(mesh), 3u);
+  EXPECT_EQ(mesh.triangles, (decltype(mesh.triangles){{0, 1, 3}, {0, 5, 6}, {0, 1, 4}}));
+  EXPECT_EQ(mesh.positions.size(), 7u);
+}
+
+TEST(Weld, JoinsVerticesEqualInEverything) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {3, 5, 4}};
+  TriangleMesh with_uvs = mesh;
+  with_uvs.uvs = {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {0.5, 0}, {1, 1}};
+  EXPECT_EQ(weld(mesh), 2u);
+  EXPECT_EQ(mesh.triangles, (decltype(mesh.triangles){{0, 1, 2}, {0, 3, 1}}));
+  EXPECT_EQ(weld(with_uvs), 1u);
+  EXPECT_EQ(with_uvs.triangles, (decltype(mesh.triangles){{0, 1, 2}, {0, 4, 3}}));
+}
+
+}  // namespace
+}  // namespace orrery::test
