@@ -13,8 +13,11 @@ using AdaptiveGrid = SingleWalk<T, GridTree<T, kNested>>;
 }  // namespace
 
 AcceleratorType adaptive_grid_type() {
-  return {"adaptive-grid", "Cells with grids of their own where many primitives are.",
-          build_accelerator<AdaptiveGrid, float>, build_accelerator<AdaptiveGrid, double>};
+  return {"adaptive-grid",
+          "Cells with grids of their own where many primitives are.",
+          {},
+          build_accelerator<AdaptiveGrid, float>,
+          build_accelerator<AdaptiveGrid, double>};
 }
 
 }  // namespace orrery

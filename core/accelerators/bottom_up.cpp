@@ -177,8 +177,11 @@ using BottomUp = Hierarchy<T, Grouping<T>>;
 }  // namespace
 
 AcceleratorType bottom_up_type() {
-  return {"bottom-up", "A hierarchy of boxes grouped from the bottom up, near ones first.",
-          build_accelerator<BottomUp, float>, build_accelerator<BottomUp, double>};
+  return {"bottom-up",
+          "A hierarchy of boxes grouped from the bottom up, near ones first.",
+          {},
+          build_accelerator<BottomUp, float>,
+          build_accelerator<BottomUp, double>};
 }
 
 }  // namespace orrery

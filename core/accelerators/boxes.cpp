@@ -75,7 +75,10 @@ class Boxes final : public Accelerator<T> {
 }  // namespace
 
 AcceleratorType boxes_type() {
-  return {"boxes", "A box around each primitive is tested first.", build_accelerator<Boxes, float>,
+  return {"boxes",
+          "A box around each primitive is tested first.",
+          {},
+          build_accelerator<Boxes, float>,
           build_accelerator<Boxes, double>};
 }
 

@@ -10,8 +10,11 @@ using Bvh = Hierarchy<T, SahBuilder<T>>;
 }  // namespace
 
 AcceleratorType bvh_type() {
-  return {"bvh", "A hierarchy of boxes by the surface area heuristic, wide nodes, packets and single rays.",
-          build_accelerator<Bvh, float>, build_accelerator<Bvh, double>};
+  return {"bvh",
+          "A hierarchy of boxes by the surface area heuristic, wide nodes, packets and single rays.",
+          {},
+          build_accelerator<Bvh, float>,
+          build_accelerator<Bvh, double>};
 }
 
 }  // namespace orrery

@@ -12,8 +12,11 @@ using UniformGrid = SingleWalk<T, GridTree<T, kUniform>>;
 }  // namespace
 
 AcceleratorType grid_type() {
-  return {"grid", "Space cut into equal cells, which a ray visits in order.",
-          build_accelerator<UniformGrid, float>, build_accelerator<UniformGrid, double>};
+  return {"grid",
+          "Space cut into equal cells, which a ray visits in order.",
+          {},
+          build_accelerator<UniformGrid, float>,
+          build_accelerator<UniformGrid, double>};
 }
 
 }  // namespace orrery

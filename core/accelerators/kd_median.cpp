@@ -46,8 +46,11 @@ using KdMedian = SingleWalk<T, SpaceTree<T, MedianSplitter<T>>>;
 }  // namespace
 
 AcceleratorType kd_median_type() {
-  return {"kd-median", "Space halved by planes through the median of what is there.",
-          build_accelerator<KdMedian, float>, build_accelerator<KdMedian, double>};
+  return {"kd-median",
+          "Space halved by planes through the median of what is there.",
+          {},
+          build_accelerator<KdMedian, float>,
+          build_accelerator<KdMedian, double>};
 }
 
 }  // namespace orrery

@@ -67,8 +67,11 @@ using KdSah = SingleWalk<T, SpaceTree<T, SurfaceSplitter<T>>>;
 }  // namespace
 
 AcceleratorType kd_sah_type() {
-  return {"kd-sah", "Space divided by planes that the surface area heuristic chooses.",
-          build_accelerator<KdSah, float>, build_accelerator<KdSah, double>};
+  return {"kd-sah",
+          "Space divided by planes that the surface area heuristic chooses.",
+          {},
+          build_accelerator<KdSah, float>,
+          build_accelerator<KdSah, double>};
 }
 
 }  // namespace orrery

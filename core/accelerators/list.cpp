@@ -26,7 +26,10 @@ class List final : public Accelerator<T> {
 }  // namespace
 
 AcceleratorType list_type() {
-  return {"list", "Every ray against every primitive: the reference.", build_accelerator<List, float>,
+  return {"list",
+          "Every ray against every primitive: the reference.",
+          {},
+          build_accelerator<List, float>,
           build_accelerator<List, double>};
 }
 

@@ -115,8 +115,11 @@ using ObbTree = SingleWalk<T, OrientedTree<T>>;
 }  // namespace
 
 AcceleratorType obb_tree_type() {
-  return {"obb-tree", "A hierarchy of boxes that are turned as what is in them lies.",
-          build_accelerator<ObbTree, float>, build_accelerator<ObbTree, double>};
+  return {"obb-tree",
+          "A hierarchy of boxes that are turned as what is in them lies.",
+          {},
+          build_accelerator<ObbTree, float>,
+          build_accelerator<ObbTree, double>};
 }
 
 }  // namespace orrery

@@ -46,8 +46,11 @@ using Octree = SingleWalk<T, SpaceTree<T, OctantSplitter<T>>>;
 }  // namespace
 
 AcceleratorType octree_type() {
-  return {"octree", "Cells cut into eight, again and again, where many primitives are.",
-          build_accelerator<Octree, float>, build_accelerator<Octree, double>};
+  return {"octree",
+          "Cells cut into eight, again and again, where many primitives are.",
+          {},
+          build_accelerator<Octree, float>,
+          build_accelerator<Octree, double>};
 }
 
 }  // namespace orrery

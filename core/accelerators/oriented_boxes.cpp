@@ -68,8 +68,11 @@ using OrientedBoxes = SingleWalk<T, OneEach<T>>;
 }  // namespace
 
 AcceleratorType oriented_boxes_type() {
-  return {"oriented-boxes", "A box around each primitive, turned as it lies, is tested first.",
-          build_accelerator<OrientedBoxes, float>, build_accelerator<OrientedBoxes, double>};
+  return {"oriented-boxes",
+          "A box around each primitive, turned as it lies, is tested first.",
+          {},
+          build_accelerator<OrientedBoxes, float>,
+          build_accelerator<OrientedBoxes, double>};
 }
 
 }  // namespace orrery

@@ -68,7 +68,7 @@ void read_render(Params& p, RenderSettings& render) {
 
 class SceneReader {
  public:
-  SceneReader() : scene_(std::make_shared<Scene>()) {
+  explicit SceneReader(const MeshSource& meshes) : meshes_(meshes), scene_(std::make_shared<Scene>()) {
     for (const auto& type : shape_types()) scene_->shapes.push_back(type.make());
     for (const auto& type : material_types()) scene_->materials.push_back(type.make());
     objects_by_shape_.resize(scene_->shapes.size());
@@ -124,7 +124,7 @@ class SceneReader {
     const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
     if (!type) return;
     const std::size_t material = p.reference("material", "Name of its material.", names_);
-    const int primitives = scene_->shapes[*type]->add(p);
+    const int primitives = scene_->shapes[*type]->add(p, meshes_);
     objects_by_shape_[*type].push_back({material, primitives});
     ++scene_->object_count;
   }
@@ -153,15 +153,18 @@ class SceneReader {
       facts.materials.filters |= traits.filters;
     }
     facts.smallest_feature = std::numeric_limits<double>::infinity();
-    for (const auto& shapes : scene_->shapes)
+    for (const auto& shapes : scene_->shapes) {
+      facts.left_out += shapes->left_out();
       for (int i = 0; i < shapes->size(); ++i) {
         const Boundsd bounds = shapes->bounds(i);
         if (!bounds.bounded()) continue;
         facts.magnitude = std::max(facts.magnitude, bounds.magnitude());
         facts.smallest_feature = std::min(facts.smallest_feature, bounds.diagonal());
       }
+    }
   }
 
+  const MeshSource& meshes_;
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};
   std::vector<MaterialPlace> places_;  // by number of the name
@@ -175,18 +178,20 @@ class SceneReader {
 
 }  // namespace
 
-std::shared_ptr<const Scene> load_scene(const Document& document) {
-  SceneReader reader;
+std::shared_ptr<const Scene> load_scene(const Document& document, const MeshSource& meshes) {
+  SceneReader reader(meshes);
   read_document(document, [&](Params& p) { reader.read(p); });
   return reader.finish(document);
 }
 
-std::shared_ptr<const Scene> load_scene(std::string_view json, const JsonLimits& limits) {
-  return load_scene(parse_document(json, limits));
+std::shared_ptr<const Scene> load_scene(std::string_view json, const MeshSource& meshes,
+                                        const JsonLimits& limits) {
+  return load_scene(parse_document(json, limits), meshes);
 }
 
 std::string scene_schema() {
-  SceneReader reader;
+  const MeshSource none;
+  SceneReader reader(none);
   return describe("scene.json", "orrery scene",
                   "A scene for orrery, version 1. Lengths in metres, angles in degrees, colours linear.",
                   [&](Params& p) { reader.read(p); });

@@ -10,10 +10,11 @@
 
 namespace orrery {
 
-// Reads a scene, strictly. Throws InputError with up to 20 problems, each with its JSON Pointer;
-// MalformedJson if the text is not JSON.
-std::shared_ptr<const Scene> load_scene(const Document& document);
-std::shared_ptr<const Scene> load_scene(std::string_view json, const JsonLimits& limits = {});
+// Reads a scene, strictly; meshes that it names come from `meshes`. Throws InputError with up to 20 problems,
+// each with its JSON Pointer; MalformedJson if the text is not JSON.
+std::shared_ptr<const Scene> load_scene(const Document& document, const MeshSource& meshes = MeshSource());
+std::shared_ptr<const Scene> load_scene(std::string_view json, const MeshSource& meshes = MeshSource(),
+                                        const JsonLimits& limits = {});
 
 // Reads what a request says beside the scene: {camera: {azimuth_degrees, elevation_degrees, distance,
 // fov_degrees}, image: {width, height}, render: {...}}. The keys scene and scene_id belong to the caller and

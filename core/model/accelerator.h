@@ -58,10 +58,16 @@ class Accelerator {
 template <class T>
 using AcceleratorPtr = std::unique_ptr<Accelerator<T>>;
 
+// Relative times of what is counted, so that structures can be compared by their counts.
+struct AcceleratorCosts {
+  double visit = 1, box = 1, primitive = 1;
+};
+
 // The list passed to `build` outlives the accelerator.
 struct AcceleratorType {
   const char* name;
   const char* summary;
+  AcceleratorCosts costs;
   AcceleratorPtr<float> (*build_float)(const PrimitiveList<float>&);
   AcceleratorPtr<double> (*build_double)(const PrimitiveList<double>&);
 };

@@ -33,9 +33,9 @@ Record<Lanes<T>> broadcast_record(const Record<T>& one) {
 
 // Lane i holds table[index[i]] where `mask` is set, and some valid record elsewhere. REQUIRES: any(mask).
 // Rays of one register mostly meet the same thing, so that case is a broadcast.
-template <template <class> class Record, class T>
-Record<Lanes<T>> fetch_records(std::span<const Record<T>> table, const IndexLanes<T>& index,
-                               const MaskOf<Lanes<T>>& mask) {
+// `table` is a span or anything else that gives a Record<T> for an index.
+template <template <class> class Record, class T, class Table>
+Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index, const MaskOf<Lanes<T>>& mask) {
   const int leader = stdx::find_first_set(mask);
   const IndexOf<T> first = index[static_cast<std::size_t>(leader)];
   if (all(!mask || mask_cast<Lanes<T>>(index == first)))
@@ -44,7 +44,8 @@ Record<Lanes<T>> fetch_records(std::span<const Record<T>> table, const IndexLane
   alignas(64) std::array<std::array<T, static_cast<std::size_t>(kWidth<T>)>, kCount> columns;
   for (std::size_t lane = 0; lane < static_cast<std::size_t>(kWidth<T>); ++lane) {
     std::array<T, kCount> row;
-    std::memcpy(row.data(), &table[static_cast<std::size_t>(mask[lane] ? index[lane] : first)], sizeof row);
+    const Record<T>& one = table[static_cast<std::size_t>(mask[lane] ? index[lane] : first)];
+    std::memcpy(row.data(), &one, sizeof row);
     for (std::size_t field = 0; field < kCount; ++field) columns[field][lane] = row[field];
   }
   std::array<Lanes<T>, kCount> lanes;

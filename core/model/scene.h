@@ -25,6 +25,7 @@ struct RenderSettings {
 struct SceneFacts {
   MaterialTraits materials;     // of those that some object has
   double magnitude = 0;         // largest absolute coordinate of bounded primitives, metres
+  std::size_t left_out = 0;     // primitives without area
   double smallest_feature = 0;  // smallest diagonal of a bounded primitive's box; infinite if there is none
 };
 

@@ -29,7 +29,7 @@ class Tracer {
 template <class T>
 using TracerPtr = std::unique_ptr<Tracer<T>>;
 
-// World and plan outlive the tracer.
+// The plan and what the world refers to outlive the tracer.
 struct TechniqueType {
   const char* name;
   const char* summary;

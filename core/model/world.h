@@ -8,9 +8,9 @@
 
 namespace orrery {
 
-// A scene made ready for rays in one number type. Immutable once built.
+// A scene in one number type. Immutable once made.
 template <class T>
-struct World {
+struct Geometry {
   struct Materials {
     MaterialKernelPtr<T> kernel;
     int first, last;  // material numbers first..last-1
@@ -22,8 +22,19 @@ struct World {
   std::vector<Materials> materials;
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;
-  AcceleratorPtr<T> accelerator;
   Vec3<T> ambient, background;
+};
+
+// For float and double.
+template <class T>
+std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> scene);
+
+// A scene made ready for rays: what there is, and the structure that finds what they meet. The geometry
+// outlives the accelerator.
+template <class T>
+struct World {
+  std::shared_ptr<const Geometry<T>> geometry;
+  std::shared_ptr<const Accelerator<T>> accelerator;
 };
 
 }  // namespace orrery

@@ -60,6 +60,9 @@ class Planner {
   Plan make() {
     take_request();
     checks_.throw_if_any();
+    if (scene_.facts.left_out > 0)
+      decide("triangles without area", std::to_string(scene_.facts.left_out) + " left out",
+             "no ray can meet them");
     choose_precision();
     choose_accelerator();
     if (request_.full_model) return plan_;

@@ -8,17 +8,22 @@
 
 namespace orrery {
 
-// The worlds built for one scene so far, by accelerator.
+// What was built for one scene so far.
 struct PreparedScene::Parts {
+  template <class T>
+  struct Made {
+    std::shared_ptr<const Geometry<T>> geometry;
+    std::map<const AcceleratorType*, std::shared_ptr<const Accelerator<T>>> accelerators;
+    const AcceleratorType* chosen = nullptr;  // by trial
+  };
   std::shared_ptr<const Scene> scene;
-  std::mutex mutex;  // guards the maps; a world is built under it, so that it is built once
-  std::map<const AcceleratorType*, std::unique_ptr<World<float>>> float_worlds;
-  std::map<const AcceleratorType*, std::unique_ptr<World<double>>> double_worlds;
+  std::mutex mutex;  // guards the rest; all is built under it, so that it is built once
+  Made<float> made_float;
+  Made<double> made_double;
 };
 
-// The scene in the plan's precision with the plan's accelerator; adds the milliseconds spent building, if
-// any.
+// The scene in number type T with an accelerator; adds the milliseconds spent building, if any.
 template <class T>
-const World<T>& world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms);
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms);
 
 }  // namespace orrery

@@ -1,78 +1,124 @@
-#include <array>
-#include <cmath>
-#include <limits>
-#include <vector>
-
+#include "core/meshes/repair.h"
 #include "core/params/params.h"
-#include "core/shapes/primitive_set.h"
-#include "core/shapes/triangle_hit.h"
+#include "core/shapes/mesh_records.h"
 
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxTriangles = 10'000'000;
-constexpr std::size_t kMaxVertices = 10'000'000;
+constexpr MeshLimits kLimits;
+constexpr std::size_t kMostNameLength = 1024;
 
-// One triangle of a mesh, with the normals to interpolate at its vertices.
-template <class N>
-struct MeshTriangle {
-  Corners<N> corners, normals;
-  Vec3<N> normal;  // of the flat triangle
-  N magnitude;     // largest absolute coordinate of the mesh
+TriangleMesh read_inline(Params& p) {
+  TriangleMesh mesh;
+  mesh.positions = p.points("positions", "Vertices, in metres.", {3, kLimits.vertices});
+  const auto bound = static_cast<std::int64_t>(mesh.positions.size());
+  const auto triples = p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
+                                       {1, kLimits.triangles}, bound);
+  mesh.normals =
+      p.directions("normals", "Direction to shade with at each vertex; left out, triangles are flat.",
+                   {0, kLimits.vertices});
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+    p.fail("normals", "expected as many as positions (" + std::to_string(mesh.positions.size()) + "), got " +
+                          std::to_string(mesh.normals.size()));
+  for (const auto& triple : triples) {
+    if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported already
+    mesh.triangles.push_back({static_cast<std::uint32_t>(triple[0]), static_cast<std::uint32_t>(triple[1]),
+                              static_cast<std::uint32_t>(triple[2])});
+  }
+  return mesh;
+}
 
-  static constexpr ShapeTraits kTraits = {.convex = false, .closed = false};
+// What `read` gives; its errors become those of `key`.
+template <class Read>
+TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
+  if (name.empty()) return {};
+  try {
+    TriangleMesh mesh = read(name);
+    for (const Vec3d& v : mesh.positions)
+      if (!(max_component(abs(v)) <= kMaxCoordinate))
+        throw InputError("", "expected coordinates of at most 1e12 metres");
+    return mesh;
+  } catch (const InputError& error) {
+    p.fail(key, error.problems().front().detail);
+    return {};
+  }
+}
 
-  static void read(Params& p, std::vector<MeshTriangle<double>>& out) {
-    const std::vector<Vec3d> positions = p.points("positions", "Vertices, in metres.", {3, kMaxVertices});
-    const auto triples =
-        p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
-                        {1, kMaxTriangles}, static_cast<std::int64_t>(positions.size()));
-    const std::vector<Vec3d> normals =
-        p.directions("normals", "Direction to shade with at each vertex; left out, triangles are flat.",
-                     {0, kMaxVertices});
-    if (!normals.empty() && normals.size() != positions.size())
-      return p.fail("normals", "expected as many as positions (" + std::to_string(positions.size()) +
-                                   "), got " + std::to_string(normals.size()));
-    Boundsd box;
-    for (const Vec3d& v : positions) box.include(v);
-    for (const auto& triple : triples) {
-      std::array<std::size_t, 3> i;
-      for (std::size_t k = 0; k < 3; ++k) i[k] = static_cast<std::size_t>(triple[k]);
-      if (std::max({i[0], i[1], i[2]}) >= positions.size()) return;  // reported already
-      const Vec3d a = positions[i[0]], b = positions[i[1]], c = positions[i[2]];
-      const Vec3d flat = safe_normalize(cross(b - a, c - a));
-      if (flat == Vec3d()) continue;  // no area: no ray can meet it
-      const auto at = [&](std::size_t k) { return normals.empty() ? flat : normals[i[k]]; };
-      out.push_back({{a, b, c}, {at(0), at(1), at(2)}, flat, box.magnitude()});
+// All meshes of a scene.
+class MeshSet final : public ShapeSet {
+ public:
+  int add(Params& p, const MeshSource& source) override {
+    const std::size_t before = table_.triangles.size();
+    TriangleMesh mesh = read(p, source);
+    const double crease = p.number("crease_degrees",
+                                   "Shading is smooth across edges where faces meet at less than this angle; "
+                                   "left out, the normals are those of the mesh.",
+                                   {.min = 0, .max = 180}, derived(0.0));
+    left_out_ += drop_degenerate(mesh);
+    if (p.has("crease_degrees")) smooth_normals(mesh, crease);
+    append(mesh);
+    return static_cast<int>(table_.triangles.size() - before);
+  }
+  int size() const override { return static_cast<int>(table_.triangles.size()); }
+  std::size_t left_out() const override { return left_out_; }
+  Boundsd bounds(int index) const override {
+    return table_.corners(static_cast<std::size_t>(index)).bounds();
+  }
+  ShapeTraits traits() const override { return {.convex = false, .closed = false}; }
+  ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
+  ShapeKernelPtr<double> kernel(double, int first) const override { return make<double>(first); }
+  ShapeKernelPtr<long double> kernel(long double, int first) const override {
+    return make<long double>(first);
+  }
+
+ private:
+  static TriangleMesh read(Params& p, const MeshSource& source) {
+    switch (p.form({{"positions", "indices"}, {"file"}, {"asset"}})) {
+      case 0: return read_inline(p);
+      case 1:
+        return read_elsewhere(p, "file",
+                              p.text("file",
+                                     "OBJ, PLY, STL or glTF file in the scene's folder or below it; on the "
+                                     "command line only.",
+                                     kMostNameLength),
+                              [&](const std::string& name) { return source.file(name); });
+      default:
+        return read_elsewhere(p, "asset",
+                              p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL or glTF file.", 64),
+                              [&](const std::string& name) { return source.asset(name); });
     }
   }
 
-  Boundsd bounds() const { return corners.bounds(); }
-  std::vector<HullTriangle> hull() const { return corners.hull(); }
-
-  using Core = Corners<N>;
-  const Core& core() const { return corners; }
-  N distance(const Ray<N>& ray) const { return corners.distance(ray); }
-
-  // The interpolated normal falls back to the flat one where the three cancel.
-  Surface<N> surface(const Ray<N>& ray, const N&) const {
-    const Vec3<N> weights = corners.weights(ray);
-    const Vec3<N> sum = normals.mix(weights);
-    const N size = length(sum);
-    const auto usable = size > N(ScalarOf<N>(0.001));  // unit normals: below it they point opposite ways
-    const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
-    return {corners.mix(weights),
-            normal,
-            {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
-            magnitude};
+  void append(const TriangleMesh& mesh) {
+    Boundsd box;
+    for (const Vec3d& v : mesh.positions) box.include(v);
+    const auto first_vertex = static_cast<std::uint32_t>(table_.positions.size());
+    if (!mesh.triangles.empty())
+      table_.parts.push_back(
+          {table_.triangles.size(),
+           static_cast<std::ptrdiff_t>(table_.normals.size()) - static_cast<std::ptrdiff_t>(first_vertex),
+           !mesh.normals.empty(), box.magnitude()});
+    table_.positions.insert(table_.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    table_.normals.insert(table_.normals.end(), mesh.normals.begin(), mesh.normals.end());
+    for (const auto& [a, b, c] : mesh.triangles)
+      table_.triangles.push_back({a + first_vertex, b + first_vertex, c + first_vertex});
   }
+
+  template <class T>
+  ShapeKernelPtr<T> make(int first) const {
+    return std::make_unique<PrimitiveKernel<MeshTriangle, T, MeshRecords<T>>>(MeshRecords<T>(table_), first);
+  }
+
+  MeshTable<double> table_;
+  std::size_t left_out_ = 0;
 };
+
+std::unique_ptr<ShapeSet> make_mesh_set() { return std::make_unique<MeshSet>(); }
 
 }  // namespace
 
 ShapeType mesh_type() {
-  return {"mesh", "Triangles over shared vertices, watertight along shared edges.",
-          make_shape_set<MeshTriangle>};
+  return {"mesh", "Triangles over shared vertices, watertight along shared edges.", make_mesh_set};
 }
 
 }  // namespace orrery

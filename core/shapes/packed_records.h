@@ -27,7 +27,9 @@ struct CoreOf<Record, N> {
 template <template <class> class Record, class T>
 class PackedRecords final : public PackedPrimitives<T> {
  public:
-  PackedRecords(std::span<const Record<T>> records, int first, std::span<const int> indices) {
+  // records.core(i) is what distance() needs of record i.
+  template <class Records>
+  PackedRecords(const Records& records, int first, std::span<const int> indices) {
     blocks_.resize(indices.size() / kB);
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       fill(blocks_[b], records, first, indices.subspan(b * kB, kB));
@@ -115,15 +117,16 @@ class PackedRecords final : public PackedPrimitives<T> {
     unsigned filled() const { return (1u << count) - 1u; }
   };
 
-  static void fill(Block& block, std::span<const Record<T>> records, int first,
-                   std::span<const int> indices) {
+  template <class Records>
+  static void fill(Block& block, const Records& records, int first, std::span<const int> indices) {
     block.count = 0;
     std::array<std::array<T, kB>, kCoreFields> columns;
     for (const int index : indices) {
       if (index == kNothing) continue;
       const auto lane = static_cast<std::size_t>(block.count++);
       std::array<T, kCoreFields> row;
-      std::memcpy(row.data(), &CoreOf<Record, T>::of(records[static_cast<std::size_t>(index)]), sizeof row);
+      const auto& core = records.core(static_cast<std::size_t>(index));
+      std::memcpy(row.data(), &core, sizeof row);
       for (std::size_t rest = lane; rest < kB; ++rest) {
         for (std::size_t field = 0; field < kCoreFields; ++field) columns[field][rest] = row[field];
         block.id[rest] = static_cast<IndexOf<T>>(first + index);

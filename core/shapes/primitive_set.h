@@ -15,15 +15,29 @@
 // and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
 namespace orrery {
 
+// Records in a render's precision, as read.
 template <template <class> class Record, class T>
+class PlainRecords {
+ public:
+  explicit PlainRecords(std::span<const Record<double>> records) {
+    records_.reserve(records.size());
+    for (const auto& record : records) records_.push_back(convert_record<Record, T, double>(record));
+  }
+  std::size_t size() const { return records_.size(); }
+  const Record<T>& operator[](std::size_t i) const { return records_[i]; }
+  decltype(auto) core(std::size_t i) const { return CoreOf<Record, T>::of(records_[i]); }
+
+ private:
+  std::vector<Record<T>> records_;
+};
+
+// Records: PlainRecords or what has its members.
+template <template <class> class Record, class T, class Records = PlainRecords<Record, T>>
 class PrimitiveKernel final : public ShapeKernel<T> {
  public:
   using N = Lanes<T>;
 
-  PrimitiveKernel(std::span<const Record<double>> records, int first) : first_(first) {
-    records_.reserve(records.size());
-    for (const auto& record : records) records_.push_back(convert_record<Record, T, double>(record));
-  }
+  PrimitiveKernel(Records records, int first) : records_(std::move(records)), first_(first) {}
 
   [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const Groups& groups,
                                 HitBatch<T>& hits) const override {
@@ -48,14 +62,14 @@ class PrimitiveKernel final : public ShapeKernel<T> {
   }
 
   std::vector<HullTriangle> hull(int index) const override {
-    if constexpr (requires { records_.front().hull(); })
+    if constexpr (requires { records_[0].hull(); })
       return records_[static_cast<std::size_t>(index)].hull();
     else
       return {};
   }
 
   PackedPrimitivesPtr<T> pack(std::span<const int> indices) const override {
-    return std::make_unique<PackedRecords<Record, T>>(std::span<const Record<T>>(records_), first_, indices);
+    return std::make_unique<PackedRecords<Record, T>>(records_, first_, indices);
   }
 
   [[gnu::flatten]] void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
@@ -81,14 +95,14 @@ class PrimitiveKernel final : public ShapeKernel<T> {
     out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));
   }
 
-  std::vector<Record<T>> records_;
+  Records records_;
   int first_;
 };
 
 template <template <class> class Record>
 class PrimitiveSet final : public ShapeSet {
  public:
-  int add(Params& params) override {
+  int add(Params& params, const MeshSource&) override {
     const std::size_t before = records_.size();
     Record<double>::read(params, records_);
     return static_cast<int>(records_.size() - before);
@@ -105,7 +119,7 @@ class PrimitiveSet final : public ShapeSet {
  private:
   template <class T>
   ShapeKernelPtr<T> make(int first) const {
-    return std::make_unique<PrimitiveKernel<Record, T>>(std::span<const Record<double>>(records_), first);
+    return std::make_unique<PrimitiveKernel<Record, T>>(PlainRecords<Record, T>(records_), first);
   }
   std::vector<Record<double>> records_;
 };

@@ -4,7 +4,10 @@ namespace orrery {
 
 template <class T>
 Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
-    : world_(world), plan_(plan), stage_(std::make_unique<Stage>()) {}
+    : geometry_(*world.geometry),
+      accelerator_(*world.accelerator),
+      plan_(plan),
+      stage_(std::make_unique<Stage>()) {}
 
 template <class T>
 bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
@@ -61,7 +64,7 @@ void Wavefront<T>::run_slice(const Groups& groups) {
     stage_->hits.t.put(i, rays.t_max.at(i));
     stage_->hits.primitive.put(i, IndexLanes<T>(kNoPrimitive));
   }
-  world_.accelerator->closest(rays, groups, stage_->hits, counts_->accelerator);
+  accelerator_.closest(rays, groups, stage_->hits, counts_->accelerator);
   const Groups met = find_surfaces(groups);
   light_surfaces(groups_of(met, &MaterialTraits::lit));
   if (plan_.specular) follow_specular(groups_of(met, &MaterialTraits::mirrors));
@@ -73,7 +76,7 @@ template <class T>
 Groups Wavefront<T>::find_surfaces(const Groups& groups) {
   Stage& s = *stage_;
   Groups met;
-  const Vec3<N> background(world_.background);
+  const Vec3<N> background(geometry_.background);
   const N zero(T(0));
   for (const int i : groups) {
     const IndexLanes<T> primitive = load_index<T>(s.hits.primitive, i);
@@ -84,7 +87,7 @@ Groups Wavefront<T>::find_surfaces(const Groups& groups) {
     met.add(i);
     find_materials(i, primitive);
   }
-  for (const auto& shapes : world_.shapes) shapes->surface(s.paths->rays, s.hits, met, s.surface);
+  for (const auto& shapes : geometry_.shapes) shapes->surface(s.paths->rays, s.hits, met, s.surface);
   return met;
 }
 
@@ -92,7 +95,7 @@ Groups Wavefront<T>::find_surfaces(const Groups& groups) {
 template <class T>
 void Wavefront<T>::find_materials(int i, const IndexLanes<T>& primitive) {
   const auto material = [&](IndexOf<T> p) {
-    return p < 0 ? -1 : world_.material_of[static_cast<std::size_t>(p)];
+    return p < 0 ? -1 : geometry_.material_of[static_cast<std::size_t>(p)];
   };
   const IndexOf<T> first = primitive[0];
   if (all(primitive == first)) return stage_->surface.material.put(i, IndexLanes<T>(material(first)));
@@ -104,12 +107,12 @@ template <class T>
 void Wavefront<T>::light_surfaces(const Groups& groups) {
   if (groups.empty()) return;
   Stage& s = *stage_;
-  for (const auto& m : world_.materials)
-    if (m.traits.lit) m.kernel->ambient(s.surface, groups, world_.ambient, s.radiance);
+  for (const auto& m : geometry_.materials)
+    if (m.traits.lit) m.kernel->ambient(s.surface, groups, geometry_.ambient, s.radiance);
   if (!plan_.direct_light) return;
   for (const int i : groups)
     s.light.shadow.origin.put(i, s.surface.position.at(i) + s.surface.geometric.at(i) * s.surface.step.at(i));
-  for (const auto& light : world_.scene->lights) light_from(*light, groups);
+  for (const auto& light : geometry_.scene->lights) light_from(*light, groups);
 }
 
 template <class T>
@@ -118,12 +121,12 @@ void Wavefront<T>::light_from(const Light& light, const Groups& groups) {
   light.illuminate(s.surface, groups, s.light);
   s.light.constant_half = plan_.constant_half && s.paths->depth == 0 && light.directional();
   for (const int i : groups) s.light.shadow.t_max.put(i, !lanes_of(i, &MaterialTraits::lit), N(T(-1)));
-  for (const auto& m : world_.materials)
+  for (const auto& m : geometry_.materials)
     if (m.traits.lit) m.kernel->reflect(s.paths->rays, s.surface, groups, s.light);
   const Groups reached = with_active_rays(s.light.shadow, groups);
   if (plan_.shadows) {
     counts_->rays.shadow[static_cast<std::size_t>(s.paths->depth)] += active_rays(s.light.shadow, reached);
-    world_.accelerator->occlude(s.light.shadow, reached, counts_->accelerator);
+    accelerator_.occlude(s.light.shadow, reached, counts_->accelerator);
   }
   for (const int i : reached) {
     const auto seen = s.light.shadow.t_max.at(i) > N(T(0));
@@ -135,7 +138,7 @@ template <class T>
 void Wavefront<T>::follow_specular(const Groups& groups) {
   if (groups.empty()) return;
   Stage& s = *stage_;
-  for (const auto& m : world_.materials)
+  for (const auto& m : geometry_.materials)
     if (m.traits.mirrors) m.kernel->specular(s.paths->rays, s.hits, s.surface, groups, s.specular);
   if (plan_.filters)
     for (const int i : groups) {
@@ -171,7 +174,7 @@ void Wavefront<T>::spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>&
 template <class T>
 void Wavefront<T>::cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
   Stage& s = *stage_;
-  s.radiance.put(i, mask, s.radiance.at(i) + weight * Vec3<N>(world_.ambient));
+  s.radiance.put(i, mask, s.radiance.at(i) + weight * Vec3<N>(geometry_.ambient));
   const N lost = max_component(s.paths->throughput.at(i) * weight);
   for (unsigned bits = bits_of(mask); bits != 0; bits &= bits - 1) {
     const int lane = std::countr_zero(bits);
@@ -203,7 +206,7 @@ template <class T>
 MaskOf<Lanes<T>> Wavefront<T>::lanes_of(int i, bool MaterialTraits::*trait) const {
   const IndexLanes<T> material = load_index<T>(stage_->surface.material, i);
   typename N::mask_type lanes(false);
-  for (const auto& m : world_.materials)
+  for (const auto& m : geometry_.materials)
     if (m.traits.*trait) lanes = lanes || mask_cast<N>(material >= m.first && material < m.last);
   return lanes;
 }

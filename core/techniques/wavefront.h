@@ -43,7 +43,8 @@ class Wavefront : public Tracer<T> {
   // Lanes of register i whose material is specular.
   MaskOf<N> specular_lanes(int i) const { return lanes_of(i, &MaterialTraits::mirrors); }
 
-  const World<T>& world_;
+  const Geometry<T>& geometry_;
+  const Accelerator<T>& accelerator_;
   const Plan& plan_;
   std::unique_ptr<Stage> stage_;
 

@@ -9,12 +9,13 @@ App::App(const Settings& settings)
     : settings_(settings),
       pool_(settings.threads),
       scenes_(settings.store_bytes),
+      assets_(settings.asset_store_bytes),
       admission_(settings.renders > 0 ? settings.renders : 2 * pool_.threads(), settings.queue),
       orbits_({pool_, admission_, draining_, ends_, settings.request_time}, settings.orbits) {}
 
 std::shared_ptr<const Scene> App::load(const Document& document, Timing& timing) const {
   const auto start = Clock::now();
-  auto scene = load_scene(document);
+  auto scene = load_scene(document, assets_);
   timing.load += milliseconds_since(start);
   return scene;
 }

@@ -7,6 +7,7 @@
 
 #include "core/params/document.h"
 #include "server/app/admission.h"
+#include "server/app/asset_store.h"
 #include "server/app/orbit_hub.h"
 #include "server/app/scene_store.h"
 #include "server/app/settings.h"
@@ -32,6 +33,7 @@ class App {
 
   const Settings& settings() const { return settings_; }
   SceneStore& scenes() { return scenes_; }
+  AssetStore& assets() { return assets_; }
   OrbitHub& orbits() { return orbits_; }
   int threads() const { return pool_.threads(); }
 
@@ -57,6 +59,7 @@ class App {
   std::atomic<bool> draining_{false}, ends_{false};
   WorkerPool pool_;
   SceneStore scenes_;
+  AssetStore assets_;
   Admission admission_;
   OrbitHub orbits_;
 };

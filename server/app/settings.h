@@ -10,9 +10,11 @@ namespace orrery {
 struct Settings {
   std::string host = "127.0.0.1";
   int port = 8080;
-  int threads = 0;                      // that render; 0: one a core
-  std::size_t body_bytes = 8 << 20;     // of a request
-  std::size_t store_bytes = 256 << 20;  // of scenes kept, by estimate
+  int threads = 0;                            // that render; 0: one a core
+  std::size_t body_bytes = 8 << 20;           // of a request
+  std::size_t store_bytes = 256 << 20;        // of scenes kept, by estimate
+  std::size_t asset_bytes = 64 << 20;         // of a mesh file
+  std::size_t asset_store_bytes = 256 << 20;  // of mesh files kept
   std::size_t connections = 256;
   int renders = 0;  // at once; 0: two a core
   int queue = 64;   // renders that wait for their turn

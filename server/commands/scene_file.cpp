@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "core/load/load.h"
+#include "server/commands/mesh_files.h"
 
 namespace orrery {
 namespace {
@@ -47,7 +48,7 @@ std::string read_file(const std::string& path) {
 std::shared_ptr<const Scene> load_scene_file(const std::string& path) {
   const std::string text = read_file(path);
   try {
-    return load_scene(text);
+    return load_scene(text, MeshFiles(path == "-" ? "" : std::filesystem::path(path).parent_path()));
   } catch (const InputError& error) {
     throw BadScene(shown_name(path), error);
   }

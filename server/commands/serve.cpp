@@ -78,6 +78,8 @@ void add_limit_options(CLI::App& app, Options& options) {
   };
   add("--max-body", settings.body_bytes, 1'000'000'000, "Bytes of a request's body");
   add("--max-store", settings.store_bytes, 1'000'000'000'000, "Bytes of scenes kept, by estimate");
+  add("--max-asset", settings.asset_bytes, 4'000'000'000, "Bytes of a mesh file");
+  add("--max-assets", settings.asset_store_bytes, 1'000'000'000'000, "Bytes of mesh files kept");
   add("--max-connections", settings.connections, 10000, "Connections at once");
   add("--max-queue", settings.queue, 1'000'000, "Renders that wait for their turn");
   add("--max-orbits", settings.orbits, 10'000, "Different orbits streamed at once");

@@ -102,12 +102,12 @@ Head Connection::read_head() {
   }
 }
 
-std::string Connection::read_body(const Head& head, std::size_t limit) {
+std::string Connection::read_body(const Head& head, const Request::BodyLimit& limit) {
   if (head.chunked || !head.content_length) throw HttpError(411, "A body must come with its Content-Length");
   const std::size_t length = *head.content_length;
-  if (length > limit)
+  if (length > limit.bytes)
     throw HttpError(413, "The body has " + std::to_string(length) + " bytes, at most " +
-                             std::to_string(limit) + " are allowed (body_bytes)");
+                             std::to_string(limit.bytes) + " are allowed (" + limit.name + ")");
   if (const auto expect = head.header("Expect")) {
     if (!equal_ignoring_case(*expect, "100-continue"))
       throw HttpError(417, "Expected no Expect but 100-continue");

@@ -38,7 +38,7 @@ class Connection final : public httplib::Stream {
   void offer(std::string request) { offered_ = std::move(request); }
 
   // Reads the body of the request with this head. Throws HttpError.
-  std::string read_body(const Head& head, std::size_t limit);
+  std::string read_body(const Head& head, const Request::BodyLimit& limit);
   // Whether bytes of this request may still be under way; then nothing after it can be understood.
   bool body_unread() const { return body_left_ > 0; }
 

@@ -30,6 +30,11 @@ struct Request {
   Fields headers;
   std::chrono::steady_clock::time_point start;
 
+  struct BodyLimit {
+    std::size_t bytes;
+    const char* name;  // in /v1/limits
+  };
+  BodyLimit body_limit;  // a route may set another
   // Reads the whole body, once. Throws HttpError if it is refused or does not come.
   std::function<std::string()> read_body;
   // Whether the client has gone. Safe from any thread while the request is being answered.

@@ -226,8 +226,9 @@ class HttpServer::Parts {
     request.segments = std::move(target.segments);
     request.query = std::move(target.query);
     request.gone = [&connection = exchange.connection] { return connection.gone(); };
-    request.read_body = [this, &exchange] {
-      return exchange.connection.read_body(exchange.head, options_.max_body);
+    request.body_limit = {options_.max_body, "body_bytes"};
+    request.read_body = [&exchange] {
+      return exchange.connection.read_body(exchange.head, exchange.request.body_limit);
     };
     exchange.keep_alive = head.keep_alive && !draining_;
   }

@@ -26,7 +26,11 @@ nlohmann::ordered_json limits_json(const Settings& settings) {
           {"request_seconds", settings.request_time.count()},
           {"queue", settings.queue},
           {"connections", settings.connections},
-          {"store_bytes", settings.store_bytes}};
+          {"store_bytes", settings.store_bytes},
+          {"asset_bytes", settings.asset_bytes},
+          {"asset_store_bytes", settings.asset_store_bytes},
+          {"mesh_vertices", MeshLimits{}.vertices},
+          {"mesh_triangles", MeshLimits{}.triangles}};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ namespace orrery {
 #define ORRERY_ROUTES(add) \
   add(render)              \
   add(scenes)              \
+  add(assets)              \
   add(frame)               \
   add(orbit)               \
   add(explain)             \

@@ -21,20 +21,37 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kRepeats = 4;     // of a run that is measured as one
 constexpr float kReach = 0.5f;  // of occlusion rays, in a sphere of radius 1
 
+constexpr const char* kScene =
+    R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 5], "look_at": [0, 0, 0]},
+        "materials": {"m": {"type": "rough"}}, "lights": [{"type": "directional", "from": [1, 1, 1]}],
+        "objects": [{"type": "mesh", "material": "m", "file": "the mesh"}]})";
+
+class InMemory final : public MeshSource {
+ public:
+  explicit InMemory(const Mesh& mesh) {
+    for (const Vec3f& p : mesh.positions) mesh_.positions.push_back(Vec3d(p));
+    for (const auto& t : mesh.triangles) mesh_.triangles.push_back({t[0], t[1], t[2]});
+  }
+  TriangleMesh file(const std::string&) const override { return mesh_; }
+
+ private:
+  TriangleMesh mesh_;
+};
+
 class Ours {
  public:
-  explicit Ours(const Mesh& mesh) : prepared_(load_scene(scene_json(mesh))) {
+  explicit Ours(const Mesh& mesh) : prepared_(load_scene(kScene, InMemory(mesh))) {
     for (const auto& type : accelerator_types())
       if (std::string_view(type.name) == "bottom-up") type_ = &type;
     double build_ms = 0;
-    world_ = &world_for<float>(prepared_.parts(), *type_, build_ms);
+    world_ = world_for<float>(prepared_.parts(), *type_, build_ms);
   }
 
-  std::size_t bytes() const { return world_->accelerator->facts().bytes; }
+  std::size_t bytes() const { return world_.accelerator->facts().bytes; }
 
   double build() const {
     const double start = cpu_seconds();
-    const auto again = orrery::build(*type_, world_->primitives);
+    const auto again = orrery::build(*type_, world_.geometry->primitives);
     return cpu_seconds() - start;
   }
 
@@ -48,7 +65,7 @@ class Ours {
     AcceleratorCounts counts;
     const double start = cpu_seconds();
     for (std::size_t b = 0; b < batches.size(); ++b)
-      world_->accelerator->closest(batches[b], test::groups_of(batches[b]), hits[b], counts);
+      world_.accelerator->closest(batches[b], test::groups_of(batches[b]), hits[b], counts);
     const double seconds = cpu_seconds() - start;
     triangle.clear();
     t.clear();
@@ -65,7 +82,7 @@ class Ours {
     auto batches = batches_of(rays, kReach);
     AcceleratorCounts counts;
     const double start = cpu_seconds();
-    for (auto& batch : batches) world_->accelerator->occlude(batch, test::groups_of(batch), counts);
+    for (auto& batch : batches) world_.accelerator->occlude(batch, test::groups_of(batch), counts);
     const double seconds = cpu_seconds() - start;
     found = 0;
     for (const auto& batch : batches)
@@ -84,7 +101,7 @@ class Ours {
 
   PreparedScene prepared_;
   const AcceleratorType* type_ = nullptr;
-  const World<float>* world_;
+  World<float> world_;
 };
 
 // Both found as much, but for rays that graze an edge.

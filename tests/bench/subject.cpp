@@ -39,28 +39,6 @@ Mesh bumpy_sphere(int triangles) {
   return mesh;
 }
 
-std::string scene_json(const Mesh& mesh) {
-  std::string json =
-      R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 5], "look_at": [0, 0, 0]},
-    "materials": {"m": {"type": "rough"}}, "lights": [{"type": "directional", "from": [1, 1, 1]}],
-    "objects": [{"type": "mesh", "material": "m", "positions": [)";
-  char text[96];
-  const char* comma = "";
-  for (const Vec3f& p : mesh.positions) {
-    std::snprintf(text, sizeof text, "%s[%.9g,%.9g,%.9g]", comma, p.x, p.y, p.z);
-    json += text;
-    comma = ",";
-  }
-  json += "], \"indices\": [";
-  comma = "";
-  for (const auto& t : mesh.triangles) {
-    std::snprintf(text, sizeof text, "%s[%u,%u,%u]", comma, t[0], t[1], t[2]);
-    json += text;
-    comma = ",";
-  }
-  return json + "]}]}";
-}
-
 Rays primary_rays() {
   const Vec3f eye(0.7f, 0.9f, 2.6f);
   const Vec3f back = normalize(eye), right = normalize(cross(Vec3f(0, 1, 0), back)), up = cross(back, right);

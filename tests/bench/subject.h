@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "core/model/batch.h"
@@ -16,7 +15,6 @@ struct Mesh {
 
 // A closed sphere of about that many triangles, with bumps of several sizes.
 Mesh bumpy_sphere(int triangles);
-std::string scene_json(const Mesh& mesh);
 
 using Rays = std::vector<Ray<float>>;
 

@@ -195,5 +195,33 @@ TEST_F(CommandLine, InterruptedRenderLeavesNoFile) {
     EXPECT_EQ(entry.path().filename().string().find("never"), std::string::npos) << entry.path();
 }
 
+TEST_F(CommandLine, MeshFilesLieBesideTheScene) {
+  const std::string mesh = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
+  const auto scene_with = [](const std::string& name) {
+    auto scene = nlohmann::json::parse(kScene);
+    scene["objects"] = {{{"type", "mesh"}, {"file", name}, {"material", "m"}}};
+    return scene.dump();
+  };
+  fs::create_directories(folder_ / "scenes" / "meshes");
+  write("scenes/meshes/one.obj", mesh);
+  write("outside.obj", mesh);
+  write("scenes/bad.obj", "v 0 0\n");
+  fs::create_symlink(folder_ / "outside.obj", folder_ / "scenes" / "link.obj");
+  const auto check = [&](const std::string& name) {
+    return run("check " + write("scenes/scene.json", scene_with(name)));
+  };
+  EXPECT_EQ(check("meshes/one.obj").status, 0);
+  for (const std::string outside :
+       {"../outside.obj", "link.obj", (folder_ / "outside.obj").string().c_str()}) {
+    const Outcome refused = check(outside);
+    EXPECT_EQ(refused.status, 1) << outside;
+    EXPECT_NE(refused.err.find("/objects/0/file: expected a file in the scene's folder"), std::string::npos)
+        << refused.err;
+  }
+  EXPECT_NE(check("none.obj").err.find("/objects/0/file: cannot read"), std::string::npos);
+  EXPECT_NE(check("meshes").err.find("it is no file"), std::string::npos);
+  EXPECT_NE(check("bad.obj").err.find("bad.obj: line 1"), std::string::npos) << check("bad.obj").err;
+}
+
 }  // namespace
 }  // namespace orrery

@@ -21,7 +21,7 @@ Picture render_picture(const PreparedScene& scene, const Plan& plan) {
 
 namespace {
 
-const World<double>& world_of(const PreparedScene& scene, const Plan& plan) {
+World<double> world_of(const PreparedScene& scene, const Plan& plan) {
   double build_ms = 0;
   return world_for<double>(scene.parts(), *plan.accelerator, build_ms);
 }
@@ -64,7 +64,7 @@ Samples render_shifted(const PreparedScene& scene, const Plan& plan, float dx, f
 }
 
 std::vector<bool> normals_facing_away(const PreparedScene& scene, const Plan& plan) {
-  const World<double>& world = world_of(scene, plan);
+  const World<double> world = world_of(scene, plan);
   const Groups all = Groups::covering(0, kBatch, kWidth<double>);
   const auto hits = std::make_unique<HitBatch<double>>();
   const auto surface = std::make_unique<SurfaceBatch<double>>();
@@ -74,7 +74,7 @@ std::vector<bool> normals_facing_away(const PreparedScene& scene, const Plan& pl
     hits->t = rays.t_max;
     hits->primitive.values.fill(kNoPrimitive);
     world.accelerator->closest(rays, all, *hits, counts);
-    for (const auto& shapes : world.shapes) shapes->surface(rays, *hits, all, *surface);
+    for (const auto& shapes : world.geometry->shapes) shapes->surface(rays, *hits, all, *surface);
     for (int i = 0; i < kBatch; ++i) {
       const Vec3d direction(rays.direction.x[i], rays.direction.y[i], rays.direction.z[i]);
       const Vec3d normal(surface->normal.x[i], surface->normal.y[i], surface->normal.z[i]);

@@ -14,13 +14,10 @@ std::vector<std::string> accelerator_names() {
 }
 
 template <class T>
-Structure<T>::Structure(const Json& scene, const std::string& accelerator) : scene_(load(scene)) {
-  for (const auto& set : scene_->shapes) {
-    kernels_.push_back(set->kernel(T(), static_cast<int>(primitives_.size())));
-    for (int i = 0; i < set->size(); ++i) primitives_.push_back({kernels_.back().get(), i, set->bounds(i)});
-  }
+Structure<T>::Structure(const Json& scene, const std::string& accelerator)
+    : geometry_(make_geometry<T>(load(scene))) {
   for (const auto& type : accelerator_types())
-    if (type.name == accelerator) accelerator_ = build(type, primitives_);
+    if (type.name == accelerator) accelerator_ = build(type, geometry_->primitives);
   if (!accelerator_) throw std::invalid_argument(accelerator);
 }
 

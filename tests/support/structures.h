@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/model/accelerator.h"
+#include "core/model/world.h"
 #include "tests/support/rays.h"
 
 // Registered accelerators over the shapes of a scene.
@@ -21,9 +21,7 @@ class Structure {
   const AcceleratorCounts& counts() const { return counts_; }  // of all calls so far
 
  private:
-  std::shared_ptr<const Scene> scene_;
-  std::vector<ShapeKernelPtr<T>> kernels_;
-  PrimitiveList<T> primitives_;
+  std::shared_ptr<const Geometry<T>> geometry_;
   AcceleratorPtr<T> accelerator_;
   AcceleratorCounts counts_;
 };

@@ -4,13 +4,17 @@
 // A ctest that is a GoogleTest executable counts its cases; any other counts as one. C++ tests name their
 // rows by RecordProperty("stability", "A1 A2"), scripts by printing a line "stability: A1 A2".
 
-import {existsSync, readFileSync} from "node:fs";
-import {join} from "node:path";
+import {existsSync, readFileSync} from 'node:fs';
+import {join} from 'node:path';
 
-const total = {passed: 0, failed: 0, skipped: 0};
+const total = {
+  passed: 0,
+  failed: 0,
+  skipped: 0
+};
 const rows = new Set();
 
-const cases = (xml) => xml.split("<testcase ").slice(1);
+const cases = (xml) => xml.split('<testcase ').slice(1);
 const attribute = (text, name) => text.match(new RegExp(`\\b${name}="([^"]*)"`))?.[1];
 const note = (text) => text.split(/\s+/).filter(Boolean).forEach((row) => rows.add(row));
 
@@ -18,8 +22,10 @@ const note = (text) => text.split(/\s+/).filter(Boolean).forEach((row) => rows.a
 function countGoogleTest(xml) {
   let failed = 0;
   for (const one of cases(xml)) {
-    if (one.includes("<failure")) ++failed;
-    else if (attribute(one, "result") !== "completed") ++total.skipped;
+    if (one.includes('<failure'))
+      ++failed;
+    else if (attribute(one, 'result') !== 'completed')
+      ++total.skipped;
     else {
       ++total.passed;
       for (const [, value] of one.matchAll(/<property name="stability" value="([^"]*)"/g)) note(value);
@@ -30,21 +36,21 @@ function countGoogleTest(xml) {
 }
 
 for (const folder of process.argv.slice(2)) {
-  const reports = join(folder, "test-reports");
-  if (!existsSync(join(reports, "ctest.xml"))) {
+  const reports = join(folder, 'test-reports');
+  if (!existsSync(join(reports, 'ctest.xml'))) {
     ++total.failed;  // ctest itself failed
     continue;
   }
-  for (const one of cases(readFileSync(join(reports, "ctest.xml"), "utf8"))) {
-    const status = attribute(one, "status");
-    const detail = join(reports, `test_${attribute(one, "name")}.xml`);
+  for (const one of cases(readFileSync(join(reports, 'ctest.xml'), 'utf8'))) {
+    const status = attribute(one, 'status');
+    const detail = join(reports, `test_${attribute(one, 'name')}.xml`);
     if (existsSync(detail)) {
       // A crash on the way out fails the executable though all of its cases passed.
-      if (countGoogleTest(readFileSync(detail, "utf8")) === 0 && status === "fail") ++total.failed;
-    } else if (status === "run") {
+      if (countGoogleTest(readFileSync(detail, 'utf8')) === 0 && status === 'fail') ++total.failed;
+    } else if (status === 'run') {
       ++total.passed;
       for (const [, value] of one.matchAll(/(?:^|>)stability: ([\w ]*)/gm)) note(value);
-    } else if (status === "notrun" && /<skipped message="SKIP_/.test(one)) {
+    } else if (status === 'notrun' && /<skipped message="SKIP_/.test(one)) {
       ++total.skipped;
     } else {
       ++total.failed;
@@ -52,7 +58,7 @@ for (const folder of process.argv.slice(2)) {
   }
 }
 
-const sorted = [...rows].sort(new Intl.Collator("en", {numeric: true}).compare);
-console.log(`stability rows covered (${sorted.length}): ${sorted.join(" ")}`);
+const sorted = [...rows].sort(new Intl.Collator('en', {numeric: true}).compare);
+console.log(`stability rows covered (${sorted.length}): ${sorted.join(' ')}`);
 console.log(`${total.passed} passed, ${total.failed} failed, ${total.skipped} skipped`);
 process.exitCode = total.failed > 0 ? 1 : 0;

@@ -42,23 +42,8 @@ Tracing::Tracing(const Json& scene_json, RenderRequest request) {
   request.precision = Precision::double_precision;
   request.slice = kBatch;
   plan_ = make_plan(*scene, request);
-  world_.scene = scene;
-  world_.ambient = scene->ambient;
-  world_.background = scene->background;
-  world_.material_of.assign(scene->material_of.begin(), scene->material_of.end());
-  for (const auto& shapes : scene->shapes) {
-    if (shapes->size() == 0) continue;
-    world_.shapes.push_back(shapes->kernel(double(), static_cast<int>(world_.primitives.size())));
-    for (int i = 0; i < shapes->size(); ++i)
-      world_.primitives.push_back({world_.shapes.back().get(), i, shapes->bounds(i)});
-  }
-  int first = 0;
-  for (const auto& materials : scene->materials) {
-    const int last = first + materials->size();
-    world_.materials.push_back({materials->kernel(double(), first), first, last, materials->traits()});
-    first = last;
-  }
-  auto recorder = std::make_unique<Recorder>(build(*plan_.accelerator, world_.primitives));
+  world_.geometry = make_geometry<double>(scene);
+  auto recorder = std::make_unique<Recorder>(build(*plan_.accelerator, world_.geometry->primitives));
   recorder_ = recorder.get();
   world_.accelerator = std::move(recorder);
   tracer_ = make_tracer(*plan_.technique, world_, plan_);
@@ -88,7 +73,7 @@ const std::vector<Ray<double>>& Tracing::shadow_rays() const { return recorder_-
 
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request) {
   Tracing tracing(scene, request);
-  const Plan plan = make_plan(tracing.world().scene.operator*(), request);
+  const Plan plan = make_plan(*tracing.world().geometry->scene, request);
   const auto batch = std::make_unique<RayBatch<double>>();
   TileSamples centre;
   centre.u.values.fill(0.5f);

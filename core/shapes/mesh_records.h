@@ -1,0 +1,95 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/meshes/mesh_file.h"
+#include "core/shapes/primitive_set.h"
+#include "core/shapes/triangle_hit.h"
+
+namespace orrery {
+
+// One triangle of a mesh, with the normals to interpolate at its vertices.
+template <class N>
+struct MeshTriangle {
+  Corners<N> corners, normals;
+  Vec3<N> normal;  // of the flat triangle
+  N magnitude;     // largest absolute coordinate of the mesh
+
+  std::vector<HullTriangle> hull() const { return corners.hull(); }
+
+  using Core = Corners<N>;
+  const Core& core() const { return corners; }
+  N distance(const Ray<N>& ray) const { return corners.distance(ray); }
+
+  // The interpolated normal falls back to the flat one where the three cancel.
+  Surface<N> surface(const Ray<N>& ray, const N&) const {
+    const Vec3<N> weights = corners.weights(ray);
+    const Vec3<N> sum = normals.mix(weights);
+    const N size = length(sum);
+    const auto usable = size > N(ScalarOf<N>(0.001));  // unit normals: below it they point opposite ways
+    const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
+    return {corners.mix(weights),
+            normal,
+            {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
+            magnitude};
+  }
+};
+
+// Triangles of several meshes over shared vertices.
+template <class T>
+struct MeshTable {
+  struct Part {
+    std::size_t first;              // triangle
+    std::ptrdiff_t normals_offset;  // from a vertex to its normal
+    bool smooth;                    // has normals
+    T magnitude;
+  };
+  std::vector<Vec3<T>> positions, normals;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Part> parts;  // in the order of their triangles
+
+  Corners<T> corners(std::size_t i) const {
+    const auto& [a, b, c] = triangles[i];
+    return {positions[a], positions[b], positions[c]};
+  }
+  const Part& part_of(std::size_t i) const {
+    return *std::prev(std::upper_bound(parts.begin(), parts.end(), i,
+                                       [](std::size_t n, const Part& part) { return n < part.first; }));
+  }
+};
+
+// MeshTriangles in a render's precision, put together when they are asked for.
+template <class T>
+class MeshRecords {
+ public:
+  explicit MeshRecords(const MeshTable<double>& table) {
+    for (const auto& v : table.positions) table_.positions.push_back(Vec3<T>(v));
+    for (const auto& v : table.normals) table_.normals.push_back(Vec3<T>(v));
+    table_.triangles = table.triangles;
+    for (const auto& part : table.parts)
+      table_.parts.push_back({part.first, part.normals_offset, part.smooth, static_cast<T>(part.magnitude)});
+    flat_.reserve(table.triangles.size());
+    for (std::size_t i = 0; i < table.triangles.size(); ++i) {
+      const Corners<double> at = table.corners(i);
+      flat_.push_back(Vec3<T>(safe_normalize(cross(at.b - at.a, at.c - at.a))));
+    }
+  }
+
+  std::size_t size() const { return flat_.size(); }
+  Corners<T> core(std::size_t i) const { return table_.corners(i); }
+  MeshTriangle<T> operator[](std::size_t i) const {
+    const auto& part = table_.part_of(i);
+    const Vec3<T>& flat = flat_[i];
+    const auto normal = [&](std::uint32_t vertex) {
+      return part.smooth ? table_.normals[static_cast<std::size_t>(vertex + part.normals_offset)] : flat;
+    };
+    const auto& [a, b, c] = table_.triangles[i];
+    return {table_.corners(i), {normal(a), normal(b), normal(c)}, flat, part.magnitude};
+  }
+
+ private:
+  MeshTable<T> table_;
+  std::vector<Vec3<T>> flat_;
+};
+
+}  // namespace orrery

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/model/mesh_source.h"
+#include "server/app/lru.h"
+
+namespace orrery {
+
+// Mesh files by the SHA-256 of their bytes. Safe from any thread.
+class AssetStore final : public MeshSource {
+ public:
+  struct Asset {
+    std::string bytes;
+    MeshFormat format;
+    std::size_t vertices, triangles;
+  };
+  using AssetPtr = std::shared_ptr<const Asset>;
+
+  explicit AssetStore(std::size_t most_bytes) : assets_(most_bytes) {}
+
+  struct Added {
+    AssetPtr asset;
+    bool known;  // it was there before
+  };
+  // Throws InputError if the bytes have another hash, are no mesh, or take more than all assets may.
+  Added add(const std::string& sha256, std::string bytes);
+  // Throws NotFound.
+  AssetPtr find(const std::string& sha256);
+  void remove(const std::string& sha256);
+
+  TriangleMesh asset(const std::string& sha256) const override;
+
+ private:
+  mutable Lru<AssetPtr> assets_;  // reading one counts as its use
+};
+
+}  // namespace orrery

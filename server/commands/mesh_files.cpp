@@ -1,0 +1,27 @@
+#include "server/commands/mesh_files.h"
+
+#include <algorithm>
+
+#include "server/commands/scene_file.h"
+
+namespace orrery {
+
+TriangleMesh MeshFiles::file(const std::string& name) const {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path folder = fs::canonical(folder_.empty() ? "." : folder_, error);
+  const fs::path path = fs::canonical(folder / name, error);  // where links lead
+  if (error) throw InputError("", "cannot read " + (folder_ / name).string() + ": " + error.message());
+  if (std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first != folder.end())
+    throw InputError("", "expected a file in the scene's folder or below it, got " + name);
+  if (!fs::is_regular_file(path)) throw InputError("", "cannot read " + name + ": it is no file");
+  try {
+    return read_mesh(read_file(path.string()));
+  } catch (const FileError& unreadable) {
+    throw InputError("", unreadable.what());
+  } catch (const InputError& bad) {
+    throw InputError("", name + ": " + bad.problems().front().detail);
+  }
+}
+
+}  // namespace orrery

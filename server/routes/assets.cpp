@@ -1,0 +1,80 @@
+#include <nlohmann/json.hpp>
+
+#include "server/app/app.h"
+#include "server/http/router.h"
+#include "server/routes/answers.h"
+
+// /v1/assets: mesh files that scenes name by the hash of their bytes.
+namespace orrery {
+namespace {
+
+struct FormatNames {
+  const char *name, *media_type;
+};
+
+FormatNames names_of(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::obj: return {"obj", "model/obj"};
+    case MeshFormat::stl: return {"stl", "model/stl"};
+    case MeshFormat::ply: return {"ply", "application/octet-stream"};
+    case MeshFormat::gltf: return {"gltf", "model/gltf-binary"};
+  }
+  return {"", "application/octet-stream"};
+}
+
+void require_hash(const std::string& id) {
+  const auto hexadecimal = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  if (id.size() != 64 || !std::all_of(id.begin(), id.end(), hexadecimal))
+    throw InputError(
+        "", "an asset is named by the SHA-256 of its bytes: 64 digits 0-9, a-f; got " + id.substr(0, 80));
+}
+
+std::string etag_of(const std::string& id) { return "\"" + id + "\""; }
+
+Response put_asset(App& app, Request& request) {
+  app.require_open();
+  const std::string id = request.path_value("id");
+  require_hash(id);
+  if (request.header("Content-Encoding"))
+    throw HttpError(415, "A body must not be compressed (Content-Encoding)");
+  request.body_limit = {app.settings().asset_bytes, "asset_bytes"};
+  const AssetStore::Added added = app.assets().add(id, request.read_body());
+  const AssetStore::Asset& asset = *added.asset;
+  Response response = json_answer(added.known ? 200 : 201, {{"id", id},
+                                                            {"format", names_of(asset.format).name},
+                                                            {"bytes", asset.bytes.size()},
+                                                            {"vertices", asset.vertices},
+                                                            {"triangles", asset.triangles}});
+  response.set("Location", "/v1/assets/" + id);
+  response.set("ETag", etag_of(id));
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+Response get_asset(App& app, Request& request) {
+  const std::string id = request.path_value("id");
+  const AssetStore::AssetPtr asset = app.assets().find(id);
+  Response response{.status = 304};
+  if (!has_current(request, etag_of(id))) {
+    response = {.status = 200, .body = asset->bytes};
+    response.set("Content-Type", names_of(asset->format).media_type);
+  }
+  response.set("ETag", etag_of(id));
+  response.set("Cache-Control", "no-cache");  // it may be gone: ask each time
+  return response;
+}
+
+Response remove_asset(App& app, Request& request) {
+  app.assets().remove(request.path_value("id"));
+  return {.status = 204};
+}
+
+}  // namespace
+
+void add_assets_routes(Router& router, App& app) {
+  router.add("PUT", "/v1/assets/{id}", [&app](Request& request) { return put_asset(app, request); });
+  router.add("GET", "/v1/assets/{id}", [&app](Request& request) { return get_asset(app, request); });
+  router.add("DELETE", "/v1/assets/{id}", [&app](Request& request) { return remove_asset(app, request); });
+}
+
+}  // namespace orrery

@@ -1,0 +1,97 @@
+#include "core/base/hash.h"
+#include "tests/http/daemon.h"
+
+namespace orrery {
+namespace {
+
+const std::string kTetrahedron =
+    "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+class Assets : public HttpTest {
+ protected:
+  static std::string path_of(const std::string& bytes) { return "/v1/assets/" + sha256_hex(bytes); }
+  httplib::Result put(const std::string& path, const std::string& bytes) {
+    return client_.Put(path, bytes, "application/octet-stream");
+  }
+};
+
+TEST_F(Assets, PutMeshIsDescribedAndComesBack) {
+  const std::string path = path_of(kTetrahedron);
+  const auto first = put(path, kTetrahedron), second = put(path, kTetrahedron);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->status, 201);
+  EXPECT_EQ(second->status, 200);
+  EXPECT_EQ(first->body, second->body);
+  EXPECT_EQ(first->get_header_value("Location"), path);
+  const auto told = nlohmann::json::parse(first->body);
+  EXPECT_EQ(told.at("format"), "obj");
+  EXPECT_EQ(told.at("triangles"), 4);
+  EXPECT_EQ(told.at("vertices"), 4);
+  EXPECT_EQ(told.at("bytes"), kTetrahedron.size());
+  const auto got = client_.Get(path);
+  ASSERT_TRUE(got && got->status == 200);
+  EXPECT_EQ(got->body, kTetrahedron);
+  EXPECT_EQ(get_known(path, got->get_header_value("ETag"))->status, 304);
+  EXPECT_EQ(client_.Delete(path)->status, 204);
+  expect_problem(client_.Get(path), 404);
+  expect_problem(client_.Delete(path), 404);
+}
+
+TEST_F(Assets, SceneThatNamesAMeshIsRendered) {
+  const std::string hash = sha256_hex(kTetrahedron);
+  const auto scene = small_scene({{"title", "a mesh"},
+                                  {"objects", {{{"type", "mesh"}, {"asset", hash}, {"material", "ball"}}}},
+                                  {"materials", {{"ball", {{"type", "rough"}}}}}});
+  client_.Delete("/v1/assets/" + hash);
+  const auto missing = expect_problem(client_.Post("/v1/render", scene.dump(), "application/json"), 422);
+  EXPECT_EQ(missing.at("errors").at(0).at("pointer"), "/objects/0/asset");
+  EXPECT_EQ(put("/v1/assets/" + hash, kTetrahedron)->status, 201);
+  const auto rendered = client_.Post("/v1/render", scene.dump(), "application/json");
+  ASSERT_TRUE(rendered && rendered->status == 200) << rendered->body;
+  EXPECT_TRUE(is_png(rendered->body));
+  const std::string id = post_scene(scene.dump());
+  EXPECT_EQ(client_.Delete("/v1/assets/" + hash)->status, 204);
+  EXPECT_EQ(client_.Get("/v1/scenes/" + id + "/frame.png?azimuth=20")->status, 200) << "the scene keeps it";
+}
+
+TEST_F(Assets, NothingButAMeshUnderItsOwnHashIsTaken) {
+  expect_problem(put(path_of("something else"), kTetrahedron), 422);
+  expect_problem(put("/v1/assets/short", kTetrahedron), 422);
+  expect_problem(put("/v1/assets/" + std::string(64, 'G'), kTetrahedron), 422);
+  for (const std::string bad :
+       {"", "no mesh at all", "v 1 2\nf 1 1 1\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"})
+    expect_problem(put(path_of(bad), bad), 422);
+  const auto packed = client_.Put(path_of(kTetrahedron), {{"Content-Encoding", "gzip"}}, kTetrahedron,
+                                  "application/octet-stream");
+  expect_problem(packed, 415);
+  expect_problem(client_.Post(path_of(kTetrahedron), kTetrahedron, "application/octet-stream"), 405);
+}
+
+TEST_F(Assets, FilesAreNotForRequests) {
+  const auto scene =
+      small_scene({{"objects", {{{"type", "mesh"}, {"file", "/etc/passwd"}, {"material", "ball"}}}},
+                   {"materials", {{"ball", {{"type", "rough"}}}}}});
+  const auto problem = expect_problem(client_.Post("/v1/render", scene.dump(), "application/json"), 422);
+  EXPECT_EQ(problem.at("errors").at(0).at("pointer"), "/objects/0/file");
+}
+
+TEST(AssetLimits, HoldAndAreNamed) {
+  Daemon daemon({"--max-asset", "200", "--max-assets", "300"});
+  httplib::Client client = daemon.client();
+  const auto put = [&](const std::string& bytes) {
+    return client.Put("/v1/assets/" + sha256_hex(bytes), bytes, "application/octet-stream");
+  };
+  const std::string large = kTetrahedron + "#" + std::string(200, 'x') + "\n";
+  const auto refused = expect_problem(put(large), 413);
+  EXPECT_NE(refused.at("detail").get<std::string>().find("asset_bytes"), std::string::npos);
+  std::vector<std::string> meshes;  // the store holds four of them
+  for (int i = 0; i < 5; ++i) meshes.push_back(kTetrahedron + "# " + std::to_string(i) + "\n");
+  const std::size_t held = 300 / meshes[0].size();
+  for (const auto& mesh : meshes) EXPECT_EQ(put(mesh)->status, 201);
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    EXPECT_EQ(client.Get("/v1/assets/" + sha256_hex(meshes[i]))->status,
+              i + held < meshes.size() ? 404 : 200);
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include "core/load/load.h"
+#include "core/params/document.h"
+#include "tests/support/scenes.h"
+
+// Meshes that scenes name instead of holding them.
+namespace orrery::test {
+namespace {
+
+// A roof of two squares that meet at 90 degrees, and a triangle without area.
+TriangleMesh roof() {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 1, 0}, {0, 1, 2}, {1, 0, 0}, {1, 0, 2}, {-1, 0, 0}, {-1, 0, 2}};
+  mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 4, 5}, {0, 5, 1}, {0, 0, 1}};
+  return mesh;
+}
+
+class Shelf final : public MeshSource {
+ public:
+  TriangleMesh file(const std::string& name) const override {
+    if (name != "roof.obj") throw InputError("", "cannot read " + name);
+    return roof();
+  }
+  TriangleMesh asset(const std::string& sha256) const override {
+    if (sha256 == "far") {
+      TriangleMesh mesh = roof();
+      mesh.positions[3].x = 1e13;
+      return mesh;
+    }
+    return MeshSource::asset(sha256);
+  }
+};
+
+std::string text_of(const char* object) { return scene_of(object).dump(); }
+
+Problem problem_of(const char* object, const MeshSource& meshes) {
+  try {
+    load_scene(text_of(object), meshes);
+  } catch (const InputError& error) {
+    return error.problems().front();
+  }
+  return {"accepted", ""};
+}
+
+Vec3d shading_normal(const Scene& scene, const Vec3d& from, const Vec3d& toward) {
+  for (const auto& shapes : scene.shapes) {
+    if (shapes->size() == 0) continue;
+    const auto kernel = shapes->kernel(double(), 0);
+    RayBatch<double> rays{};
+    HitBatch<double> hits{};
+    SurfaceBatch<double> surface{};
+    rays.count = 1;
+    rays.t_max.values.fill(-1);
+    rays.direction.z.values.fill(1);
+    rays.origin.x[0] = from.x, rays.origin.y[0] = from.y, rays.origin.z[0] = from.z;
+    rays.direction.x[0] = toward.x, rays.direction.y[0] = toward.y, rays.direction.z[0] = toward.z;
+    rays.t_max[0] = 100;
+    hits.t = rays.t_max;
+    hits.primitive.values.fill(kNoPrimitive);
+    for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, rays, Groups::single(0), hits);
+    kernel->surface(rays, hits, Groups::single(0), surface);
+    return {surface.normal.x[0], surface.normal.y[0], surface.normal.z[0]};
+  }
+  return {};
+}
+
+TEST(MeshFiles, AreReadFromWhereTheLoaderIsTold) {
+  const auto scene = load_scene(text_of("[{'type': 'mesh', 'file': 'roof.obj'}]"), Shelf());
+  EXPECT_EQ(scene->primitive_count(), 4);
+  EXPECT_EQ(scene->facts.left_out, 1u);
+}
+
+TEST(MeshFiles, AreRefusedWhereTheirNameStands) {
+  const Problem missing = problem_of("[{'type': 'mesh', 'file': 'wall.obj'}]", Shelf());
+  EXPECT_EQ(missing.pointer, "/objects/0/file");
+  EXPECT_EQ(missing.detail, "cannot read wall.obj");
+  EXPECT_EQ(problem_of("[{'type': 'mesh', 'file': 'roof.obj'}]", MeshSource()).pointer, "/objects/0/file");
+  EXPECT_EQ(problem_of("[{'type': 'mesh', 'asset': 'abc'}]", Shelf()).pointer, "/objects/0/asset");
+  EXPECT_EQ(problem_of("[{'type': 'mesh', 'asset': 'far'}]", Shelf()).pointer, "/objects/0/asset");
+  EXPECT_NE(problem_of("[{'type': 'mesh', 'file': 'roof.obj', 'asset': 'abc'}]", Shelf()).pointer,
+            "accepted");
+  EXPECT_EQ(problem_of("[{'type': 'mesh', 'file': 'roof.obj', 'crease_degrees': 181}]", Shelf()).pointer,
+            "/objects/0/crease_degrees");
+}
+
+// Just beside the ridge: flat without a crease angle or with one below 90 degrees, straight up above it.
+TEST(MeshFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
+  const auto normal = [](const char* object) {
+    return shading_normal(*load_scene(text_of(object), Shelf()), {1e-9, 3, 1}, {0, -1, 0});
+  };
+  const double slope = std::sqrt(0.5);
+  for (const char* sharp : {"[{'type': 'mesh', 'file': 'roof.obj'}]",
+                            "[{'type': 'mesh', 'file': 'roof.obj', 'crease_degrees': 80}]"}) {
+    EXPECT_NEAR(normal(sharp).x, slope, 1e-6) << sharp;
+    EXPECT_NEAR(normal(sharp).y, slope, 1e-6) << sharp;
+  }
+  const Vec3d smooth = normal("[{'type': 'mesh', 'file': 'roof.obj', 'crease_degrees': 100}]");
+  EXPECT_NEAR(smooth.y, 1, 0.06);
+  EXPECT_LT(std::abs(smooth.x), 0.35);
+}
+
+// Several meshes share one set: each keeps its own vertices and normals.
+TEST(MeshFiles, KeepApartInOneScene) {
+  const auto scene = load_scene(
+      text_of("[{'type': 'mesh', 'positions': [[5, 0, 0], [6, 0, 0], [5, 1, 0]], 'indices': [[0, 1, 2]],"
+              "  'normals': [[1, 0, 1], [1, 0, 1], [1, 0, 1]]},"
+              " {'type': 'mesh', 'file': 'roof.obj'},"
+              " {'type': 'mesh', 'positions': [[8, 0, 0], [9, 0, 0], [8, 1, 0]], 'indices': [[0, 1, 2]],"
+              "  'normals': [[-1, 0, 1], [-1, 0, 1], [-1, 0, 1]]}]"),
+      Shelf());
+  EXPECT_EQ(scene->primitive_count(), 6);
+  EXPECT_NEAR(shading_normal(*scene, {5.2, 0.2, 3}, {0, 0, -1}).x, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(shading_normal(*scene, {8.2, 0.2, 3}, {0, 0, -1}).x, -std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(shading_normal(*scene, {0.5, 3, 1}, {0, -1, 0}).x, std::sqrt(0.5), 1e-12);
+}
+
+}  // namespace
+}  // namespace orrery::test
