@@ -91,8 +91,9 @@ TEST(GltfRefusals, OfRangesThatLeaveTheirBuffer) {
         R"({"buffer":0,"byteLength":36,"byteOffset":18446744073709551600})"})
     EXPECT_THAT(with_data(kBuffer, view, kAccessor),
                 HasSubstr("/bufferViews/0: expected byteOffset + byteLength of at most 36"));
-  for (const char* rest : {R"("count":4)", R"("count":0)", R"("count":18446744073709551615)",
-                           R"("count":3,"byteOffset":1)", R"("count":3,"byteOffset":18446744073709551615)"})
+  for (const char* rest :
+       {R"("count":4)", R"("count":0)", R"("count":18446744073709551615)", R"("count":3,"byteOffset":1)",
+        R"("count":1,"byteOffset":30)", R"("count":3,"byteOffset":18446744073709551615)"})
     EXPECT_THAT(
         with_data(kBuffer, kView,
                   std::string(R"({"bufferView":0,"componentType":5126,"type":"VEC3",)") + rest + "}"),
