@@ -52,4 +52,14 @@ inline std::string text_of(const Vec3d& v) {
   return '(' + text_of(v.x) + ", " + text_of(v.y) + ", " + text_of(v.z) + ')';
 }
 
+// Whether each coordinate is a number of at most kMaxMeshCoordinate.
+inline bool is_position(const Vec3d& v) {
+  const auto in_range = [](double x) { return std::abs(x) <= kMaxMeshCoordinate; };
+  return in_range(v.x) && in_range(v.y) && in_range(v.z);
+}
+inline std::string expected_position(const Vec3d& got) {
+  return "expected coordinates of at most " + text_of(kMaxMeshCoordinate) + " in magnitude, got " +
+         text_of(got);
+}
+
 }  // namespace orrery

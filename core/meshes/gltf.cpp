@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "core/meshes/affine.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/gltf_file.h"
+#include "core/meshes/gltf_transform.h"
 #include "core/meshes/text.h"
 
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022): sections 3.5 (scenes) and 3.7 (meshes). Skins and morph targets are
@@ -19,56 +19,6 @@ bool is_harmless(std::string_view extension) {
                                             "KHR_mesh_quantization"};
   return std::any_of(std::begin(kPrefixes), std::end(kPrefixes),
                      [&](std::string_view prefix) { return extension.starts_with(prefix); });
-}
-
-template <std::size_t count>
-std::array<double, count> numbers_of(const GltfValue& value) {
-  if (value.size() != count)
-    value.fail("expected " + std::to_string(count) + " numbers, got " + std::to_string(value.size()));
-  std::array<double, count> numbers;
-  for (std::size_t i = 0; i < count; ++i) numbers[i] = value.item(i).number();
-  return numbers;
-}
-
-Vec3d three_or(const GltfValue& node, const char* key, const Vec3d& fallback) {
-  const auto value = node.find(key);
-  if (!value) return fallback;
-  const auto n = numbers_of<3>(*value);
-  return {n[0], n[1], n[2]};
-}
-
-// The rotation of a quaternion (x, y, z, w) of any length but 0.
-Affine rotation_of(const GltfValue& value) {
-  auto q = numbers_of<4>(value);
-  double largest = 0;
-  for (const double part : q) largest = std::max(largest, std::abs(part));
-  if (!(largest > 0)) value.fail("expected a quaternion other than 0, got 0");
-  double square = 0;
-  for (double& part : q) square += (part / largest) * (part / largest);
-  for (double& part : q) part = part / largest / std::sqrt(square);
-  const auto [x, y, z, w] = q;
-  return {{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-          {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-          {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)},
-          {}};
-}
-
-// matrix, or translation * rotation * scale.
-Affine transform_of(const GltfValue& node) {
-  if (const auto matrix = node.find("matrix")) {
-    const auto m = numbers_of<16>(*matrix);  // column by column
-    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-      matrix->fail("expected 0, 0, 0 and 1 as the last row, got a projection");
-    return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
-  }
-  const auto quaternion = node.find("rotation");
-  Affine transform = quaternion ? rotation_of(*quaternion) : Affine{};
-  const Vec3d scale = three_or(node, "scale", {1, 1, 1});
-  transform.x = transform.x * scale.x;
-  transform.y = transform.y * scale.y;
-  transform.z = transform.z * scale.z;
-  transform.origin = three_or(node, "translation", {});
-  return transform;
 }
 
 class SceneReader {
@@ -164,8 +114,7 @@ class SceneReader {
     for (std::size_t i = 0; i < positions.count; ++i) {
       const Vec3d p =
           world_from_node.point({positions.value(i, 0), positions.value(i, 1), positions.value(i, 2)});
-      if (!is_finite(p))
-        attributes.fail("expected finite positions, got " + text_of(p) + " at vertex " + std::to_string(i));
+      if (!is_position(p)) attributes.fail(expected_position(p) + " at vertex " + std::to_string(i));
       mesh_.positions.push_back(p);
     }
     const auto normals = optional_accessor(attributes, "NORMAL", "VEC3", positions.count);

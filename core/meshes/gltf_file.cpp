@@ -131,7 +131,7 @@ std::string_view GltfFile::buffer(const GltfValue& user) {
     entry.own = decode_base64(std::string_view(text).substr(comma + 1), *uri);
     entry.bytes = {entry.own.data(), entry.own.size()};
   } else {
-    if (index != 0) buffer.fail("expected a member \"uri\", got none");
+    if (index != 0 || binary_.empty()) buffer.fail("expected a member \"uri\", got none");
     entry.bytes = binary_;
   }
   const GltfValue length = buffer.at("byteLength");

@@ -95,7 +95,7 @@ nlohmann::json parse_gltf(std::string_view text) {
     if (!document.is_object()) throw InputError("", "expected a glTF document as a JSON object, got none");
     return document;
   } catch (const nlohmann::json::exception& error) {
-    throw InputError("", std::string("expected a glTF document in JSON, got: ") + error.what());
+    throw InputError("", "expected a glTF document in JSON, got " + excerpt(error.what(), 160));
   }
 }
 

@@ -18,6 +18,10 @@ struct TriangleMesh {
   std::vector<std::array<double, 2>> uvs;               // one a position, (0, 0) lower left; or none
 };
 
+// Largest coordinate of a position, in magnitude: that of a scene.
+inline constexpr double kMaxMeshCoordinate = 1e12;
+
+// What a file may hold; at most 2^31 - 1 each.
 struct MeshLimits {
   std::size_t vertices = 10'000'000, triangles = 10'000'000;
 };

@@ -24,6 +24,7 @@ class ObjReader {
       const std::string_view keyword = text_.word_of_line();
       if (keyword == "v") {
         positions_.push_back(read_three("v"));
+        if (!is_position(positions_.back())) text_.fail(expected_position(positions_.back()));
         check_vertices(positions_.size(), limits_);
       } else if (keyword == "vn") {
         normals_.push_back(read_three("vn"));

@@ -1,96 +1,9 @@
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
-#include "core/meshes/formats.h"
-#include "core/meshes/ply_header.h"
+#include "core/meshes/ply_body.h"
 
 namespace orrery {
 namespace {
-
-// One value of type T as a double, which holds each of them exactly.
-template <class T, std::endian order>
-double load(const char* bytes) {
-  std::array<char, sizeof(T)> copy;
-  std::memcpy(copy.data(), bytes, sizeof(T));
-  if constexpr (order != std::endian::native) std::reverse(copy.begin(), copy.end());
-  return static_cast<double>(std::bit_cast<T>(copy));
-}
-using Load = double (*)(const char*);
-
-template <std::endian order>
-Load load_as(PlyType type) {
-  constexpr Load kLoads[] = {load<std::int8_t, order>,  load<std::uint8_t, order>,
-                             load<std::int16_t, order>, load<std::uint16_t, order>,
-                             load<std::int32_t, order>, load<std::uint32_t, order>,
-                             load<float, order>,        load<double, order>};
-  return kLoads[static_cast<std::size_t>(type)];
-}
-Load load_of(PlyType type, PlyEncoding encoding) {
-  return encoding == PlyEncoding::big_endian ? load_as<std::endian::big>(type)
-                                             : load_as<std::endian::little>(type);
-}
-
-// Where the values come from: words of a text, or bytes. Both are asked with what describe() made.
-class AsciiBody {
- public:
-  struct Value {};
-  static constexpr bool kBinary = false;
-
-  explicit AsciiBody(const PlyHeader& header) : text_(header.body) {}
-  Value describe(PlyType) const { return {}; }
-  // Fewest bytes that `values` of these types take: a digit and a blank, where the last blank may lack.
-  static std::size_t fewest_bytes(PlyType) { return 2; }
-  std::size_t bytes_left() const { return text_.rest().size() + 1; }
-
-  double read(Value) { return text_.number("a value"); }
-  void skip(Value) {
-    if (text_.word().empty()) fail("expected a value, got the end of the file");
-  }
-  [[noreturn]] void fail(const std::string& detail) const { text_.fail(detail); }
-
- private:
-  TextReader text_;
-};
-
-class BinaryBody {
- public:
-  struct Value {
-    Load load;
-    std::size_t size;
-  };
-  static constexpr bool kBinary = true;
-
-  explicit BinaryBody(const PlyHeader& header) : encoding_(header.encoding), rest_(header.body.rest()) {
-    total_ = rest_.size();
-  }
-  Value describe(PlyType type) const { return {load_of(type, encoding_), size_of(type)}; }
-  static std::size_t fewest_bytes(PlyType type) { return size_of(type); }
-  std::size_t bytes_left() const { return rest_.size(); }
-
-  double read(const Value& value) {
-    const char* at = rest_.data();
-    skip(value);
-    return value.load(at);
-  }
-  void skip(const Value& value) {
-    if (value.size > rest_.size()) fail("expected " + std::to_string(value.size) + " bytes, got the end");
-    rest_.remove_prefix(value.size);
-  }
-  const char* take(std::size_t bytes) {  // REQUIRES: as many are left
-    const char* at = rest_.data();
-    rest_.remove_prefix(bytes);
-    return at;
-  }
-  [[noreturn]] void fail(const std::string& detail) const {
-    fail_at("byte " + std::to_string(total_ - rest_.size()) + " after the header", detail);
-  }
-
- private:
-  PlyEncoding encoding_;
-  std::string_view rest_;
-  std::size_t total_;
-};
 
 // The values of a vertex that a mesh keeps.
 enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
@@ -175,13 +88,13 @@ class PlyReader {
     struct Field {
       Slot slot;
       std::size_t offset;
-      Load load;
+      PlyLoad load;
     };
     std::vector<Field> fields;
     std::size_t size = 0;
     for (const PlyProperty& property : element.properties) {
       if (slot_of(property) != kSlots)
-        fields.push_back({slot_of(property), size, load_of(property.type, header_.encoding)});
+        fields.push_back({slot_of(property), size, ply_load(property.type, header_.encoding)});
       size += size_of(property.type);
     }
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -193,26 +106,25 @@ class PlyReader {
   }
 
   void read_any_rows(const PlyElement& element) {
+    std::vector<Slot> slots;
+    for (const PlyProperty& property : element.properties) slots.push_back(slot_of(property));
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      std::array<double, kSlots + 1> values{};
-      for (const PlyProperty& property : element.properties) {
-        if (property.count_type)
-          skip_list(property);
+      std::array<double, kSlots> values{};
+      for (std::size_t k = 0; k < slots.size(); ++k)
+        if (slots[k] == kSlots)
+          skip_property(element.properties[k]);
         else
-          values[slot_of(property)] = body_.read(body_.describe(property.type));
-      }
-      std::array<double, kSlots> kept;
-      std::copy_n(values.begin(), kept.size(), kept.begin());
-      add_vertex(kept);
+          values[slots[k]] = body_.read(body_.describe(element.properties[k].type));
+      add_vertex(values);
     }
   }
 
   void add_vertex(const std::array<double, kSlots>& values) {
     const Vec3d position(values[kX], values[kY], values[kZ]), normal(values[kNx], values[kNy], values[kNz]);
-    if (!is_finite(position) || !is_finite(normal) || !std::isfinite(values[kU]) ||
-        !std::isfinite(values[kV]))
-      body_.fail("expected finite values for vertex " + std::to_string(mesh_.positions.size()) + ", got " +
-                 text_of(position));
+    const auto number = [&] { return std::to_string(mesh_.positions.size()); };
+    if (!is_position(position)) body_.fail(expected_position(position) + " for vertex " + number());
+    if (!is_finite(normal) || !std::isfinite(values[kU]) || !std::isfinite(values[kV]))
+      body_.fail("expected finite values for vertex " + number() + ", got others");
     mesh_.positions.push_back(position);
     if (has_normals_) mesh_.normals.push_back(normal);
     if (has_uvs_) mesh_.uvs.push_back({values[kU], values[kV]});
@@ -286,8 +198,8 @@ class PlyReader {
 
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits) {
   const PlyHeader header = read_ply_header(bytes);
-  return header.encoding == PlyEncoding::ascii ? PlyReader<AsciiBody>(header, limits).read()
-                                               : PlyReader<BinaryBody>(header, limits).read();
+  return header.encoding == PlyEncoding::ascii ? PlyReader<AsciiPly>(header, limits).read()
+                                               : PlyReader<BinaryPly>(header, limits).read();
 }
 
 }  // namespace orrery

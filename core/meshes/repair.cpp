@@ -12,14 +12,14 @@ std::size_t drop_degenerate(TriangleMesh& mesh) {
 }
 
 std::size_t weld(TriangleMesh& mesh) {
-  const TriangleMesh old = std::move(mesh);
+  TriangleMesh old = std::move(mesh);
   VertexList vertices(!old.normals.empty(), !old.uvs.empty());
   std::vector<std::uint32_t> renumbered;
   renumbered.reserve(old.positions.size());
   for (std::size_t i = 0; i < old.positions.size(); ++i)
     renumbered.push_back(vertices.add(vertex_of(old, i)));
   mesh = vertices.take();
-  mesh.triangles = old.triangles;
+  mesh.triangles = std::move(old.triangles);
   for (auto& triangle : mesh.triangles)
     for (std::uint32_t& corner : triangle) corner = renumbered[corner];
   return old.positions.size() - mesh.positions.size();

@@ -54,9 +54,9 @@ TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
         return std::bit_cast<float>(little_endian(facet + k * kCorner + c * 4));
       };
       corners[k] = {value(0), value(1), value(2)};
-      if (!is_finite(corners[k]))
+      if (!is_position(corners[k]))
         fail_at("facet " + std::to_string(i) + " at byte " + std::to_string(kHeader + i * kFacet),
-                "expected finite coordinates, got " + text_of(corners[k]));
+                expected_position(corners[k]));
     }
     builder.add(corners);
   }
@@ -82,6 +82,7 @@ std::array<Vec3d, 3> read_facet(TextReader& text) {
     corner.x = text.number("x");
     corner.y = text.number("y");
     corner.z = text.number("z");
+    if (!is_position(corner)) text.fail(expected_position(corner));
   }
   expect(text, "endloop");
   expect(text, "endfacet");

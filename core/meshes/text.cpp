@@ -122,12 +122,11 @@ std::int64_t TextReader::integer_in(std::string_view word, std::string_view what
 
 void TextReader::fail(const std::string& detail) const { fail_at("line " + std::to_string(line_), detail); }
 
-std::string excerpt(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string shown(text.substr(0, kLongest));
+std::string excerpt(std::string_view text, std::size_t longest) {
+  std::string shown(text.substr(0, longest));
   for (char& c : shown)
     if (c < ' ' || c > '~') c = '?';
-  return '"' + shown + (text.size() > kLongest ? "...\"" : "\"");
+  return '"' + shown + (text.size() > longest ? "...\"" : "\"");
 }
 
 }  // namespace orrery

@@ -42,7 +42,7 @@ class TextReader {
   std::size_t line_ = 1;
 };
 
-// `text` for a message: in quotes, cut to 40 bytes, with "?" for what cannot be shown.
-std::string excerpt(std::string_view text);
+// `text` for a message: in quotes, cut to `longest` bytes, with "?" for what cannot be shown.
+std::string excerpt(std::string_view text, std::size_t longest = 40);
 
 }  // namespace orrery

@@ -169,6 +169,7 @@ const kGoodTree = {
   "core/base/a.h": "#pragma once\n#include <string>\n",
   "core/params/params.cpp": '#include <nlohmann/json.hpp>\n#include "core/base/a.h"\n',
   "core/image/png.cpp": "#include <png.h>\n#include <turbojpeg.h>\n#include <OpenEXR/ImfRgbaFile.h>\n",
+  "core/meshes/gltf.cpp": "#include <nlohmann/json.hpp>\n",
   "core/model/shape.h": '#include "core/base/a.h"\n#include "core/base/version.h"\n',
   "core/shapes/sphere.cpp": `#include "core/model/shape.h"\n// see ${innerFolder}, docs/home/x\n`,
   "core/shapes/shared.h": "#pragma once\n",

@@ -50,9 +50,9 @@ TEST(GltfRefusals, OfNodes) {
   EXPECT_EQ(with_nodes(R"([{"mesh":4294967296}])"), "/meshes: expected entry 4294967296, got 1 entries");
   EXPECT_EQ(with_nodes(R"([{"mesh":-1}])"), "/nodes/0/mesh: expected an integer of at least 0, got -1");
   EXPECT_EQ(with_nodes(R"([{"mesh":0.5}])"), "/nodes/0/mesh: expected an integer of at least 0, got 0.5");
-  EXPECT_THAT(
-      with_nodes(R"([{"mesh":0,"scale":[1e308,1,1],"translation":[1e308,0,0]}])"),
-      HasSubstr("/meshes/0/primitives/0/attributes: expected finite positions, got (inf, 0, 0) at vertex 1"));
+  EXPECT_THAT(with_nodes(R"([{"mesh":0,"scale":[1e308,1,1],"translation":[1e308,0,0]}])"),
+              HasSubstr("/meshes/0/primitives/0/attributes: expected coordinates of at most 1e+12 "
+                        "in magnitude, got (1e+308, 0, 0) at vertex 0"));
 }
 
 TEST(GltfRefusals, OfPrimitives) {
@@ -85,14 +85,15 @@ TEST(GltfRefusals, OfRangesThatLeaveTheirBuffer) {
   EXPECT_EQ(with_data(R"({"byteLength":3,"uri":"data:;base64,AA*A"})", kView, kAccessor),
             "/buffers/0/uri: expected base64, got \"*\" at digit 2");
   EXPECT_EQ(with_data(R"({"byteLength":36})", kView, kAccessor),
-            "/buffers/0/byteLength: expected at most 0 bytes, as are there, got 36");
+            "/buffers/0: expected a member \"uri\", got none");
   for (const char* view :
        {R"({"buffer":0,"byteLength":37})", R"({"buffer":0,"byteLength":36,"byteOffset":1})",
         R"({"buffer":0,"byteLength":36,"byteOffset":18446744073709551600})"})
     EXPECT_THAT(with_data(kBuffer, view, kAccessor),
                 HasSubstr("/bufferViews/0: expected byteOffset + byteLength of at most 36"));
-  for (const char* rest : {R"("count":4)", R"("count":0)", R"("count":18446744073709551615)",
-                           R"("count":3,"byteOffset":1)", R"("count":3,"byteOffset":18446744073709551615)"})
+  for (const char* rest :
+       {R"("count":4)", R"("count":0)", R"("count":18446744073709551615)", R"("count":3,"byteOffset":1)",
+        R"("count":1,"byteOffset":30)", R"("count":3,"byteOffset":18446744073709551615)"})
     EXPECT_THAT(
         with_data(kBuffer, kView,
                   std::string(R"({"bufferView":0,"componentType":5126,"type":"VEC3",)") + rest + "}"),
@@ -111,7 +112,7 @@ TEST(GltfRefusals, OfRangesThatLeaveTheirBuffer) {
 }
 
 TEST(GltfRefusals, OfTheDocument) {
-  EXPECT_THAT(problem("{"), HasSubstr("expected a glTF document in JSON, got: "));
+  EXPECT_THAT(problem("{"), HasSubstr("expected a glTF document in JSON, got "));
   EXPECT_EQ(problem("{}"), "/: expected a member \"asset\", got none");
   EXPECT_EQ(problem(R"({"asset":{"version":"1.0"}})"), "/asset/version: expected \"2.0\", got \"1.0\"");
   EXPECT_THAT(problem(R"({"nodes":)" + std::string(100'000, '[')), HasSubstr("nested at most 32 deep"));

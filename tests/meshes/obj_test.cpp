@@ -70,6 +70,8 @@ TEST(Obj, RefusalsNameTheLine) {
   EXPECT_EQ(with("v 1 nan 0"), "line 5: expected a finite number for v, got \"nan\"");
   EXPECT_EQ(with("v 1 0 -inf"), "line 5: expected a finite number for v, got \"-inf\"");
   EXPECT_EQ(with("v 1 0 1e999"), "line 5: expected a finite number for v, got \"1e999\"");
+  EXPECT_EQ(with("v 1 -2e12 0"),
+            "line 5: expected coordinates of at most 1e+12 in magnitude, got (1, -2e+12, 0)");
   EXPECT_EQ(with("v 1 0"), "line 5: expected a finite number for v, got nothing");
   EXPECT_EQ(with("vn 1 0 0x1"), "line 5: expected a finite number for vn, got \"0x1\"");
   EXPECT_EQ(with("vt u"), "line 5: expected a finite number for vt, got \"u\"");

@@ -52,7 +52,8 @@ TEST(Stl, RefusalsNameThePlace) {
   std::string bytes = binary_stl_of(cube());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(bytes.data() + 84 + 3 * 50 + 12 + 12, &nan, 4);
-  EXPECT_THAT(problem(bytes), HasSubstr("facet 3 at byte 234: expected finite coordinates, got ("));
+  EXPECT_THAT(problem(bytes),
+              HasSubstr("facet 3 at byte 234: expected coordinates of at most 1e+12 in magnitude, got ("));
   const std::string facet = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
   EXPECT_EQ(problem("solid\n" + facet + "vertex 1 inf 0\n"),
             "line 6: expected a finite number for y, got \"inf\"");

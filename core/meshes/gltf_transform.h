@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/math/vec3.h"
+#include "core/meshes/gltf_json.h"
 
 namespace orrery {
 
@@ -36,5 +37,8 @@ struct Affine {
 inline Affine compose(const Affine& outer, const Affine& inner) {
   return {outer.vector(inner.x), outer.vector(inner.y), outer.vector(inner.z), outer.point(inner.origin)};
 }
+
+// The transform of a node to its parent: its matrix, or translation * rotation * scale. Throws InputError.
+Affine transform_of(const GltfValue& node);
 
 }  // namespace orrery
