@@ -179,7 +179,7 @@ using BottomUp = Hierarchy<T, Grouping<T>>;
 AcceleratorType bottom_up_type() {
   return {"bottom-up",
           "A hierarchy of boxes grouped from the bottom up, near ones first.",
-          {},
+          {.ray = 9, .visit = 13, .box = 0, .primitive = 0.9},
           build_accelerator<BottomUp, float>,
           build_accelerator<BottomUp, double>};
 }

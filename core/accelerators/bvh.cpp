@@ -12,7 +12,7 @@ using Bvh = Hierarchy<T, SahBuilder<T>>;
 AcceleratorType bvh_type() {
   return {"bvh",
           "A hierarchy of boxes by the surface area heuristic, wide nodes, packets and single rays.",
-          {},
+          {.ray = 9, .visit = 8, .box = 0, .primitive = 0.75},
           build_accelerator<Bvh, float>,
           build_accelerator<Bvh, double>};
 }

@@ -70,7 +70,7 @@ using OrientedBoxes = SingleWalk<T, OneEach<T>>;
 AcceleratorType oriented_boxes_type() {
   return {"oriented-boxes",
           "A box around each primitive, turned as it lies, is tested first.",
-          {},
+          {.ray = 24, .visit = 0, .box = 2.8, .primitive = 0},
           build_accelerator<OrientedBoxes, float>,
           build_accelerator<OrientedBoxes, double>};
 }

@@ -58,9 +58,17 @@ class Accelerator {
 template <class T>
 using AcceleratorPtr = std::unique_ptr<Accelerator<T>>;
 
-// Relative times of what is counted, so that structures can be compared by their counts.
+// About how many nanoseconds a structure takes for each thing counted, so that structures can be compared by
+// their counts: fitted to the times of `script/bench structures` on one machine, where single fits are within
+// 40 %. Only ratios mean something.
 struct AcceleratorCosts {
-  double visit = 1, box = 1, primitive = 1;
+  double ray, visit, box, primitive;
+
+  double of(std::uint64_t rays, const AcceleratorCounts& counts) const {
+    return ray * static_cast<double>(rays) + visit * static_cast<double>(counts.node_visits) +
+           box * static_cast<double>(counts.box_tests) +
+           primitive * static_cast<double>(counts.primitive_tests);
+  }
 };
 
 // The list passed to `build` outlives the accelerator.

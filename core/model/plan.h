@@ -24,6 +24,7 @@ struct Plan {
   CameraFrame camera;
   const TechniqueType* technique = nullptr;
   const AcceleratorType* accelerator = nullptr;
+  bool try_accelerators = false;  // for few primitives: others may be cheaper, see settle()
   bool double_precision = false;
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced

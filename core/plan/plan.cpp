@@ -53,6 +53,8 @@ bool contains(const Boundsd& b, const Vec3d& p) {
   return p.x >= b.lo.x && p.x <= b.hi.x && p.y >= b.lo.y && p.y <= b.hi.y && p.z >= b.lo.z && p.z <= b.hi.z;
 }
 
+constexpr int kFewPrimitives = 8, kMostToTry = 1024;
+
 class Planner {
  public:
   Planner(const Scene& scene, const RenderRequest& request) : scene_(scene), request_(request) {}
@@ -136,14 +138,15 @@ class Planner {
       checks_.throw_if_any();
       return decide("accelerator", asked, "as asked");
     }
-    constexpr int kListPays = 8, kBoxesPay = 64;
     const int count = scene_.primitive_count();
-    const char* name = count <= kListPays ? "list" : count <= kBoxesPay ? "boxes" : "bottom-up";
-    plan_.accelerator = find_type(accelerator_types(), name, "/render/accelerator", checks_);
-    decide("accelerator", name,
-           count <= kListPays   ? "so few primitives that testing each costs less than any structure"
-           : count <= kBoxesPay ? "so few primitives that a box around each costs less than a tree of boxes"
-                                : "more than " + std::to_string(kBoxesPay) + " primitives");
+    const bool few = count <= kFewPrimitives;
+    plan_.try_accelerators = !few && count <= kMostToTry;
+    plan_.accelerator =
+        find_type(accelerator_types(), few ? "list" : "bottom-up", "/render/accelerator", checks_);
+    decide("accelerator", plan_.accelerator->name,
+           few ? "so few primitives that testing each costs less than any structure"
+               : "of all structures it took the least time on every scene measured with more than " +
+                     std::to_string(kMostToTry) + " primitives");
   }
 
   void choose_lights() {

@@ -71,6 +71,7 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
                     const RenderControl& control) {
   RenderStats stats;
   const World<T> world = world_for<T>(scene.parts(), *plan.accelerator, stats.build_ms);
+  stats.accelerator = plan.accelerator;
   stats.structure = world.accelerator->facts();
   Image image(plan.width, plan.height, format);
   tbb::enumerable_thread_specific<std::unique_ptr<TileRenderer<T>>> renderers(
@@ -116,6 +117,13 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
 
 RenderResult render_frame(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
                           const RenderControl& control) {
+  if (plan.try_accelerators) {
+    Plan settled = plan;
+    const double took_ms = settle(scene, settled, control.stop);
+    RenderResult result = render_frame(scene, settled, format, pool, control);
+    result.stats.build_ms += took_ms;
+    return result;
+  }
   return plan.double_precision ? render<double>(scene, plan, format, pool, control)
                                : render<float>(scene, plan, format, pool, control);
 }

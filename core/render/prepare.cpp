@@ -3,18 +3,6 @@
 #include <chrono>
 
 namespace orrery {
-namespace {
-
-template <class T>
-auto& made_of(PreparedScene::Parts& parts) {
-  if constexpr (std::is_same_v<T, float>)
-    return parts.made_float;
-  else
-    return parts.made_double;
-}
-
-}  // namespace
-
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double& build_ms) {
   const std::lock_guard lock(parts.mutex);

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "core/model/world.h"
 #include "core/render/renderer.h"
@@ -14,10 +15,11 @@ struct PreparedScene::Parts {
   struct Made {
     std::shared_ptr<const Geometry<T>> geometry;
     std::map<const AcceleratorType*, std::shared_ptr<const Accelerator<T>>> accelerators;
-    const AcceleratorType* chosen = nullptr;  // by trial
+    std::optional<Decision> chosen;  // by trial
   };
   std::shared_ptr<const Scene> scene;
-  std::mutex mutex;  // guards the rest; all is built under it, so that it is built once
+  std::mutex trying;  // held while structures are tried, so that it is done once
+  std::mutex mutex;   // guards the rest; all is built under it, so that it is built once
   Made<float> made_float;
   Made<double> made_double;
 };
@@ -25,5 +27,14 @@ struct PreparedScene::Parts {
 // The scene in number type T with an accelerator; adds the milliseconds spent building, if any.
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms);
+
+// What was built in number type T.
+template <class T>
+PreparedScene::Parts::Made<T>& made_of(PreparedScene::Parts& parts) {
+  if constexpr (std::is_same_v<T, float>)
+    return parts.made_float;
+  else
+    return parts.made_double;
+}
 
 }  // namespace orrery

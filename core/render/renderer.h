@@ -54,6 +54,7 @@ struct RenderControl {
 
 struct RenderStats {
   TraceCounts counts;
+  const AcceleratorType* accelerator = nullptr;
   double mean_cut = 0, max_cut = 0;  // weight of rays not traced, a pixel: mean and largest
   AcceleratorFacts structure;        // what the rays were traced with
   double build_ms = 0;               // making the scene ready, where it was not yet
@@ -66,8 +67,15 @@ struct RenderResult {
   RenderStats stats;
 };
 
-// Renders one frame on the pool. Throws Cancelled if control.stop said so. The picture depends on scene and
-// plan alone: not on threads, their order or the machine's vector width.
+// If the plan leaves the accelerator open: takes the one whose counted work on some tiles of the picture
+// costs least, and says so in the plan's decisions. Once for a scene and number type; later plans follow, so
+// that frames of one scene do not change it. Returns the milliseconds that took. Throws
+// Cancelled if `stop` said so.
+double settle(const PreparedScene& scene, Plan& plan, const std::function<bool()>& stop = {});
+
+// Renders one frame on the pool; a plan that is not settled is settled first. Throws Cancelled if
+// control.stop said so. The picture depends on scene and plan alone: not on threads, their order or the
+// machine's vector width.
 RenderResult render_frame(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
                           const RenderControl& control = {});
 

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/model/camera.h"
 
 namespace orrery {
 
 template <class T>
-TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most) {
+TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, const std::function<bool()>& stop) {
   const int across = (plan.width + kTileSide - 1) / kTileSide,
             down = (plan.height + kTileSide - 1) / kTileSide;
   const int tiles = across * down, count = std::min(most, tiles);
@@ -22,18 +23,12 @@ TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most) {
     const int tile = static_cast<int>((std::int64_t{2} * i + 1) * tiles / (2 * count));
     generate_rays(plan.camera, plan.width, plan.height, tile % across * kTileSide, tile / across * kTileSide,
                   middle, *rays);
-    tracer->trace(*rays, *result, counts);
+    if ((stop && stop()) || !tracer->trace(*rays, *result, counts, stop)) throw Cancelled();
   }
   return counts;
 }
 
-template TraceCounts try_tiles(const World<float>&, const Plan&, int);
-template TraceCounts try_tiles(const World<double>&, const Plan&, int);
-
-double cost_of(const AcceleratorType& type, const AcceleratorCounts& counts) {
-  return type.costs.visit * static_cast<double>(counts.node_visits) +
-         type.costs.box * static_cast<double>(counts.box_tests) +
-         type.costs.primitive * static_cast<double>(counts.primitive_tests);
-}
+template TraceCounts try_tiles(const World<float>&, const Plan&, int, const std::function<bool()>&);
+template TraceCounts try_tiles(const World<double>&, const Plan&, int, const std::function<bool()>&);
 
 }  // namespace orrery

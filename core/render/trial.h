@@ -6,11 +6,9 @@
 namespace orrery {
 
 // Traces up to `most` tiles of the picture that the plan asks for, spread over it, one sample a pixel.
-// Returns what that took.
+// Returns what that took. Throws Cancelled if `stop` said so.
 template <class T>
-TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most);
-
-// Relative time that the counted work takes with a structure.
-double cost_of(const AcceleratorType& type, const AcceleratorCounts& counts);
+TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most,
+                      const std::function<bool()>& stop = {});
 
 }  // namespace orrery

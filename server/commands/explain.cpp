@@ -1,3 +1,4 @@
+#include "core/render/renderer.h"
 #include "server/app/explain.h"
 
 #include <CLI/CLI.hpp>
@@ -27,9 +28,11 @@ struct Options {
 
 int explain(const Options& options) {
   const RenderRequest request = read_render_flags(options.render);
-  const auto scene = load_scene_file(options.scene);
-  const Plan plan = plan_for(*scene, request);
-  std::cout << (options.json ? explain_json(*scene, plan).dump(2) + "\n" : explain_text(*scene, plan));
+  const PreparedScene prepared(load_scene_file(options.scene));
+  const Scene& scene = prepared.scene();
+  Plan plan = plan_for(scene, request);
+  settle(prepared, plan);
+  std::cout << (options.json ? explain_json(scene, plan).dump(2) + "\n" : explain_text(scene, plan));
   return kDone;
 }
 

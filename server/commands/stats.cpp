@@ -60,7 +60,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"height", plan.height},
           {"samples", plan.samples},
           {"technique", plan.technique->name},
-          {"accelerator", plan.accelerator->name},
+          {"accelerator", stats.render.accelerator->name},
           {"precision", plan.double_precision ? "double" : "float"},
           {"instructions", kInstructionLevel},
           {"threads", stats.threads},
@@ -92,8 +92,9 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
   std::string text;
   line(text, "%-12s %d x %d, %d a pixel", "picture", plan.width, plan.height, plan.samples);
-  line(text, "%-12s %s, %s, %s, %s, threads %d", "rendered by", plan.technique->name, plan.accelerator->name,
-       plan.double_precision ? "double" : "float", std::string(kInstructionLevel).c_str(), stats.threads);
+  line(text, "%-12s %s, %s, %s, %s, threads %d", "rendered by", plan.technique->name,
+       stats.render.accelerator->name, plan.double_precision ? "double" : "float",
+       std::string(kInstructionLevel).c_str(), stats.threads);
   rays_text(text, counts.rays);
   line(text, "%-12s %14zu bytes, %d nodes deep", "structure", stats.render.structure.bytes,
        stats.render.structure.depth);

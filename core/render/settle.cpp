@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "core/accelerators/registry.h"
+#include "core/render/prepare.h"
+#include "core/render/trial.h"
+
+namespace orrery {
+namespace {
+
+constexpr int kTiles = 3;
+constexpr int kListMayPay = 64;  // primitives
+constexpr double kGain = 0.85;   // of its cost, at most, must another take to replace the usual one
+
+struct Tried {
+  const AcceleratorType* type;
+  double cost;  // a ray
+};
+
+template <class T>
+Tried try_one(PreparedScene::Parts& parts, const AcceleratorType& type, const Plan& plan,
+              const std::function<bool()>& stop) {
+  double build_ms = 0;
+  const TraceCounts counts = try_tiles(world_for<T>(parts, type, build_ms), plan, kTiles, stop);
+  const std::uint64_t rays = counts.rays.total();
+  return {&type, type.costs.of(rays, counts.accelerator) / static_cast<double>(rays)};
+}
+
+template <class T>
+Decision choose(PreparedScene::Parts& parts, const Plan& plan, const std::function<bool()>& stop) {
+  std::vector<Tried> tried{try_one<T>(parts, *plan.accelerator, plan, stop)};
+  const bool few = parts.scene->primitive_count() <= kListMayPay;
+  for (const auto& type : accelerator_types()) {
+    const std::string_view name = type.name;
+    if (name == "boxes" || (name == "list" && few)) tried.push_back(try_one<T>(parts, type, plan, stop));
+  }
+  const auto cheapest = std::min_element(tried.begin(), tried.end(),
+                                         [](const Tried& a, const Tried& b) { return a.cost < b.cost; });
+  const Tried& best = cheapest->cost < kGain * tried.front().cost ? *cheapest : tried.front();
+  std::string reason = "by what was counted on some tiles, times what each costs, in ns a ray:";
+  for (const Tried& t : tried) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%s %s %.3g", &t == &tried.front() ? "" : ",", t.type->name, t.cost);
+    reason += text;
+  }
+  return {"accelerator", best.type->name, reason};
+}
+
+}  // namespace
+
+double settle(const PreparedScene& scene, Plan& plan, const std::function<bool()>& stop) {
+  if (!plan.try_accelerators) return 0;
+  plan.try_accelerators = false;
+  PreparedScene::Parts& parts = scene.parts();
+  double took_ms = 0;
+  const auto decide = [&]<class T>(std::optional<Decision>& chosen, T) {
+    const std::lock_guard lock(parts.trying);
+    if (!chosen) {
+      const auto start = std::chrono::steady_clock::now();
+      chosen = choose<T>(parts, plan, stop);
+      took_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    }
+    return *chosen;
+  };
+  const Decision decision = plan.double_precision ? decide(made_of<double>(parts).chosen, double())
+                                                  : decide(made_of<float>(parts).chosen, float());
+  for (const auto& type : accelerator_types())
+    if (decision.choice == type.name) plan.accelerator = &type;
+  for (Decision& made : plan.decisions)
+    if (made.subject == decision.subject) made = decision;
+  return took_ms;
+}
+
+}  // namespace orrery

@@ -1,0 +1,166 @@
+// Scenes of different nature for measuring structures, written to a folder when they are asked for.
+
+import { copyFileSync, existsSync, mkdirSync, writeFileSync } from "node:fs";
+import { run_command } from "./command.mjs";
+
+export const kFolder = "build/bench-scenes";
+
+// Numbers in [0, 1), the same every time (mulberry32).
+function random_numbers(seed) {
+  let state = seed;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+// A scene of these objects, lit and seen from `eye`.
+function scene_of(title, objects, eye, look_at = [0, 0, 0]) {
+  return {
+    version: 1,
+    title,
+    camera: { type: "perspective", eye, look_at, fov_degrees: 45 },
+    image: { width: 512, height: 512 },
+    ambient: [0.3, 0.3, 0.3],
+    background: [0.5, 0.6, 0.8],
+    materials: {
+      chalk: { type: "rough", kd: [0.7, 0.7, 0.7], ks: [0, 0, 0] },
+      steel: { type: "reflective", n: [2.5, 2.5, 2.5], k: [3.3, 3.3, 3.3] },
+    },
+    lights: [
+      { type: "directional", from: [1, 2, 1.5], intensity: [0.6, 0.6, 0.6] },
+      { type: "directional", from: [-2, 1, 0.5], intensity: [0.4, 0.4, 0.4] },
+    ],
+    objects,
+    render: { max_depth: 3 },
+  };
+}
+
+// A binary PLY file. `vertex(i)` and `triangle(i)` give threes.
+function write_ply(path, vertices, vertex, triangles, triangle) {
+  const head =
+    "ply\nformat binary_little_endian 1.0\n" +
+    `element vertex ${vertices}\nproperty float x\nproperty float y\nproperty float z\n` +
+    `element face ${triangles}\nproperty list uchar int vertex_indices\nend_header\n`;
+  const bytes = Buffer.allocUnsafe(head.length + 12 * vertices + 13 * triangles);
+  let at = bytes.write(head, "latin1");
+  for (let i = 0; i < vertices; ++i) for (const x of vertex(i)) at = bytes.writeFloatLE(x, at);
+  for (let i = 0; i < triangles; ++i) {
+    at = bytes.writeUInt8(3, at);
+    for (const corner of triangle(i)) at = bytes.writeInt32LE(corner, at);
+  }
+  writeFileSync(path, bytes);
+}
+
+// A closed sphere of about that many triangles, with bumps of several sizes.
+function write_bumpy_sphere(path, triangles, radius) {
+  const side = Math.max(3, Math.round(Math.sqrt(triangles / 2)));
+  const vertex = (i) => {
+    const polar = (Math.PI * Math.floor(i / side)) / side, around = (2 * Math.PI * (i % side)) / side;
+    const bumps =
+      0.1 * Math.sin(5 * polar) * Math.cos(4 * around) +
+      0.03 * Math.sin(31 * polar) * Math.cos(24 * around) +
+      0.01 * Math.cos(83 * polar + 40 * around);
+    const r = radius * (1 + bumps * Math.sin(polar));
+    return [r * Math.sin(polar) * Math.cos(around), r * Math.cos(polar), r * Math.sin(polar) * Math.sin(around)];
+  };
+  const triangle = (i) => {
+    const square = i >> 1, row = Math.floor(square / side), column = square % side, next = (column + 1) % side;
+    const a = row * side + column, b = row * side + next, c = a + side, d = b + side;
+    return i % 2 === 0 ? [a, b, c] : [b, d, c];
+  };
+  write_ply(path, side * (side + 1), vertex, 2 * side * side, triangle);
+}
+
+// What each writes: <name>.json in kFolder, and what that needs. Returns the scene, or a file to be copied.
+const kSubjects = {
+  few: () => "scenes/glass.json",
+  flake: () => {
+    run_command(["node", "scenes/generate-sphereflake.mjs", "4", `${kFolder}/flake.json`]);
+    return null;
+  },
+  cloud: () => {
+    const random = random_numbers(1), at = () => 8 * random() - 4;
+    const ball = (i) => ({
+      type: "sphere",
+      center: [at(), at(), at()],
+      radius: 0.05 + 0.1 * random(),
+      material: i % 4 ? "chalk" : "steel",
+    });
+    return scene_of("A cloud of 8,000 balls", Array.from({ length: 8000 }, (_, i) => ball(i)), [0, 0, 13]);
+  },
+  stadium: () => {
+    write_bumpy_sphere(`${kFolder}/stadium-teapot.ply`, 10_000, 0.5);
+    const objects = [{ type: "mesh", file: "stadium-teapot.ply", material: "steel" }];
+    const ring = 300;
+    const place = (i, radius, y) => {
+      const angle = (2 * Math.PI * i) / ring;
+      return [radius * Math.cos(angle), y, radius * Math.sin(angle)];
+    };
+    for (let row = 0; row < 4; ++row)
+      for (let i = 0; i < ring; ++i) {
+        const low = 400 + 25 * row, y = 15 * row - 20;
+        const [a, b] = [place(i, low, y), place(i + 1, low, y)];
+        const [c, d] = [place(i, low + 25, y + 15), place(i + 1, low + 25, y + 15)];
+        objects.push({ type: "triangle", vertices: [a, b, c], material: "chalk" });
+        objects.push({ type: "triangle", vertices: [b, d, c], material: "chalk" });
+      }
+    return scene_of("A teapot's worth of triangles in a stadium", objects, [1.2, 0.8, 1.8]);
+  },
+  needles: () => {
+    const random = random_numbers(3), at = (size) => size * (2 * random() - 1);
+    const needle = () => {
+      const from = [at(3), at(3), at(3)], along = [at(2), at(2), at(2)];
+      return [from, from.map((x, k) => x + along[k]), from.map((x) => x + at(0.02))];
+    };
+    const objects = Array.from({ length: 6000 }, () => ({ type: "triangle", vertices: needle(), material: "chalk" }));
+    return scene_of("6,000 long thin triangles", objects, [0, 0, 11]);
+  },
+  bumpy: () => {
+    write_bumpy_sphere(`${kFolder}/bumpy.ply`, 70_000, 1);
+    const objects = [
+      { type: "mesh", file: "bumpy.ply", material: "chalk" },
+      { type: "plane", point: [0, -1.2, 0], normal: [0, 1, 0], material: "steel" },
+    ];
+    return scene_of("A bumpy ball of 70,000 triangles", objects, [0.7, 0.9, 3]);
+  },
+  bunny: () => {
+    const from = `${process.env.ORRERY_MESHES}/stanford-bunny.obj`;
+    if (!process.env.ORRERY_MESHES || !existsSync(from)) return undefined;
+    copyFileSync(from, `${kFolder}/bunny.obj`);
+    const objects = [
+      { type: "mesh", file: "bunny.obj", material: "chalk" },
+      { type: "plane", point: [0, 0.033, 0], normal: [0, 1, 0], material: "steel" },
+    ];
+    return scene_of("The Stanford bunny", objects, [-0.05, 0.2, 0.3], [-0.02, 0.1, 0]);
+  },
+};
+
+// A bumpy ball of about that many triangles.
+export function write_ball(triangles) {
+  mkdirSync(kFolder, { recursive: true });
+  const name = `ball-${triangles}`, path = `${kFolder}/${name}.json`;
+  write_bumpy_sphere(`${kFolder}/${name}.ply`, triangles, 1);
+  const objects = [{ type: "mesh", file: `${name}.ply`, material: "chalk" }];
+  writeFileSync(path, JSON.stringify(scene_of(`A ball of ${triangles} triangles`, objects, [0.7, 0.9, 3])));
+  return path;
+}
+
+// Writes all subjects; returns [name, path] of those that could be.
+export function write_subjects() {
+  mkdirSync(kFolder, { recursive: true });
+  const written = [];
+  for (const [name, make] of Object.entries(kSubjects)) {
+    const path = `${kFolder}/${name}.json`, made = make();
+    if (made === undefined) {
+      console.error(`${name} left out: its file is looked for in the folder that ORRERY_MESHES names`);
+      continue;
+    }
+    if (typeof made === "string") copyFileSync(made, path);
+    else if (made !== null) writeFileSync(path, JSON.stringify(made));
+    written.push([name, path]);
+  }
+  return written;
+}
