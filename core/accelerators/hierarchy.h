@@ -17,13 +17,13 @@ class Hierarchy final : public Accelerator<T> {
                AcceleratorCounts& counts) const override {
     unbounded_.closest(rays, groups, hits, counts);
     if (tree_.empty()) return;
-    Walk<T>(rays, groups, hits.t, &hits.primitive).template run<Query::closest>(tree_, counts);
+    Walk<T>(tree_, rays, groups, hits.t, &hits.primitive).template run<Query::closest>(counts);
   }
 
   void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
     const Groups open = unbounded_.occlude(rays, groups, counts);
     if (tree_.empty()) return;
-    Walk<T>(rays, open, rays.t_max, nullptr).template run<Query::occlude>(tree_, counts);
+    Walk<T>(tree_, rays, open, rays.t_max, nullptr).template run<Query::occlude>(counts);
   }
 
   AcceleratorFacts facts() const override {

@@ -107,17 +107,26 @@ class PacketProbe {
   // For those of `active`. REQUIRES: any(active).
   PacketProbe(const Ray<N>& rays, const MaskOf<N>& active) {
     const T pad = largest(active, max_component(abs(rays.origin))) * kRounding<T>;
-    set(0, active, rays.origin.x, rays.direction.x, pad);
-    set(1, active, rays.origin.y, rays.direction.y, pad);
-    set(2, active, rays.origin.z, rays.direction.z, pad);
+    const T size = largest(active, max_component(abs(rays.direction)));
+    set(0, active, rays.origin.x, rays.direction.x, pad, size);
+    set(1, active, rays.origin.y, rays.direction.y, pad, size);
+    set(2, active, rays.origin.z, rays.direction.z, pad, size);
   }
 
   std::uint8_t octant() const {
     return static_cast<std::uint8_t>((axis_[0].near & 1) | (axis_[1].near & 1) << 1 |
                                      (axis_[2].near & 1) << 2);
   }
-  // Whether the rays are so much alike that walking together pays.
+  // Whether the rays are so much alike that they can walk together.
   bool narrow() const { return narrow_; }
+  // How far apart they are where they come to the box, about.
+  T width_at(const Bounds<T>& box) const {
+    T distance = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      distance = std::max({distance, (&box.lo.x)[axis] - axis_[axis].near_origin,
+                           axis_[axis].near_origin - (&box.hi.x)[axis]});
+    return origins_ + directions_ * distance;
+  }
 
   [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, N& near) const {
     near = N(T(0));
@@ -138,17 +147,21 @@ class PacketProbe {
     T inverse_lo, inverse_hi, near_origin, far_origin;
   };
 
-  void set(std::size_t axis, const MaskOf<N>& active, const N& origin, const N& direction, T pad) {
-    constexpr T kLeast = T(1e-18), kWidest = T(0.25);
+  // `size`: the largest part of a direction.
+  void set(std::size_t axis, const MaskOf<N>& active, const N& origin, const N& direction, T pad, T size) {
+    const T kLeast = T(1e-18) * size, kWidest = T(0.3) * size;
     const T lo = smallest(active, direction), hi = largest(active, direction);
     const bool negative = hi < 0;
     narrow_ = narrow_ && (lo > kLeast || hi < -kLeast) && hi - lo < kWidest;
+    directions_ = std::max(directions_, (hi - lo) / size);
     const T origin_lo = smallest(active, origin) - pad, origin_hi = largest(active, origin) + pad;
+    origins_ = std::max(origins_, origin_hi - origin_lo - 2 * pad);
     axis_[axis] = {2 * axis + negative, 1 / hi, 1 / lo, negative ? origin_lo : origin_hi,
                    negative ? origin_hi : origin_lo};
   }
 
   std::array<Axis, 3> axis_;
+  T origins_ = 0, directions_ = 0;  // their spread, of directions as for length 1
   bool narrow_ = true;
 };
 

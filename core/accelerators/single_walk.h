@@ -23,9 +23,9 @@ struct Trip {
       const Meeting meeting{Blocks<T>::block_of(name), 0};
       const auto& pack = blocks.pack_of(name);
       if constexpr (kQuery == Query::closest)
-        counts.primitive_tests += pack.closest(std::span(&meeting, 1), &ray, &hit);
+        pack.closest(std::span(&meeting, 1), &ray, &hit, counts);
       else
-        counts.primitive_tests += pack.occlude(std::span(&meeting, 1), &ray, &hit);
+        pack.occlude(std::span(&meeting, 1), &ray, &hit, counts);
     }
   }
 };

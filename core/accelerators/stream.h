@@ -166,9 +166,9 @@ class Stream {
     const auto& pack = tree_.blocks().pack_of(leaf_);
     const std::span<const Meeting> meetings(meetings_.data(), met_);
     if constexpr (kQuery == Query::closest)
-      counts_.primitive_tests += pack.closest(meetings, walkers_.rays.data(), walkers_.hits.data());
+      pack.closest(meetings, walkers_.rays.data(), walkers_.hits.data(), counts_);
     else
-      counts_.primitive_tests += pack.occlude(meetings, walkers_.rays.data(), walkers_.hits.data());
+      pack.occlude(meetings, walkers_.rays.data(), walkers_.hits.data(), counts_);
     met_ = 0;
   }
 

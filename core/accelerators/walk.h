@@ -11,15 +11,16 @@ class Walk {
  public:
   // `t`: the ends of the active rays, which become the distances of hits, or -1 where occluded.
   // `primitive`: of the hits, or null. REQUIRES: all outlive this.
-  Walk(const RayBatch<T>& rays, const Groups& groups, Array<T>& t, Array<IndexOf<T>>* primitive)
-      : t_(t), primitive_(primitive) {
+  Walk(const WideTree<T>& tree, const RayBatch<T>& rays, const Groups& groups, Array<T>& t,
+       Array<IndexOf<T>>* primitive)
+      : tree_(tree), t_(t), primitive_(primitive) {
     for (const int group : groups) add(rays.at(group), group);
   }
 
   template <Query kQuery>
-  void run(const WideTree<T>& tree, AcceleratorCounts& counts) {
-    run_all<kQuery>(tree, packets_, counts);
-    run_all<kQuery>(tree, singles_, counts);
+  void run(AcceleratorCounts& counts) {
+    run_all<kQuery>(packets_, counts);
+    run_all<kQuery>(singles_, counts);
     for (int i = 0; i < packets_.count; ++i) {
       t_.put(packets_.place[i], packets_.hits[i].t);
       if (primitive_) primitive_->put(packets_.place[i], packets_.hits[i].primitive);
@@ -32,6 +33,8 @@ class Walk {
 
  private:
   using N = Lanes<T>;
+  // A packet that is wider than so many leaves meets too much that most of its rays do not.
+  static constexpr T kGrains = 1;
 
   void add(const Ray<N>& ray, int group) {
     const auto active = t_.at(group) > N(T(0));
@@ -42,7 +45,7 @@ class Walk {
     const unsigned any_x = x & bits, any_y = y & bits;
     const bool shared = (any_x == 0 || any_x == bits) && (any_y == 0 || any_y == bits);
     const PacketProbe<T> probe(ray, active);
-    if (probe.narrow() && shared) {
+    if (probe.narrow() && shared && probe.width_at(tree_.box()) < kGrains * tree_.grain()) {
       const auto& axis = kCyclicAxes[any_x ? 0 : any_y ? 1 : 2];
       return add_packet(packet_of(ray, shear, axis, active), probe, group);
     }
@@ -95,7 +98,7 @@ class Walk {
 
   // Those whose directions have the same signs agree about what is nearer: they go together.
   template <Query kQuery, class Walking>
-  static void run_all(const WideTree<T>& tree, Walking& walkers, AcceleratorCounts& counts) {
+  void run_all(Walking& walkers, AcceleratorCounts& counts) const {
     if (walkers.count == 0) return;
     using Streaming = Stream<kQuery, T, Walking>;
     const auto octant = [&](int i) -> std::size_t { return walkers.probes[i].octant(); };
@@ -105,11 +108,12 @@ class Walk {
     std::array<std::int32_t, Walking::kCapacity + Streaming::kPad> ids;
     std::array<int, 9> next = begin;
     for (int i = 0; i < walkers.count; ++i) ids[static_cast<std::size_t>(next[octant(i)]++)] = i;
-    Streaming stream(tree, walkers, counts);
+    Streaming stream(tree_, walkers, counts);
     for (std::size_t o = 0; o < 8; ++o)
       if (begin[o] < begin[o + 1]) stream.run(ids.data() + begin[o], begin[o + 1] - begin[o]);
   }
 
+  const WideTree<T>& tree_;
   Array<T>& t_;
   Array<IndexOf<T>>* const primitive_;
   Walkers<Packet<T>, PacketProbe<T>, PacketHit<T>, kBatch / kWidth<T>> packets_;

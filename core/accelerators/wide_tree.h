@@ -25,6 +25,8 @@ class WideTree {
   WideTree(const BoxTree<T>& tree, const PrimitiveList<T>& primitives) {
     if (tree.empty()) return;
     root_ = convert(tree, 0, primitives, 1);
+    box_ = tree.nodes[0].box;
+    grain_ /= static_cast<T>(leaves_);
     nodes_.shrink_to_fit();
     blocks_.pack();
   }
@@ -35,6 +37,9 @@ class WideTree {
   Child root() const { return root_; }
   const Node& node(Child child) const { return nodes_[child]; }
   const Blocks<T>& blocks() const { return blocks_; }
+  const Bounds<T>& box() const { return box_; }
+  // Mean of the longest side of a leaf's box.
+  T grain() const { return grain_; }
   static bool is_leaf(Child child) { return (child & kLeaf) != 0; }
 
  private:
@@ -80,6 +85,8 @@ class WideTree {
 
   Child add_leaf(const BoxTree<T>& tree, const typename BoxTree<T>::Node& leaf,
                  const PrimitiveList<T>& primitives) {
+    grain_ += max_component(leaf.box.hi - leaf.box.lo);
+    ++leaves_;
     std::array<std::uint32_t, Blocks<T>::kSize> places;
     const std::size_t count = leaf.right - leaf.left;
     for (std::size_t i = 0; i < count; ++i) places[i] = tree.items[leaf.left + i].primitive;
@@ -88,6 +95,9 @@ class WideTree {
 
   Child root_ = 0;
   int depth_ = 0;
+  Bounds<T> box_;
+  T grain_ = 0;
+  std::size_t leaves_ = 0;
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };

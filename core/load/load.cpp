@@ -1,6 +1,7 @@
 #include "core/load/load.h"
 
 #include <algorithm>
+#include <deque>
 #include <limits>
 
 #include "core/accelerators/registry.h"
@@ -66,12 +67,61 @@ void read_render(Params& p, RenderSettings& render) {
   render.seed = static_cast<std::uint64_t>(p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, 0));
 }
 
+// Where the primitives of a scene or a model get their material from.
+class ObjectReader {
+ public:
+  explicit ObjectReader(std::vector<std::unique_ptr<ShapeSet>>& shapes) : shapes_(shapes) {
+    for (const auto& type : shape_types()) shapes_.push_back(type.make());
+    objects_by_shape_.resize(shapes_.size());
+  }
+
+  void read(Params& p, const Names& materials, const MeshSource& meshes) {
+    const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
+    if (!type) return;
+    const std::size_t material = p.reference("material", "Name of its material.", materials);
+    const int primitives = shapes_[*type]->add(p, meshes);
+    objects_by_shape_[*type].push_back({material, primitives});
+  }
+
+  // Calls visit(material name, primitives) in the order of the primitives' numbers.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const auto& objects : objects_by_shape_)
+      for (const auto& [material, primitives] : objects)
+        visit(material, static_cast<std::size_t>(primitives));
+  }
+
+ private:
+  struct ObjectOf {
+    std::size_t material;
+    int primitives;
+  };
+  std::vector<std::unique_ptr<ShapeSet>>& shapes_;
+  std::vector<std::vector<ObjectOf>> objects_by_shape_;
+};
+
+// Scaled first, then turned, then moved.
+Affined read_transform(Params& p) {
+  constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
+  const auto scale = p.numbers3("scale", "Factors along x, y and z; negative ones mirror.",
+                                {.min = -kMostScale, .max = kMostScale}, Vec3d(1));
+  for (const double factor : scale)
+    if (std::abs(factor) < kLeastScale) p.fail("scale", "expected factors of at least 1e-6 in size");
+  Affined turn;
+  p.optional_object("rotate", "Turn about an axis through the origin.", [&](Params& r) {
+    const Vec3d axis = r.direction("axis", "Direction of the axis.", Vec3d(0, 1, 0));
+    turn = rotation(axis, r.number("degrees", "Anticlockwise, seen from the axis' tip.",
+                                   {.min = -3600, .max = 3600}, 0.0));
+  });
+  const Vec3d move = p.point("translate", "Where the model's origin goes, in metres.", Vec3d(0));
+  return {turn.x * scale[0], turn.y * scale[1], turn.z * scale[2], move};
+}
+
 class SceneReader {
  public:
-  explicit SceneReader(const MeshSource& meshes) : meshes_(meshes), scene_(std::make_shared<Scene>()) {
-    for (const auto& type : shape_types()) scene_->shapes.push_back(type.make());
+  explicit SceneReader(const MeshSource& meshes)
+      : meshes_(meshes), scene_(std::make_shared<Scene>()), objects_(scene_->shapes) {
     for (const auto& type : material_types()) scene_->materials.push_back(type.make());
-    objects_by_shape_.resize(scene_->shapes.size());
   }
 
   void read(Params& p) {
@@ -86,7 +136,18 @@ class SceneReader {
     p.each_named("materials", "Materials by name.", {},
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
-    p.each("objects", "What there is to see.", {1, kMaxObjects}, [&](Params& o) { read_object(o); });
+    p.each("objects", "What there is to see.", {0, kMaxObjects}, [&](Params& o) {
+      objects_.read(o, names_, meshes_);
+      ++scene_->object_count;
+    });
+    p.each_named("models", "Objects that instances place, by name.", {},
+                 [&](const std::string& name, Params& m) { read_model(name, m); });
+    p.each("instances", "Models that stand in the scene.", {0, kMaxObjects}, [&](Params& i) {
+      scene_->instances.push_back(
+          {i.reference("model", "Name of what stands there.", model_names_), read_transform(i)});
+      ++scene_->object_count;
+    });
+    if (scene_->object_count == 0) p.fail("objects", "expected at least 1 object or instance");
     p.optional_object("render", "How the picture is made.",
                       [&](Params& r) { read_render(r, scene_->render); });
   }
@@ -96,7 +157,12 @@ class SceneReader {
     scene_->id = document.id();
     scene_->canonical = document.canonical();
     number_materials();
-    gather_facts();
+    gather_facts(scene_->shapes, 1);
+    for (Model& model : scene_->models)
+      for (const auto& shapes : model.shapes)
+        for (int i = 0; i < shapes->size(); ++i) model.bounds.include(shapes->bounds(i));
+    for (const Instance& instance : scene_->instances) gather_facts(instance);
+    gather_material_facts();
     return scene_;
   }
 
@@ -120,13 +186,12 @@ class SceneReader {
     if (type) scene_->lights.push_back(light_types()[*type].make(p));
   }
 
-  void read_object(Params& p) {
-    const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
-    if (!type) return;
-    const std::size_t material = p.reference("material", "Name of its material.", names_);
-    const int primitives = scene_->shapes[*type]->add(p, meshes_);
-    objects_by_shape_[*type].push_back({material, primitives});
-    ++scene_->object_count;
+  void read_model(const std::string& name, Params& p) {
+    model_names_.add(name);
+    Model& model = scene_->models.emplace_back();
+    ObjectReader& objects = model_objects_.emplace_back(model.shapes);
+    p.each("objects", "What it consists of.", {1, kMaxObjects},
+           [&](Params& o) { objects.read(o, names_, meshes_); });
   }
 
   // Materials are numbered set by set, and each primitive learns its number.
@@ -134,16 +199,29 @@ class SceneReader {
     std::vector<int> first(scene_->materials.size(), 0);
     for (std::size_t set = 1; set < first.size(); ++set)
       first[set] = first[set - 1] + scene_->materials[set - 1]->size();
-    for (const auto& objects : objects_by_shape_)
-      for (const auto& [name, primitives] : objects) {
+    const auto number = [&](const ObjectReader& objects, std::vector<std::int32_t>& into) {
+      objects.for_each([&](std::size_t name, std::size_t primitives) {
         const MaterialPlace place = places_[name];
         used_sets_.push_back(place.set);
-        scene_->material_of.insert(scene_->material_of.end(), static_cast<std::size_t>(primitives),
-                                   first[place.set] + place.index);
-      }
+        into.insert(into.end(), primitives, first[place.set] + place.index);
+      });
+    };
+    auto model = scene_->models.begin();
+    for (const ObjectReader& objects : model_objects_) number(objects, (model++)->material_of);
+    std::size_t all = 0;
+    for (const Instance& instance : scene_->instances)
+      all += scene_->models[instance.model].material_of.size();
+    if (all > kMaxInstanced)
+      throw InputError("/instances", "expected at most " + std::to_string(kMaxInstanced) +
+                                         " primitives in all instances, got " + std::to_string(all));
+    number(objects_, scene_->material_of);
+    for (const Instance& instance : scene_->instances) {
+      const auto& of_model = scene_->models[instance.model].material_of;
+      scene_->material_of.insert(scene_->material_of.end(), of_model.begin(), of_model.end());
+    }
   }
 
-  void gather_facts() {
+  void gather_material_facts() {
     SceneFacts& facts = scene_->facts;
     for (const std::size_t set : used_sets_) {
       const MaterialTraits traits = scene_->materials[set]->traits();
@@ -152,27 +230,37 @@ class SceneReader {
       facts.materials.transmits |= traits.transmits;
       facts.materials.filters |= traits.filters;
     }
-    facts.smallest_feature = std::numeric_limits<double>::infinity();
-    for (const auto& shapes : scene_->shapes) {
+  }
+
+  // `shrink`: how much smaller than they are the primitives stand in the scene, at most.
+  void gather_facts(const std::vector<std::unique_ptr<ShapeSet>>& sets, double shrink) {
+    SceneFacts& facts = scene_->facts;
+    for (const auto& shapes : sets) {
       facts.left_out += shapes->left_out();
       for (int i = 0; i < shapes->size(); ++i) {
         const Boundsd bounds = shapes->bounds(i);
         if (!bounds.bounded()) continue;
         facts.magnitude = std::max(facts.magnitude, bounds.magnitude());
-        facts.smallest_feature = std::min(facts.smallest_feature, bounds.diagonal());
+        facts.smallest_feature = std::min(facts.smallest_feature, bounds.diagonal() * shrink);
       }
     }
+  }
+  void gather_facts(const Instance& instance) {
+    const Model& model = scene_->models[instance.model];
+    gather_facts(model.shapes, 1 / stretch(inverse(instance.world_from_model)));
+    Boundsd box;
+    if (!model.bounds.bounded()) return;
+    for (const Vec3d& v : corners_of(model.bounds)) box.include(instance.world_from_model.point(v));
+    scene_->facts.magnitude = std::max(scene_->facts.magnitude, box.magnitude());
   }
 
   const MeshSource& meshes_;
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};
   std::vector<MaterialPlace> places_;  // by number of the name
-  struct ObjectOf {
-    std::size_t material;
-    int primitives;
-  };
-  std::vector<std::vector<ObjectOf>> objects_by_shape_;
+  ObjectReader objects_;
+  Names model_names_{"model"};
+  std::deque<ObjectReader> model_objects_;  // in the order of scene_->models
   std::vector<std::size_t> used_sets_;
 };
 

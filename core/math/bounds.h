@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -48,6 +49,13 @@ struct Bounds {
 };
 
 using Boundsd = Bounds<double>;
+
+inline std::array<Vec3<double>, 8> corners_of(const Boundsd& b) {
+  std::array<Vec3<double>, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = {i & 1 ? b.hi.x : b.lo.x, i & 2 ? b.hi.y : b.lo.y, i & 4 ? b.hi.z : b.lo.z};
+  return corners;
+}
 
 // The box in another precision, grown outward by 4 ulp of its largest coordinate on every side, so that a
 // hit computed in that precision and put back on its shape still lies inside.

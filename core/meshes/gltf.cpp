@@ -68,7 +68,7 @@ class SceneReader {
   void place(const GltfValue& nodes, const std::vector<std::size_t>& roots) {
     struct Visit {
       std::size_t node;
-      Affine world_from_parent;
+      Affined world_from_parent;
     };
     std::vector<Visit> stack;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, {}});
@@ -79,7 +79,7 @@ class SceneReader {
       const GltfValue node = nodes.item(visit.node);
       if (reached[visit.node]) node.fail("expected a tree of nodes, got this one twice");
       reached[visit.node] = true;
-      const Affine world_from_node = compose(visit.world_from_parent, transform_of(node));
+      const Affined world_from_node = compose(visit.world_from_parent, transform_of(node));
       if (const auto mesh = node.find("mesh")) {
         const GltfValue primitives = file_.root().at("meshes").item(mesh->integer()).at("primitives");
         for (std::size_t i = 0; i < primitives.size(); ++i)
@@ -91,7 +91,7 @@ class SceneReader {
     }
   }
 
-  void add_primitive(const GltfValue& primitive, const Affine& world_from_node) {
+  void add_primitive(const GltfValue& primitive, const Affined& world_from_node) {
     if (++placed_ > kMaxPlaced)
       primitive.fail("expected at most " + std::to_string(kMaxPlaced) + " placed primitives, got more");
     const std::uint64_t mode = integer_or(primitive, "mode", 4);
@@ -105,10 +105,10 @@ class SceneReader {
     if (!indices)
       for (std::size_t i = first; i < mesh_.positions.size(); ++i)
         order.push_back(static_cast<std::uint32_t>(i));
-    add_triangles(primitive, mode, order, world_from_node.mirrors());
+    add_triangles(primitive, mode, order, scaled_determinant(world_from_node) < 0);
   }
 
-  void add_vertices(const GltfValue& attributes, const Affine& world_from_node) {
+  void add_vertices(const GltfValue& attributes, const Affined& world_from_node) {
     const GltfNumbers positions = file_.accessor(attributes.at("POSITION"), "VEC3");
     check_vertices(mesh_.positions.size() + positions.count, limits_);
     for (std::size_t i = 0; i < positions.count; ++i) {
@@ -121,7 +121,7 @@ class SceneReader {
     all_normals_ = all_normals_ && normals;
     for (std::size_t i = 0; all_normals_ && i < positions.count; ++i) {
       const Vec3d n(normals->value(i, 0), normals->value(i, 1), normals->value(i, 2));
-      const Vec3d turned = world_from_node.normal(n);
+      const Vec3d turned = transformed_normal(world_from_node, n);
       if (!is_finite(turned))
         attributes.fail("expected finite normals, got " + text_of(n) + " at vertex " + std::to_string(i));
       mesh_.normals.push_back(turned);

@@ -23,7 +23,7 @@ Vec3d three_or(const GltfValue& node, const char* key, const Vec3d& fallback) {
 }
 
 // The rotation of a quaternion (x, y, z, w) of any length but 0.
-Affine rotation_of(const GltfValue& value) {
+Affined rotation_of(const GltfValue& value) {
   auto q = numbers_of<4>(value);
   double largest = 0;
   for (const double part : q) largest = std::max(largest, std::abs(part));
@@ -40,7 +40,7 @@ Affine rotation_of(const GltfValue& value) {
 
 }  // namespace
 
-Affine transform_of(const GltfValue& node) {
+Affined transform_of(const GltfValue& node) {
   if (const auto matrix = node.find("matrix")) {
     const auto m = numbers_of<16>(*matrix);  // column by column
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
@@ -48,7 +48,7 @@ Affine transform_of(const GltfValue& node) {
     return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
   }
   const auto quaternion = node.find("rotation");
-  Affine transform = quaternion ? rotation_of(*quaternion) : Affine{};
+  Affined transform = quaternion ? rotation_of(*quaternion) : Affined{};
   const Vec3d scale = three_or(node, "scale", {1, 1, 1});
   transform.x = transform.x * scale.x;
   transform.y = transform.y * scale.y;

@@ -8,20 +8,8 @@
 
 namespace orrery {
 
-// Work of a structure: one ray against one thing, whatever the width of the lanes.
-struct AcceleratorCounts {
-  std::uint64_t node_visits = 0;  // by a ray, or by several that walk together
-  std::uint64_t box_tests = 0;
-  std::uint64_t primitive_tests = 0;
-
-  void add(const AcceleratorCounts& other) {
-    node_visits += other.node_visits;
-    box_tests += other.box_tests;
-    primitive_tests += other.primitive_tests;
-  }
-};
-
-// What a structure is built over: every primitive of a scene; its position is its number.
+// What a structure is built over: every primitive of a scene. (An instance is one; its hits have the numbers
+// of what is in it.)
 template <class T>
 struct Primitive {
   const ShapeKernel<T>* kernel;

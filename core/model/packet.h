@@ -1,12 +1,26 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "core/model/batch.h"
 
 // Rays as structures meet them: one alone among many primitives (SingleRay), or a register of them that run
 // alike, so that they walk together (Packet); each with what its tests need and share worked out once.
 namespace orrery {
+
+// Work of a structure: one ray against one thing, whatever the width of the lanes.
+struct AcceleratorCounts {
+  std::uint64_t node_visits = 0;  // by a ray, or by several that walk together
+  std::uint64_t box_tests = 0;
+  std::uint64_t primitive_tests = 0;
+
+  void add(const AcceleratorCounts& other) {
+    node_visits += other.node_visits;
+    box_tests += other.box_tests;
+    primitive_tests += other.primitive_tests;
+  }
+};
 
 // The axes of a ray as masks: z the direction's largest component, x and y following it cyclically.
 template <class N>

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <deque>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/math/affine.h"
 #include "core/model/light.h"
 #include "core/model/material.h"
 #include "core/model/plan.h"
@@ -26,7 +29,19 @@ struct SceneFacts {
   MaterialTraits materials;     // of those that some object has
   double magnitude = 0;         // largest absolute coordinate of bounded primitives, metres
   std::size_t left_out = 0;     // primitives without area
-  double smallest_feature = 0;  // smallest diagonal of a bounded primitive's box; infinite if there is none
+  double smallest_feature = std::numeric_limits<double>::infinity();  // smallest diagonal of a bounded primitive's box; infinite if there is none
+};
+
+// Shapes that instances place.
+struct Model {
+  std::vector<std::unique_ptr<ShapeSet>> shapes;
+  std::vector<std::int32_t> material_of;  // of each primitive
+  Boundsd bounds;
+};
+
+struct Instance {
+  std::size_t model;
+  Affined world_from_model;
 };
 
 // A scene as read, in double precision; never changed afterwards, shared between threads. Primitives are
@@ -41,6 +56,8 @@ struct Scene {
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
   std::vector<std::unique_ptr<Light>> lights;
+  std::deque<Model> models;
+  std::vector<Instance> instances;        // their primitives are numbered after those of `shapes`
   std::vector<std::int32_t> material_of;  // of each primitive
   int object_count = 0;
   SceneFacts facts;

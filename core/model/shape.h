@@ -27,18 +27,22 @@ struct Surface {
 // Primitives of one kernel in an order that a structure chose, laid out in blocks of kBlock<T>, so that a
 // packet meets one of them, or a single ray a block of them, at once. Hits and ties are those of
 // ShapeKernel::closest(), bit for bit. A call takes the meetings in their order, with rays and hits at the
-// places they name, and returns the number of tests of a ray against a primitive. Const and free of state.
+// places they name, and counts its work. Const and free of state.
 template <class T>
 class PackedPrimitives {
  public:
   virtual ~PackedPrimitives() = default;
 
   using Meetings = std::span<const Meeting>;
-  virtual std::uint64_t closest(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits) const = 0;
-  virtual std::uint64_t closest(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits) const = 0;
+  virtual void closest(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+                       AcceleratorCounts& counts) const = 0;
+  virtual void closest(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+                       AcceleratorCounts& counts) const = 0;
   // Sets t to -1 for rays that meet something in (0, t).
-  virtual std::uint64_t occlude(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits) const = 0;
-  virtual std::uint64_t occlude(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits) const = 0;
+  virtual void occlude(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+                       AcceleratorCounts& counts) const = 0;
+  virtual void occlude(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+                       AcceleratorCounts& counts) const = 0;
 
   virtual std::size_t bytes() const = 0;
 };

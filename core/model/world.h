@@ -25,10 +25,6 @@ struct Geometry {
   Vec3<T> ambient, background;
 };
 
-// For float and double.
-template <class T>
-std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> scene);
-
 // A scene made ready for rays: what there is, and the structure that finds what they meet. The geometry
 // outlives the accelerator.
 template <class T>

@@ -13,6 +13,7 @@ inline constexpr int kMaxSamples = 4096;
 inline constexpr int kMaxDepth = kDeepestRay;
 inline constexpr int kMaxLights = 1024;
 inline constexpr int kMaxObjects = 1'000'000;
+inline constexpr std::size_t kMaxInstanced = 20'000'000;  // primitives in all instances
 inline constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53;
 inline constexpr double kMaxOrbitDegrees = 1e9;
 inline constexpr double kMinOrbitDistance = 1e-3, kMaxOrbitDistance = 1e3;

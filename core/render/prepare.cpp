@@ -2,19 +2,22 @@
 
 #include <chrono>
 
+#include "core/render/geometry.h"
+
 namespace orrery {
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double& build_ms) {
   const std::lock_guard lock(parts.mutex);
   auto& made = made_of<T>(parts);
-  auto& accelerator = made.accelerators[&type];
-  if (!accelerator) {
+  World<T>& world = made.worlds[&type];
+  if (!world.accelerator) {
     const auto start = std::chrono::steady_clock::now();
-    if (!made.geometry) made.geometry = make_geometry<T>(parts.scene);
-    accelerator = build(type, made.geometry->primitives);
+    auto& geometry = made.geometries[parts.scene->models.empty() ? nullptr : &type];
+    if (!geometry) geometry = make_geometry<T>(parts.scene, type);
+    world = {geometry, build(type, geometry->primitives)};
     build_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
-  return {made.geometry, accelerator};
+  return world;
 }
 
 template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);

@@ -13,8 +13,9 @@ namespace orrery {
 struct PreparedScene::Parts {
   template <class T>
   struct Made {
-    std::shared_ptr<const Geometry<T>> geometry;
-    std::map<const AcceleratorType*, std::shared_ptr<const Accelerator<T>>> accelerators;
+    // By the type of the models' structures; null if there are no models.
+    std::map<const AcceleratorType*, std::shared_ptr<const Geometry<T>>> geometries;
+    std::map<const AcceleratorType*, World<T>> worlds;
     std::optional<Decision> chosen;  // by trial
   };
   std::shared_ptr<const Scene> scene;

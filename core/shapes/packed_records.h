@@ -37,8 +37,8 @@ class PackedRecords final : public PackedPrimitives<T> {
 
   using Meetings = typename PackedPrimitives<T>::Meetings;
 
-  [[gnu::flatten]] std::uint64_t closest(Meetings meetings, const SingleRay<T>* rays,
-                                         SingleHit<T>* hits) const override {
+  [[gnu::flatten]] void closest(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+                                AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
     for (const Meeting& meeting : meetings) {
       const Block& block = blocks_[meeting.block];
@@ -48,11 +48,11 @@ class PackedRecords final : public PackedPrimitives<T> {
       const unsigned reached = bits_of(t <= B(std::min(hit.t, kFar))) & block.filled();
       if (reached != 0) take_nearest(block, t, reached, hit);
     }
-    return tested;
+    counts.primitive_tests += tested;
   }
 
-  [[gnu::flatten]] std::uint64_t occlude(Meetings meetings, const SingleRay<T>* rays,
-                                         SingleHit<T>* hits) const override {
+  [[gnu::flatten]] void occlude(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+                                AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
     for (const Meeting& meeting : meetings) {
       const Block& block = blocks_[meeting.block];
@@ -61,11 +61,11 @@ class PackedRecords final : public PackedPrimitives<T> {
       tested += block.count;
       if ((bits_of(distance(block.core, rays[meeting.ray]) < B(hit.t)) & block.filled()) != 0) hit.t = T(-1);
     }
-    return tested;
+    counts.primitive_tests += tested;
   }
 
-  [[gnu::flatten]] std::uint64_t closest(Meetings meetings, const Packet<T>* packets,
-                                         PacketHit<T>* hits) const override {
+  [[gnu::flatten]] void closest(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+                                AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
     for (const Meeting& meeting : meetings) {
       const Block& block = blocks_[meeting.block];
@@ -80,11 +80,11 @@ class PackedRecords final : public PackedPrimitives<T> {
       });
       hit.farthest = stdx::hmax(hit.t);
     }
-    return tested;
+    counts.primitive_tests += tested;
   }
 
-  [[gnu::flatten]] std::uint64_t occlude(Meetings meetings, const Packet<T>* packets,
-                                         PacketHit<T>* hits) const override {
+  [[gnu::flatten]] void occlude(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+                                AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
     for (const Meeting& meeting : meetings) {
       const Block& block = blocks_[meeting.block];
@@ -96,7 +96,7 @@ class PackedRecords final : public PackedPrimitives<T> {
       });
       hit.farthest = stdx::hmax(hit.t);
     }
-    return tested;
+    counts.primitive_tests += tested;
   }
 
   std::size_t bytes() const override { return blocks_.size() * sizeof(Block); }

@@ -9,14 +9,17 @@ import { measure } from "./measure.mjs";
 import { kNoise } from "./noise.mjs";
 import { kOrbitHttp } from "./orbit_http.mjs";
 import { kPaperVsPovray } from "./paper_vs_povray.mjs";
+import { kReports } from "./structures.mjs";
 
 // Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
 // reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree];
 
+const kAll = [...kBenchmarks, ...kReports];
+
 const kQuietLoad = 0.3; // above it others work on this machine too
-const kUsage = "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--list]";
+const kUsage = "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--list]";
 
 function fail(message) {
   console.error(`bench: ${message}\n${kUsage}`);
@@ -24,17 +27,19 @@ function fail(message) {
 }
 
 function read_arguments(words) {
-  const options = { names: [], pairs: 7, json: null, list: false };
+  const options = { names: [], pairs: 7, json: null, charts: "build/charts", list: false };
   for (let i = 0; i < words.length; ++i) {
     if (words[i] === "--list") options.list = true;
     else if (words[i] === "--pairs") options.pairs = Number(words[++i]);
     else if (words[i] === "--json") options.json = words[++i];
+    else if (words[i] === "--charts") options.charts = words[++i];
     else if (words[i].startsWith("-")) fail(`unknown option ${words[i]}`);
-    else if (kBenchmarks.some((b) => b.name === words[i])) options.names.push(words[i]);
-    else fail(`no benchmark is called ${words[i]}; there are ${kBenchmarks.map((b) => b.name).join(", ")}`);
+    else if (kAll.some((b) => b.name === words[i])) options.names.push(words[i]);
+    else fail(`no benchmark is called ${words[i]}; there are ${kAll.map((b) => b.name).join(", ")}`);
   }
   if (!Number.isInteger(options.pairs) || options.pairs < 1) fail("--pairs expects a whole number > 0");
   if (options.json === undefined) fail("--json expects a file name");
+  if (options.charts === undefined) fail("--charts expects a folder");
   return options;
 }
 
@@ -57,12 +62,14 @@ function table_row(cell_of) {
     .join("");
 }
 
+function is_missing({ name, needs }) {
+  const missing = needs.filter((program) => !exists_program(program));
+  if (missing.length > 0) console.log(`${name} skipped: ${missing.join(", ")} is not installed`);
+  return missing.length > 0;
+}
+
 async function run_benchmark(benchmark, pairs) {
-  const missing = benchmark.needs.filter((program) => !exists_program(program));
-  if (missing.length > 0) {
-    console.log(`${benchmark.name} skipped: ${missing.join(", ")} is not installed`);
-    return null;
-  }
+  if (is_missing(benchmark)) return null;
   try {
     const result = await measure(benchmark, pairs);
     console.log(table_row((_, value) => value(result)));
@@ -77,14 +84,15 @@ async function run_benchmark(benchmark, pairs) {
 async function main() {
   const options = read_arguments(process.argv.slice(2));
   if (options.list) {
-    for (const { name, what } of kBenchmarks) console.log(`${name.padEnd(22)}${what}`);
+    for (const { name, what } of kAll) console.log(`${name.padEnd(22)}${what}`);
     return;
   }
   if (!exists_program(kOrrery)) fail(`${kOrrery} is not built`);
   const load = loadavg()[0];
   if (load > kQuietLoad) console.log(`warning: the machine is not idle, its load is ${load.toFixed(2)}`);
-  console.log(table_row((name) => name));
-  const chosen = kBenchmarks.filter((b) => options.names.length === 0 || options.names.includes(b.name));
+  const chosen_of = (all) => all.filter((b) => options.names.length === 0 || options.names.includes(b.name));
+  const chosen = chosen_of(kBenchmarks);
+  if (chosen.length > 0) console.log(table_row((name) => name));
   const results = [];
   for (const benchmark of chosen) {
     const result = await run_benchmark(benchmark, options.pairs);
@@ -92,6 +100,7 @@ async function main() {
   }
   for (const { name, what, cost, runs, remark } of results)
     console.log(`${name}: ${what}; ${runs} pairs, ratio of ${cost}${remark ? `; ${remark}` : ""}`);
+  for (const report of chosen_of(kReports)) if (!is_missing(report)) report.run(options);
   if (options.json) writeFileSync(options.json, JSON.stringify(results, null, 2) + "\n");
 }
 

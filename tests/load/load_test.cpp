@@ -171,5 +171,34 @@ TEST(Request, RefusesWhatNoSceneMayAskEither) {
   EXPECT_EQ(problem("{'render': {'depth': 3}}"), "/render");
 }
 
+TEST(Load, RefusesInstancesThatCannotBe) {
+  covers("A38");
+  const auto problem = [](const char* instance) {
+    Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
+    scene["models"]["it"]["objects"] = {
+        {{"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", 1}, {"material", "white"}}};
+    scene["instances"] = Json::array({json(instance)});
+    return first_problem(scene);
+  };
+  EXPECT_EQ(problem("{'model': 'it', 'scale': [1, -2, 0.5], 'translate': [1, 2, 3]}"), "accepted");
+  EXPECT_EQ(problem("{'model': 'that'}"), "/instances/0/model");
+  EXPECT_EQ(problem("{'model': 'it', 'scale': [1, 0, 1]}"), "/instances/0/scale");
+  EXPECT_EQ(problem("{'model': 'it', 'scale': [1, 1e7, 1]}"), "/instances/0/scale/1");
+  EXPECT_EQ(problem("{'model': 'it', 'rotate': {'axis': [0, 0, 0], 'degrees': 3}}"),
+            "/instances/0/rotate/axis");
+  EXPECT_EQ(problem("{'model': 'it', 'turn': 3}"), "/instances/0");
+  Json empty = scene_of("[]");
+  EXPECT_EQ(first_problem(empty), "/objects");
+}
+
+TEST(Load, RefusesMoreInstancedPrimitivesThanItsLimit) {
+  Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
+  Json& objects = scene["models"]["it"]["objects"];
+  for (int i = 0; i < 1000; ++i)
+    objects.push_back({{"type", "sphere"}, {"center", {i, 0, 0}}, {"radius", 1}, {"material", "white"}});
+  for (int i = 0; i < 20'001; ++i) scene["instances"].push_back({{"model", "it"}});
+  EXPECT_EQ(first_problem(scene), "/instances");
+}
+
 }  // namespace
 }  // namespace orrery::test

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "core/accelerators/registry.h"
+#include "core/render/geometry.h"
 #include "tests/support/batches.h"
 
 namespace orrery::test {
@@ -14,10 +15,12 @@ std::vector<std::string> accelerator_names() {
 }
 
 template <class T>
-Structure<T>::Structure(const Json& scene, const std::string& accelerator)
-    : geometry_(make_geometry<T>(load(scene))) {
+Structure<T>::Structure(const Json& scene, const std::string& accelerator) {
   for (const auto& type : accelerator_types())
-    if (type.name == accelerator) accelerator_ = build(type, geometry_->primitives);
+    if (type.name == accelerator) {
+      geometry_ = make_geometry<T>(load(scene), type);
+      accelerator_ = build(type, geometry_->primitives);
+    }
   if (!accelerator_) throw std::invalid_argument(accelerator);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "core/render/geometry.h"
 #include "tests/support/batches.h"
 
 namespace orrery::test {
@@ -42,7 +43,7 @@ Tracing::Tracing(const Json& scene_json, RenderRequest request) {
   request.precision = Precision::double_precision;
   request.slice = kBatch;
   plan_ = make_plan(*scene, request);
-  world_.geometry = make_geometry<double>(scene);
+  world_.geometry = make_geometry<double>(scene, *plan_.accelerator);
   auto recorder = std::make_unique<Recorder>(build(*plan_.accelerator, world_.geometry->primitives));
   recorder_ = recorder.get();
   world_.accelerator = std::move(recorder);

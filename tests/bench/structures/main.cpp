@@ -8,12 +8,16 @@
 #include "core/accelerators/registry.h"
 #include "core/load/load.h"
 #include "core/plan/plan.h"
+#include "core/render/geometry.h"
+#include "core/render/renderer.h"
 #include "core/render/trial.h"
 #include "server/commands/mesh_files.h"
+#include "tests/support/batches.h"
+#include "tests/support/random.h"
 
-// Every structure on one scene: what building it takes, and what the rays of some tiles of its picture cost
-// in it, on one thread.
-//   structures SCENE.json ROUNDS
+// Every structure on one scene: what building it takes, and what rays cost in it, on one thread: those of
+// some tiles of its picture, or closest hits of rays at random through its bounded primitives.
+//   structures SCENE.json ROUNDS picture|random [NAME...]
 // Prints JSON. Times are CPU time; each round asks every structure once, so that their ratios hold while the
 // machine's speed drifts.
 namespace orrery::bench {
@@ -75,8 +79,9 @@ bool too_slow(const AcceleratorType& type, int primitives) {
 }
 
 template <class T>
-Candidate<T> candidate_of(const AcceleratorType& type, const std::shared_ptr<const Geometry<T>>& geometry,
+Candidate<T> candidate_of(const AcceleratorType& type, const std::shared_ptr<const Scene>& scene,
                           int rounds) {
+  const auto geometry = make_geometry<T>(scene, type);
   Candidate<T> candidate{&type, {geometry, nullptr}, nullptr, {}, {}, {}};
   std::shared_ptr<const Accelerator<T>> built;
   double spent = 0;
@@ -92,20 +97,58 @@ Candidate<T> candidate_of(const AcceleratorType& type, const std::shared_ptr<con
   return candidate;
 }
 
+// Batches of rays between points on the sphere around the bounded primitives.
 template <class T>
-ordered_json measure(const std::shared_ptr<const Scene>& scene, const Plan& plan, int rounds) {
-  const auto geometry = make_geometry<T>(scene);
+std::vector<RayBatch<T>> random_rays(const PrimitiveList<T>& primitives) {
+  Boundsd box;
+  for (const auto& primitive : primitives)
+    if (primitive.bounds.bounded()) box.include(primitive.bounds);
+  const Vec3d middle = (box.lo + box.hi) * 0.5;
+  test::Random random(1);
+  std::vector<RayBatch<T>> batches(kTiles);
+  std::vector<Ray<T>> rays(kBatch);
+  for (auto& batch : batches) {
+    for (auto& ray : rays) {
+      const Vec3d from = middle + random.direction() * (box.diagonal() / 2);
+      const Vec3d to = middle + random.direction() * (box.diagonal() / 2);
+      ray = {Vec3<T>(from), Vec3<T>(safe_normalize(to - from))};
+    }
+    test::fill_batch<T>(rays, std::numeric_limits<T>::infinity(), batch);
+  }
+  return batches;
+}
+
+template <class T>
+TraceCounts try_batches(const World<T>& world, const std::vector<RayBatch<T>>& batches) {
+  TraceCounts counts;
+  const auto hits = std::make_unique<HitBatch<T>>();
+  for (const auto& batch : batches) {
+    hits->t = batch.t_max;
+    hits->primitive.values.fill(kNoPrimitive);
+    world.accelerator->closest(batch, test::groups_of(batch), *hits, counts.accelerator);
+    counts.rays.camera += static_cast<std::uint64_t>(batch.count);
+  }
+  return counts;
+}
+
+template <class T>
+ordered_json measure(const std::shared_ptr<const Scene>& scene, const Plan& plan, int rounds, bool random,
+                     const std::vector<std::string>& names) {
   std::vector<Candidate<T>> candidates;
   for (const auto& type : accelerator_types()) {
-    if (too_slow(type, scene->primitive_count())) continue;
+    const bool chosen = std::find(names.begin(), names.end(), type.name) != names.end();
+    if (names.empty() ? too_slow(type, scene->primitive_count()) : !chosen) continue;
     std::fprintf(stderr, "  building %s\n", type.name);
-    candidates.push_back(candidate_of(type, geometry, rounds));
+    candidates.push_back(candidate_of<T>(type, scene, rounds));
   }
+  std::vector<RayBatch<T>> batches;
+  if (random) batches = random_rays(candidates.front().world.geometry->primitives);
   for (int round = 0; round < rounds; ++round) {
     std::fprintf(stderr, "  round %d of %d\n", round + 1, rounds);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       auto& candidate = candidates[round % 2 == 0 ? i : candidates.size() - 1 - i];
-      candidate.counts = try_tiles(candidate.world, plan, kTiles);
+      candidate.counts =
+          random ? try_batches(candidate.world, batches) : try_tiles(candidate.world, plan, kTiles);
       candidate.trace_s.push_back(candidate.stopwatch->take());
     }
   }
@@ -128,14 +171,15 @@ ordered_json measure(const std::shared_ptr<const Scene>& scene, const Plan& plan
   return list;
 }
 
-int run(const std::string& path, int rounds) {
+int run(const std::string& path, int rounds, bool random, const std::vector<std::string>& names) {
   const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
   std::ifstream in(path);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   const auto scene = load_scene(text, MeshFiles(std::filesystem::path(path).parent_path()));
-  const Plan plan = make_plan(*scene, {});
-  const ordered_json structures =
-      plan.double_precision ? measure<double>(scene, plan, rounds) : measure<float>(scene, plan, rounds);
+  Plan plan = make_plan(*scene, {});
+  settle(PreparedScene(scene), plan);
+  const ordered_json structures = plan.double_precision ? measure<double>(scene, plan, rounds, random, names)
+                                                        : measure<float>(scene, plan, rounds, random, names);
   std::printf("%s\n", ordered_json({{"primitives", scene->primitive_count()},
                                     {"precision", plan.double_precision ? "double" : "float"},
                                     {"auto", plan.accelerator->name},
@@ -149,9 +193,10 @@ int run(const std::string& path, int rounds) {
 }  // namespace orrery::bench
 
 int main(int count, char** words) {
-  if (count != 3) return 2;
+  if (count < 4) return 2;
   try {
-    return orrery::bench::run(words[1], std::max(1, std::atoi(words[2])));
+    return orrery::bench::run(words[1], std::max(1, std::atoi(words[2])),
+                              std::string_view(words[3]) == "random", {words + 4, words + count});
   } catch (const std::exception& error) {
     std::fprintf(stderr, "structures: %s\n", error.what());
     return 1;

@@ -1,0 +1,189 @@
+#include <cmath>
+
+#include "core/accelerators/registry.h"
+#include "core/math/affine.h"
+#include "core/render/geometry.h"
+#include "tests/support/agreement.h"
+#include "tests/support/batches.h"
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+#include "tests/support/shapes.h"
+
+// Models that stand in a scene many times.
+namespace orrery::test {
+namespace {
+
+// A closed ball of triangles around the origin, radius 1.
+Json ball_mesh(int rows, int columns) {
+  Json positions = Json::array(), indices = Json::array();
+  for (int row = 0; row <= rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const double u = M_PI * row / rows, v = 2 * M_PI * column / columns;
+      positions.push_back({std::sin(u) * std::cos(v), std::cos(u), std::sin(u) * std::sin(v)});
+    }
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const int a = row * columns + column, b = row * columns + (column + 1) % columns;
+      if (row > 0) indices.push_back({a, b, a + columns});
+      if (row + 1 < rows) indices.push_back({b, b + columns, a + columns});
+    }
+  return {{"type", "mesh"}, {"positions", positions}, {"indices", indices}, {"material", "white"}};
+}
+
+struct Place {
+  Vec3d scale, axis, move;
+  double degrees;
+
+  Json json() const {
+    return {{"model", "it"},
+            {"scale", numbers(scale)},
+            {"rotate", {{"axis", numbers(axis)}, {"degrees", degrees}}},
+            {"translate", numbers(move)}};
+  }
+  Affined world_from_model() const {
+    const Affined turn = rotation(safe_normalize(axis), degrees);
+    return {turn.x * scale.x, turn.y * scale.y, turn.z * scale.z, move};
+  }
+};
+
+const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 1, 0}, {0, 0, 0}, 0},
+                                 {{-1, 1, 1}, {0, 1, 0}, {3, 0, 0}, 0},
+                                 {{0.2, 2, 1}, {1, 2, 3}, {-3, 1, 0}, 70},
+                                 {{-0.5, -0.5, -3}, {1, 0, 1}, {0, 4, 1}, 200},
+                                 {{0.01, 0.02, 0.01}, {0, 0, 1}, {1.5, 0, 0}, 33}};
+
+Json scene_of_places(const Json& model, const Json& objects = Json::array()) {
+  Json scene = scene_with(objects);
+  scene["models"] = {{"it", {{"objects", Json::array({model})}}}};
+  for (const Place& place : kPlaces) scene["instances"].push_back(place.json());
+  return scene;
+}
+
+// The same, with every instance written out as a mesh of its own.
+Json baked_scene(const Json& model) {
+  Json objects = Json::array();
+  for (const Place& place : kPlaces) {
+    Json mesh = model;
+    for (Json& position : mesh["positions"])
+      position = numbers(place.world_from_model().point(vector(position)));
+    objects.push_back(mesh);
+  }
+  return scene_with(objects);
+}
+
+template <class T>
+Rays<T> rays_around(int count, std::uint64_t seed) {
+  Random random(seed);
+  Rays<T> rays;
+  while (static_cast<int>(rays.size()) < count) {  // some alike, some not
+    const Vec3d from = random.in_cube(7), to = random.in_cube(3);
+    for (int i = 0; i < (random.below(2) ? 16 : 1); ++i)
+      rays.push_back({Vec3<T>(from), Vec3<T>(safe_normalize(to + random.in_cube(0.05) - from))});
+  }
+  return rays;
+}
+
+class Instances : public StructureTest {};
+
+TEST_P(Instances, AgreeWithTheListOfThem) {
+  covers("F1 A38");
+  Json mixed = scene_of_places(
+      ball_mesh(8, 12), Json::array({{{"type", "sphere"}, {"center", {1, 1, 1}}, {"radius", 0.8}},
+                                     {{"type", "plane"}, {"point", {0, -2, 0}}, {"normal", {0, 1, 0}}}}));
+  mixed["models"]["it"]["objects"].push_back({{"type", "cylinder"},
+                                              {"base", {0, 0, 0}},
+                                              {"top", {0, 2, 0}},
+                                              {"radius", 0.3},
+                                              {"material", "white"}});
+  agree<float>(mixed, rays_around<float>(50'000, 1), {0.7f, 5.0f, 1e30f});
+  agree<double>(mixed, rays_around<double>(50'000, 2), {0.7, 5.0, 1e30});
+}
+
+TEST_P(Instances, OfAPlaneHaveNoBounds) {
+  covers("F5 A38");
+  const Json scene = scene_of_places(
+      {{"type", "plane"}, {"point", {0, -1, 0}}, {"normal", {0, 1, 0}}, {"material", "white"}});
+  agree<float>(scene, rays_around<float>(5'000, 3), {1e30f});
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Instances, testing::ValuesIn(accelerator_names()), by_name);
+
+TEST(Instance, IsMetWhereItsMeshWouldBe) {
+  covers("A38");
+  const Json model = ball_mesh(8, 12);
+  Structure<double> placed(scene_of_places(model), "bottom-up"), baked(baked_scene(model), "bottom-up");
+  const Rays<double> rays = rays_around<double>(100'000, 4);
+  const auto found = placed.closest(rays), expected = baked.closest(rays);
+  int met = 0, other = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    met += expected[i].met();
+    if (found[i].primitive != expected[i].primitive) {  // at an edge, rounding decides between neighbours
+      ++other;
+      continue;
+    }
+    if (!expected[i].met()) continue;
+    EXPECT_NEAR(found[i].t, expected[i].t, 1e-12 * std::max(1.0, expected[i].t));
+  }
+  EXPECT_GT(met, 20'000);
+  EXPECT_LE(other, 5);
+}
+
+// Hits on every instance, from outside: the normal looks outward, and a ray that leaves meets nothing of it.
+template <class T>
+void expect_outward_and_clear() {
+  const Json json = scene_of_places(ball_mesh(24, 48));
+  const auto scene = load(json);
+  for (const auto& type : accelerator_types()) {
+    if (std::string(type.name) != "bottom-up") continue;
+    const auto geometry = make_geometry<T>(scene, type);
+    const auto accelerator = build(type, geometry->primitives);
+    const auto batch = std::make_unique<RayBatch<T>>();
+    const auto hits = std::make_unique<HitBatch<T>>();
+    const auto surface = std::make_unique<SurfaceBatch<T>>();
+    AcceleratorCounts counts;
+    int met = 0, inward = 0, stuck = 0;
+    const Rays<T> rays = rays_around<T>(100'000, 5);
+    for_each_batch<T>(rays, [&](std::span<const Ray<T>> some, std::size_t) {
+      fill_batch(some, std::numeric_limits<T>::max(), *batch);
+      hits->t.values = batch->t_max.values;
+      hits->primitive.values.fill(kNoPrimitive);
+      accelerator->closest(*batch, groups_of(*batch), *hits, counts);
+      for (const auto& shapes : geometry->shapes) shapes->surface(*batch, *hits, groups_of(*batch), *surface);
+      Rays<T> leaving;
+      std::vector<int> instance;
+      const int per = static_cast<int>(scene->models.front().material_of.size());
+      for (int i = 0; i < batch->count; ++i) {
+        if (hits->primitive[i] == kNoPrimitive) continue;
+        const auto which = static_cast<std::size_t>(hits->primitive[i] / per);
+        const Vec3<T> normal = get(surface->geometric, i), position = get(surface->position, i);
+        const Vec3d middle = kPlaces[which].move;
+        if (surface->side[i] < 0) continue;  // from inside
+        ++met;
+        inward += dot(Vec3d(normal), Vec3d(position) - middle) <= 0;
+        leaving.push_back({position + normal * surface->step[i], normal});
+        instance.push_back(static_cast<int>(which));
+      }
+      if (leaving.empty()) return;
+      fill_batch<T>(leaving, std::numeric_limits<T>::max(), *batch);
+      hits->t.values = batch->t_max.values;
+      hits->primitive.values.fill(kNoPrimitive);
+      accelerator->closest(*batch, groups_of(*batch), *hits, counts);
+      for (std::size_t k = 0; k < leaving.size(); ++k) {
+        const auto id = hits->primitive[static_cast<int>(k)];
+        stuck += id != kNoPrimitive && id / per == instance[k];
+      }
+    });
+    EXPECT_GT(met, 20'000);
+    EXPECT_EQ(inward, 0);
+    EXPECT_EQ(stuck, 0);
+  }
+}
+
+TEST(Instance, LooksOutwardHoweverItIsScaled) {
+  covers("A38 A16");
+  expect_outward_and_clear<float>();
+  expect_outward_and_clear<double>();
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,128 @@
+// Tables and charts of the structures: all of them on scenes of different nature, and the one that auto takes
+// for many primitives on ever more triangles.
+
+import { spawnSync } from "node:child_process";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { chart } from "./chart.mjs";
+import { write_ball, write_subjects } from "./subjects.mjs";
+
+const kProgram = "build/structures";
+const kSizes = [1e3, 1e4, 1e5, 1e6, 1e7]; // triangles
+
+function measure(scene, rounds, rays, names = []) {
+  const done = spawnSync(kProgram, [scene, String(rounds), rays, ...names], {
+    encoding: "utf8",
+    stdio: ["ignore", "pipe", process.stderr.isTTY ? "inherit" : "ignore"],
+  });
+  if (done.status !== 0) throw new Error(`${kProgram} ${scene} ended with ${done.status}`);
+  return JSON.parse(done.stdout);
+}
+
+function save(folder, name, svg) {
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(`${folder}/${name}`, svg);
+  console.log(`chart: ${folder}/${name}`);
+}
+
+const cells = (values, widths) => values.map((v, i) => (i === 0 ? v.padEnd(widths[i]) : v.padStart(widths[i]))).join("");
+const fixed = (value) => (value >= 100 ? value.toFixed(0) : value.toPrecision(3));
+
+const kColumns = ["structure", "build", "ray", "counted", "visits", "boxes", "primitives", "bytes", "depth", "references"];
+const kWidths = [17, 9, 9, 9, 10, 10, 12, 10, 7, 12];
+
+function print_scene(name, result) {
+  const usual = result.structures.find((s) => s.name === "bottom-up");
+  const cheapest = Math.min(...result.structures.map((s) => s.counted_cost));
+  console.log(`\n${name}: ${result.primitives} primitives, ${result.precision}; auto takes ${result.auto}`);
+  console.log(cells(kColumns, kWidths));
+  for (const s of result.structures) {
+    const row = [
+      s.name,
+      fixed(s.build_s / usual.build_s),
+      fixed(s.ray_s / usual.ray_s),
+      fixed(s.counted_cost / cheapest),
+      fixed(s.visits),
+      fixed(s.boxes),
+      fixed(s.primitives),
+      fixed(s.bytes / result.primitives),
+      String(s.depth),
+      fixed(s.references / result.primitives),
+    ];
+    console.log(cells(row, kWidths));
+  }
+  const chosen = result.structures.find((s) => s.name === result.auto);
+  console.log(`auto's counted cost is ${(chosen.counted_cost / cheapest).toFixed(2)} of the least`);
+}
+
+function scene_panel(name, result, names) {
+  const usual = result.structures.find((s) => s.name === "bottom-up");
+  const series = names.map((structure) => {
+    const s = result.structures.find((one) => one.name === structure);
+    if (!s) return { name: structure, points: [] };
+    const x = Math.max(s.build_s / usual.build_s, 1e-3), y = s.ray_s / usual.ray_s;
+    return { name: structure, points: [{ x, y, label: structure, ring: structure === result.auto }] };
+  });
+  return { title: name, x: "build time", y: "ray cost", series };
+}
+
+const kStructures = {
+  name: "structures",
+  what: "every structure on scenes of different nature: build time and ray cost beside bottom-up, and counts a ray",
+  run({ pairs, charts }) {
+    const results = write_subjects().map(([name, scene]) => {
+      const result = measure(scene, pairs, "picture");
+      print_scene(name, result);
+      return [name, result];
+    });
+    console.log("\nbuild and ray: CPU time beside bottom-up's, medians of interleaved rounds on one thread; counted: cost by");
+    console.log("counts beside the least; visits, boxes, primitives: a ray; bytes and references: a primitive");
+    const names = [...new Set(results.flatMap(([, result]) => result.structures.map((s) => s.name)))];
+    const panels = results.map(([name, result]) => scene_panel(name, result, names));
+    const title = "Structures: what building costs against what rays cost";
+    const note = "CPU time beside bottom-up (1, 1), one thread; ringed: what auto takes";
+    save(charts, "structures.svg", chart({ title, note, panels, columns: 4, names }));
+  },
+};
+
+const kGrowth = {
+  name: "growth",
+  what: "cost of a ray at random from 1e3 to 1e7 triangles",
+  run({ pairs, charts }) {
+    const widths = [12, 10, 12, 10, 14, 10];
+    const head = ["triangles", "visits", "primitives", "ray", "build a tri.", "bytes"];
+    console.log("\n" + cells(head, widths));
+    const rows = kSizes.map((triangles) => {
+      const result = measure(write_ball(triangles), pairs, "random", ["bottom-up"]);
+      return { triangles: result.primitives, ...result.structures[0] };
+    });
+    const build = (row) => row.build_s / row.triangles;
+    for (const row of rows)
+      console.log(
+        cells(
+          [
+            String(row.triangles), fixed(row.visits), fixed(row.primitives), fixed(row.ray_s / rows[0].ray_s),
+            fixed(build(row) / build(rows[0])), fixed(row.bytes / row.triangles),
+          ],
+          widths,
+        ),
+      );
+    console.log("visits and primitives: a ray; ray and build a triangle: CPU time beside the first row's");
+    const series = (key) => [{ name: key, line: true, points: rows.map((row) => ({ x: row.triangles, y: row[key] })) }];
+    const panels = [
+      { title: "node visits a ray", key: "visits" },
+      { title: "primitive tests a ray", key: "primitives" },
+      { title: "CPU time a ray", key: "relative" },
+    ].map(({ title, key }) => ({
+      title, x: "triangles", y: key === "relative" ? "beside 1e3 triangles" : "a ray", y_axis: "linear",
+      series: key === "relative"
+        ? [{ name: key, line: true, points: rows.map((row) => ({ x: row.triangles, y: row.ray_s / rows[0].ray_s })) }]
+        : series(key),
+    }));
+    const title = "Growth: a straight line here is a logarithm";
+    const note = "bottom-up hierarchy, closest hits of rays at random through a bumpy ball, one thread";
+    save(charts, "growth.svg", chart({ title, note, panels, columns: 3, names: [] }));
+  },
+};
+
+// Reports of one side alone: name, what, and run({pairs, charts}).
+export const kReports = [kStructures, kGrowth].map((report) => ({ ...report, needs: [kProgram] }));
