@@ -136,7 +136,7 @@ class SceneReader {
     p.each_named("materials", "Materials by name.", {},
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
-    p.each("objects", "What there is to see.", {0, kMaxObjects}, [&](Params& o) {
+    p.each("objects", "What there is to see.", {1, kMaxObjects}, [&](Params& o) {
       objects_.read(o, names_, meshes_);
       ++scene_->object_count;
     });
@@ -147,7 +147,6 @@ class SceneReader {
           {i.reference("model", "Name of what stands there.", model_names_), read_transform(i)});
       ++scene_->object_count;
     });
-    if (scene_->object_count == 0) p.fail("objects", "expected at least 1 object or instance");
     p.optional_object("render", "How the picture is made.",
                       [&](Params& r) { read_render(r, scene_->render); });
   }

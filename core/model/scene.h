@@ -26,10 +26,12 @@ struct RenderSettings {
 
 // What the plan wants to know about a scene, computed once.
 struct SceneFacts {
-  MaterialTraits materials;     // of those that some object has
-  double magnitude = 0;         // largest absolute coordinate of bounded primitives, metres
-  std::size_t left_out = 0;     // primitives without area
-  double smallest_feature = std::numeric_limits<double>::infinity();  // smallest diagonal of a bounded primitive's box; infinite if there is none
+  MaterialTraits materials;  // of those that some object has
+  double magnitude = 0;      // largest absolute coordinate of bounded primitives, metres
+  std::size_t left_out = 0;  // primitives without area
+  double smallest_feature =
+      std::numeric_limits<double>::infinity();  // smallest diagonal of a bounded primitive's box; infinite if
+                                                // there is none
 };
 
 // Shapes that instances place.

@@ -1,5 +1,5 @@
-#include "core/render/renderer.h"
 #include "server/app/explain.h"
+#include "core/render/renderer.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

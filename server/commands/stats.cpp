@@ -72,6 +72,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
             {"total", counts.rays.total()}}},
           {"structure_bytes", stats.render.structure.bytes},
           {"structure_depth", stats.render.structure.depth},
+          {"structure_references", stats.render.structure.references},
           {"node_visits", counts.accelerator.node_visits},
           {"box_tests", counts.accelerator.box_tests},
           {"primitive_tests", counts.accelerator.primitive_tests},
@@ -96,8 +97,8 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
        stats.render.accelerator->name, plan.double_precision ? "double" : "float",
        std::string(kInstructionLevel).c_str(), stats.threads);
   rays_text(text, counts.rays);
-  line(text, "%-12s %14zu bytes, %d nodes deep", "structure", stats.render.structure.bytes,
-       stats.render.structure.depth);
+  line(text, "%-12s %14zu bytes, %d nodes deep, %zu references", "structure", stats.render.structure.bytes,
+       stats.render.structure.depth, stats.render.structure.references);
   line(text, "%-12s %14llu of nodes", "visits",
        static_cast<unsigned long long>(counts.accelerator.node_visits));
   line(text, "%-12s %14llu of boxes, %llu of primitives", "tests",

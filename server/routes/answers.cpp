@@ -154,6 +154,20 @@ std::string server_timing(const Timing& timing) {
   return text;
 }
 
+void tell_work(Response& response, const Timing& timing, const RenderStats& stats) {
+  const AcceleratorCounts& work = stats.counts.accelerator;
+  char told[320];
+  std::snprintf(
+      told, sizeof told,
+      ", structure;desc=\"%s, %zu bytes, %d deep\", work;desc=\"%llu visits, %llu boxes, %llu primitives\"",
+      stats.accelerator->name, stats.structure.bytes, stats.structure.depth,
+      static_cast<unsigned long long>(work.node_visits), static_cast<unsigned long long>(work.box_tests),
+      static_cast<unsigned long long>(work.primitive_tests));
+  response.rays = stats.counts.rays.total();
+  response.set("Server-Timing", server_timing(timing) + told);
+  response.set("X-Rays", std::to_string(response.rays));
+}
+
 Response json_answer(int status, const nlohmann::ordered_json& json) {
   return json_response(status, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }

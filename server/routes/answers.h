@@ -32,6 +32,9 @@ std::string_view negotiate(const Request& request, std::span<const std::string_v
 // "load;dur=1.25, render;dur=40.1": the steps that took any time.
 std::string server_timing(const Timing& timing);
 
+// Says what a picture took: Server-Timing with the steps, the structure and its counted work, and X-Rays.
+void tell_work(Response& response, const Timing& timing, const RenderStats& stats);
+
 Response json_answer(int status, const nlohmann::ordered_json& json);
 
 }  // namespace orrery

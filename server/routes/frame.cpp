@@ -24,9 +24,7 @@ Response frame(App& app, Request& request) {
   } else {
     Picture picture = app.render(*scene, plan, FileFormat::png, request.gone, timing);
     response = text_response(200, "image/png", std::move(picture.bytes));
-    response.rays = picture.stats.counts.rays.total();
-    response.set("Server-Timing", server_timing(timing));
-    response.set("X-Rays", std::to_string(response.rays));
+    tell_work(response, timing, picture.stats);
   }
   response.set("ETag", etag);
   response.set("Cache-Control", "public, max-age=31536000, immutable");

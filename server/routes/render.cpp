@@ -63,9 +63,7 @@ Response render(App& app, Request& request) {
   timing.plan = milliseconds_since(start);
   Picture picture = app.render(*order.scene, plan, format_of(type), request.gone, timing);
   Response response = text_response(200, type, std::move(picture.bytes));
-  response.rays = picture.stats.counts.rays.total();
-  response.set("Server-Timing", server_timing(timing));
-  response.set("X-Rays", std::to_string(response.rays));
+  tell_work(response, timing, picture.stats);
   response.set("Vary", "Accept");
   response.set("Cache-Control", "no-store");
   return response;

@@ -140,7 +140,8 @@ TEST_P(Adversaries, SampleScenes) {
     SCOPED_TRACE(entry.path());
     const Json scene = Json::parse(std::ifstream(entry.path()));
     const bool many = load(scene)->primitive_count() > 500;  // the list takes its time
-    agree(scene, {0, 1, 0}, 4, many ? 2'000 : 20'000);
+    agree<float>(scene, any_rays<float>({0, 1, 0}, 4, 100'000, 7));
+    agree(scene, {0, 1, 0}, 4, many ? 1'000 : 5'000);
   }
 }
 

@@ -211,16 +211,16 @@ TEST_F(CommandLine, MeshFilesLieBesideTheScene) {
     return run("check " + write("scenes/scene.json", scene_with(name)));
   };
   EXPECT_EQ(check("meshes/one.obj").status, 0);
-  for (const std::string outside :
-       {"../outside.obj", "link.obj", (folder_ / "outside.obj").string().c_str()}) {
+  for (const std::string& outside :
+       {std::string("../outside.obj"), std::string("link.obj"), file("outside.obj")}) {
     const Outcome refused = check(outside);
-    EXPECT_EQ(refused.status, 1) << outside;
-    EXPECT_NE(refused.err.find("/objects/0/file: expected a file in the scene's folder"), std::string::npos)
-        << refused.err;
+    EXPECT_EQ(refused.status, 2) << outside;
+    EXPECT_NE(refused.out.find("/objects/0/file: expected a file in the scene's folder"), std::string::npos)
+        << refused.out;
   }
-  EXPECT_NE(check("none.obj").err.find("/objects/0/file: cannot read"), std::string::npos);
-  EXPECT_NE(check("meshes").err.find("it is no file"), std::string::npos);
-  EXPECT_NE(check("bad.obj").err.find("bad.obj: line 1"), std::string::npos) << check("bad.obj").err;
+  EXPECT_NE(check("none.obj").out.find("/objects/0/file: cannot read"), std::string::npos);
+  EXPECT_NE(check("meshes").out.find("it is no file"), std::string::npos);
+  EXPECT_NE(check("bad.obj").out.find("bad.obj: line 1"), std::string::npos) << check("bad.obj").out;
 }
 
 }  // namespace

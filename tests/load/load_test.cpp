@@ -187,8 +187,6 @@ TEST(Load, RefusesInstancesThatCannotBe) {
   EXPECT_EQ(problem("{'model': 'it', 'rotate': {'axis': [0, 0, 0], 'degrees': 3}}"),
             "/instances/0/rotate/axis");
   EXPECT_EQ(problem("{'model': 'it', 'turn': 3}"), "/instances/0");
-  Json empty = scene_of("[]");
-  EXPECT_EQ(first_problem(empty), "/objects");
 }
 
 TEST(Load, RefusesMoreInstancedPrimitivesThanItsLimit) {

@@ -23,8 +23,8 @@ constexpr std::string_view kEmptyScene = R"({
 })";
 
 // What the keys of the scene format mean.
-const std::set<std::string> kPoints = {"eye", "look_at", "center", "point",   "base",
-                                       "top", "min",     "max",    "position"};
+const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center", "point",
+                                       "base",      "top", "min",     "max",    "position"};
 const std::set<std::string> kPointLists = {"vertices", "positions"};
 const std::set<std::string> kLengths = {"radius", "height"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
@@ -39,7 +39,7 @@ void change_members(Json& object, const Change& change) {
 // The same for the camera, the objects and the lights of a scene: all that has a place.
 void change_places(Json& scene, const Change& change) {
   change_members(scene["camera"], change);
-  for (const char* list : {"objects", "lights"})
+  for (const char* list : {"objects", "lights", "instances"})
     if (scene.contains(list))
       for (Json& entry : scene[list]) change_members(entry, change);
 }
@@ -73,6 +73,17 @@ void mirror_mesh(Json& object) {
     for (Json& corners : object["indices"]) std::swap(corners[1], corners[2]);
   if (object.contains("normals"))
     for (Json& normal : object["normals"]) normal[0] = -normal[0].get<double>();
+}
+
+// A turn seen in a mirror goes the other way round, about the mirrored axis.
+void mirror_instance(Json& instance) {
+  const Vec3d scale = vector(instance.value("scale", Json{1, 1, 1}));
+  instance["scale"] = numbers(Vec3d(-scale.x, scale.y, scale.z));
+  if (!instance.contains("rotate")) return;
+  Json& turn = instance["rotate"];
+  const Vec3d axis = vector(turn.value("axis", Json{0, 1, 0}));
+  turn["axis"] = numbers(Vec3d(-axis.x, axis.y, axis.z));
+  turn["degrees"] = -turn.value("degrees", 0.0);
 }
 
 std::string text_of(const std::filesystem::path& file) {
@@ -128,6 +139,9 @@ std::vector<std::string> sample_names() {
 
 Json scaled(Json scene, double factor) {
   change_places(scene, scale_by(factor));
+  if (scene.contains("models"))
+    for (Json& model : scene["models"])
+      for (Json& object : model["objects"]) change_members(object, scale_by(factor));
   return scene;
 }
 
@@ -157,6 +171,8 @@ Json mirrored(Json scene) {
     mirror_mesh(object);
     if (object.contains("min")) std::swap(object["min"][0], object["max"][0]);
   }
+  if (scene.contains("instances"))
+    for (Json& instance : scene["instances"]) mirror_instance(instance);
   return scene;
 }
 
