@@ -4,21 +4,11 @@
 namespace orrery {
 namespace {
 
+// What a test of a ray needs of a sphere.
 template <class N>
-struct Sphere {
+struct Ball {
   Vec3<N> center;
   N radius;
-  N magnitude;  // largest absolute coordinate on the sphere
-
-  static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
-
-  static void read(Params& p, std::vector<Sphere<double>>& out) {
-    const Vec3d center = p.point("center", "Centre, in metres.");
-    const double radius = p.positive("radius", "Radius, in metres.");
-    out.push_back({center, radius, max_component(abs(center)) + radius});
-  }
-
-  Boundsd bounds() const { return Boundsd::around(center, Vec3d(radius)); }
 
   // The discriminant is taken from the part of origin - centre perpendicular to the ray, and the constant
   // term as a product: neither cancels when the origin is far away or close to a huge sphere (Haines,
@@ -44,9 +34,52 @@ struct Sphere {
     return select(meets, nearest, infinity);
   }
 
+  // Whether an active ray of the packet may meet it: not if the rays, as they are sheared to run along z,
+  // pass the centre on one side of it at its own z, farther away than the radius over the least cosine of
+  // their angle with z. The radius grows by what rounding may make of the distance.
+  MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
+    using T = ScalarOf<N>;
+    if (!packet.one_origin) return MaskOf<N>(true);
+    const auto at = [&](int axis) { return (&center.x)[axis] - N((&packet.origin.x)[axis]); };
+    const auto [x_axis, y_axis, z_axis] = packet.axis;
+    const N x = at(x_axis), y = at(y_axis), z = at(z_axis);
+    const auto steepest = [&](std::size_t side) {
+      return std::max(std::abs(packet.shear_lo[side]), std::abs(packet.shear_hi[side]));
+    };
+    const T sx = steepest(0), sy = steepest(1);
+    constexpr T kRounding = 32 * std::numeric_limits<T>::epsilon();
+    const N grown = radius + max_component(abs(Vec3<N>(x, y, z))) * N(kRounding);
+    const N reach = grown * N(std::sqrt(1 + sx * sx + sy * sy) * (1 + kRounding));
+    const auto beside = [&](const N& v, std::size_t side) {
+      const N lo = v - N(packet.shear_lo[side]) * z, hi = v - N(packet.shear_hi[side]) * z;
+      return min_first(lo, hi) > reach || max_first(lo, hi) < -reach;
+    };
+    return !beside(x, 0) && !beside(y, 1);
+  }
+};
+
+template <class N>
+struct Sphere {
+  Ball<N> ball;
+  N magnitude;  // largest absolute coordinate on the sphere
+
+  static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
+
+  static void read(Params& p, std::vector<Sphere<double>>& out) {
+    const Vec3d center = p.point("center", "Centre, in metres.");
+    const double radius = p.positive("radius", "Radius, in metres.");
+    out.push_back({{center, radius}, max_component(abs(center)) + radius});
+  }
+
+  Boundsd bounds() const { return Boundsd::around(ball.center, Vec3d(ball.radius)); }
+
+  using Core = Ball<N>;
+  const Core& core() const { return ball; }
+  N distance(const Ray<N>& ray) const { return ball.distance(ray); }
+
   Surface<N> surface(const Ray<N>& ray, const N& t) const {
-    const Vec3<N> normal = normalize(ray.at(t) - center);
-    return {center + normal * radius, normal, normal, magnitude};
+    const Vec3<N> normal = normalize(ray.at(t) - ball.center);
+    return {ball.center + normal * ball.radius, normal, normal, magnitude};
   }
 };
 

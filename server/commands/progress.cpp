@@ -10,7 +10,15 @@ ProgressBar::ProgressBar(std::string unit)
     : unit_(std::move(unit)), shown_(isatty(STDERR_FILENO) != 0), start_(std::chrono::steady_clock::now()) {}
 
 ProgressBar::~ProgressBar() {
-  if (shown_ && done_ > 0) std::fputs("\r\x1b[K", stderr);
+  if (written_) std::fputs("\r\x1b[K", stderr);
+}
+
+void ProgressBar::say(const std::string& what) {
+  if (!shown_) return;
+  const std::lock_guard lock(mutex_);
+  written_ = true;
+  std::fprintf(stderr, "\r%s ...\x1b[K", what.c_str());
+  std::fflush(stderr);
 }
 
 void ProgressBar::update(int done, int total) {
@@ -18,6 +26,7 @@ void ProgressBar::update(int done, int total) {
   const std::lock_guard lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
   if (done <= done_ || (done < total && now - drawn_ < std::chrono::milliseconds(100))) return;
+  written_ = true;
   done_ = done;
   drawn_ = now;
   constexpr int kWidth = 30;

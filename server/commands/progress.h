@@ -13,6 +13,8 @@ class ProgressBar {
   explicit ProgressBar(std::string unit);  // what is counted: "tiles"
   ~ProgressBar();                          // takes the line away
 
+  // What is done before there is anything to count.
+  void say(const std::string& what);
   void update(int done, int total);
 
  private:
@@ -20,6 +22,7 @@ class ProgressBar {
   const bool shown_;
   const std::chrono::steady_clock::time_point start_;
   std::mutex mutex_;  // guards what follows, and the line
+  bool written_ = false;
   int done_ = 0;
   std::chrono::steady_clock::time_point drawn_;
 };

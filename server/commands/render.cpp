@@ -29,8 +29,8 @@ struct Options {
 };
 
 RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, PixelFormat format,
-                                  WorkerPool& pool, const SignalWatch& signals) {
-  ProgressBar bar("tiles");
+                                  WorkerPool& pool, const SignalWatch& signals, ProgressBar& bar) {
+  bar.say("making " + std::to_string(scene.scene().primitive_count()) + " primitives ready");
   return render_frame(scene, plan, format, pool,
                       {.stop = [&] { return signals.interrupted(); },
                        .progress = [&](int done, int total) { bar.update(done, total); }});
@@ -41,6 +41,8 @@ int render(const Options& options) {
   const RenderRequest request = read_render_flags(options.render);
   RunStats stats;
   auto start = Clock::now();
+  std::optional<ProgressBar> bar(std::in_place, "tiles");
+  bar->say("reading " + options.scene);
   const PreparedScene scene(load_scene_file(options.scene));
   stats.load_ms = milliseconds_since(start);
   const SignalWatch signals;  // after reading, which a signal ends as it would any program
@@ -49,7 +51,8 @@ int render(const Options& options) {
   stats.threads = pool.threads();
 
   const double cpu_before = cpu_seconds();
-  const RenderResult result = render_with_progress(scene, plan, pixels_of(format), pool, signals);
+  const RenderResult result = render_with_progress(scene, plan, pixels_of(format), pool, signals, *bar);
+  bar.reset();
   stats.render_cpu_s = cpu_seconds() - cpu_before;
   stats.render = result.stats;
   if (options.output) {

@@ -52,7 +52,10 @@ const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 1, 0}, {0, 0, 0}, 0},
                                  {{-0.5, -0.5, -3}, {1, 0, 1}, {0, 4, 1}, 200},
                                  {{0.01, 0.02, 0.01}, {0, 0, 1}, {1.5, 0, 0}, 33}};
 
-Json scene_of_places(const Json& model, const Json& objects = Json::array()) {
+// Far from all else; a scene has at least one object.
+const Json kSpeck = {{"type", "sphere"}, {"center", {0, -500, 0}}, {"radius", 0.001}};
+
+Json scene_of_places(const Json& model, const Json& objects = kSpeck) {
   Json scene = scene_with(objects);
   scene["models"] = {{"it", {{"objects", Json::array({model})}}}};
   for (const Place& place : kPlaces) scene["instances"].push_back(place.json());
@@ -61,7 +64,7 @@ Json scene_of_places(const Json& model, const Json& objects = Json::array()) {
 
 // The same, with every instance written out as a mesh of its own.
 Json baked_scene(const Json& model) {
-  Json objects = Json::array();
+  Json objects = Json::array({kSpeck});
   for (const Place& place : kPlaces) {
     Json mesh = model;
     for (Json& position : mesh["positions"])
@@ -154,7 +157,7 @@ void expect_outward_and_clear() {
       const int per = static_cast<int>(scene->models.front().material_of.size());
       for (int i = 0; i < batch->count; ++i) {
         if (hits->primitive[i] == kNoPrimitive) continue;
-        const auto which = static_cast<std::size_t>(hits->primitive[i] / per);
+        const auto which = static_cast<std::size_t>((hits->primitive[i] - 1) / per);
         const Vec3<T> normal = get(surface->geometric, i), position = get(surface->position, i);
         const Vec3d middle = kPlaces[which].move;
         if (surface->side[i] < 0) continue;  // from inside
@@ -170,7 +173,7 @@ void expect_outward_and_clear() {
       accelerator->closest(*batch, groups_of(*batch), *hits, counts);
       for (std::size_t k = 0; k < leaving.size(); ++k) {
         const auto id = hits->primitive[static_cast<int>(k)];
-        stuck += id != kNoPrimitive && id / per == instance[k];
+        stuck += id != kNoPrimitive && (id - 1) / per == instance[k];
       }
     });
     EXPECT_GT(met, 20'000);

@@ -231,7 +231,7 @@ class SlowViewer {
   RawClient raw_;
 };
 
-constexpr const char* kLargeFrames = "frames=24&fps=20&width=640&height=480&distance=1.1";
+constexpr const char* kLargeFrames = "frames=24&fps=10&width=640&height=480&distance=1.1";
 
 void expect_some_skipped(const std::vector<StreamedFrame>& seen) {
   ASSERT_FALSE(seen.empty());
@@ -251,9 +251,9 @@ TEST_F(OrbitStream, SlowViewerMissesFramesAndTheFastOneNone) {
 
 TEST_F(OrbitStream, SlowViewerAloneIsShownWhatIsDueNow) {
   const SlowViewer slow(daemon().port(), path(kLargeFrames));
-  std::this_thread::sleep_for(std::chrono::milliseconds(1300));  // longer than the orbit
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // longer than the orbit
   ASSERT_TRUE(daemon().wait_until_idle());  // where rendering is slow: until none is taken
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // 10 frames are due meanwhile
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // 10 frames are due meanwhile
   expect_some_skipped(slow.receive());
 }
 
