@@ -29,6 +29,7 @@ struct Plan {
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
   std::uint64_t seed = 0;
+  bool reorder = false;         // rays that are alike are asked for together
   // Stages that are present.
   bool direct_light = true;    // light sources are evaluated
   bool shadows = true;         // shadow rays are traced

@@ -19,6 +19,7 @@ struct RenderSettings {
   int max_depth = 5, samples = 1;
   double min_contribution = 0;
   std::uint64_t seed = 0;
+  bool reorder = false;
 };
 
 // What the plan wants to know about a scene, computed once.

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "core/accelerators/reordered.h"
+
 namespace orrery {
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double& build_ms) {
@@ -17,8 +19,17 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, dou
   return {made.geometry, accelerator};
 }
 
+template <class T>
+World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms) {
+  World<T> world = world_for<T>(parts, *plan.accelerator, build_ms);
+  if (plan.reorder) world.accelerator = reordered(std::move(world.accelerator));
+  return world;
+}
+
 template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);
 template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);
+template World<float> world_for(PreparedScene::Parts&, const Plan&, double&);
+template World<double> world_for(PreparedScene::Parts&, const Plan&, double&);
 
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
   parts_->scene = std::move(scene);

@@ -28,6 +28,10 @@ struct PreparedScene::Parts {
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms);
 
+// The same with the accelerator of a settled plan and the stages that it wants in front of it.
+template <class T>
+World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms);
+
 // What was built in number type T.
 template <class T>
 PreparedScene::Parts::Made<T>& made_of(PreparedScene::Parts& parts) {

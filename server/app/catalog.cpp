@@ -51,6 +51,7 @@ ordered_json defaults() {
           {"seed", own.seed},
           {"accelerator", own.accelerator},
           {"precision", "auto"},
+          {"reorder", own.reorder},
           {"azimuth", Orbit{}.azimuth_degrees},
           {"elevation", Orbit{}.elevation_degrees},
           {"distance", Orbit{}.distance}};

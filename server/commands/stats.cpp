@@ -62,6 +62,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"technique", plan.technique->name},
           {"accelerator", stats.render.accelerator->name},
           {"precision", plan.double_precision ? "double" : "float"},
+          {"reorder", plan.reorder},
           {"instructions", kInstructionLevel},
           {"threads", stats.threads},
           {"rays",
@@ -92,8 +93,9 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
   std::string text;
   line(text, "%-12s %d x %d, %d a pixel", "picture", plan.width, plan.height, plan.samples);
-  line(text, "%-12s %s, %s, %s, %s, threads %d", "rendered by", plan.technique->name,
-       stats.render.accelerator->name, plan.double_precision ? "double" : "float",
+  line(text, "%-12s %s, %s%s, %s, %s, threads %d", "rendered by", plan.technique->name,
+       stats.render.accelerator->name, plan.reorder ? " of sorted rays" : "",
+       plan.double_precision ? "double" : "float",
        std::string(kInstructionLevel).c_str(), stats.threads);
   rays_text(text, counts.rays);
   line(text, "%-12s %14zu bytes, %d nodes deep", "structure", stats.render.structure.bytes,

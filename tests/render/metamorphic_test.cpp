@@ -62,6 +62,18 @@ TEST_P(EveryScene, LooksTheSameWithEveryAccelerator) {
   }
 }
 
+TEST_P(EveryScene, LooksTheSameWithRaysInAnotherOrder) {
+  covers("F17");
+  for (RenderRequest request : {in_float(small()), in_double(small())}) {
+    const Picture reference = render(scene_, request);
+    request.reorder = true;
+    for (const auto& type : accelerator_types()) {
+      request.accelerator = type.name;
+      EXPECT_TRUE(identical(reference, render(scene_, request))) << type.name;
+    }
+  }
+}
+
 // Lengths times 2^17 and 2^-17, and the light as bright where it arrives: no constant of the program has a
 // length.
 TEST_P(EveryScene, LooksTheSameAtAnyScale) {
