@@ -56,6 +56,10 @@ void read_render(Params& p, RenderRequest& request) {
   });
   take(p, "reorder", request.reorder,
        [&] { return p.flag("reorder", "Rays that are alike are traced together.", derived(false)); });
+  take(p, "prediction", request.prediction, [&] {
+    return prediction_of(
+        p.choice("prediction", "Who proposes what may shadow a point.", kPredictions, "none"));
+  });
 }
 
 }  // namespace

@@ -13,11 +13,15 @@ struct AcceleratorCounts {
   std::uint64_t node_visits = 0;  // by a ray, or by several that walk together
   std::uint64_t box_tests = 0;
   std::uint64_t primitive_tests = 0;
+  std::uint64_t proposals = 0;  // primitives held against a shadow ray before the structure was asked
+  std::uint64_t proofs = 0;     // those that it met
 
   void add(const AcceleratorCounts& other) {
     node_visits += other.node_visits;
     box_tests += other.box_tests;
     primitive_tests += other.primitive_tests;
+    proposals += other.proposals;
+    proofs += other.proofs;
   }
 };
 
@@ -47,7 +51,9 @@ class Accelerator {
 
   virtual AcceleratorFacts facts() const = 0;
 
-  // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max, hits.primitive kNoPrimitive.
+  // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max and hits.primitive
+  // kNoPrimitive, or the two are a hit of that ray, which then stays unless there is a nearer one, or one as
+  // near of a lower number.
   virtual void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 

@@ -20,6 +20,7 @@ struct RenderSettings {
   double min_contribution = 0;
   std::uint64_t seed = 0;
   bool reorder = false;
+  Prediction prediction = Prediction::none;
 };
 
 // What the plan wants to know about a scene, computed once.

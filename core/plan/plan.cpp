@@ -68,6 +68,7 @@ class Planner {
     choose_precision();
     choose_accelerator();
     choose_order();
+    choose_prediction();
     if (request_.full_model) return plan_;
     choose_lights();
     choose_specular();
@@ -153,6 +154,13 @@ class Planner {
   void choose_order() {
     plan_.reorder = request_.reorder.value_or(scene_.render.reorder);
     if (plan_.reorder) decide("order of rays", "sorted by origin and direction", "as asked");
+  }
+
+  void choose_prediction() {
+    plan_.prediction = request_.prediction.value_or(scene_.render.prediction);
+    if (plan_.prediction != Prediction::none)
+      decide("prediction of shadows", std::string(name_of(plan_.prediction)),
+             "as asked; what it proposes is tested, so the picture stays the same");
   }
 
   void choose_lights() {

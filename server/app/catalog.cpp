@@ -52,6 +52,7 @@ ordered_json defaults() {
           {"accelerator", own.accelerator},
           {"precision", "auto"},
           {"reorder", own.reorder},
+          {"prediction", name_of(own.prediction)},
           {"azimuth", Orbit{}.azimuth_degrees},
           {"elevation", Orbit{}.elevation_degrees},
           {"distance", Orbit{}.distance}};

@@ -34,6 +34,8 @@ constexpr std::array kOptions{
     RenderOption{"seed", "render", "seed", "--seed", "N", "Seed of all random choices"},
     RenderOption{"reorder", "render", "reorder", "--reorder", "true|false",
                  "Trace rays together that are alike"},
+    RenderOption{"prediction", "render", "prediction", "--prediction", "NAME",
+                 "Who proposes what may shadow a point: none, network, last or random"},
 };
 
 // A number or a truth value if the text is one and nothing else, or else the text, which the reader then

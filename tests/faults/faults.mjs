@@ -8,6 +8,7 @@
 //   tests    patterns for its --gtest_filter; a test of each pattern must fail
 
 import {meshFaults} from "./meshes.mjs";
+import {stageFaults} from "./stages.mjs";
 
 const kShapes = "core/shapes";
 const kNear = "N(T(1e-4))";  // the fixed epsilon of fault 4
@@ -456,5 +457,5 @@ const growth = [
 export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
-  ...meshFaults,
+  ...meshFaults, ...stageFaults,
 ];

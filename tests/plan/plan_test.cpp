@@ -166,6 +166,20 @@ TEST(Plan, SortsRaysOnlyIfAsked) {
   EXPECT_FALSE(plan_of(scene, request).reorder);
 }
 
+TEST(Plan, PredictsShadowsOnlyIfAsked) {
+  Json scene = scene_of_materials({kRough, kMirror});
+  EXPECT_EQ(plan_of(scene).prediction, Prediction::none);
+  EXPECT_FALSE(decides(plan_of(scene), "prediction of shadows"));
+  scene["render"] = {{"prediction", "network"}};
+  EXPECT_EQ(plan_of(scene).prediction, Prediction::network);
+  RenderRequest request;
+  request.prediction = Prediction::last;
+  EXPECT_EQ(plan_of(scene, request).prediction, Prediction::last);
+  EXPECT_TRUE(decides(plan_of(scene, request), "prediction of shadows"));
+  request.prediction = Prediction::none;
+  EXPECT_EQ(plan_of(scene, request).prediction, Prediction::none);
+}
+
 TEST(Plan, GivesAReasonForEveryDecision) {
   for (const std::string& name : sample_names())
     for (const Decision& decision : plan_of(sample(name)).decisions) {
