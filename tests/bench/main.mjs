@@ -9,11 +9,12 @@ import { measure } from "./measure.mjs";
 import { kNoise } from "./noise.mjs";
 import { kOrbitHttp } from "./orbit_http.mjs";
 import { kPaperVsPovray } from "./paper_vs_povray.mjs";
+import { kStages } from "./stages.mjs";
 
 // Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
 // reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
-const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree];
+const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages];
 
 const kQuietLoad = 0.3; // above it others work on this machine too
 const kUsage = "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--list]";
@@ -23,6 +24,9 @@ function fail(message) {
   process.exit(2);
 }
 
+// By its name, or by how it begins: "embree" names all of them.
+const goes_by = ({ name }, word) => name === word || name.startsWith(`${word}-`);
+
 function read_arguments(words) {
   const options = { names: [], pairs: 7, json: null, list: false };
   for (let i = 0; i < words.length; ++i) {
@@ -30,7 +34,7 @@ function read_arguments(words) {
     else if (words[i] === "--pairs") options.pairs = Number(words[++i]);
     else if (words[i] === "--json") options.json = words[++i];
     else if (words[i].startsWith("-")) fail(`unknown option ${words[i]}`);
-    else if (kBenchmarks.some((b) => b.name === words[i])) options.names.push(words[i]);
+    else if (kBenchmarks.some((b) => goes_by(b, words[i]))) options.names.push(words[i]);
     else fail(`no benchmark is called ${words[i]}; there are ${kBenchmarks.map((b) => b.name).join(", ")}`);
   }
   if (!Number.isInteger(options.pairs) || options.pairs < 1) fail("--pairs expects a whole number > 0");
@@ -39,7 +43,7 @@ function read_arguments(words) {
 }
 
 const kColumns = [
-  ["name", 22, (r) => r.name],
+  ["name", 31, (r) => r.name],
   ["ours CPU s", 11, (r) => r.ours_cpu_s.toFixed(3)],
   ["theirs CPU s", 13, (r) => r.theirs_cpu_s.toFixed(3)],
   ["ratio", 8, (r) => r.ratio.toFixed(2)],
@@ -77,14 +81,15 @@ async function run_benchmark(benchmark, pairs) {
 async function main() {
   const options = read_arguments(process.argv.slice(2));
   if (options.list) {
-    for (const { name, what } of kBenchmarks) console.log(`${name.padEnd(22)}${what}`);
+    for (const { name, what } of kBenchmarks) console.log(`${name.padEnd(31)}${what}`);
     return;
   }
   if (!exists_program(kOrrery)) fail(`${kOrrery} is not built`);
   const load = loadavg()[0];
   if (load > kQuietLoad) console.log(`warning: the machine is not idle, its load is ${load.toFixed(2)}`);
   console.log(table_row((name) => name));
-  const chosen = kBenchmarks.filter((b) => options.names.length === 0 || options.names.includes(b.name));
+  const all = options.names.length === 0;
+  const chosen = kBenchmarks.filter((b) => all || options.names.some((name) => goes_by(b, name)));
   const results = [];
   for (const benchmark of chosen) {
     const result = await run_benchmark(benchmark, options.pairs);
