@@ -65,6 +65,10 @@ void read_render(Params& p, RenderSettings& render) {
   render.precision =
       precision_of(p.choice("precision", "Number type of rays.", {"auto", "float", "double"}, "auto"));
   render.seed = static_cast<std::uint64_t>(p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, 0));
+  render.reorder = p.flag("reorder", "Rays that are alike are traced together.", false);
+  render.prediction = prediction_of(
+      p.choice("prediction", "Who proposes what may shadow a point, before the accelerator is asked.",
+               kPredictions, "none"));
 }
 
 // Where the primitives of a scene or a model get their material from.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,12 @@ inline Precision precision_of(std::string_view name) {
   if (name == "float") return Precision::single_precision;
   if (name == "double") return Precision::double_precision;
   return Precision::automatic;
+}
+
+inline Prediction prediction_of(std::string_view name) {
+  const auto found = std::find(kPredictions.begin(), kPredictions.end(), name);
+  return found == kPredictions.end() ? Prediction::none
+                                     : static_cast<Prediction>(found - kPredictions.begin());
 }
 
 }  // namespace orrery

@@ -54,6 +54,12 @@ void read_render(Params& p, RenderRequest& request) {
   take(p, "seed", request.seed, [&] {
     return p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, derived<std::int64_t>(0));
   });
+  take(p, "reorder", request.reorder,
+       [&] { return p.flag("reorder", "Rays that are alike are traced together.", derived(false)); });
+  take(p, "prediction", request.prediction, [&] {
+    return prediction_of(
+        p.choice("prediction", "Who proposes what may shadow a point.", kPredictions, "none"));
+  });
 }
 
 }  // namespace

@@ -35,7 +35,9 @@ class Accelerator {
 
   virtual AcceleratorFacts facts() const = 0;
 
-  // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max, hits.primitive kNoPrimitive.
+  // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max and hits.primitive
+  // kNoPrimitive, or the two are a hit of that ray, which then stays unless there is a nearer one, or one as
+  // near of a lower number.
   virtual void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 

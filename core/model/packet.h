@@ -14,11 +14,15 @@ struct AcceleratorCounts {
   std::uint64_t node_visits = 0;  // by a ray, or by several that walk together
   std::uint64_t box_tests = 0;
   std::uint64_t primitive_tests = 0;
+  std::uint64_t proposals = 0;  // primitives held against a shadow ray before the structure was asked
+  std::uint64_t proofs = 0;     // those that it met
 
   void add(const AcceleratorCounts& other) {
     node_visits += other.node_visits;
     box_tests += other.box_tests;
     primitive_tests += other.primitive_tests;
+    proposals += other.proposals;
+    proofs += other.proofs;
   }
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/model/camera.h"
@@ -12,6 +14,13 @@ struct AcceleratorType;
 struct TechniqueType;
 
 enum class Precision { automatic, single_precision, double_precision };
+
+// Who proposes what may stand in a shadow ray's way, before the accelerator is asked; and their names.
+enum class Prediction { none, network, last, random };
+inline constexpr std::array<std::string_view, 4> kPredictions{"none", "network", "last", "random"};
+inline constexpr std::string_view name_of(Prediction prediction) {
+  return kPredictions[static_cast<std::size_t>(prediction)];
+}
 
 // One choice the plan made, for people to read.
 struct Decision {
@@ -29,6 +38,8 @@ struct Plan {
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
   std::uint64_t seed = 0;
+  bool reorder = false;  // rays that are alike are asked for together
+  Prediction prediction = Prediction::none;
   // Stages that are present.
   bool direct_light = true;    // light sources are evaluated
   bool shadows = true;         // shadow rays are traced

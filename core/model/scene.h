@@ -22,6 +22,8 @@ struct RenderSettings {
   int max_depth = 5, samples = 1;
   double min_contribution = 0;
   std::uint64_t seed = 0;
+  bool reorder = false;
+  Prediction prediction = Prediction::none;
 };
 
 // What the plan wants to know about a scene, computed once.

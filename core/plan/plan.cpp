@@ -67,6 +67,8 @@ class Planner {
              "no ray can meet them");
     choose_precision();
     choose_accelerator();
+    choose_order();
+    choose_prediction();
     if (request_.full_model) return plan_;
     choose_lights();
     choose_specular();
@@ -147,6 +149,18 @@ class Planner {
            few ? "so few primitives that testing each costs less than any structure"
                : "of all structures it took the least time on every scene measured with more than " +
                      std::to_string(kMostToTry) + " primitives");
+  }
+
+  void choose_order() {
+    plan_.reorder = request_.reorder.value_or(scene_.render.reorder);
+    if (plan_.reorder) decide("order of rays", "sorted by origin and direction", "as asked");
+  }
+
+  void choose_prediction() {
+    plan_.prediction = request_.prediction.value_or(scene_.render.prediction);
+    if (plan_.prediction != Prediction::none)
+      decide("prediction of shadows", std::string(name_of(plan_.prediction)),
+             "as asked; what it proposes is tested, so the picture stays the same");
   }
 
   void choose_lights() {

@@ -14,6 +14,8 @@ struct RenderRequest {
   std::optional<Precision> precision;
   std::optional<double> min_contribution, fov_degrees;
   std::optional<std::uint64_t> seed;
+  std::optional<bool> reorder;
+  std::optional<Prediction> prediction;
   Orbit orbit;
   bool full_model = false;  // every stage present, whatever the scene: the planned picture must equal it
   int slice = Plan{}.slice;

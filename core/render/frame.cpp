@@ -70,7 +70,7 @@ template <class T>
 RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
                     const RenderControl& control) {
   RenderStats stats;
-  const World<T> world = world_for<T>(scene.parts(), *plan.accelerator, stats.build_ms);
+  const World<T> world = world_for<T>(scene.parts(), plan, stats.build_ms, control.stop);
   stats.accelerator = plan.accelerator;
   stats.structure = world.accelerator->facts();
   Image image(plan.width, plan.height, format);

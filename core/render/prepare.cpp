@@ -2,7 +2,9 @@
 
 #include <chrono>
 
+#include "core/accelerators/reordered.h"
 #include "core/render/geometry.h"
+#include "core/render/occlusion_samples.h"
 
 namespace orrery {
 template <class T>
@@ -20,8 +22,42 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, dou
   return world;
 }
 
+namespace {
+
+template <class T>
+PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, const Plan& plan,
+                            double& build_ms, const std::function<bool()>& stop) {
+  const std::lock_guard lock(parts.trying);
+  PredictorPtr<T>& network = made_of<T>(parts).network;
+  if (!network) {
+    const auto start = std::chrono::steady_clock::now();
+    network = network_predictor<T>(sample_occlusion(world, plan, stop));
+    build_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  }
+  return network;
+}
+
+}  // namespace
+
+template <class T>
+World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms,
+                   const std::function<bool()>& stop) {
+  const World<T> bare = world_for<T>(parts, *plan.accelerator, build_ms);
+  const PrimitiveList<T>& primitives = bare.geometry->primitives;
+  auto asked = plan.reorder ? reordered(bare.accelerator) : bare.accelerator;
+  if (plan.prediction == Prediction::last)
+    asked = predicted_by_last(primitives, std::move(asked));
+  else if (plan.prediction == Prediction::random)
+    asked = predicted(primitives, std::move(asked), random_predictor<T>(static_cast<int>(primitives.size())));
+  else if (plan.prediction == Prediction::network)
+    asked = predicted(primitives, std::move(asked), network_for(parts, bare, plan, build_ms, stop));
+  return {bare.geometry, asked};
+}
+
 template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);
 template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);
+template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
+template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
   parts_->scene = std::move(scene);

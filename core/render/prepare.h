@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 
+#include "core/accelerators/prediction.h"
 #include "core/model/world.h"
 #include "core/render/renderer.h"
 
@@ -17,9 +18,10 @@ struct PreparedScene::Parts {
     std::map<const AcceleratorType*, std::shared_ptr<const Geometry<T>>> geometries;
     std::map<const AcceleratorType*, World<T>> worlds;
     std::optional<Decision> chosen;  // by trial
+    PredictorPtr<T> network;         // trained on the first plan that wanted one
   };
   std::shared_ptr<const Scene> scene;
-  std::mutex trying;  // held while structures are tried, so that it is done once
+  std::mutex trying;  // held while structures are tried or a network trained, so that it is done once
   std::mutex mutex;   // guards the rest; all is built under it, so that it is built once
   Made<float> made_float;
   Made<double> made_double;
@@ -28,6 +30,13 @@ struct PreparedScene::Parts {
 // The scene in number type T with an accelerator; adds the milliseconds spent building, if any.
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms);
+
+// The same with the accelerator of a settled plan and the stages that it wants in front of it, which change
+// no answer: prediction first, then reordering. Of these only the network takes time to make. Throws
+// Cancelled if `stop` said so.
+template <class T>
+World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms,
+                   const std::function<bool()>& stop = {});
 
 // What was built in number type T.
 template <class T>

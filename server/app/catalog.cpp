@@ -51,6 +51,8 @@ ordered_json defaults() {
           {"seed", own.seed},
           {"accelerator", own.accelerator},
           {"precision", "auto"},
+          {"reorder", own.reorder},
+          {"prediction", name_of(own.prediction)},
           {"azimuth", Orbit{}.azimuth_degrees},
           {"elevation", Orbit{}.elevation_degrees},
           {"distance", Orbit{}.distance}};

@@ -38,6 +38,8 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
           {"max_depth", plan.max_depth},
           {"min_contribution", plan.min_contribution},
           {"seed", plan.seed},
+          {"reorder", plan.reorder},
+          {"prediction", name_of(plan.prediction)},
           {"stages",
            {{"direct_light", plan.direct_light},
             {"shadows", plan.shadows},

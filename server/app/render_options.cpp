@@ -32,10 +32,16 @@ constexpr std::array kOptions{
     RenderOption{"precision", "render", "precision", "--precision", "auto|float|double",
                  "Number type of rays"},
     RenderOption{"seed", "render", "seed", "--seed", "N", "Seed of all random choices"},
+    RenderOption{"reorder", "render", "reorder", "--reorder", "true|false",
+                 "Trace rays together that are alike"},
+    RenderOption{"prediction", "render", "prediction", "--prediction", "NAME",
+                 "Who proposes what may shadow a point: none, network, last or random"},
 };
 
-// A number if the text is one and nothing else, or else the text, which the reader then refuses in words.
+// A number or a truth value if the text is one and nothing else, or else the text, which the reader then
+// refuses in words.
 nlohmann::json value_of(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
   const char* const end = text.data() + text.size();
   std::int64_t whole = 0;  // a double would round it
   if (const auto [rest, problem] = std::from_chars(text.data(), end, whole);

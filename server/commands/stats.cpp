@@ -1,5 +1,6 @@
 #include "server/commands/stats.h"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <ctime>
@@ -46,6 +47,15 @@ void rays_text(std::string& text, const RayCounts& rays) {
   line(text, "  %-10s %14llu", "total", static_cast<unsigned long long>(rays.total()));
 }
 
+void prediction_text(std::string& text, const Plan& plan, const TraceCounts& counts) {
+  const std::uint64_t proposals = counts.accelerator.proposals, proofs = counts.accelerator.proofs;
+  const double share =
+      100.0 * static_cast<double>(proofs) / static_cast<double>(std::max<std::uint64_t>(1, proposals));
+  line(text, "%-12s %14llu by %s, of which %llu proved a shadow, %.1f %%", "proposals",
+       static_cast<unsigned long long>(proposals), std::string(name_of(plan.prediction)).c_str(),
+       static_cast<unsigned long long>(proofs), share);
+}
+
 }  // namespace
 
 double cpu_seconds() {
@@ -62,6 +72,8 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"technique", plan.technique->name},
           {"accelerator", stats.render.accelerator->name},
           {"precision", plan.double_precision ? "double" : "float"},
+          {"reorder", plan.reorder},
+          {"prediction", name_of(plan.prediction)},
           {"instructions", kInstructionLevel},
           {"threads", stats.threads},
           {"rays",
@@ -76,6 +88,8 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"node_visits", counts.accelerator.node_visits},
           {"box_tests", counts.accelerator.box_tests},
           {"primitive_tests", counts.accelerator.primitive_tests},
+          {"proposals", counts.accelerator.proposals},
+          {"proofs", counts.accelerator.proofs},
           {"cut_rays", counts.cut_rays},
           {"mean_cut", stats.render.mean_cut},
           {"max_cut", stats.render.max_cut},
@@ -93,9 +107,9 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
   std::string text;
   line(text, "%-12s %d x %d, %d a pixel", "picture", plan.width, plan.height, plan.samples);
-  line(text, "%-12s %s, %s, %s, %s, threads %d", "rendered by", plan.technique->name,
-       stats.render.accelerator->name, plan.double_precision ? "double" : "float",
-       std::string(kInstructionLevel).c_str(), stats.threads);
+  line(text, "%-12s %s, %s%s, %s, %s, threads %d", "rendered by", plan.technique->name,
+       stats.render.accelerator->name, plan.reorder ? " of sorted rays" : "",
+       plan.double_precision ? "double" : "float", std::string(kInstructionLevel).c_str(), stats.threads);
   rays_text(text, counts.rays);
   line(text, "%-12s %14zu bytes, %d nodes deep, %zu references", "structure", stats.render.structure.bytes,
        stats.render.structure.depth, stats.render.structure.references);
@@ -104,6 +118,7 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   line(text, "%-12s %14llu of boxes, %llu of primitives", "tests",
        static_cast<unsigned long long>(counts.accelerator.box_tests),
        static_cast<unsigned long long>(counts.accelerator.primitive_tests));
+  if (plan.prediction != Prediction::none) prediction_text(text, plan, counts);
   line(text, "%-12s %14llu rays, weight a pixel %.3g on average, %.3g at most", "cut",
        static_cast<unsigned long long>(counts.cut_rays), stats.render.mean_cut, stats.render.max_cut);
   if (stats.render.non_finite_pixels > 0)

@@ -1,39 +1,14 @@
-import { spawn } from "node:child_process";
-import { createInterface } from "node:readline";
+import { start_two_sided } from "./two_sided.mjs";
 
 const kProgram = "build/bench";
 const kBunny = 70_000, kMillion = 1_000_000; // triangles; the first as many as the Stanford bunny has
 
 // A process that holds the mesh and both structures; each line asks it for one run.
 async function start(kind, triangles, mode) {
-  const child = spawn(kProgram, [kind, String(triangles), mode], { stdio: ["pipe", "pipe", "inherit"] });
-  const ended = new Promise((resolve) => child.once("close", resolve));
-  const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
-  const next_line = async () => {
-    const { value, done } = await lines.next();
-    if (done) throw new Error(`${kProgram} ended with ${await ended}`);
-    return value;
-  };
-  let facts;
-  try {
-    facts = JSON.parse(await next_line());
-  } catch (error) {
-    child.kill();
-    throw error;
-  }
-  const run = async (side) => {
-    child.stdin.write(`${side}\n`);
-    const cpu_s = Number(await next_line());
-    return { cost: cpu_s, cpu_s };
-  };
+  const { facts, ...sides } = await start_two_sided(kProgram, [kind, String(triangles), mode]);
   const per_triangle = (bytes) => (bytes / facts.triangles).toFixed(0);
   return {
-    ours: () => run("ours"),
-    theirs: () => run("theirs"),
-    stop: async () => {
-      child.stdin.end();
-      await ended;
-    },
+    ...sides,
     remark:
       `${facts.triangles} triangles` +
       (kind === "build" ? "" : `, ${facts.rays} rays`) +

@@ -9,12 +9,13 @@ import { measure } from "./measure.mjs";
 import { kNoise } from "./noise.mjs";
 import { kOrbitHttp } from "./orbit_http.mjs";
 import { kPaperVsPovray } from "./paper_vs_povray.mjs";
+import { kStages } from "./stages.mjs";
 import { kReports } from "./structures.mjs";
 
 // Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
 // reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
-const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree];
+const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages];
 
 const kAll = [...kBenchmarks, ...kReports];
 
@@ -26,6 +27,9 @@ function fail(message) {
   process.exit(2);
 }
 
+// By its name, or by how it begins: "embree" names all of them.
+const goes_by = ({ name }, word) => name === word || name.startsWith(`${word}-`);
+
 function read_arguments(words) {
   const options = { names: [], pairs: 7, json: null, charts: "build/charts", list: false };
   for (let i = 0; i < words.length; ++i) {
@@ -34,7 +38,7 @@ function read_arguments(words) {
     else if (words[i] === "--json") options.json = words[++i];
     else if (words[i] === "--charts") options.charts = words[++i];
     else if (words[i].startsWith("-")) fail(`unknown option ${words[i]}`);
-    else if (kAll.some((b) => b.name === words[i])) options.names.push(words[i]);
+    else if (kAll.some((b) => goes_by(b, words[i]))) options.names.push(words[i]);
     else fail(`no benchmark is called ${words[i]}; there are ${kAll.map((b) => b.name).join(", ")}`);
   }
   if (!Number.isInteger(options.pairs) || options.pairs < 1) fail("--pairs expects a whole number > 0");
@@ -44,7 +48,7 @@ function read_arguments(words) {
 }
 
 const kColumns = [
-  ["name", 22, (r) => r.name],
+  ["name", 31, (r) => r.name],
   ["ours CPU s", 11, (r) => r.ours_cpu_s.toFixed(3)],
   ["theirs CPU s", 13, (r) => r.theirs_cpu_s.toFixed(3)],
   ["ratio", 8, (r) => r.ratio.toFixed(2)],
@@ -84,13 +88,14 @@ async function run_benchmark(benchmark, pairs) {
 async function main() {
   const options = read_arguments(process.argv.slice(2));
   if (options.list) {
-    for (const { name, what } of kAll) console.log(`${name.padEnd(22)}${what}`);
+    for (const { name, what } of kAll) console.log(`${name.padEnd(31)}${what}`);
     return;
   }
   if (!exists_program(kOrrery)) fail(`${kOrrery} is not built`);
   const load = loadavg()[0];
   if (load > kQuietLoad) console.log(`warning: the machine is not idle, its load is ${load.toFixed(2)}`);
-  const chosen_of = (all) => all.filter((b) => options.names.length === 0 || options.names.includes(b.name));
+  const is_chosen = (b) => options.names.length === 0 || options.names.some((name) => goes_by(b, name));
+  const chosen_of = (all) => all.filter(is_chosen);
   const chosen = chosen_of(kBenchmarks);
   if (chosen.length > 0) console.log(table_row((name) => name));
   const results = [];

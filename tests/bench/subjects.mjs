@@ -6,7 +6,7 @@ import { run_command } from "./command.mjs";
 export const kFolder = "build/bench-scenes";
 
 // Numbers in [0, 1), the same every time (mulberry32).
-function random_numbers(seed) {
+export function random_numbers(seed) {
   let state = seed;
   return () => {
     state = (state + 0x6d2b79f5) | 0;
@@ -17,7 +17,7 @@ function random_numbers(seed) {
 }
 
 // A scene of these objects, lit and seen from `eye`.
-function scene_of(title, objects, eye, look_at = [0, 0, 0]) {
+export function scene_of(title, objects, eye, look_at = [0, 0, 0]) {
   return {
     version: 1,
     title,

@@ -117,6 +117,9 @@ TEST_F(CommandLine, WrongOptionsAreNamedAsTheyWereGiven) {
   const Outcome command = run("redner " + scene);
   EXPECT_EQ(command.status, 2);
   EXPECT_NE(command.err.find("did you mean \"render\""), std::string::npos) << command.err;
+  const Outcome flag = run("render " + scene + " --reorder maybe");
+  EXPECT_NE(flag.err.find("--reorder: expected true or false"), std::string::npos) << flag.err;
+  EXPECT_EQ(run("render " + scene + " --reorder true").status, 0);
   EXPECT_EQ(run("render nosuch.json").status, 1);
   EXPECT_EQ(run("render").status, 2);
   EXPECT_EQ(run("render " + scene + " -o ''").status, 2);

@@ -9,6 +9,7 @@
 
 import {meshFaults} from "./meshes.mjs";
 import {structureFaults} from "./structures.mjs";
+import {stageFaults} from "./stages.mjs";
 
 const kShapes = "core/shapes";
 const kNear = "N(T(1e-4))";  // the fixed epsilon of fault 4
@@ -457,5 +458,5 @@ const growth = [
 export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
-  ...meshFaults, ...structureFaults,
+  ...meshFaults, ...structureFaults, ...stageFaults,
 ];

@@ -36,6 +36,7 @@ TEST_F(FramePng, ETagNamesThePictureHoweverItIsAskedFor) {
   EXPECT_EQ(etag("?width=48&azimuth=0.0"), plain);
   EXPECT_EQ(etag("?azimuth=-0"), plain);
   EXPECT_EQ(etag("?technique=whitted&height=32"), plain);
+  EXPECT_EQ(etag("?accelerator=octree&reorder=true&prediction=last"), plain);
   for (const char* query :
        {"?azimuth=1", "?elevation=1", "?distance=2", "?fov=46", "?width=49", "?height=33", "?samples=2",
         "?technique=raycast", "?max_depth=1", "?min_contribution=0.5", "?seed=1", "?precision=double"})

@@ -134,12 +134,12 @@ TEST(Request, TakesOnlyWhatIsGiven) {
   const auto read = [](const char* text) { return read_request(parse_document(json(text).dump())); };
   const RenderRequest none = read("{}");
   EXPECT_FALSE(none.width || none.samples || none.technique || none.precision || none.fov_degrees ||
-               none.seed || none.min_contribution);
+               none.seed || none.min_contribution || none.reorder || none.prediction);
   EXPECT_EQ(none.orbit.distance, 1);
   const RenderRequest all =
       read(R"({'camera': {'azimuth_degrees': 30, 'elevation_degrees': -10, 'distance': 2, 'fov_degrees': 60},
       'image': {'width': 320, 'height': 200}, 'scene_id': 'x',
-      'render': {'technique': 'raycast', 'max_depth': 3, 'min_contribution': 0.01, 'samples': 16, 'accelerator': 'list', 'precision': 'double', 'seed': 7}})");
+      'render': {'technique': 'raycast', 'max_depth': 3, 'min_contribution': 0.01, 'samples': 16, 'accelerator': 'list', 'precision': 'double', 'seed': 7, 'reorder': true, 'prediction': 'last'}})");
   EXPECT_EQ(all.orbit.azimuth_degrees, 30);
   EXPECT_EQ(all.orbit.elevation_degrees, -10);
   EXPECT_EQ(all.orbit.distance, 2);
@@ -153,6 +153,8 @@ TEST(Request, TakesOnlyWhatIsGiven) {
   EXPECT_EQ(all.accelerator, "list");
   EXPECT_EQ(all.precision, Precision::double_precision);
   EXPECT_EQ(all.seed, 7u);
+  EXPECT_EQ(all.reorder, true);
+  EXPECT_EQ(all.prediction, Prediction::last);
 }
 
 TEST(Request, RefusesWhatNoSceneMayAskEither) {

@@ -46,6 +46,11 @@ std::uint64_t sum(const RayCounts::ByDepth& counts) {
   return total;
 }
 
+bool decides(const Plan& plan, const std::string& subject) {
+  return std::any_of(plan.decisions.begin(), plan.decisions.end(),
+                     [&](const Decision& d) { return d.subject == subject; });
+}
+
 TEST(Plan, LeavesOutLightThatNothingAnswers) {
   const Json no_light = scene_of_materials({kRough, kRough}, "[]");
   EXPECT_FALSE(plan_of(no_light).direct_light);
@@ -144,6 +149,35 @@ TEST(Plan, ChoosesTheListForAFewPrimitives) {
     request.accelerator = type.name;
     EXPECT_STREQ(plan_of(scene_with(objects), request).accelerator->name, type.name) << "as asked";
   }
+}
+
+TEST(Plan, SortsRaysOnlyIfAsked) {
+  Json scene = scene_of_materials({kRough, kMirror});
+  RenderRequest request;
+  EXPECT_FALSE(plan_of(scene).reorder);
+  request.reorder = true;
+  const Plan asked = plan_of(scene, request);
+  EXPECT_TRUE(asked.reorder);
+  EXPECT_TRUE(decides(asked, "order of rays"));
+  EXPECT_FALSE(decides(plan_of(scene), "order of rays"));
+  scene["render"] = {{"reorder", true}};
+  EXPECT_TRUE(plan_of(scene).reorder);
+  request.reorder = false;
+  EXPECT_FALSE(plan_of(scene, request).reorder);
+}
+
+TEST(Plan, PredictsShadowsOnlyIfAsked) {
+  Json scene = scene_of_materials({kRough, kMirror});
+  EXPECT_EQ(plan_of(scene).prediction, Prediction::none);
+  EXPECT_FALSE(decides(plan_of(scene), "prediction of shadows"));
+  scene["render"] = {{"prediction", "network"}};
+  EXPECT_EQ(plan_of(scene).prediction, Prediction::network);
+  RenderRequest request;
+  request.prediction = Prediction::last;
+  EXPECT_EQ(plan_of(scene, request).prediction, Prediction::last);
+  EXPECT_TRUE(decides(plan_of(scene, request), "prediction of shadows"));
+  request.prediction = Prediction::none;
+  EXPECT_EQ(plan_of(scene, request).prediction, Prediction::none);
 }
 
 TEST(Plan, GivesAReasonForEveryDecision) {

@@ -62,6 +62,32 @@ TEST_P(EveryScene, LooksTheSameWithEveryAccelerator) {
   }
 }
 
+TEST_P(EveryScene, LooksTheSameWithRaysInAnotherOrder) {
+  covers("F17");
+  for (RenderRequest request : {in_float(small()), in_double(small())}) {
+    const Picture reference = render(scene_, request);
+    request.reorder = true;
+    for (const auto& type : accelerator_types()) {
+      request.accelerator = type.name;
+      EXPECT_TRUE(identical(reference, render(scene_, request))) << type.name;
+    }
+  }
+}
+
+TEST_P(EveryScene, LooksTheSameWithShadowsPredicted) {
+  covers("F18");
+  for (RenderRequest request : {in_float(small()), in_double(small())}) {
+    const Picture reference = render(scene_, request);
+    EXPECT_EQ(reference.stats.counts.accelerator.proposals, 0u);
+    for (const bool reorder : {false, true})
+      for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
+        request.reorder = reorder;
+        request.prediction = prediction;
+        EXPECT_TRUE(identical(reference, render(scene_, request))) << name_of(prediction);
+      }
+  }
+}
+
 // Lengths times 2^17 and 2^-17, and the light as bright where it arrives: no constant of the program has a
 // length.
 TEST_P(EveryScene, LooksTheSameAtAnyScale) {

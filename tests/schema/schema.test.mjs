@@ -90,6 +90,7 @@ function* places(value, path = []) {
 function mutated(value) {
   const others = [null, true, "text", 0.5, -1, 1e13, 5000000, [], {}, [0, 0, 0], [1], { type: "sphere" }];
   if (typeof value === "number") return pick([...others, value + 0.25, value * 2, -value, [value]]);
+  if (typeof value === "boolean") return pick([...others, !value, String(value), undefined]);
   if (Array.isArray(value)) return pick([...others, [...value, 1], value.slice(1), { ...value }, undefined]);
   if (value && typeof value === "object")
     return pick([...others, undefined, { ...value, extra: 1 }, { ...value, type: "box" }, [value]]);

@@ -15,17 +15,23 @@ std::vector<std::string> accelerator_names() {
 }
 
 template <class T>
-Structure<T>::Structure(const Json& scene, const std::string& accelerator) {
+Structure<T>::Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage) {
   for (const auto& type : accelerator_types())
     if (type.name == accelerator) {
       geometry_ = make_geometry<T>(load(scene), type);
       accelerator_ = build(type, geometry_->primitives);
     }
   if (!accelerator_) throw std::invalid_argument(accelerator);
+  if (stage) accelerator_ = stage(geometry_->primitives, std::move(accelerator_));
 }
 
 template <class T>
 std::vector<Hit<T>> Structure<T>::closest(std::span<const Ray<T>> rays) {
+  return closest(rays, std::vector<Hit<T>>(rays.size()));
+}
+
+template <class T>
+std::vector<Hit<T>> Structure<T>::closest(std::span<const Ray<T>> rays, std::span<const Hit<T>> known) {
   std::vector<Hit<T>> found(rays.size());
   const auto batch = std::make_unique<RayBatch<T>>();
   const auto hits = std::make_unique<HitBatch<T>>();
@@ -33,6 +39,11 @@ std::vector<Hit<T>> Structure<T>::closest(std::span<const Ray<T>> rays) {
     fill_batch(some, std::numeric_limits<T>::infinity(), *batch);
     hits->t.values = batch->t_max.values;
     hits->primitive.values.fill(kNoPrimitive);
+    for (int i = 0; i < batch->count; ++i) {
+      const Hit<T>& hit = known[from + static_cast<std::size_t>(i)];
+      hits->t[i] = hit.t;
+      hits->primitive[i] = hit.primitive;
+    }
     accelerator_->closest(*batch, groups_of(*batch), *hits, counts_);
     for (int i = 0; i < batch->count; ++i)
       found[from + static_cast<std::size_t>(i)] = {hits->t[i], static_cast<int>(hits->primitive[i])};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "core/model/world.h"
@@ -10,19 +11,28 @@ namespace orrery::test {
 
 std::vector<std::string> accelerator_names();
 
+// What stands in front of an accelerator: makes the two one.
+template <class T>
+using Stage = std::function<std::shared_ptr<const Accelerator<T>>(const PrimitiveList<T>&,
+                                                                  std::shared_ptr<const Accelerator<T>>)>;
+
 template <class T>
 class Structure {
  public:
-  Structure(const Json& scene, const std::string& accelerator);
+  Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage = {});
 
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays);
+  // The same where a hit of each ray is known already; REQUIRES: as many.
+  std::vector<Hit<T>> closest(std::span<const Ray<T>> rays, std::span<const Hit<T>> known);
   std::vector<char> occluded(std::span<const Ray<T>> rays, T t_max);
   AcceleratorFacts facts() const { return accelerator_->facts(); }
+  const Geometry<T>& geometry() const { return *geometry_; }
+  const std::shared_ptr<const Accelerator<T>>& accelerator() const { return accelerator_; }
   const AcceleratorCounts& counts() const { return counts_; }  // of all calls so far
 
  private:
   std::shared_ptr<const Geometry<T>> geometry_;
-  AcceleratorPtr<T> accelerator_;
+  std::shared_ptr<const Accelerator<T>> accelerator_;
   AcceleratorCounts counts_;
 };
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "core/accelerators/network_predictor.h"
+#include "core/model/plan.h"
+#include "core/model/world.h"
+
+namespace orrery {
+
+// Shadow rays of some tiles of the picture that the plan asks for, spread evenly over all of them, and what
+// each met first. At most 16,384. Throws Cancelled if `stop` said so.
+template <class T>
+std::vector<OcclusionSample> sample_occlusion(const World<T>& world, const Plan& plan,
+                                              const std::function<bool()>& stop = {});
+
+}  // namespace orrery

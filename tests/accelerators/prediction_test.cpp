@@ -1,0 +1,208 @@
+#include "core/accelerators/prediction.h"
+
+#include "core/accelerators/network_predictor.h"
+#include "tests/support/agreement.h"
+#include "tests/support/covers.h"
+#include "tests/support/mixtures.h"
+
+// Whatever is proposed, right, wrong or no primitive at all: the shadows are those of the list.
+namespace orrery::test {
+namespace {
+
+// What no predictor should be.
+enum class Evil { out_of_range, always_wrong, any_number };
+
+template <class T>
+class Adversary final : public Predictor<T> {
+ public:
+  Adversary(Evil kind, const PrimitiveList<T>& primitives)
+      : kind_(kind), primitives_(primitives), count_(static_cast<IndexOf<T>>(primitives.size())) {}
+
+  void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const override {
+    using Limits = std::numeric_limits<IndexOf<T>>;
+    const std::array<IndexOf<T>, 6> beyond{Limits::min(), Limits::max(), -2,
+                                           count_,        count_ + 1,    kNoPrimitive};
+    Random random(static_cast<std::uint64_t>(groups.size() * 1000 + rays.count));
+    for (const int group : groups) {
+      const IndexOf<T> wrong = kind_ == Evil::always_wrong ? missed(rays, group) : 0;
+      for (int i = group; i < group + kWidth<T>; ++i) {
+        if (kind_ == Evil::always_wrong) primitive[i] = wrong;
+        if (kind_ == Evil::any_number) primitive[i] = random.below(2 * static_cast<int>(count_)) - count_ / 2;
+        if (kind_ == Evil::out_of_range) primitive[i] = beyond[static_cast<std::size_t>(random.below(6))];
+      }
+    }
+  }
+
+ private:
+  // A primitive that no ray of the register meets, or kNoPrimitive.
+  IndexOf<T> missed(const RayBatch<T>& rays, int group) const {
+    const Groups one = Groups::single(group);
+    const auto tried = std::make_unique<RayBatch<T>>(rays);
+    for (std::size_t p = 0; p < primitives_.size(); ++p) {
+      tried->t_max = rays.t_max;
+      primitives_[p].kernel->occlude(primitives_[p].index, *tried, one);
+      if (active_rays(*tried, one) == active_rays(rays, one)) return static_cast<IndexOf<T>>(p);
+    }
+    return kNoPrimitive;
+  }
+
+  Evil kind_;
+  const PrimitiveList<T>& primitives_;
+  IndexOf<T> count_;
+};
+
+template <class T>
+Stage<T> adversary(Evil kind) {
+  return [=](const auto& primitives, auto behind) {
+    return predicted<T>(primitives, behind, std::make_shared<const Adversary<T>>(kind, primitives));
+  };
+}
+
+// A predictor that has seen what the rays to come meet.
+template <class T>
+PredictorPtr<T> trained_on(const Json& scene, const Rays<T>& rays) {
+  Structure<T> list(scene, "list");
+  const auto hits = list.closest(rays);
+  std::vector<OcclusionSample> samples;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    samples.push_back({convert_ray<double>(rays[i]), hits[i].primitive});
+  return network_predictor<T>(samples);
+}
+
+template <class T>
+struct Front {
+  const char* name;
+  Stage<T> stage;
+};
+
+template <class T>
+std::vector<Front<T>> fronts(const Json& scene, const Rays<T>& rays) {
+  const auto by = [](PredictorPtr<T> predictor) -> Stage<T> {
+    return [=](const auto& primitives, auto behind) { return predicted<T>(primitives, behind, predictor); };
+  };
+  return {
+      {"always wrong", adversary<T>(Evil::always_wrong)},
+      {"any number", adversary<T>(Evil::any_number)},
+      {"out of range", adversary<T>(Evil::out_of_range)},
+      {"random", by(random_predictor<T>(load(scene)->primitive_count()))},
+      {"last", [](const auto& primitives, auto behind) { return predicted_by_last<T>(primitives, behind); }},
+      {"network", by(trained_on<T>(scene, Rays<T>(rays.begin(), rays.begin() + 2000)))}};
+}
+
+// Rays from a cluster of places, so that neighbours are alike and the last occluder is often the next one.
+template <class T>
+Rays<T> neighbouring_rays(int count, std::uint64_t seed) {
+  Random random(seed);
+  Rays<T> rays;
+  while (static_cast<int>(rays.size()) < count) {
+    const Vec3d at = random.in_cube(2.5), toward = random.direction();
+    for (int i = 0; i < 256; ++i)
+      rays.push_back(
+          {Vec3<T>(at + random.in_cube(0.05)), Vec3<T>(safe_normalize(toward + random.direction() * 0.1))});
+  }
+  return rays;
+}
+
+struct Subject {
+  const char* name;
+  Json scene;
+};
+std::vector<Subject> subjects() {
+  return {
+      {"balls", balls(150, 1)}, {"mesh", wavy_sheet(12)}, {"mixture", mixture(2)}, {"planes", planes(5, 3)}};
+}
+
+// How many shadows of `count` rays differ from the list's, with each of the predictors in front of a
+// structure.
+template <class T>
+void expect_no_change(const Subject& subject, const std::string& accelerator, int count) {
+  Rays<T> rays = neighbouring_rays<T>(count / 2, 4);
+  const Rays<T> others = any_rays<T>(3, count / 2, 5);
+  rays.insert(rays.end(), others.begin(), others.end());
+  Structure<T> reference(subject.scene, "list");
+  for (const T reach : {T(0.8), std::numeric_limits<T>::infinity()}) {
+    const std::vector<char> expected = reference.occluded(rays, reach);
+    for (const auto& [front, stage] : fronts<T>(subject.scene, rays)) {
+      Structure<T> structure(subject.scene, accelerator, stage);
+      const std::vector<char> found = structure.occluded(rays, reach);
+      int wrong = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) wrong += found[i] != expected[i];
+      EXPECT_EQ(wrong, 0) << subject.name << ", " << front << ", of " << rays.size();
+    }
+  }
+}
+
+class PredictionOfShadows : public testing::TestWithParam<std::string> {};
+
+TEST_P(PredictionOfShadows, ChangesNoneInFrontOfAnyStructure) {
+  covers("F18");
+  for (const Subject& subject : subjects()) {
+    expect_no_change<float>(subject, GetParam(), 4'000);
+    expect_no_change<double>(subject, GetParam(), 4'000);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PredictionOfShadows, testing::ValuesIn(accelerator_names()), by_name);
+
+TEST(PredictionOfShadows, ChangesNoneOfAMillion) {
+  covers("F18");
+  for (const Subject& subject : subjects()) {
+    expect_no_change<float>(subject, "bvh", 1'000'000);
+    expect_no_change<double>(subject, "bvh", 1'000'000);
+  }
+}
+
+// Numbers that are none, and rays that are not asked for.
+TEST(PredictionOfShadows, ChangesNoneOfBrokenRays) {
+  covers("F18");
+  const Subject subject{"balls", balls(50, 1)};
+  const Rays<float> rays = broken_rays<float>(10'000, 6);
+  Structure<float> reference(subject.scene, "list");
+  const std::vector<char> expected = reference.occluded(rays, 2);
+  for (const auto& [front, stage] : fronts<float>(subject.scene, any_rays<float>(3, 2000, 5)))
+    EXPECT_EQ(Structure<float>(subject.scene, "bvh", stage).occluded(rays, 2), expected) << front;
+}
+
+TEST(PredictionOfShadows, LeavesTheNearestHitToTheStructure) {
+  const Json scene = balls(50, 1);
+  const Rays<float> rays = any_rays<float>(3, 5'000, 5);
+  Structure<float> reference(scene, "list");
+  for (const auto& [front, stage] : fronts<float>(scene, rays)) {
+    Structure<float> structure(scene, "bvh", stage);
+    SCOPED_TRACE(front);
+    expect_agreement<float>(structure, reference, rays, {});
+    EXPECT_EQ(structure.counts().proposals, 0u);
+  }
+}
+
+TEST(PredictionCounts, TellProposalsFromProofs) {
+  const Json scene = balls(150, 1);
+  const Rays<float> rays = any_rays<float>(3, 1000, 5);
+  const auto counts = [&](const Stage<float>& stage) {
+    Structure<float> structure(scene, "list", stage);
+    structure.occluded(rays, std::numeric_limits<float>::infinity());
+    return structure.counts();
+  };
+  const AcceleratorCounts bare = counts({}), nothing = counts(adversary<float>(Evil::out_of_range)),
+                          wrong = counts(adversary<float>(Evil::always_wrong));
+  EXPECT_EQ(nothing.proposals, 0u);
+  EXPECT_EQ(nothing.primitive_tests, bare.primitive_tests);
+  EXPECT_EQ(wrong.proposals, 1000u);
+  EXPECT_EQ(wrong.proofs, 0u);
+  EXPECT_EQ(wrong.primitive_tests, bare.primitive_tests + 1000);
+}
+
+TEST(PredictionCounts, FallWhereThePastIsAGuide) {
+  const Json scene = balls(150, 1);
+  const Rays<float> rays = neighbouring_rays<float>(20'000, 4);
+  Structure<float> bare(scene, "list"), last(scene, "list", [](const auto&primitives, auto behind) {
+    return predicted_by_last<float>(primitives, behind);
+  });
+  bare.occluded(rays, 2);
+  last.occluded(rays, 2);
+  EXPECT_GT(last.counts().proofs, 1000u);
+  EXPECT_LT(last.counts().primitive_tests, bare.counts().primitive_tests);
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,224 @@
+#include <oneapi/tbb/global_control.h>
+#include <time.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core/accelerators/reordered.h"
+#include "core/load/load.h"
+#include "core/plan/plan.h"
+#include "core/render/prepare.h"
+#include "core/render/trial.h"
+#include "server/commands/mesh_files.h"
+#include "tests/support/random.h"
+
+// Stages in front of an accelerator, beside that accelerator alone, on the rays of some tiles of a picture.
+//   stages SCENE.json STRUCTURE predict none|network|last|random   shadow rays
+//   stages SCENE.json STRUCTURE known nearest                      camera rays that bring the hit they will
+//   have stages SCENE.json STRUCTURE reorder camera|bounced|scattered   nearest hits
+// First prints a line about the rays, in JSON; then for each line of input, "ours" (with the stage) or
+// "theirs", asks for all of them and prints the CPU seconds that took.
+namespace orrery::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kTiles = 64;
+constexpr double kLeastSeconds = 0.1;  // of a run
+
+double thread_seconds() {
+  timespec used{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
+}
+
+// What was asked in one call, and hits known beforehand.
+struct Call {
+  RayBatch<float> rays;
+  Groups groups;
+  HitBatch<float> hits;
+};
+using Calls = std::vector<std::unique_ptr<Call>>;
+
+std::unique_ptr<Call> call_of(const RayBatch<float>& rays, const Groups& groups) {
+  auto call = std::make_unique<Call>(Call{rays, groups, {}});
+  call->hits.t = rays.t_max;
+  call->hits.primitive.values.fill(kNoPrimitive);
+  return call;
+}
+
+class Recorder final : public Accelerator<float> {
+ public:
+  Recorder(const Accelerator<float>& real, Calls& camera, Calls& shadow)
+      : real_(real), camera_(camera), shadow_(shadow) {}
+  AcceleratorFacts facts() const override { return real_.facts(); }
+  void closest(const RayBatch<float>& rays, const Groups& groups, HitBatch<float>& hits,
+               AcceleratorCounts& counts) const override {
+    camera_.push_back(call_of(rays, groups));
+    real_.closest(rays, groups, hits, counts);
+  }
+  void occlude(RayBatch<float>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    shadow_.push_back(call_of(rays, groups));
+    real_.occlude(rays, groups, counts);
+  }
+
+ private:
+  const Accelerator<float>& real_;
+  Calls &camera_, &shadow_;
+};
+
+std::uint64_t rays_of(const Calls& calls) {
+  std::uint64_t rays = 0;
+  for (const auto& call : calls) rays += active_rays(call->rays, call->groups);
+  return rays;
+}
+
+// Whole batches that leave what the camera's rays met in any direction; scattered: in any order, too.
+Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool scattered) {
+  test::Random random(1);
+  std::vector<Ray<float>> rays;
+  for (const auto& call : camera) {
+    HitBatch<float> hits = call->hits;
+    AcceleratorCounts counts;
+    accelerator.closest(call->rays, call->groups, hits, counts);
+    for (const int first : call->groups)
+      for (int i = first; i < first + kWidth<float>; ++i) {
+        if (hits.primitive[i] == kNoPrimitive) continue;
+        const Vec3f origin(call->rays.origin.x[i], call->rays.origin.y[i], call->rays.origin.z[i]);
+        const Vec3f along(call->rays.direction.x[i], call->rays.direction.y[i], call->rays.direction.z[i]);
+        rays.push_back({origin + along * (0.999f * hits.t[i]), Vec3f(random.direction())});
+      }
+  }
+  if (scattered)
+    for (std::size_t i = rays.size(); i > 1; --i)
+      std::swap(rays[i - 1], rays[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+  Calls calls;
+  const auto batch = std::make_unique<RayBatch<float>>();
+  for (std::size_t from = 0; from + kBatch <= rays.size(); from += kBatch) {
+    for (int i = 0; i < kBatch; ++i) {
+      const Ray<float>& ray = rays[from + static_cast<std::size_t>(i)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        (&batch->origin.x)[axis][i] = (&ray.origin.x)[axis];
+        (&batch->direction.x)[axis][i] = (&ray.direction.x)[axis];
+      }
+      batch->t_max[i] = std::numeric_limits<float>::infinity();
+    }
+    batch->count = kBatch;
+    calls.push_back(call_of(*batch, Groups::covering(0, kBatch, kWidth<float>)));
+  }
+  return calls;
+}
+
+// Seconds that asking for all of them takes; what they hold stays.
+double ask(const Accelerator<float>& accelerator, const Calls& calls, bool shadows, AcceleratorCounts& counts,
+           std::uint64_t& occluded) {
+  const auto rays = std::make_unique<RayBatch<float>>();
+  const auto hits = std::make_unique<HitBatch<float>>();
+  double seconds = 0;
+  for (const auto& call : calls) {
+    *rays = call->rays;
+    *hits = call->hits;
+    const double start = thread_seconds();
+    if (shadows)
+      accelerator.occlude(*rays, call->groups, counts);
+    else
+      accelerator.closest(*rays, call->groups, *hits, counts);
+    seconds += thread_seconds() - start;
+    if (shadows) occluded += active_rays(call->rays, call->groups) - active_rays(*rays, call->groups);
+  }
+  return seconds;
+}
+
+// What is to be measured.
+struct Task {
+  std::string scene, structure, stage, what;
+};
+
+struct Sides {
+  Calls ours, theirs;  // what each is asked; empty `ours`: the same
+  std::shared_ptr<const Accelerator<float>> with, without;
+  bool shadows = false;
+  double build_ms = 0;
+};
+
+Sides sides_of(const PreparedScene& scene, const Task& task) {
+  RenderRequest request;
+  request.precision = Precision::single_precision;
+  request.accelerator = task.structure;
+  if (task.stage == "predict")
+    for (std::size_t i = 0; i < kPredictions.size(); ++i)
+      if (kPredictions[i] == task.what) request.prediction = static_cast<Prediction>(i);
+  Plan plan = make_plan(scene.scene(), request);
+  Sides sides;
+  double structure_ms = 0;
+  const World<float> bare = world_for<float>(scene.parts(), *plan.accelerator, structure_ms);
+  sides.without = bare.accelerator;
+  sides.with = world_for<float>(scene.parts(), plan, sides.build_ms).accelerator;
+  Calls camera, shadow;
+  if (task.stage != "predict") plan.max_depth = 0;
+  try_tiles<float>({bare.geometry, std::make_shared<const Recorder>(*bare.accelerator, camera, shadow)}, plan,
+                   kTiles);
+  sides.shadows = task.stage == "predict";
+  sides.theirs = std::move(sides.shadows ? shadow : camera);
+  if (task.stage == "known") {
+    for (const auto& call : sides.theirs) {
+      sides.ours.push_back(std::make_unique<Call>(*call));
+      AcceleratorCounts counts;
+      bare.accelerator->closest(call->rays, call->groups, sides.ours.back()->hits, counts);
+    }
+  } else if (task.stage == "reorder") {
+    sides.with = reordered(sides.without);
+    if (task.what != "camera")
+      sides.theirs = bounced(sides.theirs, *bare.accelerator, task.what == "scattered");
+  }
+  return sides;
+}
+
+int run(const Task& task) {
+  const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+  std::ifstream in(task.scene);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const PreparedScene scene(load_scene(text, MeshFiles(std::filesystem::path(task.scene).parent_path())));
+  const Sides sides = sides_of(scene, task);
+  const Calls& ours = sides.ours.empty() ? sides.theirs : sides.ours;
+  AcceleratorCounts with, without;
+  std::uint64_t occluded = 0, again = 0;
+  ask(*sides.with, ours, sides.shadows, with, occluded);
+  const double once = ask(*sides.without, sides.theirs, sides.shadows, without, again);
+  if (occluded != again) throw std::runtime_error("the stage changed an answer");
+  const int repeats = std::max(1, static_cast<int>(kLeastSeconds / once));
+  std::printf("%s\n", ordered_json({{"rays", rays_of(sides.theirs)},
+                                    {"ray_s", once / static_cast<double>(rays_of(sides.theirs))},
+                                    {"occluded", occluded},
+                                    {"proposals", with.proposals},
+                                    {"proofs", with.proofs},
+                                    {"build_ms", sides.build_ms}})
+                          .dump()
+                          .c_str());
+  std::fflush(stdout);
+  for (std::string side; std::getline(std::cin, side);) {
+    const bool mine = side == "ours";
+    double seconds = 0;
+    for (int i = 0; i < repeats; ++i)
+      seconds +=
+          ask(mine ? *sides.with : *sides.without, mine ? ours : sides.theirs, sides.shadows, with, again);
+    std::printf("%.9f\n", seconds);
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace orrery::bench
+
+int main(int count, char** words) {
+  if (count != 5) return 2;
+  try {
+    return orrery::bench::run({words[1], words[2], words[3], words[4]});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "stages: %s\n", error.what());
+    return 1;
+  }
+}

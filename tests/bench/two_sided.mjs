@@ -1,0 +1,38 @@
+// A program that holds both sides of a comparison. Its first line of output tells facts, in JSON; then each
+// line of input, "ours" or "theirs", asks it for one run, which it answers with the CPU seconds that took.
+
+import { spawn } from "node:child_process";
+import { createInterface } from "node:readline";
+
+// Returns {facts, ours(), theirs(), stop()}.
+export async function start_two_sided(program, words) {
+  const child = spawn(program, words, { stdio: ["pipe", "pipe", "inherit"] });
+  const ended = new Promise((resolve) => child.once("close", resolve));
+  const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
+  const next_line = async () => {
+    const { value, done } = await lines.next();
+    if (done) throw new Error(`${program} ended with ${await ended}`);
+    return value;
+  };
+  let facts;
+  try {
+    facts = JSON.parse(await next_line());
+  } catch (error) {
+    child.kill();
+    throw error;
+  }
+  const run = async (side) => {
+    child.stdin.write(`${side}\n`);
+    const cpu_s = Number(await next_line());
+    return { cost: cpu_s, cpu_s };
+  };
+  return {
+    facts,
+    ours: () => run("ours"),
+    theirs: () => run("theirs"),
+    stop: async () => {
+      child.stdin.end();
+      await ended;
+    },
+  };
+}

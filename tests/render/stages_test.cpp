@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/plan/plan.h"
+#include "core/render/occlusion_samples.h"
+#include "core/render/prepare.h"
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+#include "tests/support/scenes.h"
+
+// What stands in front of a render's accelerator, and what the network is trained on.
+namespace orrery::test {
+namespace {
+
+// Two balls between the sun and a floor that reaches to the horizon.
+Json balls_over_a_floor() {
+  return scene_of(
+      R"([{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]},
+          {'type': 'sphere', 'center': [-1, 0.5, 0], 'radius': 0.8},
+          {'type': 'sphere', 'center': [1, 0.5, 0], 'radius': 0.8}])",
+      "{'lights': [{'type': 'directional', 'from': [0, 1, 0]}], 'camera': {'eye': [0, 2, 6]}}");
+}
+
+RenderRequest asking(Prediction prediction) {
+  RenderRequest request = size(256, 256);
+  request.prediction = prediction;
+  request.accelerator = "bvh";
+  return request;
+}
+
+template <class T>
+std::vector<OcclusionSample> samples_of(const Json& json, const RenderRequest& request) {
+  const PreparedScene scene(load(json));
+  const Plan plan = make_plan(scene.scene(), request);
+  double build_ms = 0;
+  return sample_occlusion(world_for<T>(scene.parts(), *plan.accelerator, build_ms), plan);
+}
+
+TEST(OcclusionSamples, AreShadowRaysWithWhatTheyMeet) {
+  const Json json = balls_over_a_floor();
+  const auto samples = samples_of<double>(json, size(256, 256));
+  int met = 0;
+  for (const OcclusionSample& sample : samples) {
+    EXPECT_EQ(sample.ray.direction, Vec3d(0, 1, 0));
+    if (sample.occluder == kNoPrimitive) continue;
+    ++met;
+    const auto& at = sample.ray.origin;
+    EXPECT_LT((std::abs(at.x) - 1) * (std::abs(at.x) - 1) + at.z * at.z, 0.8 * 0.8);
+  }
+  EXPECT_GT(met, 10);
+  EXPECT_GT(static_cast<int>(samples.size()), met);
+}
+
+TEST(OcclusionSamples, AreNeverTooMany) {
+  Json json = sample("glass");
+  for (int i = 0; i < 40; ++i) json["lights"].push_back({{"type", "point"}, {"position", {0.1 * i, 5, 3}}});
+  const auto samples = samples_of<float>(json, size(512, 512));
+  EXPECT_LE(samples.size(), 16'384u);
+  EXPECT_GE(samples.size(), 8'192u);
+}
+
+// A floor from above: as many from its upper half as from its lower one, though half of what came first was
+// dropped again.
+TEST(OcclusionSamples, AreSpreadEvenly) {
+  const Json floor = scene_of(
+      R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},
+          {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.01}])",
+      R"({'lights': [{'type': 'directional', 'from': [0, 1, 0]}],
+          'camera': {'type': 'orthographic', 'eye': [0, 9, 0], 'look_at': [0, 0, 0], 'up': [0, 0, -1], 'height': 2}})");
+  const auto samples = samples_of<float>(floor, size(512, 512));
+  EXPECT_GT(samples.size(), 8'192u);
+  const auto lower = std::count_if(samples.begin(), samples.end(),
+                                   [](const OcclusionSample& sample) { return sample.ray.origin.z > 0; });
+  EXPECT_NEAR(static_cast<double>(lower) / static_cast<double>(samples.size()), 0.5, 0.05);
+}
+
+TEST(OcclusionSamples, EndWhenNobodyWaits) {
+  const PreparedScene scene(load(sample("glass")));
+  const Plan plan = make_plan(scene.scene(), asking(Prediction::network));
+  double build_ms = 0;
+  EXPECT_THROW(world_for<float>(scene.parts(), plan, build_ms, [] { return true; }), Cancelled);
+  EXPECT_NO_THROW(world_for<float>(scene.parts(), plan, build_ms));
+}
+
+TEST(Stages, CountWhatWasProposedAndProved) {
+  for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
+    const Picture picture = render(balls_over_a_floor(), asking(prediction));
+    const AcceleratorCounts& counts = picture.stats.counts.accelerator;
+    SCOPED_TRACE(name_of(prediction));
+    EXPECT_GT(counts.proofs, 0u);
+    EXPECT_GT(counts.proposals, counts.proofs);
+  }
+  EXPECT_EQ(render(balls_over_a_floor(), asking(Prediction::none)).stats.counts.accelerator.proposals, 0u);
+}
+
+TEST(Stages, NetworkProvesMoreThanChance) {
+  const auto share = [](Prediction prediction) {
+    const AcceleratorCounts counts = render(sample("paper"), asking(prediction)).stats.counts.accelerator;
+    return static_cast<double>(counts.proofs) / static_cast<double>(counts.proposals);
+  };
+  EXPECT_GT(share(Prediction::network), 1.5 * share(Prediction::random));
+}
+
+// The same samples, the same network, the same counts, for any number of threads.
+TEST(Stages, CountTheSameTwice) {
+  for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
+    const auto counts = [&](int threads) {
+      return render(sample("paper"), asking(prediction), threads).stats.counts.accelerator;
+    };
+    EXPECT_EQ(counts(1).proofs, counts(2).proofs);
+    EXPECT_EQ(counts(1).proposals, counts(3).proposals);
+  }
+}
+
+TEST(Stages, NetworkIsTrainedOnceForAScene) {
+  const PreparedScene scene(load(sample("paper")));
+  const Plan plan = make_plan(scene.scene(), asking(Prediction::network));
+  double first_ms = 0, second_ms = 0;
+  world_for<float>(scene.parts(), plan, first_ms);
+  world_for<float>(scene.parts(), plan, second_ms);
+  EXPECT_GT(first_ms, 0);
+  EXPECT_EQ(second_ms, 0);
+}
+
+}  // namespace
+}  // namespace orrery::test
