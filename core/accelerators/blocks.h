@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "core/base/error.h"
 #include "core/model/accelerator.h"
 
 namespace orrery {
@@ -28,6 +29,9 @@ class Blocks {
     if (making == makings_.end()) making = makings_.insert(making, {kernel, {}});
     std::vector<int>& indices = making->indices;
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
+    if (block > kBlockMask)
+      throw InputError("/render/accelerator",
+                       "expected a structure of at most 67108864 blocks of primitives");
     for (const std::uint32_t place : places) indices.push_back(primitives[place].index);
     indices.resize((block + 1) * kSize, kNothing);
     return static_cast<BlockName>(making - makings_.begin()) << kBlockBits | block;

@@ -85,13 +85,26 @@ class Grouping {
     std::vector<int> nearest(line_.size());
     in_parallel(nearest.size(), [&](std::size_t i) { nearest[i] = nearest_of(static_cast<int>(i)); });
     std::vector<std::uint32_t> next;
+    next.reserve(line_.size());
     for (int i = 0; i < count; ++i) {
       const int j = nearest[static_cast<std::size_t>(i)];
       const bool mutual = nearest[static_cast<std::size_t>(j)] == i;
       if (!mutual) next.push_back(at(i));
       if (mutual && i < j) next.push_back(merge(at(i), at(j)));
     }
+    // Where sizes or gaps grow from one to the next, only one pair is mutual: neighbours are merged as they
+    // stand then, so that the number of passes stays a logarithm.
+    constexpr std::size_t kFewest = 32;
+    if (next.size() + next.size() / kFewest > line_.size()) next = pairs_of(next);
     line_ = std::move(next);
+  }
+
+  std::vector<std::uint32_t> pairs_of(const std::vector<std::uint32_t>& line) {
+    std::vector<std::uint32_t> pairs;
+    pairs.reserve(line.size() / 2 + 1);
+    for (std::size_t i = 0; i + 1 < line.size(); i += 2) pairs.push_back(merge(line[i], line[i + 1]));
+    if (line.size() % 2 == 1) pairs.push_back(line.back());
+    return pairs;
   }
 
   std::uint32_t at(int i) const { return line_[static_cast<std::size_t>(i)]; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <limits>
+#include <map>
 
 #include "core/accelerators/registry.h"
 #include "core/lights/registry.h"
@@ -70,6 +71,28 @@ void read_render(Params& p, RenderSettings& render) {
       p.choice("prediction", "Who proposes what may shadow a point, before the accelerator is asked.",
                kPredictions, "none"));
 }
+
+// Reads each mesh once, however often a scene names it.
+class ReadOnce final : public MeshSource {
+ public:
+  explicit ReadOnce(const MeshSource& from) : from_(from) {}
+  TriangleMesh file(const std::string& name) const override {
+    return once(files_, name, [&] { return from_.file(name); });
+  }
+  TriangleMesh asset(const std::string& sha256) const override {
+    return once(assets_, sha256, [&] { return from_.asset(sha256); });
+  }
+
+ private:
+  using Meshes = std::map<std::string, TriangleMesh>;
+  template <class Read>
+  static const TriangleMesh& once(Meshes& meshes, const std::string& name, const Read& read) {
+    const auto known = meshes.find(name);
+    return known != meshes.end() ? known->second : meshes.emplace(name, read()).first->second;
+  }
+  const MeshSource& from_;
+  mutable Meshes files_, assets_;
+};
 
 // Where the primitives of a scene or a model get their material from.
 class ObjectReader {
@@ -146,11 +169,17 @@ class SceneReader {
     });
     p.each_named("models", "Objects that instances place, by name.", {},
                  [&](const std::string& name, Params& m) { read_model(name, m); });
+    std::size_t instanced = 0;
     p.each("instances", "Models that stand in the scene.", {0, kMaxObjects}, [&](Params& i) {
-      scene_->instances.push_back(
-          {i.reference("model", "Name of what stands there.", model_names_), read_transform(i)});
+      const std::size_t model = i.reference("model", "Name of what stands there.", model_names_);
+      scene_->instances.push_back({model, read_transform(i)});
+      if (model < scene_->models.size()) instanced += primitives_of(scene_->models[model]);
       ++scene_->object_count;
     });
+    if (instanced > kMaxInstanced)
+      p.fail("instances", "expected at most " + std::to_string(kMaxInstanced) +
+                              " primitives in all instances (instanced_primitives), got " +
+                              std::to_string(instanced));
     p.optional_object("render", "How the picture is made.",
                       [&](Params& r) { read_render(r, scene_->render); });
   }
@@ -189,6 +218,12 @@ class SceneReader {
     if (type) scene_->lights.push_back(light_types()[*type].make(p));
   }
 
+  static std::size_t primitives_of(const Model& model) {
+    std::size_t count = 0;
+    for (const auto& shapes : model.shapes) count += static_cast<std::size_t>(shapes->size());
+    return count;
+  }
+
   void read_model(const std::string& name, Params& p) {
     model_names_.add(name);
     Model& model = scene_->models.emplace_back();
@@ -211,12 +246,6 @@ class SceneReader {
     };
     auto model = scene_->models.begin();
     for (const ObjectReader& objects : model_objects_) number(objects, (model++)->material_of);
-    std::size_t all = 0;
-    for (const Instance& instance : scene_->instances)
-      all += scene_->models[instance.model].material_of.size();
-    if (all > kMaxInstanced)
-      throw InputError("/instances", "expected at most " + std::to_string(kMaxInstanced) +
-                                         " primitives in all instances, got " + std::to_string(all));
     number(objects_, scene_->material_of);
     for (const Instance& instance : scene_->instances) {
       const auto& of_model = scene_->models[instance.model].material_of;
@@ -257,7 +286,7 @@ class SceneReader {
     scene_->facts.magnitude = std::max(scene_->facts.magnitude, box.magnitude());
   }
 
-  const MeshSource& meshes_;
+  const ReadOnce meshes_;
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};
   std::vector<MaterialPlace> places_;  // by number of the name

@@ -25,4 +25,25 @@ std::size_t weld(TriangleMesh& mesh) {
   return old.positions.size() - mesh.positions.size();
 }
 
+void drop_unused(TriangleMesh& mesh) {
+  constexpr std::uint32_t kUnused = ~0u;
+  std::vector<std::uint32_t> place(mesh.positions.size(), kUnused);
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) place[vertex] = 0;
+  std::uint32_t kept = 0;
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (place[v] == kUnused) continue;
+    place[v] = kept;
+    mesh.positions[kept] = mesh.positions[v];
+    if (!mesh.normals.empty()) mesh.normals[kept] = mesh.normals[v];
+    if (!mesh.uvs.empty()) mesh.uvs[kept] = mesh.uvs[v];
+    ++kept;
+  }
+  mesh.positions.resize(kept);
+  if (!mesh.normals.empty()) mesh.normals.resize(kept);
+  if (!mesh.uvs.empty()) mesh.uvs.resize(kept);
+  for (auto& triangle : mesh.triangles)
+    for (std::uint32_t& vertex : triangle) vertex = place[vertex];
+}
+
 }  // namespace orrery

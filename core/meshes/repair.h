@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "core/meshes/mesh_file.h"
 
@@ -20,8 +21,12 @@ std::size_t weld(TriangleMesh& mesh);
 // whose normals differ from its own triangle's by less than `crease_degrees` (in [0, 180]), each weighted by
 // its angle there (Thuermer and Wuethrich, Computing Vertex Normals from Polygonal Facets, 1998). A vertex
 // whose corners differ becomes several; vertices that are equal become one, and those that no triangle uses
-// go. Replaces normals, keeps uvs. Throws InputError if so many triangles meet at vertices that comparing
-// them all would take more than 2^31 steps.
-void smooth_normals(TriangleMesh& mesh, double crease_degrees);
+// go. Replaces normals, keeps uvs. Returns how many pairs of triangles around vertices were compared. Throws
+// InputError if they are more than `most_pairs`.
+std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees,
+                             std::uint64_t most_pairs = std::uint64_t{1} << 30);
+
+// Takes out the vertices that no triangle uses.
+void drop_unused(TriangleMesh& mesh);
 
 }  // namespace orrery

@@ -8,8 +8,6 @@
 namespace orrery {
 namespace {
 
-constexpr std::uint64_t kMaxSteps = std::uint64_t{1} << 31;
-
 // Angle between unit vectors, in radians: 2 atan(|u - v| / |u + v|) (Kahan), which is exact to a few ulps for
 // all angles. The arctangent is halved three times, then its series; IEEE operations alone, so that every
 // machine gives the same bits.
@@ -48,16 +46,13 @@ struct Corners {
       list[next[position[corner]]++] = corner;
   }
 
-  void check_steps() const {
-    std::uint64_t steps = 0;
+  std::uint64_t pairs() const {
+    std::uint64_t pairs = 0;
     for (std::size_t p = 0; p + 1 < first.size(); ++p) {
       const std::uint64_t count = first[p + 1] - first[p];
-      steps += count * count;
+      pairs += count * count;
     }
-    if (steps > kMaxSteps)
-      throw InputError("", "expected a mesh whose triangles around each vertex can be compared in " +
-                               std::to_string(kMaxSteps) + " steps to smooth it, got " +
-                               std::to_string(steps));
+    return pairs;
   }
 };
 
@@ -98,9 +93,13 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
 
 }  // namespace
 
-void smooth_normals(TriangleMesh& mesh, double crease_degrees) {
+std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees, std::uint64_t most_pairs) {
   const Corners corners(mesh);
-  corners.check_steps();
+  const std::uint64_t pairs = corners.pairs();
+  if (pairs > most_pairs)
+    throw InputError("", "expected at most " + std::to_string(most_pairs) +
+                             " pairs of triangles around vertices to be compared for smoothing, got " +
+                             std::to_string(pairs));
   const Facets facets(mesh);
   const double min_cosine = sine_cosine_degrees(crease_degrees).cosine;
   VertexList vertices(true, !mesh.uvs.empty());
@@ -113,6 +112,7 @@ void smooth_normals(TriangleMesh& mesh, double crease_degrees) {
     }
   mesh = vertices.take();
   mesh.triangles = std::move(triangles);
+  return pairs;
 }
 
 }  // namespace orrery

@@ -142,7 +142,7 @@ class Planner {
     }
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
-    plan_.try_accelerators = !few && count <= kMostToTry;
+    plan_.try_accelerators = !few && count <= kMostToTry && scene_.instances.empty();
     plan_.accelerator =
         find_type(accelerator_types(), few ? "list" : "bottom-up", "/render/accelerator", checks_);
     decide("accelerator", plan_.accelerator->name,

@@ -32,9 +32,11 @@ Placed<T> place(const Scene& scene, const Instance& instance,
                 const std::shared_ptr<const ModelGeometry<T>>& model, int& number) {
   const Affined& world_from_model = instance.world_from_model;
   const Affined model_from_world = inverse(world_from_model);
-  const double scale = stretch(world_from_model), condition = scale * stretch(model_from_world);
+  // Rows of the inverse stand at right angles, because instances are scaled before they are turned: so what
+  // rounding moves a point across its surface grows with its coordinates alone, not with how uneven the scale
+  // is. 2 > sqrt(3), the most by which a sum of three rows' errors exceeds their length.
   const double base =
-      8 * double{std::numeric_limits<T>::epsilon()} * max_component(abs(world_from_model.origin)) * condition;
+      2 * 8 * double{std::numeric_limits<T>::epsilon()} * max_component(abs(world_from_model.origin));
   const int first = number;
   number += static_cast<int>(scene.models[instance.model].material_of.size());
   return {model,
@@ -42,7 +44,7 @@ Placed<T> place(const Scene& scene, const Instance& instance,
           number,
           world_from_model.as<T>(),
           model_from_world.as<T>(),
-          static_cast<T>(scale * condition),
+          static_cast<T>(2 * stretch(world_from_model)),
           static_cast<T>(base)};
 }
 

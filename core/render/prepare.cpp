@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "core/accelerators/reordered.h"
+#include "core/base/error.h"
 #include "core/render/geometry.h"
 #include "core/render/occlusion_samples.h"
 
@@ -27,7 +28,7 @@ namespace {
 template <class T>
 PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, const Plan& plan,
                             double& build_ms, const std::function<bool()>& stop) {
-  const std::lock_guard lock(parts.trying);
+  const auto lock = lock_unless(parts.trying, stop);
   PredictorPtr<T>& network = made_of<T>(parts).network;
   if (!network) {
     const auto start = std::chrono::steady_clock::now();
@@ -58,6 +59,13 @@ template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, d
 template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);
 template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
+
+std::unique_lock<std::timed_mutex> lock_unless(std::timed_mutex& mutex, const std::function<bool()>& stop) {
+  std::unique_lock lock(mutex, std::defer_lock);
+  while (!lock.try_lock_for(std::chrono::milliseconds(10)))
+    if (stop && stop()) throw Cancelled();
+  return lock;
+}
 
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
   parts_->scene = std::move(scene);

@@ -9,9 +9,9 @@
 namespace orrery {
 namespace {
 
-constexpr int kTiles = 3;
-constexpr int kListMayPay = 64;  // primitives
-constexpr double kGain = 0.85;   // of its cost, at most, must another take to replace the usual one
+constexpr int kTiles = 3, kDeepest = 3;  // of the rays that are tried
+constexpr int kListMayPay = 64;          // primitives
+constexpr double kGain = 0.85;           // of its cost, at most, must another take to replace the usual one
 
 struct Tried {
   const AcceleratorType* type;
@@ -29,11 +29,13 @@ Tried try_one(PreparedScene::Parts& parts, const AcceleratorType& type, const Pl
 
 template <class T>
 Decision choose(PreparedScene::Parts& parts, const Plan& plan, const std::function<bool()>& stop) {
-  std::vector<Tried> tried{try_one<T>(parts, *plan.accelerator, plan, stop)};
+  Plan shallow = plan;
+  shallow.max_depth = std::min(plan.max_depth, kDeepest);
+  std::vector<Tried> tried{try_one<T>(parts, *plan.accelerator, shallow, stop)};
   const bool few = parts.scene->primitive_count() <= kListMayPay;
   for (const auto& type : accelerator_types()) {
     const std::string_view name = type.name;
-    if (name == "boxes" || (name == "list" && few)) tried.push_back(try_one<T>(parts, type, plan, stop));
+    if (name == "boxes" || (name == "list" && few)) tried.push_back(try_one<T>(parts, type, shallow, stop));
   }
   const auto cheapest = std::min_element(tried.begin(), tried.end(),
                                          [](const Tried& a, const Tried& b) { return a.cost < b.cost; });
@@ -55,7 +57,7 @@ double settle(const PreparedScene& scene, Plan& plan, const std::function<bool()
   PreparedScene::Parts& parts = scene.parts();
   double took_ms = 0;
   const auto decide = [&]<class T>(std::optional<Decision>& chosen, T) {
-    const std::lock_guard lock(parts.trying);
+    const auto lock = lock_unless(parts.trying, stop);
     if (!chosen) {
       const auto start = std::chrono::steady_clock::now();
       chosen = choose<T>(parts, plan, stop);

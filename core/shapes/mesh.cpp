@@ -31,7 +31,10 @@ TriangleMesh read_inline(Params& p) {
 // What `read` gives; its errors become those of `key`.
 template <class Read>
 TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
-  if (name.empty()) return {};
+  if (name.empty()) {
+    p.fail(key, "expected a name, got \"\"");
+    return {};
+  }
   try {
     TriangleMesh mesh = read(name);
     for (const Vec3d& v : mesh.positions)
@@ -54,8 +57,10 @@ class MeshSet final : public ShapeSet {
                                    "Shading is smooth across edges where faces meet at less than this angle; "
                                    "left out, the normals are those of the mesh.",
                                    {.min = 0, .max = 180}, derived(0.0));
+    if (!fits(mesh, p)) return 0;
     left_out_ += drop_degenerate(mesh);
-    if (p.has("crease_degrees")) smooth_normals(mesh, crease);
+    drop_unused(mesh);
+    if (p.has("crease_degrees")) smooth(mesh, crease, p);
     append(mesh);
     return static_cast<int>(table_.triangles.size() - before);
   }
@@ -89,6 +94,26 @@ class MeshSet final : public ShapeSet {
     }
   }
 
+  // Limits are those of all meshes of a scene: many objects may name one file.
+  bool fits(const TriangleMesh& mesh, Params& p) {
+    vertices_ += mesh.positions.size();
+    triangles_ += mesh.triangles.size();
+    if (vertices_ <= kLimits.vertices && triangles_ <= kLimits.triangles) return true;
+    p.fail("", "expected at most " + std::to_string(kLimits.vertices) + " vertices (mesh_vertices) and " +
+                   std::to_string(kLimits.triangles) +
+                   " triangles (mesh_triangles) in all meshes of a scene, got " + std::to_string(vertices_) +
+                   " and " + std::to_string(triangles_) + " with this one");
+    return false;
+  }
+
+  void smooth(TriangleMesh& mesh, double crease, Params& p) {
+    try {
+      pairs_left_ -= smooth_normals(mesh, crease, pairs_left_);
+    } catch (const InputError& error) {
+      p.fail("crease_degrees", error.problems().front().detail);
+    }
+  }
+
   void append(const TriangleMesh& mesh) {
     Boundsd box;
     for (const Vec3d& v : mesh.positions) box.include(v);
@@ -110,7 +135,8 @@ class MeshSet final : public ShapeSet {
   }
 
   MeshTable<double> table_;
-  std::size_t left_out_ = 0;
+  std::size_t left_out_ = 0, vertices_ = 0, triangles_ = 0;  // as read
+  std::uint64_t pairs_left_ = std::uint64_t{1} << 30;        // that smoothing may still compare
 };
 
 std::unique_ptr<ShapeSet> make_mesh_set() { return std::make_unique<MeshSet>(); }

@@ -26,6 +26,12 @@ template <class N>
   return select(undecided, N(fma(a, b, -ab) - fma(c, d, -cd)), difference);
 }
 
+template <class N>
+[[gnu::always_inline]] inline N magnitude(const N& x) {
+  using std::abs;
+  return abs(x);
+}
+
 // One coordinate of a point as seen from `origin`.
 template <class N, class O>
 [[gnu::always_inline]] inline N moved(const Vec3<N>& point, const Vec3<O>& origin, int axis) {
@@ -39,6 +45,31 @@ template <class N>
 struct Sheared {
   N x, y, z;
 };
+
+namespace detail {
+
+// Whether the ray along z through x = y = 0, which runs toward the sign of `along`, crosses the plane of
+// three points ahead. The plane's normal is taken from the two shorter sides: its relative error stays a few
+// ulp however thin the triangle is.
+template <class N>
+inline MaskOf<N> plane_ahead(const Sheared<N>& a, const Sheared<N>& b, const Sheared<N>& c, const N& along) {
+  const Vec3<N> va(a.x, a.y, a.z), vb(b.x, b.y, b.z), vc(c.x, c.y, c.z);
+  const Vec3<N> ab = vb - va, bc = vc - vb, ca = va - vc;
+  const N la = dot(bc, bc), lb = dot(ca, ca), lc = dot(ab, ab);
+  const auto first = la >= lb && la >= lc;  // bc is longest
+  const auto second = !first && lb >= lc;   // ca is
+  const auto choose = [&](const N& p, const N& q, const N& r) {
+    return select(first, p, select(second, q, r));
+  };
+  const Vec3<N> e(choose(ca.x, ab.x, bc.x), choose(ca.y, ab.y, bc.y), choose(ca.z, ab.z, bc.z));
+  const Vec3<N> f(choose(ab.x, bc.x, ca.x), choose(ab.y, bc.y, ca.y), choose(ab.z, bc.z, ca.z));
+  const Vec3<N> at(choose(va.x, vb.x, vc.x), choose(va.y, vb.y, vc.y), choose(va.z, vb.z, vc.z));
+  const Vec3<N> normal = cross(e, f);
+  const N zero(ScalarOf<N>(0));
+  return (dot(at, normal) > zero) == ((normal.z > zero) == (along > zero));
+}
+
+}  // namespace detail
 
 // Each lane has its own ray and so its own axes.
 template <class N>
@@ -96,8 +127,15 @@ template <class N, class Axes>
   if (!any(inside && determinant != zero)) return {infinity, zero, zero, zero};
   const N inverse = N(T(1)) / determinant;
   const N t = (u * sa.z + v * sb.z + w * sc.z) * inverse / axes.along();
-  return {select(inside && determinant != zero && t > zero, t, infinity), u * inverse, v * inverse,
-          w * inverse};
+  auto met = inside && determinant != zero && t > zero;
+  // Of a long thin triangle, whose determinant is small, t may be far off: next to the triangle, where its
+  // sign is in doubt, the plane decides.
+  const N farthest =
+      max_first(max_first(detail::magnitude(sa.z), detail::magnitude(sb.z)), detail::magnitude(sc.z));
+  const auto near = met && detail::magnitude(t * axes.along()) < farthest * N(T(1.0 / 1024));
+  if (any(near)) [[unlikely]]
+    met = met && (!near || detail::plane_ahead(sa, sb, sc, axes.along()));
+  return {select(met, t, infinity), u * inverse, v * inverse, w * inverse};
 }
 
 // What stands at the corners of a triangle; if it is where they are, all that a test of a ray needs.

@@ -42,6 +42,19 @@ Picture App::render(const PreparedScene& scene, const Plan& plan, FileFormat for
   }
 }
 
+void App::settle(const PreparedScene& scene, Plan& plan, std::function<bool()> gone) {
+  if (!plan.try_accelerators) return;
+  require_open();
+  const Watch watch(std::move(gone), ends_, settings_.request_time);
+  const auto stop = [&] { return watch.stop(); };
+  try {
+    const auto ticket = admission_.enter(stop);
+    orrery::settle(scene, plan, stop);
+  } catch (const Cancelled&) {
+    watch.explain();
+  }
+}
+
 void App::drain() {
   draining_ = true;
   orbits_.wake();

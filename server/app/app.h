@@ -45,6 +45,9 @@ class App {
   Picture render(const PreparedScene& scene, const Plan& plan, FileFormat format, std::function<bool()> gone,
                  Timing& timing);
 
+  // Settles the plan in its turn, as render() would. Throws likewise.
+  void settle(const PreparedScene& scene, Plan& plan, std::function<bool()> gone);
+
   // The service is about to end: no new work; what runs goes on.
   bool draining() const { return draining_; }
   void drain();

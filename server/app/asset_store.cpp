@@ -1,8 +1,17 @@
 #include "server/app/asset_store.h"
 
+#include <algorithm>
+
 #include "core/base/hash.h"
 
 namespace orrery {
+
+void AssetStore::require_name(const std::string& name) {
+  const auto hexadecimal = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  if (name.size() != 64 || !std::all_of(name.begin(), name.end(), hexadecimal))
+    throw InputError(
+        "", "an asset is named by the SHA-256 of its bytes: 64 digits 0-9, a-f; got " + name.substr(0, 80));
+}
 
 AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes) {
   const std::string hash = sha256_hex(bytes);
@@ -34,6 +43,7 @@ void AssetStore::remove(const std::string& sha256) {
 }
 
 TriangleMesh AssetStore::asset(const std::string& sha256) const {
+  require_name(sha256);
   const auto found = assets_.find(sha256);
   if (!found)
     throw InputError("", "there is no asset " + sha256 + " (any more): put it to /v1/assets/" + sha256);

@@ -18,6 +18,9 @@ class AssetStore final : public MeshSource {
   };
   using AssetPtr = std::shared_ptr<const Asset>;
 
+  // Throws InputError if this can be no SHA-256.
+  static void require_name(const std::string& name);
+
   explicit AssetStore(std::size_t most_bytes) : assets_(most_bytes) {}
 
   struct Added {

@@ -8,6 +8,8 @@ namespace orrery {
 
 TriangleMesh MeshFiles::file(const std::string& name) const {
   namespace fs = std::filesystem;
+  if (name.find('\0') != std::string::npos)
+    throw InputError("", "expected the name of a file, got a NUL in it");
   std::error_code error;
   const fs::path folder = fs::canonical(folder_.empty() ? "." : folder_, error);
   const fs::path path = fs::canonical(folder / name, error);  // where links lead

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iostream>
@@ -26,12 +27,24 @@ std::string read_all(std::istream& in, const std::string& name) {
   return bytes;
 }
 
+// Input may hold what a terminal would obey.
+std::string printable(const std::string& text) {
+  std::string shown;
+  for (const char c : text) {
+    char code[8];
+    std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned char>(c));
+    shown += (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) ? code : std::string(1, c);
+  }
+  return shown;
+}
+
 }  // namespace
 
 BadScene::BadScene(const std::string& file, const InputError& error) : InputError(error.problems()) {
   const bool malformed = dynamic_cast<const MalformedJson*>(&error);  // its text says the line and column
   for (const Problem& p : problems())
-    lines_.push_back(file + ": " + (p.pointer.empty() || malformed ? "" : p.pointer + ": ") + p.detail);
+    lines_.push_back(
+        printable(file + ": " + (p.pointer.empty() || malformed ? "" : p.pointer + ": ") + p.detail));
 }
 
 std::string read_file(const std::string& path) {

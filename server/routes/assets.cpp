@@ -12,21 +12,15 @@ struct FormatNames {
   const char *name, *media_type;
 };
 
-FormatNames names_of(MeshFormat format) {
-  switch (format) {
+FormatNames names_of(const AssetStore::Asset& asset) {
+  switch (asset.format) {
     case MeshFormat::obj: return {"obj", "model/obj"};
     case MeshFormat::stl: return {"stl", "model/stl"};
     case MeshFormat::ply: return {"ply", "application/octet-stream"};
-    case MeshFormat::gltf: return {"gltf", "model/gltf-binary"};
+    case MeshFormat::gltf:
+      return {"gltf", asset.bytes.starts_with("glTF") ? "model/gltf-binary" : "model/gltf+json"};
   }
   return {"", "application/octet-stream"};
-}
-
-void require_hash(const std::string& id) {
-  const auto hexadecimal = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-  if (id.size() != 64 || !std::all_of(id.begin(), id.end(), hexadecimal))
-    throw InputError(
-        "", "an asset is named by the SHA-256 of its bytes: 64 digits 0-9, a-f; got " + id.substr(0, 80));
 }
 
 std::string etag_of(const std::string& id) { return "\"" + id + "\""; }
@@ -34,14 +28,14 @@ std::string etag_of(const std::string& id) { return "\"" + id + "\""; }
 Response put_asset(App& app, Request& request) {
   app.require_open();
   const std::string id = request.path_value("id");
-  require_hash(id);
+  AssetStore::require_name(id);
   if (request.header("Content-Encoding"))
     throw HttpError(415, "A body must not be compressed (Content-Encoding)");
   request.body_limit = {app.settings().asset_bytes, "asset_bytes"};
   const AssetStore::Added added = app.assets().add(id, request.read_body());
   const AssetStore::Asset& asset = *added.asset;
   Response response = json_answer(added.known ? 200 : 201, {{"id", id},
-                                                            {"format", names_of(asset.format).name},
+                                                            {"format", names_of(asset).name},
                                                             {"bytes", asset.bytes.size()},
                                                             {"vertices", asset.vertices},
                                                             {"triangles", asset.triangles}});
@@ -57,7 +51,7 @@ Response get_asset(App& app, Request& request) {
   Response response{.status = 304};
   if (!has_current(request, etag_of(id))) {
     response = {.status = 200, .body = asset->bytes};
-    response.set("Content-Type", names_of(asset->format).media_type);
+    response.set("Content-Type", names_of(*asset).media_type);
   }
   response.set("ETag", etag_of(id));
   response.set("Cache-Control", "no-cache");  // it may be gone: ask each time

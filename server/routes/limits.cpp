@@ -29,6 +29,7 @@ nlohmann::ordered_json limits_json(const Settings& settings) {
           {"store_bytes", settings.store_bytes},
           {"asset_bytes", settings.asset_bytes},
           {"asset_store_bytes", settings.asset_store_bytes},
+          {"instanced_primitives", kMaxInstanced},
           {"mesh_vertices", MeshLimits{}.vertices},
           {"mesh_triangles", MeshLimits{}.triangles}};
 }

@@ -124,6 +124,16 @@ TEST_P(Adversaries, SpheresThatHalveAndHalve) {
   for (const double half : {1e6, 1.0, 1e-6}) agree(scene_with(objects), {}, half, 10'000);
 }
 
+// Where gaps grow from each to the next, grouping near ones finds a single nearest pair at a time.
+TEST_P(Adversaries, GapsThatGrow) {
+  covers("F3");
+  Json objects = Json::array();
+  for (int i = 0; i < 3000; ++i)
+    objects.push_back(
+        sphere(Vec3d(std::exp2(-28.0 * i / 3000), 0.001 * i, 0), 1e-3 * std::exp2(-28.0 * i / 3000)));
+  EXPECT_LE(agree(scene_with(objects), {0.5, 1, 0}, 1.5, 1'000).depth, 2 * std::log2(3000) + 32);
+}
+
 TEST_P(Adversaries, FarFromTheOrigin) {
   covers("F1");
   Random random(5);

@@ -50,7 +50,8 @@ const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 1, 0}, {0, 0, 0}, 0},
                                  {{-1, 1, 1}, {0, 1, 0}, {3, 0, 0}, 0},
                                  {{0.2, 2, 1}, {1, 2, 3}, {-3, 1, 0}, 70},
                                  {{-0.5, -0.5, -3}, {1, 0, 1}, {0, 4, 1}, 200},
-                                 {{0.01, 0.02, 0.01}, {0, 0, 1}, {1.5, 0, 0}, 33}};
+                                 {{0.01, 0.02, 0.01}, {0, 0, 1}, {1.5, 0, 0}, 33},
+                                 {{2, 2, 0.004}, {1, 1, 0}, {0, -4, 0}, 30}};
 
 // Far from all else; a scene has at least one object.
 const Json kSpeck = {{"type", "sphere"}, {"center", {0, -500, 0}}, {"radius", 0.001}};
@@ -172,6 +173,9 @@ void expect_outward_and_clear() {
         if (hits->primitive[i] == kNoPrimitive) continue;
         const auto which = static_cast<std::size_t>((hits->primitive[i] - 1) / per);
         const Vec3<T> normal = get(surface->geometric, i), position = get(surface->position, i);
+        const double least = std::min({std::abs(kPlaces[which].scale.x), std::abs(kPlaces[which].scale.y),
+                                       std::abs(kPlaces[which].scale.z)});
+        EXPECT_LT(static_cast<double>(surface->step[i]), 0.02 * least) << "the step may not cross the body";
         if (surface->side[i] < 0) continue;  // from inside
         ++met;
         const auto triangle = static_cast<std::size_t>((hits->primitive[i] - 1) % per);

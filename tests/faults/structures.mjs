@@ -66,4 +66,13 @@ export const structureFaults = [
     target: "test_accelerators",
     tests: ["Instance.IsMetWhereItsMeshWouldBe"],
   },
+  {
+    fault: 17,
+    about: "distances along long thin triangles are believed next to them",
+    file: "core/shapes/triangle_hit.h",
+    from: "farthest * N(T(1.0 / 1024));",
+    to: "farthest * N(T(0));",
+    target: "test_shapes",
+    tests: ["Triangle.LongAndThinDoesNotShadeItself"],
+  },
 ];

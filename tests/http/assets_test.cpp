@@ -67,6 +67,31 @@ TEST_F(Assets, NothingButAMeshUnderItsOwnHashIsTaken) {
   expect_problem(client_.Post(path_of(kTetrahedron), kTetrahedron, "application/octet-stream"), 405);
 }
 
+TEST_F(Assets, NameThatIsNoHashIsSaidToBeNone) {
+  const auto scene = small_scene({{"objects", {{{"type", "mesh"}, {"asset", "abc"}, {"material", "ball"}}}},
+                                  {"materials", {{"ball", {{"type", "rough"}}}}}});
+  const auto problem = expect_problem(client_.Post("/v1/render", scene.dump(), "application/json"), 422);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("64 digits"), std::string::npos) << problem;
+}
+
+// Trying structures is work like rendering: it is bounded in time, and nobody waits for it longer than for a
+// picture.
+TEST(Explain, IsBoundedInTime) {
+  Daemon daemon({"--max-seconds", "1"});
+  httplib::Client client = daemon.client();
+  client.set_read_timeout(std::chrono::seconds(20));
+  nlohmann::json glass = {{"glass", {{"type", "refractive"}, {"ior", 1.5}}}}, balls = nlohmann::json::array();
+  for (int i = 0; i < 20; ++i)
+    balls.push_back(
+        {{"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", 1 + 0.02 * i}, {"material", "glass"}});
+  const auto scene = small_scene({{"materials", glass}, {"objects", balls}, {"render", {{"max_depth", 32}}}});
+  const auto posted = client.Post("/v1/scenes", scene.dump(), "application/json");
+  ASSERT_TRUE(posted && posted->status == 201) << posted->body;
+  const auto told = client.Get(posted->get_header_value("Location") + "/explain");
+  ASSERT_TRUE(told);
+  EXPECT_TRUE(told->status == 200 || told->status == 504) << told->body;
+}
+
 TEST_F(Assets, FilesAreNotForRequests) {
   const auto scene =
       small_scene({{"objects", {{{"type", "mesh"}, {"file", "/etc/passwd"}, {"material", "ball"}}}},

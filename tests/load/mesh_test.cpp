@@ -100,6 +100,40 @@ TEST(MeshFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
   EXPECT_LT(std::abs(smooth.x), 0.35);
 }
 
+// Many objects may name one file: it is read once, and their limits are common.
+TEST(MeshFiles, AreReadOnceALoad) {
+  class Counting final : public MeshSource {
+   public:
+    TriangleMesh file(const std::string&) const override {
+      ++reads;
+      return roof();
+    }
+    mutable int reads = 0;
+  };
+  Json objects = Json::array();
+  for (int i = 0; i < 50; ++i) objects.push_back({{"type", "mesh"}, {"file", "roof.obj"}});
+  const Counting shelf;
+  EXPECT_EQ(load_scene(scene_with(objects).dump(), shelf)->primitive_count(), 200);
+  EXPECT_EQ(shelf.reads, 1);
+}
+
+TEST(MeshFiles, AreTooManyTogether) {
+  class Dots final : public MeshSource {
+   public:
+    TriangleMesh file(const std::string&) const override {
+      TriangleMesh mesh = roof();
+      mesh.positions.resize(4'000'000);
+      return mesh;
+    }
+  };
+  const char* const three =
+      "[{'type': 'mesh', 'file': 'a'}, {'type': 'mesh', 'file': 'a'}, {'type': 'mesh', 'file': 'a'}]";
+  const Problem problem = problem_of(three, Dots());
+  EXPECT_EQ(problem.pointer, "/objects/2");
+  EXPECT_NE(problem.detail.find("10000000 vertices (mesh_vertices)"), std::string::npos) << problem.detail;
+  EXPECT_EQ(problem_of("[{'type': 'mesh', 'file': ''}]", Shelf()).pointer, "/objects/0/file");
+}
+
 // Several meshes share one set: each keeps its own vertices and normals.
 TEST(MeshFiles, KeepApartInOneScene) {
   const auto scene = load_scene(

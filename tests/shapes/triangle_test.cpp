@@ -142,6 +142,40 @@ TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
   }
 }
 
+// A strip a thousand times as long as it is wide, in two triangles: rays that leave it toward its front meet
+// nothing, although the distances along it are ill-conditioned.
+template <class T>
+int hits_of_leaving_a_strip(double length, double width) {
+  const double l = length / 2, w = width / 2;
+  const Json strip = {{"type", "mesh"},
+                      {"positions", {{-l, -w, 0}, {l, -w, 0}, {l, w, 0}, {-l, w, 0}}},
+                      {"indices", {{0, 1, 2}, {0, 2, 3}}}};
+  const Target<T> shape(scene_with(strip));
+  Random random(21);
+  Rays<T> rays;
+  for (int i = 0; i < 20'000; ++i) {
+    const Vec3d at(random.between(-l, l), random.between(-w, w), 0);
+    const Vec3d from = at + random.direction_above({0, 0, 1}) * (0.4 * length);
+    rays.push_back({Vec3<T>(from), Vec3<T>(safe_normalize(at - from))});
+  }
+  const auto hits = shape.closest(rays);
+  const auto spots = shape.surfaces(rays, hits);
+  Rays<T> leaving;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (hits[i].met()) leaving.push_back(spots[i].leaving(Vec3<T>(random.direction_above({0, 0, 1}))));
+  EXPECT_GT(leaving.size(), 15'000u);
+  int met = 0;
+  for (const auto& hit : shape.closest(leaving)) met += hit.met();
+  return met;
+}
+
+TEST(Triangle, LongAndThinDoesNotShadeItself) {
+  covers("A16");
+  for (const double width : {0.6, 0.06}) EXPECT_EQ(hits_of_leaving_a_strip<float>(600, width), 0) << width;
+  for (const double width : {0.6, 0.06, 0.006, 6e-6})
+    EXPECT_EQ(hits_of_leaving_a_strip<double>(600, width), 0) << width;
+}
+
 // A sliver with sides 11.2, 9.8 and 1.4, grazed at half a degree and less: the point at t is near the
 // triangle.
 TEST(Triangle, SliversAreMetWhereTheyAre) {
