@@ -10,7 +10,7 @@ namespace orrery {
 namespace {
 
 using Weights = std::array<float, Network::kWeights>;
-using Hidden = std::array<float, Network::kHidden>;
+using Hidden = Network::Hidden<float>;
 using Scores = Network::Scores<float>;
 
 constexpr float kLog2E = 1.44269504f;
@@ -21,12 +21,7 @@ struct Thought {
   Scores share;  // probability of each answer
 
   Thought(const Network& network, const Network::Inputs<float>& in) {
-    const float* const weights = network.weights.data();
-    Network::sums(weights, in, first);
-    Network::cut(first);
-    Network::sums(weights + Network::kSecond, first, second);
-    Network::cut(second);
-    Network::sums(weights + Network::kThird, second, share);
+    network.score(in, first, second, share);
     const float largest = *std::max_element(share.begin(), share.end());
     float sum = 0;
     for (float& s : share) sum += s = exp2_flushed((s - largest) * kLog2E);

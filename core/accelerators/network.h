@@ -15,6 +15,8 @@ struct Network {
   template <class N>
   using Inputs = std::array<N, kInputs>;
   template <class N>
+  using Hidden = std::array<N, kHidden>;
+  template <class N>
   using Scores = std::array<N, kAnswers>;
 
   // Layer by layer: for each of its outputs the weights of its inputs, and then what is added.
@@ -26,7 +28,12 @@ struct Network {
   // N: scalars or lanes. The same bits for each lane whatever the width.
   template <class N>
   void score(const Inputs<N>& in, Scores<N>& out) const {
-    std::array<N, kHidden> first, second;
+    Hidden<N> first, second;
+    score(in, first, second, out);
+  }
+  // With what the hidden layers make of it.
+  template <class N>
+  void score(const Inputs<N>& in, Hidden<N>& first, Hidden<N>& second, Scores<N>& out) const {
     sums(weights.data(), in, first);
     cut(first);
     sums(weights.data() + kSecond, first, second);

@@ -145,13 +145,7 @@ class Reordered final : public Accelerator<T> {
     const Groups all = Groups::covering(0, order.count, kWidth<T>);
     for (int to = 0; to < all.size() * kWidth<T>; ++to) {
       const int from = place_of(order, std::min(to, order.count - 1));
-      sorted.origin.x[to] = rays.origin.x[from];
-      sorted.origin.y[to] = rays.origin.y[from];
-      sorted.origin.z[to] = rays.origin.z[from];
-      sorted.direction.x[to] = rays.direction.x[from];
-      sorted.direction.y[to] = rays.direction.y[from];
-      sorted.direction.z[to] = rays.direction.z[from];
-      sorted.t_max[to] = to < order.count ? rays.t_max[from] : T(-1);
+      sorted.set(to, rays[from], to < order.count ? rays.t_max[from] : T(-1));
     }
     return all;
   }

@@ -76,8 +76,7 @@ class SingleWalk final : public Accelerator<T> {
   }
 
   static Trip<T> begin(const RayBatch<T>& rays, int i, const SingleHit<T>& hit, AcceleratorCounts& counts) {
-    const Ray<T> ray{{rays.origin.x[i], rays.origin.y[i], rays.origin.z[i]},
-                     {rays.direction.x[i], rays.direction.y[i], rays.direction.z[i]}};
+    const Ray<T> ray = rays[i];
     return {SingleRay<T>::of(ray), SingleProbe<T>(ray), hit, counts};
   }
 

@@ -173,7 +173,7 @@ class SceneReader {
     p.each("instances", "Models that stand in the scene.", {0, kMaxObjects}, [&](Params& i) {
       const std::size_t model = i.reference("model", "Name of what stands there.", model_names_);
       scene_->instances.push_back({model, read_transform(i)});
-      if (model < scene_->models.size()) instanced += primitives_of(scene_->models[model]);
+      if (model < scene_->models.size()) instanced += count_primitives(scene_->models[model].shapes);
       ++scene_->object_count;
     });
     if (instanced > kMaxInstanced)
@@ -189,11 +189,7 @@ class SceneReader {
     scene_->id = document.id();
     scene_->canonical = document.canonical();
     number_materials();
-    gather_facts(scene_->shapes, 1);
-    for (Model& model : scene_->models)
-      for (const auto& shapes : model.shapes)
-        for (int i = 0; i < shapes->size(); ++i) model.bounds.include(shapes->bounds(i));
-    for (const Instance& instance : scene_->instances) gather_facts(instance);
+    gather_shape_facts();
     gather_material_facts();
     return scene_;
   }
@@ -216,12 +212,6 @@ class SceneReader {
   void read_light(Params& p) {
     const auto type = p.pick("type", "Kind of light.", choices_of(light_types()));
     if (type) scene_->lights.push_back(light_types()[*type].make(p));
-  }
-
-  static std::size_t primitives_of(const Model& model) {
-    std::size_t count = 0;
-    for (const auto& shapes : model.shapes) count += static_cast<std::size_t>(shapes->size());
-    return count;
   }
 
   void read_model(const std::string& name, Params& p) {
@@ -264,26 +254,48 @@ class SceneReader {
     }
   }
 
-  // `shrink`: how much smaller than they are the primitives stand in the scene, at most.
-  void gather_facts(const std::vector<std::unique_ptr<ShapeSet>>& sets, double shrink) {
-    SceneFacts& facts = scene_->facts;
+  // What a list of sets says alone; each primitive is asked once.
+  struct Extents {
+    Boundsd all;           // infinite if a primitive is
+    double magnitude = 0;  // the rest is that of bounded ones
+    double smallest = std::numeric_limits<double>::infinity();
+  };
+  Extents extents_of(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
+    Extents extents;
     for (const auto& shapes : sets) {
-      facts.left_out += shapes->left_out();
+      scene_->facts.left_out += shapes->left_out();
       for (int i = 0; i < shapes->size(); ++i) {
         const Boundsd bounds = shapes->bounds(i);
+        extents.all.include(bounds);
         if (!bounds.bounded()) continue;
-        facts.magnitude = std::max(facts.magnitude, bounds.magnitude());
-        facts.smallest_feature = std::min(facts.smallest_feature, bounds.diagonal() * shrink);
+        extents.magnitude = std::max(extents.magnitude, bounds.magnitude());
+        extents.smallest = std::min(extents.smallest, bounds.diagonal());
       }
     }
+    return extents;
   }
-  void gather_facts(const Instance& instance) {
-    const Model& model = scene_->models[instance.model];
-    gather_facts(model.shapes, 1 / stretch(inverse(instance.world_from_model)));
-    Boundsd box;
-    if (!model.bounds.bounded()) return;
-    for (const Vec3d& v : corners_of(model.bounds)) box.include(instance.world_from_model.point(v));
-    scene_->facts.magnitude = std::max(scene_->facts.magnitude, box.magnitude());
+
+  // Of instances in the world and, because rays are taken there, in their models.
+  void gather_shape_facts() {
+    SceneFacts& facts = scene_->facts;
+    const auto add = [&facts](double magnitude, double smallest) {
+      facts.magnitude = std::max(facts.magnitude, magnitude);
+      facts.smallest_feature = std::min(facts.smallest_feature, smallest);
+    };
+    const Extents own = extents_of(scene_->shapes);
+    add(own.magnitude, own.smallest);
+    std::vector<Extents> of_models;
+    for (Model& model : scene_->models) {
+      of_models.push_back(extents_of(model.shapes));
+      model.bounds = of_models.back().all;
+    }
+    for (const Instance& instance : scene_->instances) {
+      const Extents& of_model = of_models[instance.model];
+      add(of_model.magnitude, of_model.smallest / stretch(inverse(instance.world_from_model)));
+      if (!of_model.all.bounded()) continue;
+      for (const Vec3d& v : corners_of(of_model.all))
+        facts.magnitude = std::max(facts.magnitude, max_component(abs(instance.world_from_model.point(v))));
+    }
   }
 
   const ReadOnce meshes_;

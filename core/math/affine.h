@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/math/angles.h"
 #include "core/math/vec3.h"
 
 namespace orrery {
@@ -68,7 +69,8 @@ inline double stretch(const Affined& a) { return max_component(abs(a.x) + abs(a.
 
 // `degrees` anticlockwise about the unit vector `axis`, seen from its tip (Rodrigues).
 inline Affined rotation(const Vec3d& axis, double degrees) {
-  const double angle = degrees * (3.14159265358979323846 / 180), c = std::cos(angle), s = std::sin(angle);
+  const SineCosine turn = sine_cosine_degrees(degrees);
+  const double c = turn.cosine, s = turn.sine;
   const auto turned = [&](const Vec3d& v) {
     return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
   };

@@ -38,6 +38,14 @@ template <class T>
 struct Vec3Array {
   Array<T> x, y, z;
 
+  // One of them.
+  Vec3<T> operator[](int i) const { return {x[i], y[i], z[i]}; }
+  void set(int i, const Vec3<T>& v) {
+    x[i] = v.x;
+    y[i] = v.y;
+    z[i] = v.z;
+  }
+
   [[gnu::always_inline]] Vec3<Lanes<T>> at(int i) const { return {x.at(i), y.at(i), z.at(i)}; }
   [[gnu::always_inline]] void put(int i, const Vec3<Lanes<T>>& v) {
     x.put(i, v.x);
@@ -108,6 +116,13 @@ struct RayBatch {
   Array<T> t_max;
 
   [[gnu::always_inline]] Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
+  // One of them.
+  Ray<T> operator[](int i) const { return {origin[i], direction[i]}; }
+  void set(int i, const Ray<T>& ray, T end) {
+    origin.set(i, ray.origin);
+    direction.set(i, ray.direction);
+    t_max[i] = end;
+  }
 };
 
 // Rays of `groups` that are still active, and the registers that hold one.

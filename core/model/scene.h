@@ -36,6 +36,13 @@ struct SceneFacts {
                                                 // there is none
 };
 
+// Primitives of all sets together.
+inline std::size_t count_primitives(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
+  std::size_t count = 0;
+  for (const auto& shapes : sets) count += static_cast<std::size_t>(shapes->size());
+  return count;
+}
+
 // Shapes that instances place.
 struct Model {
   std::vector<std::unique_ptr<ShapeSet>> shapes;

@@ -48,9 +48,7 @@ class Recorder final : public Accelerator<T> {
     for (const int first : groups)
       for (unsigned bits = bits_of(rays.t_max.at(first) > Lanes<T>(T(0))); bits != 0; bits &= bits - 1) {
         const int i = first + std::countr_zero(bits);
-        into_.add({{{rays.origin.x[i], rays.origin.y[i], rays.origin.z[i]},
-                    {rays.direction.x[i], rays.direction.y[i], rays.direction.z[i]}},
-                   rays.t_max[i]});
+        into_.add({rays[i], rays.t_max[i]});
       }
     behind_.occlude(rays, groups, counts);
   }
@@ -59,13 +57,6 @@ class Recorder final : public Accelerator<T> {
   const Accelerator<T>& behind_;
   Thinned<T>& into_;
 };
-
-template <class T>
-void put(Vec3Array<T>& to, int i, const Vec3<T>& v) {
-  to.x[i] = v.x;
-  to.y[i] = v.y;
-  to.z[i] = v.z;
-}
 
 // What up to a batch of rays meet.
 template <class T>
@@ -77,9 +68,7 @@ void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay
   for (int i = 0; i < kBatchRoom; ++i) {
     const bool real = i < rays->count;
     const ShadowRay<T>& ray = some[static_cast<std::size_t>(real ? i : 0)];
-    put(rays->origin, i, ray.ray.origin);
-    put(rays->direction, i, ray.ray.direction);
-    rays->t_max[i] = real ? ray.t_max : T(-1);
+    rays->set(i, ray.ray, real ? ray.t_max : T(-1));
   }
   hits->t = rays->t_max;
   hits->primitive.values.fill(kNoPrimitive);

@@ -23,19 +23,22 @@ struct Visit {
   }
 };
 
-// Number in the scene of what was met in the model, or none.
+// Lanes whose hit in the model, at register i, takes the place of (best, best_id), and its number in the
+// scene.
 template <class T>
-IndexLanes<T> number_of(const Placed<T>& placed, const IndexLanes<T>& in_model) {
-  const IndexLanes<T> none(IndexOf<T>{kNoPrimitive});
-  IndexLanes<T> number = in_model + IndexOf<T>(placed.first);
-  stdx::where(in_model == none, number) = none;
-  return number;
-}
+struct Taken {
+  MaskOf<N<T>> nearer;
+  N<T> t;
+  IndexLanes<T> id;
 
-template <class T>
-void meet_closest(const Placed<T>& placed, Visit<T>& visit, const Groups& groups, AcceleratorCounts& counts) {
-  placed.model->accelerator->closest(visit.rays, groups, visit.hits, counts);
-}
+  Taken(const Placed<T>& placed, const Visit<T>& visit, int i, const N<T>& best, const IndexLanes<T>& best_id)
+      : t(visit.hits.t.at(i)) {
+    const IndexLanes<T> in_model = load_index<T>(visit.hits.primitive, i);
+    id = in_model + IndexOf<T>(placed.first);
+    const auto met = mask_cast<N<T>>(in_model != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+    nearer = met && takes_over(t, id, best, best_id);
+  }
+};
 
 // Instances in blocks. Single rays are put together to batches first: all that meet one instance.
 template <class T>
@@ -50,7 +53,7 @@ class PackedInstances final : public PackedPrimitives<T> {
                AcceleratorCounts& counts) const override {
     each_instance(meetings, kBatch, [&](const Placed<T>& placed, Meetings some) {
       const auto visit = gather(placed, some, rays, hits);
-      meet_closest(placed, *visit, visit_groups(some), counts);
+      placed.model->accelerator->closest(visit->rays, visit_groups(some), visit->hits, counts);
       for (std::size_t k = 0; k < some.size(); ++k) {
         const int i = static_cast<int>(k);
         if (visit->hits.primitive[i] == kNoPrimitive) continue;
@@ -76,17 +79,13 @@ class PackedInstances final : public PackedPrimitives<T> {
                AcceleratorCounts& counts) const override {
     each_instance(meetings, kBatch / kWidth<T>, [&](const Placed<T>& placed, Meetings some) {
       const auto visit = gather(placed, some, packets, hits);
-      meet_closest(placed, *visit, packet_groups(some), counts);
+      placed.model->accelerator->closest(visit->rays, packet_groups(some), visit->hits, counts);
       for (std::size_t k = 0; k < some.size(); ++k) {
         const int i = static_cast<int>(k) * kWidth<T>;
         PacketHit<T>& hit = hits[some[k].ray];
-        const N<T> t = visit->hits.t.at(i);
-        const IndexLanes<T> in_model = load_index<T>(visit->hits.primitive, i);
-        const IndexLanes<T> id = number_of(placed, in_model);
-        const auto met = mask_cast<N<T>>(in_model != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-        const auto nearer = met && takes_over(t, id, hit.t, hit.primitive);
-        stdx::where(nearer, hit.t) = t;
-        stdx::where(mask_cast<IndexLanes<T>>(nearer), hit.primitive) = id;
+        const Taken<T> taken(placed, *visit, i, hit.t, hit.primitive);
+        stdx::where(taken.nearer, hit.t) = taken.t;
+        stdx::where(mask_cast<IndexLanes<T>>(taken.nearer), hit.primitive) = taken.id;
         hit.farthest = stdx::hmax(hit.t);
       }
     });
@@ -141,11 +140,7 @@ class PackedInstances final : public PackedPrimitives<T> {
     const int room = (batch.count + kWidth<T> - 1) / kWidth<T> * kWidth<T>;
     for (int i = 0; i < room; ++i) {
       const Meeting& meeting = some[std::min(static_cast<std::size_t>(i), some.size() - 1)];
-      const Ray<T>& ray = rays[meeting.ray].ray;
-      batch.origin.x[i] = ray.origin.x, batch.origin.y[i] = ray.origin.y, batch.origin.z[i] = ray.origin.z;
-      batch.direction.x[i] = ray.direction.x, batch.direction.y[i] = ray.direction.y;
-      batch.direction.z[i] = ray.direction.z;
-      batch.t_max[i] = i < batch.count ? hits[meeting.ray].t : T(-1);
+      batch.set(i, rays[meeting.ray].ray, i < batch.count ? hits[meeting.ray].t : T(-1));
     }
     for (int i = 0; i < room; i += kWidth<T>) visit->put(i, placed.to_model(batch.at(i)), batch.t_max.at(i));
     return visit;
@@ -186,15 +181,11 @@ void InstanceKernel<T>::closest(int index, const RayBatch<T>& rays, const Groups
   visit->rays.count = rays.count;
   for (const int i : groups) visit->put(i, placed.to_model(rays.at(i)), hits.t.at(i));
   AcceleratorCounts counts;
-  meet_closest(placed, *visit, groups, counts);
+  placed.model->accelerator->closest(visit->rays, groups, visit->hits, counts);
   for (const int i : groups) {
-    const IndexLanes<T> in_model = load_index<T>(visit->hits.primitive, i);
-    const IndexLanes<T> id = number_of(placed, in_model);
-    const auto met = mask_cast<N<T>>(in_model != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-    const N<T> t = visit->hits.t.at(i);
-    const auto nearer = met && takes_over(t, id, hits.t.at(i), load_index<T>(hits.primitive, i));
-    hits.t.put(i, nearer, t);
-    hits.primitive.put(i, mask_cast<IndexLanes<T>>(nearer), id);
+    const Taken<T> taken(placed, *visit, i, hits.t.at(i), load_index<T>(hits.primitive, i));
+    hits.t.put(i, taken.nearer, taken.t);
+    hits.primitive.put(i, mask_cast<IndexLanes<T>>(taken.nearer), taken.id);
   }
 }
 

@@ -22,34 +22,35 @@ std::shared_ptr<const Scene> App::load(const Document& document, Timing& timing)
 
 Picture App::render(const PreparedScene& scene, const Plan& plan, FileFormat format,
                     std::function<bool()> gone, Timing& timing) {
-  require_open();
-  const Watch watch(std::move(gone), ends_, settings_.request_time);
-  const auto stop = [&] { return watch.stop(); };
-  try {
-    auto start = Clock::now();
-    const auto ticket = admission_.enter(stop);
-    timing.queue = milliseconds_since(start);
+  Picture picture;
+  in_turn(std::move(gone), timing.queue, [&](const auto& stop) {
     RenderResult rendered =
         render_frame(scene, plan, pixels_of(format), pool_, {.stop = stop, .progress = {}});
     timing.build = rendered.stats.build_ms;
     timing.render = rendered.stats.trace_ms;
-    start = Clock::now();
-    Picture picture{encode(rendered.image, format), rendered.stats};
+    const auto start = Clock::now();
+    picture = {encode(rendered.image, format), rendered.stats};
     timing.encode = milliseconds_since(start);
-    return picture;
-  } catch (const Cancelled&) {
-    watch.explain();
-  }
+  });
+  return picture;
 }
 
 void App::settle(const PreparedScene& scene, Plan& plan, std::function<bool()> gone) {
   if (!plan.try_accelerators) return;
+  double queue_ms = 0;
+  in_turn(std::move(gone), queue_ms, [&](const auto& stop) { orrery::settle(scene, plan, stop); });
+}
+
+template <class Work>
+void App::in_turn(std::function<bool()> gone, double& queue_ms, const Work& work) {
   require_open();
   const Watch watch(std::move(gone), ends_, settings_.request_time);
   const auto stop = [&] { return watch.stop(); };
   try {
+    const auto start = Clock::now();
     const auto ticket = admission_.enter(stop);
-    orrery::settle(scene, plan, stop);
+    queue_ms = milliseconds_since(start);
+    work(stop);
   } catch (const Cancelled&) {
     watch.explain();
   }

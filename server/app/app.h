@@ -58,6 +58,10 @@ class App {
   void require_open() const;
 
  private:
+  // Does work(stop) when its turn comes; `stop` says when it should end early.
+  template <class Work>
+  void in_turn(std::function<bool()> gone, double& queue_ms, const Work& work);
+
   const Settings settings_;
   std::atomic<bool> draining_{false}, ends_{false};
   WorkerPool pool_;

@@ -8,12 +8,8 @@ namespace {
 // What a scene and all that rendering builds for it are expected to take.
 std::size_t estimated_bytes(const Scene& scene) {
   constexpr std::size_t kBytesAPrimitive = 1024;  // record, boxes and tree, in both precisions
-  std::size_t held = scene.instances.size();
-  const auto count = [&held](const std::vector<std::unique_ptr<ShapeSet>>& sets) {
-    for (const auto& shapes : sets) held += static_cast<std::size_t>(shapes->size());
-  };
-  count(scene.shapes);
-  for (const Model& model : scene.models) count(model.shapes);
+  std::size_t held = scene.instances.size() + count_primitives(scene.shapes);
+  for (const Model& model : scene.models) held += count_primitives(model.shapes);
   return 4096 + 2 * scene.canonical.size() + kBytesAPrimitive * held +
          3 * sizeof(std::int64_t) * scene.material_of.size();
 }

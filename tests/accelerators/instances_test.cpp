@@ -172,7 +172,7 @@ void expect_outward_and_clear() {
       for (int i = 0; i < batch->count; ++i) {
         if (hits->primitive[i] == kNoPrimitive) continue;
         const auto which = static_cast<std::size_t>((hits->primitive[i] - 1) / per);
-        const Vec3<T> normal = get(surface->geometric, i), position = get(surface->position, i);
+        const Vec3<T> normal = surface->geometric[i], position = surface->position[i];
         const double least = std::min({std::abs(kPlaces[which].scale.x), std::abs(kPlaces[which].scale.y),
                                        std::abs(kPlaces[which].scale.z)});
         EXPECT_LT(static_cast<double>(surface->step[i]), 0.02 * least) << "the step may not cross the body";

@@ -1,11 +1,12 @@
 #include "tests/bench/embree.h"
 
 #include <embree3/rtcore.h>
-#include <time.h>
 
 #include <atomic>
 #include <cstring>
 #include <limits>
+
+#include "tests/bench/measuring.h"
 
 namespace orrery::bench {
 namespace {
@@ -28,12 +29,6 @@ RTCRay ray_of(const Ray<float>& ray, float t_max) {
 }
 
 }  // namespace
-
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct Embree::Parts {
   RTCDevice device = rtcNewDevice("threads=1");
@@ -60,9 +55,9 @@ Embree::Embree(const Mesh& mesh, bool robust) : parts_(std::make_unique<Parts>()
   rtcAttachGeometry(parts_->scene, geometry);
   rtcReleaseGeometry(geometry);
   rtcSetDeviceMemoryMonitorFunction(parts_->device, count_bytes, parts_.get());
-  const double start = cpu_seconds();
+  const double start = thread_seconds();
   rtcCommitScene(parts_->scene);
-  parts_->build_s = cpu_seconds() - start;
+  parts_->build_s = thread_seconds() - start;
 }
 
 Embree::~Embree() {
@@ -87,9 +82,9 @@ double Embree::closest_in_packets(const Rays& rays) const {
   alignas(64) int valid[16];
   std::fill(valid, valid + 16, -1);
   RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  const double start = cpu_seconds();
+  const double start = thread_seconds();
   for (auto& packet : packets) rtcIntersect16(valid, parts_->scene, &context, &packet);
-  return cpu_seconds() - start;
+  return thread_seconds() - start;
 }
 
 double Embree::closest(const Rays& rays, std::size_t& found) const {
@@ -99,9 +94,9 @@ double Embree::closest(const Rays& rays, std::size_t& found) const {
     hits[n].hit.geomID = RTC_INVALID_GEOMETRY_ID;
   }
   RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  const double start = cpu_seconds();
+  const double start = thread_seconds();
   for (auto& hit : hits) rtcIntersect1(parts_->scene, &context, &hit);
-  const double seconds = cpu_seconds() - start;
+  const double seconds = thread_seconds() - start;
   found = 0;
   for (const auto& hit : hits) found += hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
   return seconds;
@@ -111,9 +106,9 @@ double Embree::occluded(const Rays& rays, float t_max, std::size_t& found) const
   std::vector<RTCRay> tested;
   for (const auto& ray : rays) tested.push_back(ray_of(ray, t_max));
   RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  const double start = cpu_seconds();
+  const double start = thread_seconds();
   for (auto& ray : tested) rtcOccluded1(parts_->scene, &context, &ray);
-  const double seconds = cpu_seconds() - start;
+  const double seconds = thread_seconds() - start;
   found = 0;
   for (const auto& ray : tested) found += ray.tfar < 0;
   return seconds;

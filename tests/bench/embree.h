@@ -8,8 +8,6 @@
 // Embree 3 on one thread. Times are CPU seconds of that thread.
 namespace orrery::bench {
 
-double cpu_seconds();
-
 class Embree {
  public:
   // Builds in high quality. `robust`: its watertight mode.

@@ -1,13 +1,12 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <cstdio>
-#include <iostream>
 
 #include "core/accelerators/registry.h"
 #include "core/base/error.h"
-#include "core/load/load.h"
 #include "core/render/prepare.h"
 #include "tests/bench/embree.h"
+#include "tests/bench/measuring.h"
 #include "tests/support/batches.h"
 
 // Our hierarchy beside Embree's: the same mesh, the same rays, one thread.
@@ -50,9 +49,9 @@ class Ours {
   std::size_t bytes() const { return world_.accelerator->facts().bytes; }
 
   double build() const {
-    const double start = cpu_seconds();
+    const double start = thread_seconds();
     const auto again = orrery::build(*type_, world_.geometry->primitives);
-    return cpu_seconds() - start;
+    return thread_seconds() - start;
   }
 
   double closest(const Rays& rays, std::vector<int>& triangle, std::vector<float>& t) const {
@@ -63,10 +62,10 @@ class Ours {
       hits[b].primitive.values.fill(kNoPrimitive);
     }
     AcceleratorCounts counts;
-    const double start = cpu_seconds();
+    const double start = thread_seconds();
     for (std::size_t b = 0; b < batches.size(); ++b)
       world_.accelerator->closest(batches[b], test::groups_of(batches[b]), hits[b], counts);
-    const double seconds = cpu_seconds() - start;
+    const double seconds = thread_seconds() - start;
     triangle.clear();
     t.clear();
     for (std::size_t b = 0; b < batches.size(); ++b) {
@@ -81,9 +80,9 @@ class Ours {
   double occlude(const Rays& rays, std::size_t& found) const {
     auto batches = batches_of(rays, kReach);
     AcceleratorCounts counts;
-    const double start = cpu_seconds();
+    const double start = thread_seconds();
     for (auto& batch : batches) world_.accelerator->occlude(batch, test::groups_of(batch), counts);
-    const double seconds = cpu_seconds() - start;
+    const double seconds = thread_seconds() - start;
     found = 0;
     for (const auto& batch : batches)
       for (int i = 0; i < batch.count; ++i) found += batch.t_max[i] < 0;
@@ -138,22 +137,14 @@ int run(const std::string& kind, int triangles, bool robust) {
               mesh.triangles.size(), kind == "primary" ? primary.size() : bounce.size(), ours.bytes(),
               theirs.bytes());
   std::fflush(stdout);
-  for (std::string side; std::getline(std::cin, side);) {
-    const bool mine = side == "ours";
-    double seconds = 0;
-    for (int i = 0; i < kRepeats; ++i) {
-      if (kind == "build")
-        seconds += mine ? ours.build() : Embree(mesh, robust).build_s();
-      else if (kind == "primary")
-        seconds += mine ? ours.closest(primary, triangle, t) : theirs.closest_in_packets(primary);
-      else if (kind == "bounce")
-        seconds += mine ? ours.closest(bounce, triangle, t) : theirs.closest(bounce, their_found);
-      else
-        seconds += mine ? ours.occlude(bounce, our_found) : theirs.occluded(bounce, kReach, their_found);
-    }
-    std::printf("%.9f\n", seconds);
-    std::fflush(stdout);
-  }
+  answer_sides(kRepeats, [&](bool mine) {
+    if (kind == "build") return mine ? ours.build() : Embree(mesh, robust).build_s();
+    if (kind == "primary")
+      return mine ? ours.closest(primary, triangle, t) : theirs.closest_in_packets(primary);
+    if (kind == "bounce")
+      return mine ? ours.closest(bounce, triangle, t) : theirs.closest(bounce, their_found);
+    return mine ? ours.occlude(bounce, our_found) : theirs.occluded(bounce, kReach, their_found);
+  });
   return 0;
 }
 

@@ -34,7 +34,7 @@ Ray<double> ray_through(const CameraFrame& frame, int width, int height, int x, 
   generate_rays(frame, width, height, x0, y0, *samples, *rays);
   for (int slot = 0; slot < kBatch; ++slot)
     if (x0 + tile_pixel(slot).x == x && y0 + tile_pixel(slot).y == y)
-      return {get(rays->origin, slot), get(rays->direction, slot)};
+      return {rays->origin[slot], rays->direction[slot]};
   return {};
 }
 

@@ -9,17 +9,6 @@
 // Lists of rays to batches and back.
 namespace orrery::test {
 
-template <class T>
-void put(Vec3Array<T>& to, int i, const Vec3<T>& v) {
-  to.x[i] = v.x;
-  to.y[i] = v.y;
-  to.z[i] = v.z;
-}
-template <class T>
-Vec3<T> get(const Vec3Array<T>& from, int i) {
-  return {from.x[i], from.y[i], from.z[i]};
-}
-
 // The rays as a batch whose last register is padded with inactive ones. REQUIRES: 1 to kBatch rays.
 template <class T>
 void fill_batch(std::span<const Ray<T>> rays, T t_max, RayBatch<T>& batch) {
@@ -27,9 +16,7 @@ void fill_batch(std::span<const Ray<T>> rays, T t_max, RayBatch<T>& batch) {
   for (int i = 0; i < kBatchRoom; ++i) {
     const bool real = i < batch.count;
     const Ray<T>& ray = rays[static_cast<std::size_t>(real ? i : 0)];
-    put(batch.origin, i, ray.origin);
-    put(batch.direction, i, ray.direction);
-    batch.t_max[i] = real ? t_max : T(-1);
+    batch.set(i, ray, real ? t_max : T(-1));
   }
 }
 

@@ -10,9 +10,9 @@ Arrival<T> arrival(const Json& light, const Vec3<T>& at) {
                                      Json{{"lights", Json::array({light})}}));
   const auto surface = std::make_unique<SurfaceBatch<T>>();
   const auto out = std::make_unique<LightBatch<T>>();
-  for (int i = 0; i < kWidth<T>; ++i) put(surface->position, i, at);
+  for (int i = 0; i < kWidth<T>; ++i) surface->position.set(i, at);
   scene->lights.front()->illuminate(*surface, Groups::single(0), *out);
-  return {get(out->shadow.direction, 0), out->shadow.t_max[0], get(out->incident, 0)};
+  return {out->shadow.direction[0], out->shadow.t_max[0], out->incident[0]};
 }
 
 template Arrival<float> arrival(const Json&, const Vec3<float>&);

@@ -23,12 +23,12 @@ void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
   b.groups = Groups::covering(0, count, kWidth<T>);
   for (int i = 0; i < kBatchRoom; ++i) {
     const auto& one = cases[static_cast<std::size_t>(i < count ? i : 0)];
-    put(b.rays.direction, i, one.direction);
-    put(b.surface.normal, i, one.normal);
-    put(b.surface.geometric, i, one.geometric);
-    put(b.light.shadow.direction, i, one.light);
-    put(b.light.incident, i, Vec3<T>(T(1)));
-    put(b.light.radiance, i, Vec3<T>());
+    b.rays.direction.set(i, one.direction);
+    b.surface.normal.set(i, one.normal);
+    b.surface.geometric.set(i, one.geometric);
+    b.light.shadow.direction.set(i, one.light);
+    b.light.incident.set(i, Vec3<T>(T(1)));
+    b.light.radiance.set(i, Vec3<T>());
     b.light.shadow.t_max[i] = 1;
     b.surface.side[i] = one.side;
     b.hits.t[i] = one.t;
@@ -55,7 +55,7 @@ std::vector<Vec3<T>> Probe<T>::reflected(std::span<const Case> cases) const {
     fill<T>(some, *b);
     kernel_->reflect(b->rays, b->surface, b->groups, b->light);
     for (int i = 0; i < static_cast<int>(some.size()); ++i)
-      found.push_back(b->light.shadow.t_max[i] > 0 ? get(b->light.radiance, i) : Vec3<T>());
+      found.push_back(b->light.shadow.t_max[i] > 0 ? b->light.radiance[i] : Vec3<T>());
     cases = cases.subspan(some.size());
   }
   return found;
@@ -71,8 +71,7 @@ std::vector<typename Probe<T>::Specular> Probe<T>::specular(std::span<const Case
     kernel_->specular(b->rays, b->hits, b->surface, b->groups, b->specular);
     const SpecularBatch<T>& s = b->specular;
     for (int i = 0; i < static_cast<int>(some.size()); ++i)
-      found.push_back(
-          {get(s.reflectance, i), get(s.transmittance, i), get(s.refracted, i), get(s.filter, i)});
+      found.push_back({s.reflectance[i], s.transmittance[i], s.refracted[i], s.filter[i]});
     cases = cases.subspan(some.size());
   }
   return found;
@@ -84,7 +83,7 @@ Vec3<T> Probe<T>::ambient() const {
   const Case one;
   fill<T>(std::span(&one, 1), *b);
   kernel_->ambient(b->surface, b->groups, Vec3<T>(T(1)), b->radiance);
-  return get(b->radiance, 0);
+  return b->radiance[0];
 }
 
 template class Probe<float>;

@@ -92,9 +92,8 @@ std::vector<Spot<T>> Target<T>::surfaces(std::span<const Ray<T>> rays, std::span
     const Groups groups = groups_of(*batch);
     for (const Part& part : parts_) part.kernel->surface(*batch, *hit_batch, groups, *surface);
     for (int i = 0; i < batch->count; ++i)
-      found[from + static_cast<std::size_t>(i)] = {get(surface->position, i), get(surface->geometric, i),
-                                                   get(surface->normal, i), surface->side[i],
-                                                   surface->step[i]};
+      found[from + static_cast<std::size_t>(i)] = {surface->position[i], surface->geometric[i],
+                                                   surface->normal[i], surface->side[i], surface->step[i]};
   });
   return found;
 }

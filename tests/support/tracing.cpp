@@ -33,7 +33,7 @@ class Tracing::Recorder final : public Accelerator<double> {
   static void collect(const RayBatch<double>& rays, const Groups& groups, std::vector<Ray<double>>& into) {
     for (const int first : groups)
       for (int i = first; i < first + kWidth<double>; ++i)
-        if (rays.t_max[i] > 0) into.push_back({get(rays.origin, i), get(rays.direction, i)});
+        if (rays.t_max[i] > 0) into.push_back({rays.origin[i], rays.direction[i]});
   }
   AcceleratorPtr<double> real_;
 };
@@ -65,7 +65,7 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
   tracer_->trace(*batch, *result, counts_);
   std::vector<Answer> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
-    answers.push_back({get(result->radiance, i), result->cut[i]});
+    answers.push_back({result->radiance[i], result->cut[i]});
   return answers;
 }
 
@@ -89,7 +89,7 @@ std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request
         if (batch->t_max[slot] < 0) continue;
         const TilePixel p = tile_pixel(slot);
         places.push_back(static_cast<std::size_t>((y0 + p.y) * plan.width + x0 + p.x));
-        rays.push_back({get(batch->origin, slot), get(batch->direction, slot)});
+        rays.push_back({batch->origin[slot], batch->direction[slot]});
       }
       const std::vector<Answer> answers = tracing.trace(rays);
       for (std::size_t i = 0; i < places.size(); ++i) pixels[places[i]] = answers[i].radiance;

@@ -1,17 +1,13 @@
 #include <oneapi/tbb/global_control.h>
-#include <time.h>
 
 #include <cstdio>
-#include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core/accelerators/reordered.h"
-#include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "core/render/prepare.h"
 #include "core/render/trial.h"
-#include "server/commands/mesh_files.h"
+#include "tests/bench/measuring.h"
 #include "tests/support/random.h"
 
 // Stages in front of an accelerator, beside that accelerator alone, on the rays of some tiles of a picture.
@@ -27,12 +23,6 @@ using nlohmann::ordered_json;
 
 constexpr int kTiles = 64;
 constexpr double kLeastSeconds = 0.1;  // of a run
-
-double thread_seconds() {
-  timespec used{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
-  return double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
-}
 
 // What was asked in one call, and hits known beforehand.
 struct Call {
@@ -86,9 +76,7 @@ Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool s
     for (const int first : call->groups)
       for (int i = first; i < first + kWidth<float>; ++i) {
         if (hits.primitive[i] == kNoPrimitive) continue;
-        const Vec3f origin(call->rays.origin.x[i], call->rays.origin.y[i], call->rays.origin.z[i]);
-        const Vec3f along(call->rays.direction.x[i], call->rays.direction.y[i], call->rays.direction.z[i]);
-        rays.push_back({origin + along * (0.999f * hits.t[i]), Vec3f(random.direction())});
+        rays.push_back({call->rays[i].at(0.999f * hits.t[i]), Vec3f(random.direction())});
       }
   }
   if (scattered)
@@ -97,14 +85,8 @@ Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool s
   Calls calls;
   const auto batch = std::make_unique<RayBatch<float>>();
   for (std::size_t from = 0; from + kBatch <= rays.size(); from += kBatch) {
-    for (int i = 0; i < kBatch; ++i) {
-      const Ray<float>& ray = rays[from + static_cast<std::size_t>(i)];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        (&batch->origin.x)[axis][i] = (&ray.origin.x)[axis];
-        (&batch->direction.x)[axis][i] = (&ray.direction.x)[axis];
-      }
-      batch->t_max[i] = std::numeric_limits<float>::infinity();
-    }
+    for (int i = 0; i < kBatch; ++i)
+      batch->set(i, rays[from + static_cast<std::size_t>(i)], std::numeric_limits<float>::infinity());
     batch->count = kBatch;
     calls.push_back(call_of(*batch, Groups::covering(0, kBatch, kWidth<float>)));
   }
@@ -178,9 +160,7 @@ Sides sides_of(const PreparedScene& scene, const Task& task) {
 
 int run(const Task& task) {
   const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-  std::ifstream in(task.scene);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const PreparedScene scene(load_scene(text, MeshFiles(std::filesystem::path(task.scene).parent_path())));
+  const PreparedScene scene(load_scene_at(task.scene));
   const Sides sides = sides_of(scene, task);
   const Calls& ours = sides.ours.empty() ? sides.theirs : sides.ours;
   AcceleratorCounts with, without;
@@ -198,15 +178,9 @@ int run(const Task& task) {
                           .dump()
                           .c_str());
   std::fflush(stdout);
-  for (std::string side; std::getline(std::cin, side);) {
-    const bool mine = side == "ours";
-    double seconds = 0;
-    for (int i = 0; i < repeats; ++i)
-      seconds +=
-          ask(mine ? *sides.with : *sides.without, mine ? ours : sides.theirs, sides.shadows, with, again);
-    std::printf("%.9f\n", seconds);
-    std::fflush(stdout);
-  }
+  answer_sides(repeats, [&](bool mine) {
+    return ask(mine ? *sides.with : *sides.without, mine ? ours : sides.theirs, sides.shadows, with, again);
+  });
   return 0;
 }
 

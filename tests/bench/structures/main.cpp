@@ -1,17 +1,14 @@
 #include <oneapi/tbb/global_control.h>
-#include <time.h>
 
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/accelerators/registry.h"
-#include "core/load/load.h"
 #include "core/plan/plan.h"
 #include "core/render/geometry.h"
 #include "core/render/renderer.h"
 #include "core/render/trial.h"
-#include "server/commands/mesh_files.h"
+#include "tests/bench/measuring.h"
 #include "tests/support/batches.h"
 #include "tests/support/random.h"
 
@@ -27,12 +24,6 @@ using nlohmann::ordered_json;
 
 constexpr int kTiles = 12;
 constexpr double kPatience = 2;  // CPU seconds that building again may take
-
-double thread_seconds() {
-  timespec used{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
-  return double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
-}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -173,9 +164,7 @@ ordered_json measure(const std::shared_ptr<const Scene>& scene, const Plan& plan
 
 int run(const std::string& path, int rounds, bool random, const std::vector<std::string>& names) {
   const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-  std::ifstream in(path);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const auto scene = load_scene(text, MeshFiles(std::filesystem::path(path).parent_path()));
+  const auto scene = load_scene_at(path);
   Plan plan = make_plan(*scene, {});
   settle(PreparedScene(scene), plan);
   const ordered_json structures = plan.double_precision ? measure<double>(scene, plan, rounds, random, names)
