@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/version.h"
+#include "core/math/instruction_level.h"
 #include "core/params/suggest.h"
 #include "server/commands/commands.h"
 #include "server/commands/scene_file.h"
@@ -67,7 +68,7 @@ int run(int argc, char** argv) {
   try {
     CLI::App app("A render service: post a scene, get a picture, watch it turn.", "orrery");
     app.footer(kExamples);
-    app.set_version_flag("--version", std::string(kVersion) + " (" + std::string(kInstructionLevel) + ")");
+    app.set_version_flag("--version", std::string(kVersion) + " (" + std::string(instruction_level()) + ")");
     app.require_subcommand(1);
     std::vector<Command> commands;
     for (const auto& add : kCommands) commands.push_back(add(app));

@@ -26,7 +26,8 @@ class Blocks {
     references_ += places.size();
     auto making = std::find_if(makings_.begin(), makings_.end(),
                                [kernel](const Making& m) { return m.kernel == kernel; });
-    if (making == makings_.end()) making = makings_.insert(making, {kernel, {}});
+    const std::size_t index = static_cast<std::size_t>(primitives[places.front()].index);
+    if (making == makings_.end()) making = makings_.insert(making, {kernel, places.front() - index, {}});
     std::vector<int>& indices = making->indices;
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
     if (block > kBlockMask)
@@ -50,29 +51,56 @@ class Blocks {
   }
   // To be called once all are added, before any is asked for.
   void pack() {
-    for (const Making& making : makings_) packs_.push_back(making.kernel->pack(making.indices));
+    for (const Making& making : makings_)
+      packs_.push_back({making.kernel, making.first_place, making.kernel->pack(making.indices)});
     makings_ = {};
+  }
+
+  // Takes the primitives as they stand in `moved`, in the same order. Returns the boxes of all blocks of each
+  // pack, by their numbers; of a pack whose primitives stay where they are, none.
+  std::vector<std::vector<Bounds<T>>> follow(const PrimitiveList<T>& moved) {
+    std::vector<std::vector<Bounds<T>>> boxes;
+    for (Pack& pack : packs_) {
+      auto& of_pack = boxes.emplace_back();
+      const auto* kernel = moved[pack.first_place].kernel;
+      if (kernel == pack.kernel) continue;
+      const std::vector<int> indices = pack.primitives->indices();
+      pack.primitives = kernel->pack(indices);
+      pack.kernel = kernel;
+      of_pack.resize(indices.size() / kSize);
+      for (std::size_t i = 0; i < indices.size(); ++i)
+        if (indices[i] != kNothing)
+          of_pack[i / kSize].include(
+              padded<T>(moved[pack.first_place + static_cast<std::size_t>(indices[i])].bounds));
+    }
+    return boxes;
   }
 
   bool empty() const { return packs_.empty(); }
   std::size_t references() const { return references_; }
-  const PackedPrimitives<T>& pack_of(BlockName name) const { return *packs_[pack_number(name)]; }
+  const PackedPrimitives<T>& pack_of(BlockName name) const { return *packs_[pack_number(name)].primitives; }
   std::size_t bytes() const {
     std::size_t bytes = 0;
-    for (const auto& pack : packs_) bytes += pack->bytes();
+    for (const Pack& pack : packs_) bytes += pack.primitives->bytes();
     return bytes;
   }
 
  private:
   static constexpr int kBlockBits = 26;
   static constexpr std::uint32_t kBlockMask = 0x03ffffffu;
-  // A pack that is being put together.
+  // A pack that is being put together. The kernel's primitives follow each other in the list.
   struct Making {
     const ShapeKernel<T>* kernel;
+    std::size_t first_place;
     std::vector<int> indices;
   };
+  struct Pack {
+    const ShapeKernel<T>* kernel;
+    std::size_t first_place;
+    PackedPrimitivesPtr<T> primitives;
+  };
   std::vector<Making> makings_;
-  std::vector<PackedPrimitivesPtr<T>> packs_;
+  std::vector<Pack> packs_;
   std::size_t references_ = 0;
 };
 

@@ -29,12 +29,24 @@ class Hierarchy final : public Accelerator<T> {
   AcceleratorFacts facts() const override {
     return {.bytes = tree_.bytes() + unbounded_.bytes(),
             .depth = tree_.depth(),
-            .references = tree_.blocks().references() + unbounded_.size()};
+            .references = tree_.blocks().references() + unbounded_.size(),
+            .refitted = refitted_,
+            .worsening = tree_.worsening()};
+  }
+
+  AcceleratorPtr<T> refitted(const PrimitiveList<T>& moved) const override {
+    auto next = std::make_unique<Hierarchy>(*this);
+    next->unbounded_ = Unbounded<T>(moved);
+    if (!tree_.empty()) next->tree_.follow(moved);
+    next->refitted_ = true;
+    if (!(next->tree_.worsening() <= kMostWorsening)) return nullptr;
+    return next;
   }
 
  private:
   Unbounded<T> unbounded_;
   WideTree<T> tree_;
+  bool refitted_ = false;
 };
 
 }  // namespace orrery

@@ -17,19 +17,56 @@ class WideTree {
   // The place of a node, or kLeaf and the name of a block.
   using Child = std::uint32_t;
 
+  static constexpr std::size_t kPlaces = static_cast<std::size_t>(kWidth<T>);
+
   struct Node {
     BoxPlanes<T> planes;  // of places without a child: inside out, so that nothing enters
-    std::array<Child, static_cast<std::size_t>(kWidth<T>)> child;
+    std::array<Child, kPlaces> child;
+
+    bool has(std::size_t place) const { return planes[0][place] <= planes[1][place]; }
+    Bounds<T> box_of(std::size_t place) const {
+      return {{planes[0][place], planes[2][place], planes[4][place]},
+              {planes[1][place], planes[3][place], planes[5][place]}};
+    }
+    void set_box(std::size_t place, const Bounds<T>& box) {
+      const std::array<T, 6> sides{box.lo.x, box.hi.x, box.lo.y, box.hi.y, box.lo.z, box.hi.z};
+      for (std::size_t side = 0; side < 6; ++side) planes[side][place] = sides[side];
+    }
+    Bounds<T> box() const {
+      return {{stdx::hmin(planes[0]), stdx::hmin(planes[2]), stdx::hmin(planes[4])},
+              {stdx::hmax(planes[1]), stdx::hmax(planes[3]), stdx::hmax(planes[5])}};
+    }
   };
 
   WideTree(const BoxTree<T>& tree, const PrimitiveList<T>& primitives) {
     if (tree.empty()) return;
     root_ = convert(tree, 0, primitives, 1);
     box_ = tree.nodes[0].box;
-    grain_ /= static_cast<T>(leaves_);
     nodes_.shrink_to_fit();
     blocks_.pack();
+    measure();
+    cost_as_built_ = cost_;
   }
+
+  // Has the boxes follow the primitives, which stand in the order they had, to where they are now.
+  void follow(const PrimitiveList<T>& moved) {
+    const auto boxes = blocks_.follow(moved);
+    for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)  // children come after their parents
+      for (std::size_t i = 0; i < kPlaces; ++i) {
+        if (!node->has(i)) continue;
+        if (!is_leaf(node->child[i]))
+          node->set_box(i, nodes_[node->child[i]].box());
+        else if (const auto& of_pack = boxes[Blocks<T>::pack_number(node->child[i])]; !of_pack.empty())
+          node->set_box(i, of_pack[Blocks<T>::block_of(node->child[i])]);
+      }
+    if (!is_leaf(root_))
+      box_ = nodes_[root_].box();
+    else if (const auto& of_pack = boxes[Blocks<T>::pack_number(root_)]; !of_pack.empty())
+      box_ = of_pack[Blocks<T>::block_of(root_)];
+    measure();
+  }
+  // What a ray is expected to visit, by the surface area heuristic, over what it was when the tree was built.
+  double worsening() const { return cost_ / cost_as_built_; }
 
   bool empty() const { return blocks_.empty(); }
   int depth() const { return depth_; }
@@ -57,9 +94,7 @@ class WideTree {
     const std::size_t me = nodes_.size();
     nodes_.emplace_back();
     for (std::size_t i = 0; i < children.size(); ++i) {
-      const Bounds<T>& box = tree.nodes[children[i]].box;
-      const std::array<T, 6> sides{box.lo.x, box.hi.x, box.lo.y, box.hi.y, box.lo.z, box.hi.z};
-      for (std::size_t side = 0; side < 6; ++side) node.planes[side][i] = sides[side];
+      node.set_box(i, tree.nodes[children[i]].box);
       node.child[i] = convert(tree, children[i], primitives, level + 1);
     }
     nodes_[me] = node;
@@ -69,7 +104,7 @@ class WideTree {
   // The largest descendants that make a full node.
   static std::vector<std::uint32_t> children_of(const BoxTree<T>& tree, std::uint32_t at) {
     std::vector<std::uint32_t> children{tree.nodes[at].left, tree.nodes[at].right};
-    while (children.size() < static_cast<std::size_t>(kWidth<T>)) {
+    while (children.size() < kPlaces) {
       const auto size = [&](std::uint32_t n) {
         return tree.nodes[n].leaf ? T(-1) : half_area(tree.nodes[n].box);
       };
@@ -85,19 +120,36 @@ class WideTree {
 
   Child add_leaf(const BoxTree<T>& tree, const typename BoxTree<T>::Node& leaf,
                  const PrimitiveList<T>& primitives) {
-    grain_ += max_component(leaf.box.hi - leaf.box.lo);
-    ++leaves_;
     std::array<std::uint32_t, Blocks<T>::kSize> places;
     const std::size_t count = leaf.right - leaf.left;
     for (std::size_t i = 0; i < count; ++i) places[i] = tree.items[leaf.left + i].primitive;
     return kLeaf | blocks_.add(primitives, std::span(places).first(count));
   }
 
+  void measure() {
+    const double whole = half_area(box_);
+    double area = whole, sides = 0;
+    std::size_t leaves = 0;
+    const auto add_leaf_of = [&](const Bounds<T>& box) {
+      sides += max_component(box.hi - box.lo);
+      ++leaves;
+    };
+    if (is_leaf(root_)) add_leaf_of(box_);
+    for (const Node& node : nodes_)
+      for (std::size_t i = 0; i < kPlaces; ++i) {
+        if (!node.has(i)) continue;
+        area += half_area(node.box_of(i));
+        if (is_leaf(node.child[i])) add_leaf_of(node.box_of(i));
+      }
+    grain_ = static_cast<T>(sides / static_cast<double>(leaves));
+    cost_ = whole > 0 ? area / whole : 1;
+  }
+
   Child root_ = 0;
   int depth_ = 0;
   Bounds<T> box_;
   T grain_ = 0;
-  std::size_t leaves_ = 0;
+  double cost_ = 1, cost_as_built_ = 1;  // by the surface area heuristic: boxes that a ray into box_ enters
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };

@@ -9,7 +9,7 @@
 #include "core/lights/registry.h"
 #include "core/load/names_of.h"
 #include "core/materials/registry.h"
-#include "core/params/params.h"
+#include "core/params/motion.h"
 #include "core/plan/limits.h"
 #include "core/shapes/registry.h"
 
@@ -70,6 +70,8 @@ void read_render(Params& p, RenderSettings& render) {
   render.prediction = prediction_of(
       p.choice("prediction", "Who proposes what may shadow a point, before the accelerator is asked.",
                kPredictions, "none"));
+  render.time =
+      p.number("time", "Moment of what moves, in seconds.", {.min = -kMaxTime, .max = kMaxTime}, 0.0);
 }
 
 // Reads each mesh once, however often a scene names it.
@@ -127,21 +129,40 @@ class ObjectReader {
   std::vector<std::vector<ObjectOf>> objects_by_shape_;
 };
 
-// Scaled first, then turned, then moved.
-Affined read_transform(Params& p) {
+constexpr Range kTurns{.min = -1e6, .max = 1e6};
+
+Vec3d read_scale(Params& p, const Fallback<Vec3d>& fallback) {
   constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
   const auto scale = p.numbers3("scale", "Factors along x, y and z; negative ones mirror.",
-                                {.min = -kMostScale, .max = kMostScale}, Vec3d(1));
+                                {.min = -kMostScale, .max = kMostScale}, fallback);
   for (const double factor : scale)
     if (std::abs(factor) < kLeastScale) p.fail("scale", "expected factors of at least 1e-6 in size");
-  Affined turn;
+  return {scale[0], scale[1], scale[2]};
+}
+
+// How it stands at one time; what is left out is as in `rest`.
+Placement read_key(Params& p, const Placement& rest) {
+  Placement key{read_scale(p, derived(rest.scale)),
+                p.number("degrees", "About the axis of 'rotate'; more than a turn is several.", kTurns,
+                         derived(rest.degrees)),
+                p.point("translate", "Where the model's origin is, in metres.", derived(rest.translate))};
+  for (const double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
+    if (key.scale.*axis * rest.scale.*axis < 0) p.fail("scale", "expected the signs it has without motion");
+  return key;
+}
+
+Instance read_placement(Params& p, std::size_t model) {
+  Instance instance{model, Vec3d(0, 1, 0), {}};
+  Placement rest;
+  rest.scale = read_scale(p, Vec3d(1));
   p.optional_object("rotate", "Turn about an axis through the origin.", [&](Params& r) {
-    const Vec3d axis = r.direction("axis", "Direction of the axis.", Vec3d(0, 1, 0));
-    turn = rotation(axis, r.number("degrees", "Anticlockwise, seen from the axis' tip.",
-                                   {.min = -3600, .max = 3600}, 0.0));
+    instance.axis = r.direction("axis", "Direction of the axis.", Vec3d(0, 1, 0));
+    rest.degrees = r.number("degrees", "Anticlockwise, seen from the axis' tip.", kTurns, 0.0);
   });
-  const Vec3d move = p.point("translate", "Where the model's origin goes, in metres.", Vec3d(0));
-  return {turn.x * scale[0], turn.y * scale[1], turn.z * scale[2], move};
+  rest.translate = p.point("translate", "Where the model's origin goes, in metres.", Vec3d(0));
+  instance.motion = read_motion(p, [&](Params& key) { return read_key(key, rest); });
+  if (instance.motion.empty()) instance.motion = {{0}, {rest}};
+  return instance;
 }
 
 class SceneReader {
@@ -172,7 +193,7 @@ class SceneReader {
     std::size_t instanced = 0;
     p.each("instances", "Models that stand in the scene.", {0, kMaxObjects}, [&](Params& i) {
       const std::size_t model = i.reference("model", "Name of what stands there.", model_names_);
-      scene_->instances.push_back({model, read_transform(i)});
+      scene_->instances.push_back(read_placement(i, model));
       if (model < scene_->models.size()) instanced += count_primitives(scene_->models[model].shapes);
       ++scene_->object_count;
     });
@@ -189,6 +210,7 @@ class SceneReader {
     scene_->id = document.id();
     scene_->canonical = document.canonical();
     number_materials();
+    gather_motion();
     gather_shape_facts();
     gather_material_facts();
     return scene_;
@@ -254,23 +276,44 @@ class SceneReader {
     }
   }
 
-  // What a list of sets says alone; each primitive is asked once.
+  void gather_motion() {
+    std::vector<double> times;
+    const auto add = [&times](const std::vector<double>& some) {
+      if (some.size() > 1) times.insert(times.end(), some.begin(), some.end());
+    };
+    for (const auto& shapes : scene_->shapes) add(shapes->key_times());
+    for (const Model& model : scene_->models)
+      for (const auto& shapes : model.shapes) add(shapes->key_times());
+    for (const Instance& instance : scene_->instances) add(instance.motion.times);
+    if (times.empty()) return;
+    const auto [first, last] = std::minmax_element(times.begin(), times.end());
+    scene_->motion = {*first, *last};
+  }
+
+  // What a list of sets says alone.
   struct Extents {
     Boundsd all;           // infinite if a primitive is
     double magnitude = 0;  // the rest is that of bounded ones
     double smallest = std::numeric_limits<double>::infinity();
+
+    void include(const ShapeSet& shapes) {
+      for (int i = 0; i < shapes.size(); ++i) {
+        const Boundsd bounds = shapes.bounds(i);
+        all.include(bounds);
+        if (!bounds.bounded()) continue;
+        magnitude = std::max(magnitude, bounds.magnitude());
+        smallest = std::min(smallest, bounds.diagonal());
+      }
+    }
   };
+  // Of what moves, at all its keys.
   Extents extents_of(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
     Extents extents;
     for (const auto& shapes : sets) {
       scene_->facts.left_out += shapes->left_out();
-      for (int i = 0; i < shapes->size(); ++i) {
-        const Boundsd bounds = shapes->bounds(i);
-        extents.all.include(bounds);
-        if (!bounds.bounded()) continue;
-        extents.magnitude = std::max(extents.magnitude, bounds.magnitude());
-        extents.smallest = std::min(extents.smallest, bounds.diagonal());
-      }
+      const std::vector<double> times = shapes->key_times();
+      for (const double time : times) extents.include(*shapes->at(time));
+      if (times.empty()) extents.include(*shapes);
     }
     return extents;
   }
@@ -285,17 +328,22 @@ class SceneReader {
     const Extents own = extents_of(scene_->shapes);
     add(own.magnitude, own.smallest);
     std::vector<Extents> of_models;
-    for (Model& model : scene_->models) {
-      of_models.push_back(extents_of(model.shapes));
-      model.bounds = of_models.back().all;
-    }
+    for (const Model& model : scene_->models) of_models.push_back(extents_of(model.shapes));
     for (const Instance& instance : scene_->instances) {
       const Extents& of_model = of_models[instance.model];
-      add(of_model.magnitude, of_model.smallest / stretch(inverse(instance.world_from_model)));
-      if (!of_model.all.bounded()) continue;
-      for (const Vec3d& v : corners_of(of_model.all))
-        facts.magnitude = std::max(facts.magnitude, max_component(abs(instance.world_from_model.point(v))));
+      for (const double time : instance.motion.times) {
+        const Affined world_from_model = instance.world_from_model(time);
+        add(of_model.magnitude, of_model.smallest / stretch(inverse(world_from_model)));
+        if (!of_model.all.bounded()) continue;
+        for (const Vec3d& v : corners_of(of_model.all))
+          facts.magnitude = std::max(facts.magnitude, reach_of(instance, world_from_model, v));
+      }
     }
+  }
+  // Largest coordinate that a point of the model may have: on its way between two keys it turns.
+  static double reach_of(const Instance& instance, const Affined& world_from_model, const Vec3d& point) {
+    if (instance.motion.times.size() == 1) return max_component(abs(world_from_model.point(point)));
+    return max_component(abs(world_from_model.origin)) + length(world_from_model.vector(point));
   }
 
   const ReadOnce meshes_;

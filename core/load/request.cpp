@@ -1,6 +1,6 @@
 #include "core/load/load.h"
 #include "core/load/names_of.h"
-#include "core/params/params.h"
+#include "core/params/motion.h"
 #include "core/plan/limits.h"
 
 namespace orrery {
@@ -59,6 +59,10 @@ void read_render(Params& p, RenderRequest& request) {
   take(p, "prediction", request.prediction, [&] {
     return prediction_of(
         p.choice("prediction", "Who proposes what may shadow a point.", kPredictions, "none"));
+  });
+  take(p, "time", request.time, [&] {
+    return p.number("time", "Moment of what moves, in seconds.", {.min = -kMaxTime, .max = kMaxTime},
+                    derived(0.0));
   });
 }
 

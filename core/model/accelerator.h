@@ -24,7 +24,12 @@ struct AcceleratorFacts {
   std::size_t bytes = 0;       // held beside the scene itself
   int depth = 0;               // nodes on the longest way to a primitive
   std::size_t references = 0;  // places that name a primitive: more than there are, where cells share some
+  bool refitted = false;       // its boxes followed primitives that moved since it was built
+  double worsening = 1;        // what rays are expected to cost now, over what they were when it was built
 };
+
+// Beyond this worsening a new structure is built.
+inline constexpr double kMostWorsening = 1.5;
 
 // Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive,
 // equal distances going to the lower number. Immutable once built; calls may run on any number of threads.
@@ -34,6 +39,10 @@ class Accelerator {
   virtual ~Accelerator() = default;
 
   virtual AcceleratorFacts facts() const = 0;
+
+  // The same structure where the primitives have moved: `moved` has them in the same order. Null if it has to
+  // be built anew, because it cannot follow, or because rays would take much longer than in a new one.
+  virtual std::unique_ptr<Accelerator> refitted(const PrimitiveList<T>& /*moved*/) const { return nullptr; }
 
   // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max and hits.primitive
   // kNoPrimitive, or the two are a hit of that ray, which then stays unless there is a nearer one, or one as

@@ -35,6 +35,7 @@ struct Plan {
   const AcceleratorType* accelerator = nullptr;
   bool try_accelerators = false;  // for few primitives: others may be cheaper, see settle()
   bool double_precision = false;
+  double time = 0;              // of the scene's motion, seconds
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
   std::uint64_t seed = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "core/math/affine.h"
+#include "core/math/keys.h"
 #include "core/model/light.h"
 #include "core/model/material.h"
 #include "core/model/plan.h"
@@ -24,6 +26,7 @@ struct RenderSettings {
   std::uint64_t seed = 0;
   bool reorder = false;
   Prediction prediction = Prediction::none;
+  double time = 0;  // seconds
 };
 
 // What the plan wants to know about a scene, computed once.
@@ -47,12 +50,46 @@ inline std::size_t count_primitives(const std::vector<std::unique_ptr<ShapeSet>>
 struct Model {
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::int32_t> material_of;  // of each primitive
-  Boundsd bounds;
 };
+
+// How an instance stands: scaled first, then turned, then moved.
+struct Placement {
+  Vec3d scale{1.0, 1.0, 1.0};
+  double degrees = 0;
+  Vec3d translate;
+};
+inline Placement mix(const Placement& before, const Placement& after, double share) {
+  const double rest = 1 - share;
+  return {before.scale * rest + after.scale * share, before.degrees * rest + after.degrees * share,
+          before.translate * rest + after.translate * share};
+}
 
 struct Instance {
   std::size_t model;
-  Affined world_from_model;
+  Vec3d axis;              // that it turns about
+  Keys<Placement> motion;  // one key if it rests
+
+  Affined world_from_model(double time) const {
+    const Placement placement = motion.at(time);
+    const Affined turn = rotation(axis, placement.degrees);
+    return {turn.x * placement.scale.x, turn.y * placement.scale.y, turn.z * placement.scale.z,
+            placement.translate};
+  }
+};
+
+// From the first key of all that moves to the last, in seconds; equal if nothing moves.
+struct TimeSpan {
+  double first = 0, last = 0;
+
+  bool empty() const { return !(first < last); }
+  // The moment at which the scene looks as it does at `time`.
+  double moment(double time) const { return empty() ? first : std::clamp(time, first, last); }
+  // The same where the motion begins again whenever it has ended.
+  double moment_of_loop(double time) const {
+    if (empty() || (time >= first && time <= last)) return empty() ? first : time;
+    const double into = std::fmod(time - first, last - first);
+    return first + (into < 0 ? into + (last - first) : into);
+  }
 };
 
 // A scene as read, in double precision; never changed afterwards, shared between threads. Primitives are
@@ -71,6 +108,7 @@ struct Scene {
   std::vector<Instance> instances;        // their primitives are numbered after those of `shapes`
   std::vector<std::int32_t> material_of;  // of each primitive
   int object_count = 0;
+  TimeSpan motion;
   SceneFacts facts;
 
   int primitive_count() const { return static_cast<int>(material_of.size()); }

@@ -45,9 +45,11 @@ class PackedPrimitives {
                        AcceleratorCounts& counts) const = 0;
 
   virtual std::size_t bytes() const = 0;
+  // What it was packed from: see ShapeKernel::pack().
+  virtual std::vector<int> indices() const = 0;
 };
 template <class T>
-using PackedPrimitivesPtr = std::unique_ptr<PackedPrimitives<T>>;
+using PackedPrimitivesPtr = std::shared_ptr<const PackedPrimitives<T>>;
 
 inline constexpr int kNothing = -1;  // an empty place in a block
 
@@ -81,7 +83,7 @@ class ShapeKernel {
 };
 
 template <class T>
-using ShapeKernelPtr = std::unique_ptr<ShapeKernel<T>>;
+using ShapeKernelPtr = std::shared_ptr<const ShapeKernel<T>>;
 
 // What the plan may use about a shape.
 struct ShapeTraits {
@@ -98,6 +100,10 @@ class ShapeSet {
   virtual int size() const = 0;
   // Primitives that were not added because no ray can meet them.
   virtual std::size_t left_out() const { return 0; }
+  // When its primitives are told to be where, in seconds; empty if they rest.
+  virtual std::vector<double> key_times() const { return {}; }
+  // The same primitives in the same order as they stand at `time`; null if they rest.
+  virtual std::unique_ptr<ShapeSet> at(double /*time*/) const { return nullptr; }
   // Infinite sides where the primitive is unbounded.
   virtual Boundsd bounds(int index) const = 0;
   virtual ShapeTraits traits() const = 0;

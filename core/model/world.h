@@ -8,7 +8,10 @@
 
 namespace orrery {
 
-// A scene in one number type. Immutable once made.
+template <class T>
+struct ModelGeometry;
+
+// A scene in one number type, as it stands at one moment. Immutable once made.
 template <class T>
 struct Geometry {
   struct Materials {
@@ -19,6 +22,7 @@ struct Geometry {
 
   std::shared_ptr<const Scene> scene;
   std::vector<ShapeKernelPtr<T>> shapes;
+  std::vector<std::shared_ptr<const ModelGeometry<T>>> models;
   std::vector<Materials> materials;
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;

@@ -6,6 +6,7 @@
 
 #include "core/accelerators/registry.h"
 #include "core/base/error.h"
+#include "core/params/motion.h"
 #include "core/plan/limits.h"
 #include "core/techniques/registry.h"
 
@@ -65,6 +66,10 @@ class Planner {
     if (scene_.facts.left_out > 0)
       decide("triangles without area", std::to_string(scene_.facts.left_out) + " left out",
              "no ray can meet them");
+    if (!scene_.motion.empty()) {
+      const auto& [first, last] = scene_.motion;
+      decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
+    }
     choose_precision();
     choose_accelerator();
     choose_order();
@@ -76,6 +81,11 @@ class Planner {
   }
 
  private:
+  static std::string seconds(double time) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g s", time);
+    return text;
+  }
   void decide(std::string subject, std::string choice, std::string reason) {
     plan_.decisions.push_back({std::move(subject), std::move(choice), std::move(reason)});
   }
@@ -95,6 +105,8 @@ class Planner {
     plan_.slice = checks_.within("/render/slice", request_.slice, 16, kBatch) / 16 * 16;
     const std::string technique = request_.technique.value_or(own.technique);
     plan_.technique = find_type(technique_types(), technique, "/render/technique", checks_);
+    const double time = checks_.within("/render/time", request_.time.value_or(own.time), -kMaxTime, kMaxTime);
+    plan_.time = scene_.motion.moment(time);
     take_camera();
   }
 
@@ -147,6 +159,8 @@ class Planner {
         find_type(accelerator_types(), few ? "list" : "bottom-up", "/render/accelerator", checks_);
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
+           : count <= kMostToTry
+               ? "of models and of what stands in the scene, by which few primitives matter little"
                : "of all structures it took the least time on every scene measured with more than " +
                      std::to_string(kMostToTry) + " primitives");
   }

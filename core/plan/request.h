@@ -12,7 +12,7 @@ struct RenderRequest {
   std::optional<int> width, height, samples, max_depth;
   std::optional<std::string> technique, accelerator;
   std::optional<Precision> precision;
-  std::optional<double> min_contribution, fov_degrees;
+  std::optional<double> min_contribution, fov_degrees, time;
   std::optional<std::uint64_t> seed;
   std::optional<bool> reorder;
   std::optional<Prediction> prediction;

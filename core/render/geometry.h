@@ -4,9 +4,18 @@
 
 namespace orrery {
 
-// The scene in number type T (float or double). Models get structures of type `inner`.
+// The scene in number type T (float or double) as it stands at `time`, in seconds. Models get structures of
+// type `inner`. `before`: the same at another moment, or null: what rests is shared with it, and structures
+// of what moves follow from its own where they can.
 template <class T>
 std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> scene,
-                                                 const AcceleratorType& inner);
+                                                 const AcceleratorType& inner, double time = 0,
+                                                 const Geometry<T>* before = nullptr);
+
+// A structure over primitives, which follows from the one that they had at another moment if it can.
+// `before`: that one, or null.
+template <class T>
+AcceleratorPtr<T> build_or_refit(const AcceleratorType& type, const PrimitiveList<T>& primitives,
+                                 const Accelerator<T>* before);
 
 }  // namespace orrery

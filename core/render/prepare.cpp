@@ -1,5 +1,6 @@
 #include "core/render/prepare.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/accelerators/reordered.h"
@@ -8,16 +9,45 @@
 #include "core/render/occlusion_samples.h"
 
 namespace orrery {
+namespace {
+
 template <class T>
-World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double& build_ms) {
+using Moments = std::list<PreparedScene::Parts::Moment<T>>;
+
+// Puts the moment of that time first.
+template <class T>
+void bring_forward(Moments<T>& moments, double time) {
+  const auto known =
+      std::find_if(moments.begin(), moments.end(), [&](const auto& m) { return m.time == time; });
+  if (known != moments.end()) return moments.splice(moments.begin(), moments, known);
+  moments.push_front({time, {}, {}});
+  if (moments.size() > PreparedScene::kMoments) moments.pop_back();
+}
+
+// What was made with the accelerator for another moment than the first, the newest; an empty world if there
+// is none.
+template <class T>
+World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
+  for (auto moment = std::next(moments.begin()); moment != moments.end(); ++moment)
+    if (const auto made = moment->worlds.find(&type); made != moment->worlds.end()) return made->second;
+  return {};
+}
+
+}  // namespace
+
+template <class T>
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double time, double& build_ms) {
   const std::lock_guard lock(parts.mutex);
-  auto& made = made_of<T>(parts);
-  World<T>& world = made.worlds[&type];
+  auto& moments = made_of<T>(parts).moments;
+  bring_forward(moments, time);
+  auto& moment = moments.front();
+  World<T>& world = moment.worlds[&type];
   if (!world.accelerator) {
     const auto start = std::chrono::steady_clock::now();
-    auto& geometry = made.geometries[parts.scene->models.empty() ? nullptr : &type];
-    if (!geometry) geometry = make_geometry<T>(parts.scene, type);
-    world = {geometry, build(type, geometry->primitives)};
+    const World<T> before = world_before(moments, type);
+    auto& geometry = moment.geometries[parts.scene->models.empty() ? nullptr : &type];
+    if (!geometry) geometry = make_geometry<T>(parts.scene, type, time, before.geometry.get());
+    world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
     build_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
   return world;
@@ -43,7 +73,7 @@ PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, 
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms,
                    const std::function<bool()>& stop) {
-  const World<T> bare = world_for<T>(parts, *plan.accelerator, build_ms);
+  const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.time, build_ms);
   const PrimitiveList<T>& primitives = bare.geometry->primitives;
   auto asked = plan.reorder ? reordered(bare.accelerator) : bare.accelerator;
   if (plan.prediction == Prediction::last)
@@ -55,8 +85,8 @@ World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_
   return {bare.geometry, asked};
 }
 
-template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);
-template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double&);
+template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&);
+template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&);
 template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 

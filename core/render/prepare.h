@@ -1,5 +1,6 @@
 #pragma once
 
+#include <list>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -12,11 +13,17 @@ namespace orrery {
 
 // What was built for one scene so far.
 struct PreparedScene::Parts {
+  // The scene as it stands at one moment.
   template <class T>
-  struct Made {
+  struct Moment {
+    double time;
     // By the type of the models' structures; null if there are no models.
     std::map<const AcceleratorType*, std::shared_ptr<const Geometry<T>>> geometries;
     std::map<const AcceleratorType*, World<T>> worlds;
+  };
+  template <class T>
+  struct Made {
+    std::list<Moment<T>> moments;    // at most kMoments, the one asked for last first
     std::optional<Decision> chosen;  // by trial
     PredictorPtr<T> network;         // trained on the first plan that wanted one
   };
@@ -27,9 +34,11 @@ struct PreparedScene::Parts {
   Made<double> made_double;
 };
 
-// The scene in number type T with an accelerator; adds the milliseconds spent building, if any.
+// The scene in number type T with an accelerator, as it stands at `time`, a moment of its motion in seconds;
+// adds the milliseconds spent building, if any.
 template <class T>
-World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double& build_ms);
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double time,
+                   double& build_ms);
 
 // The same with the accelerator of a settled plan and the stages that it wants in front of it, which change
 // no answer: prediction first, then reordering. Of these only the network takes time to make. Throws

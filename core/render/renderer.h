@@ -20,6 +20,9 @@ class PreparedScene {
   const Scene& scene() const;
   std::shared_ptr<const Scene> shared_scene() const;
 
+  // Of a scene that moves: for so many moments, those asked for last, what was built is kept.
+  static constexpr std::size_t kMoments = 2;
+
   struct Parts;
   Parts& parts() const { return *parts_; }
 

@@ -105,6 +105,7 @@ class PackedInstances final : public PackedPrimitives<T> {
   }
 
   std::size_t bytes() const override { return indices_.size() * sizeof(int); }
+  std::vector<int> indices() const override { return indices_; }
 
  private:
   static constexpr std::size_t kSize = static_cast<std::size_t>(kBlock<T>);

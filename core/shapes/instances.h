@@ -14,6 +14,7 @@ template <class T>
 struct ModelGeometry {
   std::vector<ShapeKernelPtr<T>> shapes;
   PrimitiveList<T> primitives;
+  Boundsd bounds;  // of all
   AcceleratorPtr<T> accelerator;
 };
 

@@ -39,9 +39,9 @@ struct MeshTriangle {
 template <class T>
 struct MeshTable {
   struct Part {
-    std::size_t first;              // triangle
-    std::ptrdiff_t normals_offset;  // from a vertex to its normal
-    bool smooth;                    // has normals
+    std::size_t first;                       // triangle
+    std::size_t first_vertex, first_normal;  // a normal a vertex, if it is
+    bool smooth;
     T magnitude;
   };
   std::vector<Vec3<T>> positions, normals;
@@ -67,7 +67,8 @@ class MeshRecords {
     for (const auto& v : table.normals) table_.normals.push_back(Vec3<T>(v));
     table_.triangles = table.triangles;
     for (const auto& part : table.parts)
-      table_.parts.push_back({part.first, part.normals_offset, part.smooth, static_cast<T>(part.magnitude)});
+      table_.parts.push_back(
+          {part.first, part.first_vertex, part.first_normal, part.smooth, static_cast<T>(part.magnitude)});
     flat_.reserve(table.triangles.size());
     for (std::size_t i = 0; i < table.triangles.size(); ++i) {
       const Corners<double> at = table.corners(i);
@@ -81,7 +82,7 @@ class MeshRecords {
     const auto& part = table_.part_of(i);
     const Vec3<T>& flat = flat_[i];
     const auto normal = [&](std::uint32_t vertex) {
-      return part.smooth ? table_.normals[static_cast<std::size_t>(vertex + part.normals_offset)] : flat;
+      return part.smooth ? table_.normals[part.first_normal + vertex - part.first_vertex] : flat;
     };
     const auto& [a, b, c] = table_.triangles[i];
     return {table_.corners(i), {normal(a), normal(b), normal(c)}, flat, part.magnitude};

@@ -29,7 +29,7 @@ class PackedRecords final : public PackedPrimitives<T> {
  public:
   // records.core(i) is what distance() needs of record i.
   template <class Records>
-  PackedRecords(const Records& records, int first, std::span<const int> indices) {
+  PackedRecords(const Records& records, int first, std::span<const int> indices) : first_(first) {
     blocks_.resize(indices.size() / kB);
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       fill(blocks_[b], records, first, indices.subspan(b * kB, kB));
@@ -100,6 +100,15 @@ class PackedRecords final : public PackedPrimitives<T> {
   }
 
   std::size_t bytes() const override { return blocks_.size() * sizeof(Block); }
+
+  std::vector<int> indices() const override {
+    std::vector<int> indices;
+    indices.reserve(blocks_.size() * kB);
+    for (const Block& block : blocks_)
+      for (std::size_t place = 0; place < kB; ++place)
+        indices.push_back(place < block.count ? static_cast<int>(block.id[place]) - first_ : kNothing);
+    return indices;
+  }
 
  private:
   using N = Lanes<T>;
@@ -183,6 +192,7 @@ class PackedRecords final : public PackedPrimitives<T> {
     }
   }
 
+  const int first_;
   std::vector<Block> blocks_;
 };
 

@@ -118,8 +118,7 @@ RenderResult OrbitCast::render(std::int64_t number) {
   const auto stop = [&] { return watch.stop(); };
   try {
     const auto ticket = means_.admission.enter_again(stop);
-    const Plan plan =
-        make_plan(spec_.scene->scene(), spec_.request_of(static_cast<int>(number % spec_.frames)));
+    const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
     return render_frame(*spec_.scene, plan, PixelFormat::srgb8, means_.pool, {.stop = stop, .progress = {}});
   } catch (const Cancelled&) {
     watch.explain();
@@ -128,11 +127,12 @@ RenderResult OrbitCast::render(std::int64_t number) {
 
 void OrbitCast::deliver(std::int64_t number, Frame&& picture) {
   const int frame = static_cast<int>(number % spec_.frames);
-  const RenderRequest request = spec_.request_of(frame);
+  const RenderRequest request = spec_.path.at(frame);
   const RenderSettings& own = spec_.scene->scene().render;
   const auto shared =
       std::make_shared<const OrbitFrame>(OrbitFrame{.frame = frame,
                                                     .orbit = request.orbit,
+                                                    .time = *request.time,
                                                     .width = request.width.value_or(own.width),
                                                     .height = request.height.value_or(own.height),
                                                     .picture = std::move(picture)});

@@ -32,6 +32,7 @@ std::string canonical_request(const Scene& scene, const RenderRequest& request) 
   add("min_contribution", text_of(request.min_contribution.value_or(own.min_contribution)));
   add("fov", text_of(request.fov_degrees.value_or(scene.camera.fov_degrees)));
   add("seed", std::to_string(request.seed.value_or(own.seed)));
+  add("time", text_of(scene.motion.moment(request.time.value_or(own.time))));
   add("azimuth", text_of(request.orbit.azimuth_degrees));
   add("elevation", text_of(request.orbit.elevation_degrees));
   add("distance", text_of(request.orbit.distance));

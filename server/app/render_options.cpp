@@ -36,6 +36,7 @@ constexpr std::array kOptions{
                  "Trace rays together that are alike"},
     RenderOption{"prediction", "render", "prediction", "--prediction", "NAME",
                  "Who proposes what may shadow a point: none, network, last or random"},
+    RenderOption{"time", "render", "time", "--time", "SECONDS", "Moment of what moves"},
 };
 
 // A number or a truth value if the text is one and nothing else, or else the text, which the reader then

@@ -10,6 +10,7 @@ std::size_t estimated_bytes(const Scene& scene) {
   constexpr std::size_t kBytesAPrimitive = 1024;  // record, boxes and tree, in both precisions
   std::size_t held = scene.instances.size() + count_primitives(scene.shapes);
   for (const Model& model : scene.models) held += count_primitives(model.shapes);
+  if (!scene.motion.empty()) held *= 1 + PreparedScene::kMoments;
   return 4096 + 2 * scene.canonical.size() + kBytesAPrimitive * held +
          3 * sizeof(std::int64_t) * scene.material_of.size();
 }

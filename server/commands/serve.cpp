@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "core/base/version.h"
+#include "core/math/instruction_level.h"
 #include "server/commands/commands.h"
 #include "server/commands/signals.h"
 #include "server/http/listener.h"
@@ -57,7 +58,7 @@ int serve(const Options& options) {
   std::cout << "orrery listens on http://" << (v6 ? "[" + settings.host + "]" : settings.host) << ":"
             << service.port() << std::endl;
   log.write(LogLevel::info, "start",
-            {{"version", kVersion}, {"instructions", kInstructionLevel}, {"port", service.port()}});
+            {{"version", kVersion}, {"instructions", instruction_level()}, {"port", service.port()}});
   service.run();
   {
     const std::lock_guard lock(mutex);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/version.h"
+#include "core/math/instruction_level.h"
 #include "core/model/technique.h"
 
 namespace orrery {
@@ -74,7 +75,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"precision", plan.double_precision ? "double" : "float"},
           {"reorder", plan.reorder},
           {"prediction", name_of(plan.prediction)},
-          {"instructions", kInstructionLevel},
+          {"instructions", instruction_level()},
           {"threads", stats.threads},
           {"rays",
            {{"camera", counts.rays.camera},
@@ -109,10 +110,11 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   line(text, "%-12s %d x %d, %d a pixel", "picture", plan.width, plan.height, plan.samples);
   line(text, "%-12s %s, %s%s, %s, %s, threads %d", "rendered by", plan.technique->name,
        stats.render.accelerator->name, plan.reorder ? " of sorted rays" : "",
-       plan.double_precision ? "double" : "float", std::string(kInstructionLevel).c_str(), stats.threads);
+       plan.double_precision ? "double" : "float", std::string(instruction_level()).c_str(), stats.threads);
   rays_text(text, counts.rays);
-  line(text, "%-12s %14zu bytes, %d nodes deep, %zu references", "structure", stats.render.structure.bytes,
-       stats.render.structure.depth, stats.render.structure.references);
+  const AcceleratorFacts& structure = stats.render.structure;
+  line(text, "%-12s %14zu bytes, %d nodes deep, %zu references", "structure", structure.bytes,
+       structure.depth, structure.references);
   line(text, "%-12s %14llu of nodes", "visits",
        static_cast<unsigned long long>(counts.accelerator.node_visits));
   line(text, "%-12s %14llu of boxes, %llu of primitives", "tests",

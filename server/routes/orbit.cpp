@@ -12,7 +12,8 @@
 namespace orrery {
 namespace {
 
-constexpr std::array<std::string_view, 3> kOwnParameters{"frames", "step", "fps"};
+constexpr std::array<std::string_view, 4> kOwnParameters{"frames", "step", "time_step", "fps"};
+constexpr double kLongestStep_s = 3600;
 constexpr std::string_view kMultipart = "multipart/x-mixed-replace", kFrames = "application/x-orrery-frames";
 constexpr std::string_view kBoundary = "orrery-frame";
 
@@ -37,18 +38,22 @@ double number_of(const Request& request, std::string_view name, double min, doub
 OrbitSpec read_orbit(App& app, const Request& request) {
   OrbitSpec spec;
   spec.scene = app.scenes().find(request.path_value("id"));
-  spec.request = read_query(request, kOwnParameters);
+  const Scene& scene = spec.scene->scene();
+  const RenderRequest first = read_query(request, kOwnParameters);
   std::vector<Problem> problems;
   const double frames = number_of(request, "frames", 1, app.settings().orbit_frames, 120, problems);
   if (frames != std::floor(frames)) problems.push_back({"/frames", "expected a whole number"});
   spec.frames = static_cast<int>(frames);
-  spec.step_degrees = number_of(request, "step", -360, 360, 360.0 / spec.frames, problems);
+  spec.path = full_turn(scene, first, spec.frames);
+  spec.path.step_degrees = number_of(request, "step", -360, 360, spec.path.step_degrees, problems);
+  spec.path.step_seconds =
+      number_of(request, "time_step", -kLongestStep_s, kLongestStep_s, spec.path.step_seconds, problems);
   spec.fps = number_of(request, "fps", 0, 240, 30, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
-  for (const int frame : {0, spec.frames - 1}) plan_of_query(spec.scene->scene(), spec.request_of(frame));
-  const Scene& scene = spec.scene->scene();
-  spec.key = scene.id + " " + canonical_request(scene, spec.request) +
-             nlohmann::json({spec.frames, spec.step_degrees, spec.fps}).dump();
+  plan_of_query(scene, first);
+  for (const int frame : {0, spec.frames - 1}) plan_of_query(scene, spec.path.at(frame));
+  spec.key = scene.id + " " + canonical_request(scene, spec.path.first) +
+             nlohmann::json({spec.frames, spec.path.step_degrees, spec.path.step_seconds, spec.fps}).dump();
   return spec;
 }
 
@@ -60,6 +65,7 @@ std::string framed(const OrbitFrame& frame, std::int64_t skipped) {
       {"azimuth_degrees", frame.orbit.azimuth_degrees},
       {"elevation_degrees", frame.orbit.elevation_degrees},
       {"distance", frame.orbit.distance},
+      {"time", frame.time},
       {"width", frame.width},
       {"height", frame.height},
       {"render_ms", picture.stats.build_ms + picture.stats.trace_ms},

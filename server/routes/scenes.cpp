@@ -26,13 +26,16 @@ ordered_json camera_json(const Camera& camera) {
 }
 
 ordered_json summary(const Scene& scene) {
-  return {{"id", scene.id},
-          {"title", scene.title},
-          {"width", scene.render.width},
-          {"height", scene.render.height},
-          {"camera", camera_json(scene.camera)},
-          {"objects", scene.object_count},
-          {"lights", scene.lights.size()}};
+  ordered_json summary = {{"id", scene.id},
+                          {"title", scene.title},
+                          {"width", scene.render.width},
+                          {"height", scene.render.height},
+                          {"camera", camera_json(scene.camera)},
+                          {"objects", scene.object_count},
+                          {"lights", scene.lights.size()}};
+  if (!scene.motion.empty())
+    summary["motion"] = {{"first_s", scene.motion.first}, {"last_s", scene.motion.last}};
+  return summary;
 }
 
 std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }

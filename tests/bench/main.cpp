@@ -43,7 +43,7 @@ class Ours {
     for (const auto& type : accelerator_types())
       if (std::string_view(type.name) == "bottom-up") type_ = &type;
     double build_ms = 0;
-    world_ = world_for<float>(prepared_.parts(), *type_, build_ms);
+    world_ = world_for<float>(prepared_.parts(), *type_, 0, build_ms);
   }
 
   std::size_t bytes() const { return world_.accelerator->facts().bytes; }

@@ -177,6 +177,26 @@ TEST_F(CommandLine, OrbitWritesNumberedFrames) {
     EXPECT_EQ(run("orbit " + scene + " --frames 1 -o " + file(pattern)).status, 2) << pattern;
 }
 
+TEST_F(CommandLine, OrbitPlaysTheMotion) {
+  auto moving = nlohmann::json::parse(kScene);
+  moving["models"]["ball"]["objects"] = moving["objects"];
+  moving["instances"] = {
+      {{"model", "ball"}, {"motion", {{{"time", 0}}, {{"time", 2}, {"translate", {1, 0, 1}}}}}}};
+  const std::string scene = write("s.json", moving.dump());
+  ASSERT_EQ(run("orbit " + scene + " --frames 4 --step 0 -o " + file("f-%d.png")).status, 0);
+  ASSERT_EQ(
+      run("orbit " + scene + " --frames 2 --step 0 --time 0.5 --time-step 1 -o " + file("g-%d.png")).status,
+      0);
+  EXPECT_EQ(bytes_of(file("f-1.png")), bytes_of(file("g-0.png")));
+  EXPECT_EQ(bytes_of(file("f-3.png")), bytes_of(file("g-1.png")));
+  EXPECT_NE(bytes_of(file("f-0.png")), bytes_of(file("f-1.png")));
+  const auto stats = nlohmann::json::parse(run("orbit " + scene + " --frames 5 --accelerator bottom-up --discard --stats=json").out);
+  EXPECT_EQ(stats.at("refitted"), 4);
+  EXPECT_EQ(run("orbit " + scene + " --discard --time-step 4000").status, 2);
+  EXPECT_EQ(run("render " + scene + " --time 1e7").status, 2);
+  EXPECT_NE(run("explain " + scene + " --time 0.5").out.find("0.5 s"), std::string::npos);
+}
+
 TEST_F(CommandLine, InterruptedRenderLeavesNoFile) {
   const std::string scene = write("s.json", kScene), picture = file("never.png");
   const std::string self = program();

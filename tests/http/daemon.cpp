@@ -191,6 +191,15 @@ nlohmann::json small_scene(const nlohmann::json& more) {
   return scene;
 }
 
+nlohmann::json moving_scene() {
+  const nlohmann::json ball = {
+      {"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", 0.4}, {"material", "plum"}};
+  return small_scene(
+      {{"models", {{"ball", {{"objects", {ball}}}}}},
+       {"instances",
+        {{{"model", "ball"}, {"motion", {{{"time", 0}}, {{"time", 2}, {"translate", {1, 0, 1}}}}}}}}});
+}
+
 nlohmann::json expect_problem(const httplib::Result& result, int status) {
   if (!result) {
     ADD_FAILURE() << "no answer: " << httplib::to_string(result.error());

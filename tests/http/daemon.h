@@ -86,6 +86,9 @@ class HttpTest : public ::testing::Test {
 // A ball on a mirror, small enough to render in no time. `more` replaces or adds members.
 nlohmann::json small_scene(const nlohmann::json& more = nlohmann::json::object());
 
+// The same with a ball that moves to the side from 0 to 2 s.
+nlohmann::json moving_scene();
+
 // The body is problem details that agree with the status; returns it.
 nlohmann::json expect_problem(const httplib::Result& result, int status);
 

@@ -43,6 +43,16 @@ TEST_F(FramePng, ETagNamesThePictureHoweverItIsAskedFor) {
     EXPECT_NE(etag(query), plain) << query;
 }
 
+TEST_F(FramePng, ETagKnowsTheMomentOfWhatMoves) {
+  const auto tag = [&](const nlohmann::json& scene, const std::string& query) {
+    const std::string path = "/v1/scenes/" + post_scene(scene.dump()) + "/frame.png";
+    return client_.Head(path + query)->get_header_value("ETag");
+  };
+  EXPECT_EQ(tag(small_scene(), ""), tag(small_scene(), "?time=1"));
+  EXPECT_NE(tag(moving_scene(), ""), tag(moving_scene(), "?time=1"));
+  EXPECT_EQ(tag(moving_scene(), "?time=2"), tag(moving_scene(), "?time=3"));
+}
+
 TEST_F(FramePng, KnownPictureIsNotRenderedAgain) {
   const auto first = client_.Get(path());
   const std::string etag = first->get_header_value("ETag");

@@ -43,6 +43,26 @@ TEST_F(OrbitStream, StepIsAFullTurnByDefault) {
   EXPECT_EQ(frames[7].header.at("azimuth_degrees"), 315);
 }
 
+TEST_F(OrbitStream, PlaysTheMotion) {
+  const std::string scene = "/v1/scenes/" + post_scene(moving_scene().dump());
+  const auto times = [&](const std::string& query) {
+    std::vector<double> all;
+    for (const auto& frame : parse_frames(client_.Get(scene + "/orbit?fps=0&step=0&" + query, kFrames)->body))
+      all.push_back(frame.header.at("time"));
+    return all;
+  };
+  EXPECT_EQ(times("frames=4"), (std::vector<double>{0, 0.5, 1, 1.5}));
+  EXPECT_EQ(times("frames=4&time=1"), (std::vector<double>{1, 1.25, 1.5, 1.75}));
+  EXPECT_EQ(times("frames=4&time_step=0.75"), (std::vector<double>{0, 0.75, 1.5, 0.25}));
+  const auto frames = parse_frames(client_.Get(scene + "/orbit?fps=0&step=0&frames=4", kFrames)->body);
+  EXPECT_NE(frames[0].png, frames[1].png);
+  const auto still = parse_frames(client_.Get(scene + "/orbit?fps=0&frames=1&time=0.5", kFrames)->body);
+  EXPECT_EQ(still[0].png, frames[1].png);
+  expect_problem(client_.Get(scene + "/orbit?time=abc", kFrames), 422);
+  expect_problem(client_.Get(scene + "/orbit?time=2e6", kFrames), 422);
+  expect_problem(client_.Get(scene + "/orbit?time_step=3601", kFrames), 422);
+}
+
 TEST_F(OrbitStream, BrowsersGetPartsEachFollowedByItsBoundary) {
   const auto result = client_.Get(path("frames=3&fps=0"), {{"Accept", "image/avif,image/*,*/*;q=0.8"}});
   ASSERT_TRUE(result);

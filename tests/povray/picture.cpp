@@ -23,7 +23,7 @@ namespace {
 
 World<double> world_of(const PreparedScene& scene, const Plan& plan) {
   double build_ms = 0;
-  return world_for<double>(scene.parts(), *plan.accelerator, build_ms);
+  return world_for<double>(scene.parts(), *plan.accelerator, plan.time, build_ms);
 }
 
 // Calls visit(rays, put) for each tile, its rays (dx, dy) pixels off the pixels' centres; put(pixels, slot,

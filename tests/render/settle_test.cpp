@@ -74,7 +74,7 @@ RenderRequest square(int side) {
 
 double cost(const PreparedScene& scene, const Plan& plan, const AcceleratorType& type) {
   double build_ms = 0;
-  const TraceCounts counts = try_tiles(world_for<float>(scene.parts(), type, build_ms), plan, 6);
+  const TraceCounts counts = try_tiles(world_for<float>(scene.parts(), type, plan.time, build_ms), plan, 6);
   return type.costs.of(counts.rays.total(), counts.accelerator);
 }
 

@@ -35,7 +35,7 @@ std::vector<OcclusionSample> samples_of(const Json& json, const RenderRequest& r
   const PreparedScene scene(load(json));
   const Plan plan = make_plan(scene.scene(), request);
   double build_ms = 0;
-  return sample_occlusion(world_for<T>(scene.parts(), *plan.accelerator, build_ms), plan);
+  return sample_occlusion(world_for<T>(scene.parts(), *plan.accelerator, plan.time, build_ms), plan);
 }
 
 TEST(OcclusionSamples, AreShadowRaysWithWhatTheyMeet) {

@@ -31,9 +31,13 @@ const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", 
 
 using Change = std::function<void(const std::string& key, Json& value)>;
 
-// Calls `change` for each key and value of `object`.
+// Calls `change` for each key and value of `object` and of the keys of its motion.
 void change_members(Json& object, const Change& change) {
-  for (auto& [key, value] : object.items()) change(key, value);
+  for (auto& [key, value] : object.items()) {
+    change(key, value);
+    if (key == "motion")
+      for (Json& moment : value) change_members(moment, change);
+  }
 }
 
 // The same for the camera, the objects and the lights of a scene: all that has a place.
@@ -79,6 +83,11 @@ void mirror_mesh(Json& object) {
 void mirror_instance(Json& instance) {
   const Vec3d scale = vector(instance.value("scale", Json{1, 1, 1}));
   instance["scale"] = numbers(Vec3d(-scale.x, scale.y, scale.z));
+  if (instance.contains("motion"))
+    for (Json& moment : instance["motion"]) {
+      if (moment.contains("scale")) moment["scale"][0] = -moment["scale"][0].get<double>();
+      if (moment.contains("degrees")) moment["degrees"] = -moment["degrees"].get<double>();
+    }
   if (!instance.contains("rotate")) return;
   Json& turn = instance["rotate"];
   const Vec3d axis = vector(turn.value("axis", Json{0, 1, 0}));
@@ -151,6 +160,9 @@ Json without_filters(Json scene) {
 }
 
 Json moved(Json scene, const Vec3d& offset) {
+  if (scene.contains("instances"))
+    for (Json& instance : scene["instances"])
+      if (!instance.contains("translate")) instance["translate"] = {0, 0, 0};
   change_places(scene, move_by(offset));
   return scene;
 }

@@ -15,14 +15,21 @@ std::vector<std::string> accelerator_names() {
 }
 
 template <class T>
-Structure<T>::Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage) {
+Structure<T>::Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage)
+    : Structure(load(scene), accelerator, 0) {
+  if (stage) accelerator_ = stage(geometry_->primitives, std::move(accelerator_));
+}
+
+template <class T>
+Structure<T>::Structure(const std::shared_ptr<const Scene>& scene, const std::string& accelerator,
+                        double time, const Structure* before) {
   for (const auto& type : accelerator_types())
     if (type.name == accelerator) {
-      geometry_ = make_geometry<T>(load(scene), type);
-      accelerator_ = build(type, geometry_->primitives);
+      geometry_ = make_geometry<T>(scene, type, time, before ? before->geometry_.get() : nullptr);
+      accelerator_ =
+          build_or_refit(type, geometry_->primitives, before ? before->accelerator_.get() : nullptr);
     }
   if (!accelerator_) throw std::invalid_argument(accelerator);
-  if (stage) accelerator_ = stage(geometry_->primitives, std::move(accelerator_));
 }
 
 template <class T>

@@ -20,6 +20,9 @@ template <class T>
 class Structure {
  public:
   Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage = {});
+  // The scene as it stands at `time`; if there is a `before`, as it follows from that.
+  Structure(const std::shared_ptr<const Scene>& scene, const std::string& accelerator, double time,
+            const Structure* before = nullptr);
 
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays);
   // The same where a hit of each ray is known already; REQUIRES: as many.

@@ -135,7 +135,7 @@ Sides sides_of(const PreparedScene& scene, const Task& task) {
   Plan plan = make_plan(scene.scene(), request);
   Sides sides;
   double structure_ms = 0;
-  const World<float> bare = world_for<float>(scene.parts(), *plan.accelerator, structure_ms);
+  const World<float> bare = world_for<float>(scene.parts(), *plan.accelerator, plan.time, structure_ms);
   sides.without = bare.accelerator;
   sides.with = world_for<float>(scene.parts(), plan, sides.build_ms).accelerator;
   Calls camera, shadow;

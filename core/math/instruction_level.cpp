@@ -1,0 +1,7 @@
+#include "core/math/instruction_level.h"
+
+namespace orrery {
+
+std::string_view instruction_level() { return ORRERY_LEVEL; }
+
+}  // namespace orrery

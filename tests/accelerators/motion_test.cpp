@@ -1,0 +1,168 @@
+#include <cmath>
+
+#include "tests/support/agreement.h"
+#include "tests/support/covers.h"
+#include "tests/support/random.h"
+
+// Structures over what moves: they follow from the moment before, or are built anew.
+namespace orrery::test {
+namespace {
+
+constexpr int kSide = 6;  // of the square that things stand on: kSide * kSide of them
+
+Vec3d place_of(int i) { return {2.0 * (i % kSide) - kSide, 0.3 * ((i * 7) % 5), 2.0 * (i / kSide) - kSide}; }
+int partner_of(int i) {
+  return 17 * i % (kSide * kSide);
+}  // 17 * 17 = 8 * 36 + 1: it is the partner of its partner
+
+// Instances that change places two by two within 1 s, while they turn.
+Json swapping_instances() {
+  Json scene = scene_of(R"({"type": "sphere", "center": [0, -20, 0], "radius": 0.5})");
+  const Json ball = {{"type", "sphere"}, {"center", {0.1, 0, 0}}, {"radius", 0.4}, {"material", "white"}};
+  const Json rod = {{"type", "cylinder"},
+                    {"base", {0, 0, 0}},
+                    {"top", {0.6, 0.8, 0}},
+                    {"radius", 0.1},
+                    {"material", "white"}};
+  scene["models"] = {{"it", {{"objects", {ball, rod}}}}};
+  for (int i = 0; i < kSide * kSide; ++i)
+    scene["instances"].push_back(
+        {{"model", "it"},
+         {"translate", numbers(place_of(i))},
+         {"motion",
+          {{{"time", 0}},
+           {{"time", 1}, {"translate", numbers(place_of(partner_of(i)))}, {"degrees", 90 * i}}}}});
+  return scene;
+}
+
+// One mesh whose triangles change places two by two.
+Json swapping_triangles() {
+  Json scene = scene_of(R"({"type": "sphere", "center": [0, -20, 0], "radius": 0.5})");
+  Json mesh = {{"type", "mesh"}, {"material", "white"}};
+  Json moved = Json::array();
+  const std::array<Vec3d, 3> corners{Vec3d(-0.7, 0, 0), Vec3d(0.7, 0.2, 0.3), Vec3d(0, 0.1, -0.7)};
+  for (int i = 0; i < kSide * kSide; ++i) {
+    for (const Vec3d& corner : corners) {
+      mesh["positions"].push_back(numbers(place_of(i) + corner));
+      moved.push_back(numbers(place_of(partner_of(i)) + corner));
+    }
+    mesh["indices"].push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  mesh["motion"] = {{{"time", 0}}, {{"time", 1}, {"positions", moved}}};
+  scene["objects"].push_back(mesh);
+  return scene;
+}
+
+template <class T>
+Rays<T> rays_through(double half, int count, std::uint64_t seed) {
+  Random random(seed);
+  Rays<T> rays;
+  while (static_cast<int>(rays.size()) < count) {
+    const Vec3d from = random.in_cube(1.5 * half), to = random.in_cube(half);
+    for (int i = 0; i < (random.below(2) ? 16 : 1); ++i)
+      rays.push_back({Vec3<T>(from), Vec3<T>(safe_normalize(to + random.in_cube(0.05) - from))});
+  }
+  return rays;
+}
+
+struct Followed {
+  int refitted = 0, built = 0;
+  double worst = 1;
+};
+
+// Frame by frame each structure agrees with the list of that moment, and with one built for it alone.
+template <class T>
+Followed follow(const Json& json, const std::string& accelerator, int frames, int rays_a_frame,
+                double half = 7) {
+  const auto scene = load(json);
+  Followed followed;
+  std::unique_ptr<Structure<T>> before;
+  for (int frame = 0; frame <= frames; ++frame) {
+    const double time = static_cast<double>(frame) / frames;
+    auto now = std::make_unique<Structure<T>>(scene, accelerator, time, before.get());
+    Structure<T> list(scene, "list", time), fresh(scene, accelerator, time);
+    const auto rays = rays_through<T>(half, rays_a_frame, static_cast<std::uint64_t>(frame));
+    expect_agreement(*now, list, rays, {T(0.7), T(3), T(1e30)});
+    expect_agreement(fresh, list, rays, {T(3)});
+    (now->facts().refitted ? followed.refitted : followed.built) += 1;
+    followed.worst = std::max(followed.worst, now->facts().worsening);
+    EXPECT_FALSE(fresh.facts().refitted);
+    before = std::move(now);
+  }
+  return followed;
+}
+
+class Motion : public StructureTest {
+ protected:
+  // Hierarchies follow for a while and are built anew when their boxes stretch over half the square; all
+  // others are built anew each time.
+  static void expect_both(const Followed& followed) {
+    const bool hierarchy = GetParam() == "bottom-up" || GetParam() == "bvh";
+    EXPECT_EQ(followed.refitted > 1, hierarchy);
+    EXPECT_GT(followed.built, 1);
+    EXPECT_LE(followed.worst, kMostWorsening);
+  }
+};
+
+TEST_P(Motion, PairsOfInstancesSwapPlaces) {
+  covers("F19 F1");
+  const Followed followed = follow<float>(swapping_instances(), GetParam(), 20, 3000);
+  follow<double>(swapping_instances(), GetParam(), 5, 1000);
+  EXPECT_EQ(followed.refitted + followed.built, 21);
+  expect_both(followed);
+}
+
+TEST_P(Motion, PairsOfTrianglesSwapPlaces) {
+  covers("F19 F1");
+  const Followed followed = follow<float>(swapping_triangles(), GetParam(), 20, 3000);
+  follow<double>(swapping_triangles(), GetParam(), 5, 1000);
+  expect_both(followed);
+}
+
+TEST_P(Motion, OneFliesAwayAndComesBack) {
+  covers("F19");
+  Json scene = swapping_instances();
+  for (Json& instance : scene["instances"]) instance.erase("motion");
+  scene["instances"][7]["motion"] = {
+      {{"time", 0}}, {{"time", 0.5}, {"translate", {3e4, 1e3, -2e4}}}, {{"time", 1}}};
+  follow<float>(scene, GetParam(), 4, 2000);
+}
+
+// A triangle that collapses to a line and to a point, and a mesh that does as a whole.
+TEST_P(Motion, WhatLosesItsAreaIsNotMet) {
+  covers("F19");
+  Json scene = swapping_triangles();
+  Json& mesh = scene["objects"][1];
+  Json flat = mesh["positions"], point = mesh["positions"];
+  for (std::size_t i = 0; i < 9; ++i)
+    flat[i] = numbers(vector(flat[i - i % 3]) + Vec3d(0.1, 0, 0) * double(i % 3));
+  for (auto& position : point) position = {1, 2, 3};
+  mesh["motion"] = {{{"time", 0}}, {{"time", 0.5}, {"positions", flat}}, {{"time", 1}, {"positions", point}}};
+  follow<float>(scene, GetParam(), 4, 2000);
+  Structure<float> collapsed(load(scene), GetParam(), 1);
+  Rays<float> rays;
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d from = random.in_cube(5);
+    rays.push_back({Vec3f(from), Vec3f(safe_normalize(Vec3d(1, 2, 3) - from))});
+  }
+  for (const auto& hit : collapsed.closest(rays)) EXPECT_LE(hit.primitive, 0);  // the sphere is number 0
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Motion, testing::ValuesIn(accelerator_names()), by_name);
+
+TEST(MovingGeometry, SharesWhatRests) {
+  Json json = swapping_instances();
+  json["models"]["other"] = json["models"]["it"];
+  json["models"]["other"]["objects"].push_back(swapping_triangles()["objects"][1]);
+  json["instances"][3]["model"] = "other";
+  const auto scene = load(json);
+  const Structure<float> first(scene, "bottom-up", 0), second(scene, "bottom-up", 0.25, &first);
+  EXPECT_EQ(first.geometry().shapes[0], second.geometry().shapes[0]);  // the sphere
+  EXPECT_NE(first.geometry().shapes[1], second.geometry().shapes[1]);  // the instances
+  EXPECT_EQ(first.geometry().models[0], second.geometry().models[0]);
+  EXPECT_NE(first.geometry().models[1], second.geometry().models[1]);
+}
+
+}  // namespace
+}  // namespace orrery::test

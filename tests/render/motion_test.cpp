@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "core/accelerators/registry.h"
+#include "core/plan/plan.h"
+#include "core/render/prepare.h"
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+
+// Pictures of scenes that move.
+namespace orrery::test {
+namespace {
+
+RenderRequest at_time(double time, RenderRequest request = size(96, 72)) {
+  request.time = time;
+  return request;
+}
+
+// A plate whose middle rises, and a peg that turns, moves and grows.
+Json moving_scene() {
+  return scene_of(
+      R"([{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]},
+          {'type': 'mesh', 'crease_degrees': 60, 'positions': [[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1], [0, 0, 0]],
+           'indices': [[4, 1, 0], [4, 2, 1], [4, 3, 2], [4, 0, 3]],
+           'motion': [{'time': 1}, {'time': 3, 'positions': [[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0.5, 1], [0, 1, 0.25]]},
+                      {'time': 4, 'positions': [[-1, 0, -1], [2, 0, -1], [1, 0, 1], [-1, 0, 1], [0, 1, 0]]}]}])",
+      R"({'camera': {'eye': [1, 3, 6], 'type': 'perspective', 'look_at': [0, 0, 0]},
+          'lights': [{'type': 'point', 'position': [2, 5, 3]}],
+          'models': {'peg': {'objects': [{'type': 'cylinder', 'base': [0, 0, 0], 'top': [0.3, 1, 0], 'radius': 0.2, 'material': 'white'}]}},
+          'instances': [{'model': 'peg', 'scale': [1, 2, 1], 'rotate': {'axis': [0, 0, 1], 'degrees': 10}, 'translate': [-1.5, 0, 0],
+                         'motion': [{'time': 0, 'degrees': -20}, {'time': 2, 'translate': [-1, 0, 1]},
+                                    {'time': 4, 'scale': [2, 1, 1], 'degrees': 700}]}]})");
+}
+
+// The same at 2.5 s, standing still.
+Json standing_scene() {
+  Json scene = moving_scene();
+  Json& mesh = scene["objects"][1];
+  for (std::size_t v = 0; v < 5; ++v) {
+    const Vec3d from = vector(mesh["positions"][v]), to = vector(mesh["motion"][1]["positions"][v]);
+    mesh["positions"][v] = numbers(from * 0.25 + to * 0.75);
+  }
+  mesh.erase("motion");
+  Json& peg = scene["instances"][0];
+  peg["scale"] = {0.75 * 1 + 0.25 * 2, 0.75 * 2 + 0.25 * 1, 1};
+  peg["rotate"]["degrees"] = 0.75 * 10 + 0.25 * 700;
+  peg["translate"] = {0.75 * -1 + 0.25 * -1.5, 0, 0.75 * 1 + 0.25 * 0};
+  peg.erase("motion");
+  return scene;
+}
+
+TEST(Motion, AMomentIsThePictureOfTheSceneStandingStill) {
+  covers("F19");
+  const auto moving = load(moving_scene());
+  for (const RenderRequest& in : {in_float(size(96, 72)), in_double(size(96, 72))}) {
+    const Picture expected = render(standing_scene(), in);
+    EXPECT_TRUE(identical(render(moving, at_time(2.5, in)), expected));
+    EXPECT_GT(differing_pixels(render(moving, at_time(2.4, in)), expected, 1e-3), 100);
+  }
+}
+
+TEST(Motion, PicturesDoNotDependOnWhichMomentsCameBefore) {
+  covers("F19");
+  const auto scene = load(moving_scene());
+  for (const auto& type : accelerator_types()) {
+    RenderRequest request = size(96, 72);
+    request.accelerator = type.name;
+    const PreparedScene prepared(scene);
+    for (const double time : {0.0, 1.0, 1.5, 4.0, 2.5, 2.25, 0.0, 9.0}) {
+      const Plan plan = make_plan(*scene, at_time(time, request));
+      const Image image = render_frame(prepared, plan, PixelFormat::linear32, shared_pool()).image;
+      const Picture alone = render(scene, at_time(time));
+      int wrong = 0;
+      for (int y = 0; y < 72; ++y)
+        for (int x = 0; x < 96; ++x) wrong += image.linear(x, y) != alone.at(x, y);
+      EXPECT_EQ(wrong, 0) << type.name << " at " << time;
+    }
+    EXPECT_EQ(prepared.parts().made_float.moments.size(), PreparedScene::kMoments);
+  }
+}
+
+TEST(Motion, RestsBeforeItsFirstAndAfterItsLastKey) {
+  const auto scene = load(moving_scene());
+  EXPECT_EQ(scene->motion.first, 0);
+  EXPECT_EQ(scene->motion.last, 4);
+  EXPECT_TRUE(identical(render(scene, at_time(-3)), render(scene, at_time(0))));
+  EXPECT_TRUE(identical(render(scene, at_time(1e6)), render(scene, at_time(4))));
+  EXPECT_EQ(make_plan(*scene, at_time(77)).time, 4);
+  Json own = moving_scene();
+  own["render"]["time"] = 3.5;
+  EXPECT_TRUE(identical(render(own, size(96, 72)), render(scene, at_time(3.5))));
+}
+
+TEST(Motion, BeginsAgainInALoop) {
+  constexpr TimeSpan span{2, 5}, none{};
+  const std::pair<double, double> moments[] = {{2, 2}, {5, 5},  {5.5, 2.5},  {8, 2},
+                                               {1, 4}, {-1, 2}, {3.25, 3.25}};
+  for (const auto& [time, moment] : moments) EXPECT_EQ(span.moment_of_loop(time), moment) << time;
+  EXPECT_EQ(none.moment_of_loop(7), 0);
+}
+
+TEST(Motion, PlanCountsOnEveryMoment) {
+  Json far = moving_scene();
+  far["instances"][0]["motion"][1]["translate"] = {3e7, 0, 0};
+  EXPECT_FALSE(make_plan(*load(moving_scene()), at_time(0)).double_precision);
+  EXPECT_TRUE(make_plan(*load(far), at_time(0)).double_precision)
+      << "so that frames do not change number types";
+  Json stretched = moving_scene();
+  stretched["objects"][1]["motion"][2]["positions"][0] = {-3e7, 0, 0};
+  EXPECT_TRUE(make_plan(*load(stretched), at_time(0)).double_precision);
+}
+
+TEST(Motion, FramesOfManyMomentsAtOnceAreRight) {
+  const auto scene = load(moving_scene());
+  const PreparedScene prepared(scene);
+  std::vector<Picture> expected;
+  for (int i = 0; i < 4; ++i) expected.push_back(render(scene, at_time(i, size(32, 24))));
+  std::atomic<int> wrong = 0;
+  std::vector<std::jthread> callers;
+  for (int caller = 0; caller < 4; ++caller)
+    callers.emplace_back([&, caller] {
+      for (int frame = 0; frame < 12; ++frame) {
+        const int i = (caller + frame) % 4;
+        const Plan plan = make_plan(*scene, at_time(i, size(32, 24)));
+        const Image image = render_frame(prepared, plan, PixelFormat::linear32, shared_pool()).image;
+        for (int y = 0; y < 24; ++y)
+          for (int x = 0; x < 32; ++x)
+            wrong += image.linear(x, y) != expected[static_cast<std::size_t>(i)].at(x, y);
+      }
+    });
+  callers.clear();
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace orrery::test
