@@ -190,7 +190,8 @@ TEST_F(CommandLine, OrbitPlaysTheMotion) {
   EXPECT_EQ(bytes_of(file("f-1.png")), bytes_of(file("g-0.png")));
   EXPECT_EQ(bytes_of(file("f-3.png")), bytes_of(file("g-1.png")));
   EXPECT_NE(bytes_of(file("f-0.png")), bytes_of(file("f-1.png")));
-  const auto stats = nlohmann::json::parse(run("orbit " + scene + " --frames 5 --accelerator bottom-up --discard --stats=json").out);
+  const auto stats = nlohmann::json::parse(
+      run("orbit " + scene + " --frames 5 --accelerator bottom-up --discard --stats=json").out);
   EXPECT_EQ(stats.at("refitted"), 4);
   EXPECT_EQ(run("orbit " + scene + " --discard --time-step 4000").status, 2);
   EXPECT_EQ(run("render " + scene + " --time 1e7").status, 2);
