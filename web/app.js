@@ -83,7 +83,8 @@ function picture(purpose, level, at) {
     scene,
     limits,
   });
-  return { id: scene.id, ...at, ...size, technique: state.technique, samples };
+  const moves = Boolean(scene.motion);
+  return { id: scene.id, moves, ...at, ...size, technique: state.technique, samples };
 }
 
 // What a download or a copied command shows: the view at full size, where it is or will come to rest.
@@ -112,7 +113,7 @@ function show_scene(opened, at) {
   scene = opened;
   state.scene = opened.ref;
   camera.use_scene_camera(opened.camera);
-  camera.jump({ azimuth: at.az, elevation: at.el, distance: at.dist });
+  camera.jump({ azimuth: at.az, elevation: at.el, distance: at.dist, time: at.t });
   hide_problem($("stage-problem"));
   editor.load(opened.text);
   gallery?.mark(opened.ref);
@@ -133,7 +134,7 @@ async function post_again() {
 function pick_sample(name) {
   save_now();
   state.scene = name;
-  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1 }));
+  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1, t: 0 }));
   gallery.mark(name);
   open_scene(kDefaults);
   show_stage();
@@ -147,8 +148,8 @@ function show_stage() {
 // ---- state ----
 
 function current_hash() {
-  const { azimuth, elevation, distance } = camera.view;
-  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance });
+  const { azimuth, elevation, distance, time } = camera.view;
+  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance, t: time });
 }
 
 function save_now() {
@@ -171,7 +172,7 @@ function load_hash() {
   show_settings();
   if (!same_scene) return open_scene(state);
   opening += 1;
-  camera.jump({ azimuth: state.az, elevation: state.el, distance: state.dist });
+  camera.jump({ azimuth: state.az, elevation: state.el, distance: state.dist, time: state.t });
   player.invalidate();
   player.playing = state.playing;
 }

@@ -1,5 +1,6 @@
 // The orbit camera: where the view is (`now`), where it is going (`goal`), and the glide between.
-// Angles are degrees and relative to the scene's own view, `distance` is a factor of its eye's distance.
+// Angles are degrees and relative to the scene's own view, `distance` is a factor of its eye's distance. With
+// it goes the `time` of what moves in the scene, in seconds.
 
 const kElevationLimit = 89.9; // at 90 the view direction would be parallel to up
 const kDamping = 0.05; // part of the way to the goal covered in a sixtieth of a second
@@ -8,7 +9,7 @@ const kFarthest = 50;
 const kSettledDegrees = 0.1;
 const kSettledFactor = 0.001;
 
-const own_view = () => ({ azimuth: 0, elevation: 0, distance: 1 });
+const own_view = () => ({ azimuth: 0, elevation: 0, distance: 1, time: 0 });
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 const turn = (degrees) => ((degrees % 360) + 360) % 360;
 
@@ -52,7 +53,8 @@ export class OrbitCamera {
 
   // Glides back to the scene's own view, the short way round.
   reset() {
-    this.#goal = { ...own_view(), azimuth: 360 * Math.round(this.#now.azimuth / 360) };
+    const { azimuth, time } = this.#now;
+    this.#goal = { ...own_view(), azimuth: 360 * Math.round(azimuth / 360), time };
   }
 
   jump(view) {
@@ -60,13 +62,15 @@ export class OrbitCamera {
       azimuth: turn(view.azimuth),
       elevation: this.#allowed_elevation(view.elevation),
       distance: clamp(view.distance, kNearest, kFarthest),
+      time: view.time ?? 0,
     };
     this.#goal = { ...this.#now };
   }
 
-  // Takes over the azimuth of a streamed frame.
-  follow(azimuth) {
+  // Takes over where a streamed frame was.
+  follow(azimuth, time) {
     this.#now.azimuth = this.#goal.azimuth = turn(azimuth);
+    this.#now.time = this.#goal.time = time;
   }
 
   // Moves on by `seconds`. Returns whether the view still moves.

@@ -158,7 +158,7 @@ export class Player {
   #start_stream() {
     const picture = this.#on.picture("stream", 0);
     if (!picture) return;
-    const key = JSON.stringify({ ...picture, azimuth: 0, speed: this.speed });
+    const key = JSON.stringify({ ...picture, azimuth: 0, time: 0, speed: this.speed });
     if (this.#work?.kind === "stream" && this.#work.key === key) return;
     this.#stop();
     const { id, width, height, technique, samples } = picture;
@@ -171,13 +171,18 @@ export class Player {
   // One stream after the other: each has a limited number of frames, and the pace may want another one.
   async #stream(signal) {
     const pace = this.#pace;
-    for (let azimuth = this.#camera.view.azimuth; ; azimuth = this.#camera.view.azimuth) {
-      const picture = { ...this.#on.picture("stream", pace.level), azimuth };
+    for (;;) {
+      const picture = this.#on.picture("stream", pace.level);
       const coarser = this.#differs(picture, pace.level + 1);
-      const rate = { frames: this.stream_frames, fps: pace.fps, step: this.speed / pace.fps };
+      const rate = {
+        frames: this.stream_frames,
+        fps: pace.fps,
+        step: this.speed / pace.fps,
+        time_step: picture.moves ? 1 / pace.fps : 0,
+      };
       pace.restart();
       await play_stream(orbit_url(picture, rate), signal, (bitmap, header) => {
-        this.#camera.follow(header.azimuth_degrees);
+        this.#camera.follow(header.azimuth_degrees, header.time);
         this.#draw("", bitmap, picture, "stream", header);
         const work_ms = Math.max(header.render_ms, header.encode_ms);
         return !pace.note(performance.now(), work_ms, this.speed, coarser);

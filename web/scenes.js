@@ -13,7 +13,8 @@ export function title_of(sample) {
   return sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
 }
 
-// A scene is {ref, id, title, text, width, height, camera}; `ref` is what a link calls it.
+// A scene is {ref, id, title, text, width, height, camera} and, if something moves in it, {motion}; `ref` is what
+// a link calls it.
 export class SceneLibrary {
   samples = []; // {name, title, description, href}
   #texts = new Map(); // name or id -> JSON text
@@ -49,17 +50,8 @@ export class SceneLibrary {
   }
 
   async #fetch(id) {
-    const canonical = await get_json(`v1/scenes/${id}`);
-    const { width = 600, height = 600 } = canonical.image ?? {};
-    return {
-      ref: id,
-      id,
-      title: canonical.title || kUntitled,
-      text: pretty(canonical),
-      width,
-      height,
-      camera: canonical.camera,
-    };
+    const text = pretty(await get_json(`v1/scenes/${id}`));
+    return { ...(await post_scene(text)), ref: id, title: own_title(text), text };
   }
 
   #keep(id, text) {

@@ -8,6 +8,7 @@ export const kDefaults = Object.freeze({
   az: 0,
   el: 0,
   dist: 1,
+  t: 0, // seconds, of what moves in the scene
   speed: 20,
   playing: true,
   technique: "",
@@ -31,6 +32,7 @@ export function parse_hash(hash) {
     az: number("az", -1e6, 1e6),
     el: number("el", -180, 180),
     dist: number("dist", 0.001, 1000),
+    t: number("t", -1e6, 1e6),
     speed: number("speed", 1, kFastest),
     playing: query.has("playing") ? query.get("playing") !== "0" : kDefaults.playing,
     technique: word("technique", /^[\w-]{1,40}$/),
@@ -45,6 +47,7 @@ export function format_hash(state) {
     az: round(state.az, 1),
     el: round(state.el, 1),
     dist: round(state.dist, 3),
+    t: round(state.t, 3),
     speed: state.speed,
     playing: state.playing ? 1 : 0,
     technique: state.technique,

@@ -1,7 +1,7 @@
 // Addresses of pictures. Relative, so that the page works below any path; rounded, so that equal views
 // have equal addresses and come from the browser's cache.
 
-// A picture is {id, azimuth, elevation, distance, width, height} and optionally {fov, technique, samples}.
+// A picture is {id, azimuth, elevation, distance, width, height} and optionally {time, fov, technique, samples}.
 function query_of(picture) {
   const query = new URLSearchParams({
     azimuth: round(picture.azimuth, 2),
@@ -10,6 +10,7 @@ function query_of(picture) {
     width: picture.width,
     height: picture.height,
   });
+  if (picture.time) query.set("time", round(picture.time, 3));
   if (picture.fov) query.set("fov", round(picture.fov, 3));
   if (picture.technique) query.set("technique", picture.technique);
   if (picture.samples) query.set("samples", picture.samples);
@@ -24,11 +25,13 @@ export function frame_url(picture) {
   return `v1/scenes/${picture.id}/frame.png?${query_of(picture)}`;
 }
 
-export function orbit_url(picture, { frames, fps, step }) {
+// `time_step`: seconds of the scene's motion from frame to frame; 0 if nothing moves.
+export function orbit_url(picture, { frames, fps, step, time_step }) {
   const query = query_of(picture);
   query.set("frames", frames);
   query.set("fps", fps);
   query.set("step", round(step, 5));
+  if (time_step) query.set("time_step", round(time_step, 5));
   return `v1/scenes/${picture.id}/orbit?${query}`;
 }
 

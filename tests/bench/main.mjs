@@ -6,6 +6,7 @@ import { exists_program, kOrrery } from "./command.mjs";
 import { kEmbree } from "./embree.mjs";
 import { kFlakeVsPovray } from "./flake_vs_povray.mjs";
 import { measure } from "./measure.mjs";
+import { kMotion } from "./motion.mjs";
 import { kNoise } from "./noise.mjs";
 import { kOrbitHttp } from "./orbit_http.mjs";
 import { kPaperVsPovray } from "./paper_vs_povray.mjs";
@@ -15,7 +16,7 @@ import { kReports } from "./structures.mjs";
 // Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
 // reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
-const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages];
+const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages, ...kMotion];
 
 const kAll = [...kBenchmarks, ...kReports];
 

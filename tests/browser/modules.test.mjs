@@ -82,7 +82,7 @@ test("the camera glides to its goal and stops there", () => {
     "a sixtieth of a second covers a twentieth of the way",
   );
   for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
-  assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5 });
+  assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5, time: 0 });
 });
 
 test("the camera never looks straight along up, wherever the scene's own eye is", () => {
@@ -131,6 +131,7 @@ test("a link restores what it was made from, and nonsense in it is ignored", () 
     az: 12.5,
     el: -3,
     dist: 0.5,
+    t: 1.25,
     playing: false,
     technique: "raycast",
     samples: 16,

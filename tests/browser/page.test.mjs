@@ -77,6 +77,18 @@ page_test("the paper's scene turns as soon as the page is open", "", async (page
   assert.match(await page.locator("#hud-rays").textContent(), /\d/);
 });
 
+page_test("what moves in a scene plays on, and stands still with the picture", "scene=orrery&speed=1", async (page) => {
+  await eventually("the motion's time in the link", async () => Number((await hash_of(page)).t) > 0.3);
+  await page.locator("#play").click();
+  const still = await rest(page);
+  const time = Number((await hash_of(page)).t);
+  assert.ok(time > 0.3 && time <= 12, `${time} s`);
+  await page.locator("#stage").focus();
+  await page.keyboard.press("Space");
+  await eventually("frames again", async () => (await canvas_digest(page)) !== still);
+  await eventually("time goes on", async () => Number((await hash_of(page)).t) > time);
+});
+
 test("the policy forbids everything from elsewhere", async () => {
   const response = await fetch(daemon.url);
   assert.match(response.headers.get("content-security-policy") ?? "", /default-src 'self'/);

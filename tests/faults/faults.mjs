@@ -8,6 +8,7 @@
 //   tests    patterns for its --gtest_filter; a test of each pattern must fail
 
 import {meshFaults} from "./meshes.mjs";
+import {motionFaults} from "./motion.mjs";
 import {structureFaults} from "./structures.mjs";
 import {stageFaults} from "./stages.mjs";
 
@@ -458,5 +459,5 @@ const growth = [
 export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
-  ...meshFaults, ...structureFaults, ...stageFaults,
+  ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults,
 ];

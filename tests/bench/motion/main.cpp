@@ -1,0 +1,81 @@
+#include <oneapi/tbb/global_control.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/model/camera.h"
+#include "core/plan/plan.h"
+#include "core/render/geometry.h"
+#include "core/render/trial.h"
+#include "tests/bench/measuring.h"
+
+// A hierarchy that followed the motion of a scene, frame by frame, against one built anew for the moment.
+//   motion SCENE.json ready   having it ready for the last frame, once the one before is there
+//   motion SCENE.json rays    some tiles of that frame, traced with it
+// First prints a line about the frames, in JSON; then for each line of input, "ours" (followed) or "theirs"
+// (anew), does that and prints the CPU seconds that took.
+namespace orrery::bench {
+namespace {
+
+constexpr int kFrames = 40, kTiles = 64;
+constexpr double kLeastSeconds = 0.1;  // of a run
+
+using Made = World<float>;
+
+Made make(const std::shared_ptr<const Scene>& scene, const Plan& plan, double time, const Made& before) {
+  const auto geometry = make_geometry<float>(scene, *plan.accelerator, time, before.geometry.get());
+  return {geometry, build_or_refit(*plan.accelerator, geometry->primitives, before.accelerator.get())};
+}
+
+int run(const std::string& path, const std::string& what) {
+  const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+  const auto scene = load_scene_at(path);
+  RenderRequest request;
+  request.precision = Precision::single_precision;
+  request.accelerator = "bottom-up";
+  const Plan plan = make_plan(*scene, request);
+  Made before, followed;
+  int refitted = 0;
+  double worst = 1;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const double share = static_cast<double>(frame) / (kFrames - 1);
+    before = followed;
+    followed =
+        make(scene, plan, scene->motion.first + share * (scene->motion.last - scene->motion.first), before);
+    refitted += followed.accelerator->facts().refitted;
+    worst = std::max(worst, followed.accelerator->facts().worsening);
+  }
+  const PrimitiveList<float>& primitives = followed.geometry->primitives;
+  const Made fresh{followed.geometry, build_or_refit<float>(*plan.accelerator, primitives, nullptr)};
+  const auto seconds_of = [&](bool ours) {
+    const double start = thread_seconds();
+    if (what == "rays")
+      try_tiles<float>(ours ? followed : fresh, plan, kTiles);
+    else
+      build_or_refit<float>(*plan.accelerator, primitives, ours ? before.accelerator.get() : nullptr);
+    return thread_seconds() - start;
+  };
+  seconds_of(true);
+  const int repeats = std::max(1, static_cast<int>(kLeastSeconds / seconds_of(false)));
+  std::printf("%s\n", nlohmann::json({{"frames", kFrames},
+                                      {"refitted", refitted},
+                                      {"worsening", worst},
+                                      {"primitives", primitives.size()}})
+                          .dump()
+                          .c_str());
+  std::fflush(stdout);
+  answer_sides(repeats, seconds_of);
+  return 0;
+}
+
+}  // namespace
+}  // namespace orrery::bench
+
+int main(int count, char** words) {
+  if (count != 3) return 2;
+  try {
+    return orrery::bench::run(words[1], words[2]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "motion: %s\n", error.what());
+    return 1;
+  }
+}
