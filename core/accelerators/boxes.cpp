@@ -18,15 +18,14 @@ class Boxes final : public Accelerator<T> {
                AcceleratorCounts& counts) const override {
     unbounded_.closest(rays, groups, hits, counts);
     for (const int i : groups) {
-      const Ray<N> ray = rays.at(i);
-      const Vec3<N> inverse = reciprocal(ray.direction);
+      const BoxRay<N> ray(rays.origin.at(i), rays.direction.at(i));
       const Groups one = Groups::single(i);
       counts.box_tests += boxed_.size() * active_rays(rays, one);
       for (const Boxed& b : boxed_) {
-        const auto entered = enters(Vec3<N>(b.box.lo), Vec3<N>(b.box.hi), ray.origin, inverse, hits.t.at(i));
+        const auto entered = enters(ray, Vec3<N>(b.box.lo), Vec3<N>(b.box.hi), hits.t.at(i));
         if (!any(entered)) continue;
         counts.primitive_tests += static_cast<std::uint64_t>(stdx::popcount(entered));
-        b.kernel->closest(b.index, rays, one, hits);
+        b.kernel->closest(b.index, rays, one, hits, counts);
       }
     }
   }
@@ -50,21 +49,18 @@ class Boxes final : public Accelerator<T> {
     int index;
   };
 
-  static Vec3<N> reciprocal(const Vec3<N>& d) { return {N(T(1) / d.x), N(T(1) / d.y), N(T(1) / d.z)}; }
-
   void occlude_register(RayBatch<T>& rays, int i, AcceleratorCounts& counts) const {
-    const Ray<N> ray = rays.at(i);
-    const Vec3<N> inverse = reciprocal(ray.direction);
+    const BoxRay<N> ray(rays.origin.at(i), rays.direction.at(i));
     const Groups one = Groups::single(i);
     for (const Boxed& b : boxed_) {
       const N t_max = rays.t_max.at(i);
       const auto active = t_max > N(T(0));
       if (!any(active)) return;
       counts.box_tests += static_cast<std::uint64_t>(stdx::popcount(active));
-      const auto entered = enters(Vec3<N>(b.box.lo), Vec3<N>(b.box.hi), ray.origin, inverse, t_max);
+      const auto entered = enters(ray, Vec3<N>(b.box.lo), Vec3<N>(b.box.hi), t_max);
       if (!any(entered)) continue;
       counts.primitive_tests += static_cast<std::uint64_t>(stdx::popcount(entered));
-      b.kernel->occlude(b.index, rays, one);
+      b.kernel->occlude(b.index, rays, one, counts);
     }
   }
 

@@ -13,7 +13,8 @@ template <class T>
 void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const Groups& groups,
                         HitBatch<T>& hits, AcceleratorCounts& counts) {
   if (primitives.empty()) return;
-  for (const auto& primitive : primitives) primitive.kernel->closest(primitive.index, rays, groups, hits);
+  for (const auto& primitive : primitives)
+    primitive.kernel->closest(primitive.index, rays, groups, hits, counts);
   counts.primitive_tests += primitives.size() * active_rays(rays, groups);
 }
 
@@ -24,7 +25,7 @@ Groups occlude_exhaustive(const PrimitiveList<T>& primitives, RayBatch<T>& rays,
   Groups open = groups;
   for (const auto& primitive : primitives) {
     counts.primitive_tests += active_rays(rays, open);
-    primitive.kernel->occlude(primitive.index, rays, open);
+    primitive.kernel->occlude(primitive.index, rays, open, counts);
     open = with_active_rays(rays, open);
   }
   return open;

@@ -36,7 +36,7 @@ class Proof {
     const Primitive<T>& proposed = primitives_[static_cast<std::size_t>(primitive)];
     const Groups one = Groups::single(i);
     const std::uint64_t open = active_rays(rays_, one);
-    proposed.kernel->occlude(proposed.index, rays_, one);
+    proposed.kernel->occlude(proposed.index, rays_, one, counts_);
     counts_.primitive_tests += open;
     counts_.proposals += open;
     counts_.proofs += open - active_rays(rays_, one);

@@ -17,8 +17,6 @@
 namespace orrery {
 
 template <class T>
-inline constexpr T kRounding = 16 * std::numeric_limits<T>::epsilon();
-template <class T>
 inline constexpr T kFarther = 1 + 8 * std::numeric_limits<T>::epsilon();
 
 // Boxes of the children of one node: planes[2 * axis] holds their low sides, planes[2 * axis + 1] their high

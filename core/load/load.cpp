@@ -184,7 +184,7 @@ class SceneReader {
     p.each_named("materials", "Materials by name.", {},
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
-    p.each("objects", "What there is to see.", {1, kMaxObjects}, [&](Params& o) {
+    p.each("objects", "What there is to see, beside instances.", {0, kMaxObjects}, [&](Params& o) {
       objects_.read(o, names_, meshes_);
       ++scene_->object_count;
     });
@@ -201,6 +201,7 @@ class SceneReader {
       p.fail("instances", "expected at most " + std::to_string(kMaxInstanced) +
                               " primitives in all instances (instanced_primitives), got " +
                               std::to_string(instanced));
+    if (scene_->object_count == 0) p.fail("objects", "expected at least one object or instance");
     p.optional_object("render", "How the picture is made.",
                       [&](Params& r) { read_render(r, scene_->render); });
   }

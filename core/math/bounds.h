@@ -68,27 +68,47 @@ template <class T>
   return grown;
 }
 
-// Lanes that may enter `box` at a distance in [0, t_max]; conservative: a ray that touches it is never lost.
-// Near and far planes are chosen by the sign bit of the direction; a NaN (0 * infinity, a ray in the plane of
-// a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray Traversal",
-// JCGT 2013), and so does t_max: what lies in the box may be as near as the hit so far, or nearer by
-// rounding. `inverse` is 1 / direction, infinite where that is 0.
+// How far testing a primitive may move it, per metre of the ray's origin from 0: boxes are met as much
+// larger.
+template <class T>
+inline constexpr T kRounding = 16 * std::numeric_limits<T>::epsilon();
+
+// A ray for testing boxes.
 template <class N>
-[[gnu::always_inline]] inline MaskOf<N> enters(const Vec3<N>& lo, const Vec3<N>& hi, const Vec3<N>& origin,
-                                               const Vec3<N>& inverse, const N& t_max) {
+struct BoxRay {
+  Vec3<N> above, below;  // the origin, as far up and down each axis as rounding may move what is in a box
+  Vec3<N> inverse;       // 1 / direction, infinite where that is 0
+
+  BoxRay(const Vec3<N>& origin, const Vec3<N>& direction)
+      : inverse(N(ScalarOf<N>(1)) / direction.x, N(ScalarOf<N>(1)) / direction.y,
+                N(ScalarOf<N>(1)) / direction.z) {
+    const Vec3<N> pad(N(max_component(abs(origin)) * N(kRounding<ScalarOf<N>>)));
+    above = origin + pad;
+    below = origin - pad;
+  }
+};
+
+// Lanes that may enter the box at a distance in [0, t_max]; conservative: a ray that touches it is never
+// lost. Near and far planes are chosen by the sign bit of the direction; a NaN (0 * infinity, a ray in the
+// plane of a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray
+// Traversal", JCGT 2013), and so does t_max: what lies in the box may be as near as the hit so far, or nearer
+// by rounding.
+template <class N>
+[[gnu::always_inline]] inline MaskOf<N> enters(const BoxRay<N>& ray, const Vec3<N>& lo, const Vec3<N>& hi,
+                                               const N& t_max) {
   using T = ScalarOf<N>;
   constexpr T kFarPad = 1 + 4 * std::numeric_limits<T>::epsilon();
   N near = N(T(0)), far = t_max * kFarPad;
-  const auto fold = [&](const N& lo_i, const N& hi_i, const N& o, const N& inv) {
+  const auto fold = [&](const N& lo_i, const N& hi_i, const N& above, const N& below, const N& inv) {
     using std::signbit;
     const auto negative = signbit(inv);
-    const N t0 = (lo_i - o) * inv, t1 = (hi_i - o) * inv;
+    const N t0 = (lo_i - above) * inv, t1 = (hi_i - below) * inv;
     near = max_first(near, select(negative, t1, t0));
     far = min_first(far, N(select(negative, t0, t1) * kFarPad));
   };
-  fold(lo.x, hi.x, origin.x, inverse.x);
-  fold(lo.y, hi.y, origin.y, inverse.y);
-  fold(lo.z, hi.z, origin.z, inverse.z);
+  fold(lo.x, hi.x, ray.above.x, ray.below.x, ray.inverse.x);
+  fold(lo.y, hi.y, ray.above.y, ray.below.y, ray.inverse.y);
+  fold(lo.z, hi.z, ray.above.z, ray.below.z, ray.inverse.z);
   return near <= far;
 }
 

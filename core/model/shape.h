@@ -63,11 +63,14 @@ class ShapeKernel {
   virtual ~ShapeKernel() = default;
 
   // Tests primitive `index` of this set against the rays of `groups`; a hit in (0, hits.t) replaces the one
-  // there. At equal t the lower primitive number stays.
-  virtual void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) const = 0;
+  // there. At equal t the lower primitive number stays. Counts what is tested within the primitive, not that
+  // it is one.
+  virtual void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+                       AcceleratorCounts& counts) const = 0;
 
-  // Sets t_max to -1 for the rays of `groups` that meet primitive `index` in (0, t_max).
-  virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups) const = 0;
+  // Sets t_max to -1 for the rays of `groups` that meet primitive `index` in (0, t_max). Counts likewise.
+  virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups,
+                       AcceleratorCounts& counts) const = 0;
 
   // A surface whose convex hull holds a bounded primitive but for rounding, or nothing if its box along the
   // axes tells as much.

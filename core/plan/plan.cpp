@@ -154,13 +154,11 @@ class Planner {
     }
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
-    plan_.try_accelerators = !few && count <= kMostToTry && scene_.instances.empty();
+    plan_.try_accelerators = !few && count <= kMostToTry;
     plan_.accelerator =
         find_type(accelerator_types(), few ? "list" : "bottom-up", "/render/accelerator", checks_);
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
-           : count <= kMostToTry
-               ? "of models and of what stands in the scene, by which few primitives matter little"
                : "of all structures it took the least time on every scene measured with more than " +
                      std::to_string(kMostToTry) + " primitives");
   }

@@ -14,6 +14,7 @@
 #include <chrono>
 
 #include "core/base/error.h"
+#include "core/render/geometry.h"
 #include "core/render/prepare.h"
 #include "core/render/tile.h"
 
@@ -72,7 +73,7 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   RenderStats stats;
   const World<T> world = world_for<T>(scene.parts(), plan, stats.build_ms, control.stop);
   stats.accelerator = plan.accelerator;
-  stats.structure = world.accelerator->facts();
+  stats.structure = facts_of(world);
   Image image(plan.width, plan.height, format);
   tbb::enumerable_thread_specific<std::unique_ptr<TileRenderer<T>>> renderers(
       [&] { return std::make_unique<TileRenderer<T>>(world, plan); });

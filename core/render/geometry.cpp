@@ -118,6 +118,22 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
   return geometry;
 }
 
+template <class T>
+AcceleratorFacts facts_of(const World<T>& world) {
+  AcceleratorFacts facts = world.accelerator->facts();
+  int deepest = 0;
+  for (const auto& model : world.geometry->models) {
+    const AcceleratorFacts own = model->accelerator->facts();
+    facts.bytes += own.bytes;
+    facts.references += own.references;
+    deepest = std::max(deepest, own.depth);
+  }
+  facts.depth += deepest;
+  return facts;
+}
+
+template AcceleratorFacts facts_of(const World<float>&);
+template AcceleratorFacts facts_of(const World<double>&);
 template std::shared_ptr<const Geometry<float>> make_geometry(std::shared_ptr<const Scene>,
                                                               const AcceleratorType&, double,
                                                               const Geometry<float>*);

@@ -18,4 +18,8 @@ template <class T>
 AcceleratorPtr<T> build_or_refit(const AcceleratorType& type, const PrimitiveList<T>& primitives,
                                  const Accelerator<T>* before);
 
+// Of the structure of a scene and those of its models: bytes and references of all, and the longest way.
+template <class T>
+AcceleratorFacts facts_of(const World<T>& world);
+
 }  // namespace orrery

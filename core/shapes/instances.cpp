@@ -53,6 +53,7 @@ class PackedInstances final : public PackedPrimitives<T> {
                AcceleratorCounts& counts) const override {
     each_instance(meetings, kBatch, [&](const Placed<T>& placed, Meetings some) {
       const auto visit = gather(placed, some, rays, hits);
+      counts.primitive_tests += active_rays(visit->rays, visit_groups(some));
       placed.model->accelerator->closest(visit->rays, visit_groups(some), visit->hits, counts);
       for (std::size_t k = 0; k < some.size(); ++k) {
         const int i = static_cast<int>(k);
@@ -69,6 +70,7 @@ class PackedInstances final : public PackedPrimitives<T> {
                AcceleratorCounts& counts) const override {
     each_instance(meetings, kBatch, [&](const Placed<T>& placed, Meetings some) {
       const auto visit = gather(placed, some, rays, hits);
+      counts.primitive_tests += active_rays(visit->rays, visit_groups(some));
       placed.model->accelerator->occlude(visit->rays, visit_groups(some), counts);
       for (std::size_t k = 0; k < some.size(); ++k)
         if (visit->rays.t_max[static_cast<int>(k)] < 0) hits[some[k].ray].t = T(-1);
@@ -79,6 +81,7 @@ class PackedInstances final : public PackedPrimitives<T> {
                AcceleratorCounts& counts) const override {
     each_instance(meetings, kBatch / kWidth<T>, [&](const Placed<T>& placed, Meetings some) {
       const auto visit = gather(placed, some, packets, hits);
+      counts.primitive_tests += active_rays(visit->rays, packet_groups(some));
       placed.model->accelerator->closest(visit->rays, packet_groups(some), visit->hits, counts);
       for (std::size_t k = 0; k < some.size(); ++k) {
         const int i = static_cast<int>(k) * kWidth<T>;
@@ -95,6 +98,7 @@ class PackedInstances final : public PackedPrimitives<T> {
                AcceleratorCounts& counts) const override {
     each_instance(meetings, kBatch / kWidth<T>, [&](const Placed<T>& placed, Meetings some) {
       const auto visit = gather(placed, some, packets, hits);
+      counts.primitive_tests += active_rays(visit->rays, packet_groups(some));
       placed.model->accelerator->occlude(visit->rays, packet_groups(some), counts);
       for (std::size_t k = 0; k < some.size(); ++k) {
         PacketHit<T>& hit = hits[some[k].ray];
@@ -175,13 +179,12 @@ Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model) {
 }
 
 template <class T>
-void InstanceKernel<T>::closest(int index, const RayBatch<T>& rays, const Groups& groups,
-                                HitBatch<T>& hits) const {
+void InstanceKernel<T>::closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+                                AcceleratorCounts& counts) const {
   const Placed<T>& placed = (*placed_)[static_cast<std::size_t>(index)];
   const std::unique_ptr<Visit<T>> visit(new Visit<T>);
   visit->rays.count = rays.count;
   for (const int i : groups) visit->put(i, placed.to_model(rays.at(i)), hits.t.at(i));
-  AcceleratorCounts counts;
   placed.model->accelerator->closest(visit->rays, groups, visit->hits, counts);
   for (const int i : groups) {
     const Taken<T> taken(placed, *visit, i, hits.t.at(i), load_index<T>(hits.primitive, i));
@@ -191,12 +194,12 @@ void InstanceKernel<T>::closest(int index, const RayBatch<T>& rays, const Groups
 }
 
 template <class T>
-void InstanceKernel<T>::occlude(int index, RayBatch<T>& rays, const Groups& groups) const {
+void InstanceKernel<T>::occlude(int index, RayBatch<T>& rays, const Groups& groups,
+                                AcceleratorCounts& counts) const {
   const Placed<T>& placed = (*placed_)[static_cast<std::size_t>(index)];
   const std::unique_ptr<Visit<T>> visit(new Visit<T>);
   visit->rays.count = rays.count;
   for (const int i : groups) visit->put(i, placed.to_model(rays.at(i)), rays.t_max.at(i));
-  AcceleratorCounts counts;
   placed.model->accelerator->occlude(visit->rays, groups, counts);
   for (const int i : groups) rays.t_max.put(i, visit->rays.t_max.at(i));
 }

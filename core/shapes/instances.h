@@ -44,8 +44,9 @@ class InstanceKernel final : public ShapeKernel<T> {
   explicit InstanceKernel(PlacedList<T> placed)
       : placed_(std::make_shared<const PlacedList<T>>(std::move(placed))) {}
 
-  void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) const override;
-  void occlude(int index, RayBatch<T>& rays, const Groups& groups) const override;
+  void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+               AcceleratorCounts& counts) const override;
+  void occlude(int index, RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override;
   std::vector<HullTriangle> hull(int) const override { return {}; }
   PackedPrimitivesPtr<T> pack(std::span<const int> indices) const override;
   void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,

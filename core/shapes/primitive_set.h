@@ -39,8 +39,8 @@ class PrimitiveKernel final : public ShapeKernel<T> {
 
   PrimitiveKernel(Records records, int first) : records_(std::move(records)), first_(first) {}
 
-  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const Groups& groups,
-                                HitBatch<T>& hits) const override {
+  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+                                AcceleratorCounts&) const override {
     const auto shape = broadcast_record<Record, T>(records_[static_cast<std::size_t>(index)]);
     const IndexLanes<T> id(static_cast<IndexOf<T>>(first_ + index));
     for (const int i : groups) {
@@ -53,7 +53,8 @@ class PrimitiveKernel final : public ShapeKernel<T> {
     }
   }
 
-  [[gnu::flatten]] void occlude(int index, RayBatch<T>& rays, const Groups& groups) const override {
+  [[gnu::flatten]] void occlude(int index, RayBatch<T>& rays, const Groups& groups,
+                                AcceleratorCounts&) const override {
     const auto shape = broadcast_record<Record, T>(records_[static_cast<std::size_t>(index)]);
     for (const int i : groups) {
       const auto hit = shape.distance(rays.at(i)) < rays.t_max.at(i);

@@ -103,11 +103,51 @@ TEST_P(Instances, AgreeWithTheListOfThem) {
   agree<double>(mixed, rays_around<double>(50'000, 2), {0.7, 5.0, 1e30});
 }
 
+// In the model's coordinates such rays start millions of metres away from a ball of one.
+TEST_P(Instances, AreFlattenedToAMillionth) {
+  covers("A27 A38");
+  Json scene = scene_of_places(ball_mesh(8, 12));
+  for (const char* object :
+       {R"({'type': 'sphere', 'center': [0.2, 0.1, 0], 'radius': 0.9})",
+        R"({'type': 'cylinder', 'base': [0, -1, 0], 'top': [0.1, 1, 0.3], 'radius': 0.3})",
+        R"({'type': 'box', 'min': [-0.5, -0.9, -0.3], 'max': [0.4, 0.9, 0.7]})",
+        R"({'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 1, 0.1], 'radius': 1})"}) {
+    scene["models"]["it"]["objects"].push_back(json(object));
+    scene["models"]["it"]["objects"].back()["material"] = "white";
+  }
+  scene["instances"] = Json::array();
+  for (const double turn : {0.0, 50.0})
+    scene["instances"].push_back({{"model", "it"},
+                                  {"scale", {-1.2e-6, 133, 12}},
+                                  {"rotate", {{"axis", {1, 2, 3}}, {"degrees", turn}}}});
+  Random random(6);
+  Rays<float> rays;
+  for (int i = 0; i < 100'000; ++i) {
+    const double angle = random.between(0, 2 * M_PI), share = random.below(2) ? 1 : random.unit();
+    const Vec3d from = random.in_cube(200),
+                to = Vec3d(0, 133 * std::cos(angle), 12 * std::sin(angle)) * share + random.in_cube(0.3);
+    rays.push_back({Vec3f(from), Vec3f(safe_normalize(to - from))});
+  }
+  agree<float>(scene, rays, {50.0f, 1e30f});
+}
+
 TEST_P(Instances, OfAPlaneHaveNoBounds) {
   covers("F5 A38");
   const Json scene = scene_of_places(
       {{"type", "plane"}, {"point", {0, -1, 0}}, {"normal", {0, 1, 0}}, {"material", "white"}});
   agree<float>(scene, rays_around<float>(5'000, 3), {1e30f});
+}
+
+TEST_P(Instances, CountWhatIsTestedInThem) {
+  const Json model = ball_mesh(8, 12);
+  Structure<float> structure(scene_of_places(model), GetParam());
+  const auto rays = rays_around<float>(1'000, 9);
+  structure.closest(rays);
+  structure.occluded(rays, 1e30f);
+  const AcceleratorCounts& counts = structure.counts();
+  EXPECT_GT(counts.primitive_tests, 1'000u);
+  EXPECT_GT(counts.primitive_tests + counts.box_tests + counts.node_visits, 20'000u)
+      << "of 168 triangles each";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Instances, testing::ValuesIn(accelerator_names()), by_name);

@@ -14,13 +14,14 @@ namespace {
 template <class T>
 std::vector<Hit<T>> hits_of(const Primitive<T>& primitive, const Rays<T>& rays) {
   std::vector<Hit<T>> found;
+  AcceleratorCounts counts;
   const auto batch = std::make_unique<RayBatch<T>>();
   const auto hits = std::make_unique<HitBatch<T>>();
   for_each_batch<T>(rays, [&](std::span<const Ray<T>> some, std::size_t) {
     fill_batch(some, std::numeric_limits<T>::infinity(), *batch);
     hits->t = batch->t_max;
     hits->primitive.values.fill(kNoPrimitive);
-    primitive.kernel->closest(primitive.index, *batch, groups_of(*batch), *hits);
+    primitive.kernel->closest(primitive.index, *batch, groups_of(*batch), *hits, counts);
     for (int i = 0; i < batch->count; ++i)
       found.push_back({hits->t[i], static_cast<int>(hits->primitive[i])});
   });

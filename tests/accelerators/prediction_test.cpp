@@ -38,9 +38,10 @@ class Adversary final : public Predictor<T> {
   IndexOf<T> missed(const RayBatch<T>& rays, int group) const {
     const Groups one = Groups::single(group);
     const auto tried = std::make_unique<RayBatch<T>>(rays);
+    AcceleratorCounts counts;
     for (std::size_t p = 0; p < primitives_.size(); ++p) {
       tried->t_max = rays.t_max;
-      primitives_[p].kernel->occlude(primitives_[p].index, *tried, one);
+      primitives_[p].kernel->occlude(primitives_[p].index, *tried, one, counts);
       if (active_rays(*tried, one) == active_rays(rays, one)) return static_cast<IndexOf<T>>(p);
     }
     return kNoPrimitive;

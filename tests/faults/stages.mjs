@@ -7,7 +7,7 @@ const entry = (fault, about, file, from, to, ...tests) => ({
 
 export const stageFaults = [
   entry(14, "what is proposed is taken for an occluder", "prediction.cpp",
-        "proposed.kernel->occlude(proposed.index, rays_, one);",
+        "proposed.kernel->occlude(proposed.index, rays_, one, counts_);",
         "rays_.t_max.put(i, Lanes<T>(T(proposed.index < 0 ? 1 : -1)));", "PredictionOfShadows.*"),
   entry(14, "a ray for which nothing is proved is taken for lit", "prediction.cpp",
         "this->behind_->occlude(rays, with_active_rays(rays, active), counts);", "", "PredictionOfShadows.*"),

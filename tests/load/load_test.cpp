@@ -107,6 +107,18 @@ TEST(Load, GivesEachPrimitiveItsMaterial) {
   EXPECT_EQ(scene->material_of[4], set_of("refractive"));
 }
 
+TEST(Load, WantsAnObjectOrAnInstance) {
+  Json scene = scene_of(R"({'type': 'sphere', 'center': [0, 0, 0], 'radius': 1})");
+  scene["models"]["it"]["objects"] = scene["objects"];
+  scene["objects"] = Json::array();
+  EXPECT_EQ(first_problem(scene), "/objects");
+  scene.erase("objects");
+  EXPECT_EQ(first_problem(scene), "/objects");
+  scene["instances"] = json("[{'model': 'it'}, {'model': 'it', 'translate': [2, 0, 0]}]");
+  EXPECT_EQ(first_problem(scene), "accepted");
+  EXPECT_EQ(load(scene)->primitive_count(), 2);
+}
+
 TEST(Load, GathersTheFactsThePlanNeeds) {
   const auto scene = load(scene_of(R"([{'type': 'plane', 'point': [0, -1e6, 0], 'normal': [0, 1, 0]},
       {'type': 'sphere', 'center': [100, 0, 0], 'radius': 2}, {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5}])"));

@@ -50,6 +50,7 @@ Vec3d shading_normal(const Scene& scene, const Vec3d& from, const Vec3d& toward)
     RayBatch<double> rays{};
     HitBatch<double> hits{};
     SurfaceBatch<double> surface{};
+    AcceleratorCounts counts;
     rays.count = 1;
     rays.t_max.values.fill(-1);
     rays.direction.z.values.fill(1);
@@ -58,7 +59,7 @@ Vec3d shading_normal(const Scene& scene, const Vec3d& from, const Vec3d& toward)
     rays.t_max[0] = 100;
     hits.t = rays.t_max;
     hits.primitive.values.fill(kNoPrimitive);
-    for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, rays, Groups::single(0), hits);
+    for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, rays, Groups::single(0), hits, counts);
     kernel->surface(rays, hits, Groups::single(0), surface);
     return {surface.normal.x[0], surface.normal.y[0], surface.normal.z[0]};
   }

@@ -62,6 +62,7 @@ std::map<std::string, Json> scenes() {
   scenes["cloud"] = scene_with(cloud);
   scenes["stadium"] = scene_with(stadium);
   scenes["half cloud, half stadium"] = scene_with(half);
+  for (const char* name : {"orrery", "instances"}) scenes[name] = sample(name);
   return scenes;
 }
 

@@ -105,6 +105,8 @@ const fit_one_another = [
 const is_of_wrong_form = (change) => change === null || typeof change === "string" || typeof change === "boolean";
 function about_meaning(path, change) {
   if (path.at(-1) === "material") return typeof change === "string";
+  const none_left = change === undefined || (Array.isArray(change) && change.length === 0);
+  if (path[0] === "objects" && path.length <= 2 && none_left) return true; // instances would do
   if (path[0] === "materials" && path.length <= 2 && (path.length === 1 || change === undefined)) return true;
   return fit_one_another.some((key) => path.includes(key)) && !is_of_wrong_form(change);
 }

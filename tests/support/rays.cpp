@@ -47,6 +47,7 @@ std::vector<Hit<T>> Target<T>::closest(std::span<const Ray<T>> rays, std::span<c
   std::vector<Hit<T>> found(rays.size());
   const auto batch = std::make_unique<RayBatch<T>>();
   const auto hits = std::make_unique<HitBatch<T>>();
+  AcceleratorCounts counts;
   for_each_batch(rays, [&](std::span<const Ray<T>> some, std::size_t from) {
     fill_batch(some, std::numeric_limits<T>::infinity(), *batch);
     hits->t.values = batch->t_max.values;
@@ -54,7 +55,7 @@ std::vector<Hit<T>> Target<T>::closest(std::span<const Ray<T>> rays, std::span<c
     const Groups groups = groups_of(*batch);
     for (const int primitive : only) {
       const Part& part = part_of(primitive);
-      part.kernel->closest(primitive - part.first, *batch, groups, *hits);
+      part.kernel->closest(primitive - part.first, *batch, groups, *hits, counts);
     }
     for (int i = 0; i < batch->count; ++i)
       found[from + static_cast<std::size_t>(i)] = {hits->t[i], static_cast<int>(hits->primitive[i])};
@@ -66,11 +67,12 @@ template <class T>
 std::vector<char> Target<T>::occluded(std::span<const Ray<T>> rays, T t_max) const {
   std::vector<char> found(rays.size());
   const auto batch = std::make_unique<RayBatch<T>>();
+  AcceleratorCounts counts;
   for_each_batch(rays, [&](std::span<const Ray<T>> some, std::size_t from) {
     fill_batch(some, t_max, *batch);
     const Groups groups = groups_of(*batch);
     for (const Part& part : parts_)
-      for (int i = 0; i < part.last - part.first; ++i) part.kernel->occlude(i, *batch, groups);
+      for (int i = 0; i < part.last - part.first; ++i) part.kernel->occlude(i, *batch, groups, counts);
     for (int i = 0; i < batch->count; ++i) found[from + static_cast<std::size_t>(i)] = batch->t_max[i] < T(0);
   });
   return found;

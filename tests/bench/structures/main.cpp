@@ -146,7 +146,7 @@ ordered_json measure(const std::shared_ptr<const Scene>& scene, const Plan& plan
   ordered_json list = ordered_json::array();
   for (const auto& candidate : candidates) {
     const AcceleratorCounts& counts = candidate.counts.accelerator;
-    const AcceleratorFacts facts = candidate.world.accelerator->facts();
+    const AcceleratorFacts facts = facts_of(candidate.world);
     const auto rays = static_cast<double>(candidate.counts.rays.total());
     list.push_back({{"name", candidate.type->name},
                     {"build_s", median(candidate.build_s)},
