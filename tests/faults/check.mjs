@@ -1,7 +1,8 @@
 #!/usr/bin/env node
 // Puts each fault of faults.mjs into a copy of the source tree and checks that the tests named there fail:
-//   node tests/faults/check.mjs [FOLDER]
-// The copy and its build lie in FOLDER (source/ and build/, kept for the next run) or in a temporary folder.
+//   node tests/faults/check.mjs [FOLDER [FAULT...]]
+// With numbers of faults, those alone. The copy and its build lie in FOLDER (source/ and build/, kept for the
+// next run) or in a temporary folder.
 // Exits with 1 if a fault is not caught, if it can no longer be put in, or if a test fails without any.
 
 import {spawnSync} from "node:child_process";
@@ -10,7 +11,7 @@ import {availableParallelism, tmpdir} from "node:os";
 import {dirname, join, resolve} from "node:path";
 import {fileURLToPath} from "node:url";
 
-import {faults} from "./faults.mjs";
+import {faults as all} from "./faults.mjs";
 
 const kRoot = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const kTestMinutes = 5;  // a fault may also keep a test from ending
@@ -100,15 +101,15 @@ const shown = (names) =>
   (names.length > kNamesShown ? ` and ${names.length - kNamesShown} more` : "");
 
 // Without a fault every pattern names a test, and all of them pass.
-function checkSound(copy) {
+function checkSound(copy, faults) {
   const patterns = new Map();
   for (const {target, tests} of faults) patterns.set(target, [...(patterns.get(target) ?? []), ...tests]);
   const built = copy.buildTargets([...patterns.keys()]);
   if (!built.passed) throw new Stop(`the copy does not build:\n${tail(built.output)}`);
-  for (const [target, all] of patterns) {
-    const {passed, output, ran} = copy.test(target, [...new Set(all)]);
+  for (const [target, wanted] of patterns) {
+    const {passed, output, ran} = copy.test(target, [...new Set(wanted)]);
     if (!passed) throw new Stop(`${target} fails without any fault:\n${tail(output)}`);
-    const idle = all.filter((pattern) => !ran.some((name) => matches(pattern, name)));
+    const idle = wanted.filter((pattern) => !ran.some((name) => matches(pattern, name)));
     if (idle.length > 0) throw new Stop(`${target} has no test ${idle.join(", ")}`);
   }
 }
@@ -124,12 +125,13 @@ function check(copy, fault) {
   });
 }
 
-function main(given) {
+function main(given, numbers) {
+  const faults = numbers.length === 0 ? all : all.filter(({fault}) => numbers.includes(String(fault)));
   const folder = given ? resolve(given) : mkdtempSync(join(tmpdir(), "orrery-faults-"));
   try {
     const copy = new Copy(folder);
     copy.configure();
-    checkSound(copy);
+    checkSound(copy, faults);
     let caught = 0;
     for (const fault of faults) {
       const verdict = check(copy, fault);
@@ -137,8 +139,8 @@ function main(given) {
       const word = verdict.caught ? "caught" : "NOT CAUGHT";
       console.log(`${word} ${fault.fault}: ${fault.about}: ${verdict.text}`);
     }
-    const numbers = new Set(faults.map(({fault}) => fault)).size;
-    console.log(`faults: ${caught} of ${faults.length} caught, faces of ${numbers}`);
+    const faces = new Set(faults.map(({fault}) => fault)).size;
+    console.log(`faults: ${caught} of ${faults.length} caught, faces of ${faces}`);
     process.exitCode = caught === faults.length ? 0 : 1;
   } catch (error) {
     if (!(error instanceof Stop)) throw error;
@@ -149,4 +151,4 @@ function main(given) {
   }
 }
 
-main(process.argv[2]);
+main(process.argv[2], process.argv.slice(3));
