@@ -1,7 +1,8 @@
 // Addresses of pictures. Relative, so that the page works below any path; rounded, so that equal views
 // have equal addresses and come from the browser's cache.
 
-// A picture is {id, azimuth, elevation, distance, width, height} and optionally {time, fov, technique, samples}.
+// A picture is {id, azimuth, elevation, distance, width, height}, {moves, time} of a scene in which something
+// moves, and optionally {fov, technique, samples}.
 function query_of(picture) {
   const query = new URLSearchParams({
     azimuth: round(picture.azimuth, 2),
@@ -10,7 +11,7 @@ function query_of(picture) {
     width: picture.width,
     height: picture.height,
   });
-  if (picture.time) query.set("time", round(picture.time, 3));
+  if (picture.moves) query.set("time", round(picture.time, 3));
   if (picture.fov) query.set("fov", round(picture.fov, 3));
   if (picture.technique) query.set("technique", picture.technique);
   if (picture.samples) query.set("samples", picture.samples);

@@ -45,7 +45,9 @@ class WideTree {
     nodes_.shrink_to_fit();
     blocks_.pack();
     measure();
-    cost_as_built_ = cost_;
+    double held = 0;
+    for (const auto& item : tree.items) held += half_area(item.box);
+    looseness_ = looseness_as_built_ = area_ / held;
   }
 
   // Has the boxes follow the primitives, which stand in the order they had, to where they are now.
@@ -64,9 +66,15 @@ class WideTree {
     else if (const auto& of_pack = boxes[Blocks<T>::pack_number(root_)]; !of_pack.empty())
       box_ = of_pack[Blocks<T>::block_of(root_)];
     measure();
+    double held = 0;
+    for (const auto& primitive : moved)
+      if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
+    looseness_ = area_ / held;
   }
-  // What a ray is expected to visit, by the surface area heuristic, over what it was when the tree was built.
-  double worsening() const { return cost_ / cost_as_built_; }
+  // How much larger the boxes have become beside what they hold since the tree was built, by their surfaces,
+  // to which the rays that enter them are proportional. (By what they hold and not by the root's box: of a
+  // tree that was built while all stood in one place, this tells that it is worth nothing elsewhere.)
+  double worsening() const { return looseness_ / looseness_as_built_; }
 
   bool empty() const { return blocks_.empty(); }
   int depth() const { return depth_; }
@@ -127,29 +135,28 @@ class WideTree {
   }
 
   void measure() {
-    const double whole = half_area(box_);
-    double area = whole, sides = 0;
+    double sides = 0;
     std::size_t leaves = 0;
-    const auto add_leaf_of = [&](const Bounds<T>& box) {
+    const auto add = [&](Child child, const Bounds<T>& box) {
+      area_ += half_area(box);
+      if (!is_leaf(child)) return;
       sides += max_component(box.hi - box.lo);
       ++leaves;
     };
-    if (is_leaf(root_)) add_leaf_of(box_);
+    area_ = 0;
+    add(root_, box_);
     for (const Node& node : nodes_)
-      for (std::size_t i = 0; i < kPlaces; ++i) {
-        if (!node.has(i)) continue;
-        area += half_area(node.box_of(i));
-        if (is_leaf(node.child[i])) add_leaf_of(node.box_of(i));
-      }
+      for (std::size_t i = 0; i < kPlaces; ++i)
+        if (node.has(i)) add(node.child[i], node.box_of(i));
     grain_ = static_cast<T>(sides / static_cast<double>(leaves));
-    cost_ = whole > 0 ? area / whole : 1;
   }
 
   Child root_ = 0;
   int depth_ = 0;
   Bounds<T> box_;
   T grain_ = 0;
-  double cost_ = 1, cost_as_built_ = 1;  // by the surface area heuristic: boxes that a ray into box_ enters
+  double area_ = 0;                                // half the surface of all boxes
+  double looseness_ = 1, looseness_as_built_ = 1;  // area_ over that of the primitives' boxes
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };

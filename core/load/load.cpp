@@ -136,7 +136,8 @@ Vec3d read_scale(Params& p, const Fallback<Vec3d>& fallback) {
   const auto scale = p.numbers3("scale", "Factors along x, y and z; negative ones mirror.",
                                 {.min = -kMostScale, .max = kMostScale}, fallback);
   for (const double factor : scale)
-    if (std::abs(factor) < kLeastScale) p.fail("scale", "expected factors of at least 1e-6 in size");
+    if (std::abs(factor) < kLeastScale)
+      p.fail("scale", "expected factors of at least 1e-6 in size, got " + number_text(factor));
   return {scale[0], scale[1], scale[2]};
 }
 
@@ -147,7 +148,9 @@ Placement read_key(Params& p, const Placement& rest) {
                          derived(rest.degrees)),
                 p.point("translate", "Where the model's origin is, in metres.", derived(rest.translate))};
   for (const double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
-    if (key.scale.*axis * rest.scale.*axis < 0) p.fail("scale", "expected the signs it has without motion");
+    if (key.scale.*axis * rest.scale.*axis < 0)
+      p.fail("scale", "expected the signs that the factors have without motion, got " +
+                          number_text(key.scale.*axis) + " instead of " + number_text(rest.scale.*axis));
   return key;
 }
 
@@ -277,44 +280,44 @@ class SceneReader {
     }
   }
 
+  // Of what stands in the scene.
   void gather_motion() {
     std::vector<double> times;
     const auto add = [&times](const std::vector<double>& some) {
       if (some.size() > 1) times.insert(times.end(), some.begin(), some.end());
     };
-    for (const auto& shapes : scene_->shapes) add(shapes->key_times());
-    for (const Model& model : scene_->models)
-      for (const auto& shapes : model.shapes) add(shapes->key_times());
-    for (const Instance& instance : scene_->instances) add(instance.motion.times);
+    const auto add_all = [&add](const std::vector<std::unique_ptr<ShapeSet>>& sets) {
+      for (const auto& shapes : sets) add(shapes->key_times());
+    };
+    add_all(scene_->shapes);
+    std::vector<bool> seen(scene_->models.size(), false);
+    for (const Instance& instance : scene_->instances) {
+      add(instance.motion.times);
+      if (!seen[instance.model]) add_all(scene_->models[instance.model].shapes);
+      seen[instance.model] = true;
+    }
     if (times.empty()) return;
     const auto [first, last] = std::minmax_element(times.begin(), times.end());
     scene_->motion = {*first, *last};
   }
 
-  // What a list of sets says alone.
+  // What a list of sets says alone; each primitive is asked once.
   struct Extents {
     Boundsd all;           // infinite if a primitive is
     double magnitude = 0;  // the rest is that of bounded ones
     double smallest = std::numeric_limits<double>::infinity();
-
-    void include(const ShapeSet& shapes) {
-      for (int i = 0; i < shapes.size(); ++i) {
-        const Boundsd bounds = shapes.bounds(i);
-        all.include(bounds);
-        if (!bounds.bounded()) continue;
-        magnitude = std::max(magnitude, bounds.magnitude());
-        smallest = std::min(smallest, bounds.diagonal());
-      }
-    }
   };
-  // Of what moves, at all its keys.
   Extents extents_of(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
     Extents extents;
     for (const auto& shapes : sets) {
       scene_->facts.left_out += shapes->left_out();
-      const std::vector<double> times = shapes->key_times();
-      for (const double time : times) extents.include(*shapes->at(time));
-      if (times.empty()) extents.include(*shapes);
+      for (int i = 0; i < shapes->size(); ++i) {
+        const ShapeSet::Reach reach = shapes->reach(i);
+        extents.all.include(reach.box);
+        if (!reach.box.bounded()) continue;
+        extents.magnitude = std::max(extents.magnitude, reach.box.magnitude());
+        extents.smallest = std::min(extents.smallest, reach.least_diagonal);
+      }
     }
     return extents;
   }

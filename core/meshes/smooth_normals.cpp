@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -8,11 +9,12 @@
 namespace orrery {
 namespace {
 
-// Angle between unit vectors, in radians: 2 atan(|u - v| / |u + v|) (Kahan), which is exact to a few ulps for
-// all angles. The arctangent is halved three times, then its series; IEEE operations alone, so that every
-// machine gives the same bits.
+// Angle between unit vectors, in radians, or 0 between two that are zero: 2 atan(|u - v| / |u + v|) (Kahan),
+// which is exact to a few ulps for all angles. The arctangent is halved three times, then its series; IEEE
+// operations alone, so that every machine gives the same bits.
 double angle_between(const Vec3d& u, const Vec3d& v) {
   const double opposite = length(u - v), adjacent = length(u + v);
+  if (opposite == 0) return 0;
   double tangent = opposite / (adjacent + std::sqrt(opposite * opposite + adjacent * adjacent));
   for (int halving = 0; halving < 2; ++halving) tangent /= 1 + std::sqrt(1 + tangent * tangent);
   const double square = tangent * tangent;  // at most tan(pi/16)^2 < 0.04
@@ -21,22 +23,19 @@ double angle_between(const Vec3d& u, const Vec3d& v) {
   return 16 * tangent * series;
 }
 
-// The corners (3 * triangle + 0, 1 or 2) at each position: those of position p are
-// list[first[p]] .. list[first[p + 1] - 1], in rising order.
+// The corners (3 * triangle + 0, 1 or 2) at each place: those of place p are list[first[p]] ..
+// list[first[p + 1] - 1], in rising order.
 struct Corners {
-  std::vector<std::uint32_t> position;  // of each corner, equal ones counted once
+  std::vector<std::uint32_t> position;  // place of each corner
   std::vector<std::uint32_t> first, list;
 
-  explicit Corners(const TriangleMesh& mesh) {
-    VertexList positions(false, false);
-    std::vector<std::uint32_t> of_vertex;
-    of_vertex.reserve(mesh.positions.size());
-    for (const Vec3d& p : mesh.positions) of_vertex.push_back(positions.add({p, {}, {}}));
+  Corners(const TriangleMesh& mesh, const Places& places) {
+    const std::size_t count = places.empty() ? 0 : *std::max_element(places.begin(), places.end()) + 1;
     position.reserve(3 * mesh.triangles.size());
-    first.assign(positions.size() + 1, 0);
+    first.assign(count + 1, 0);
     for (const auto& triangle : mesh.triangles)
       for (const std::uint32_t vertex : triangle) {
-        position.push_back(of_vertex[vertex]);
+        position.push_back(places[vertex]);
         ++first[position.back() + 1];
       }
     for (std::size_t p = 1; p < first.size(); ++p) first[p] += first[p - 1];
@@ -93,8 +92,21 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
 
 }  // namespace
 
-std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees, std::uint64_t most_pairs) {
-  const Corners corners(mesh);
+Places places_of(const std::vector<Vec3d>& positions) {
+  Places places(positions.size(), 0);
+  divide_places(places, positions);
+  return places;
+}
+
+void divide_places(Places& places, const std::vector<Vec3d>& positions) {
+  VertexList apart(true, false);  // with the old place for a normal
+  for (std::size_t v = 0; v < places.size(); ++v)
+    places[v] = apart.add({positions[v], Vec3d(places[v], 0, 0), {}});
+}
+
+std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees, const Places& places,
+                             std::uint64_t most_pairs) {
+  const Corners corners(mesh, places);
   const std::uint64_t pairs = corners.pairs();
   if (pairs > most_pairs)
     throw InputError("", "expected at most " + std::to_string(most_pairs) +

@@ -25,7 +25,7 @@ struct AcceleratorFacts {
   int depth = 0;               // nodes on the longest way to a primitive
   std::size_t references = 0;  // places that name a primitive: more than there are, where cells share some
   bool refitted = false;       // its boxes followed primitives that moved since it was built
-  double worsening = 1;        // what rays are expected to cost now, over what they were when it was built
+  double worsening = 1;        // how much larger they are since then beside what they hold, by their surfaces
 };
 
 // Beyond this worsening a new structure is built.
@@ -41,7 +41,7 @@ class Accelerator {
   virtual AcceleratorFacts facts() const = 0;
 
   // The same structure where the primitives have moved: `moved` has them in the same order. Null if it has to
-  // be built anew, because it cannot follow, or because rays would take much longer than in a new one.
+  // be built anew, because it cannot follow, or because its boxes would be kMostWorsening times as large.
   virtual std::unique_ptr<Accelerator> refitted(const PrimitiveList<T>& /*moved*/) const { return nullptr; }
 
   // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max and hits.primitive

@@ -7,8 +7,8 @@
 
 namespace orrery {
 
-inline constexpr double kMaxTime = 1e6;  // seconds, before or after 0
-inline constexpr std::size_t kMaxKeys = 10'000;
+inline constexpr double kMaxTime = 1e6;          // seconds, before or after 0
+inline constexpr std::size_t kMaxKeys = 10'000;  // motion_keys
 
 // The list "motion" of an object that may move: read(Params&) gives the value of one key. Empty if there is
 // none.
@@ -16,16 +16,19 @@ template <class Read>
 auto read_motion(Params& p, const Read& read) {
   Keys<decltype(read(p))> keys;
   p.each(
-      "motion", "Where it is at which time, in between on the way; what a key leaves out is as without it.",
+      "motion",
+      "Where it is at which time, in between on the way: no key or two at least. What a key leaves out is as "
+      "without it.",
       {0, kMaxKeys}, [&](Params& key) {
         const double time =
             key.number("time", "Seconds; more than in the key before.", {.min = -kMaxTime, .max = kMaxTime});
         if (!keys.empty() && time <= keys.times.back())
-          key.fail("time", "expected more than the time of the key before");
+          key.fail("time", "expected more than " + number_text(keys.times.back()) +
+                               ", the time of the key before, got " + number_text(time));
         keys.times.push_back(time);
         keys.values.push_back(read(key));
       });
-  if (keys.times.size() == 1) p.fail("motion", "expected two keys at least");
+  if (keys.times.size() == 1) p.fail("motion", "expected no key or two at least, got 1");
   return keys;
 }
 

@@ -40,6 +40,9 @@ inline constexpr double kMaxColor = 1e6;
 inline constexpr double kMaxInteger = 9007199254740992.0;  // 2^53: up to here a double holds every integer
 inline constexpr std::size_t kMaxNameLength = 128;         // characters of a name in each_named()
 
+// Shortest decimal that reads back to the same double, as people write it: 1e12, 0.001, 600.
+std::string number_text(double x);
+
 // The numbers allowed; an infinite end is no limit.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();

@@ -10,9 +10,6 @@
 
 namespace orrery {
 
-// Shortest decimal that reads back to the same double, as people write it: 1e12, 0.001, 600.
-std::string number_text(double x);
-
 // Appends the canonical text of a value (see Document::canonical), or its beginning: stops soon after `limit`
 // bytes have been written, in the middle of a value, so that a huge value costs little.
 void append_canonical(const nlohmann::json& value, std::string& out,

@@ -36,8 +36,9 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
 }  // namespace
 
 template <class T>
-World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double time, double& build_ms) {
-  const std::lock_guard lock(parts.mutex);
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double time, double& build_ms,
+                   const std::function<bool()>& stop) {
+  const auto lock = lock_unless(parts.mutex, stop);
   auto& moments = made_of<T>(parts).moments;
   bring_forward(moments, time);
   auto& moment = moments.front();
@@ -73,7 +74,7 @@ PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, 
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms,
                    const std::function<bool()>& stop) {
-  const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.time, build_ms);
+  const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.time, build_ms, stop);
   const PrimitiveList<T>& primitives = bare.geometry->primitives;
   auto asked = plan.reorder ? reordered(bare.accelerator) : bare.accelerator;
   if (plan.prediction == Prediction::last)
@@ -85,8 +86,10 @@ World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_
   return {bare.geometry, asked};
 }
 
-template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&);
-template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&);
+template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
+                                const std::function<bool()>&);
+template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
+                                 const std::function<bool()>&);
 template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 

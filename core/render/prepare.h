@@ -29,16 +29,16 @@ struct PreparedScene::Parts {
   };
   std::shared_ptr<const Scene> scene;
   std::timed_mutex trying;  // held while structures are tried or a network trained, so that it is done once
-  std::mutex mutex;         // guards the rest; all is built under it, so that it is built once
+  std::timed_mutex mutex;   // guards the rest; all is built under it, so that it is built once
   Made<float> made_float;
   Made<double> made_double;
 };
 
 // The scene in number type T with an accelerator, as it stands at `time`, a moment of its motion in seconds;
-// adds the milliseconds spent building, if any.
+// adds the milliseconds spent building, if any. Throws Cancelled if `stop` said so while another built.
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double time,
-                   double& build_ms);
+                   double& build_ms, const std::function<bool()>& stop = {});
 
 // The same with the accelerator of a settled plan and the stages that it wants in front of it, which change
 // no answer: prediction first, then reordering. Of these only the network takes time to make. Throws

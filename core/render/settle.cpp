@@ -22,7 +22,8 @@ template <class T>
 Tried try_one(PreparedScene::Parts& parts, const AcceleratorType& type, const Plan& plan,
               const std::function<bool()>& stop) {
   double build_ms = 0;
-  const TraceCounts counts = try_tiles(world_for<T>(parts, type, plan.time, build_ms), plan, kTiles, stop);
+  const TraceCounts counts =
+      try_tiles(world_for<T>(parts, type, plan.time, build_ms, stop), plan, kTiles, stop);
   const std::uint64_t rays = counts.rays.total();
   return {&type, type.costs.of(rays, counts.accelerator) / static_cast<double>(rays)};
 }

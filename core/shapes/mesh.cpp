@@ -1,125 +1,37 @@
 #include <map>
+#include <set>
 
 #include "core/meshes/repair.h"
-#include "core/params/motion.h"
+#include "core/params/params.h"
+#include "core/shapes/mesh_reader.h"
 #include "core/shapes/mesh_records.h"
-#include "core/shapes/moving_mesh.h"
 
 namespace orrery {
 namespace {
-
-constexpr MeshLimits kLimits;
-constexpr std::size_t kMostNameLength = 1024;
-
-TriangleMesh read_inline(Params& p) {
-  TriangleMesh mesh;
-  mesh.positions = p.points("positions", "Vertices, in metres.", {3, kLimits.vertices});
-  const auto bound = static_cast<std::int64_t>(mesh.positions.size());
-  const auto triples = p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
-                                       {1, kLimits.triangles}, bound);
-  mesh.normals =
-      p.directions("normals", "Direction to shade with at each vertex; left out, triangles are flat.",
-                   {0, kLimits.vertices});
-  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
-    p.fail("normals", "expected as many as positions (" + std::to_string(mesh.positions.size()) + "), got " +
-                          std::to_string(mesh.normals.size()));
-  for (const auto& triple : triples) {
-    if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported already
-    mesh.triangles.push_back({static_cast<std::uint32_t>(triple[0]), static_cast<std::uint32_t>(triple[1]),
-                              static_cast<std::uint32_t>(triple[2])});
-  }
-  return mesh;
-}
-
-// What `read` gives; its errors become those of `key`.
-template <class Read>
-TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
-  if (name.empty()) {
-    p.fail(key, "expected a name, got \"\"");
-    return {};
-  }
-  try {
-    TriangleMesh mesh = read(name);
-    for (const Vec3d& v : mesh.positions)
-      if (!(max_component(abs(v)) <= kMaxCoordinate))
-        throw InputError("", "expected coordinates of at most 1e12 metres");
-    return mesh;
-  } catch (const InputError& error) {
-    p.fail(key, error.problems().front().detail);
-    return {};
-  }
-}
-
-TriangleMesh read_file(Params& p, const MeshSource& source, const char* fallback = nullptr) {
-  const std::string name = p.text(
-      "file", "OBJ, PLY, STL or glTF file in the scene's folder or below it; on the command line only.",
-      kMostNameLength, fallback);
-  if (!p.has("file")) return {};
-  return read_elsewhere(p, "file", name, [&](const std::string& n) { return source.file(n); });
-}
-
-TriangleMesh read_asset(Params& p, const MeshSource& source, const char* fallback = nullptr) {
-  const std::string name =
-      p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL or glTF file.", 64, fallback);
-  if (!p.has("asset")) return {};
-  return read_elsewhere(p, "asset", name, [&](const std::string& n) { return source.asset(n); });
-}
-
-TriangleMesh read(Params& p, const MeshSource& source) {
-  switch (p.form({{"positions", "indices"}, {"file"}, {"asset"}})) {
-    case 0: return read_inline(p);
-    case 1: return read_file(p, source);
-    default: return read_asset(p, source);
-  }
-}
-
-// Where the vertices of the mesh are at one time.
-VertexKey read_key(Params& p, const MeshSource& source, const TriangleMesh& rest) {
-  VertexKey key{p.points("positions", "Vertices, as many as the mesh has.", {0, kLimits.vertices}),
-                p.directions("normals", "Direction to shade with at each vertex, if the mesh has such.",
-                             {0, kLimits.vertices})};
-  for (TriangleMesh& mesh : std::array{read_file(p, source, ""), read_asset(p, source, "")}) {
-    if (mesh.positions.empty()) continue;
-    if (!key.positions.empty())
-      p.fail("", "expected one of positions, file and asset");
-    else if (mesh.triangles != rest.triangles)
-      p.fail("", "expected the triangles that the mesh has without motion");
-    key.positions = std::move(mesh.positions);
-    if (!rest.normals.empty() && key.normals.empty()) key.normals = std::move(mesh.normals);
-  }
-  if (key.positions.empty()) key.positions = rest.positions;
-  if (key.normals.empty()) key.normals = rest.normals;
-  const auto expect = [&](const char* what, std::size_t count, std::size_t expected) {
-    if (count != expected)
-      p.fail(what, "expected as many as the mesh has without motion (" + std::to_string(expected) +
-                       "), got " + std::to_string(count));
-  };
-  expect("positions", key.positions.size(), rest.positions.size());
-  expect("normals", key.normals.size(), rest.normals.size());
-  return key;
-}
 
 // All meshes of a scene.
 class MeshSet final : public ShapeSet {
  public:
   int add(Params& p, const MeshSource& source) override {
     const std::size_t before = table_.triangles.size();
-    TriangleMesh mesh = read(p, source);
-    const double crease = p.number("crease_degrees",
-                                   "Shading is smooth across edges where faces meet at less than this angle; "
-                                   "left out, the normals are those of the mesh.",
-                                   {.min = 0, .max = 180}, derived(0.0));
-    MovingMesh moving{{}, read_motion(p, [&](Params& key) { return read_key(key, source, mesh); }), {}};
-    if (!fits(mesh, moving.keys.times.size(), p)) return 0;
-    if (p.has("crease_degrees")) moving.crease = crease;
-    if (moving.keys.empty()) {
+    MeshObject object = reader_.read(p, source);
+    TriangleMesh& mesh = object.mesh;
+    if (mesh.triangles.empty()) return 0;
+    const bool moves = !object.keys.empty();
+    const std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
+    if (!moves) {
       left_out_ += drop_degenerate(mesh);
       drop_unused(mesh);
-    } else if (!mesh.triangles.empty()) {
-      moving.triangles = mesh.triangles;
-      moving_.emplace(table_.parts.size(), std::move(moving));
     }
-    if (p.has("crease_degrees")) smooth(mesh, crease, p);
+    Places places;
+    if (object.crease_degrees) {
+      places = places_of(moves ? *object.keys.values[0].positions : mesh.positions);
+      for (const VertexKey& key : object.keys.values) divide_places(places, *key.positions);
+      smooth(mesh, *object.crease_degrees, places, moves, p);
+    }
+    if (moves)
+      moving_[table_.parts.size()] = {triangles, std::move(object.keys), object.crease_degrees,
+                                      std::move(places)};
     append(mesh);
     return static_cast<int>(table_.triangles.size() - before);
   }
@@ -140,8 +52,32 @@ class MeshSet final : public ShapeSet {
   }
   int size() const override { return static_cast<int>(table_.triangles.size()); }
   std::size_t left_out() const override { return left_out_; }
+  std::size_t bytes() const override {
+    std::size_t vectors = table_.positions.size() + table_.normals.size();
+    std::set<const void*> counted;  // keys share what they have in common
+    for (const auto& [part, moving] : moving_)
+      for (const VertexKey& key : moving.keys.values)
+        for (const SharedVectors& some : {key.positions, key.normals})
+          if (counted.insert(some.get()).second) vectors += some->size();
+    return vectors * sizeof(Vec3d);
+  }
   Boundsd bounds(int index) const override {
     return table_.corners(static_cast<std::size_t>(index)).bounds();
+  }
+  Reach reach(int index) const override {
+    const auto i = static_cast<std::size_t>(index);
+    const auto& part = table_.part_of(i);
+    const auto moving = moving_.find(static_cast<std::size_t>(&part - table_.parts.data()));
+    if (moving == moving_.end()) return ShapeSet::reach(index);
+    Reach reach;
+    for (const VertexKey& key : moving->second.keys.values) {
+      const auto& [a, b, c] = moving->second.triangles[i - part.first];
+      const std::vector<Vec3d>& at = *key.positions;
+      const Boundsd box = Boundsd::of({at[a], at[b], at[c]});
+      reach.box.include(box);
+      reach.least_diagonal = std::min(reach.least_diagonal, box.diagonal());
+    }
+    return reach;
   }
   ShapeTraits traits() const override { return {.convex = false, .closed = false}; }
   ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
@@ -151,21 +87,12 @@ class MeshSet final : public ShapeSet {
   }
 
  private:
-  // Limits are those of all meshes of a scene: many objects may name one file.
-  bool fits(const TriangleMesh& mesh, std::size_t keys, Params& p) {
-    vertices_ += mesh.positions.size() * (1 + keys);
-    triangles_ += mesh.triangles.size();
-    if (vertices_ <= kLimits.vertices && triangles_ <= kLimits.triangles) return true;
-    p.fail("", "expected at most " + std::to_string(kLimits.vertices) + " vertices (mesh_vertices) and " +
-                   std::to_string(kLimits.triangles) +
-                   " triangles (mesh_triangles) in all meshes of a scene, got " + std::to_string(vertices_) +
-                   " and " + std::to_string(triangles_) + " with this one");
-    return false;
-  }
-
-  void smooth(TriangleMesh& mesh, double crease, Params& p) {
+  // What moves is smoothed again for every moment, so it may take less.
+  void smooth(TriangleMesh& mesh, double crease_degrees, const Places& places, bool moves, Params& p) {
+    constexpr std::uint64_t kMoments = 16;
+    const std::uint64_t times = moves ? kMoments : 1;
     try {
-      pairs_left_ -= smooth_normals(mesh, crease, pairs_left_);
+      pairs_left_ -= times * smooth_normals(mesh, crease_degrees, places, pairs_left_ / times);
     } catch (const InputError& error) {
       p.fail("crease_degrees", error.problems().front().detail);
     }
@@ -195,26 +122,29 @@ class MeshSet final : public ShapeSet {
 
   void append(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return;
-    Boundsd box;
-    for (const Vec3d& v : mesh.positions) box.include(v);
+    Boundsd box;  // of the vertices that are used
     const auto first_vertex = static_cast<std::uint32_t>(table_.positions.size());
-    table_.parts.push_back({table_.triangles.size(), first_vertex, table_.normals.size(),
-                            !mesh.normals.empty(), box.magnitude()});
+    const std::size_t first = table_.triangles.size();
+    for (const auto& [a, b, c] : mesh.triangles) {
+      for (const std::uint32_t vertex : {a, b, c}) box.include(mesh.positions[vertex]);
+      table_.triangles.push_back({a + first_vertex, b + first_vertex, c + first_vertex});
+    }
+    table_.parts.push_back(
+        {first, first_vertex, table_.normals.size(), !mesh.normals.empty(), box.magnitude()});
     table_.positions.insert(table_.positions.end(), mesh.positions.begin(), mesh.positions.end());
     table_.normals.insert(table_.normals.end(), mesh.normals.begin(), mesh.normals.end());
-    for (const auto& [a, b, c] : mesh.triangles)
-      table_.triangles.push_back({a + first_vertex, b + first_vertex, c + first_vertex});
   }
 
   template <class T>
   ShapeKernelPtr<T> make(int first) const {
-    return std::make_unique<PrimitiveKernel<MeshTriangle, T, MeshRecords<T>>>(MeshRecords<T>(table_), first);
+    return std::make_shared<PrimitiveKernel<MeshTriangle, T, MeshRecords<T>>>(MeshRecords<T>(table_), first);
   }
 
-  MeshTable<double> table_;                                  // as if nothing moved
-  std::map<std::size_t, MovingMesh> moving_;                 // by part
-  std::size_t left_out_ = 0, vertices_ = 0, triangles_ = 0;  // as read
-  std::uint64_t pairs_left_ = std::uint64_t{1} << 30;        // that smoothing may still compare
+  MeshReader reader_;
+  MeshTable<double> table_;                   // as if nothing moved
+  std::map<std::size_t, MovingMesh> moving_;  // by part
+  std::size_t left_out_ = 0;
+  std::uint64_t pairs_left_ = std::uint64_t{1} << 30;  // that smoothing may still compare
 };
 
 std::unique_ptr<ShapeSet> make_mesh_set() { return std::make_unique<MeshSet>(); }

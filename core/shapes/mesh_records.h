@@ -77,7 +77,11 @@ class MeshRecords {
   }
 
   std::size_t size() const { return flat_.size(); }
-  Corners<T> core(std::size_t i) const { return table_.corners(i); }
+  // Of a triangle without area, which rounding could let a ray meet, one corner: that none meets.
+  Corners<T> core(std::size_t i) const {
+    const Corners<T> corners = table_.corners(i);
+    return flat_[i] == Vec3<T>() ? Corners<T>{corners.a, corners.a, corners.a} : corners;
+  }
   MeshTriangle<T> operator[](std::size_t i) const {
     const auto& part = table_.part_of(i);
     const Vec3<T>& flat = flat_[i];
@@ -85,7 +89,7 @@ class MeshRecords {
       return part.smooth ? table_.normals[part.first_normal + vertex - part.first_vertex] : flat;
     };
     const auto& [a, b, c] = table_.triangles[i];
-    return {table_.corners(i), {normal(a), normal(b), normal(c)}, flat, part.magnitude};
+    return {core(i), {normal(a), normal(b), normal(c)}, flat, part.magnitude};
   }
 
  private:

@@ -1,26 +1,33 @@
 #include "core/shapes/moving_mesh.h"
 
-#include "core/meshes/repair.h"
-
 namespace orrery {
+namespace {
+
+// Shared if both are the same.
+template <class Mix>
+SharedVectors mixed(const SharedVectors& before, const SharedVectors& after, const Mix& mix_one) {
+  if (before == after) return before;
+  auto vectors = std::make_shared<std::vector<Vec3d>>();
+  vectors->reserve(before->size());
+  for (std::size_t v = 0; v < before->size(); ++v) vectors->push_back(mix_one((*before)[v], (*after)[v]));
+  return vectors;
+}
+
+}  // namespace
 
 VertexKey mix(const VertexKey& before, const VertexKey& after, double share) {
-  VertexKey mixed;
-  mixed.positions.reserve(before.positions.size());
-  for (std::size_t v = 0; v < before.positions.size(); ++v)
-    mixed.positions.push_back(before.positions[v] * (1 - share) + after.positions[v] * share);
-  mixed.normals.reserve(before.normals.size());
-  for (std::size_t v = 0; v < before.normals.size(); ++v) {
-    const Vec3d normal = safe_normalize(before.normals[v] * (1 - share) + after.normals[v] * share);
-    mixed.normals.push_back(normal == Vec3d() ? before.normals[v] : normal);
-  }
-  return mixed;
+  const auto straight = [&](const Vec3d& a, const Vec3d& b) { return a * (1 - share) + b * share; };
+  return {mixed(before.positions, after.positions, straight),
+          mixed(before.normals, after.normals, [&](const Vec3d& a, const Vec3d& b) {
+            const Vec3d normal = safe_normalize(straight(a, b));
+            return normal == Vec3d() ? a : normal;
+          })};
 }
 
 TriangleMesh MovingMesh::at(double time) const {
-  VertexKey vertices = keys.at(time);
-  TriangleMesh mesh{std::move(vertices.positions), triangles, std::move(vertices.normals), {}};
-  if (crease) smooth_normals(mesh, *crease);
+  const VertexKey vertices = keys.at(time);
+  TriangleMesh mesh{*vertices.positions, triangles, *vertices.normals, {}};
+  if (crease_degrees) smooth_normals(mesh, *crease_degrees, places);
   return mesh;
 }
 

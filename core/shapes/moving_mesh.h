@@ -1,15 +1,18 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "core/math/keys.h"
-#include "core/meshes/mesh_file.h"
+#include "core/meshes/repair.h"
 
 namespace orrery {
 
-// Where the vertices of a mesh are, and what they are shaded with.
+using SharedVectors = std::shared_ptr<const std::vector<Vec3d>>;
+
+// Where the vertices of a mesh are, and what they are shaded with: as many of each, or no normals.
 struct VertexKey {
-  std::vector<Vec3d> positions, normals;  // as many of each; or no normals
+  SharedVectors positions, normals;
 };
 
 // Each vertex on a straight line; normals of length 1 again.
@@ -19,7 +22,8 @@ VertexKey mix(const VertexKey& before, const VertexKey& after, double share);
 struct MovingMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   Keys<VertexKey> keys;
-  std::optional<double> crease;  // degrees; the normals are those of smooth_normals() then
+  std::optional<double> crease_degrees;  // if there is one, normals are those of smooth_normals() then
+  Places places;                         // of vertices that are together at all keys
 
   // The mesh as it stands at `time`, in seconds. Its triangles keep their order.
   TriangleMesh at(double time) const;

@@ -8,11 +8,18 @@ namespace {
 // What a scene and all that rendering builds for it are expected to take.
 std::size_t estimated_bytes(const Scene& scene) {
   constexpr std::size_t kBytesAPrimitive = 1024;  // record, boxes and tree, in both precisions
-  std::size_t held = scene.instances.size() + count_primitives(scene.shapes);
-  for (const Model& model : scene.models) held += count_primitives(model.shapes);
-  if (!scene.motion.empty()) held *= 1 + PreparedScene::kMoments;
-  return 4096 + 2 * scene.canonical.size() + kBytesAPrimitive * held +
-         3 * sizeof(std::int64_t) * scene.material_of.size();
+  std::size_t primitives = scene.instances.size(), others = 0;
+  const auto count = [&](const std::vector<std::unique_ptr<ShapeSet>>& sets) {
+    primitives += count_primitives(sets);
+    for (const auto& shapes : sets) others += shapes->bytes();
+  };
+  count(scene.shapes);
+  for (const Model& model : scene.models) count(model.shapes);
+  std::size_t keys = 0;
+  for (const Instance& instance : scene.instances) keys += instance.motion.times.size();
+  const std::size_t moments = scene.motion.empty() ? 1 : PreparedScene::kMoments;
+  return 4096 + 2 * scene.canonical.size() + moments * kBytesAPrimitive * primitives + 2 * others +
+         keys * (sizeof(Placement) + sizeof(double)) + 3 * sizeof(std::int64_t) * scene.material_of.size();
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "server/app/orbit.h"
@@ -25,6 +26,17 @@ Turns the camera once about the scene, or by --step from frame to frame, while w
 the frames:
   ffmpeg -framerate 30 -i frame-%04d.png orbit.mp4
 )";
+
+// CLI::Range lets NaN pass.
+CLI::Validator within(double min, double max) {
+  const CLI::Range range(min, max);
+  return CLI::Validator(
+      [range](std::string& text) {
+        const bool number = !text.empty() && std::isfinite(std::strtod(text.c_str(), nullptr));
+        return number ? range(text) : "expected a number, got " + text.substr(0, 40);
+      },
+      "");
+}
 
 struct Options {
   std::string scene, output, stats;
@@ -80,7 +92,7 @@ void print(const Totals& t, int threads) {
   if (t.refitted > 0)
     std::printf(
         "a frame: %.2f ms making ready; %d structures followed the motion, %d were built anew; "
-        "rays cost at most %.2f of what they would when built\n",
+        "boxes at most %.2f times as large beside what they hold as when built\n",
         t.build_ms / t.frames, t.refitted, t.frames - t.refitted, t.worst);
 }
 
@@ -171,12 +183,12 @@ Command add_orbit(CLI::App& root) {
       ->capture_default_str();
   options->step_given =
       app->add_option("--step", options->step, "Degrees from frame to frame; without it, one full turn")
-          ->check(CLI::Range(-360.0, 360.0).description(""))
+          ->check(within(-360, 360))
           ->type_name("DEGREES");
   options->time_step_given =
       app->add_option("--time-step", options->time_step,
                       "Seconds of the scene's motion from frame to frame; without it, all of the motion")
-          ->check(CLI::Range(-3600.0, 3600.0).description(""))
+          ->check(within(-3600, 3600))
           ->type_name("SECONDS");
   auto* output =
       app->add_option("-o,--output", options->output, "Names of the frames; %04d becomes the number")

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "core/params/motion.h"
 #include "core/plan/limits.h"
 #include "server/http/head.h"
 #include "server/http/router.h"
@@ -30,6 +31,7 @@ nlohmann::ordered_json limits_json(const Settings& settings) {
           {"asset_bytes", settings.asset_bytes},
           {"asset_store_bytes", settings.asset_store_bytes},
           {"instanced_primitives", kMaxInstanced},
+          {"motion_keys", kMaxKeys},
           {"mesh_vertices", MeshLimits{}.vertices},
           {"mesh_triangles", MeshLimits{}.triangles}};
 }

@@ -149,6 +149,40 @@ TEST_P(Motion, WhatLosesItsAreaIsNotMet) {
   for (const auto& hit : collapsed.closest(rays)) EXPECT_LE(hit.primitive, 0);  // the sphere is number 0
 }
 
+// Triangles on a line: rounding gives them an area in float, a ray meets them all the same never.
+TEST_P(Motion, WhatIsFlattenedToLinesIsNotMet) {
+  covers("F19");
+  Random random(17);
+  Json mesh = {{"type", "mesh"}, {"material", "white"}}, lines = Json::array();
+  Rays<float> rays;
+  for (int i = 0; i < 1000; ++i) {
+    const auto exact = [&](double half) {  // multiples of 1/64, so that halves are on the line
+      const Vec3d v = random.in_cube(64 * half);
+      return Vec3d(std::round(v.x), std::round(v.y), std::round(v.z)) / 64;
+    };
+    const Vec3d from = exact(1), along = exact(0.3);
+    for (const double share : {0.0, 1.0, 0.5}) {
+      lines.push_back(numbers(from + along * share));
+      mesh["positions"].push_back(numbers(from + along * share + random.in_cube(0.1)));
+    }
+    mesh["indices"].push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    for (int k = 0; k < 20; ++k) {
+      const Vec3d eye = random.in_cube(4), to = from + along * random.unit();
+      rays.push_back({Vec3f(eye), Vec3f(safe_normalize(to - eye))});
+    }
+  }
+  Json scene = scene_of(R"({'type': 'sphere', 'center': [0, -20, 0], 'radius': 0.5})");
+  mesh["motion"] = {{{"time", 0}}, {{"time", 1}, {"positions", lines}}};
+  scene["objects"].push_back(mesh);
+  const auto loaded = load(scene);
+  Structure<float> flat(loaded, GetParam(), 1), before(loaded, GetParam(), 0);
+  int met = 0, met_before = 0;
+  for (const auto& hit : flat.closest(rays)) met += hit.primitive > 0;
+  for (const auto& hit : before.closest(rays)) met_before += hit.primitive > 0;
+  EXPECT_EQ(met, 0);
+  EXPECT_GT(met_before, 1000);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Motion, testing::ValuesIn(accelerator_names()), by_name);
 
 TEST(MovingGeometry, SharesWhatRests) {
@@ -162,6 +196,30 @@ TEST(MovingGeometry, SharesWhatRests) {
   EXPECT_NE(first.geometry().shapes[1], second.geometry().shapes[1]);  // the instances
   EXPECT_EQ(first.geometry().models[0], second.geometry().models[0]);
   EXPECT_NE(first.geometry().models[1], second.geometry().models[1]);
+}
+
+// A tree that is built while all stands in one place is worth nothing once it does not.
+TEST(MovingGeometry, ForgetsATreeThatWasBuiltInOnePlace) {
+  covers("F19");
+  Random random(4);
+  Json mesh = {{"type", "mesh"}, {"material", "white"}}, apart = Json::array();
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d place = random.in_cube(40);
+    for (const Vec3d& corner : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}) {
+      mesh["positions"].push_back(numbers(corner));
+      apart.push_back(numbers(place + corner));
+    }
+    mesh["indices"].push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  mesh["motion"] = {{{"time", 0}}, {{"time", 1}, {"positions", apart}}};
+  const auto scene = load(scene_with(mesh));
+  const auto rays = rays_through<float>(40, 2000, 5);
+  for (const char* accelerator : {"bottom-up", "bvh"}) {
+    Structure<float> together(scene, accelerator, 0), followed(scene, accelerator, 0.9, &together),
+        fresh(scene, accelerator, 0.9);
+    expect_agreement(followed, fresh, rays, {1e30f});
+    EXPECT_LT(followed.counts().primitive_tests, 2 * fresh.counts().primitive_tests);
+  }
 }
 
 }  // namespace

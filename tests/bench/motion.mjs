@@ -74,7 +74,7 @@ function comparison(subject, what, words) {
       const { frames, refitted, worsening, primitives } = facts;
       const remark =
         `${primitives} primitives; of ${frames} frames ${refitted} followed the one before; ` +
-        `rays expected to cost at most ${worsening.toFixed(2)} of what they did when it was built`;
+        `boxes at most ${worsening.toFixed(2)} times as large beside what they hold as when built`;
       return { ...sides, remark };
     },
   };

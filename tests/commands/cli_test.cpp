@@ -193,7 +193,12 @@ TEST_F(CommandLine, OrbitPlaysTheMotion) {
   const auto stats = nlohmann::json::parse(
       run("orbit " + scene + " --frames 5 --accelerator bottom-up --discard --stats=json").out);
   EXPECT_EQ(stats.at("refitted"), 4);
-  EXPECT_EQ(run("orbit " + scene + " --discard --time-step 4000").status, 2);
+  for (const char* wrong :
+       {"--time-step 4000", "--time-step nan", "--step nan", "--step inf", "--step 361"}) {
+    const Outcome outcome = run("orbit " + scene + " --discard " + wrong);
+    EXPECT_EQ(outcome.status, 2) << wrong;
+    EXPECT_NE(outcome.err.find(std::string(wrong, 6)), std::string::npos) << outcome.err;
+  }
   EXPECT_EQ(run("render " + scene + " --time 1e7").status, 2);
   EXPECT_NE(run("explain " + scene + " --time 0.5").out.find("0.5 s"), std::string::npos);
 }

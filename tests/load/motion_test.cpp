@@ -93,6 +93,54 @@ TEST(LoadMotion, FilesAreStagesOfOneMesh) {
       "/objects/0/motion/1");
 }
 
+// One mesh of 100,000 vertices, and how often it was asked for.
+class Heavy final : public MeshSource {
+ public:
+  mutable int read = 0;
+  TriangleMesh file(const std::string&) const override {
+    ++read;
+    TriangleMesh mesh;
+    mesh.positions.resize(100'000, Vec3d(1, 2, 3));
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+  }
+};
+
+TEST(LoadMotion, CountsKeysBeforeTheyTakeMemory) {
+  Json scene = scene_of(R"([{'type': 'mesh', 'file': 'a.obj'}])");
+  for (int i = 0; i < 2'000; ++i) scene["objects"][0]["motion"].push_back({{"time", i}, {"file", "a.obj"}});
+  const Heavy heavy;
+  try {
+    load_scene(scene.dump(), heavy);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().front().pointer, "/objects/0/motion/99");
+    EXPECT_NE(error.problems().front().detail.find("10000000 vertices (mesh_vertices)"), std::string::npos);
+    EXPECT_EQ(error.problems().size(), 1u);
+  }
+  EXPECT_EQ(heavy.read, 1) << "each file once";
+}
+
+TEST(LoadMotion, SaysHowMuchItsKeysHold) {
+  const auto bytes = [](const Json& scene) {
+    std::size_t sum = 0;
+    const auto loaded = load(scene);
+    for (const auto& shapes : loaded->shapes) sum += shapes->bytes();
+    return sum;
+  };
+  const std::size_t few = bytes(mesh_with("[{'time': 0}, {'time': 1}]"));
+  EXPECT_EQ(bytes(mesh_with("[{'time': 0}, {'time': 1}, {'time': 2}]")), few) << "keys share what they can";
+  const char* moved = "[{'time': 0}, {'time': 1, 'positions': [[0, 0, 0], [3, 0, 0], [0, 1, 0]]}]";
+  EXPECT_EQ(bytes(mesh_with(moved)), few + 3 * sizeof(Vec3d));
+}
+
+TEST(LoadMotion, IsThatOfWhatStandsInTheScene) {
+  Json scene = instance_with("[{'time': 0}, {'time': 1}]");
+  scene["models"]["unused"]["objects"] = mesh_with("[{'time': -100}, {'time': 100}]")["objects"];
+  EXPECT_EQ(load(scene)->motion.last, 1);
+  EXPECT_EQ(load(scene)->motion.first, 0);
+}
+
 TEST(LoadMotion, StandsWhereItsKeysSay) {
   const auto scene =
       load(mesh_with("[{'time': 2}, {'time': 4, 'positions': [[0, 0, 0], [3, 0, 0], [0, 1, 0]]}, {'time': 5, "

@@ -111,6 +111,55 @@ TEST(Motion, PlanCountsOnEveryMoment) {
   EXPECT_TRUE(make_plan(*load(stretched), at_time(0)).double_precision);
 }
 
+// A dome of which one petal grows from nothing, smooth all over, and a vertex far away that no triangle uses.
+Json dome(double petal, bool moving) {
+  Json mesh = {{"type", "mesh"}, {"crease_degrees", 180}};
+  Json grown = Json::array();
+  const auto add = [&](const Vec3d& at, const Vec3d& later) {
+    mesh["positions"].push_back(numbers(moving ? at : at * (1 - petal) + later * petal));
+    grown.push_back(numbers(later));
+  };
+  add({0, 1, 0}, {0, 1, 0});
+  for (int i = 0; i < 6; ++i) {
+    const Vec3d rim(std::cos(i), 0, std::sin(i));
+    add(i == 5 ? Vec3d(0, 1, 0) : rim, rim);
+    if (i > 0 && (i < 5 || moving || petal > 0)) mesh["indices"].push_back({0, i + 1, i});
+  }
+  if (moving) {
+    add({2e6, 0, 0}, {2e6, 0, 0});
+    mesh["motion"] = {{{"time", 0}}, {{"time", 1}, {"positions", grown}}};
+  }
+  return scene_with({mesh, json("{'type': 'plane', 'point': [0, -0.2, 0], 'normal': [0, 1, 0]}")},
+                    json("{'camera': {'type': 'perspective', 'eye': [0.5, 2, 3], 'look_at': [0, 0, 0]},"
+                         " 'lights': [{'type': 'point', 'position': [2, 5, 1]}]}"));
+}
+
+TEST(Motion, NothingIsLeftOfWhatHasNoSizeAndOfWhatNobodyUses) {
+  covers("F19");
+  for (const double petal : {0.0, 0.5, 1.0})
+    for (const RenderRequest& in : {in_float(size(96, 72)), in_double(size(96, 72))})
+      EXPECT_TRUE(identical(render(dome(0, true), at_time(petal, in)), render(dome(petal, false), in)))
+          << petal;
+  EXPECT_FALSE(make_plan(*load(dome(0, true)), at_time(0)).double_precision);
+}
+
+// All vertices meet half-way: what is smoothed together does not depend on that.
+TEST(Motion, AMeshMayTurnInsideOutThroughAPoint) {
+  covers("F19");
+  Json mesh = {{"type", "mesh"}, {"crease_degrees", 60}}, mirrored = Json::array();
+  constexpr int kSteps = 20'000;
+  for (int i = 0; i < 2 * kSteps; ++i) {
+    const Vec3d at(4.0 * (i / 2) / kSteps - 2, i % 2 ? 1 : -1, 0.2 * std::sin(0.001 * i));
+    mesh["positions"].push_back(numbers(at));
+    mirrored.push_back(numbers(-at));
+    if (i >= 2) mesh["indices"].push_back({i - 2, i - 1, i});
+  }
+  mesh["motion"] = {{{"time", 0}}, {{"time", 1}, {"positions", mirrored}}};
+  const auto scene = load(scene_with(mesh, json("{'lights': [{'type': 'directional', 'from': [0, 0, 1]}]}")));
+  EXPECT_NO_THROW(render(scene, at_time(0.5)));
+  EXPECT_GT(render(scene, at_time(0.6)).brighter_than(0.1f), 10);
+}
+
 TEST(Motion, FramesOfManyMomentsAtOnceAreRight) {
   const auto scene = load(moving_scene());
   const PreparedScene prepared(scene);

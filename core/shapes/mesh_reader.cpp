@@ -1,0 +1,136 @@
+#include "core/shapes/mesh_reader.h"
+
+#include "core/params/motion.h"
+
+namespace orrery {
+namespace {
+
+constexpr MeshLimits kLimits;
+constexpr std::size_t kMostNameLength = 1024;
+
+TriangleMesh read_inline(Params& p) {
+  TriangleMesh mesh;
+  mesh.positions = p.points("positions", "Vertices, in metres.", {3, kLimits.vertices});
+  const auto bound = static_cast<std::int64_t>(mesh.positions.size());
+  const auto triples = p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
+                                       {1, kLimits.triangles}, bound);
+  mesh.normals =
+      p.directions("normals", "Direction to shade with at each vertex; left out, triangles are flat.",
+                   {0, kLimits.vertices});
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+    p.fail("normals", "expected as many as positions (" + std::to_string(mesh.positions.size()) + "), got " +
+                          std::to_string(mesh.normals.size()));
+  for (const auto& triple : triples) {
+    if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported already
+    mesh.triangles.push_back({static_cast<std::uint32_t>(triple[0]), static_cast<std::uint32_t>(triple[1]),
+                              static_cast<std::uint32_t>(triple[2])});
+  }
+  return mesh;
+}
+
+// What `read` gives; its errors become those of `key`.
+template <class Read>
+TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
+  if (name.empty()) {
+    p.fail(key, "expected a name, got \"\"");
+    return {};
+  }
+  try {
+    TriangleMesh mesh = read(name);
+    for (const Vec3d& v : mesh.positions)
+      if (!(max_component(abs(v)) <= kMaxCoordinate))
+        throw InputError("", "expected coordinates of at most 1e12 metres");
+    return mesh;
+  } catch (const InputError& error) {
+    p.fail(key, error.problems().front().detail);
+    return {};
+  }
+}
+
+std::string file_name(Params& p, const char* fallback = nullptr) {
+  return p.text("file",
+                "OBJ, PLY, STL or glTF file in the scene's folder or below it; on the command line only.",
+                kMostNameLength, fallback);
+}
+std::string asset_name(Params& p, const char* fallback = nullptr) {
+  return p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL or glTF file.", 64, fallback);
+}
+TriangleMesh read_file(Params& p, const MeshSource& source, const std::string& name) {
+  return read_elsewhere(p, "file", name, [&](const std::string& n) { return source.file(n); });
+}
+TriangleMesh read_asset(Params& p, const MeshSource& source, const std::string& name) {
+  return read_elsewhere(p, "asset", name, [&](const std::string& n) { return source.asset(n); });
+}
+
+SharedVectors share(std::vector<Vec3d> vectors) {
+  return std::make_shared<const std::vector<Vec3d>>(std::move(vectors));
+}
+
+}  // namespace
+
+MeshObject MeshReader::read(Params& p, const MeshSource& source) {
+  MeshObject object;
+  TriangleMesh& mesh = object.mesh;
+  switch (p.form({{"positions", "indices"}, {"file"}, {"asset"}})) {
+    case 0: mesh = read_inline(p); break;
+    case 1: mesh = read_file(p, source, file_name(p)); break;
+    default: mesh = read_asset(p, source, asset_name(p));
+  }
+  const double crease = p.number("crease_degrees",
+                                 "Shading is smooth across edges where faces meet at less than this angle; "
+                                 "left out, the normals are those of the mesh.",
+                                 {.min = 0, .max = 180}, derived(0.0));
+  if (p.has("crease_degrees")) object.crease_degrees = crease;
+  if (!fits(mesh.positions.size(), mesh.triangles.size(), p)) mesh = {};
+  const VertexKey at_rest =
+      p.has("motion") ? VertexKey{share(mesh.positions), share(mesh.normals)} : VertexKey();
+  object.keys = read_motion(p, [&](Params& key) { return read_key(key, source, mesh, at_rest); });
+  if (full_) object = {};
+  return object;
+}
+
+// Where the vertices of the mesh are at one time.
+VertexKey MeshReader::read_key(Params& p, const MeshSource& source, const TriangleMesh& rest,
+                               const VertexKey& at_rest) {
+  std::vector<Vec3d> positions =
+      p.points("positions", "Vertices, as many as the mesh has.", {0, kLimits.vertices});
+  std::vector<Vec3d> normals = p.directions(
+      "normals", "Direction to shade with at each vertex, if the mesh has such.", {0, kLimits.vertices});
+  const std::string file = file_name(p, ""), asset = asset_name(p, "");
+  if (p.has("positions") + p.has("file") + p.has("asset") > 1)
+    p.fail("", "expected one of positions, file and asset");
+  if (!fits(rest.positions.size(), rest.triangles.size(), p)) return at_rest;
+  if (p.has("file") || p.has("asset")) {
+    TriangleMesh mesh = p.has("file") ? read_file(p, source, file) : read_asset(p, source, asset);
+    if (mesh.triangles != rest.triangles)
+      p.fail("", "expected the triangles that the mesh has without motion (" +
+                     std::to_string(rest.triangles.size()) + ", of the same vertices), got " +
+                     std::to_string(mesh.triangles.size()));
+    positions = std::move(mesh.positions);
+    if (!rest.normals.empty() && normals.empty()) normals = std::move(mesh.normals);
+  }
+  const auto expect = [&](const char* what, const std::vector<Vec3d>& given, std::size_t count) {
+    if (given.empty() || given.size() == count) return;
+    p.fail(what, "expected as many as the mesh has without motion (" + std::to_string(count) + "), got " +
+                     std::to_string(given.size()));
+  };
+  expect("positions", positions, rest.positions.size());
+  expect("normals", normals, rest.normals.size());
+  return {positions.empty() ? at_rest.positions : share(std::move(positions)),
+          normals.empty() ? at_rest.normals : share(std::move(normals))};
+}
+
+bool MeshReader::fits(std::size_t vertices, std::size_t triangles, Params& p) {
+  if (full_) return false;
+  vertices_ += vertices;
+  triangles_ += triangles;
+  full_ = vertices_ > kLimits.vertices || triangles_ > kLimits.triangles;
+  if (full_)
+    p.fail("", "expected at most " + std::to_string(kLimits.vertices) + " vertices (mesh_vertices) and " +
+                   std::to_string(kLimits.triangles) +
+                   " triangles (mesh_triangles) in all meshes of a scene and their keys, got " +
+                   std::to_string(vertices_) + " and " + std::to_string(triangles_) + " so far");
+  return !full_;
+}
+
+}  // namespace orrery

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/model/mesh_source.h"
+#include "core/shapes/moving_mesh.h"
+
+namespace orrery {
+
+class Params;
+
+// What a scene says about one mesh.
+struct MeshObject {
+  TriangleMesh mesh;  // empty if there was a problem, which is noted
+  std::optional<double> crease_degrees;
+  Keys<VertexKey> keys;  // none if it rests
+};
+
+// Reads the meshes of a scene, which have limits together: many objects and keys may name one file.
+class MeshReader {
+ public:
+  MeshObject read(Params& p, const MeshSource& source);
+
+ private:
+  VertexKey read_key(Params& p, const MeshSource& source, const TriangleMesh& rest, const VertexKey& at_rest);
+  // Notes so many more; false, and a problem, if there are too many now.
+  bool fits(std::size_t vertices, std::size_t triangles, Params& p);
+
+  std::size_t vertices_ = 0, triangles_ = 0;  // so far, those of keys too
+  bool full_ = false;
+};
+
+}  // namespace orrery
