@@ -23,16 +23,17 @@ Places places_of(const std::vector<Vec3d>& positions);
 // Vertices that share a place, but stand apart in `positions`, get different ones.
 void divide_places(Places& places, const std::vector<Vec3d>& positions);
 
+// Pairs of triangles around one place, which smooth_normals() compares. REQUIRES: a place for each vertex.
+std::uint64_t count_pairs(const TriangleMesh& mesh, const Places& places);
+
 // Gives the mesh vertex normals: at each corner, the mean of the normals of the triangles around its place
 // whose normals differ from its own triangle's by less than `crease_degrees` (in [0, 180]), each weighted by
 // its angle there (Thuermer and Wuethrich, Computing Vertex Normals from Polygonal Facets, 1998). A vertex
 // whose corners differ becomes several; vertices that are equal become one, and those that no triangle uses
-// go. Replaces normals, keeps uvs. Returns how many pairs of triangles around places were compared. Throws
-// InputError if they are more than `most_pairs`. REQUIRES: a place for each vertex.
-std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees, const Places& places,
-                             std::uint64_t most_pairs = std::uint64_t{1} << 30);
-inline std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees) {
-  return smooth_normals(mesh, crease_degrees, places_of(mesh.positions));
+// go. Replaces normals, keeps uvs. REQUIRES: a place for each vertex.
+void smooth_normals(TriangleMesh& mesh, double crease_degrees, const Places& places);
+inline void smooth_normals(TriangleMesh& mesh, double crease_degrees) {
+  smooth_normals(mesh, crease_degrees, places_of(mesh.positions));
 }
 
 // Takes out the vertices that no triangle uses.

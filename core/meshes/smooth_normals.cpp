@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/math/angles.h"
 #include "core/meshes/repair.h"
 #include "core/meshes/vertex_list.h"
@@ -43,15 +42,6 @@ struct Corners {
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
     for (std::uint32_t corner = 0; corner < position.size(); ++corner)
       list[next[position[corner]]++] = corner;
-  }
-
-  std::uint64_t pairs() const {
-    std::uint64_t pairs = 0;
-    for (std::size_t p = 0; p + 1 < first.size(); ++p) {
-      const std::uint64_t count = first[p + 1] - first[p];
-      pairs += count * count;
-    }
-    return pairs;
   }
 };
 
@@ -104,14 +94,17 @@ void divide_places(Places& places, const std::vector<Vec3d>& positions) {
     places[v] = apart.add({positions[v], Vec3d(places[v], 0, 0), {}});
 }
 
-std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees, const Places& places,
-                             std::uint64_t most_pairs) {
+std::uint64_t count_pairs(const TriangleMesh& mesh, const Places& places) {
+  std::vector<std::uint64_t> corners(places.size(), 0);  // of each place
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) ++corners[places[vertex]];
+  std::uint64_t pairs = 0;
+  for (const std::uint64_t count : corners) pairs += count * count;
+  return pairs;
+}
+
+void smooth_normals(TriangleMesh& mesh, double crease_degrees, const Places& places) {
   const Corners corners(mesh, places);
-  const std::uint64_t pairs = corners.pairs();
-  if (pairs > most_pairs)
-    throw InputError("", "expected at most " + std::to_string(most_pairs) +
-                             " pairs of triangles around vertices to be compared for smoothing, got " +
-                             std::to_string(pairs));
   const Facets facets(mesh);
   const double min_cosine = sine_cosine_degrees(crease_degrees).cosine;
   VertexList vertices(true, !mesh.uvs.empty());
@@ -124,7 +117,6 @@ std::uint64_t smooth_normals(TriangleMesh& mesh, double crease_degrees, const Pl
     }
   mesh = vertices.take();
   mesh.triangles = std::move(triangles);
-  return pairs;
 }
 
 }  // namespace orrery

@@ -18,20 +18,20 @@ class MeshSet final : public ShapeSet {
     TriangleMesh& mesh = object.mesh;
     if (mesh.triangles.empty()) return 0;
     const bool moves = !object.keys.empty();
-    const std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
     if (!moves) {
       left_out_ += drop_degenerate(mesh);
       drop_unused(mesh);
     }
-    Places places;
+    MovingMesh moving{mesh.triangles, std::move(object.keys), object.crease_degrees, {}, 0};
     if (object.crease_degrees) {
-      places = places_of(moves ? *object.keys.values[0].positions : mesh.positions);
-      for (const VertexKey& key : object.keys.values) divide_places(places, *key.positions);
-      smooth(mesh, *object.crease_degrees, places, moves, p);
+      moving.always = places_of(moves ? *moving.keys.values[0].positions : mesh.positions);
+      for (const VertexKey& key : moving.keys.values) divide_places(moving.always, *key.positions);
+      const std::uint64_t pairs = count_pairs(mesh, moving.always);
+      moving.most_pairs = kRoomForMoments * pairs;
+      if (!may_compare(moves ? moving.most_pairs : pairs, p)) return 0;
+      smooth_normals(mesh, *object.crease_degrees, moving.always);
     }
-    if (moves)
-      moving_[table_.parts.size()] = {triangles, std::move(object.keys), object.crease_degrees,
-                                      std::move(places)};
+    if (moves) moving_.emplace(table_.parts.size(), std::move(moving));
     append(mesh);
     return static_cast<int>(table_.triangles.size() - before);
   }
@@ -87,15 +87,18 @@ class MeshSet final : public ShapeSet {
   }
 
  private:
-  // What moves is smoothed again for every moment, so it may take less.
-  void smooth(TriangleMesh& mesh, double crease_degrees, const Places& places, bool moves, Params& p) {
-    constexpr std::uint64_t kMoments = 16;
-    const std::uint64_t times = moves ? kMoments : 1;
-    try {
-      pairs_left_ -= times * smooth_normals(mesh, crease_degrees, places, pairs_left_ / times);
-    } catch (const InputError& error) {
-      p.fail("crease_degrees", error.problems().front().detail);
-    }
+  static constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 30;
+  static constexpr std::uint64_t kRoomForMoments = 16;  // times the pairs that are always together
+
+  // Notes that smoothing compares so many pairs of triangles; false, and a problem, if there are too many
+  // now.
+  bool may_compare(std::uint64_t pairs, Params& p) {
+    pairs_ += pairs;
+    if (pairs_ <= kMostPairs) return true;
+    p.fail("crease_degrees", "expected at most " + std::to_string(kMostPairs) +
+                                 " pairs of triangles around vertices to be compared for smoothing, got " +
+                                 std::to_string(pairs_));
+    return false;
   }
 
   TriangleMesh mesh_of(std::size_t part) const {
@@ -144,7 +147,7 @@ class MeshSet final : public ShapeSet {
   MeshTable<double> table_;                   // as if nothing moved
   std::map<std::size_t, MovingMesh> moving_;  // by part
   std::size_t left_out_ = 0;
-  std::uint64_t pairs_left_ = std::uint64_t{1} << 30;  // that smoothing may still compare
+  std::uint64_t pairs_ = 0;  // that smoothing compares
 };
 
 std::unique_ptr<ShapeSet> make_mesh_set() { return std::make_unique<MeshSet>(); }

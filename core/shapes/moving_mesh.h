@@ -22,8 +22,12 @@ VertexKey mix(const VertexKey& before, const VertexKey& after, double share);
 struct MovingMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   Keys<VertexKey> keys;
-  std::optional<double> crease_degrees;  // if there is one, normals are those of smooth_normals() then
-  Places places;                         // of vertices that are together at all keys
+  // If there is a crease, normals are those of smooth_normals(): of vertices that stand together, or, where
+  // that compares more than `most_pairs` because much of the mesh meets for a moment, of those that do so at
+  // all keys.
+  std::optional<double> crease_degrees;
+  Places always;  // together at all keys
+  std::uint64_t most_pairs;
 
   // The mesh as it stands at `time`, in seconds. Its triangles keep their order.
   TriangleMesh at(double time) const;

@@ -75,12 +75,12 @@ export const motionFaults = [
   },
   {
     fault: 19,
-    about: "vertices are smoothed together because they meet for a moment",
+    about: "vertices that stand together now and then are never smoothed together",
     file: "core/shapes/moving_mesh.cpp",
-    from: "smooth_normals(mesh, *crease_degrees, places);",
-    to: "smooth_normals(mesh, *crease_degrees);",
+    from: "smooth_normals(mesh, *crease_degrees, count_pairs(mesh, now) <= most_pairs ? now : always);",
+    to: "smooth_normals(mesh, *crease_degrees, always);",
     target: "test_render",
-    tests: ["Motion.AMeshMayTurnInsideOutThroughAPoint"],
+    tests: ["Motion.WhatStandsTogetherIsSmoothedTogether"],
   },
   {
     fault: 19,

@@ -150,5 +150,21 @@ TEST(MeshFiles, KeepApartInOneScene) {
   EXPECT_NEAR(shading_normal(*scene, {0.5, 3, 1}, {0, -1, 0}).x, std::sqrt(0.5), 1e-12);
 }
 
+// Around one vertex of n triangles, smoothing compares n * n pairs of them.
+TEST(MeshFiles, AVertexOfTooManyTrianglesIsNotSmoothed) {
+  Json mesh = {{"type", "mesh"}, {"positions", {{0, 0, 1}}}, {"crease_degrees", 30}};
+  const auto fan = [&](int triangles) {
+    mesh["indices"] = Json::array();
+    for (int i = static_cast<int>(mesh["positions"].size()) - 1; i <= triangles; ++i)
+      mesh["positions"].push_back({std::cos(1e-4 * i), std::sin(1e-4 * i), 0});
+    for (int i = 1; i <= triangles; ++i) mesh["indices"].push_back({0, i, i + 1});
+    return scene_with(mesh);
+  };
+  EXPECT_EQ(first_problem(fan(33'000)), "/objects/0/crease_degrees");
+  mesh["motion"] = {{{"time", 0}}, {{"time", 1}}};
+  EXPECT_EQ(first_problem(fan(9'000)), "/objects/0/crease_degrees")
+      << "what moves is smoothed again and again";
+}
+
 }  // namespace
 }  // namespace orrery::test

@@ -143,6 +143,30 @@ TEST(Motion, NothingIsLeftOfWhatHasNoSizeAndOfWhatNobodyUses) {
   EXPECT_FALSE(make_plan(*load(dome(0, true)), at_time(0)).double_precision);
 }
 
+// Two halves of a roof that close like a book, and open again along the ridge.
+TEST(Motion, WhatStandsTogetherIsSmoothedTogether) {
+  covers("F19");
+  const auto roof = [](double lift, double gap) {
+    return Json{{-1, 0, -1},     {-gap, lift, -1}, {-gap, lift, 1}, {-1, 0, 1},
+                {gap, lift, -1}, {1, 0, -1},       {1, 0, 1},       {gap, lift, 1}};
+  };
+  const auto scene = [&](const Json& positions) {
+    Json mesh = {{"type", "mesh"}, {"crease_degrees", 180}, {"positions", positions}};
+    mesh["indices"] = {{0, 2, 1}, {0, 3, 2}, {4, 6, 5}, {4, 7, 6}};
+    return scene_with(mesh,
+                      json("{'camera': {'type': 'perspective', 'eye': [0.5, 2, 3], 'look_at': [0, 0, 0]},"
+                           " 'lights': [{'type': 'point', 'position': [2, 5, 1]}]}"));
+  };
+  Json moving = scene(roof(0.2, 0));
+  moving["objects"][0]["motion"] = {{{"time", 0}},
+                                    {{"time", 1}, {"positions", roof(0.6, 0)}},
+                                    {{"time", 2}, {"positions", roof(0.6, 0.5)}}};
+  const std::pair<double, Json> moments[] = {
+      {0, roof(0.2, 0)}, {0.5, roof(0.4, 0)}, {1.5, roof(0.6, 0.25)}, {2, roof(0.6, 0.5)}};
+  for (const auto& [time, positions] : moments)
+    EXPECT_TRUE(identical(render(moving, at_time(time)), render(scene(positions), size(96, 72)))) << time;
+}
+
 // All vertices meet half-way: what is smoothed together does not depend on that.
 TEST(Motion, AMeshMayTurnInsideOutThroughAPoint) {
   covers("F19");
