@@ -111,7 +111,8 @@ TEST(Motion, PlanCountsOnEveryMoment) {
   EXPECT_TRUE(make_plan(*load(stretched), at_time(0)).double_precision);
 }
 
-// A dome of which one petal grows from nothing, smooth all over, and a vertex far away that no triangle uses.
+// A dome in the shadow of a ball, smooth all over, of which one petal grows from nothing, and a vertex far
+// away that no triangle uses.
 Json dome(double petal, bool moving) {
   Json mesh = {{"type", "mesh"}, {"crease_degrees", 180}};
   Json grown = Json::array();
@@ -129,7 +130,7 @@ Json dome(double petal, bool moving) {
     add({2e6, 0, 0}, {2e6, 0, 0});
     mesh["motion"] = {{{"time", 0}}, {{"time", 1}, {"positions", grown}}};
   }
-  return scene_with({mesh, json("{'type': 'plane', 'point': [0, -0.2, 0], 'normal': [0, 1, 0]}")},
+  return scene_with({mesh, json("{'type': 'sphere', 'center': [0.5, 1.8, 0.25], 'radius': 0.25}")},
                     json("{'camera': {'type': 'perspective', 'eye': [0.5, 2, 3], 'look_at': [0, 0, 0]},"
                          " 'lights': [{'type': 'point', 'position': [2, 5, 1]}]}"));
 }
