@@ -111,10 +111,11 @@ TEST(Motion, PlanCountsOnEveryMoment) {
   EXPECT_TRUE(make_plan(*load(stretched), at_time(0)).double_precision);
 }
 
-// A dome in the shadow of a ball, smooth all over, of which one petal grows from nothing, and a vertex far
-// away that no triangle uses.
-Json dome(double petal, bool moving) {
-  Json mesh = {{"type", "mesh"}, {"crease_degrees", 180}};
+// A dome in the shadow of a ball, smooth all over or flat, of which one petal grows from nothing, and a
+// vertex far away that no triangle uses.
+Json dome(double petal, bool moving, bool smooth) {
+  Json mesh = {{"type", "mesh"}};
+  if (smooth) mesh["crease_degrees"] = 180;
   Json grown = Json::array();
   const auto add = [&](const Vec3d& at, const Vec3d& later) {
     mesh["positions"].push_back(numbers(moving ? at : at * (1 - petal) + later * petal));
@@ -139,9 +140,11 @@ TEST(Motion, NothingIsLeftOfWhatHasNoSizeAndOfWhatNobodyUses) {
   covers("F19");
   for (const double petal : {0.0, 0.5, 1.0})
     for (const RenderRequest& in : {in_float(size(96, 72)), in_double(size(96, 72))})
-      EXPECT_TRUE(identical(render(dome(0, true), at_time(petal, in)), render(dome(petal, false), in)))
-          << petal;
-  EXPECT_FALSE(make_plan(*load(dome(0, true)), at_time(0)).double_precision);
+      for (const bool smooth : {false, true})
+        EXPECT_TRUE(identical(render(dome(0, true, smooth), at_time(petal, in)),
+                              render(dome(petal, false, smooth), in)))
+            << petal;
+  EXPECT_FALSE(make_plan(*load(dome(0, true, false)), at_time(0)).double_precision);
 }
 
 // Two halves of a roof that close like a book, and open again along the ridge.
