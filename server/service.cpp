@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/base/version.h"
 #include "server/http/problem.h"
@@ -43,26 +44,46 @@ HttpServer::Options options_of(const Settings& settings) {
           .grace = settings.grace};
 }
 
+HttpServer::Options health_options_of(const Settings& settings) {
+  constexpr std::size_t kConnections = 16;
+  return {.host = settings.host,
+          .port = settings.health_port,
+          .max_body = 0,
+          .max_connections = kConnections,
+          .grace = std::chrono::seconds(1)};
+}
+
 }  // namespace
 
 Service::Service(const Settings& settings, const Log& log)
     : log_(log),
       app_(settings),
-      server_(options_of(settings),
-              {.answer = [this](Request& request) { return answer(request); },
-               .refuse =
-                   [](Request& request, std::exception_ptr error) {
-                     Response response = problem_response(error, request.id);
-                     add_common_headers(request, response);
-                     return response;
-                   },
-               .served = [this](const Request& request, const Response& response, std::uint64_t bytes,
-                                bool gone) { note(request, response, bytes, gone); },
-               .grace_over = [this] { app_.end(); }}) {
+      server_(options_of(settings), handler_of(router_)),
+      health_(health_options_of(settings), handler_of(health_router_)) {
   add_routes(router_, app_);
+  add_health_routes(health_router_, app_);
+  health_router_.add("GET", "/metrics", [this](Request&) { return metrics(); });
 }
 
-void Service::run() { server_.run(); }
+HttpServer::Handler Service::handler_of(const Router& router) {
+  return {.answer = [this, &router](Request& request) { return answer(router, request); },
+          .refuse =
+              [](Request& request, std::exception_ptr error) {
+                Response response = problem_response(error, request.id);
+                add_common_headers(request, response);
+                return response;
+              },
+          .served = [this](const Request& request, const Response& response, std::uint64_t bytes,
+                           bool gone) { note(request, response, bytes, gone); },
+          .grace_over = [this] { app_.end(); }};
+}
+
+void Service::run() {
+  std::thread health([this] { health_.run(); });
+  server_.run();
+  health_.drain();
+  health.join();
+}
 
 void Service::stop() {
   log_.write(LogLevel::info, "draining", nlohmann::ordered_json::object());
@@ -70,10 +91,23 @@ void Service::stop() {
   server_.drain();
 }
 
-Response Service::answer(Request& request) {
+Response Service::metrics() {
+  const Readings readings{.ready = !app_.draining() && !app_.admission().full(),
+                          .renders_running = app_.admission().running(),
+                          .renders_waiting = app_.admission().waiting(),
+                          .orbits = app_.orbits().count(),
+                          .connections = server_.connections(),
+                          .connections_refused = server_.refused(),
+                          .scene_bytes = app_.scenes().bytes(),
+                          .asset_bytes = app_.assets().bytes()};
+  return text_response(200, "text/plain; version=0.0.4; charset=utf-8", metrics_.text(readings))
+      .set("Cache-Control", "no-store");
+}
+
+Response Service::answer(const Router& router, Request& request) {
   Response response;
   try {
-    response = router_.dispatch(request);
+    response = router.dispatch(request);
   } catch (...) {
     response = problem_response(std::current_exception(), request.id);
   }
@@ -81,17 +115,19 @@ Response Service::answer(Request& request) {
   return response;
 }
 
-void Service::note(const Request& request, const Response& response, std::uint64_t bytes, bool gone) const {
+void Service::note(const Request& request, const Response& response, std::uint64_t bytes, bool gone) {
+  const double ms = milliseconds_since(request.start);
+  metrics_.count_request(request.route, request.method, response.status, ms / 1000, response.rays, gone);
   nlohmann::ordered_json fields = {{"id", request.id},
                                    {"method", request.method},
                                    {"path", request.path.substr(0, 200)},
                                    {"status", response.status},
-                                   {"ms", std::round(milliseconds_since(request.start) * 1000) / 1000},
+                                   {"ms", std::round(ms * 1000) / 1000},
                                    {"bytes", bytes}};
   if (response.rays > 0) fields["rays"] = response.rays;
   if (gone) fields["client_left"] = true;
   if (!response.note.empty()) fields["error"] = response.note;
-  const bool health = request.path == "/healthz" || request.path == "/readyz";
+  const bool health = request.path == "/healthz" || request.path == "/readyz" || request.path == "/metrics";
   const bool failed = response.status == 500 || !response.note.empty();
   const LogLevel level = failed ? LogLevel::error : health ? LogLevel::debug : LogLevel::info;
   log_.write(level, "request", fields);

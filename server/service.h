@@ -2,31 +2,37 @@
 
 #include "server/app/app.h"
 #include "server/app/log.h"
+#include "server/app/metrics.h"
 #include "server/http/router.h"
 #include "server/http/server.h"
 
 namespace orrery {
 
-// The whole service: app, routes and HTTP server. It listens once it is made.
+// The whole service: app, routes and HTTP servers: one for all, and one for health and metrics with threads
+// of its own, so that nothing can silence it. Both listen once it is made.
 class Service {
  public:
-  // Throws Error if the address cannot be had.
+  // Throws Error if an address cannot be had.
   Service(const Settings& settings, const Log& log);
 
   int port() const { return server_.port(); }
+  int health_port() const { return health_.port(); }
   // Serves until stop() was called and what ran then is done.
   void run();
   // From any thread.
   void stop();
 
  private:
-  Response answer(Request& request);
-  void note(const Request& request, const Response& response, std::uint64_t bytes, bool gone) const;
+  HttpServer::Handler handler_of(const Router& router);
+  Response answer(const Router& router, Request& request);
+  Response metrics();
+  void note(const Request& request, const Response& response, std::uint64_t bytes, bool gone);
 
   const Log& log_;
   App app_;
-  Router router_;
-  HttpServer server_;  // last: its threads use the others
+  Metrics metrics_;
+  Router router_, health_router_;
+  HttpServer server_, health_;  // last: their threads use the others
 };
 
 }  // namespace orrery

@@ -7,9 +7,22 @@
 
 namespace orrery {
 
+int Admission::running() const {
+  const std::lock_guard lock(mutex_);
+  return running_;
+}
+int Admission::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(waiting_.size());
+}
+bool Admission::full() const {
+  const std::lock_guard lock(mutex_);
+  return overrun();
+}
+
 Admission::Ticket Admission::enter(const Stop& stop) {
   std::unique_lock lock(mutex_);
-  if (running_ >= most_running_ && static_cast<int>(waiting_.size()) >= most_waiting_)
+  if (overrun())
     throw Busy(std::to_string(waiting_.size()) + " renders wait already (queue)", retry_after_s());
   return wait_for_turn(lock, stop);
 }

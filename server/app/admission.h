@@ -28,6 +28,11 @@ class Admission {
     Clock::time_point start_;
   };
 
+  int running() const;
+  int waiting() const;
+  // Whether one more would be turned away.
+  bool full() const;
+
   using Stop = std::function<bool()>;
 
   // Waits for a place. Throws Busy if too many wait already; Cancelled once `stop` says so, which is asked
@@ -42,7 +47,11 @@ class Admission {
   double retry_after_s() const;
 
   const int most_running_, most_waiting_;
-  std::mutex mutex_;
+  bool overrun() const {
+    return running_ >= most_running_ && static_cast<int>(waiting_.size()) >= most_waiting_;
+  }
+
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   int running_ = 0;
   std::list<int> waiting_;  // one entry each, the first is next

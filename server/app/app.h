@@ -35,6 +35,7 @@ class App {
   SceneStore& scenes() { return scenes_; }
   AssetStore& assets() { return assets_; }
   OrbitHub& orbits() { return orbits_; }
+  const Admission& admission() const { return admission_; }
   int threads() const { return pool_.threads(); }
 
   // Parses and checks a scene. Throws InputError.

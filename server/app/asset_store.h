@@ -33,6 +33,8 @@ class AssetStore final : public MeshSource {
   AssetPtr find(const std::string& sha256);
   void remove(const std::string& sha256);
 
+  std::size_t bytes() const { return assets_.bytes(); }
+
   TriangleMesh asset(const std::string& sha256) const override;
 
  private:

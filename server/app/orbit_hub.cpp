@@ -19,6 +19,12 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
   return OrbitCast::join(cast);
 }
 
+std::size_t OrbitHub::count() {
+  const std::lock_guard lock(mutex_);
+  casts_.remove_if([](const auto& cast) { return cast.expired(); });
+  return casts_.size();
+}
+
 void OrbitHub::wake() {
   const std::lock_guard lock(mutex_);
   for (const auto& known : casts_)

@@ -16,6 +16,8 @@ class OrbitHub {
   // Joins those who watch the same orbit, or starts it. Throws Busy if there are too many different ones.
   std::unique_ptr<OrbitCast::Viewer> watch(const OrbitSpec& spec);
 
+  std::size_t count();  // of different ones that are watched
+
   // To be called when means.draining changed.
   void wake();
 

@@ -10,6 +10,7 @@ namespace orrery {
 struct Settings {
   std::string host = "127.0.0.1";
   int port = 8080;
+  int health_port = 8081;                     // of /healthz, /readyz and /metrics, for supervisors
   int threads = 0;                            // that render; 0: one a core
   std::size_t body_bytes = 8 << 20;           // of a request
   std::size_t store_bytes = 256 << 20;        // of scenes kept, by estimate

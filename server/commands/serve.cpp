@@ -56,7 +56,7 @@ int serve(const Options& options) {
   }
   const bool v6 = settings.host.find(':') != std::string::npos;
   std::cout << "orrery listens on http://" << (v6 ? "[" + settings.host + "]" : settings.host) << ":"
-            << service.port() << std::endl;
+            << service.port() << "\nhealth and metrics on port " << service.health_port() << std::endl;
   log.write(LogLevel::info, "start",
             {{"version", kVersion}, {"instructions", instruction_level()}, {"port", service.port()}});
   service.run();
@@ -97,6 +97,12 @@ Command add_serve(CLI::App& root) {
   app->footer(kExamples);
   app->add_option("--host", options->settings.host, "Name or address to listen on")->capture_default_str();
   app->add_option("--port", options->settings.port, "Port; 0: a free one")
+      ->check(CLI::Range(0, 65535).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  app->add_option(
+         "--health-port", options->settings.health_port,
+         "Port of /healthz, /readyz and /metrics, which answer however busy the service is; 0: a free one")
       ->check(CLI::Range(0, 65535).description(""))
       ->type_name("N")
       ->capture_default_str();

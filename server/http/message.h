@@ -24,6 +24,7 @@ struct Request {
   std::string method;                 // "HEAD" is answered as "GET", without the body
   std::string path;                   // decoded
   std::vector<std::string> segments;  // of the path, each decoded
+  std::string_view route;             // the pattern that it matches; empty if none
   std::string id;      // of this request: sent by the client, or made up; letters, digits, . _ -
   Fields query;        // decoded; names are unique
   Fields path_values;  // of the route's {places}

@@ -12,7 +12,8 @@ bool is_place(std::string_view segment) { return segment.starts_with('{') && seg
 }  // namespace
 
 void Router::add(std::string_view method, std::string_view pattern, Handler handler) {
-  routes_.push_back({std::string(method), parse_target(pattern).segments, std::move(handler)});
+  routes_.push_back(
+      {std::string(method), std::string(pattern), parse_target(pattern).segments, std::move(handler)});
 }
 
 bool Router::matches(const Route& route, Request& request) {
@@ -33,6 +34,7 @@ Response Router::dispatch(Request& request) const {
   std::vector<std::string> allowed;
   for (const Route& route : routes_) {
     if (!matches(route, request)) continue;
+    request.route = route.pattern;
     if (route.method == method) return route.handler(request);
     allowed.push_back(route.method);
     if (route.method == "GET") allowed.push_back("HEAD");

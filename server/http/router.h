@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -18,19 +19,19 @@ class Router {
   // answers HEAD as well. Routes added first are tried first.
   void add(std::string_view method, std::string_view pattern, Handler handler);
 
-  // Fills request.path_values and calls the handler. Throws HttpError 404 or 405, and what the handler
-  // throws.
+  // Fills request.route and request.path_values and calls the handler. Throws HttpError 404 or 405, and what
+  // the handler throws.
   Response dispatch(Request& request) const;
 
  private:
   struct Route {
-    std::string method;
+    std::string method, pattern;
     std::vector<std::string> segments;
     Handler handler;
   };
   static bool matches(const Route& route, Request& request);
 
-  std::vector<Route> routes_;
+  std::deque<Route> routes_;  // requests refer to their patterns
 };
 
 }  // namespace orrery

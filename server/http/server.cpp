@@ -134,6 +134,11 @@ class HttpServer::Parts {
   ~Parts() { close(wake_); }
 
   int port() const { return listener_.port(); }
+  std::uint64_t refused() const { return refused_; }
+  std::size_t connections() const {
+    const std::lock_guard lock(mutex_);
+    return open_.size();
+  }
 
   void run() {
     while (!draining_) {
@@ -159,7 +164,9 @@ class HttpServer::Parts {
   void accept_all() {
     shed_.close_old();
     for (int fd; (fd = listener_.accept()) >= 0;) {
-      if (!threads_.start([this, fd] { serve(fd); })) shed_.refuse(fd);
+      if (threads_.start([this, fd] { serve(fd); })) continue;
+      ++refused_;
+      shed_.refuse(fd);
     }
   }
 
@@ -241,7 +248,8 @@ class HttpServer::Parts {
   Shed shed_;
   std::atomic<bool> draining_{false};
   std::atomic<int> busy_{0};  // requests being read or answered
-  std::mutex mutex_;
+  std::atomic<std::uint64_t> refused_{0};
+  mutable std::mutex mutex_;
   std::list<const Connection*> open_;  // guarded by mutex_
   ConnectionThreads threads_;          // last: its threads use the others
 };
@@ -250,6 +258,8 @@ HttpServer::HttpServer(const Options& options, Handler handler)
     : parts_(std::make_unique<Parts>(options, std::move(handler))) {}
 HttpServer::~HttpServer() = default;
 int HttpServer::port() const { return parts_->port(); }
+std::size_t HttpServer::connections() const { return parts_->connections(); }
+std::uint64_t HttpServer::refused() const { return parts_->refused(); }
 void HttpServer::run() { parts_->run(); }
 void HttpServer::drain() { parts_->drain(); }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -37,6 +38,9 @@ class HttpServer {
   ~HttpServer();
 
   int port() const;
+
+  std::size_t connections() const;  // that are open
+  std::uint64_t refused() const;    // connections, because there were too many
 
   // Accepts connections until drain() was called and the last request was answered.
   void run();

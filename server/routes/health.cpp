@@ -16,8 +16,10 @@ Response status(int code, const char* word) {
 
 void add_health_routes(Router& router, App& app) {
   router.add("GET", "/healthz", [](Request&) { return status(200, "ok"); });
-  router.add("GET", "/readyz",
-             [&app](Request&) { return app.draining() ? status(503, "draining") : status(200, "ok"); });
+  router.add("GET", "/readyz", [&app](Request&) {
+    if (app.draining()) return status(503, "draining");
+    return app.admission().full() ? status(503, "full") : status(200, "ok");
+  });
 }
 
 }  // namespace orrery

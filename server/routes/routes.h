@@ -8,4 +8,7 @@ namespace orrery {
 // Every endpoint, one line each in registry.cpp. The app outlives the router.
 void add_routes(Router& router, App& app);
 
+// Those alone that supervisors ask, beside /metrics.
+void add_health_routes(Router& router, App& app);
+
 }  // namespace orrery

@@ -20,7 +20,7 @@ function command_line_run() {
 
 // Starts a service on a free port; resolves to {port, pid, stop()}.
 async function start_service() {
-  const child = spawn(kOrrery, ["serve", "--port", "0", "--threads", String(kThreads), "--quiet"], {
+  const child = spawn(kOrrery, ["serve", "--port", "0", "--health-port", "0", "--threads", String(kThreads), "--quiet"], {
     stdio: ["ignore", "pipe", "ignore"],
   });
   const gone = new Promise((resolve) => child.once("close", resolve));

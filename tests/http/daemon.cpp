@@ -27,11 +27,19 @@ double seconds_since(Clock::time_point start) {
 }
 
 // The first line the daemon prints says where it listens.
-int port_from(int output) {
+// The number at the end of the next line, which has to begin so; 0 if it does not.
+int port_from(int output, const std::string& begin) {
   std::string line;
   for (char c; read(output, &c, 1) == 1 && c != '\n';) line += c;
-  const std::size_t colon = line.rfind(':');
-  return line.rfind("orrery listens on http://", 0) == 0 ? std::stoi(line.substr(colon + 1)) : 0;
+  return line.rfind(begin, 0) == 0 ? std::stoi(line.substr(line.find_last_of(": ") + 1)) : 0;
+}
+
+httplib::Client client_of(int port) {
+  httplib::Client client("127.0.0.1", port);
+  client.set_read_timeout(120, 0);
+  client.set_keep_alive(true);
+  client.set_tcp_nodelay(true);
+  return client;
 }
 
 }  // namespace
@@ -43,7 +51,7 @@ std::string program() {
 }
 
 Daemon::Daemon(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words{program(), "serve", "--port", "0", "--quiet"};
+  std::vector<std::string> words{program(), "serve", "--port", "0", "--health-port", "0", "--quiet"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -60,8 +68,9 @@ Daemon::Daemon(const std::vector<std::string>& arguments) {
   }
   ::close(ends[1]);
   output_ = ends[0];
-  port_ = port_from(output_);
-  if (port_ == 0) throw std::runtime_error("the daemon does not start");
+  port_ = port_from(output_, "orrery listens on http://");
+  health_port_ = port_from(output_, "health and metrics on port ");
+  if (port_ == 0 || health_port_ == 0) throw std::runtime_error("the daemon does not start");
 }
 
 Daemon::~Daemon() {
@@ -72,13 +81,8 @@ Daemon::~Daemon() {
   ::close(output_);
 }
 
-httplib::Client Daemon::client() const {
-  httplib::Client client("127.0.0.1", port_);
-  client.set_read_timeout(120, 0);
-  client.set_keep_alive(true);
-  client.set_tcp_nodelay(true);
-  return client;
-}
+httplib::Client Daemon::client() const { return client_of(port_); }
+httplib::Client Daemon::health_client() const { return client_of(health_port_); }
 
 void Daemon::signal(int number) const { kill(pid_, number); }
 

@@ -17,7 +17,9 @@ class Daemon {
   Daemon(const Daemon&) = delete;
 
   int port() const { return port_; }
+  int health_port() const { return health_port_; }
   httplib::Client client() const;
+  httplib::Client health_client() const;
 
   void signal(int number) const;
   // Waits for the end and returns the exit status, or 128 + the signal that ended it.
@@ -32,7 +34,7 @@ class Daemon {
 
  private:
   pid_t pid_ = -1;
-  int port_ = 0;
+  int port_ = 0, health_port_ = 0;
   int output_ = -1;
 };
 

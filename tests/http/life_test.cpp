@@ -167,7 +167,8 @@ TEST(Addresses, ThatOthersReachNeedLeave) {
 
 TEST(Addresses, InUseAreAnError) {
   Daemon daemon;
-  const std::string command = program() + " serve --port " + std::to_string(daemon.port()) + " 2>/dev/null";
+  const std::string command =
+      program() + " serve --health-port 0 --port " + std::to_string(daemon.port()) + " 2>/dev/null";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
 }
 

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <sstream>
+
+#include "tests/http/daemon.h"
+
+// What supervisors see, however busy the service is.
+namespace orrery {
+namespace {
+
+std::string metrics(Daemon& daemon) {
+  const auto result = daemon.health_client().Get("/metrics");
+  return result && result->status == 200 ? result->body : "";
+}
+
+// The value of a series, or -1.
+double value_of(const std::string& text, const std::string& series) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind(series + " ", 0) == 0) return std::stod(line.substr(series.size() + 1));
+  return -1;
+}
+
+TEST(Health, HasAPortOfItsOwn) {
+  Daemon daemon;
+  auto client = daemon.health_client();
+  EXPECT_EQ(client.Get("/healthz")->status, 200);
+  EXPECT_EQ(client.Get("/readyz")->status, 200);
+  const auto text = client.Get("/metrics");
+  EXPECT_EQ(text->get_header_value("Content-Type"), "text/plain; version=0.0.4; charset=utf-8");
+  EXPECT_EQ(text->get_header_value("Cache-Control"), "no-store");
+  for (const char* path : {"/", "/v1/catalog", "/v1/scenes"}) expect_problem(client.Get(path), 404);
+  expect_problem(client.Post("/healthz", "x", "text/plain"), 405);
+  expect_problem(daemon.client().Get("/metrics"), 404);  // not for everybody
+}
+
+TEST(Health, AnswersWhileAllElseIsFull) {
+  Daemon daemon({"--threads", "1", "--max-queue", "1", "--max-connections", "3"});
+  const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
+  const std::string path = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>() +
+                           "/frame.png?width=4096&height=4096&samples=4096&precision=double";
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (int i = 0; i < 3; ++i) {  // two render, one waits; and there are no more connections
+    clients.push_back(std::make_unique<RawClient>(daemon.port()));
+    clients.back()->send("GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n");
+  }
+  ASSERT_TRUE(daemon.wait_until_working());
+  auto client = daemon.health_client();
+  for (int i = 0; i < 100 && client.Get("/readyz")->status == 200; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const auto ready = client.Get("/readyz");
+  EXPECT_EQ(ready->status, 503);
+  EXPECT_EQ(nlohmann::json::parse(ready->body).at("status"), "full");
+  EXPECT_EQ(client.Get("/healthz")->status, 200);
+  RawClient refused(daemon.port());
+  EXPECT_NE(refused.receive_all().find(" 503 "), std::string::npos);
+  const std::string text = metrics(daemon);
+  EXPECT_EQ(value_of(text, "orrery_ready"), 0);
+  EXPECT_EQ(value_of(text, "orrery_renders_running"), 2);
+  EXPECT_EQ(value_of(text, "orrery_renders_waiting"), 1);
+  EXPECT_EQ(value_of(text, "orrery_connections"), 3);
+  EXPECT_EQ(value_of(text, "orrery_connections_refused_total"), 1);
+}
+
+TEST(Health, MetricsCountWhatWasAnswered) {
+  Daemon daemon;
+  auto client = daemon.client();
+  const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
+  const std::string scene = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>();
+  for (int i = 0; i < 3; ++i) client.Get(scene + "/frame.png");
+  client.Get(scene + "/frame.png?width=0");
+  client.Get("/nothing/here");
+  const std::string text = metrics(daemon);
+  const std::string frame = ",method=\"GET\",route=\"/v1/scenes/{id}/frame.png\"}";
+  EXPECT_EQ(value_of(text, "orrery_requests_total{code=\"200\"" + frame), 3);
+  EXPECT_EQ(value_of(text, "orrery_requests_total{code=\"422\"" + frame), 1);
+  EXPECT_EQ(value_of(text, "orrery_requests_total{code=\"404\",method=\"GET\",route=\"none\"}"), 1);
+  EXPECT_EQ(value_of(text, "orrery_request_seconds_count{route=\"/v1/scenes/{id}/frame.png\"}"), 4);
+  EXPECT_GE(value_of(text, "orrery_rays_total"), 3 * 48 * 32);
+  EXPECT_GT(value_of(text, "orrery_stored_bytes{store=\"scenes\"}"), 0);
+  EXPECT_GT(value_of(text, "process_resident_memory_bytes"), 1e6);
+  EXPECT_GT(value_of(text, "process_open_fds"), 3);
+}
+
+// Labels are those of routes: what clients make up does not fill the memory.
+TEST(Health, StrangeRequestsShareOneSeries) {
+  Daemon daemon;
+  const auto lines = [&] {
+    const std::string text = metrics(daemon);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const auto ask = [&](const std::string& method, const std::string& path) {
+    RawClient raw(daemon.port());
+    raw.send(method + " " + path + " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+    raw.receive_all();
+  };
+  ask("BREW", "/coffee");
+  lines();  // which is counted, too
+  const auto before = lines();
+  for (int i = 0; i < 50; ++i) ask("BREW" + std::to_string(i), "/coffee/" + std::to_string(i));
+  EXPECT_EQ(lines(), before);
+}
+
+}  // namespace
+}  // namespace orrery
