@@ -1,5 +1,6 @@
 #include "server/service.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -40,6 +41,7 @@ HttpServer::Options options_of(const Settings& settings) {
   return {.host = settings.host,
           .port = settings.port,
           .max_body = settings.body_bytes,
+          .max_bodies = std::max({settings.bodies_bytes, settings.body_bytes, settings.asset_bytes}),
           .max_connections = settings.connections,
           .grace = settings.grace};
 }
@@ -49,6 +51,7 @@ HttpServer::Options health_options_of(const Settings& settings) {
   return {.host = settings.host,
           .port = settings.health_port,
           .max_body = 0,
+          .max_bodies = 0,
           .max_connections = kConnections,
           .grace = std::chrono::seconds(1)};
 }

@@ -204,7 +204,8 @@ class SceneReader {
       p.fail("instances", "expected at most " + std::to_string(kMaxInstanced) +
                               " primitives in all instances (instanced_primitives), got " +
                               std::to_string(instanced));
-    if (scene_->object_count == 0) p.fail("objects", "expected at least one object or instance");
+    if (scene_->object_count == 0)
+      p.fail("objects", "expected 1 to " + std::to_string(kMaxObjects) + " objects or instances, got 0");
     p.optional_object("render", "How the picture is made.",
                       [&](Params& r) { read_render(r, scene_->render); });
   }

@@ -13,6 +13,7 @@ struct Settings {
   int health_port = 8081;                     // of /healthz, /readyz and /metrics, for supervisors
   int threads = 0;                            // that render; 0: one a core
   std::size_t body_bytes = 8 << 20;           // of a request
+  std::size_t bodies_bytes = 256 << 20;       // of all requests at one time
   std::size_t store_bytes = 256 << 20;        // of scenes kept, by estimate
   std::size_t asset_bytes = 64 << 20;         // of a mesh file
   std::size_t asset_store_bytes = 256 << 20;  // of mesh files kept

@@ -78,6 +78,8 @@ void add_limit_options(CLI::App& app, Options& options) {
         ->group("Limits");
   };
   add("--max-body", settings.body_bytes, 1'000'000'000, "Bytes of a request's body");
+  add("--max-bodies", settings.bodies_bytes, 1'000'000'000'000,
+      "Bytes of the bodies of all requests at one time");
   add("--max-store", settings.store_bytes, 1'000'000'000'000, "Bytes of scenes kept, by estimate");
   add("--max-asset", settings.asset_bytes, 4'000'000'000, "Bytes of a mesh file");
   add("--max-assets", settings.asset_store_bytes, 1'000'000'000'000, "Bytes of mesh files kept");

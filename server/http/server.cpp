@@ -9,6 +9,7 @@
 #include <mutex>
 #include <thread>
 
+#include "server/http/budget.h"
 #include "server/http/connection.h"
 #include "server/http/listener.h"
 #include "server/http/request_id.h"
@@ -28,6 +29,7 @@ struct Exchange {
   Request request;
   Response response;
   std::exception_ptr refusal;  // why there is no request
+  Budget::Share body;          // as long as it is used
   bool keep_alive = false;
 };
 
@@ -129,6 +131,7 @@ class HttpServer::Parts {
         handler_(std::move(handler)),
         listener_(options.host, options.port),
         wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+        bodies_(options.max_bodies, "bodies_bytes"),
         engine_(handler_),
         threads_(options.max_connections) {}
   ~Parts() { close(wake_); }
@@ -203,7 +206,8 @@ class HttpServer::Parts {
 
   // Answers one request. False if the connection ends with it.
   bool exchange(Connection& connection) {
-    Exchange exchange{.connection = connection, .head = {}, .request = {}, .response = {}, .refusal = {}};
+    Exchange exchange{
+        .connection = connection, .head = {}, .request = {}, .response = {}, .refusal = {}, .body = {}};
     exchange.request.start = Clock::now();
     exchange.request.id = make_request_id();
     try {
@@ -234,7 +238,9 @@ class HttpServer::Parts {
     request.query = std::move(target.query);
     request.gone = [&connection = exchange.connection] { return connection.gone(); };
     request.body_limit = {options_.max_body, "body_bytes"};
-    request.read_body = [&exchange] {
+    request.read_body = [this, &exchange] {
+      const std::size_t length = exchange.head.content_length.value_or(0);
+      if (length <= exchange.request.body_limit.bytes) exchange.body = bodies_.take(length);
       return exchange.connection.read_body(exchange.head, exchange.request.body_limit);
     };
     exchange.keep_alive = head.keep_alive && !draining_;
@@ -244,6 +250,7 @@ class HttpServer::Parts {
   const Handler handler_;
   const Listener listener_;
   const int wake_;
+  Budget bodies_;
   Engine engine_;
   Shed shed_;
   std::atomic<bool> draining_{false};

@@ -18,6 +18,7 @@ class HttpServer {
     std::string host = "127.0.0.1";
     int port = 0;  // 0: a free one
     std::size_t max_body = 8 << 20;
+    std::size_t max_bodies = 256 << 20;  // of all that are read or used at one time (bodies_bytes)
     std::size_t max_connections = 256;
     std::chrono::seconds grace{30};  // for running requests once drain() was called
   };

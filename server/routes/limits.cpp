@@ -12,6 +12,7 @@ namespace {
 
 nlohmann::ordered_json limits_json(const Settings& settings) {
   return {{"body_bytes", settings.body_bytes},
+          {"bodies_bytes", settings.bodies_bytes},
           {"head_bytes", kMaxHeadBytes},
           {"address_bytes", kMaxTargetBytes},
           {"json_depth", JsonLimits{}.depth},

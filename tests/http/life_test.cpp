@@ -49,6 +49,29 @@ TEST(ClientThatLeaves, EndsItsOrbit) {
   EXPECT_TRUE(daemon.wait_until_idle());
 }
 
+// Bodies that come slowly, or never, do not fill the memory: they have a limit together.
+TEST(ClientsThatDawdle, ShareALimitOfBytes) {
+  Daemon daemon({"--max-body", "1000000", "--max-asset", "1000000", "--max-bodies", "1500000"});
+  const auto head = [](int bytes) {
+    return "POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(bytes) + "\r\n\r\n{";
+  };
+  auto slow = std::make_unique<RawClient>(daemon.port());
+  slow->send(head(1'000'000));
+  const auto post_until = [&](int status) {
+    for (int i = 0;; ++i) {
+      auto result = daemon.client().Post("/v1/scenes", std::string(600'000, ' '), "application/json");
+      if (i == 200 || (result && result->status == status)) return result;
+    }
+  };
+  const auto refused = post_until(503);
+  const auto problem = expect_problem(refused, 503);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("1500000 (bodies_bytes)"), std::string::npos);
+  EXPECT_EQ(refused->get_header_value("Retry-After"), "2");
+  EXPECT_EQ(daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json")->status, 201);
+  slow.reset();
+  expect_problem(post_until(400), 400);  // read now, and no JSON
+}
+
 TEST(ClientThatLeaves, LeavesTheQueueToo) {
   Daemon daemon({"--threads", "1", "--max-queue", "1"});
   const std::string path = post(daemon, small_scene()) + "/frame.png";

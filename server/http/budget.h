@@ -1,0 +1,58 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace orrery {
+
+// Bytes that many may take from together. Safe from any thread.
+class Budget {
+ public:
+  // `name`: of the limit, in /v1/limits.
+  Budget(std::size_t most, const char* name) : most_(most), name_(name) {}
+
+  // Bytes taken, given back with the object.
+  class Share {
+   public:
+    Share() = default;
+    Share(Share&& other) noexcept : from_(std::exchange(other.from_, nullptr)), bytes_(other.bytes_) {}
+    Share& operator=(Share&& other) noexcept {
+      std::swap(from_, other.from_);
+      std::swap(bytes_, other.bytes_);
+      return *this;
+    }
+    ~Share() {
+      if (from_) from_->taken_ -= bytes_;
+    }
+
+   private:
+    friend class Budget;
+    Share(Budget* from, std::size_t bytes) : from_(from), bytes_(bytes) {}
+    Budget* from_ = nullptr;
+    std::size_t bytes_ = 0;
+  };
+
+  // Throws Busy if there are not so many left.
+  Share take(std::size_t bytes) {
+    constexpr double kRetry_s = 2;
+    std::size_t taken = taken_;
+    do {
+      if (bytes > most_ - taken)
+        throw Busy("Bodies of " + std::to_string(taken) + " bytes are being read already, of at most " +
+                       std::to_string(most_) + " (" + name_ + ")",
+                   kRetry_s);
+    } while (!taken_.compare_exchange_weak(taken, taken + bytes));
+    return {this, bytes};
+  }
+
+ private:
+  const std::size_t most_;
+  const char* const name_;
+  std::atomic<std::size_t> taken_{0};
+};
+
+}  // namespace orrery
