@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <sstream>
+#include <thread>
 
 #include "tests/http/daemon.h"
 
@@ -20,6 +21,16 @@ double value_of(const std::string& text, const std::string& series) {
   return -1;
 }
 
+// Whether `holds` becomes true of the metrics within 20 s.
+template <class Holds>
+bool comes_true(Daemon& daemon, const Holds& holds) {
+  for (int i = 0; i < 400; ++i) {
+    if (holds(metrics(daemon))) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
 TEST(Health, HasAPortOfItsOwn) {
   Daemon daemon;
   auto client = daemon.health_client();
@@ -38,15 +49,16 @@ TEST(Health, AnswersWhileAllElseIsFull) {
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string path = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>() +
                            "/frame.png?width=4096&height=4096&samples=4096&precision=double";
+  EXPECT_TRUE(comes_true(daemon, [](const auto& text) { return value_of(text, "orrery_connections") == 0; }));
   std::vector<std::unique_ptr<RawClient>> clients;
   for (int i = 0; i < 3; ++i) {  // two render, one waits; and there are no more connections
     clients.push_back(std::make_unique<RawClient>(daemon.port()));
     clients.back()->send("GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n");
+    EXPECT_TRUE(comes_true(daemon, [i](const auto& text) {
+      return value_of(text, "orrery_renders_running") + value_of(text, "orrery_renders_waiting") == i + 1;
+    }));
   }
-  ASSERT_TRUE(daemon.wait_until_working());
   auto client = daemon.health_client();
-  for (int i = 0; i < 100 && client.Get("/readyz")->status == 200; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   const auto ready = client.Get("/readyz");
   EXPECT_EQ(ready->status, 503);
   EXPECT_EQ(nlohmann::json::parse(ready->body).at("status"), "full");
