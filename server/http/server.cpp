@@ -169,8 +169,23 @@ class HttpServer::Parts {
     for (int fd; (fd = listener_.accept()) >= 0;) {
       if (threads_.start([this, fd] { serve(fd); })) continue;
       ++refused_;
-      shed_.refuse(fd);
+      shed_.refuse(fd, refusal());
     }
+  }
+
+  // What those get who cannot be heard.
+  std::string refusal() const {
+    Request request;
+    request.start = Clock::now();
+    request.id = make_request_id();
+    const Busy busy(std::to_string(options_.max_connections) + " connections are open already (connections)",
+                    1);
+    const Response response = handler_.refuse(request, std::make_exception_ptr(busy));
+    std::string bytes = "HTTP/1.1 " + std::to_string(response.status) + " " +
+                        std::string(reason_phrase(response.status)) + "\r\n";
+    for (const auto& [name, value] : response.headers) bytes += name + ": " + value + "\r\n";
+    return bytes + "Connection: close\r\nContent-Length: " + std::to_string(response.body.size()) +
+           "\r\n\r\n" + response.body;
   }
 
   // The handler is told that time is up; connections that do not end even then are broken off.

@@ -2,16 +2,16 @@
 
 #include <chrono>
 #include <deque>
+#include <string_view>
 
 namespace orrery {
 
-// Turns connections away that no thread is free for: answers 503 without reading what they ask. For one
-// thread.
+// Turns connections away that no thread is free for: answers without reading what they ask. For one thread.
 class Shed {
  public:
   ~Shed();
-  // Takes the socket.
-  void refuse(int fd);
+  // Takes the socket. `bytes`: the whole answer.
+  void refuse(int fd, std::string_view bytes);
   // Closes the sockets whose clients had the time to read the answer.
   void close_old();
 

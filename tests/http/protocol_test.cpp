@@ -113,8 +113,13 @@ TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
   }
   const RawClient third(daemon.port());
   const std::string answer = third.receive_all();
-  EXPECT_EQ(answer.substr(9, 3), "503");
-  EXPECT_NE(answer.find("Retry-After: "), std::string::npos);
+  EXPECT_EQ(answer.substr(0, 34), "HTTP/1.1 503 Service Unavailable\r\n");
+  EXPECT_NE(answer.find("\r\nRetry-After: 1\r\n"), std::string::npos);
+  EXPECT_NE(answer.find("\r\nContent-Type: application/problem+json\r\n"), std::string::npos);
+  const auto problem = nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
+  EXPECT_EQ(problem.at("detail"), "2 connections are open already (connections)");
+  EXPECT_NE(answer.find("\r\nX-Request-ID: " + problem.at("request_id").get<std::string>() + "\r\n"),
+            std::string::npos);
 }
 
 }  // namespace
