@@ -1,9 +1,7 @@
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <numeric>
 
 #include "core/accelerators/hierarchy.h"
+#include "core/base/parallel.h"
 
 namespace orrery {
 namespace {
@@ -26,7 +24,8 @@ class Grouping {
 
  private:
   static constexpr std::uint32_t kMixed = ~0u, kSingle = ~0u;
-  static constexpr int kReach = 8;  // neighbours looked at on each side
+  static constexpr std::size_t kGrain = 4096;  // groups that are worth a thread
+  static constexpr int kReach = 8;             // neighbours looked at on each side
 
   struct Group {
     Bounds<T> box;
@@ -38,26 +37,16 @@ class Grouping {
     Boundsd all;
     for (const auto& item : items_) all.include(center(item));
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(items_.size());
-    in_parallel(order.size(), [&](std::size_t i) {
+    in_parallel(order.size(), kGrain, [&](std::size_t i) {
       order[i] = {curve_place(all, center(items_[i])), static_cast<std::uint32_t>(i)};
     });
-    tbb::parallel_sort(order.begin(), order.end());
+    sort_in_parallel(order.begin(), order.end());
     groups_.reserve(2 * items_.size());
     for (const auto& [place, item] : order)
       groups_.push_back({items_[item].box, item, kSingle, 1, items_[item].kernel});
     line_.resize(groups_.size());
     std::iota(line_.begin(), line_.end(), 0u);
     tree_.items.reserve(items_.size());
-  }
-
-  // Calls act(0), ..., act(count - 1), in any order, on as many threads as pay.
-  template <class Act>
-  static void in_parallel(std::size_t count, const Act& act) {
-    constexpr std::size_t kGrain = 4096;
-    const tbb::blocked_range<std::size_t> all(0, count, kGrain);
-    tbb::parallel_for(all, [&](const auto& some) {
-      for (std::size_t i = some.begin(); i != some.end(); ++i) act(i);
-    });
   }
 
   static Vec3d center(const TreeItem<T>& item) { return (Vec3d(item.box.lo) + Vec3d(item.box.hi)) * 0.5; }
@@ -83,7 +72,7 @@ class Grouping {
   void merge_neighbours() {
     const int count = static_cast<int>(line_.size());
     std::vector<int> nearest(line_.size());
-    in_parallel(nearest.size(), [&](std::size_t i) { nearest[i] = nearest_of(static_cast<int>(i)); });
+    in_parallel(nearest.size(), kGrain, [&](std::size_t i) { nearest[i] = nearest_of(static_cast<int>(i)); });
     std::vector<std::uint32_t> next;
     next.reserve(line_.size());
     for (int i = 0; i < count; ++i) {

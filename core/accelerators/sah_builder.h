@@ -1,11 +1,10 @@
 #pragma once
 
-#include <oneapi/tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <array>
 
 #include "core/accelerators/box_tree.h"
+#include "core/base/parallel.h"
 
 namespace orrery {
 
@@ -71,7 +70,7 @@ class SahBuilder {
     const auto left = [&] { fill(node.left, from, middle, depth + 1); };
     const auto right = [&] { fill(node.right, middle, to, depth + 1); };
     if (to - from >= kParallel) {
-      tbb::parallel_invoke(left, right);
+      both_in_parallel(left, right);
     } else {
       left();
       right();

@@ -1,41 +1,17 @@
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
-
-#ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
-#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // first steps on a worker, before Handover::take()
-#else
-#define ORRERY_UNSEEN
-#endif
 
 #include <atomic>
 #include <chrono>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/render/geometry.h"
 #include "core/render/prepare.h"
 #include "core/render/tile.h"
 
 namespace orrery {
-
-namespace {
-
-// Hands data to or from the workers. oneTBB orders the two sides already, but is not instrumented: this tells
-// ThreadSanitizer, and does nothing elsewhere.
-class Handover {
- public:
-#ifdef __SANITIZE_THREAD__
-  void give() { __tsan_release(this); }
-  void take() { __tsan_acquire(this); }
-#else
-  void give() {}
-  void take() {}
-#endif
-};
-
-}  // namespace
 
 struct WorkerPool::Parts {
   explicit Parts(int threads)

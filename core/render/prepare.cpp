@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "core/accelerators/reordered.h"
 #include "core/base/error.h"
@@ -93,10 +94,12 @@ template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, 
 template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 
-std::unique_lock<std::timed_mutex> lock_unless(std::timed_mutex& mutex, const std::function<bool()>& stop) {
-  std::unique_lock lock(mutex, std::defer_lock);
-  while (!lock.try_lock_for(std::chrono::milliseconds(10)))
+std::unique_lock<std::mutex> lock_unless(std::mutex& mutex, const std::function<bool()>& stop) {
+  std::unique_lock lock(mutex, std::try_to_lock);
+  while (!lock.owns_lock() && !lock.try_lock()) {
     if (stop && stop()) throw Cancelled();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   return lock;
 }
 

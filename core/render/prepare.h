@@ -28,8 +28,8 @@ struct PreparedScene::Parts {
     PredictorPtr<T> network;         // trained on the first plan that wanted one
   };
   std::shared_ptr<const Scene> scene;
-  std::timed_mutex trying;  // held while structures are tried or a network trained, so that it is done once
-  std::timed_mutex mutex;   // guards the rest; all is built under it, so that it is built once
+  std::mutex trying;  // held while structures are tried or a network trained, so that it is done once
+  std::mutex mutex;   // guards the rest; all is built under it, so that it is built once
   Made<float> made_float;
   Made<double> made_double;
 };
@@ -48,7 +48,7 @@ World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_
                    const std::function<bool()>& stop = {});
 
 // Waits for the mutex. Throws Cancelled once `stop` says so.
-std::unique_lock<std::timed_mutex> lock_unless(std::timed_mutex& mutex, const std::function<bool()>& stop);
+std::unique_lock<std::mutex> lock_unless(std::mutex& mutex, const std::function<bool()>& stop);
 
 // What was built in number type T.
 template <class T>

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/parallel_sort.h>
+
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+
+#include <algorithm>
+#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // first steps on a worker, before Handover::take()
+#else
+#define ORRERY_UNSEEN
+#endif
+
+// Work on several threads by oneTBB.
+namespace orrery {
+
+// Hands data to or from the workers. oneTBB orders the two sides already, but is not instrumented: this tells
+// ThreadSanitizer, and does nothing elsewhere.
+class Handover {
+ public:
+#ifdef __SANITIZE_THREAD__
+  void give() { __tsan_release(this); }
+  void take() { __tsan_acquire(this); }
+#else
+  void give() {}
+  void take() {}
+#endif
+};
+
+// Calls act(0), ..., act(count - 1), in any order, at least `grain` of them on one thread.
+template <class Act>
+void in_parallel(std::size_t count, std::size_t grain, const Act& act) {
+  using Range = tbb::blocked_range<std::size_t>;
+  Handover to_workers, from_workers;
+  const auto some_of = [&](const Range& some) {
+    for (std::size_t i = some.begin(); i != some.end(); ++i) act(i);
+  };
+  to_workers.give();
+  tbb::parallel_for(Range(0, count, grain), [&](const Range& some) ORRERY_UNSEEN {
+    to_workers.take();
+    some_of(some);
+    from_workers.give();
+  });
+  from_workers.take();
+}
+
+// Calls both, on two threads if there are.
+template <class First, class Second>
+void both_in_parallel(const First& first, const Second& second) {
+  Handover to_workers, from_workers;
+  const auto done = [&](const auto& work) ORRERY_UNSEEN {
+    to_workers.take();
+    work();
+    from_workers.give();
+  };
+  to_workers.give();
+  tbb::parallel_invoke([&]() ORRERY_UNSEEN { done(first); }, [&]() ORRERY_UNSEEN { done(second); });
+  from_workers.take();
+}
+
+template <class Iterator>
+void sort_in_parallel(Iterator begin, Iterator end) {
+#ifdef __SANITIZE_THREAD__
+  std::sort(begin, end);  // oneTBB moves elements where no handover can be told
+#else
+  tbb::parallel_sort(begin, end);
+#endif
+}
+
+}  // namespace orrery
