@@ -95,7 +95,7 @@ void Service::stop() {
 }
 
 Response Service::metrics() {
-  const Readings readings{.ready = !app_.draining() && !app_.admission().full(),
+  const Readings readings{.ready = app_.readiness() == "ok",
                           .renders_running = app_.admission().running(),
                           .renders_waiting = app_.admission().waiting(),
                           .orbits = app_.orbits().count(),

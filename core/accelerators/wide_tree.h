@@ -44,32 +44,23 @@ class WideTree {
     box_ = tree.nodes[0].box;
     nodes_.shrink_to_fit();
     blocks_.pack();
-    measure();
-    double held = 0;
-    for (const auto& item : tree.items) held += half_area(item.box);
-    looseness_ = looseness_as_built_ = area_ / held;
+    measure(primitives);
+    looseness_as_built_ = looseness_;
   }
 
   // Has the boxes follow the primitives, which stand in the order they had, to where they are now.
   void follow(const PrimitiveList<T>& moved) {
     const auto boxes = blocks_.follow(moved);
+    const auto box_now = [&](Child child, const Bounds<T>& before) {
+      if (!is_leaf(child)) return nodes_[child].box();
+      const auto& of_pack = boxes[Blocks<T>::pack_number(child)];
+      return of_pack.empty() ? before : of_pack[Blocks<T>::block_of(child)];
+    };
     for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)  // children come after their parents
-      for (std::size_t i = 0; i < kPlaces; ++i) {
-        if (!node->has(i)) continue;
-        if (!is_leaf(node->child[i]))
-          node->set_box(i, nodes_[node->child[i]].box());
-        else if (const auto& of_pack = boxes[Blocks<T>::pack_number(node->child[i])]; !of_pack.empty())
-          node->set_box(i, of_pack[Blocks<T>::block_of(node->child[i])]);
-      }
-    if (!is_leaf(root_))
-      box_ = nodes_[root_].box();
-    else if (const auto& of_pack = boxes[Blocks<T>::pack_number(root_)]; !of_pack.empty())
-      box_ = of_pack[Blocks<T>::block_of(root_)];
-    measure();
-    double held = 0;
-    for (const auto& primitive : moved)
-      if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
-    looseness_ = area_ / held;
+      for (std::size_t i = 0; i < kPlaces; ++i)
+        if (node->has(i)) node->set_box(i, box_now(node->child[i], node->box_of(i)));
+    box_ = box_now(root_, box_);
+    measure(moved);
   }
   // How much larger the boxes have become beside what they hold since the tree was built, by their surfaces,
   // to which the rays that enter them are proportional. (By what they hold and not by the root's box: of a
@@ -134,20 +125,22 @@ class WideTree {
     return kLeaf | blocks_.add(primitives, std::span(places).first(count));
   }
 
-  void measure() {
-    double sides = 0;
+  void measure(const PrimitiveList<T>& primitives) {
+    double area = 0, held = 0, sides = 0;
     std::size_t leaves = 0;
     const auto add = [&](Child child, const Bounds<T>& box) {
-      area_ += half_area(box);
+      area += half_area(box);
       if (!is_leaf(child)) return;
       sides += max_component(box.hi - box.lo);
       ++leaves;
     };
-    area_ = 0;
     add(root_, box_);
     for (const Node& node : nodes_)
       for (std::size_t i = 0; i < kPlaces; ++i)
         if (node.has(i)) add(node.child[i], node.box_of(i));
+    for (const auto& primitive : primitives)
+      if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
+    looseness_ = area / held;
     grain_ = static_cast<T>(sides / static_cast<double>(leaves));
   }
 
@@ -155,8 +148,7 @@ class WideTree {
   int depth_ = 0;
   Bounds<T> box_;
   T grain_ = 0;
-  double area_ = 0;                                // half the surface of all boxes
-  double looseness_ = 1, looseness_as_built_ = 1;  // area_ over that of the primitives' boxes
+  double looseness_ = 1, looseness_as_built_ = 1;  // surface of all boxes over that of the primitives' own
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };

@@ -86,7 +86,8 @@ struct TimeSpan {
   double moment(double time) const { return empty() ? first : std::clamp(time, first, last); }
   // The same where the motion begins again whenever it has ended.
   double moment_of_loop(double time) const {
-    if (empty() || (time >= first && time <= last)) return empty() ? first : time;
+    const double held = moment(time);
+    if (empty() || held == time) return held;
     const double into = std::fmod(time - first, last - first);
     return first + (into < 0 ? into + (last - first) : into);
   }

@@ -3,8 +3,8 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
-#include <chrono>
 
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/render/geometry.h"
@@ -57,7 +57,7 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
             down = (plan.height + kTileSide - 1) / kTileSide;
   std::atomic<int> done = 0;
   std::atomic<bool> stopped = false;
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   tbb::task_group_context context;
   Handover to_workers, from_workers;
   const auto render_tile = [&](int tile) {
@@ -85,8 +85,7 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   }
   if (stopped) throw Cancelled();
   stats.mean_cut /= static_cast<double>(plan.width) * plan.height;
-  stats.trace_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  stats.trace_ms = milliseconds_since(start);
   return {std::move(image), stats};
 }
 

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "core/accelerators/reordered.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/render/geometry.h"
 #include "core/render/occlusion_samples.h"
@@ -45,12 +46,12 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, dou
   auto& moment = moments.front();
   World<T>& world = moment.worlds[&type];
   if (!world.accelerator) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const World<T> before = world_before(moments, type);
     auto& geometry = moment.geometries[parts.scene->models.empty() ? nullptr : &type];
     if (!geometry) geometry = make_geometry<T>(parts.scene, type, time, before.geometry.get());
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
-    build_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    build_ms += milliseconds_since(start);
   }
   return world;
 }
@@ -63,9 +64,9 @@ PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, 
   const auto lock = lock_unless(parts.trying, stop);
   PredictorPtr<T>& network = made_of<T>(parts).network;
   if (!network) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     network = network_predictor<T>(sample_occlusion(world, plan, stop));
-    build_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    build_ms += milliseconds_since(start);
   }
   return network;
 }
@@ -95,8 +96,8 @@ template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, con
 template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
 
 std::unique_lock<std::mutex> lock_unless(std::mutex& mutex, const std::function<bool()>& stop) {
-  std::unique_lock lock(mutex, std::try_to_lock);
-  while (!lock.owns_lock() && !lock.try_lock()) {
+  std::unique_lock lock(mutex, std::defer_lock);
+  while (!lock.try_lock()) {
     if (stop && stop()) throw Cancelled();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

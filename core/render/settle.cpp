@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
 #include "core/accelerators/registry.h"
+#include "core/base/clock.h"
 #include "core/render/prepare.h"
 #include "core/render/trial.h"
 
@@ -60,9 +60,9 @@ double settle(const PreparedScene& scene, Plan& plan, const std::function<bool()
   const auto decide = [&]<class T>(std::optional<Decision>& chosen, T) {
     const auto lock = lock_unless(parts.trying, stop);
     if (!chosen) {
-      const auto start = std::chrono::steady_clock::now();
+      const auto start = Clock::now();
       chosen = choose<T>(parts, plan, stop);
-      took_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+      took_ms = milliseconds_since(start);
     }
     return *chosen;
   };

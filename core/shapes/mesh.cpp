@@ -15,24 +15,9 @@ class MeshSet final : public ShapeSet {
   int add(Params& p, const MeshSource& source) override {
     const std::size_t before = table_.triangles.size();
     MeshObject object = reader_.read(p, source);
-    TriangleMesh& mesh = object.mesh;
-    if (mesh.triangles.empty()) return 0;
-    const bool moves = !object.keys.empty();
-    if (!moves) {
-      left_out_ += drop_degenerate(mesh);
-      drop_unused(mesh);
-    }
-    MovingMesh moving{mesh.triangles, std::move(object.keys), object.crease_degrees, {}, 0};
-    if (object.crease_degrees) {
-      moving.always = places_of(moves ? *moving.keys.values[0].positions : mesh.positions);
-      for (const VertexKey& key : moving.keys.values) divide_places(moving.always, *key.positions);
-      const std::uint64_t pairs = count_pairs(mesh, moving.always);
-      moving.most_pairs = kRoomForMoments * pairs;
-      if (!may_compare(moves ? moving.most_pairs : pairs, p)) return 0;
-      smooth_normals(mesh, *object.crease_degrees, moving.always);
-    }
-    if (moves) moving_.emplace(table_.parts.size(), std::move(moving));
-    append(mesh);
+    if (object.mesh.triangles.empty()) return 0;
+    if (!(object.keys.empty() ? take_resting(object, p) : take_moving(object, p))) return 0;
+    append(object.mesh);
     return static_cast<int>(table_.triangles.size() - before);
   }
   std::vector<double> key_times() const override {
@@ -90,6 +75,28 @@ class MeshSet final : public ShapeSet {
   static constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 30;
   static constexpr std::uint64_t kRoomForMoments = 16;  // times the pairs that are always together
 
+  // Both false if there was a problem, which is noted.
+  bool take_resting(MeshObject& object, Params& p) {
+    left_out_ += drop_degenerate(object.mesh);
+    drop_unused(object.mesh);
+    if (!object.crease_degrees) return true;
+    const Places places = places_of(object.mesh.positions);
+    if (!may_compare(count_pairs(object.mesh, places), p)) return false;
+    smooth_normals(object.mesh, *object.crease_degrees, places);
+    return true;
+  }
+  bool take_moving(MeshObject& object, Params& p) {
+    MovingMesh moving{object.mesh.triangles, std::move(object.keys), object.crease_degrees, {}, 0};
+    if (object.crease_degrees) {
+      moving.always = places_of(*moving.keys.values[0].positions);
+      for (const VertexKey& key : moving.keys.values) divide_places(moving.always, *key.positions);
+      moving.most_pairs = kRoomForMoments * count_pairs(object.mesh, moving.always);
+      if (!may_compare(moving.most_pairs, p)) return false;
+    }
+    moving_.emplace(table_.parts.size(), std::move(moving));
+    return true;
+  }
+
   // Notes that smoothing compares so many pairs of triangles; false, and a problem, if there are too many
   // now.
   bool may_compare(std::uint64_t pairs, Params& p) {
@@ -144,7 +151,7 @@ class MeshSet final : public ShapeSet {
   }
 
   MeshReader reader_;
-  MeshTable<double> table_;                   // as if nothing moved
+  MeshTable<double> table_;                   // as if nothing moved; what moves is not smoothed
   std::map<std::size_t, MovingMesh> moving_;  // by part
   std::size_t left_out_ = 0;
   std::uint64_t pairs_ = 0;  // that smoothing compares

@@ -26,12 +26,6 @@ template <class N>
   return select(undecided, N(fma(a, b, -ab) - fma(c, d, -cd)), difference);
 }
 
-template <class N>
-[[gnu::always_inline]] inline N magnitude(const N& x) {
-  using std::abs;
-  return abs(x);
-}
-
 // One coordinate of a point as seen from `origin`.
 template <class N, class O>
 [[gnu::always_inline]] inline N moved(const Vec3<N>& point, const Vec3<O>& origin, int axis) {
@@ -113,6 +107,7 @@ class SharedAxes {
 template <class N, class Axes>
 [[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Axes& axes, const Vec3<N>& a,
                                                                 const Vec3<N>& b, const Vec3<N>& c) {
+  using std::abs;
   using T = ScalarOf<N>;
   const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
   const Sheared<N> sa = axes(a), sb = axes(b), sc = axes(c);
@@ -130,9 +125,8 @@ template <class N, class Axes>
   auto met = inside && determinant != zero && t > zero;
   // Of a long thin triangle, whose determinant is small, t may be far off: next to the triangle, where its
   // sign is in doubt, the plane decides.
-  const N farthest =
-      max_first(max_first(detail::magnitude(sa.z), detail::magnitude(sb.z)), detail::magnitude(sc.z));
-  const auto near = met && detail::magnitude(t * axes.along()) < farthest * N(T(1.0 / 1024));
+  const N farthest = max_first(max_first(abs(sa.z), abs(sb.z)), abs(sc.z));
+  const auto near = met && abs(t * axes.along()) < farthest * N(T(1.0 / 1024));
   if (any(near)) [[unlikely]]
     met = met && (!near || detail::plane_ahead(sa, sb, sc, axes.along()));
   return {select(met, t, infinity), u * inverse, v * inverse, w * inverse};

@@ -45,12 +45,11 @@ class Admission {
   Ticket wait_for_turn(std::unique_lock<std::mutex>& lock, const Stop& stop);
   void leave(double milliseconds);
   double retry_after_s() const;
-
-  const int most_running_, most_waiting_;
-  bool overrun() const {
+  bool overrun() const {  // with mutex_ held
     return running_ >= most_running_ && static_cast<int>(waiting_.size()) >= most_waiting_;
   }
 
+  const int most_running_, most_waiting_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   int running_ = 0;

@@ -61,6 +61,11 @@ void App::drain() {
   orbits_.wake();
 }
 
+std::string_view App::readiness() const {
+  if (draining_) return "draining";
+  return admission_.full() ? "full" : "ok";
+}
+
 void App::require_open() const {
   if (draining_) throw Busy("The service is about to end and takes no new work", 5);
 }

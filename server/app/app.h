@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/params/document.h"
 #include "server/app/admission.h"
@@ -51,6 +52,8 @@ class App {
 
   // The service is about to end: no new work; what runs goes on.
   bool draining() const { return draining_; }
+  // Whether new work is taken: "ok", or why not: "draining" or "full".
+  std::string_view readiness() const;
   void drain();
   // What still runs ends now.
   void end() { ends_ = true; }

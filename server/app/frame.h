@@ -1,18 +1,12 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 
+#include "core/base/clock.h"
 #include "core/image/files.h"
 #include "core/render/renderer.h"
 
 namespace orrery {
-
-using Clock = std::chrono::steady_clock;
-
-inline double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // For pictures that are shown once and thrown away: the time to encode counts more than the bytes.
 inline constexpr PngOptions kFrameOfStream{.level = 1};

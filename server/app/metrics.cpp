@@ -106,6 +106,7 @@ void Metrics::count_request(std::string_view route, std::string_view method, int
 }
 
 std::string Metrics::text(const Readings& readings) const {
+  const std::lock_guard lock(reading_);
   Families& f = *families_;
   const auto set = [](Gauge& gauge, auto value) { gauge.Set(static_cast<double>(value)); };
   set(f.ready, readings.ready);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -32,6 +33,7 @@ class Metrics {
  private:
   struct Families;
   std::unique_ptr<Families> families_;
+  mutable std::mutex reading_;  // one at a time brings gauges up to date
 };
 
 }  // namespace orrery

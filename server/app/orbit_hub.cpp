@@ -6,7 +6,7 @@ namespace orrery {
 
 std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
   const std::lock_guard lock(mutex_);
-  casts_.remove_if([](const auto& cast) { return cast.expired(); });
+  forget_ended();
   for (const auto& known : casts_) {
     const auto cast = known.lock();
     if (!cast || cast->spec().key != spec.key) continue;
@@ -19,9 +19,13 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
   return OrbitCast::join(cast);
 }
 
+void OrbitHub::forget_ended() {
+  casts_.remove_if([](const auto& cast) { return cast.expired(); });
+}
+
 std::size_t OrbitHub::count() {
   const std::lock_guard lock(mutex_);
-  casts_.remove_if([](const auto& cast) { return cast.expired(); });
+  forget_ended();
   return casts_.size();
 }
 

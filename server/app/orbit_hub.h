@@ -22,6 +22,8 @@ class OrbitHub {
   void wake();
 
  private:
+  void forget_ended();  // with mutex_ held
+
   const OrbitCast::Means means_;
   const int most_;
   std::mutex mutex_;

@@ -6,8 +6,8 @@
 namespace orrery {
 namespace {
 
-Response status(int code, const char* word) {
-  Response response = json_response(code, std::string("{\"status\":\"") + word + "\"}\n");
+Response status(std::string_view word) {
+  Response response = json_response(word == "ok" ? 200 : 503, "{\"status\":\"" + std::string(word) + "\"}\n");
   response.set("Cache-Control", "no-store");
   return response;
 }
@@ -15,11 +15,8 @@ Response status(int code, const char* word) {
 }  // namespace
 
 void add_health_routes(Router& router, App& app) {
-  router.add("GET", "/healthz", [](Request&) { return status(200, "ok"); });
-  router.add("GET", "/readyz", [&app](Request&) {
-    if (app.draining()) return status(503, "draining");
-    return app.admission().full() ? status(503, "full") : status(200, "ok");
-  });
+  router.add("GET", "/healthz", [](Request&) { return status("ok"); });
+  router.add("GET", "/readyz", [&app](Request&) { return status(app.readiness()); });
 }
 
 }  // namespace orrery

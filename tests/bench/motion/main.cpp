@@ -19,9 +19,8 @@ namespace {
 constexpr int kFrames = 40, kTiles = 64;
 constexpr double kLeastSeconds = 0.1;  // of a run
 
-using Made = World<float>;
-
-Made make(const std::shared_ptr<const Scene>& scene, const Plan& plan, double time, const Made& before) {
+World<float> make(const std::shared_ptr<const Scene>& scene, const Plan& plan, double time,
+                  const World<float>& before) {
   const auto geometry = make_geometry<float>(scene, *plan.accelerator, time, before.geometry.get());
   return {geometry, build_or_refit(*plan.accelerator, geometry->primitives, before.accelerator.get())};
 }
@@ -33,7 +32,7 @@ int run(const std::string& path, const std::string& what) {
   request.precision = Precision::single_precision;
   request.accelerator = "bottom-up";
   const Plan plan = make_plan(*scene, request);
-  Made before, followed;
+  World<float> before, followed;
   int refitted = 0;
   double worst = 1;
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -45,7 +44,7 @@ int run(const std::string& path, const std::string& what) {
     worst = std::max(worst, followed.accelerator->facts().worsening);
   }
   const PrimitiveList<float>& primitives = followed.geometry->primitives;
-  const Made fresh{followed.geometry, build_or_refit<float>(*plan.accelerator, primitives, nullptr)};
+  const World<float> fresh{followed.geometry, build_or_refit<float>(*plan.accelerator, primitives, nullptr)};
   const auto seconds_of = [&](bool ours) {
     const double start = thread_seconds();
     if (what == "rays")
