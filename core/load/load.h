@@ -16,7 +16,7 @@ std::shared_ptr<const Scene> load_scene(const Document& document, const MeshSour
 std::shared_ptr<const Scene> load_scene(std::string_view json, const MeshSource& meshes = MeshSource(),
                                         const JsonLimits& limits = {});
 
-// Reads what a request says beside the scene: {camera: {azimuth_degrees, elevation_degrees, distance,
+// Reads what a request says beside the scene: {camera: {azimuth_degrees, elevation_degrees, distance, pan,
 // fov_degrees}, image: {width, height}, render: {...}}. The keys scene and scene_id belong to the caller and
 // are allowed. Throws as above.
 RenderRequest read_request(const Document& document);

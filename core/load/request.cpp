@@ -20,6 +20,7 @@ void read_camera(Params& p, RenderRequest& request) {
   orbit.elevation_degrees = p.number("elevation_degrees", "Lift toward up.", {.min = -180, .max = 180}, 0.0);
   orbit.distance = p.number("distance", "Factor of the own distance from look_at.",
                             {.min = kMinOrbitDistance, .max = kMaxOrbitDistance}, 1.0);
+  orbit.pan = p.point("pan", "Metres by which eye and look_at are moved.", Vec3d{0, 0, 0});
   take(p, "fov_degrees", request.fov_degrees, [&] {
     return p.number("fov_degrees", "Vertical angle of the picture.",
                     {.min = 0, .max = 180, .exclusive_min = true, .exclusive_max = true}, derived(45.0));

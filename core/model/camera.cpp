@@ -38,6 +38,7 @@ CameraFrame frame_at(const Camera& camera, const Orbit& orbit) {
   frame.eye = camera.look_at + frame.back * frame.distance;
   const bool own_place = turn.sine == 0 && turn.cosine == 1 && lift.sine == 0 && orbit.distance == 1;
   if (own_place) frame.eye = camera.eye;
+  frame.eye = frame.eye + orbit.pan;
   frame.projection = camera.projection;
   frame.half_extent = camera.projection == Projection::perspective ? tangent_degrees(camera.fov_degrees / 2)
                                                                    : camera.height / 2 * orbit.distance;

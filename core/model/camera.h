@@ -17,9 +17,10 @@ struct Camera {
 
 // A place on an orbit, relative to the scene's own camera: a turn about `up` through `look_at` (anticlockwise
 // seen from above, x' = x cos + z sin, z' = -x sin + z cos for up = y), a lift toward `up`, and a factor of
-// the own distance.
+// the own distance; all of it moved by `pan`, in metres of the scene's space.
 struct Orbit {
   double azimuth_degrees = 0, elevation_degrees = 0, distance = 1;
+  Vec3d pan{0, 0, 0};
 };
 
 // The camera's place and directions, unit and at right angles to each other.

@@ -121,6 +121,8 @@ class Planner {
     checks_.within("/camera/azimuth_degrees", orbit.azimuth_degrees, -kMaxOrbitDegrees, kMaxOrbitDegrees);
     checks_.within("/camera/elevation_degrees", orbit.elevation_degrees, -180.0, 180.0);
     checks_.within("/camera/distance", orbit.distance, kMinOrbitDistance, kMaxOrbitDistance);
+    for (const double metres : {orbit.pan.x, orbit.pan.y, orbit.pan.z})
+      checks_.within("/camera/pan", metres, -kMaxPan, kMaxPan);
     plan_.camera = frame_at(camera, orbit);
   }
 

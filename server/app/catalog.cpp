@@ -55,7 +55,8 @@ ordered_json defaults() {
           {"prediction", name_of(own.prediction)},
           {"azimuth", Orbit{}.azimuth_degrees},
           {"elevation", Orbit{}.elevation_degrees},
-          {"distance", Orbit{}.distance}};
+          {"distance", Orbit{}.distance},
+          {"pan", {0, 0, 0}}};
 }
 
 }  // namespace

@@ -36,6 +36,8 @@ std::string canonical_request(const Scene& scene, const RenderRequest& request) 
   add("azimuth", text_of(request.orbit.azimuth_degrees));
   add("elevation", text_of(request.orbit.elevation_degrees));
   add("distance", text_of(request.orbit.distance));
+  const Vec3d& pan = request.orbit.pan;
+  add("pan", text_of(pan.x) + "," + text_of(pan.y) + "," + text_of(pan.z));
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "core/load/load.h"
 #include "core/params/json.h"
@@ -18,6 +19,7 @@ constexpr std::array kOptions{
                  "Lift the camera toward up; 90 is straight above"},
     RenderOption{"distance", "camera", "distance", "--distance", "FACTOR",
                  "Camera distance as a factor of the scene's own"},
+    RenderOption{"pan", "camera", "pan", "--pan", "X,Y,Z", "Move the camera and what it looks at, in metres"},
     RenderOption{"fov", "camera", "fov_degrees", "--fov", "DEGREES", "Vertical angle of the picture"},
     RenderOption{"width", "image", "width", "--width", "PIXELS", "Width of the picture"},
     RenderOption{"height", "image", "height", "--height", "PIXELS", "Height of the picture"},
@@ -39,9 +41,15 @@ constexpr std::array kOptions{
     RenderOption{"time", "render", "time", "--time", "SECONDS", "Moment of what moves"},
 };
 
-// A number or a truth value if the text is one and nothing else, or else the text, which the reader then
-// refuses in words.
+// A number, a truth value or a list of these with commas between them, if the text is one and nothing else,
+// or else the text, which the reader then refuses in words.
 nlohmann::json value_of(const std::string& text) {
+  if (const std::size_t comma = text.find(','); comma != std::string::npos) {
+    nlohmann::json list = nlohmann::json::array();
+    std::istringstream parts(text + ",");
+    for (std::string part; std::getline(parts, part, ',');) list.push_back(value_of(part));
+    return list;
+  }
   if (text == "true" || text == "false") return text == "true";
   const char* const end = text.data() + text.size();
   std::int64_t whole = 0;  // a double would round it
@@ -72,9 +80,11 @@ InputError named_for(Naming naming, const InputError& error) {
   std::vector<Problem> problems = error.problems();
   for (Problem& problem : problems) {
     for (const RenderOption& option : kOptions) {
-      if (problem.pointer != "/" + std::string(option.section) + "/" + std::string(option.key)) continue;
-      problem.pointer = naming == Naming::query ? "/" + std::string(option.name)
-                                                : std::string(option.flags.substr(0, option.flags.find(',')));
+      const std::string own = "/" + std::string(option.section) + "/" + std::string(option.key);
+      if (!(problem.pointer + "/").starts_with(own + "/")) continue;
+      problem.pointer.replace(0, own.size(),
+                              naming == Naming::query ? "/" + std::string(option.name)
+                                                      : option.flags.substr(0, option.flags.find(',')));
       break;
     }
   }

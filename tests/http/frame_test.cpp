@@ -37,9 +37,9 @@ TEST_F(FramePng, ETagNamesThePictureHoweverItIsAskedFor) {
   EXPECT_EQ(etag("?azimuth=-0"), plain);
   EXPECT_EQ(etag("?technique=whitted&height=32"), plain);
   EXPECT_EQ(etag("?accelerator=octree&reorder=true&prediction=last"), plain);
-  for (const char* query :
-       {"?azimuth=1", "?elevation=1", "?distance=2", "?fov=46", "?width=49", "?height=33", "?samples=2",
-        "?technique=raycast", "?max_depth=1", "?min_contribution=0.5", "?seed=1", "?precision=double"})
+  for (const char* query : {"?azimuth=1", "?elevation=1", "?distance=2", "?pan=1,0,0", "?fov=46", "?width=49",
+                            "?height=33", "?samples=2", "?technique=raycast", "?max_depth=1",
+                            "?min_contribution=0.5", "?seed=1", "?precision=double"})
     EXPECT_NE(etag(query), plain) << query;
 }
 
@@ -83,6 +83,12 @@ TEST_F(FramePng, BadQueriesAreToldWhatIsWrong) {
   };
   EXPECT_EQ(pointer_for("?azimuth=1abc"), "/azimuth");
   EXPECT_EQ(pointer_for("?azimuth=nan"), "/azimuth");
+  EXPECT_EQ(pointer_for("?pan=1"), "/pan");
+  EXPECT_EQ(pointer_for("?pan=1,2,3,4"), "/pan");
+  EXPECT_EQ(pointer_for("?pan=1,x,3"), "/pan/1");
+  EXPECT_EQ(pointer_for("?pan=1,,3"), "/pan/1");
+  EXPECT_EQ(pointer_for("?pan=1,2,1e13"), "/pan/2");
+  EXPECT_EQ(pointer_for("?azimuth=1,2"), "/azimuth");
   EXPECT_EQ(pointer_for("?azimuth=inf"), "/azimuth");
   EXPECT_EQ(pointer_for("?azimuth=1e999"), "/azimuth");
   EXPECT_EQ(pointer_for("?azimuth="), "/azimuth");

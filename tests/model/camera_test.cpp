@@ -58,6 +58,20 @@ TEST(Orbit, KeepsTheCameraOfTheSceneToTheBit) {
   EXPECT_EQ(frame_at(camera, {360, 0, 1}).eye, camera.eye);
 }
 
+TEST(Orbit, PansEyeAndTargetAlike) {
+  Camera camera = looking_at_origin({0.1, 0.7, 3.3});
+  const Vec3d pan{0.5, -2, 8};
+  Camera moved = camera;
+  moved.eye = moved.eye + pan;
+  moved.look_at = moved.look_at + pan;
+  const CameraFrame own = frame_at(camera, {.pan = pan}), there = frame_at(moved, {});
+  EXPECT_EQ(own.eye, there.eye);
+  expect_near(own.back, there.back, 1e-15);
+  const CameraFrame turned = frame_at(camera, {40, 10, 2, pan}), unmoved = frame_at(camera, {40, 10, 2});
+  EXPECT_EQ(turned.eye, unmoved.eye + pan);
+  EXPECT_EQ(turned.back, unmoved.back);
+}
+
 TEST(Orbit, FullTurnsEndWhereTheyBegan) {
   covers("E10");
   const Camera camera = looking_at_origin({1, 2, 3});
