@@ -1,46 +1,13 @@
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <atomic>
+#include <vector>
 
 #include "core/base/clock.h"
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "core/render/geometry.h"
 #include "core/render/prepare.h"
 #include "core/render/tile.h"
 
 namespace orrery {
-
-struct WorkerPool::Parts {
-  explicit Parts(int threads)
-      : allowed(
-            tbb::global_control::max_allowed_parallelism,
-            1 + static_cast<std::size_t>(threads > 0 ? threads : tbb::this_task_arena::max_concurrency())),
-        arena(threads > 0 ? threads : tbb::task_arena::automatic, 0) {}
-  tbb::global_control allowed;  // the caller and its workers, more than the cores if asked for
-  tbb::task_arena arena;
-};
-
-WorkerPool::WorkerPool(int threads) : parts_(std::make_unique<Parts>(threads)) {}
-WorkerPool::~WorkerPool() = default;
-int WorkerPool::threads() const { return parts_->arena.max_concurrency(); }
-void WorkerPool::enqueue(std::function<void()> task) {
-  struct Job {
-    Handover to_worker;
-    std::function<void()> task;
-    void run() {
-      to_worker.take();
-      const std::unique_ptr<Job> owned(this);
-      task();
-    }
-  };
-  Job* const job = new Job{{}, std::move(task)};
-  job->to_worker.give();
-  parts_->arena.enqueue([job]() ORRERY_UNSEEN { job->run(); });
-}
-
 namespace {
 
 template <class T>
@@ -51,35 +18,23 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   stats.accelerator = plan.accelerator;
   stats.structure = facts_of(world);
   Image image(plan.width, plan.height, format);
-  tbb::enumerable_thread_specific<std::unique_ptr<TileRenderer<T>>> renderers(
-      [&] { return std::make_unique<TileRenderer<T>>(world, plan); });
+  std::vector<std::unique_ptr<TileRenderer<T>>> renderers(static_cast<std::size_t>(pool.threads()));
   const int across = (plan.width + kTileSide - 1) / kTileSide,
             down = (plan.height + kTileSide - 1) / kTileSide;
   std::atomic<int> done = 0;
   std::atomic<bool> stopped = false;
   const auto start = Clock::now();
-  tbb::task_group_context context;
-  Handover to_workers, from_workers;
-  const auto render_tile = [&](int tile) {
-    if (control.stop && control.stop()) {
-      stopped = true;
-      context.cancel_group_execution();
-    }
-    if (stopped) return;
-    renderers.local()->render(tile % across * kTileSide, tile / across * kTileSide, control.stop, image);
+  pool.for_each(across * down, control.background, [&](int tile, int thread) {
+    if (control.stop && !stopped && control.stop()) stopped = true;
+    if (stopped) return false;
+    auto& renderer = renderers[static_cast<std::size_t>(thread)];
+    if (!renderer) renderer = std::make_unique<TileRenderer<T>>(world, plan);
+    renderer->render(tile % across * kTileSide, tile / across * kTileSide, control.stop, image);
     if (control.progress) control.progress(++done, across * down);
-    from_workers.give();
-  };
-  const auto on_worker = [&](int tile) ORRERY_UNSEEN {
-    to_workers.take();
-    render_tile(tile);
-  };
-  to_workers.give();
-  pool.parts().arena.execute([&]() ORRERY_UNSEEN {
-    tbb::parallel_for(0, across * down, on_worker, tbb::auto_partitioner(), context);
+    return true;
   });
-  from_workers.take();
   for (const auto& renderer : renderers) {
+    if (!renderer) continue;
     stopped = stopped || renderer->stopped();
     renderer->add_to(stats);
   }

@@ -30,7 +30,7 @@ class PreparedScene {
   std::unique_ptr<Parts> parts_;
 };
 
-// The threads that render. One for a process; frames from several callers share them fairly.
+// The threads that render. One for a process; frames from several callers share them. Safe from any thread.
 class WorkerPool {
  public:
   // threads 0: one a core.
@@ -41,11 +41,14 @@ class WorkerPool {
 
   // Has `task` done by one of the threads, soon. It must not throw and must not wait.
   void enqueue(std::function<void()> task);
-
-  struct Parts;
-  Parts& parts() const { return *parts_; }
+  // Calls work(step, thread) for each 0 <= step < count on the threads, 0 <= thread < threads(), and returns
+  // after the last. Callers share the threads evenly; those in the background have what the others leave.
+  // Once a step returns false or throws, no more are begun; what was thrown first is thrown here.
+  using Step = std::function<bool(int step, int thread)>;
+  void for_each(int count, bool background, const Step& work);
 
  private:
+  struct Parts;
   std::unique_ptr<Parts> parts_;
 };
 
@@ -53,6 +56,7 @@ class WorkerPool {
 struct RenderControl {
   std::function<bool()> stop;                         // asked before each tile; true ends it with Cancelled
   std::function<void(int done, int total)> progress;  // tiles
+  bool background = false;                            // others come first
 };
 
 struct RenderStats {
