@@ -7,7 +7,9 @@
 #include <thread>
 
 #include "core/base/version.h"
+#include "server/http/cors.h"
 #include "server/http/problem.h"
+#include "server/routes/access.h"
 #include "server/routes/routes.h"
 
 namespace orrery {
@@ -43,7 +45,7 @@ HttpServer::Options options_of(const Settings& settings) {
           .max_body = settings.body_bytes,
           .max_bodies = std::max({settings.bodies_bytes, settings.body_bytes, settings.asset_bytes}),
           .max_connections = settings.connections,
-          .grace = settings.grace};
+          .grace = settings.grace_seconds};
 }
 
 HttpServer::Options health_options_of(const Settings& settings) {
@@ -88,6 +90,18 @@ void Service::run() {
   health.join();
 }
 
+void Service::reload() {
+  nlohmann::ordered_json fields = nlohmann::ordered_json::object();
+  LogLevel level = LogLevel::info;
+  try {
+    app_.access().reload();
+  } catch (const std::exception& error) {
+    level = LogLevel::error;
+    fields["error"] = error.what();
+  }
+  log_.write(level, level == LogLevel::info ? "reloaded" : "not reloaded", fields);
+}
+
 void Service::stop() {
   log_.write(LogLevel::info, "draining", nlohmann::ordered_json::object());
   app_.drain();
@@ -99,10 +113,14 @@ Response Service::metrics() {
                           .renders_running = app_.admission().running(),
                           .renders_waiting = app_.admission().waiting(),
                           .orbits = app_.orbits().count(),
+                          .jobs = app_.jobs().under_way(),
                           .connections = server_.connections(),
                           .connections_refused = server_.refused(),
+                          .rays = app_.rays(),
                           .scene_bytes = app_.scenes().bytes(),
-                          .asset_bytes = app_.assets().bytes()};
+                          .asset_bytes = app_.assets().bytes(),
+                          .picture_bytes = app_.pictures().bytes(),
+                          .job_bytes = app_.jobs().bytes()};
   return text_response(200, "text/plain; version=0.0.4; charset=utf-8", metrics_.text(readings))
       .set("Cache-Control", "no-store");
 }
@@ -110,17 +128,23 @@ Response Service::metrics() {
 Response Service::answer(const Router& router, Request& request) {
   Response response;
   try {
-    response = router.dispatch(request);
+    if (auto answer = preflight(request, app_.settings().cors_origins)) {
+      response = std::move(*answer);
+    } else {
+      if (&router == &router_) require_access(app_.access(), request);
+      response = router.dispatch(request);
+    }
   } catch (...) {
     response = problem_response(std::current_exception(), request.id);
   }
   add_common_headers(request, response);
+  allow_origin(request, app_.settings().cors_origins, response);
   return response;
 }
 
 void Service::note(const Request& request, const Response& response, std::uint64_t bytes, bool gone) {
   const double ms = milliseconds_since(request.start);
-  metrics_.count_request(request.route, request.method, response.status, ms / 1000, response.rays, gone);
+  metrics_.count_request(request.route, request.method, response.status, ms / 1000, gone);
   nlohmann::ordered_json fields = {{"id", request.id},
                                    {"method", request.method},
                                    {"path", request.path.substr(0, 200)},

@@ -12,15 +12,16 @@ namespace orrery {
 // of its own, so that nothing can silence it. Both listen once it is made.
 class Service {
  public:
-  // Throws Error if an address cannot be had.
+  // Throws Error if an address cannot be had, InputError for files that cannot be used.
   Service(const Settings& settings, const Log& log);
 
   int port() const { return server_.port(); }
   int health_port() const { return health_.port(); }
   // Serves until stop() was called and what ran then is done.
   void run();
-  // From any thread.
+  // Both from any thread.
   void stop();
+  void reload();  // reads the files of tokens and keys again; the log says if that failed
 
  private:
   HttpServer::Handler handler_of(const Router& router);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 
 namespace orrery {
 
+class Params;
+
 // Reads a scene, strictly; meshes that it names come from `meshes`. Throws InputError with up to 20 problems,
 // each with its JSON Pointer; MalformedJson if the text is not JSON.
 std::shared_ptr<const Scene> load_scene(const Document& document, const MeshSource& meshes = MeshSource());
@@ -18,8 +21,8 @@ std::shared_ptr<const Scene> load_scene(std::string_view json, const MeshSource&
 
 // Reads what a request says beside the scene: {camera: {azimuth_degrees, elevation_degrees, distance, pan,
 // fov_degrees}, image: {width, height}, render: {...}}. The keys scene and scene_id belong to the caller and
-// are allowed. Throws as above.
-RenderRequest read_request(const Document& document);
+// are allowed, and `more` may read others. Throws as above.
+RenderRequest read_request(const Document& document, const std::function<void(Params&)>& more = {});
 
 // The JSON Schema of scenes, written from the very code that reads them.
 std::string scene_schema();

@@ -69,7 +69,7 @@ void read_render(Params& p, RenderRequest& request) {
 
 }  // namespace
 
-RenderRequest read_request(const Document& document) {
+RenderRequest read_request(const Document& document, const std::function<void(Params&)>& more) {
   RenderRequest request;
   read_document(document, [&](Params& p) {
     p.any("scene", "The scene itself.");
@@ -78,6 +78,7 @@ RenderRequest read_request(const Document& document) {
                       [&](Params& c) { read_camera(c, request); });
     p.optional_object("image", "Size of the picture.", [&](Params& i) { read_image(i, request); });
     p.optional_object("render", "How the picture is made.", [&](Params& r) { read_render(r, request); });
+    if (more) more(p);
   });
   return request;
 }

@@ -2,10 +2,29 @@
 
 #include <algorithm>
 #include <chrono>
-
-#include "core/base/error.h"
+#include <cmath>
+#include <map>
 
 namespace orrery {
+namespace {
+
+constexpr double kRaysAByte = 1;        // of JSON or of a mesh: measured between 0.5 and 2
+constexpr double kExpectedRate = 10e6;  // rays a second, before anything was measured
+constexpr double kMemory_s = 10;        // seconds of work after which a measurement has faded to 1/e
+
+std::string in_millions(double rays) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g million", rays / 1e6);
+  return text;
+}
+
+}  // namespace
+
+double cost_of(const Plan& plan) {
+  return kLeastCost + double(plan.width) * plan.height * plan.samples * (plan.max_depth + 1);
+}
+
+double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
 
 int Admission::running() const {
   const std::lock_guard lock(mutex_);
@@ -13,54 +32,151 @@ int Admission::running() const {
 }
 int Admission::waiting() const {
   const std::lock_guard lock(mutex_);
-  return static_cast<int>(waiting_.size());
+  return static_cast<int>(std::count_if(queue_.begin(), queue_.end(),
+                                        [](const Waiting& w) { return w.state == Waiting::waits; }));
 }
 bool Admission::full() const {
   const std::lock_guard lock(mutex_);
-  return overrun();
+  return running_ >= limits_.running && !fits(kLeastCost);
 }
 
-Admission::Ticket Admission::enter(const Stop& stop) {
+Admission::Ticket Admission::enter(const Demand& demand, const Stop& stop) {
   std::unique_lock lock(mutex_);
-  if (overrun())
-    throw Busy(std::to_string(waiting_.size()) + " renders wait already (queue)", retry_after_s());
-  return wait_for_turn(lock, stop);
+  if (!place_free(demand.lane) || !queue_.empty()) make_room(demand);
+  return wait_for_turn(lock, demand, true, stop);
 }
 
-Admission::Ticket Admission::enter_again(const Stop& stop) {
+Admission::Ticket Admission::enter_again(const Demand& demand, const Stop& stop) {
   std::unique_lock lock(mutex_);
-  return wait_for_turn(lock, stop);
+  return wait_for_turn(lock, demand, false, stop);
 }
 
-Admission::Ticket Admission::wait_for_turn(std::unique_lock<std::mutex>& lock, const Stop& stop) {
+Admission::Ticket Admission::wait_for_turn(std::unique_lock<std::mutex>& lock, const Demand& demand,
+                                           bool may_be_dropped, const Stop& stop) {
   constexpr std::chrono::milliseconds kAsk{20};
-  const auto place = waiting_.insert(waiting_.end(), 0);
-  while (place != waiting_.begin() || running_ >= most_running_) {
-    changed_.wait_for(lock, kAsk);
+  const auto place = queue_.emplace(queue_.end(), demand, may_be_dropped, virtual_finish(demand));
+  start_next();
+  bool give_up = false;
+  while (place->state == Waiting::waits && !give_up) {
+    place->changed.wait_for(lock, kAsk);
     lock.unlock();
-    const bool give_up = stop();
+    give_up = stop();
     lock.lock();
-    if (!give_up) continue;
-    waiting_.erase(place);
-    changed_.notify_all();
-    throw Cancelled();
   }
-  waiting_.erase(place);
-  ++running_;
-  changed_.notify_all();
-  return Ticket(*this);
+  const auto state = place->state;
+  queue_.erase(place);
+  if (state == Waiting::starts) return Ticket(*this, demand.lane, demand.cost);  // who gives up finds it soon
+  start_next();
+  if (state == Waiting::waits) throw Cancelled();
+  throw ClientBusy("Others wait for their turn, and you had asked for more than they (queue_rays)",
+                   retry_after_s());
 }
 
-void Admission::leave(double milliseconds) {
+void Admission::start_next() {
+  for (auto it = next(); it != queue_.end(); it = next()) {
+    it->state = Waiting::starts;
+    virtual_time_[static_cast<int>(it->demand.lane)] = it->finish;
+    if (running_++ == 0) measured_ = Clock::now();
+    if (it->demand.lane == Lane::batch) ++running_batch_;
+    it->changed.notify_one();
+  }
+}
+
+void Admission::leave(Lane lane, double cost) {
   const std::lock_guard lock(mutex_);
+  measure(cost);
   --running_;
-  mean_ms_ += (milliseconds - mean_ms_) / 8;
-  changed_.notify_all();
+  if (lane == Lane::batch) --running_batch_;
+  start_next();
+}
+
+bool Admission::place_free(Lane lane) const {
+  if (running_ >= limits_.running) return false;
+  return lane == Lane::interactive || running_batch_ < std::max(1, limits_.running / 2);
+}
+
+Admission::Queue::iterator Admission::next() {
+  auto best = queue_.end();
+  const bool batch_starves = running_batch_ == 0;
+  const auto rank = [&](const Waiting& w) {
+    const bool first = batch_starves == (w.demand.lane == Lane::batch);
+    return std::pair(first ? 0 : 1, w.finish);
+  };
+  for (auto it = queue_.begin(); it != queue_.end(); ++it) {
+    if (it->state != Waiting::waits || !place_free(it->demand.lane)) continue;
+    if (best == queue_.end() || rank(*it) < rank(*best)) best = it;
+  }
+  return best;
+}
+
+double Admission::virtual_finish(const Demand& demand) const {
+  double start = virtual_time_[static_cast<int>(demand.lane)];
+  for (const Waiting& w : queue_)
+    if (w.demand.lane == demand.lane && w.demand.client == demand.client) start = std::max(start, w.finish);
+  return start + demand.cost;
+}
+
+double Admission::waiting_cost() const {
+  double sum = 0;
+  for (const Waiting& w : queue_)
+    if (w.state == Waiting::waits) sum += w.demand.cost;
+  return sum;
+}
+
+double Admission::waiting_cost(const std::string& client) const {
+  double sum = 0;
+  for (const Waiting& w : queue_)
+    if (w.state == Waiting::waits && w.demand.client == client) sum += w.demand.cost;
+  return sum;
+}
+
+bool Admission::fits(double cost) const {
+  const double waiting = waiting_cost();
+  return waiting == 0 || waiting + cost <= limits_.queue_rays;
+}
+
+Admission::Queue::iterator Admission::newest_of_greediest() {
+  const auto counts = [](const Waiting& w) { return w.may_be_dropped && w.state == Waiting::waits; };
+  std::map<std::string, double> costs;
+  for (const Waiting& w : queue_)
+    if (counts(w)) costs[w.demand.client] += w.demand.cost;
+  auto newest = queue_.end();
+  for (auto it = queue_.begin(); it != queue_.end(); ++it)
+    if (counts(*it) && (newest == queue_.end() || costs[it->demand.client] >= costs[newest->demand.client]))
+      newest = it;
+  return newest;
+}
+
+void Admission::make_room(const Demand& demand) {
+  while (!fits(demand.cost)) {
+    const auto greediest = newest_of_greediest();
+    const double own = waiting_cost(demand.client) + demand.cost;
+    if (greediest == queue_.end() || greediest->demand.client == demand.client ||
+        own >= waiting_cost(greediest->demand.client)) {
+      const std::string told = "Work of " + in_millions(waiting_cost()) + " rays waits already, at most " +
+                               in_millions(limits_.queue_rays) + " may (queue_rays)";
+      const bool alone = waiting_cost(demand.client) == waiting_cost();
+      if (waiting_cost(demand.client) > 0 && !alone)
+        throw ClientBusy(told + ", much of it yours", retry_after_s());
+      throw Busy(told, retry_after_s());
+    }
+    greediest->state = Waiting::dropped;
+    greediest->changed.notify_one();
+  }
+}
+
+void Admission::measure(double cost) {
+  const auto now = Clock::now();
+  const double seconds = std::chrono::duration<double>(now - std::exchange(measured_, now)).count();
+  if (cost == 0) return;  // it was broken off: nobody knows how much of it was done
+  const double faded = std::exp(-seconds / kMemory_s);
+  done_cost_ = done_cost_ * faded + cost;
+  busy_s_ = busy_s_ * faded + seconds;
 }
 
 double Admission::retry_after_s() const {
-  const double queued_ms = mean_ms_ * static_cast<double>(waiting_.size() + 1) / most_running_;
-  return std::clamp(queued_ms / 1000, 1.0, 30.0);
+  const double rate = busy_s_ > 0 ? done_cost_ / busy_s_ : kExpectedRate;
+  return std::clamp(waiting_cost() / rate, 1.0, 30.0);
 }
 
 }  // namespace orrery

@@ -1,60 +1,120 @@
 #pragma once
 
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <list>
 #include <mutex>
+#include <string>
 
-#include "server/app/frame.h"
+#include "core/base/clock.h"
+#include "core/base/error.h"
+#include "core/model/plan.h"
 
 namespace orrery {
 
-// Lets a few renders run at once and a bounded number wait for their turn, first come, first served.
+// This client has so much work waiting that what it asks for now, or last, is turned away.
+class ClientBusy : public Busy {
+ public:
+  using Busy::Busy;
+};
+
+enum class Lane { interactive, batch };  // somebody waits for it; or it is long
+
+// A piece of work that waits for its turn.
+struct Demand {
+  Lane lane = Lane::interactive;
+  std::string client;  // who asked for it
+  double cost = 0;     // rays, by estimate
+};
+
+inline constexpr double kLeastCost = 20'000;  // what the fixed work of a render amounts to
+// What rendering is expected to cost, in rays: pixels x samples x levels of depth, and a little for every
+// one.
+double cost_of(const Plan& plan);
+// What reading so many bytes of JSON or of a mesh is expected to cost, in the same unit.
+double cost_of_reading(std::size_t bytes);
+
+// Lets a few pieces of work run at once; what waits is bounded by its cost.
+//  - Interactive work goes first. Batch work has at most half of the places, and always one.
+//  - Within a lane, clients share by cost: each piece starts in the order of its client's virtual finish time
+//    (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for.
+//  - When all is full, who has most waiting makes room for who has less (longest queue drop: McKenney,
+//    "Stochastic Fairness Queueing", 1990).
+// Safe from any thread.
 class Admission {
  public:
-  Admission(int most_running, int most_waiting) : most_running_(most_running), most_waiting_(most_waiting) {}
+  struct Limits {
+    int running;        // pieces of work at once
+    double queue_rays;  // cost of all that wait; one may wait whatever it costs
+  };
+  explicit Admission(const Limits& limits) : limits_(limits) {}
 
-  // The right to render. Ends with the object.
+  // The right to work. Ends with the object.
   class Ticket {
    public:
-    explicit Ticket(Admission& from) : from_(&from), start_(Clock::now()) {}
-    Ticket(Ticket&& other) noexcept : from_(std::exchange(other.from_, nullptr)), start_(other.start_) {}
+    Ticket(Admission& from, Lane lane, double cost) : from_(&from), lane_(lane), cost_(cost) {}
+    Ticket(Ticket&& other) noexcept
+        : from_(std::exchange(other.from_, nullptr)), lane_(other.lane_), cost_(other.cost_) {}
     ~Ticket() {
-      if (from_) from_->leave(milliseconds_since(start_));
+      if (from_) from_->leave(lane_, std::uncaught_exceptions() > exceptions_ ? 0 : cost_);
     }
 
    private:
     Admission* from_;
-    Clock::time_point start_;
+    Lane lane_;
+    double cost_;
+    int exceptions_ = std::uncaught_exceptions();
   };
 
   int running() const;
   int waiting() const;
-  // Whether one more would be turned away.
+  // Whether small work would be turned away.
   bool full() const;
 
   using Stop = std::function<bool()>;
 
-  // Waits for a place. Throws Busy if too many wait already; Cancelled once `stop` says so, which is asked
-  // every 20 ms while waiting.
-  Ticket enter(const Stop& stop);
-  // As enter(), for work that began and must go on: never too many wait.
-  Ticket enter_again(const Stop& stop);
+  // Waits for a place. Throws ClientBusy or Busy if too much waits already, with the time after which that
+  // will be done at the rate measured; Cancelled once `stop` says so, which is asked every 20 ms.
+  Ticket enter(const Demand& demand, const Stop& stop);
+  // As enter(), for work that began and must go on: never too much waits, and it is not turned away.
+  Ticket enter_again(const Demand& demand, const Stop& stop);
 
  private:
-  Ticket wait_for_turn(std::unique_lock<std::mutex>& lock, const Stop& stop);
-  void leave(double milliseconds);
-  double retry_after_s() const;
-  bool overrun() const {  // with mutex_ held
-    return running_ >= most_running_ && static_cast<int>(waiting_.size()) >= most_waiting_;
-  }
+  struct Waiting {
+    Waiting(const Demand& d, bool droppable, double f) : demand(d), may_be_dropped(droppable), finish(f) {}
+    Demand demand;
+    bool may_be_dropped;
+    double finish;  // virtual time
+    enum { waits, starts, dropped } state = waits;
+    std::condition_variable changed;
+  };
+  using Queue = std::list<Waiting>;  // in order of arrival; who starts leaves it
 
-  const int most_running_, most_waiting_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  int running_ = 0;
-  std::list<int> waiting_;  // one entry each, the first is next
-  double mean_ms_ = 100;    // of a render, recent ones counting more
+  Ticket wait_for_turn(std::unique_lock<std::mutex>& lock, const Demand& demand, bool may_be_dropped,
+                       const Stop& stop);
+  void leave(Lane lane, double cost);
+  // Below: with mutex_ held.
+  void start_next();
+  void make_room(const Demand& demand);
+  bool fits(double cost) const;
+  bool place_free(Lane lane) const;
+  double virtual_finish(const Demand& demand) const;
+  Queue::iterator next();  // who may start now; end: none
+  double waiting_cost() const;
+  double waiting_cost(const std::string& client) const;
+  Queue::iterator newest_of_greediest();
+  double retry_after_s() const;
+  void measure(double cost);
+
+  const Limits limits_;
+  mutable std::mutex mutex_;  // guards all below
+  Queue queue_;
+  int running_ = 0, running_batch_ = 0;
+  double virtual_time_[2] = {0, 0};  // of a lane: finish of the piece that started last
+  // The measured rate: cost done and seconds in which something ran, recent ones counting more.
+  double done_cost_ = 0, busy_s_ = 0;
+  Clock::time_point measured_;
 };
 
 }  // namespace orrery

@@ -1,59 +1,92 @@
 #include "server/app/app.h"
 
-#include "core/load/load.h"
+#include "server/app/reading.h"
 #include "server/app/watch.h"
 
 namespace orrery {
 
 App::App(const Settings& settings)
     : settings_(settings),
+      access_(settings.tokens_file, settings.share_key_file),
       pool_(settings.threads),
       scenes_(settings.store_bytes),
       assets_(settings.asset_store_bytes),
-      admission_(settings.renders > 0 ? settings.renders : 2 * pool_.threads(), settings.queue),
-      orbits_({pool_, admission_, draining_, ends_, settings.request_time}, settings.orbits) {}
+      pictures_(settings.picture_bytes),
+      admission_({settings.renders > 0 ? settings.renders : 2 * pool_.threads(), settings.queue_rays}),
+      means_{pool_, admission_, draining_, ends_, rays_},
+      orbits_(means_, settings.orbits, settings.request_seconds),
+      jobs_(means_, {settings.jobs, settings.job_bytes, settings.job_seconds, settings.job_kept_seconds}) {}
 
-std::shared_ptr<const Scene> App::load(const Document& document, Timing& timing) const {
-  const auto start = Clock::now();
-  auto scene = load_scene(document, assets_);
-  timing.load += milliseconds_since(start);
-  return scene;
+template <class Work>
+void App::watched(const std::function<bool()>& gone, const Work& work) {
+  require_open();
+  const Watch watch(gone, ends_, settings_.request_seconds);
+  try {
+    work([&] { return watch.stop(); });
+  } catch (const Cancelled&) {
+    watch.explain();
+  }
 }
 
-Picture App::render(const PreparedScene& scene, const Plan& plan, FileFormat format,
-                    std::function<bool()> gone, Timing& timing) {
+void App::read(std::size_t bytes, const Asker& asker, Timing& timing,
+               const std::function<void(const MeshSource&)>& work) {
+  watched(asker.gone, [&](const auto& stop) {
+    const auto start = Clock::now();
+    const Reading reading(assets_, admission_, asker.client, bytes, stop);
+    work(reading);
+    timing.queue += reading.waited_ms();
+    timing.load += milliseconds_since(start) - reading.waited_ms();
+  });
+}
+
+AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, const Asker& asker) {
+  AssetStore::Added added;
+  watched(asker.gone, [&](const auto& stop) {
+    const auto ticket =
+        admission_.enter({Lane::interactive, asker.client, cost_of_reading(bytes.size())}, stop);
+    added = assets_.add(sha256, std::move(bytes));
+  });
+  return added;
+}
+
+Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
+                     const Asker& asker, Timing& timing) {
+  const double cost = cost_of(plan);
+  const Demand demand{cost > settings_.interactive_rays ? Lane::batch : Lane::interactive, asker.client,
+                      cost};
+  const auto start = Clock::now();
+  const Pictures::Found found = pictures_.get(
+      key + std::to_string(static_cast<int>(format)), asker.gone,
+      [&](const Pictures::Gone& gone) { return make(scene, plan, format, demand, gone, timing); });
+  if (!found.made_here) timing.queue += milliseconds_since(start);
+  return {found.picture, found.made_here};
+}
+
+Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
+                  const std::function<bool()>& gone, Timing& timing) {
   Picture picture;
-  in_turn(std::move(gone), timing.queue, [&](const auto& stop) {
+  watched(gone, [&](const auto& stop) {
+    auto start = Clock::now();
+    const auto ticket = admission_.enter(demand, stop);
+    timing.queue += milliseconds_since(start);
     RenderResult rendered =
-        render_frame(scene, plan, pixels_of(format), pool_, {.stop = stop, .progress = {}});
+        means_.render(scene, plan, pixels_of(format),
+                      {.stop = stop, .progress = {}, .background = demand.lane == Lane::batch});
     timing.build = rendered.stats.build_ms;
     timing.render = rendered.stats.trace_ms;
-    const auto start = Clock::now();
+    start = Clock::now();
     picture = {encode(rendered.image, format), rendered.stats};
     timing.encode = milliseconds_since(start);
   });
   return picture;
 }
 
-void App::settle(const PreparedScene& scene, Plan& plan, std::function<bool()> gone) {
+void App::settle(const PreparedScene& scene, Plan& plan, const Asker& asker) {
   if (!plan.try_accelerators) return;
-  double queue_ms = 0;
-  in_turn(std::move(gone), queue_ms, [&](const auto& stop) { orrery::settle(scene, plan, stop); });
-}
-
-template <class Work>
-void App::in_turn(std::function<bool()> gone, double& queue_ms, const Work& work) {
-  require_open();
-  const Watch watch(std::move(gone), ends_, settings_.request_time);
-  const auto stop = [&] { return watch.stop(); };
-  try {
-    const auto start = Clock::now();
-    const auto ticket = admission_.enter(stop);
-    queue_ms = milliseconds_since(start);
-    work(stop);
-  } catch (const Cancelled&) {
-    watch.explain();
-  }
+  watched(asker.gone, [&](const auto& stop) {
+    const auto ticket = admission_.enter({Lane::interactive, asker.client, kLeastCost}, stop);
+    orrery::settle(scene, plan, stop);
+  });
 }
 
 void App::drain() {

@@ -7,9 +7,13 @@
 #include <string_view>
 
 #include "core/params/document.h"
+#include "server/app/access.h"
 #include "server/app/admission.h"
 #include "server/app/asset_store.h"
+#include "server/app/jobs.h"
+#include "server/app/means.h"
 #include "server/app/orbit_hub.h"
+#include "server/app/pictures.h"
 #include "server/app/scene_store.h"
 #include "server/app/settings.h"
 
@@ -20,35 +24,47 @@ struct Timing {
   double load = 0, plan = 0, queue = 0, build = 0, render = 0, encode = 0;
 };
 
-// A picture made for one request.
-struct Picture {
-  std::string bytes;
-  RenderStats stats;
+struct Rendered {
+  std::shared_ptr<const Picture> picture;
+  bool made_now;  // for this request, and not for another one before
+};
+
+// Who asks for something.
+struct Asker {
+  std::string client;          // whose share of the work it is
+  std::function<bool()> gone;  // whether nobody waits for it any more
 };
 
 // All that the service owns, and what its routes ask of it. Safe from any thread.
 class App {
  public:
+  // Throws InputError for files of the settings that cannot be used.
   explicit App(const Settings& settings);
   App(const App&) = delete;
 
   const Settings& settings() const { return settings_; }
+  Access& access() { return access_; }
   SceneStore& scenes() { return scenes_; }
   AssetStore& assets() { return assets_; }
   OrbitHub& orbits() { return orbits_; }
+  Jobs& jobs() { return jobs_; }
+  const Pictures& pictures() const { return pictures_; }
   const Admission& admission() const { return admission_; }
-  int threads() const { return pool_.threads(); }
+  std::uint64_t rays() const { return rays_; }  // traced so far
 
-  // Parses and checks a scene. Throws InputError.
-  std::shared_ptr<const Scene> load(const Document& document, Timing& timing) const;
+  // Calls `work` to read a text of so many bytes that may name assets: in its turn if that takes long. Throws
+  // what `work` does, ClientBusy, Busy, Cancelled, TimedOut.
+  void read(std::size_t bytes, const Asker& asker, Timing& timing,
+            const std::function<void(const MeshSource&)>& work);
+  AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Asker& asker);
 
-  // Renders and encodes, in its turn. Ends early once `gone` says that nobody waits for it. Throws Busy,
-  // Cancelled, TimedOut.
-  Picture render(const PreparedScene& scene, const Plan& plan, FileFormat format, std::function<bool()> gone,
-                 Timing& timing);
+  // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded
+  // in its turn, once for all who ask. Throws as read().
+  Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
+                  const Asker& asker, Timing& timing);
 
   // Settles the plan in its turn, as render() would. Throws likewise.
-  void settle(const PreparedScene& scene, Plan& plan, std::function<bool()> gone);
+  void settle(const PreparedScene& scene, Plan& plan, const Asker& asker);
 
   // The service is about to end: no new work; what runs goes on.
   bool draining() const { return draining_; }
@@ -62,17 +78,24 @@ class App {
   void require_open() const;
 
  private:
-  // Does work(stop) when its turn comes; `stop` says when it should end early.
+  // Calls work(stop); `stop` says when it should end early.
   template <class Work>
-  void in_turn(std::function<bool()> gone, double& queue_ms, const Work& work);
+  void watched(const std::function<bool()>& gone, const Work& work);
+  Picture make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
+               const std::function<bool()>& gone, Timing& timing);
 
   const Settings settings_;
   std::atomic<bool> draining_{false}, ends_{false};
+  std::atomic<std::uint64_t> rays_{0};
+  Access access_;
   WorkerPool pool_;
   SceneStore scenes_;
   AssetStore assets_;
+  Pictures pictures_;
   Admission admission_;
+  const Means means_;
   OrbitHub orbits_;
+  Jobs jobs_;
 };
 
 }  // namespace orrery

@@ -66,6 +66,7 @@ struct Metrics::Families {
   Gauge& running = add_gauge("orrery_renders_running", "Renders that have their turn");
   Gauge& waiting = add_gauge("orrery_renders_waiting", "Renders that wait for their turn");
   Gauge& orbits = add_gauge("orrery_orbits", "Different orbits that are streamed");
+  Gauge& jobs = add_gauge("orrery_jobs", "Jobs under way");
   Gauge& connections = add_gauge("orrery_connections", "Connections that are open");
   prometheus::Family<Gauge>& stored = prometheus::BuildGauge()
                                           .Name("orrery_stored_bytes")
@@ -73,6 +74,8 @@ struct Metrics::Families {
                                           .Register(registry);
   Gauge& scenes = stored.Add({{"store", "scenes"}});
   Gauge& assets = stored.Add({{"store", "assets"}});
+  Gauge& pictures = stored.Add({{"store", "pictures"}});
+  Gauge& job_pictures = stored.Add({{"store", "jobs"}});
   Gauge& resident = add_gauge("process_resident_memory_bytes", "Memory in use");
   Gauge& files = add_gauge("process_open_fds", "Open file descriptors");
 
@@ -95,13 +98,12 @@ Metrics::Metrics() : families_(std::make_unique<Families>()) {}
 Metrics::~Metrics() = default;
 
 void Metrics::count_request(std::string_view route, std::string_view method, int status, double seconds,
-                            std::uint64_t rays, bool client_left) {
+                            bool client_left) {
   constexpr std::array<std::string_view, 6> kMethods{"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS"};
   const bool known = std::find(kMethods.begin(), kMethods.end(), method) != kMethods.end();
   const std::string name(route.empty() ? "none" : route), verb(known ? method : "other");
   families_->requests.Add({{"route", name}, {"method", verb}, {"code", std::to_string(status)}}).Increment();
   families_->seconds.Add({{"route", name}}, kSeconds).Observe(seconds);
-  families_->rays.Increment(static_cast<double>(rays));
   if (client_left) families_->clients_left.Increment();
 }
 
@@ -113,12 +115,19 @@ std::string Metrics::text(const Readings& readings) const {
   set(f.running, readings.renders_running);
   set(f.waiting, readings.renders_waiting);
   set(f.orbits, readings.orbits);
+  set(f.jobs, readings.jobs);
   set(f.connections, readings.connections);
   set(f.scenes, readings.scene_bytes);
   set(f.assets, readings.asset_bytes);
+  set(f.pictures, readings.picture_bytes);
+  set(f.job_pictures, readings.job_bytes);
   set(f.resident, resident_bytes());
   set(f.files, open_files());
-  f.refused.Increment(static_cast<double>(readings.connections_refused) - f.refused.Value());
+  const auto count = [](prometheus::Counter& counter, std::uint64_t value) {
+    counter.Increment(static_cast<double>(value) - counter.Value());
+  };
+  count(f.refused, readings.connections_refused);
+  count(f.rays, readings.rays);
   return prometheus::TextSerializer().Serialize(f.registry.Collect());
 }
 

@@ -12,9 +12,9 @@ namespace orrery {
 struct Readings {
   bool ready = false;
   int renders_running = 0, renders_waiting = 0;
-  std::size_t orbits = 0, connections = 0;
-  std::uint64_t connections_refused = 0;  // since the start
-  std::size_t scene_bytes = 0, asset_bytes = 0;
+  std::size_t orbits = 0, jobs = 0, connections = 0;
+  std::uint64_t connections_refused = 0, rays = 0;  // since the start
+  std::size_t scene_bytes = 0, asset_bytes = 0, picture_bytes = 0, job_bytes = 0;
 };
 
 // Counts for Prometheus. Safe from any thread.
@@ -25,7 +25,7 @@ class Metrics {
 
   // An answered request. `route`: the pattern that it matched, so that there are few.
   void count_request(std::string_view route, std::string_view method, int status, double seconds,
-                     std::uint64_t rays, bool client_left);
+                     bool client_left);
 
   // All in Prometheus' text format, version 0.0.4.
   std::string text(const Readings& readings) const;

@@ -9,6 +9,8 @@
 
 namespace orrery {
 
+inline constexpr double kLongestStep_s = 3600;  // of the motion, from frame to frame
+
 // A turn of the camera about a scene, while what moves in it moves, again and again.
 struct OrbitPath {
   RenderRequest first;      // frame
@@ -37,8 +39,9 @@ struct OrbitSpec {
   std::shared_ptr<const PreparedScene> scene;
   OrbitPath path;
   int frames = 120;
-  double fps = 30;  // at most; 0: as fast as the fastest viewer takes them
-  std::string key;  // equal for equal orbits
+  double fps = 30;     // at most; 0: as fast as the fastest viewer takes them
+  std::string key;     // equal for equal orbits
+  std::string client;  // who asked for it first
 };
 
 // One picture of it, shared by all who watch.

@@ -15,7 +15,8 @@ constexpr double kLongestPeriod_s = 1e6;       // a clock counts no more than 29
 
 }  // namespace
 
-OrbitCast::OrbitCast(OrbitSpec spec, const Means& means) : spec_(std::move(spec)), means_(means) {}
+OrbitCast::OrbitCast(OrbitSpec spec, const Means& means, std::chrono::seconds frame_time)
+    : spec_(std::move(spec)), means_(means), frame_time_(frame_time) {}
 
 OrbitCast::~OrbitCast() {
   if (thread_.joinable()) thread_.join();
@@ -114,12 +115,12 @@ std::optional<std::int64_t> OrbitCast::next() {
 }
 
 RenderResult OrbitCast::render(std::int64_t number) {
-  const Watch watch([this] { return pointless(); }, means_.ends, means_.frame_time);
+  const Watch watch([this] { return pointless(); }, means_.ends, frame_time_);
   const auto stop = [&] { return watch.stop(); };
   try {
-    const auto ticket = means_.admission.enter_again(stop);
     const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
-    return render_frame(*spec_.scene, plan, PixelFormat::srgb8, means_.pool, {.stop = stop, .progress = {}});
+    const auto ticket = means_.admission.enter_again({Lane::interactive, spec_.client, cost_of(plan)}, stop);
+    return means_.render(*spec_.scene, plan, PixelFormat::srgb8, {.stop = stop, .progress = {}});
   } catch (const Cancelled&) {
     watch.explain();
   }

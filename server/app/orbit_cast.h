@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "server/app/admission.h"
+#include "server/app/means.h"
 #include "server/app/orbit.h"
 
 namespace orrery {
@@ -19,16 +19,8 @@ namespace orrery {
 // where it was; else with the frame whose time has come.
 class OrbitCast {
  public:
-  // All it uses lives longer. `ends` becomes true when the program ends.
-  struct Means {
-    WorkerPool& pool;
-    Admission& admission;
-    const std::atomic<bool>& draining;  // end at the next frame boundary
-    const std::atomic<bool>& ends;      // end at once
-    std::chrono::seconds frame_time;    // that one frame may take
-  };
-
-  OrbitCast(OrbitSpec spec, const Means& means);
+  // frame_time: that one frame may take.
+  OrbitCast(OrbitSpec spec, const Means& means, std::chrono::seconds frame_time);
   ~OrbitCast();
 
   const OrbitSpec& spec() const { return spec_; }
@@ -62,6 +54,7 @@ class OrbitCast {
 
   const OrbitSpec spec_;
   const Means means_;
+  const std::chrono::seconds frame_time_;
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
   std::list<Mailbox> mailboxes_;

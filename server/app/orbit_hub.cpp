@@ -14,7 +14,7 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
   }
   if (static_cast<int>(casts_.size()) >= most_)
     throw Busy(std::to_string(casts_.size()) + " orbits are being watched already (orbits)", 5);
-  const auto cast = std::make_shared<OrbitCast>(spec, means_);
+  const auto cast = std::make_shared<OrbitCast>(spec, means_, frame_time_);
   casts_.push_back(cast);
   return OrbitCast::join(cast);
 }

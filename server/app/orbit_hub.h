@@ -11,7 +11,8 @@ namespace orrery {
 // The orbits that are being watched. Safe from any thread.
 class OrbitHub {
  public:
-  OrbitHub(const OrbitCast::Means& means, int most_orbits) : means_(means), most_(most_orbits) {}
+  OrbitHub(const Means& means, int most_orbits, std::chrono::seconds frame_time)
+      : means_(means), most_(most_orbits), frame_time_(frame_time) {}
 
   // Joins those who watch the same orbit, or starts it. Throws Busy if there are too many different ones.
   std::unique_ptr<OrbitCast::Viewer> watch(const OrbitSpec& spec);
@@ -24,8 +25,9 @@ class OrbitHub {
  private:
   void forget_ended();  // with mutex_ held
 
-  const OrbitCast::Means means_;
+  const Means means_;
   const int most_;
+  const std::chrono::seconds frame_time_;
   std::mutex mutex_;
   std::list<std::weak_ptr<OrbitCast>> casts_;  // their viewers own them
 };

@@ -41,6 +41,11 @@ std::string canonical_request(const Scene& scene, const RenderRequest& request) 
   return text;
 }
 
+std::string canonical_orbit(const Scene& scene, const OrbitPath& path, int frames) {
+  return scene.id + " " + canonical_request(scene, path.first) + " " + std::to_string(frames) + " " +
+         text_of(path.step_degrees) + " " + text_of(path.step_seconds);
+}
+
 std::string etag_of(const Scene& scene, const RenderRequest& request) {
   const std::string all = scene.id + "\n" + canonical_request(scene, request) + "\n" + std::string(kVersion);
   return "\"" + sha256_hex(all).substr(0, 32) + "\"";

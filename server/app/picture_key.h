@@ -4,12 +4,16 @@
 
 #include "core/model/scene.h"
 #include "core/plan/request.h"
+#include "server/app/orbit.h"
 
 namespace orrery {
 
 // One text for all requests that lead to the same picture of the scene, however they were written: what is
 // not given takes the scene's value; what changes no pixel (accelerator, slice) is left out.
 std::string canonical_request(const Scene& scene, const RenderRequest& request);
+
+// Likewise for the frames of an orbit, the scene included.
+std::string canonical_orbit(const Scene& scene, const OrbitPath& path, int frames);
 
 // A strong ETag, quotes included: the hash of scene, canonical request and program version.
 std::string etag_of(const Scene& scene, const RenderRequest& request);

@@ -35,9 +35,12 @@ SceneStore::Added SceneStore::add(std::shared_ptr<const Scene> scene) {
 }
 
 SceneStore::Prepared SceneStore::find(const std::string& id) {
-  const auto found = scenes_.find(id);
-  if (!found) throw NotFound("There is no scene " + id.substr(0, 64) + " (any more): post it again");
-  return *found;
+  if (auto known = find_known(id)) return known;
+  throw NotFound("There is no scene " + id.substr(0, 64) + " (any more): post it again");
+}
+
+SceneStore::Prepared SceneStore::find_known(const std::string& id) {
+  return scenes_.find(id).value_or(nullptr);
 }
 
 void SceneStore::remove(const std::string& id) {

@@ -23,6 +23,7 @@ class SceneStore {
   Added add(std::shared_ptr<const Scene> scene);
   // Throws NotFound.
   Prepared find(const std::string& id);
+  Prepared find_known(const std::string& id);  // null if it is not
   void remove(const std::string& id);
 
   std::size_t bytes() const { return scenes_.bytes(); }

@@ -2,28 +2,62 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
 
 namespace orrery {
 
-// What the service may use. /v1/limits publishes the limits, and the errors name them.
+// What the service may use, and how it is reached.
 struct Settings {
   std::string host = "127.0.0.1";
   int port = 8080;
-  int health_port = 8081;                     // of /healthz, /readyz and /metrics, for supervisors
-  int threads = 0;                            // that render; 0: one a core
-  std::size_t body_bytes = 8 << 20;           // of a request
-  std::size_t bodies_bytes = 256 << 20;       // of all requests at one time
-  std::size_t store_bytes = 256 << 20;        // of scenes kept, by estimate
-  std::size_t asset_bytes = 64 << 20;         // of a mesh file
-  std::size_t asset_store_bytes = 256 << 20;  // of mesh files kept
+  int health_port = 8081;  // of /healthz, /readyz and /metrics, for supervisors
+  int threads = 0;         // that render; 0: one a core
+
+  // Limits; see limits().
+  std::size_t body_bytes = 8 << 20;
+  std::size_t bodies_bytes = 256 << 20;
+  std::size_t store_bytes = 256 << 20;
+  std::size_t asset_bytes = 64 << 20;
+  std::size_t asset_store_bytes = 256 << 20;
+  std::size_t picture_bytes = 64 << 20;
   std::size_t connections = 256;
-  int renders = 0;  // at once; 0: two a core
-  int queue = 64;   // renders that wait for their turn
-  int orbits = 32;  // different ones streamed at once
+  int renders = 0;
+  double queue_rays = 100e6;
+  double interactive_rays = 50e6;
+  int orbits = 32;
   int orbit_frames = 3600;
-  std::chrono::seconds request_time{60};  // for one picture
-  std::chrono::seconds grace{30};         // for running requests when the service ends
+  std::chrono::seconds request_seconds{60};
+  int jobs = 16;
+  std::size_t job_bytes = 512 << 20;
+  std::chrono::seconds job_seconds{3600};
+  std::chrono::seconds job_kept_seconds{3600};
+  std::chrono::seconds grace_seconds{30};
+
+  // Who may ask; empty: everyone who can.
+  bool insecure = false;  // also from other machines
+  std::string tokens_file, share_key_file;
+  std::vector<std::string> cors_origins;
 };
+
+// A limit that can be set, under the one name that flags (--body-bytes), environment (ORRERY_BODY_BYTES),
+// files, /v1/limits and errors use.
+struct Limit {
+  using Place = std::variant<std::size_t Settings::*, int Settings::*, double Settings::*,
+                             std::chrono::seconds Settings::*>;
+  std::string_view name;
+  Place place;
+  std::int64_t min, max;
+  std::string_view help;
+
+  double value(const Settings& settings) const;
+  // REQUIRES: min <= value <= max.
+  void set(Settings& settings, std::int64_t value) const;
+};
+std::span<const Limit> limits();
 
 }  // namespace orrery

@@ -18,6 +18,7 @@ struct Command {
 Command add_render(CLI::App& root);
 Command add_orbit(CLI::App& root);
 Command add_serve(CLI::App& root);
+Command add_token(CLI::App& root);
 Command add_check(CLI::App& root);
 Command add_explain(CLI::App& root);
 Command add_catalog(CLI::App& root);

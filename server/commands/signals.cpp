@@ -17,7 +17,7 @@ struct SignalWatch::Parts {
   sigset_t before{};
   int signals = -1, end = -1;
   std::atomic<bool> interrupted{false};
-  std::function<void()> on_first;
+  std::function<void()> on_first, on_hangup;
   std::thread thread;
 
   void watch() {
@@ -27,18 +27,25 @@ struct SignalWatch::Parts {
       if (ready[1].revents) return;
       signalfd_siginfo info;
       if (read(signals, &info, sizeof info) != sizeof info) continue;
+      if (info.ssi_signo == SIGHUP) {
+        on_hangup();
+        continue;
+      }
       if (interrupted.exchange(true)) _exit(kInterrupted);
       if (on_first) on_first();
     }
   }
 };
 
-SignalWatch::SignalWatch(std::function<void()> on_first) : parts_(std::make_unique<Parts>()) {
+SignalWatch::SignalWatch(std::function<void()> on_first, std::function<void()> on_hangup)
+    : parts_(std::make_unique<Parts>()) {
   parts_->on_first = std::move(on_first);
+  parts_->on_hangup = std::move(on_hangup);
   sigset_t taken;
   sigemptyset(&taken);
   sigaddset(&taken, SIGINT);
   sigaddset(&taken, SIGTERM);
+  if (parts_->on_hangup) sigaddset(&taken, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &taken, &parts_->before);
   parts_->signals = signalfd(-1, &taken, SFD_CLOEXEC);
   parts_->end = eventfd(0, EFD_CLOEXEC);

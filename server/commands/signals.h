@@ -8,10 +8,10 @@ namespace orrery {
 
 // Takes SIGINT and SIGTERM for itself while it lives. The first one calls `on_first` on a thread of its own;
 // a second one ends the process at once with status 130. Threads started meanwhile leave the signals to it,
-// so make one before any other thread.
+// so make one before any other thread. With `on_hangup`, SIGHUP calls that, each time.
 class SignalWatch {
  public:
-  explicit SignalWatch(std::function<void()> on_first = {});
+  explicit SignalWatch(std::function<void()> on_first = {}, std::function<void()> on_hangup = {});
   ~SignalWatch();
   SignalWatch(const SignalWatch&) = delete;
 

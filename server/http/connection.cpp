@@ -1,5 +1,6 @@
 #include "server/http/connection.h"
 
+#include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -156,6 +157,21 @@ ssize_t Connection::write(const char* bytes, std::size_t size) {
     broken_ = true;
   }
   return -1;
+}
+
+std::string Connection::network() const {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (getpeername(fd_, reinterpret_cast<sockaddr*>(&address), &size) != 0) return "";
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  const void* bytes = &reinterpret_cast<sockaddr_in&>(address).sin_addr;
+  if (address.ss_family == AF_INET6) {
+    in6_addr& v6 = reinterpret_cast<sockaddr_in6&>(address).sin6_addr;
+    if (!IN6_IS_ADDR_V4MAPPED(&v6)) std::fill(v6.s6_addr + 8, v6.s6_addr + 16, std::uint8_t{0});
+    bytes = &v6;
+  }
+  inet_ntop(address.ss_family, bytes, text.data(), text.size());
+  return text.data();
 }
 
 void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {

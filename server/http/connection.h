@@ -45,6 +45,8 @@ class Connection final : public httplib::Stream {
   bool gone() const;     // the client has closed its side, or the connection is broken
   void abandon() const;  // breaks it off, from any thread
   std::uint64_t bytes_written() const { return written_; }
+  // The client's network: its IPv4 address, or the half of its IPv6 address that it does not choose itself.
+  std::string network() const;
 
   bool is_readable() const override { return !offered_.empty(); }
   bool is_writable() const override { return !gone(); }

@@ -26,6 +26,7 @@ struct Request {
   std::vector<std::string> segments;  // of the path, each decoded
   std::string_view route;             // the pattern that it matches; empty if none
   std::string id;      // of this request: sent by the client, or made up; letters, digits, . _ -
+  std::string client;  // who asks: the address, or what it is known as
   Fields query;        // decoded; names are unique
   Fields path_values;  // of the route's {places}
   Fields headers;

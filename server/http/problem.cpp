@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "server/app/admission.h"
 #include "server/app/watch.h"
 
 namespace orrery {
@@ -32,6 +33,12 @@ ordered_json list_of(const std::vector<Problem>& problems) {
   return {{"errors", std::move(errors)}};
 }
 
+Response try_later(int status, const Busy& error, std::string_view request_id) {
+  Response response = respond(status, error.what(), request_id);
+  response.set("Retry-After", std::to_string(static_cast<int>(std::ceil(error.retry_after_s()))));
+  return response;
+}
+
 Response malformed(const MalformedJson& error, std::string_view request_id) {
   ordered_json more = list_of(error.problems());
   more["offset"] = error.offset();
@@ -57,10 +64,10 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
                    list_of(e.problems()));
   } catch (const NotFound& e) {
     return respond(404, e.what(), request_id);
+  } catch (const ClientBusy& e) {
+    return try_later(429, e, request_id);
   } catch (const Busy& e) {
-    Response response = respond(503, e.what(), request_id);
-    response.set("Retry-After", std::to_string(static_cast<int>(std::ceil(e.retry_after_s()))));
-    return response;
+    return try_later(503, e, request_id);
   } catch (const TimedOut& e) {
     return respond(504, e.what(), request_id);
   } catch (const Cancelled& e) {

@@ -8,13 +8,13 @@
 
 namespace orrery {
 
-std::string make_request_id() {
-  std::array<std::uint8_t, 8> bytes{};
-  [[maybe_unused]] const ssize_t filled = getrandom(bytes.data(), bytes.size(), 0);  // 8 bytes always come
+std::string random_hex(std::size_t bytes) {
+  std::array<std::uint8_t, 64> random{};
+  [[maybe_unused]] const ssize_t filled = getrandom(random.data(), bytes, 0);  // so few always come
   std::string id;
-  for (const std::uint8_t byte : bytes) {
-    id += "0123456789abcdef"[byte >> 4];
-    id += "0123456789abcdef"[byte & 15];
+  for (std::size_t i = 0; i < bytes; ++i) {
+    id += "0123456789abcdef"[random[i] >> 4];
+    id += "0123456789abcdef"[random[i] & 15];
   }
   return id;
 }

@@ -246,6 +246,7 @@ class HttpServer::Parts {
     request.method = head.method;
     request.path = head.target.substr(0, head.target.find('?'));  // for the log, should the rest fail
     request.headers = head.headers;
+    request.client = exchange.connection.network();
     if (const auto id = head.header("X-Request-ID"); id && is_request_id(*id)) request.id = *id;
     Target target = parse_target(head.target);
     request.path = std::move(target.path);

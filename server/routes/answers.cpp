@@ -81,9 +81,11 @@ Fit fit_of(std::string_view entry, std::string_view type) {
 
 }  // namespace
 
-Document read_json(Request& request) {
+Asker asker_of(const Request& request) { return {request.client, request.gone}; }
+
+std::string read_json(Request& request) {
   require_json(request);
-  return parse_document(request.read_body());
+  return request.read_body();
 }
 
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more) {
@@ -141,6 +143,7 @@ std::string_view negotiate(const Request& request, std::span<const std::string_v
 std::string server_timing(const Timing& timing) {
   std::string text;
   const auto add = [&](const char* name, double milliseconds) {
+    if (milliseconds == 0) return;
     char entry[64];
     std::snprintf(entry, sizeof entry, "%s%s;dur=%.3f", text.empty() ? "" : ", ", name, milliseconds);
     text += entry;
@@ -154,18 +157,28 @@ std::string server_timing(const Timing& timing) {
   return text;
 }
 
-void tell_work(Response& response, const Timing& timing, const RenderStats& stats) {
-  const AcceleratorCounts& work = stats.counts.accelerator;
-  char told[320];
-  std::snprintf(
-      told, sizeof told,
-      ", structure;desc=\"%s, %zu bytes, %d deep\", work;desc=\"%llu visits, %llu boxes, %llu primitives\"",
-      stats.accelerator->name, stats.structure.bytes, stats.structure.depth,
-      static_cast<unsigned long long>(work.node_visits), static_cast<unsigned long long>(work.box_tests),
-      static_cast<unsigned long long>(work.primitive_tests));
-  response.rays = stats.counts.rays.total();
-  response.set("Server-Timing", server_timing(timing) + told);
-  response.set("X-Rays", std::to_string(response.rays));
+Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing) {
+  Response response = text_response(200, type, rendered.picture->bytes);
+  std::string told = server_timing(timing);
+  if (!told.empty()) told += ", ";
+  if (rendered.made_now) {
+    const RenderStats& stats = rendered.picture->stats;
+    const AcceleratorCounts& work = stats.counts.accelerator;
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "structure;desc=\"%s, %zu bytes, %d deep\", work;desc=\"%llu visits, %llu boxes, %llu primitives\"",
+        stats.accelerator->name, stats.structure.bytes, stats.structure.depth,
+        static_cast<unsigned long long>(work.node_visits), static_cast<unsigned long long>(work.box_tests),
+        static_cast<unsigned long long>(work.primitive_tests));
+    told += text;
+    response.rays = stats.counts.rays.total();
+    response.set("X-Rays", std::to_string(response.rays));
+  } else {
+    told += "kept;desc=\"made for another request\"";
+  }
+  response.set("Server-Timing", std::move(told));
+  return response;
 }
 
 Response json_answer(int status, const nlohmann::ordered_json& json) {

@@ -12,9 +12,11 @@
 // What several routes need to read a request and to write an answer.
 namespace orrery {
 
-// The body as JSON. Throws HttpError for a content type or coding that is not accepted, and what
-// parse_document throws.
-Document read_json(Request& request);
+Asker asker_of(const Request& request);
+
+// The body, which says to be JSON. Throws HttpError for a content type or coding that is not accepted, or if
+// it does not come.
+std::string read_json(Request& request);
 
 // The options of a render in the query. `more` names what else the query may have; its values are left alone.
 // Throws InputError, with pointers such as "/azimuth".
@@ -32,8 +34,8 @@ std::string_view negotiate(const Request& request, std::span<const std::string_v
 // "load;dur=1.25, render;dur=40.1": the steps that took any time.
 std::string server_timing(const Timing& timing);
 
-// Says what a picture took: Server-Timing with the steps, the structure and its counted work, and X-Rays.
-void tell_work(Response& response, const Timing& timing, const RenderStats& stats);
+// A picture, and what it took: Server-Timing with the steps, the structure and its counted work, and X-Rays.
+Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);
 
 Response json_answer(int status, const nlohmann::ordered_json& json);
 

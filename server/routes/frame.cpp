@@ -22,9 +22,8 @@ Response frame(App& app, Request& request) {
   } else if (request.method == "HEAD") {
     response.set("Content-Type", "image/png");
   } else {
-    Picture picture = app.render(*scene, plan, FileFormat::png, request.gone, timing);
-    response = text_response(200, "image/png", std::move(picture.bytes));
-    tell_work(response, timing, picture.stats);
+    const Rendered rendered = app.render(*scene, plan, etag, FileFormat::png, asker_of(request), timing);
+    response = picture_response("image/png", rendered, timing);
   }
   response.set("ETag", etag);
   response.set("Cache-Control", "public, max-age=31536000, immutable");

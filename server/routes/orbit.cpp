@@ -13,7 +13,6 @@ namespace orrery {
 namespace {
 
 constexpr std::array<std::string_view, 4> kOwnParameters{"frames", "step", "time_step", "fps"};
-constexpr double kLongestStep_s = 3600;
 constexpr std::string_view kMultipart = "multipart/x-mixed-replace", kFrames = "application/x-orrery-frames";
 constexpr std::string_view kBoundary = "orrery-frame";
 
@@ -52,8 +51,8 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   if (!problems.empty()) throw InputError(std::move(problems));
   plan_of_query(scene, first);
   for (const int frame : {0, spec.frames - 1}) plan_of_query(scene, spec.path.at(frame));
-  spec.key = scene.id + " " + canonical_request(scene, spec.path.first) +
-             nlohmann::json({spec.frames, spec.path.step_degrees, spec.path.step_seconds, spec.fps}).dump();
+  spec.client = request.client;
+  spec.key = canonical_orbit(scene, spec.path, spec.frames) + " " + std::to_string(spec.fps);
   return spec;
 }
 

@@ -10,6 +10,8 @@ namespace orrery {
   add(assets)              \
   add(frame)               \
   add(orbit)               \
+  add(jobs)                \
+  add(shares)              \
   add(explain)             \
   add(catalog)             \
   add(limits)              \

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "core/load/load.h"
 #include "server/app/app.h"
 #include "server/http/router.h"
 #include "server/routes/answers.h"
@@ -43,10 +44,11 @@ std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }
 Response add_scene(App& app, Request& request) {
   app.require_open();
   Timing timing;
-  const auto start = Clock::now();
-  const Document document = read_json(request);
-  timing.load = milliseconds_since(start);
-  const SceneStore::Added added = app.scenes().add(app.load(document, timing));
+  const std::string body = read_json(request);
+  SceneStore::Added added;
+  app.read(body.size(), asker_of(request), timing, [&](const MeshSource& meshes) {
+    added = app.scenes().add(load_scene(parse_document(body), meshes));
+  });
   const Scene& scene = added.scene->scene();
   Response response = json_answer(added.known ? 200 : 201, summary(scene));
   response.set("Location", "/v1/scenes/" + scene.id);

@@ -125,7 +125,7 @@ TEST_F(CommandLine, WrongOptionsAreNamedAsTheyWereGiven) {
   EXPECT_EQ(run("render " + scene + " -o ''").status, 2);
   const Outcome slice = run("render " + scene + " --slice 0");
   EXPECT_NE(slice.err.find("--slice: Value 0 not in range 16 to 1024"), std::string::npos) << slice.err;
-  const Outcome limit = run("serve --max-connections 0");
+  const Outcome limit = run("serve --connections 0");
   EXPECT_NE(limit.err.find("not in range 1 to 10000"), std::string::npos) << limit.err;
 }
 

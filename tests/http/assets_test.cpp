@@ -77,7 +77,7 @@ TEST_F(Assets, NameThatIsNoHashIsSaidToBeNone) {
 // Trying structures is work like rendering: it is bounded in time, and nobody waits for it longer than for a
 // picture.
 TEST(Explain, IsBoundedInTime) {
-  Daemon daemon({"--max-seconds", "1"});
+  Daemon daemon({"--request-seconds", "1"});
   httplib::Client client = daemon.client();
   client.set_read_timeout(std::chrono::seconds(20));
   nlohmann::json glass = {{"glass", {{"type", "refractive"}, {"ior", 1.5}}}}, balls = nlohmann::json::array();
@@ -101,7 +101,7 @@ TEST_F(Assets, FilesAreNotForRequests) {
 }
 
 TEST(AssetLimits, HoldAndAreNamed) {
-  Daemon daemon({"--max-asset", "200", "--max-assets", "300"});
+  Daemon daemon({"--asset-bytes", "200", "--asset-store-bytes", "300"});
   httplib::Client client = daemon.client();
   const auto put = [&](const std::string& bytes) {
     return client.Put("/v1/assets/" + sha256_hex(bytes), bytes, "application/octet-stream");

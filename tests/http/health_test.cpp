@@ -45,7 +45,8 @@ TEST(Health, HasAPortOfItsOwn) {
 }
 
 TEST(Health, AnswersWhileAllElseIsFull) {
-  Daemon daemon({"--threads", "1", "--max-queue", "1", "--max-connections", "3"});
+  Daemon daemon(
+      {"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000", "--connections", "3"});
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string path = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>() +
                            "/frame.png?width=4096&height=4096&samples=4096&precision=double";
@@ -53,7 +54,7 @@ TEST(Health, AnswersWhileAllElseIsFull) {
   std::vector<std::unique_ptr<RawClient>> clients;
   for (int i = 0; i < 3; ++i) {  // two render, one waits; and there are no more connections
     clients.push_back(std::make_unique<RawClient>(daemon.port()));
-    clients.back()->send("GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n");
+    clients.back()->send("GET " + path + "&seed=" + std::to_string(i) + " HTTP/1.1\r\nHost: x\r\n\r\n");
     EXPECT_TRUE(comes_true(daemon, [i](const auto& text) {
       return value_of(text, "orrery_renders_running") + value_of(text, "orrery_renders_waiting") == i + 1;
     }));
@@ -87,8 +88,10 @@ TEST(Health, MetricsCountWhatWasAnswered) {
   EXPECT_EQ(value_of(text, "orrery_requests_total{code=\"422\"" + frame), 1);
   EXPECT_EQ(value_of(text, "orrery_requests_total{code=\"404\",method=\"GET\",route=\"none\"}"), 1);
   EXPECT_EQ(value_of(text, "orrery_request_seconds_count{route=\"/v1/scenes/{id}/frame.png\"}"), 4);
-  EXPECT_GE(value_of(text, "orrery_rays_total"), 3 * 48 * 32);
-  EXPECT_GT(value_of(text, "orrery_stored_bytes{store=\"scenes\"}"), 0);
+  EXPECT_GE(value_of(text, "orrery_rays_total"), 48 * 32);  // rendered once
+  for (const char* store : {"scenes", "pictures"})
+    EXPECT_GT(value_of(text, "orrery_stored_bytes{store=\"" + std::string(store) + "\"}"), 0);
+  EXPECT_EQ(value_of(text, "orrery_jobs"), 0);
   EXPECT_GT(value_of(text, "process_resident_memory_bytes"), 1e6);
   EXPECT_GT(value_of(text, "process_open_fds"), 3);
 }

@@ -51,7 +51,7 @@ TEST(ClientThatLeaves, EndsItsOrbit) {
 
 // Bodies that come slowly, or never, do not fill the memory: they have a limit together.
 TEST(ClientsThatDawdle, ShareALimitOfBytes) {
-  Daemon daemon({"--max-body", "1000000", "--max-asset", "1000000", "--max-bodies", "1500000"});
+  Daemon daemon({"--body-bytes", "1000000", "--asset-bytes", "1000000", "--bodies-bytes", "1500000"});
   const auto head = [](int bytes) {
     return "POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(bytes) + "\r\n\r\n{";
   };
@@ -73,12 +73,12 @@ TEST(ClientsThatDawdle, ShareALimitOfBytes) {
 }
 
 TEST(ClientThatLeaves, LeavesTheQueueToo) {
-  Daemon daemon({"--threads", "1", "--max-queue", "1"});
+  Daemon daemon({"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000"});
   const std::string path = post(daemon, small_scene()) + "/frame.png";
   std::vector<std::unique_ptr<RawClient>> clients;
   for (int i = 0; i < 3; ++i) {  // two render, one waits
     clients.push_back(std::make_unique<RawClient>(daemon.port()));
-    clients.back()->send(get(path + kEndless));
+    clients.back()->send(get(path + kEndless + "&seed=" + std::to_string(i)));
     ASSERT_TRUE(daemon.wait_until_working());
   }
   const auto refused = daemon.client().Get(path);
@@ -90,7 +90,7 @@ TEST(ClientThatLeaves, LeavesTheQueueToo) {
 }
 
 TEST(Deadline, EndsARenderThatTakesTooLong) {
-  Daemon daemon({"--max-seconds", "1"});
+  Daemon daemon({"--request-seconds", "1"});
   const auto result = daemon.client().Get(post(daemon, small_scene()) + "/frame.png" + kEndless);
   const auto problem = expect_problem(result, 504);
   EXPECT_NE(problem.value("detail", "").find("request_seconds"), std::string::npos);
@@ -161,7 +161,7 @@ TEST(Terminated, DoesNotWaitForIdleConnections) {
 }
 
 TEST(Terminated, GivesUpWhatOutlastsTheGrace) {
-  Daemon daemon({"--grace", "1"});
+  Daemon daemon({"--grace-seconds", "1"});
   const std::string path = post(daemon, small_scene()) + "/frame.png" + kEndless;
   auto running = std::async(std::launch::async, [&] { return daemon.client().Get(path); });
   ASSERT_TRUE(daemon.wait_until_working());

@@ -105,7 +105,7 @@ TEST_F(Protocol, OldClientsGetStreamsThatEndWithTheConnection) {
 }
 
 TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
-  Daemon daemon({"--max-connections", "2"});
+  Daemon daemon({"--connections", "2"});
   const RawClient first(daemon.port()), second(daemon.port());
   for (const RawClient* raw : {&first, &second}) {
     raw->send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");

@@ -74,7 +74,7 @@ TEST_F(Scenes, ExplainGivesReasonsForThisQuery) {
 }
 
 TEST(SceneStore, ForgetsTheScenesUnusedForLongest) {
-  Daemon daemon({"--max-store", "40000"});
+  Daemon daemon({"--store-bytes", "40000"});
   httplib::Client client = daemon.client();
   const auto post = [&](const char* title) {
     const auto result = client.Post("/v1/scenes", small_scene({{"title", title}}).dump(), "application/json");

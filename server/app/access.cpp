@@ -1,0 +1,131 @@
+#include "server/app/access.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/params/suggest.h"
+
+namespace orrery {
+namespace {
+
+constexpr std::size_t kLeastKeyBytes = 32;
+constexpr std::size_t kMostFileBytes = 1 << 20;
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes;
+  if (file) bytes.assign(std::istreambuf_iterator<char>(file), {});
+  if (!file || bytes.size() > kMostFileBytes)
+    throw InputError(path,
+                     file ? "has more than " + std::to_string(kMostFileBytes) + " bytes" : "cannot be read");
+  return bytes;
+}
+
+void take_scopes(std::string_view list, bool (&may)[kScopes.size()]) {
+  std::istringstream scopes{std::string(list)};
+  for (std::string scope; std::getline(scopes, scope, ',');) {
+    const auto known = std::find(kScopes.begin(), kScopes.end(), scope);
+    if (known == kScopes.end())
+      throw InputError("", "there is no scope \"" + scope.substr(0, 40) + "\"" +
+                               did_you_mean(scope, kScopes) + "; there are read, render and write");
+    may[known - kScopes.begin()] = true;
+  }
+}
+
+bool is_sha256(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+Access::Holder read_holder(const std::string& line) {
+  std::istringstream words(line);
+  std::string name, scopes, hash, more;
+  words >> name >> scopes >> hash;
+  if (hash.empty() || words >> more)
+    throw InputError("", "expected a name, scopes and the SHA-256 of a token, with blanks between them");
+  if (!is_sha256(hash)) throw InputError("", "expected a SHA-256 of 64 digits 0-9, a-f as the last word");
+  Access::Holder holder{.name = name, .token_sha256 = hash, .may = {}};
+  take_scopes(scopes, holder.may);
+  return holder;
+}
+
+std::string signed_text(std::string_view address, std::int64_t expires) {
+  return std::to_string(expires) + " " + std::string(address);
+}
+
+}  // namespace
+
+Access::Access(std::string tokens_file, std::string share_key_file)
+    : tokens_file_(std::move(tokens_file)), share_key_file_(std::move(share_key_file)) {
+  reload();
+}
+
+void Access::reload() {
+  auto fresh = std::make_shared<const Known>(read());
+  const std::lock_guard lock(mutex_);
+  known_ = std::move(fresh);
+}
+
+Access::Known Access::read() const {
+  Known known;
+  if (!share_key_file_.empty()) {
+    known.key = read_file(share_key_file_);
+    if (known.key.size() < kLeastKeyBytes)
+      throw InputError(share_key_file_, "a key has at least " + std::to_string(kLeastKeyBytes) +
+                                            " bytes, got " + std::to_string(known.key.size()));
+  }
+  if (tokens_file_.empty()) return known;
+  std::istringstream lines(read_file(tokens_file_));
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    line.resize(std::min(line.find('#'), line.size()));
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    try {
+      known.holders.push_back(read_holder(line));
+    } catch (const InputError& error) {
+      throw InputError(tokens_file_ + ":" + std::to_string(number), error.problems()[0].detail);
+    }
+  }
+  return known;
+}
+
+std::shared_ptr<const Access::Known> Access::known() const {
+  const std::lock_guard lock(mutex_);
+  return known_;
+}
+
+std::optional<Access::Holder> Access::holder_of(std::string_view token) const {
+  const std::string hash = sha256_hex(token);
+  const auto now = known();
+  std::optional<Holder> found;
+  for (const Holder& holder : now->holders)
+    if (equal_in_constant_time(holder.token_sha256, hash)) found = holder;
+  return found;
+}
+
+std::string Access::sign(std::string_view address, std::int64_t expires) const {
+  const auto now = known();
+  if (now->key.empty()) throw NotFound("This service signs no links: it has no key (share_key_file)");
+  return hmac_sha256_hex(now->key, signed_text(address, expires));
+}
+
+bool Access::is_signed(std::string_view address, std::int64_t expires, std::string_view signature) const {
+  const auto now = known();
+  return !now->key.empty() &&
+         equal_in_constant_time(hmac_sha256_hex(now->key, signed_text(address, expires)), signature);
+}
+
+std::string token_line(std::string_view name, std::string_view scopes, std::string_view token) {
+  return std::string(name) + " " + std::string(scopes) + " " + sha256_hex(token);
+}
+
+void require_scopes(std::string_view scopes) {
+  bool may[kScopes.size()] = {};
+  take_scopes(scopes, may);
+}
+
+}  // namespace orrery

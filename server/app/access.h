@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace orrery {
+
+// What the holder of a token may do: look at what is there; have pictures made of it; keep and remove scenes
+// and assets.
+enum class Scope { read, render, write };
+inline constexpr std::array<std::string_view, 3> kScopes{"read", "render", "write"};
+
+// Who may use the service: holders of a token, and those whom they gave a signed link. Safe from any thread.
+class Access {
+ public:
+  using Time = std::chrono::system_clock::time_point;
+
+  // tokens_file: a line each, "NAME SCOPE[,SCOPE...] SHA256-OF-TOKEN"; # begins a comment. Empty: everyone
+  // may do everything. share_key_file: bytes, at least 32, that links are signed with. Empty: there are no
+  // links. Throws InputError that names the file and the line.
+  Access(std::string tokens_file, std::string share_key_file);
+
+  // Reads the files again. Throws as the constructor does, and then all stays as it is.
+  void reload();
+
+  bool needs_token() const { return !tokens_file_.empty(); }
+
+  struct Holder {
+    std::string name, token_sha256;
+    bool may[kScopes.size()];
+  };
+  // Who holds the token; none: nobody. Takes as long for every token.
+  std::optional<Holder> holder_of(std::string_view token) const;
+
+  // The signature of an address until `expires` (seconds since 1970). Throws NotFound if there is no key.
+  std::string sign(std::string_view address, std::int64_t expires) const;
+  bool is_signed(std::string_view address, std::int64_t expires, std::string_view signature) const;
+
+ private:
+  struct Known {
+    std::vector<Holder> holders;
+    std::string key;
+  };
+  Known read() const;
+  std::shared_ptr<const Known> known() const;
+
+  const std::string tokens_file_, share_key_file_;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Known> known_;  // guarded by mutex_
+};
+
+// A line for a tokens file.
+std::string token_line(std::string_view name, std::string_view scopes, std::string_view token);
+
+// Throws InputError unless `scopes` is a list of scopes with commas between them.
+void require_scopes(std::string_view scopes);
+
+}  // namespace orrery

@@ -1,0 +1,133 @@
+#include "server/app/job.h"
+
+#include <algorithm>
+
+#include "core/plan/plan.h"
+#include "server/app/pipeline.h"
+
+namespace orrery {
+
+Job::Job(std::string id, JobSpec spec, const Means& means, std::chrono::seconds limit, Room room)
+    : id_(std::move(id)),
+      spec_(std::move(spec)),
+      means_(means),
+      limit_(limit),
+      room_(std::move(room)),
+      thread_([this] { run(); }) {}
+
+Job::~Job() {
+  cancel();
+  thread_.join();
+}
+
+void Job::cancel() { cancelled_ = true; }
+
+bool Job::stop() const { return cancelled_ || means_.draining; }
+
+void Job::run() {
+  const Watch watch([this] { return stop(); }, means_.ends, limit_);
+  int next = 0;
+  const Pipeline pipeline{
+      .pool = means_.pool,
+      .next = [&]() -> std::optional<std::int64_t> {
+        if (watch.stop()) throw Cancelled();
+        if (next == spec_.frames) return std::nullopt;
+        return next++;
+      },
+      .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
+      .encode = [](const Image& image) { return encode_png(image); },
+      .deliver = [this](std::int64_t, Frame&& frame) { keep(std::move(frame)); }};
+  std::exception_ptr error;
+  try {
+    try {
+      pipeline.run();
+    } catch (const Cancelled&) {
+      if (means_.draining || means_.ends) throw Busy("The service ends", 5);
+      watch.explain();
+    }
+  } catch (...) {
+    error = std::current_exception();
+  }
+  end(error);
+}
+
+RenderResult Job::render(int number, const Watch& watch) {
+  const auto stop = [&] { return watch.stop(); };
+  const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number));
+  const auto ticket = means_.admission.enter_again({Lane::batch, spec_.client, cost_of(plan)}, stop);
+  {
+    const std::lock_guard lock(mutex_);
+    if (!started_) started_ = Clock::now();
+    state_ = JobState::running;
+  }
+  const auto progress = [this](int, int total) {
+    const std::lock_guard lock(mutex_);
+    tiles_a_frame_ = total;
+    ++tiles_done_;
+  };
+  return means_.render(*spec_.scene, plan, PixelFormat::srgb8,
+                       {.stop = stop, .progress = progress, .background = true});
+}
+
+void Job::keep(Frame&& frame) {
+  room_(frame.bytes.size());
+  const std::lock_guard lock(mutex_);
+  bytes_ += frame.bytes.size();
+  pictures_.push_back(std::make_shared<const std::string>(std::move(frame.bytes)));
+  changed_.notify_all();
+}
+
+void Job::end(std::exception_ptr error) {
+  const std::lock_guard lock(mutex_);
+  error_ = error;
+  state_ = !error ? JobState::done : cancelled_ ? JobState::cancelled : JobState::failed;
+  ended_ = Clock::now();
+  changed_.notify_all();
+}
+
+JobStatus Job::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_locked();
+}
+
+std::optional<Clock::time_point> Job::ended() const {
+  const std::lock_guard lock(mutex_);
+  return ended_;
+}
+
+std::size_t Job::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_;
+}
+
+Job::Picture Job::frame(int number) const {
+  const std::lock_guard lock(mutex_);
+  const auto index = static_cast<std::size_t>(number);
+  return index < pictures_.size() ? pictures_[index] : nullptr;
+}
+
+JobStatus Job::wait(int frames, Clock::time_point until) const {
+  std::unique_lock lock(mutex_);
+  changed_.wait_until(
+      lock, until, [&] { return has_ended(state_) || pictures_.size() > static_cast<std::size_t>(frames); });
+  return status_locked();
+}
+
+JobStatus Job::status_locked() const {
+  JobStatus status{.state = state_,
+                   .frames = spec_.frames,
+                   .frames_done = static_cast<int>(pictures_.size()),
+                   .tiles = spec_.frames * tiles_a_frame_,
+                   .tiles_done = tiles_done_,
+                   .elapsed_s = 0,
+                   .remaining_s = {},
+                   .error = state_ == JobState::failed ? error_ : nullptr};
+  if (!started_) return status;
+  status.elapsed_s = milliseconds_since(*started_) / 1000;
+  if (ended_) status.elapsed_s -= milliseconds_since(*ended_) / 1000;
+  if (state_ == JobState::running && tiles_done_ > 0)
+    status.remaining_s = status.elapsed_s * double(status.tiles - tiles_done_) / double(tiles_done_);
+  return status;
+}
+
+}  // namespace orrery

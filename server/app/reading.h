@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/model/mesh_source.h"
+#include "server/app/admission.h"
+
+namespace orrery {
+
+// Meshes for a scene that is being read. Small scenes are read at once; large ones, and those that have
+// meshes read, take their turn first and keep it as long as this lives. For one thread.
+class Reading final : public MeshSource {
+ public:
+  // `bytes`: of the scene's text. Waits as Admission::enter() if that is large.
+  Reading(const MeshSource& meshes, Admission& admission, std::string client, std::size_t bytes,
+          Admission::Stop stop);
+
+  TriangleMesh asset(const std::string& sha256) const override;
+
+  double waited_ms() const { return waited_ms_; }
+
+ private:
+  void take_turn() const;
+
+  const MeshSource& meshes_;
+  Admission& admission_;
+  const Demand demand_;
+  const Admission::Stop stop_;
+  mutable std::optional<Admission::Ticket> ticket_;
+  mutable double waited_ms_ = 0;
+};
+
+}  // namespace orrery

@@ -1,0 +1,46 @@
+#include <CLI/CLI.hpp>
+
+#include "core/base/error.h"
+#include "server/app/access.h"
+#include "server/commands/commands.h"
+#include "server/http/request_id.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kExamples = R"(
+Example:
+  orrery token alice --scopes read,render >> tokens      prints the token, and adds its line to the file
+  orrery serve --tokens-file tokens
+  curl -H "Authorization: Bearer $TOKEN" http://127.0.0.1:8080/v1/limits
+)";
+
+struct Options {
+  std::string name, scopes = "read,render,write";
+};
+
+int make_token(const Options& options) {
+  if (options.name.find_first_of(" \t\r\n#") != std::string::npos)
+    throw InputError("NAME", "expected a word without blanks and #");
+  require_scopes(options.scopes);
+  constexpr std::size_t kBytes = 32;
+  const std::string token = random_hex(kBytes);
+  std::cout << token_line(options.name, options.scopes, token) << std::endl;
+  std::cerr << "token: " << token << "\n";
+  return kDone;
+}
+
+}  // namespace
+
+Command add_token(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand("token", "Make a token, and its line for a tokens file");
+  app->footer(kExamples);
+  app->add_option("NAME", options->name, "Who will hold it")->required();
+  app->add_option("--scopes", options->scopes, "What the holder may do: read, render, write")
+      ->type_name("SCOPE,...")
+      ->capture_default_str();
+  return {app, [options] { return make_token(*options); }};
+}
+
+}  // namespace orrery

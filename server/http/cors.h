@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/http/message.h"
+
+namespace orrery {
+
+// Cross-origin requests (the Fetch standard's CORS protocol) from origins that are listed; "*" lists all.
+
+// The answer to a preflight request; none if this is none, or its origin is not listed.
+std::optional<Response> preflight(const Request& request, const std::vector<std::string>& origins);
+
+// Lets pages of a listed origin read the answer.
+void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response);
+
+}  // namespace orrery

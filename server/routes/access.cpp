@@ -1,0 +1,71 @@
+#include "server/routes/access.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace orrery {
+namespace {
+
+constexpr std::string_view kExpires = "expires", kSignature = "signature";
+
+// One text for the address, however it was escaped.
+std::string address_of(const Request& request) {
+  std::string text = request.path;
+  for (const auto& [name, value] : request.query) {
+    if (name == kExpires || name == kSignature) continue;
+    text += '\n' + name + '=' + value;
+  }
+  return text;
+}
+
+Scope scope_of(const Request& request) {
+  if (request.method == "GET" || request.method == "HEAD") return Scope::read;
+  const bool renders = request.path == "/v1/render" || request.path.starts_with("/v1/jobs");
+  return renders ? Scope::render : Scope::write;
+}
+
+// Whether it is a link that holds. Throws HttpError 403 if it is one that does not.
+bool pass_by_link(const Access& access, Request& request) {
+  const auto signature = find_field(request.query, kSignature);
+  if (!signature || scope_of(request) != Scope::read) return false;
+  const std::string text = find_field(request.query, kExpires).value_or("");
+  std::int64_t expires = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), expires);
+  const bool whole = problem == std::errc() && end == text.data() + text.size();
+  if (!whole || !access.is_signed(address_of(request), expires, *signature))
+    throw HttpError(403, "The link is not one that this service has signed");
+  const auto now = std::chrono::system_clock::now();
+  if (now > Access::Time(std::chrono::seconds(expires))) throw HttpError(403, "The link has expired");
+  std::erase_if(request.query,
+                [](const auto& field) { return field.first == kExpires || field.first == kSignature; });
+  return true;
+}
+
+std::string_view bearer_of(std::string_view header) {
+  constexpr std::string_view kBearer = "Bearer ";
+  if (header.size() < kBearer.size() || !equal_ignoring_case(header.substr(0, kBearer.size()), kBearer))
+    return {};
+  return header.substr(kBearer.size());
+}
+
+}  // namespace
+
+void require_access(const Access& access, Request& request) {
+  if (!request.path.starts_with("/v1/") || pass_by_link(access, request) || !access.needs_token()) return;
+  const std::string header = request.header("Authorization").value_or("");
+  const auto holder = access.holder_of(bearer_of(header));
+  if (!holder)
+    throw HttpError(401,
+                    header.empty() ? "A token is needed (Authorization: Bearer)" : "The token is not known",
+                    {{"WWW-Authenticate", header.empty() ? "Bearer" : "Bearer error=\"invalid_token\""}});
+  const auto scope = static_cast<std::size_t>(scope_of(request));
+  if (!holder->may[scope]) throw HttpError(403, "The token lacks the scope " + std::string(kScopes[scope]));
+  request.client = holder->name;
+}
+
+std::string link_parameters(const Access& access, const Request& target, std::int64_t expires) {
+  return std::string(kExpires) + "=" + std::to_string(expires) + "&" + std::string(kSignature) + "=" +
+         access.sign(address_of(target), expires);
+}
+
+}  // namespace orrery

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "server/app/access.h"
+#include "server/http/message.h"
+
+namespace orrery {
+
+// Lets a request pass that shows a token of the scope it needs or a signed link, or needs neither; notes who
+// it is from. What lies outside of /v1/ is open to all. A link's own parameters are taken out of the query.
+// Throws HttpError 401 or 403.
+void require_access(const Access& access, Request& request);
+
+// The parameters that make an address a link: "expires=...&signature=...".
+std::string link_parameters(const Access& access, const Request& target, std::int64_t expires);
+
+}  // namespace orrery

@@ -1,0 +1,194 @@
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/params/params.h"
+#include "core/plan/plan.h"
+#include "server/app/picture_key.h"
+#include "server/http/problem.h"
+#include "server/http/router.h"
+#include "server/routes/answers.h"
+#include "server/routes/order.h"
+
+// /v1/jobs: pictures and orbits that take longer than anybody holds a connection open for.
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string path_of(const Job& job) { return "/v1/jobs/" + job.id(); }
+
+ordered_json status_json(const Job& job, const JobStatus& status) {
+  const auto milli = [](double seconds) { return std::round(seconds * 1000) / 1000; };
+  ordered_json json = {{"id", job.id()},
+                       {"state", name_of(status.state)},
+                       {"frames", status.frames},
+                       {"frames_done", status.frames_done},
+                       {"tiles", status.tiles},
+                       {"tiles_done", status.tiles_done},
+                       {"elapsed_s", milli(status.elapsed_s)},
+                       {"events", path_of(job) + "/events"},
+                       {"first_frame", path_of(job) + "/frames/0.png"}};
+  if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
+  if (status.error) json["error"] = ordered_json::parse(problem_response(status.error, job.id()).body);
+  return json;
+}
+
+JobSpec read_job(App& app, Request& request, Timing& timing) {
+  JobSpec spec;
+  spec.client = request.client;
+  double step_degrees = 0;
+  std::optional<double> time_step_s;
+  bool orbits = false;
+  const Order order = read_order(app, request, timing, [&](Params& p) {
+    orbits = p.has("orbit");
+    p.optional_object("orbit", "A turn of the camera; missing: one picture.", [&](Params& o) {
+      const std::int64_t most = app.settings().orbit_frames;
+      spec.frames = static_cast<int>(
+          o.integer("frames", "Pictures of it.", 1, most, std::min<std::int64_t>(most, orbits ? 120 : 1)));
+      step_degrees = o.number("step_degrees", "Turn from picture to picture.", {.min = -360, .max = 360},
+                              derived(360.0 / spec.frames));
+      const double time = o.number("time_step_s", "Motion from picture to picture.",
+                                   {.min = -kLongestStep_s, .max = kLongestStep_s}, derived(0.0));
+      if (o.has("time_step_s")) time_step_s = time;
+    });
+  });
+  const Scene& scene = order.scene->scene();
+  spec.scene = order.scene;
+  spec.path = full_turn(scene, order.request, spec.frames);
+  spec.path.step_degrees = step_degrees;
+  if (!orbits) spec.path.step_seconds = 0;
+  if (time_step_s) spec.path.step_seconds = *time_step_s;
+  for (const int frame : {0, spec.frames - 1}) make_plan(scene, spec.path.at(frame));
+  return spec;
+}
+
+Response start_job(App& app, Request& request) {
+  app.require_open();
+  const std::string key = request.header("Idempotency-Key").value_or("");
+  constexpr std::size_t kLongestKey = 255;
+  if (key.size() > kLongestKey)
+    throw HttpError(400, "Idempotency-Key has more than " + std::to_string(kLongestKey) + " characters");
+  Timing timing;
+  JobSpec spec = read_job(app, request, timing);
+  const std::string content = canonical_orbit(spec.scene->scene(), spec.path, spec.frames);
+  const Jobs::Started started = app.jobs().start(std::move(spec), key, content);
+  Response response = json_answer(202, status_json(*started.job, started.job->status()));
+  response.set("Location", path_of(*started.job));
+  response.set("Server-Timing", server_timing(timing));
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+Response get_job(App& app, Request& request) {
+  const auto job = app.jobs().find(request.path_value("id"));
+  Response response = json_answer(200, status_json(*job, job->status()));
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+// "12.png": 12. Throws HttpError 404 for what is no frame of the job.
+int frame_of(const Job& job, const std::string& name) {
+  int number = -1;
+  const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
+  const bool canonical = problem == std::errc() && name == std::to_string(number) + ".png";
+  if (canonical && number >= 0 && number < job.spec().frames) return number;
+  throw HttpError(404, "The job has frames 0.png to " + std::to_string(job.spec().frames - 1) + ".png");
+}
+
+Response get_frame(App& app, Request& request) {
+  const auto job = app.jobs().find(request.path_value("id"));
+  const int number = frame_of(*job, request.path_value("frame"));
+  const auto picture = job->frame(number);
+  if (!picture) {
+    const JobStatus status = job->status();
+    throw HttpError(409, "Frame " + std::to_string(number) + " is not rendered: " +
+                             std::to_string(status.frames_done) + " of " + std::to_string(status.frames) +
+                             " are, and the job is " + std::string(name_of(status.state)));
+  }
+  const std::string etag = "\"" + job->id() + "-" + std::to_string(number) + "\"";
+  Response response{.status = 304};
+  if (!has_current(request, etag)) response = text_response(200, "image/png", *picture);
+  response.set("ETag", etag);
+  response.set("Cache-Control", "private, max-age=31536000, immutable");
+  return response;
+}
+
+std::string event(std::string_view name, int id, const ordered_json& data) {
+  return "event: " + std::string(name) + "\nid: " + std::to_string(id) + "\ndata: " + data.dump() + "\n\n";
+}
+
+// Events are numbered by the frames that are done when they are sent, the last one by one more: who comes
+// back with the number it saw last misses no frame.
+struct Events {
+  std::shared_ptr<Job> job;
+  int seen;  // frames that the client knows of
+
+  void send(Sink& sink, const std::function<bool()>& gone) {
+    constexpr std::chrono::milliseconds kAsk{100};
+    constexpr std::chrono::seconds kSilence{10};  // after which the client is told that the line is open
+    std::int64_t tiles = -1;
+    auto spoke = Clock::now();
+    for (;;) {
+      const JobStatus status = job->wait(seen, Clock::now() + kAsk);
+      const bool ended = has_ended(status.state);
+      const bool moved = std::exchange(tiles, status.tiles_done) != status.tiles_done;
+      std::string text;
+      for (; seen < status.frames_done; ++seen) text += frame_event(status);
+      if (ended)
+        text += event(name_of(status.state), status.frames + 1, status_json(*job, status));
+      else if (moved && text.empty())
+        text = event("progress", seen, status_json(*job, status));
+      if (text.empty() && Clock::now() - spoke > kSilence) text = ": still waiting\n\n";
+      if (!text.empty()) spoke = Clock::now();
+      if ((!text.empty() && !sink.write(text)) || ended || gone()) return;
+    }
+  }
+
+ private:
+  std::string frame_event(const JobStatus& status) const {
+    ordered_json json = status_json(*job, status);
+    json["frame"] = seen;
+    json["href"] = path_of(*job) + "/frames/" + std::to_string(seen) + ".png";
+    return event("frame", seen + 1, json);
+  }
+};
+
+Response get_events(App& app, Request& request) {
+  const auto job = app.jobs().find(request.path_value("id"));
+  constexpr std::array<std::string_view, 1> kType{"text/event-stream"};
+  negotiate(request, kType);
+  int seen = 0;
+  if (const auto last = request.header("Last-Event-ID")) {
+    const auto [end, problem] = std::from_chars(last->data(), last->data() + last->size(), seen);
+    if (problem != std::errc() || end != last->data() + last->size() || seen < 0)
+      throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
+  }
+  if (seen > job->spec().frames) return {.status = 204};  // it has seen the end: no need to come again
+  Response response;
+  response.set("Content-Type", "text/event-stream");
+  response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");
+  response.stream = [events = Events{job, seen}, gone = request.gone](Sink& sink) mutable {
+    events.send(sink, gone);
+  };
+  return response;
+}
+
+Response remove_job(App& app, Request& request) {
+  app.jobs().remove(request.path_value("id"));
+  return {.status = 204};
+}
+
+}  // namespace
+
+void add_jobs_routes(Router& router, App& app) {
+  router.add("POST", "/v1/jobs", [&app](Request& request) { return start_job(app, request); });
+  router.add("GET", "/v1/jobs/{id}", [&app](Request& request) { return get_job(app, request); });
+  router.add("DELETE", "/v1/jobs/{id}", [&app](Request& request) { return remove_job(app, request); });
+  router.add("GET", "/v1/jobs/{id}/events", [&app](Request& request) { return get_events(app, request); });
+  router.add("GET", "/v1/jobs/{id}/frames/{frame}",
+             [&app](Request& request) { return get_frame(app, request); });
+}
+
+}  // namespace orrery

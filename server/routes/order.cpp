@@ -1,0 +1,38 @@
+#include "server/routes/order.h"
+
+#include "core/load/load.h"
+#include "server/routes/answers.h"
+
+namespace orrery {
+namespace {
+
+// What was built for a scene that is kept is used again.
+SceneStore::Prepared prepare(App& app, const Document& document, const MeshSource& meshes) {
+  auto scene = load_scene(document, meshes);
+  if (auto known = app.scenes().find_known(scene->id)) return known;
+  return std::make_shared<const PreparedScene>(std::move(scene));
+}
+
+SceneStore::Prepared find(App& app, const Document& id) {
+  const std::string text = id.canonical();  // in quotes if it is one
+  if (!text.starts_with('"'))
+    throw InputError("/scene_id", "expected the id of a scene in quotes, got " + text.substr(0, 40));
+  return app.scenes().find(text.substr(1, text.size() - 2));
+}
+
+}  // namespace
+
+Order read_order(App& app, Request& request, Timing& timing, const std::function<void(Params&)>& more) {
+  const std::string body = read_json(request);
+  Order order;
+  app.read(body.size(), asker_of(request), timing, [&](const MeshSource& meshes) {
+    const Document document = parse_document(body);
+    const auto scene = document.member("scene"), id = document.member("scene_id");
+    if (scene && id) throw InputError("/scene_id", "expected either scene or scene_id, got both");
+    if (scene || id) order.request = read_request(document, more);
+    order.scene = id ? find(app, *id) : prepare(app, scene ? *scene : document, meshes);
+  });
+  return order;
+}
+
+}  // namespace orrery

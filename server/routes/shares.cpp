@@ -1,0 +1,50 @@
+#include <nlohmann/json.hpp>
+
+#include "core/params/params.h"
+#include "server/app/app.h"
+#include "server/http/router.h"
+#include "server/http/target.h"
+#include "server/routes/access.h"
+#include "server/routes/answers.h"
+
+// POST /v1/shares: an address that needs no token, for a time.
+namespace orrery {
+namespace {
+
+Response share(App& app, Request& request) {
+  constexpr std::int64_t kLongest_s = 366 * 86400, kUsual_s = 7 * 86400;
+  constexpr std::size_t kLongestPath = 2000;
+  std::string path;
+  std::int64_t seconds = kUsual_s;
+  read_document(parse_document(read_json(request)), [&](Params& p) {
+    path = p.text("path", "What is shared, beginning with /v1/.", kLongestPath);
+    seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
+  });
+  if (!path.starts_with("/v1/")) throw InputError("/path", "expected an address that begins with /v1/");
+  Request target;
+  try {
+    Target parsed = parse_target(path);
+    target.path = std::move(parsed.path);
+    target.query = std::move(parsed.query);
+  } catch (const HttpError& error) {
+    throw InputError("/path", error.what());
+  }
+  const std::int64_t expires =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
+          .count() +
+      seconds;
+  const std::string separator = path.find('?') == std::string::npos ? "?" : "&";
+  Response response = json_answer(
+      201,
+      {{"href", path + separator + link_parameters(app.access(), target, expires)}, {"expires", expires}});
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+}  // namespace
+
+void add_shares_routes(Router& router, App& app) {
+  router.add("POST", "/v1/shares", [&app](Request& request) { return share(app, request); });
+}
+
+}  // namespace orrery

@@ -1,0 +1,178 @@
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "core/base/hash.h"
+#include "tests/http/daemon.h"
+
+// Who may do what.
+namespace orrery {
+namespace {
+
+using nlohmann::json;
+
+class Folder {
+ public:
+  Folder() { std::filesystem::create_directory(path_); }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
+
+ private:
+  const std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() / ("orrery-access-" + std::to_string(getpid()));
+};
+
+std::string line(const std::string& name, const std::string& scopes, const std::string& token) {
+  return name + " " + scopes + " " + sha256_hex(token) + "\n";
+}
+
+httplib::Headers bearer(const std::string& token) { return {{"Authorization", "Bearer " + token}}; }
+
+struct Guarded {
+  Folder folder;
+  std::string tokens = folder.write("tokens", "# people\n" + line("reader", "read", "r") +
+                                                  line("painter", "read,render", "p") + "\n" +
+                                                  line("keeper", "read,write", "k"));
+  std::string key = folder.write("key", std::string(32, 'k'));
+  Daemon daemon{{"--tokens-file", tokens, "--share-key-file", key}};
+  httplib::Client client = daemon.client();
+};
+
+TEST(Access, NeedsATokenOfTheScope) {
+  Guarded guarded;
+  auto& client = guarded.client;
+  const std::string scene = small_scene().dump();
+  const auto post = [&](const char* path, const std::string& token, const std::string& body) {
+    return client.Post(path, bearer(token), body, "application/json");
+  };
+  const auto refused = client.Get("/v1/limits");
+  expect_problem(refused, 401);
+  EXPECT_EQ(refused->get_header_value("WWW-Authenticate"), "Bearer");
+  const auto unknown = client.Get("/v1/limits", bearer("x"));
+  expect_problem(unknown, 401);
+  EXPECT_EQ(unknown->get_header_value("WWW-Authenticate"), "Bearer error=\"invalid_token\"");
+  for (const char* strange : {"r", "Basic r", "Bearer", "Bearer ", "Bearer r r", "bearer  r"})
+    expect_problem(client.Get("/v1/limits", {{"Authorization", strange}}), 401);
+  EXPECT_EQ(client.Get("/v1/limits", {{"Authorization", "bearer r"}})->status, 200);
+  expect_problem(post("/v1/scenes", "r", scene), 403);
+  expect_problem(post("/v1/render", "r", scene), 403);
+  expect_problem(post("/v1/scenes", "p", scene), 403);
+  EXPECT_EQ(post("/v1/render", "p", scene)->status, 200);
+  EXPECT_EQ(post("/v1/scenes", "k", scene)->status, 201);
+  expect_problem(post("/v1/render", "k", scene), 403);
+  expect_problem(post("/v1/jobs", "k", scene), 403);
+  expect_problem(client.Delete("/v1/scenes/x", bearer("p")), 403);
+  for (const char* open :
+       {"/", "/app.js", "/schemas/scene.json", "/healthz", "/readyz", "/scenes/paper.json"})
+    EXPECT_EQ(client.Get(open)->status, 200) << open;
+}
+
+TEST(Access, TokensAreReadAgainOnSighup) {
+  Guarded guarded;
+  const auto status = [&](const std::string& token) {
+    return guarded.client.Get("/v1/limits", bearer(token))->status;
+  };
+  const auto becomes = [&](const std::string& token, int wanted) {
+    for (int i = 0; i < 200 && status(token) != wanted; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return status(token);
+  };
+  EXPECT_EQ(status("r"), 200);
+  guarded.folder.write("tokens", line("other", "read", "o"));
+  guarded.daemon.signal(SIGHUP);
+  EXPECT_EQ(becomes("o", 200), 200);
+  EXPECT_EQ(status("r"), 401);
+  guarded.folder.write("tokens", line("other", "read,paint", "o"));  // no such scope
+  guarded.daemon.signal(SIGHUP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(status("o"), 200);
+}
+
+TEST(Access, SignedLinksNeedNoTokenUntilTheyExpire) {
+  Guarded guarded;
+  auto& client = guarded.client;
+  const auto posted = client.Post("/v1/scenes", bearer("k"), small_scene().dump(), "application/json");
+  const std::string frame = posted->get_header_value("Location") + "/frame.png?azimuth=30";
+  const auto share = [&](const json& body) {
+    return client.Post("/v1/shares", bearer("k"), body.dump(), "application/json");
+  };
+  const json shared = json::parse(share({{"path", frame}})->body);
+  const std::string link = shared.at("href");
+  expect_problem(client.Get(frame), 401);
+  const auto picture = client.Get(link);
+  EXPECT_EQ(picture->status, 200);
+  EXPECT_EQ(picture->body, client.Get(frame, bearer("r"))->body);
+  EXPECT_EQ(picture->get_header_value("ETag"), client.Get(frame, bearer("r"))->get_header_value("ETag"));
+  std::string turned = link, longer = link, tampered = link;
+  turned.replace(turned.find("azimuth=30"), 10, "azimuth=31");
+  longer.replace(longer.find("expires=") + 8, 1, "9");
+  tampered.back() = tampered.back() == '0' ? '1' : '0';
+  for (const std::string& wrong : {turned, longer, tampered, link + "&samples=4", frame + "&signature="})
+    expect_problem(client.Get(wrong), 403);
+  expect_problem(client.Delete(posted->get_header_value("Location") + link.substr(link.find('?'))), 401);
+  const std::string brief = json::parse(share({{"path", frame}, {"seconds", 1}})->body).at("href");
+  int status = 0;
+  for (int i = 0; i < 200 && status != 403; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    status = client.Get(brief)->status;
+  }
+  EXPECT_EQ(status, 403);
+  expect_problem(share({{"path", "/healthz"}}), 422);
+  expect_problem(share({{"path", "/v1/%zz"}}), 422);
+  expect_problem(share({{"path", frame}, {"seconds", 0}}), 422);
+}
+
+TEST(Access, FilesThatCannotBeUsedKeepTheServiceFromStarting) {
+  Folder folder;
+  const auto status_of = [&](const std::string& option, const std::string& file) {
+    const std::string command = program() + " serve --check-config " + option + " " + file + " 2>/dev/null";
+    return WEXITSTATUS(std::system(command.c_str()));
+  };
+  const auto status_with = [&](const std::string& option, const std::string& text) {
+    return status_of(option, folder.write("file", text));
+  };
+  EXPECT_EQ(status_with("--tokens-file", line("alice", "read", "a")), 0);
+  EXPECT_EQ(status_with("--tokens-file", "alice read\n"), 2);
+  EXPECT_EQ(status_with("--tokens-file", line("alice", "paint", "a")), 2);
+  EXPECT_EQ(status_with("--tokens-file", "alice read " + sha256_hex("a").substr(1) + "\n"), 2);
+  EXPECT_EQ(status_with("--share-key-file", std::string(32, 'k')), 0);
+  EXPECT_EQ(status_with("--share-key-file", std::string(31, 'k')), 2);
+  EXPECT_EQ(status_of("--tokens-file", "/nonexistent"), 2);
+}
+
+TEST(Cors, OnlyListedOriginsMayRead) {
+  Daemon daemon({"--cors-origins", "https://a.example,https://b.example"});
+  auto client = daemon.client();
+  const auto get = [&](const std::string& origin) { return client.Get("/v1/limits", {{"Origin", origin}}); };
+  for (const char* origin : {"https://a.example", "https://b.example"}) {
+    EXPECT_EQ(get(origin)->get_header_value("Access-Control-Allow-Origin"), origin);
+    EXPECT_NE(get(origin)->get_header_value("Access-Control-Expose-Headers").find("Retry-After"),
+              std::string::npos);
+  }
+  for (const char* origin : {"https://c.example", "http://a.example", "null", "https://a.example.evil"})
+    EXPECT_FALSE(get(origin)->has_header("Access-Control-Allow-Origin")) << origin;
+  EXPECT_EQ(get("x")->get_header_value("Vary"), "Origin");
+  const httplib::Headers ask{
+      {"Origin", "https://a.example"}, {"Access-Control-Request-Method", "PUT"}, {"Connection", "close"}};
+  const auto preflight = client.Options("/v1/assets/x", ask);
+  EXPECT_EQ(preflight->status, 204);
+  EXPECT_EQ(preflight->get_header_value("Access-Control-Allow-Origin"), "https://a.example");
+  EXPECT_NE(preflight->get_header_value("Access-Control-Allow-Methods").find("PUT"), std::string::npos);
+  EXPECT_NE(preflight->get_header_value("Access-Control-Allow-Headers").find("Authorization"),
+            std::string::npos);
+}
+
+TEST(Cors, IsOffUnlessAsked) {
+  Daemon daemon;
+  const auto result = daemon.client().Get("/v1/limits", {{"Origin", "https://a.example"}});
+  EXPECT_FALSE(result->has_header("Access-Control-Allow-Origin"));
+  EXPECT_FALSE(result->has_header("Vary"));
+}
+
+}  // namespace
+}  // namespace orrery

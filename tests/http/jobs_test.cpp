@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <sstream>
+#include <thread>
+
+#include "tests/http/daemon.h"
+
+// Work that goes on while nobody is connected.
+namespace orrery {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kJson = "application/json";
+
+struct Event {
+  std::string name;
+  int id = -1;
+  json data;
+};
+
+std::vector<Event> parse_events(const std::string& text) {
+  std::vector<Event> events;
+  std::istringstream lines(text);
+  Event event;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("event: ", 0) == 0) event.name = line.substr(7);
+    if (line.rfind("id: ", 0) == 0) event.id = std::stoi(line.substr(4));
+    if (line.rfind("data: ", 0) == 0) event.data = json::parse(line.substr(6));
+    if (line.empty()) events.push_back(std::exchange(event, {}));
+  }
+  return events;
+}
+
+class JobTest : public HttpTest {
+ protected:
+  json start(const json& body, const httplib::Headers& headers = {}) {
+    const auto result = client_.Post("/v1/jobs", headers, body.dump(), kJson);
+    EXPECT_TRUE(result);
+    EXPECT_EQ(result->status, 202) << result->body;
+    const json job = json::parse(result->body);
+    EXPECT_EQ(result->get_header_value("Location"), path(job));
+    return job;
+  }
+  static std::string path(const json& job) { return "/v1/jobs/" + job.at("id").get<std::string>(); }
+  std::vector<Event> events(const json& job, const httplib::Headers& headers = {}) {
+    const auto result = client_.Get(path(job) + "/events", headers);
+    EXPECT_EQ(result->get_header_value("Content-Type"), "text/event-stream");
+    return parse_events(result->body);
+  }
+  json status(const json& job) { return json::parse(client_.Get(path(job))->body); }
+};
+
+const json kOrbit = {{"frames", 4}, {"step_degrees", 30}};
+json endless() {
+  return {{"scene", small_scene()},
+          {"image", {{"width", 4096}, {"height", 4096}}},
+          {"render", {{"samples", 4096}, {"precision", "double"}}}};
+}
+
+TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
+  const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}});
+  EXPECT_EQ(job.at("frames"), 4);
+  const auto told = events(job);
+  std::vector<int> frames;
+  for (const Event& event : told)
+    if (event.name == "frame") frames.push_back(event.data.at("frame"));
+  EXPECT_EQ(frames, (std::vector<int>{0, 1, 2, 3}));
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.back().name, "done");
+  EXPECT_EQ(told.back().data.at("tiles_done"), told.back().data.at("tiles"));
+  EXPECT_GT(told.back().data.at("tiles"), 0);
+  const std::string scene = "/v1/scenes/" + post_scene(small_scene().dump()) + "/frame.png";
+  for (int i = 0; i < 4; ++i) {
+    const auto frame = client_.Get(path(job) + "/frames/" + std::to_string(i) + ".png");
+    EXPECT_EQ(frame->get_header_value("Content-Type"), "image/png");
+    EXPECT_EQ(frame->body, client_.Get(scene + "?azimuth=" + std::to_string(30 * i))->body) << i;
+    EXPECT_EQ(get_known(path(job) + "/frames/" + std::to_string(i) + ".png", frame->get_header_value("ETag"))
+                  ->status,
+              304);
+  }
+  expect_problem(client_.Get(path(job) + "/frames/4.png"), 404);
+  expect_problem(client_.Get(path(job) + "/frames/00.png"), 404);
+  expect_problem(client_.Get(path(job) + "/frames/0.jpg"), 404);
+}
+
+TEST_F(JobTest, WhoComesBackMissesNoEvent) {
+  const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}});
+  const auto all = events(job);
+  const auto rest = events(job, {{"Last-Event-ID", "2"}});
+  ASSERT_EQ(rest.size(), 3U);  // two frames and the end
+  EXPECT_EQ(rest[0].data.at("frame"), 2);
+  EXPECT_EQ(rest[2].name, "done");
+  EXPECT_EQ(events(job, {{"Last-Event-ID", "4"}}).size(), 1U);
+  EXPECT_EQ(client_
+                .Get(path(job) + "/events",
+                     {{"Last-Event-ID", std::to_string(all.back().id)}, {"Connection", "close"}})
+                ->status,
+            204);
+  for (const char* wrong : {"x", "-1", "1x", "99999999999"})
+    expect_problem(client_.Get(path(job) + "/events", {{"Last-Event-ID", wrong}}), 400);
+}
+
+TEST_F(JobTest, GoesOnWithoutAnyoneAndIsOverOnce) {
+  const json job = start({{"scene", small_scene()}});
+  for (int i = 0; i < 400 && status(job).at("state") != "done"; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(status(job).at("state"), "done");
+  EXPECT_TRUE(is_png(client_.Get(path(job) + "/frames/0.png")->body));
+  EXPECT_EQ(client_.Delete(path(job))->status, 204);
+  expect_problem(client_.Get(path(job)), 404);
+  expect_problem(client_.Get(path(job) + "/frames/0.png"), 404);
+  expect_problem(client_.Delete(path(job)), 404);
+}
+
+TEST_F(JobTest, AFrameThatIsNotThereYetIsAConflict) {
+  const json job = start(endless());
+  const json problem = expect_problem(client_.Get(path(job) + "/frames/0.png"), 409);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("0 of 1"), std::string::npos);
+  client_.Delete(path(job));
+}
+
+TEST_F(JobTest, DeletedIsCancelledAndThoseWhoWatchLearnOfIt) {
+  EXPECT_TRUE(daemon().wait_until_idle());
+  const json job = start(endless());
+  EXPECT_TRUE(daemon().wait_until_working());
+  std::vector<Event> told;
+  std::thread watcher([&] { told = parse_events(daemon().client().Get(path(job) + "/events")->body); });
+  for (int i = 0; i < 400 && status(job).at("tiles_done") == 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(client_.Delete(path(job))->status, 204);
+  watcher.join();
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.back().name, "cancelled");
+  EXPECT_EQ(told.front().name, "progress");
+  EXPECT_TRUE(daemon().wait_until_idle());
+}
+
+TEST_F(JobTest, TheSameKeyStartsOneJob) {
+  const httplib::Headers key{{"Idempotency-Key", "\"a-1\""}};
+  const json body = {{"scene", small_scene()}, {"orbit", kOrbit}};
+  const json job = start(body, key);
+  EXPECT_EQ(start(body, key).at("id"), job.at("id"));
+  EXPECT_NE(start(body).at("id"), job.at("id"));
+  json other = body;
+  other["orbit"]["frames"] = 5;
+  expect_problem(client_.Post("/v1/jobs", key, other.dump(), kJson), 422);
+  expect_problem(client_.Post("/v1/jobs", {{"Idempotency-Key", std::string(256, 'x')}}, body.dump(), kJson),
+                 400);
+}
+
+TEST_F(JobTest, WrongInputIsRefusedAtItsPlace) {
+  const auto pointer = [&](const json& body) {
+    const json problem = expect_problem(client_.Post("/v1/jobs", body.dump(), kJson), 422);
+    return problem.at("errors").at(0).at("pointer").get<std::string>();
+  };
+  EXPECT_EQ(pointer({{"scene", small_scene()}, {"orbit", {{"frames", 0}}}}), "/orbit/frames");
+  EXPECT_EQ(pointer({{"scene", small_scene()}, {"orbit", {{"frames", 1e6}}}}), "/orbit/frames");
+  EXPECT_EQ(pointer({{"scene", small_scene()}, {"orbit", {{"step_degrees", 361}}}}), "/orbit/step_degrees");
+  EXPECT_EQ(pointer({{"scene", small_scene()}, {"orbit", {{"step", 3}}}}), "/orbit");
+  EXPECT_EQ(pointer({{"scene", small_scene()}, {"image", {{"width", 0}}}}), "/image/width");
+  EXPECT_EQ(pointer({{"scene", small_scene()}, {"lane", "batch"}}), "");
+  expect_problem(client_.Post("/v1/jobs", json{{"scene_id", "nothing"}}.dump(), kJson), 404);
+  expect_problem(client_.Post("/v1/jobs", "{", kJson), 400);
+  expect_problem(client_.Get("/v1/jobs/nothing/events"), 404);
+  const json turned = {{"scene", small_scene()}, {"orbit", kOrbit}};
+  EXPECT_EQ(
+      expect_problem(client_.Post("/v1/render", turned.dump(), kJson), 422).at("errors")[0].at("pointer"),
+      "");
+}
+
+json post_job(Daemon& daemon, const json& body, int status = 202) {
+  const auto result = daemon.client().Post("/v1/jobs", body.dump(), kJson);
+  EXPECT_EQ(result->status, status) << result->body;
+  return json::parse(result->body);
+}
+
+TEST(JobLimits, AreHeldAndNamed) {
+  Daemon daemon({"--jobs", "2", "--job-bytes", "3000"});
+  const json first = post_job(daemon, endless());
+  post_job(daemon, endless());
+  const json problem = post_job(daemon, endless(), 503);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("(jobs)"), std::string::npos);
+  daemon.client().Delete("/v1/jobs/" + first.at("id").get<std::string>());
+  const json many = post_job(daemon, {{"scene", small_scene()}, {"orbit", {{"frames", 100}}}});
+  const std::string path = "/v1/jobs/" + many.at("id").get<std::string>();
+  const auto told = parse_events(daemon.client().Get(path + "/events")->body);
+  EXPECT_EQ(told.back().name, "failed");
+  EXPECT_NE(told.back().data.at("error").at("detail").get<std::string>().find("(job_bytes)"),
+            std::string::npos);
+}
+
+TEST(JobLimits, TheOldestResultsMakeRoomForNewOnes) {
+  Daemon daemon({"--job-bytes", "3000"});
+  std::vector<std::string> paths;
+  for (int i = 0; i < 8; ++i) {
+    const json job = post_job(daemon, {{"scene", small_scene()}, {"camera", {{"azimuth_degrees", i}}}});
+    paths.push_back("/v1/jobs/" + job.at("id").get<std::string>());
+    EXPECT_EQ(parse_events(daemon.client().Get(paths.back() + "/events")->body).back().name, "done");
+  }
+  EXPECT_EQ(daemon.client().Get(paths.front())->status, 404);
+  EXPECT_EQ(daemon.client().Get(paths.back())->status, 200);
+}
+
+TEST(JobLimits, ResultsAreKeptForTheTimeStated) {
+  Daemon daemon({"--job-kept-seconds", "1"});
+  const json job = post_job(daemon, {{"scene", small_scene()}});
+  const std::string path = "/v1/jobs/" + job.at("id").get<std::string>();
+  daemon.client().Get(path + "/events");
+  int status = 200;
+  for (int i = 0; i < 400 && status == 200; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    status = daemon.client().Get(path)->status;
+  }
+  EXPECT_EQ(status, 404);
+}
+
+TEST(JobLimits, AJobThatTakesTooLongFails) {
+  Daemon daemon({"--job-seconds", "1"});
+  const json job = post_job(daemon, endless());
+  const auto told =
+      parse_events(daemon.client().Get("/v1/jobs/" + job.at("id").get<std::string>() + "/events")->body);
+  EXPECT_EQ(told.back().name, "failed");
+  EXPECT_EQ(told.back().data.at("error").at("status"), 504);
+}
+
+TEST(JobLimits, AJobEndsWithTheService) {
+  Daemon daemon;
+  const json job = post_job(daemon, endless());
+  EXPECT_TRUE(daemon.wait_until_working());
+  std::vector<Event> told;
+  std::thread watcher([&] {
+    told = parse_events(daemon.client().Get("/v1/jobs/" + job.at("id").get<std::string>() + "/events")->body);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  daemon.signal(SIGTERM);
+  watcher.join();
+  EXPECT_EQ(daemon.wait(), 0);
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.back().name, "failed");
+  EXPECT_EQ(told.back().data.at("error").at("status"), 503);
+}
+
+}  // namespace
+}  // namespace orrery
