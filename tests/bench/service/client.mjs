@@ -25,7 +25,7 @@ export const header_of = ({ head }, name) => new RegExp(`\\r\\n${name}: *([^\\r]
 // Every answer has a Content-Length: no streams here. An answer is {status, head, text(), ms, sent}: ms from the
 // moment the request was written, sent on performance.now()'s clock. Where there is none it is {failure, sent}:
 // "refused" (no connection), "unanswered" (the connection ended before the answer did), "silent" (nothing for
-// long) or "left" (leave() was called).
+// long) or "left" (leave() was called). first: whether it was the first request of its connection.
 export class Client {
   #port;
   #socket = null;
@@ -42,7 +42,7 @@ export class Client {
     const length = body.length > 0 ? `Content-Length: ${Buffer.byteLength(body)}\r\n` : "";
     const bytes = `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1\r\n${length}${lines.join("")}\r\n${body}`;
     return new Promise((resolve) => {
-      this.#waiting = { resolve, sent: null, answer: null, without_body: method === "HEAD" };
+      this.#waiting = { resolve, sent: null, answer: null, without_body: method === "HEAD", first: this.#socket === null };
       if (this.#socket) this.#write(bytes);
       else this.#connect(bytes);
     });
@@ -87,12 +87,12 @@ export class Client {
   }
 
   #finish() {
-    const { resolve, sent, answer } = this.#waiting, ms = performance.now() - sent;
+    const { resolve, sent, answer, first } = this.#waiting, ms = performance.now() - sent;
     const bytes = Buffer.concat(this.#parts);
     this.#waiting = null;
     this.#forget();
     if (answer.closes) this.leave();
-    resolve({ ...answer, text: () => bytes.toString("utf8", answer.body_at), ms, sent });
+    resolve({ ...answer, text: () => bytes.toString("utf8", answer.body_at), ms, sent, first });
   }
 
   #end(failure) {
@@ -100,7 +100,7 @@ export class Client {
     this.#waiting = this.#socket = null;
     this.#forget();
     socket?.destroy();
-    waiting?.resolve({ failure, sent: waiting.sent });
+    waiting?.resolve({ failure, sent: waiting.sent, first: waiting.first });
   }
 
   #forget() {

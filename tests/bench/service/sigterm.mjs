@@ -41,22 +41,30 @@ async function one_end() {
   });
 }
 
+// A row for requests of which none may stay without a whole answer.
+function whole_row(what, answers) {
+  const cut = answers.filter((answer) => !is_whole(answer));
+  return row(`${what}, ${answers.length}: not answered whole`, "0", cut.length === 0 ? "0" : tally(cut.map(outcome)), cut.length === 0);
+}
+
 async function run({ times }) {
   const ends = [];
   for (let i = 0; i < times; ++i) ends.push(await one_end());
-  const before = ends.flatMap((end) => end.before), after = ends.flatMap((end) => end.after);
-  const cut = before.filter((answer) => !is_whole(answer)), cut_after = after.filter((answer) => !is_whole(answer));
+  const after = ends.flatMap((end) => end.after), kept = after.filter(({ first }) => !first);
   const in_time = ends.every(({ code, took }) => code === 0 && took <= 1000 * kGrace_s);
   const told = ends.filter(({ said }) => said.includes("503 draining")).length;
   const told_wrong = ends.flatMap(({ said }) => said.slice(said.indexOf("503 draining"))).filter((s) => s !== "503 draining");
+  const exits = `${tally(ends.map((end) => `exit ${end.code}`))}; at most ${ms(most(ends.map((end) => end.took)))}`;
+  const ready = `${told} of ${times}${told_wrong.length > 0 ? `; then ${tally(told_wrong)}` : ""}`;
   return {
     rows: [
-      row(`asked before the signal, ${before.length}: not answered whole`, "0", cut.length === 0 ? "0" : tally(cut.map(outcome)), cut.length === 0),
-      row(`asked after it, ${after.length}: connected, not answered whole`, "0", cut_after.length === 0 ? "0" : tally(cut_after.map(outcome)), cut_after.length === 0),
-      row(`exit 0 within ${kGrace_s} s, ${times} times`, "all", `${tally(ends.map((end) => `exit ${end.code}`))}; at most ${ms(most(ends.map((end) => end.took)))}`, in_time),
-      row("/readyz said 503 draining meanwhile", "all", `${told} of ${times}${told_wrong.length > 0 ? `; then ${tally(told_wrong)}` : ""}`, told === times && told_wrong.length === 0),
+      whole_row("asked before the signal", ends.flatMap((end) => end.before)),
+      whole_row("on connections made after it", after.filter(({ first }) => first)),
+      row(`exit 0 within ${kGrace_s} s, ${times} times`, "all", exits, in_time),
+      row("/readyz said 503 draining meanwhile", "all", ready, told === times && told_wrong.length === 0),
     ],
-    remark: `answers after the signal: ${tally(after.map(outcome))}`,
+    // A client has to expect that a connection is closed on which it was about to ask again (RFC 9112, 9.3.1).
+    remark: `asked after the signal on a connection from before: ${tally(kept.map(outcome))}`,
   };
 }
 

@@ -4,7 +4,7 @@ import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import { Client } from "./client.mjs";
-import { kFlake, kPaper, mean, mib, most, new_picture, pause, percent, process_state, row, tally, with_service } from "./support.mjs";
+import { kFlake, kPaper, mean, mib, new_picture, pause, percent, process_state, row, sparkline, tally, with_service } from "./support.mjs";
 import { FrameReader, send } from "../daemon.mjs";
 
 const kSample_s = 10, kSamples = 30; // every 10 s, oftener in a short run
@@ -113,11 +113,6 @@ const thirds = (values) => {
   const third = Math.floor(values.length / 3);
   return { middle: mean(values.slice(third, 2 * third)), last: mean(values.slice(2 * third)) };
 };
-
-function sparkline(values) {
-  const low = Math.min(...values), high = most(values), bars = "▁▂▃▄▅▆▇█";
-  return values.map((v) => bars[high > low ? Math.round(((v - low) / (high - low)) * 7) : 0]).join("");
-}
 
 async function sample(pid, deadline, seconds) {
   const samples = [], every_ms = 1000 * Math.min(kSample_s, seconds / kSamples);

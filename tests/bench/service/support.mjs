@@ -43,6 +43,13 @@ export const ms = (value) => `${value.toFixed(value < 10 ? 2 : 1)} ms`;
 export const percent = (share) => `${(100 * share).toFixed(1)} %`;
 export const mib = (bytes) => `${(bytes / 2 ** 20).toFixed(1)} MiB`;
 
+// Up to 60 of the values as bars, from the least to the most.
+export function sparkline(values) {
+  const step = Math.max(1, Math.ceil(values.length / 60)), some = values.filter((_, i) => i % step === 0);
+  const low = Math.min(...some), high = most(some), bars = "▁▂▃▄▅▆▇█";
+  return some.map((v) => bars[high > low ? Math.round(((v - low) / (high - low)) * 7) : 0]).join("");
+}
+
 // How many of each: "200: 12, refused: 3".
 export function tally(words) {
   const counts = new Map();
