@@ -11,7 +11,10 @@ const kStart_ms = 20_000;
 function read_ports(child) {
   return new Promise((resolve, reject) => {
     let output = "";
-    const timer = setTimeout(() => reject(new Error(`orrery serve named no ports; it said: ${output}`)), kStart_ms);
+    const timer = setTimeout(
+      () => reject(new Error(`orrery serve named no ports; it said: ${output}`)),
+      kStart_ms,
+    );
     child.stdout.on("data", (bytes) => {
       output += bytes;
       const match = /http:\/\/\S+:(\d+)\s[^\n]* port (\d+)\n/.exec(output);

@@ -44,13 +44,15 @@ function read_arguments(words) {
 }
 
 const kWidths = [11, 58, 22];
-const line = (cells) => cells.map((cell, i) => (i < kWidths.length ? cell.padEnd(kWidths[i]) : cell)).join(" ");
+const line = (cells) =>
+  cells.map((cell, i) => (i < kWidths.length ? cell.padEnd(kWidths[i]) : cell)).join(" ");
 const verdict = ({ met }) => (met === null ? "" : met ? "met: " : "MISSED: ");
 
 async function measure(property, options) {
   const amount = { seconds: options.seconds ?? property.seconds, times: options.times ?? property.times };
   const { rows, remark } = await property.run(amount);
-  for (const row of rows) console.log(line([property.name, row.what, row.target, verdict(row) + row.measured]));
+  for (const row of rows)
+    console.log(line([property.name, row.what, row.target, verdict(row) + row.measured]));
   if (remark) console.log(`  ${property.name}: ${remark}`);
   return rows.map((row) => ({ property: property.name, ...row }));
 }
@@ -62,7 +64,8 @@ export async function measure_service(words) {
     return;
   }
   if (!exists_program(kOrrery)) fail(`${kOrrery} is not built`);
-  const cores = availableParallelism(), load = loadavg()[0].toFixed(2);
+  const cores = availableParallelism();
+  const load = loadavg()[0].toFixed(2);
   console.log(`${cores} cores, which service and clients share; load before: ${load}`);
   console.log(line(["property", "what", "target", "measured"]));
   const rows = [];

@@ -6,7 +6,8 @@ import { closed_loop, pause, row, with_service } from "./support.mjs";
 import { exists_program } from "../command.mjs";
 
 const kConnections = 8;
-const kNotModified = 5000, kWhole = 1500; // requests a second
+const kNotModified = 5000;
+const kWhole = 1500; // requests a second
 
 // Runs wrk, with one thread: the service shares the cores with it.
 function by_wrk(port, path, headers, seconds) {
@@ -20,11 +21,19 @@ function by_wrk(port, path, headers, seconds) {
 }
 
 async function by_clients(port, path, headers, seconds) {
-  let count = 0, bad = 0;
-  const load = closed_loop(port, kConnections, () => path, ({ status }) => {
-    ++count;
-    if (status !== 200 && status !== 304) ++bad;
-  }, 0, { headers });
+  let count = 0,
+    bad = 0;
+  const load = closed_loop(
+    port,
+    kConnections,
+    () => path,
+    ({ status }) => {
+      ++count;
+      if (status !== 200 && status !== 304) ++bad;
+    },
+    0,
+    { headers },
+  );
   await pause(1000 * seconds);
   await load.stop();
   return { rate: count / seconds, bad: bad > 0 ? `${bad} other answers` : "" };
@@ -38,15 +47,28 @@ async function run({ seconds }) {
     const client = new Client(service.port);
     const first = await client.ask(picture);
     client.leave();
-    const etag = header_of(first, "ETag"), measure = (path, headers) => rate_of(service.port, path, headers, seconds / 4);
-    const icon = await measure("/favicon.svg", {}), limits = await measure("/v1/limits", {});
-    const not_modified = await measure(picture, { "If-None-Match": etag }), whole = await measure(picture, {});
+    const etag = header_of(first, "ETag");
+    const measure = (path, headers) => rate_of(service.port, path, headers, seconds / 4);
+    const icon = await measure("/favicon.svg", {});
+    const limits = await measure("/v1/limits", {});
+    const not_modified = await measure(picture, { "If-None-Match": etag });
+    const whole = await measure(picture, {});
     const told = ({ rate, bad }) => `${Math.round(rate)}/s${bad ? ` (${bad})` : ""}`;
     const beside = (one) => `${told(one)}, ${(one.rate / icon.rate).toFixed(2)} of the icon's`;
     return {
       rows: [
-        row("304 to If-None-Match", `>= ${kNotModified}/s`, beside(not_modified), not_modified.rate >= kNotModified),
-        row(`the same 64x64 picture, ${first.total - first.body_at} bytes`, `>= ${kWhole}/s`, beside(whole), whole.rate >= kWhole),
+        row(
+          "304 to If-None-Match",
+          `>= ${kNotModified}/s`,
+          beside(not_modified),
+          not_modified.rate >= kNotModified,
+        ),
+        row(
+          `the same 64x64 picture, ${first.total - first.body_at} bytes`,
+          `>= ${kWhole}/s`,
+          beside(whole),
+          whole.rate >= kWhole,
+        ),
         row("/favicon.svg", "", told(icon), null),
         row("/v1/limits", "", beside(limits), null),
       ],
@@ -55,4 +77,9 @@ async function run({ seconds }) {
   });
 }
 
-export const kCached = { name: "cached", what: "requests a second for a picture that is known", seconds: 40, run };
+export const kCached = {
+  name: "cached",
+  what: "requests a second for a picture that is known",
+  seconds: 40,
+  run,
+};

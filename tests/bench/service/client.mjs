@@ -22,10 +22,10 @@ function read_head(buffer) {
 
 export const header_of = ({ head }, name) => new RegExp(`\\r\\n${name}: *([^\\r]*)`, "i").exec(head)?.[1];
 
-// Every answer has a Content-Length: no streams here. An answer is {status, head, text(), ms, sent}: ms from the
-// moment the request was written, sent on performance.now()'s clock. Where there is none it is {failure, sent}:
-// "refused" (no connection), "unanswered" (the connection ended before the answer did), "silent" (nothing for
-// long) or "left" (leave() was called). first: whether it was the first request of its connection.
+// Every answer has a Content-Length: no streams here. An answer is {status, head, text(), ms, sent, first}: ms
+// from the moment the request was written, sent on performance.now()'s clock, first if no request came before
+// it on its connection. Where there is no answer it is {failure, sent, first}: "refused" (no connection),
+// "unanswered" (the connection ended before the answer did), "silent" (nothing for long) or "left" (by leave()).
 export class Client {
   #port;
   #socket = null;
@@ -42,10 +42,20 @@ export class Client {
     const length = body.length > 0 ? `Content-Length: ${Buffer.byteLength(body)}\r\n` : "";
     const bytes = `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1\r\n${length}${lines.join("")}\r\n${body}`;
     return new Promise((resolve) => {
-      this.#waiting = { resolve, sent: null, answer: null, without_body: method === "HEAD", first: this.#socket === null };
+      this.#waiting = {
+        resolve,
+        sent: null,
+        answer: null,
+        without_body: method === "HEAD",
+        first: this.#socket === null,
+      };
       if (this.#socket) this.#write(bytes);
       else this.#connect(bytes);
     });
+  }
+
+  get is_connected() {
+    return this.#socket !== null;
   }
 
   // Breaks the connection off, whatever runs.
@@ -63,7 +73,7 @@ export class Client {
       connected = true;
       this.#write(bytes);
     });
-    socket.on("data", (chunk) => this.#take(chunk));
+    socket.on("data", (chunk) => socket === this.#socket && this.#waiting && this.#take(chunk));
     socket.on("error", end);
     socket.on("close", end);
   }
@@ -77,7 +87,6 @@ export class Client {
     this.#parts.push(chunk);
     this.#size += chunk.length;
     const waiting = this.#waiting;
-    if (!waiting) return;
     if (!waiting.answer) {
       this.#parts = [Buffer.concat(this.#parts)];
       waiting.answer = read_head(this.#parts[0]);
@@ -87,7 +96,8 @@ export class Client {
   }
 
   #finish() {
-    const { resolve, sent, answer, first } = this.#waiting, ms = performance.now() - sent;
+    const { resolve, sent, answer, first } = this.#waiting;
+    const ms = performance.now() - sent;
     const bytes = Buffer.concat(this.#parts);
     this.#waiting = null;
     this.#forget();
@@ -96,7 +106,8 @@ export class Client {
   }
 
   #end(failure) {
-    const waiting = this.#waiting, socket = this.#socket;
+    const waiting = this.#waiting;
+    const socket = this.#socket;
     this.#waiting = this.#socket = null;
     this.#forget();
     socket?.destroy();

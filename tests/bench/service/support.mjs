@@ -5,7 +5,8 @@ import { availableParallelism } from "node:os";
 import { Client } from "./client.mjs";
 import { post_scene, start_service } from "../daemon.mjs";
 
-export const kPaper = "scenes/paper.json", kFlake = "scenes/sphereflake-3.json"; // few objects; 820 spheres
+export const kPaper = "scenes/paper.json";
+export const kFlake = "scenes/sphereflake-3.json"; // few objects; 820 spheres
 
 export const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
@@ -45,8 +46,11 @@ export const mib = (bytes) => `${(bytes / 2 ** 20).toFixed(1)} MiB`;
 
 // Up to 60 of the values as bars, from the least to the most.
 export function sparkline(values) {
-  const step = Math.max(1, Math.ceil(values.length / 60)), some = values.filter((_, i) => i % step === 0);
-  const low = Math.min(...some), high = most(some), bars = "▁▂▃▄▅▆▇█";
+  const step = Math.max(1, Math.ceil(values.length / 60));
+  const some = values.filter((_, i) => i % step === 0);
+  const low = Math.min(...some);
+  const high = most(some);
+  const bars = "▁▂▃▄▅▆▇█";
   return some.map((v) => bars[high > low ? Math.round(((v - low) / (high - low)) * 7) : 0]).join("");
 }
 
@@ -60,6 +64,10 @@ export const outcome = (answer) => answer.failure ?? answer.status;
 
 // One row of the table. `met` null: there is no target.
 export const row = (what, target, measured, met) => ({ what, target, measured, met });
+
+// A row for answers of which there should be none.
+export const none_row = (what, bad) =>
+  row(what, "0", bad.length === 0 ? "0" : tally(bad.map(outcome)), bad.length === 0);
 
 // ---- the service as the kernel and its own metrics see it
 
@@ -94,7 +102,8 @@ export class Gauges {
   // Milliseconds until `holds` is true of the gauges; NaN if that takes longer than `limit_ms`.
   async until(holds, limit_ms = 30_000) {
     for (const start = performance.now(); ;) {
-      const gauges = await this.read(), took = performance.now() - start;
+      const gauges = await this.read();
+      const took = performance.now() - start;
       if (holds(gauges)) return took;
       if (took > limit_ms) return NaN;
     }
