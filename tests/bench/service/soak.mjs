@@ -4,13 +4,16 @@ import { mkdirSync, writeFileSync } from "node:fs";
 import { Client } from "./client.mjs";
 import { acts_on } from "./traffic.mjs";
 import {
-  mean, mib, none_row, outcome, pause, percent, process_state, row, sparkline, tally, with_service,
+  Gauges, mean, mib, none_row, outcome, pause, percent, process_state, row, sparkline, tally,
+  with_service,
 } from "./support.mjs";
 
 const kSample_s = 10;
 const kSamples = 30; // every 10 s, oftener in a short run
 const kMemory = 1.05;
 const kFew = 3;
+// So little that it is full soon, and a scene is forgotten for each that comes.
+const kStore = ["--max-store", 8 << 20];
 const kFile = "build/charts/soak.json"; // the figures behind the sparklines
 
 // Does it again and again until the time is over, with rests: the machine is used, not overloaded.
@@ -28,13 +31,16 @@ const thirds = (values) => {
   return { middle: mean(values.slice(third, 2 * third)), last: mean(values.slice(2 * third)) };
 };
 
-async function sample(pid, deadline, seconds) {
+async function sample(service, deadline, seconds) {
+  const gauges = new Gauges(service);
   const samples = [];
   const every_ms = 1000 * Math.min(kSample_s, seconds / kSamples);
   while (performance.now() < deadline) {
-    samples.push({ at_s: process.uptime(), ...process_state(pid) });
+    const { stored } = await gauges.read();
+    samples.push({ at_s: performance.now() / 1000, stored, ...process_state(service.pid) });
     await pause(every_ms);
   }
+  gauges.close();
   return samples;
 }
 
@@ -62,7 +68,7 @@ async function run({ seconds }) {
   return with_service(async (service, scenes) => {
     const deadline = performance.now() + 1000 * seconds;
     const answers = [];
-    const sampling = sample(service.pid, deadline, seconds);
+    const sampling = sample(service, deadline, seconds);
     const acts = acts_on(scenes, service.port);
     await Promise.all(acts.map((act) => keep_on(act, service.port, deadline, answers)));
     const samples = await sampling;
@@ -72,7 +78,7 @@ async function run({ seconds }) {
       rows: rows_of(samples, answers),
       remark: `answers: ${tally(answers.map(outcome))}; figures in ${kFile}`,
     };
-  });
+  }, kStore);
 }
 
 export const kSoak = {
