@@ -10,6 +10,7 @@ import { kMotion } from "./motion.mjs";
 import { kNoise } from "./noise.mjs";
 import { kOrbitHttp } from "./orbit_http.mjs";
 import { kPaperVsPovray } from "./paper_vs_povray.mjs";
+import { measure_service } from "./service.mjs";
 import { kStages } from "./stages.mjs";
 import { kReports } from "./structures.mjs";
 
@@ -21,7 +22,9 @@ const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmb
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too
-const kUsage = "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--list]";
+const kUsage =
+  "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--list]\n" +
+  "       tests/bench/run service [PROPERTY...]   the service under load, half an hour for all";
 
 function fail(message) {
   console.error(`bench: ${message}\n${kUsage}`);
@@ -87,9 +90,11 @@ async function run_benchmark(benchmark, pairs) {
 }
 
 async function main() {
+  if (process.argv[2] === "service") return measure_service(process.argv.slice(3));
   const options = read_arguments(process.argv.slice(2));
   if (options.list) {
     for (const { name, what } of kAll) console.log(`${name.padEnd(31)}${what}`);
+    console.log(`${"service".padEnd(31)}the service under load, only if named; \`service --list\` tells more`);
     return;
   }
   if (!exists_program(kOrrery)) fail(`${kOrrery} is not built`);

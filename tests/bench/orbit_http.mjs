@@ -1,7 +1,6 @@
-import { spawn, spawnSync } from "node:child_process";
-import { readFileSync } from "node:fs";
-import http from "node:http";
+import { spawnSync } from "node:child_process";
 import { kOrrery } from "./command.mjs";
+import { FrameReader, cpu_seconds, post_scene, send, start_service } from "./daemon.mjs";
 
 const kScene = "scenes/paper.json"; // 600x600
 const kFrames = 300, kThreads = 2;
@@ -18,96 +17,24 @@ function command_line_run() {
 
 // ---- with HTTP
 
-// Starts a service on a free port; resolves to {port, pid, stop()}.
-async function start_service() {
-  const child = spawn(kOrrery, ["serve", "--port", "0", "--health-port", "0", "--threads", String(kThreads), "--quiet"], {
-    stdio: ["ignore", "pipe", "ignore"],
-  });
-  const gone = new Promise((resolve) => child.once("close", resolve));
-  const port = await new Promise((resolve, reject) => {
-    let output = "";
-    child.stdout.on("data", (bytes) => {
-      output += bytes;
-      const match = /http:\/\/\S+:(\d+)/.exec(output);
-      if (match) resolve(Number(match[1]));
-    });
-    child.once("error", reject);
-    child.once("close", (code) => reject(new Error(`orrery serve ended with ${code}`)));
-  });
-  const stop = async () => {
-    child.kill("SIGTERM");
-    await gone;
-  };
-  return { port, pid: child.pid, stop };
-}
-
-// Processor seconds of a running process (Linux: clock ticks of 10 ms, and the runs take seconds).
-function cpu_seconds(pid) {
-  const fields = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
-  return (Number(fields[11]) + Number(fields[12])) / 100;
-}
-
-function send(port, method, path, headers, body) {
-  return new Promise((resolve, reject) => {
-    const request = http.request({ host: "127.0.0.1", port, method, path, headers, agent: false }, resolve);
-    request.on("error", reject).end(body);
-  });
-}
-
-async function post_scene(port) {
-  const json = { "Content-Type": "application/json" };
-  const response = await send(port, "POST", "/v1/scenes", json, readFileSync(kScene));
-  let text = "";
-  for await (const chunk of response) text += chunk;
-  if (response.statusCode >= 300) throw new Error(`POST /v1/scenes: ${response.statusCode} ${text}`);
-  return JSON.parse(text).id;
-}
-
-// Counts the frames of a stream of [length of the header, 4 bytes][header][PNG]; keeps no picture.
-class FrameCounter {
-  frames = 0;
-  skipped = 0;
-  #begun = Buffer.alloc(0); // of a header that has not arrived whole
-  #picture_bytes = 0; // of the current PNG, still to come
-
-  add(chunk) {
-    while (chunk.length > 0) {
-      if (this.#picture_bytes > 0) {
-        const taken = Math.min(this.#picture_bytes, chunk.length);
-        this.#picture_bytes -= taken;
-        chunk = chunk.subarray(taken);
-        continue;
-      }
-      chunk = this.#begun.length > 0 ? Buffer.concat([this.#begun, chunk]) : chunk;
-      const header_end = chunk.length < 4 ? Infinity : 4 + chunk.readUInt32BE(0);
-      if (chunk.length < header_end) {
-        this.#begun = chunk;
-        return;
-      }
-      const header = JSON.parse(chunk.toString("utf8", 4, header_end));
-      ++this.frames;
-      this.skipped = header.skipped;
-      this.#picture_bytes = header.bytes;
-      this.#begun = Buffer.alloc(0);
-      chunk = chunk.subarray(header_end);
-    }
-  }
-}
-
 // A service of its own for each run: nothing is left over from the one before.
 async function http_run() {
-  const service = await start_service();
+  const service = await start_service(["--threads", kThreads, "--quiet"]);
   try {
-    const id = await post_scene(service.port);
+    const id = await post_scene(service.port, kScene);
     const cpu_before = cpu_seconds(service.pid);
     const start = process.hrtime.bigint();
     const path = `/v1/scenes/${id}/orbit?frames=${kFrames}&fps=0`;
     const response = await send(service.port, "GET", path, { Accept: "application/x-orrery-frames" });
-    const counter = new FrameCounter();
-    for await (const chunk of response) counter.add(chunk);
+    let frames = 0, skipped = 0;
+    const reader = new FrameReader((header) => {
+      ++frames;
+      skipped = header.skipped;
+    });
+    for await (const chunk of response) reader.add(chunk);
     const seconds = Number(process.hrtime.bigint() - start) / 1e9;
-    if (counter.frames !== kFrames || counter.skipped !== 0)
-      throw new Error(`the orbit sent ${counter.frames} of ${kFrames} frames and skipped ${counter.skipped}`);
+    if (frames !== kFrames || skipped !== 0)
+      throw new Error(`the orbit sent ${frames} of ${kFrames} frames and skipped ${skipped}`);
     return { cost: seconds, cpu_s: cpu_seconds(service.pid) - cpu_before };
   } finally {
     await service.stop();

@@ -1,0 +1,121 @@
+// A client that takes little processor time itself: one keep-alive connection, one request at a time.
+
+import net from "node:net";
+
+const kWait_ms = 70_000; // for an answer; a picture may take 60 s
+
+function read_head(buffer) {
+  const end = buffer.indexOf("\r\n\r\n");
+  if (end < 0) return null;
+  const head = buffer.latin1Slice(0, end + 2);
+  const status = Number(head.slice(9, 12));
+  const length = /\r\ncontent-length: *(\d+)/i.exec(head);
+  const without_body = status === 304 || status === 204;
+  return {
+    status,
+    head,
+    total: end + 4 + (without_body ? 0 : Number(length?.[1] ?? 0)),
+    body_at: end + 4,
+    closes: /\r\nconnection: *close/i.test(head),
+  };
+}
+
+export const header_of = ({ head }, name) => new RegExp(`\\r\\n${name}: *([^\\r]*)`, "i").exec(head)?.[1];
+
+// Every answer has a Content-Length: no streams here. An answer is {status, head, text(), ms, sent, first}: ms
+// from the moment the request was written, sent on performance.now()'s clock, first if no request came before
+// it on its connection. Where there is no answer it is {failure, sent, first}: "refused" (no connection),
+// "unanswered" (the connection ended before the answer did), "silent" (nothing for long) or "left" (by leave()).
+export class Client {
+  #port;
+  #socket = null;
+  #parts = [];
+  #size = 0;
+  #waiting = null; // {resolve, sent, answer}
+
+  constructor(port) {
+    this.#port = port;
+  }
+
+  ask(path, { method = "GET", headers = {}, body = "" } = {}) {
+    const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
+    const length = body.length > 0 ? `Content-Length: ${Buffer.byteLength(body)}\r\n` : "";
+    const bytes = `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1\r\n${length}${lines.join("")}\r\n${body}`;
+    return new Promise((resolve) => {
+      this.#waiting = {
+        resolve,
+        sent: null,
+        answer: null,
+        without_body: method === "HEAD",
+        first: this.#socket === null,
+      };
+      if (this.#socket) this.#write(bytes);
+      else this.#connect(bytes);
+    });
+  }
+
+  get is_connected() {
+    return this.#socket !== null;
+  }
+
+  // Breaks the connection off, whatever runs.
+  leave() {
+    this.#end("left");
+  }
+
+  #connect(bytes) {
+    const socket = net.connect({ port: this.#port, host: "127.0.0.1", noDelay: true });
+    this.#socket = socket;
+    let connected = false;
+    const end = () => socket === this.#socket && this.#end(connected ? "unanswered" : "refused");
+    socket.setTimeout(kWait_ms, () => socket === this.#socket && this.#waiting && this.#end("silent"));
+    socket.on("connect", () => {
+      connected = true;
+      this.#write(bytes);
+    });
+    socket.on("data", (chunk) => socket === this.#socket && this.#waiting && this.#take(chunk));
+    socket.on("error", end);
+    socket.on("close", end);
+  }
+
+  #write(bytes) {
+    this.#waiting.sent = performance.now();
+    this.#socket.write(bytes);
+  }
+
+  #take(chunk) {
+    this.#parts.push(chunk);
+    this.#size += chunk.length;
+    const waiting = this.#waiting;
+    if (!waiting.answer) {
+      this.#parts = [Buffer.concat(this.#parts)];
+      waiting.answer = read_head(this.#parts[0]);
+      if (waiting.answer && waiting.without_body) waiting.answer.total = waiting.answer.body_at;
+    }
+    if (waiting.answer && this.#size >= waiting.answer.total) this.#finish();
+  }
+
+  #finish() {
+    const { resolve, sent, answer, first } = this.#waiting;
+    const ms = performance.now() - sent;
+    const bytes = Buffer.concat(this.#parts);
+    this.#waiting = null;
+    this.#forget();
+    if (answer.closes) this.leave();
+    resolve({ ...answer, text: () => bytes.toString("utf8", answer.body_at), ms, sent, first });
+  }
+
+  #end(failure) {
+    const waiting = this.#waiting;
+    const socket = this.#socket;
+    this.#waiting = this.#socket = null;
+    this.#forget();
+    socket?.destroy();
+    waiting?.resolve({ failure, sent: waiting.sent, first: waiting.first });
+  }
+
+  #forget() {
+    this.#parts = [];
+    this.#size = 0;
+  }
+}

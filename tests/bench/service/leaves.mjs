@@ -1,0 +1,128 @@
+// Clients that leave: how soon the work for them ends.
+
+import { Client, header_of } from "./client.mjs";
+import {
+  Gauges, closed_loop, kRendersAtOnce, most, ms, new_picture, p99, pause, row, with_service,
+} from "./support.mjs";
+import { cpu_seconds } from "../daemon.mjs";
+
+const kRunning_ms = 100;
+const kWaiting_ms = 50;
+
+const is_idle = ({ running, waiting }) => running + waiting === 0;
+
+function report(what, times, target_ms) {
+  const lost = times.filter(Number.isNaN).length;
+  const worst = most(times);
+  const measured = lost > 0 ? `${lost} never ended` : `max ${ms(worst)}, p99 ${ms(p99(times))}`;
+  return row(
+    `${what}, ${times.length} times`,
+    `all <= ${target_ms} ms`,
+    measured,
+    lost === 0 && worst <= target_ms,
+  );
+}
+
+// Asks for the picture and leaves after `ready`. Resolves to the milliseconds until `done` holds of the gauges,
+// or to null if it was answered before.
+async function leave_once(service, gauges, path, ready, done) {
+  const client = new Client(service.port);
+  const answer = client.ask(path);
+  await ready();
+  client.leave();
+  const took = await gauges.until(done);
+  const { failure } = await answer;
+  return failure === "left" ? took : null;
+}
+
+const is_time = (value) => value !== null;
+
+// Leaves while rays are traced: a picture of seconds, after some milliseconds.
+async function leave_tracing(service, gauges, scenes, times) {
+  const took = [];
+  for (let i = 0; i < times; ++i) {
+    const scene = i % 2 === 0 ? scenes.paper : scenes.flake;
+    const ready = async () => {
+      await gauges.until(({ running }) => running > 0);
+      await pause(10 * Math.random());
+    };
+    took.push(await leave_once(service, gauges, new_picture(scene, 600, 512), ready, is_idle));
+  }
+  return took.filter(is_time);
+}
+
+// Leaves at any moment of a picture of the largest size, encoding included.
+async function leave_large(service, gauges, scenes, times) {
+  const client = new Client(service.port);
+  const whole = await client.ask(new_picture(scenes.paper, 4000, 1));
+  const whole_ms = whole.ms;
+  client.leave();
+  const took = [];
+  for (let i = 0; i < times; ++i) {
+    const ready = () => pause((whole_ms * (i + 0.5)) / times);
+    took.push(await leave_once(service, gauges, new_picture(scenes.paper, 4000, 1), ready, is_idle));
+  }
+  const part = (name) =>
+    Number(new RegExp(`${name};dur=([\\d.]+)`).exec(header_of(whole, "Server-Timing"))[1]).toFixed(0);
+  return {
+    took: took.filter(is_time),
+    parts: `${part("render")} ms of tracing and ${part("encode")} ms of encoding`,
+  };
+}
+
+// Leaves the queue while all places to render are taken.
+async function leave_waiting(service, gauges, scenes, times) {
+  const load = closed_loop(
+    service.port,
+    kRendersAtOnce,
+    () => new_picture(scenes.paper, 600, 1024),
+    () => {},
+  );
+  const took = [];
+  for (let i = 0; i < times; ++i) {
+    await gauges.until(({ running, waiting }) => running === kRendersAtOnce && waiting === 0);
+    const ready = () => gauges.until(({ waiting }) => waiting > 0);
+    took.push(
+      await leave_once(
+        service,
+        gauges,
+        new_picture(scenes.paper, 64, 1),
+        ready,
+        ({ waiting }) => waiting === 0,
+      ),
+    );
+  }
+  await load.stop();
+  return took.filter(is_time);
+}
+
+async function run({ times }) {
+  return with_service(async (service, scenes) => {
+    const gauges = new Gauges(service);
+    const tracing = await leave_tracing(service, gauges, scenes, times);
+    const before = cpu_seconds(service.pid);
+    await pause(500);
+    const left_over = (cpu_seconds(service.pid) - before) / 0.5;
+    const waiting = await leave_waiting(service, gauges, scenes, times);
+    await gauges.until(is_idle);
+    const large = await leave_large(service, gauges, scenes, Math.ceil(times / 20));
+    gauges.close();
+    return {
+      rows: [
+        report("left while traced: until no work runs", tracing, kRunning_ms),
+        report("left while queued: until none waits", waiting, kWaiting_ms),
+        report("left any time in 16 Mpixel: until no work runs", large.took, kRunning_ms),
+      ],
+      remark:
+        `the service took ${left_over.toFixed(2)} cores after those that were traced; ` +
+        `16 Mpixel take ${large.parts}; times include asking /metrics`,
+    };
+  });
+}
+
+export const kLeaves = {
+  name: "leaves",
+  what: "clients that leave while their picture is traced or waits",
+  times: 1000,
+  run,
+};
