@@ -3,7 +3,7 @@
 import { get_json } from "./api.js";
 import { persist, wake_all } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
-import { attach_controls, kTurnStep, kZoomStep } from "./controls.js";
+import { attach_controls, kZoomStep, step } from "./controls.js";
 import { Editor } from "./editor.js";
 import { Gallery } from "./gallery.js";
 import { Hud } from "./hud.js";
@@ -14,7 +14,7 @@ import { quality } from "./quality.js";
 import { SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
 import { picture_size } from "./size.js";
-import { format_hash, kDefaults, parse_hash } from "./state.js";
+import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
 import { attach_tabs } from "./tabs.js";
 import { View } from "./view.js";
 
@@ -38,6 +38,7 @@ let gallery = null;
 let options = null;
 let opening = 0; // counts scene changes, so that a slow answer to an old one is dropped
 let save_timer = 0;
+let pans = false;
 
 const player = new Player(camera, view, {
   picture: (purpose, level) => scene && picture(purpose, level, camera.view),
@@ -113,7 +114,7 @@ function show_scene(opened, at) {
   scene = opened;
   state.scene = opened.ref;
   camera.use_scene_camera(opened.camera);
-  camera.jump({ azimuth: at.az, elevation: at.el, distance: at.dist, time: at.t });
+  camera.jump(view_of(at));
   hide_problem($("stage-problem"));
   editor.load(opened.text);
   gallery?.mark(opened.ref);
@@ -134,7 +135,7 @@ async function post_again() {
 function pick_sample(name) {
   save_now();
   state.scene = name;
-  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1, t: 0 }));
+  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1, pan: kDefaults.pan, t: 0 }));
   gallery.mark(name);
   open_scene(kDefaults);
   show_stage();
@@ -148,8 +149,8 @@ function show_stage() {
 // ---- state ----
 
 function current_hash() {
-  const { azimuth, elevation, distance, time } = camera.view;
-  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance, t: time });
+  const { azimuth, elevation, distance, pan, time } = camera.view;
+  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance, pan, t: time });
 }
 
 function save_now() {
@@ -172,7 +173,7 @@ function load_hash() {
   show_settings();
   if (!same_scene) return open_scene(state);
   opening += 1;
-  camera.jump({ azimuth: state.az, elevation: state.el, distance: state.dist, time: state.t });
+  camera.jump(view_of(state));
   player.invalidate();
   player.playing = state.playing;
 }
@@ -224,16 +225,40 @@ function moved() {
 const moves = {
   rotate: (azimuth, elevation) => (camera.rotate(azimuth, elevation), moved()),
   dolly: (factor) => (camera.dolly(factor), moved()),
+  pan: (right, up) => pan(right, up),
+  panning: () => pans,
   reset: () => (camera.reset(), moved()),
   toggle_play: () => set_playing(!state.playing),
   hold: (held) => player.hold(held),
 };
 
+// By pixels on the stage: what lies at the target's distance keeps under the pointer.
+function pan(right, up) {
+  if (!scene) return;
+  const { width, height, fov } = picture("still", 0, camera.view);
+  const shown_height = Math.min(view.box.height, (view.box.width * height) / width);
+  camera.pan(right / shown_height, up / shown_height, fov);
+  moved();
+}
+
+// Whether plain drags, arrows and their buttons pan instead of turning.
+function set_panning(on) {
+  pans = on;
+  $("pan").setAttribute("aria-pressed", String(on));
+  for (const name of ["left", "right", "up", "down"]) {
+    const label = `${on ? "Move" : "Turn"} ${name}`;
+    const button = document.querySelector(`[data-do="${name}"]`);
+    button.setAttribute("aria-label", label);
+    button.title = `${label} (${on ? "shift and " : ""}arrow key)`;
+  }
+}
+
 const actions = {
-  left: () => moves.rotate(-kTurnStep, 0),
-  right: () => moves.rotate(kTurnStep, 0),
-  up: () => moves.rotate(0, kTurnStep),
-  down: () => moves.rotate(0, -kTurnStep),
+  left: () => step($("stage"), moves, -1, 0, pans),
+  right: () => step($("stage"), moves, 1, 0, pans),
+  up: () => step($("stage"), moves, 0, 1, pans),
+  down: () => step($("stage"), moves, 0, -1, pans),
+  pan: () => set_panning(!pans),
   closer: () => moves.dolly(kZoomStep),
   farther: () => moves.dolly(1 / kZoomStep),
   reset: () => moves.reset(),
@@ -271,6 +296,7 @@ async function load_catalog() {
 
 async function start() {
   camera.damped = !still_please.matches;
+  set_panning(false);
   if (still_please.matches) state.playing = false;
   show_settings();
   player.playing = state.playing;

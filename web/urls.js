@@ -1,7 +1,7 @@
 // Addresses of pictures. Relative, so that the page works below any path; rounded, so that equal views
 // have equal addresses and come from the browser's cache.
 
-// A picture is {id, azimuth, elevation, distance, width, height}, {moves, time} of a scene in which something
+// A picture is {id, azimuth, elevation, distance, pan, width, height}, {moves, time} of a scene in which something
 // moves, and optionally {fov, technique, samples}.
 function query_of(picture) {
   const query = new URLSearchParams({
@@ -11,11 +11,18 @@ function query_of(picture) {
     width: picture.width,
     height: picture.height,
   });
+  const pan = pan_text(picture.pan);
+  if (pan) query.set("pan", pan);
   if (picture.moves) query.set("time", round(picture.time, 3));
   if (picture.fov) query.set("fov", round(picture.fov, 3));
   if (picture.technique) query.set("technique", picture.technique);
   if (picture.samples) query.set("samples", picture.samples);
   return query;
+}
+
+// To six digits, whatever the scene's scale; "" where nothing is panned.
+export function pan_text(pan) {
+  return pan?.some(Boolean) ? pan.map((metres) => Number(metres.toPrecision(6)) + 0).join() : "";
 }
 
 export function round(value, digits) {

@@ -82,7 +82,7 @@ test("the camera glides to its goal and stops there", () => {
     "a sixtieth of a second covers a twentieth of the way",
   );
   for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
-  assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5, time: 0 });
+  assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5, pan: [0, 0, 0], time: 0 });
 });
 
 test("the camera never looks straight along up, wherever the scene's own eye is", () => {
@@ -94,6 +94,42 @@ test("the camera never looks straight along up, wherever the scene's own eye is"
   assert.ok(Math.abs(camera.goal.elevation - 44.9) < 1e-9);
   camera.rotate(0, -1000);
   assert.ok(Math.abs(camera.goal.elevation + 134.9) < 1e-9);
+});
+
+test("the camera pans in its picture's plane, as far as its picture shows", () => {
+  const close_to = (actual, expected) =>
+    actual.forEach((value, axis) => assert.ok(Math.abs(value - expected[axis]) < 1e-12, `${actual} ${expected}`));
+  const own = { type: "perspective", eye: [0, 1, 4], look_at: [0, 1, 0], up: [0, 3, 0], fov_degrees: 90 };
+  const panned = (view, right, up, fov) => {
+    const camera = new OrbitCamera();
+    camera.use_scene_camera({ ...own, ...view.camera });
+    camera.jump({ azimuth: 0, elevation: 0, distance: 1, ...view });
+    camera.pan(right, up, fov);
+    return camera.goal.pan;
+  };
+  close_to(panned({}, 1, 0.5), [8, 4, 0]); // 2 * 4 m * tan 45 high
+  close_to(panned({ distance: 2 }, 0, 1), [0, 16, 0]);
+  close_to(panned({ azimuth: 90 }, 1, 0), [0, 0, -8]); // the eye is at +x, its right is -z
+  close_to(panned({ elevation: 60 }, 0, 1), [0, 4, -4 * Math.sqrt(3)]);
+  const lifted = { eye: [0, 5, 4] }; // 45 degrees up, 4 * sqrt(2) m away
+  close_to(panned({ camera: lifted }, 0, 1), [0, 8, -8]);
+  close_to(panned({ camera: lifted, azimuth: 90, elevation: -45 }, 0.5, 0.25), [0, 2 * Math.SQRT2, -4 * Math.SQRT2]);
+  close_to(panned({}, 0, 1, 2 * (Math.atan(0.5) * 180) / Math.PI), [0, 4, 0]);
+  close_to(panned({ camera: { type: "orthographic", height: 3 }, distance: 2 }, 1, 0), [6, 0, 0]);
+});
+
+test("the camera glides to where it is panned to, and reset takes it back", () => {
+  const camera = new OrbitCamera();
+  camera.pan(1, 0);
+  const goal = camera.goal.pan[0];
+  assert.equal(camera.step(1 / 60), true);
+  assert.ok(Math.abs(camera.view.pan[0] - goal / 20) < 1e-9);
+  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  assert.equal(camera.view.pan[0], goal);
+  camera.reset();
+  assert.equal(camera.step(1 / 60), true);
+  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  assert.deepEqual(camera.view.pan, [0, 0, 0]);
 });
 
 test("reset takes the short way round", () => {
@@ -131,13 +167,14 @@ test("a link restores what it was made from, and nonsense in it is ignored", () 
     az: 12.5,
     el: -3,
     dist: 0.5,
+    pan: [0.5, -1e-7, 12345],
     t: 1.25,
     playing: false,
     technique: "raycast",
     samples: 16,
   };
   assert.deepEqual(parse_hash(format_hash(state)), state);
-  const odd = parse_hash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999");
+  const odd = parse_hash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999&pan=1,2,x");
   assert.deepEqual({ ...odd, speed: 20 }, parse_hash(""));
   assert.equal(odd.speed, 120);
 });
@@ -220,6 +257,9 @@ test("addresses are the same for the same view and safe in a shell", () => {
     frame_url(picture),
     "v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40",
   );
+  assert.match(frame_url({ ...picture, pan: [0, 0, 0] }), /distance=1&width/);
+  const panned = new URL(frame_url({ ...picture, pan: [1.23456789, -2e-7, 0] }), "http://host");
+  assert.equal(panned.searchParams.get("pan"), "1.23457,-2e-7,0");
   assert.equal(
     curl_command(picture, "my scene", "http://host:1/"),
     "curl -fo my-scene-10-0.png 'http://host:1/v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40'",
