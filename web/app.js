@@ -1,6 +1,6 @@
 // Wires the page together: the URL hash is its state, the player shows it, the controls change it.
 
-import { get_json } from "./api.js";
+import { get_json, post_scene } from "./api.js";
 import { persist, wake_all } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
 import { attach_controls, kZoomStep, step } from "./controls.js";
@@ -10,8 +10,9 @@ import { Hud } from "./hud.js";
 import { Options } from "./options.js";
 import { Player } from "./player.js";
 import { hide_problem, show_problem } from "./problem.js";
-import { quality } from "./quality.js";
-import { SceneLibrary } from "./scenes.js";
+import { show_progress } from "./progress.js";
+import { ladder, quality } from "./quality.js";
+import { own_samples, SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
 import { picture_size } from "./size.js";
 import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
@@ -27,11 +28,7 @@ const state = parse_hash(location.hash);
 const library = new SceneLibrary();
 const camera = new OrbitCamera();
 const view = new View($("stage"), $("canvas"));
-const hud = new Hud(
-  Object.fromEntries(
-    ["fps", "render", "encode", "rays", "size", "skipped"].map((name) => [name, $(`hud-${name}`)]),
-  ),
-);
+const hud = new Hud($("hud"));
 const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
 let scene = null; // the scene shown, or null
 let gallery = null;
@@ -42,18 +39,20 @@ let pans = false;
 
 const player = new Player(camera, view, {
   picture: (purpose, level) => scene && picture(purpose, level, camera.view),
+  ladder: () => ({ pictures: scene ? pictures_at_rest() : [], asked: state.samples > 0 }),
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
-    $("stage").dataset.shows = kind;
+    $("stage").dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
     hide_problem($("stage-problem"));
     if (kind === "stream") save_soon();
   },
   waiting: show_waiting,
-  problem: (error) => show_problem($("stage-problem"), error),
-  busy: (busy) => ($("busy").hidden = !busy),
+  problem: fail,
+  progress: (figures) => show_progress($("busy"), $("progress"), figures),
   settled: () => save_now(),
+  rested: () => ($("stage").dataset.shows = "still"),
 });
 
 const editor = new Editor(
@@ -61,6 +60,7 @@ const editor = new Editor(
     text: $("text"),
     card: $("text-problem"),
     note: $("text-note"),
+    lines: $("lines"),
     apply: $("apply"),
     restore: $("restore"),
   },
@@ -71,6 +71,7 @@ const editor = new Editor(
     history.pushState(null, "", current_hash());
     show_stage();
   },
+  post_scene,
 );
 
 function picture(purpose, level, at) {
@@ -88,15 +89,19 @@ function picture(purpose, level, at) {
   return { id: scene.id, moves, ...at, ...size, technique: state.technique, samples };
 }
 
-// What a download or a copied command shows: the view at full size, where it is or will come to rest.
+function pictures_at_rest() {
+  const still = picture("still", 0, camera.view);
+  const counts = ladder(state.samples, own_samples(scene), limits.samples);
+  return counts.map((samples) => ({ ...still, samples }));
+}
+
+// What a download or a copied command shows: the view where it is or will come to rest.
 function current_picture() {
   if (!scene) return null;
   return { picture: picture("still", 0, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
 }
 
-// ---- scenes ----
-
-// Opens the scene that the state names. Waits and tries again for as long as the service does not answer.
+// Opens the scene that the state names, as soon as the service answers.
 async function open_scene(at) {
   const turn = ++opening;
   const wanted = () => turn === opening;
@@ -105,7 +110,7 @@ async function open_scene(at) {
     const opened = await persist(() => library.open(state.scene), show_waiting, wanted);
     if (opened && wanted()) show_scene(opened, at);
   } catch (error) {
-    if (wanted()) show_problem($("stage-problem"), error);
+    if (wanted()) fail(error);
   }
 }
 
@@ -145,8 +150,6 @@ function pick_sample(name) {
 function show_stage() {
   $("stage").scrollIntoView({ block: "nearest" });
 }
-
-// ---- state ----
 
 function current_hash() {
   const { azimuth, elevation, distance, pan, time } = camera.view;
@@ -202,10 +205,8 @@ function set_option(key, value) {
   player.refresh();
 }
 
-// ---- messages ----
-
-function announce(text) {
-  $("announcement").textContent = text;
+function fail(error) {
+  show_problem($("stage-problem"), error);
 }
 
 function show_waiting(error, seconds) {
@@ -213,8 +214,6 @@ function show_waiting(error, seconds) {
   $("notice-text").textContent = `${error.title}. Trying again in ${Math.max(1, Math.round(seconds))} s.`;
   $("notice").hidden = false;
 }
-
-// ---- controls ----
 
 function moved() {
   $("hint").hidden = true;
@@ -246,10 +245,8 @@ function set_panning(on) {
   pans = on;
   $("pan").setAttribute("aria-pressed", String(on));
   for (const name of ["left", "right", "up", "down"]) {
-    const label = `${on ? "Move" : "Turn"} ${name}`;
     const button = document.querySelector(`[data-do="${name}"]`);
-    button.setAttribute("aria-label", label);
-    button.title = `${label} (${on ? "shift and " : ""}arrow key)`;
+    button.title = `${on ? "Move" : "Turn"} ${name} (arrow key)`;
   }
 }
 
@@ -277,20 +274,16 @@ $("speed").addEventListener("input", () => {
   player.refresh_soon();
   save_soon();
 });
-view.on_resize(() => player.refresh_soon());
-const refresh_download = attach_download($("download"), current_picture);
-attach_curl($("curl"), $("curl-dialog"), current_picture, announce);
+new ResizeObserver(() => player.refresh_soon()).observe($("stage"));
+const refresh_download = attach_download($("download"), current_picture, fail);
+attach_curl($("curl"), current_picture, $("announcement"));
 addEventListener("hashchange", load_hash);
 still_please.addEventListener("change", () => (camera.damped = !still_please.matches));
 
-// ---- start ----
-
 async function load_catalog() {
   const [catalog, published] = await Promise.all([get_json("v1/catalog"), get_json("v1/limits")]);
-  limits.side = published.image_side ?? limits.side;
-  limits.pixels = published.image_pixels ?? limits.pixels;
-  limits.samples = published.samples ?? limits.samples;
-  limits.frames = published.orbit_frames ?? limits.frames;
+  const { image_side: side, image_pixels: pixels, samples, orbit_frames: frames } = published;
+  Object.assign(limits, { side, pixels, samples, frames });
   return catalog;
 }
 
@@ -315,4 +308,4 @@ async function start() {
   await open_scene(state);
 }
 
-start().catch((error) => show_problem($("stage-problem"), error));
+start().catch(fail);

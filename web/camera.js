@@ -1,7 +1,6 @@
 // The orbit camera: where the view is (`now`), where it is going (`goal`), and the glide between.
-// Angles are degrees and relative to the scene's own view, `distance` is a factor of its eye's distance, `pan`
-// moves eye and target by metres along the scene's axes. With it goes the `time` of what moves in the scene, in
-// seconds.
+// Degrees relative to the scene's own view, `distance` as a factor of its own, `pan` in metres by which eye and
+// target move along the scene's axes, and the `time` of what moves in it, in seconds.
 
 const kElevationLimit = 89.9; // at 90 the view direction would be parallel to up
 const kDamping = 0.05; // part of the way to the goal covered in a sixtieth of a second
@@ -19,20 +18,20 @@ const mix = (a, p, b, q) => a.map((value, axis) => p * value + q * b[axis]);
 const unit = (a) => a.map((value) => value / Math.hypot(...a));
 const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 
-// Of the scene's own camera: {pole, sine, cosine, out, side, metres}; sine and cosine of its eye's elevation over
-// the plane that `pole` stands on, `out` and `side` in this plane, towards the eye and to its right.
+// Of the scene's own camera: {pole, elevation, out, side, metres}: degrees of its eye over the plane that `pole`
+// stands on; `out` and `side` lie in this plane, towards the eye and to its right; metres from eye to target.
 function frame_of({ eye = [0, 0, 4], look_at = [0, 0, 0], up = [0, 1, 0] } = {}) {
   const offset = mix(eye, 1, look_at, -1);
   const pole = unit(up);
   const direction = unit(offset);
   const sine = clamp(dot(direction, pole), -1, 1);
-  const across = mix(direction, 1, pole, -sine);
-  const out = unit(across);
-  return { pole, sine, cosine: Math.hypot(...across), out, side: cross(pole, out), metres: Math.hypot(...offset) };
+  const out = unit(mix(direction, 1, pole, -sine));
+  const elevation = (Math.asin(sine) * 180) / Math.PI;
+  return { pole, elevation, out, side: cross(pole, out), metres: Math.hypot(...offset) };
 }
 
 // Degrees of the scene's own eye above the plane that `up` stands on.
-export const elevation_of = (camera) => (Math.asin(frame_of(camera).sine) * 180) / Math.PI;
+export const elevation_of = (camera) => frame_of(camera).elevation;
 
 export class OrbitCamera {
   damped = true; // false: every move is a jump (reduced motion)
@@ -68,17 +67,11 @@ export class OrbitCamera {
   // distance. `fov` is the picture's angle where it is not the scene's own.
   pan(right, up, fov) {
     const { distance, azimuth, elevation } = this.#now;
-    const { pole, sine, cosine, out, side, metres } = this.#own;
-    const [c, s] = [Math.cos(radians(azimuth)), Math.sin(radians(azimuth))];
-    const lift = radians(elevation);
-    const outward = mix(out, c, side, s);
-    const camera_right = mix(side, c, out, -s);
-    const camera_up = mix(
-      pole,
-      cosine * Math.cos(lift) - sine * Math.sin(lift),
-      outward,
-      -sine * Math.cos(lift) - cosine * Math.sin(lift),
-    );
+    const { pole, out, side, metres } = this.#own;
+    const turned = radians(azimuth);
+    const lifted = radians(this.#own.elevation + elevation);
+    const camera_right = mix(side, Math.cos(turned), out, -Math.sin(turned));
+    const camera_up = mix(pole, Math.cos(lifted), cross(camera_right, pole), -Math.sin(lifted));
     const half = radians((fov ?? this.#scene?.fov_degrees ?? 45) / 2);
     const flat = this.#scene?.type === "orthographic";
     const height = distance * (flat ? (this.#scene.height ?? 2) : 2 * metres * Math.tan(half));
@@ -128,7 +121,7 @@ export class OrbitCamera {
   }
 
   #allowed_elevation(elevation) {
-    const own = (Math.asin(this.#own.sine) * 180) / Math.PI;
+    const own = this.#own.elevation;
     return clamp(elevation, Math.min(0, -kElevationLimit - own), Math.max(0, kElevationLimit - own));
   }
 }

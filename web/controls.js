@@ -90,8 +90,8 @@ function attach_wheel(stage, on) {
   );
 }
 
-// Keys work on the stage, and without it where nothing has the focus and the page has nothing to scroll: so
-// no form field loses a key, and a long page still scrolls. Space plays and pauses in any case.
+// Keys work on the stage, and where nothing has the focus and nothing scrolls: no form field loses a key, and a
+// long page still scrolls. Space plays and pauses in any case.
 function attach_keys(stage, on) {
   const arrow = (right, up) => (event) => step(stage, on, right, up, event.shiftKey !== on.panning());
   const actions = {

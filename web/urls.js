@@ -43,12 +43,34 @@ export function orbit_url(picture, { frames, fps, step, time_step }) {
   return `v1/scenes/${picture.id}/orbit?${query}`;
 }
 
+// What POST v1/jobs takes for the same picture.
+export function job_body(picture) {
+  const { azimuth, elevation, distance, fov, width, height, samples, time } = numbers_of(query_of(picture));
+  const { technique, pan } = Object.fromEntries(query_of(picture));
+  return {
+    scene_id: picture.id,
+    camera: {
+      azimuth_degrees: azimuth,
+      elevation_degrees: elevation,
+      distance,
+      pan: pan?.split(",").map(Number),
+      fov_degrees: fov,
+    },
+    image: { width, height },
+    render: { samples, technique, time },
+  };
+}
+
+const numbers_of = (query) => Object.fromEntries([...query].map(([key, text]) => [key, Number(text)]));
+
 export function file_name(name, view) {
   const plain = name.replace(/[^\w-]+/g, "-").slice(0, 40);
   return `${plain}-${Math.round(view.azimuth)}-${Math.round(view.elevation)}.png`;
 }
 
-export function curl_command(picture, name, base) {
+// With `token` the command takes one from the environment.
+export function curl_command(picture, name, base, token = "") {
   const address = new URL(frame_url(picture), base).href.replaceAll("'", "%27");
-  return `curl -fo ${file_name(name, picture)} '${address}'`;
+  const access = token ? '-H "Authorization: Bearer $ORRERY_TOKEN" ' : "";
+  return `curl -fo ${file_name(name, picture)} ${access}'${address}'`;
 }
