@@ -18,14 +18,15 @@ const load = (name) => import(join(copy, name));
 const { server_timing } = await load("api.js");
 const { persist, wake_all } = await load("backoff.js");
 const { OrbitCamera, elevation_of } = await load("camera.js");
-const { locate, offset_of } = await load("pointer.js");
+const { locate, offset_of, place_of } = await load("pointer.js");
 const { pretty } = await load("scenes.js");
 const { Pace } = await load("pace.js");
-const { quality } = await load("quality.js");
+const { progress_text } = await load("progress.js");
+const { ladder, quality } = await load("quality.js");
 const { picture_size, within } = await load("size.js");
 const { format_hash, parse_hash } = await load("state.js");
 const { FrameParser, read_frames } = await load("stream.js");
-const { curl_command, frame_url } = await load("urls.js");
+const { curl_command, frame_url, job_body } = await load("urls.js");
 
 function frame_bytes(header, png) {
   const text = new TextEncoder().encode(JSON.stringify({ ...header, bytes: png.length }));
@@ -158,6 +159,11 @@ test("a line and a column lead to their place in the text", () => {
   assert.equal(offset_of("ab\ncd\n", 2, 2), 4);
   assert.equal(offset_of("ab\ncd\n", 1, 99), 2);
   assert.equal(offset_of("ab", 9, 1), 0);
+  const text = "\nab\n\ncd";
+  for (let at = 0; at <= text.length; at += 1) {
+    const { line, column } = place_of(text, at);
+    assert.equal(offset_of(text, line, column), at);
+  }
 });
 
 test("a link restores what it was made from, and nonsense in it is ignored", () => {
@@ -264,6 +270,46 @@ test("addresses are the same for the same view and safe in a shell", () => {
     curl_command(picture, "my scene", "http://host:1/"),
     "curl -fo my-scene-10-0.png 'http://host:1/v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40'",
   );
+});
+
+test("a job is asked for the picture that its address names", () => {
+  const view = { id: "ab", azimuth: 10.001, elevation: 0, distance: 2, width: 60, height: 40 };
+  assert.deepEqual(JSON.parse(JSON.stringify(job_body({ ...view, samples: 16 }))), {
+    scene_id: "ab",
+    camera: { azimuth_degrees: 10, elevation_degrees: 0, distance: 2 },
+    image: { width: 60, height: 40 },
+    render: { samples: 16 },
+  });
+  const more = { pan: [1, -2, 1e-7], fov: 50, technique: "raycast", moves: true, time: 1.5 };
+  const { camera, render } = job_body({ ...view, ...more, samples: 4 });
+  assert.deepEqual([camera.pan, camera.fov_degrees], [[1, -2, 1e-7], 50]);
+  assert.deepEqual(render, { samples: 4, technique: "raycast", time: 1.5 });
+});
+
+test("the command takes a token from the environment", () => {
+  const picture = { id: "ab", azimuth: 0, elevation: 0, distance: 1, width: 6, height: 4 };
+  const command = curl_command(picture, "a", "http://host/", "secret");
+  assert.match(command, /^curl -fo a-0-0\.png -H "Authorization: Bearer \$ORRERY_TOKEN" 'http:/);
+  assert.ok(!command.includes("secret"));
+});
+
+test("pictures at rest get finer up to what was chosen, or what the scene asks for", () => {
+  assert.deepEqual(ladder(0, 1, 4096), [1, 4, 16, 64]);
+  assert.deepEqual(ladder(0, 256, 4096), [1, 4, 16, 64, 256]);
+  assert.deepEqual(ladder(0, 1, 32), [1, 4, 16, 32]);
+  assert.deepEqual(ladder(16, 64, 4096), [1, 4, 16]);
+  assert.deepEqual(ladder(1, 64, 4096), [1]);
+});
+
+test("progress says what was measured, and calls a guess a guess", () => {
+  const at = { shown: 16, end: 64 };
+  assert.equal(progress_text({ ...at, part: 0.439, seconds_left: 2.1 }), "16 of 64 samples · 43 % · 3 s left");
+  assert.equal(progress_text({ ...at, part: 0.1 }), "16 of 64 samples · 10 %");
+  assert.equal(progress_text({ ...at, seconds_left: 2.1 }), "16 of 64 samples · about 3 s left");
+  assert.equal(progress_text({ ...at, seconds_left: NaN }), "16 of 64 samples");
+  assert.equal(progress_text({ ...at, seconds_left: -1 }), "16 of 64 samples", "a guess that came to nothing");
+  assert.equal(progress_text({ ...at, part: 0, seconds_left: 600 }), "16 of 64 samples · 0 % · 10 min left");
+  assert.equal(progress_text({}), "");
 });
 
 test("Server-Timing is read by name", () => {

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
 import {
+  axe_violations,
   canvas_digest,
   drag,
   eventually,
@@ -28,7 +29,6 @@ after(async () => {
 });
 
 const page_test = page_tests(browser, daemon);
-
 
 page_test("the paper's scene turns as soon as the page is open", "", async (page) => {
   const seen = new Set();
@@ -307,27 +307,36 @@ page_test(
 );
 
 for (const colorScheme of ["light", "dark"]) {
-  const axe = package_file("axe-core/axe.min.js");
-  page_test(
-    `axe finds nothing to fault in ${colorScheme}`,
-    "playing=0",
-    async (page) => {
-      if (!axe) return console.log("axe-core is not installed: not checked");
-      await page.evaluate(readFileSync(axe, "utf8"));
-      const check = async (where) => {
-        const { violations } = await page.evaluate(() => globalThis.axe.run());
-        const found = violations.map(
-          ({ id, nodes }) => `${where}: ${id} at ${nodes.map(({ target }) => target)}`,
+  for (const width of [1280, 360]) {
+    page_test(
+      `axe finds nothing to fault in ${colorScheme}, ${width} pixels wide`,
+      "playing=0",
+      async (page) => {
+        if (!package_file("axe-core/axe.min.js")) return console.log("axe-core is not installed: not checked");
+        const check = async (where) => assert.deepEqual(await axe_violations(page), [], where);
+        await rest(page);
+        await check("scenes");
+        await page.locator("#pan").click();
+        await check("pan mode");
+        await page.locator("#tab-json").click();
+        await page.locator("#text").fill('{"version": 1, "camera": ');
+        await page.locator("#lines .wrong").waitFor();
+        await check("editor with an error");
+        await page.route("**/frame.png?*", (route) =>
+          route.fulfill({ status: 500, json: { title: "Out of luck", detail: "No light.", request_id: "r1" } }),
         );
-        assert.deepEqual(found, []);
-      };
-      await check("scenes");
-      await page.locator("#tab-json").click();
-      await page.locator("#text").fill('{"version": 1, "camera": ');
-      await page.locator("#apply").click();
-      await page.locator("#text-problem").waitFor({ state: "visible" });
-      await check("editor with an error");
-    },
-    { colorScheme, expected: /status of 400/ },
-  );
+        await page.locator("#size").selectOption("1280x720");
+        await page.locator("#stage-problem").waitFor({ state: "visible" });
+        await check("the picture's error");
+        await page.unroute("**/frame.png?*");
+        await page.route("**/frame.png?*", () => {}); // hangs
+        await page.locator("#size").selectOption("fit");
+        await page.locator("#size").selectOption("half");
+        await page.getByRole("progressbar").waitFor();
+        await page.waitForFunction(() => getComputedStyle(document.getElementById("busy")).opacity === "1");
+        await check("progress");
+      },
+      { colorScheme, viewport: { width, height: 800 }, expected: /status of (400|500)/ },
+    );
+  }
 }

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
@@ -102,9 +102,13 @@ export async function open_page(browser, url, options = {}) {
     const { origin, protocol } = new URL(request.url());
     if (protocol !== "blob:" && origin !== new URL(url).origin) faults.push(`request to ${request.url()}`);
   });
+  const close = async () => {
+    await page.unrouteAll({ behavior: "ignoreErrors" });
+    await context.close();
+  };
   await page.goto(url);
   await page.locator("#canvas").waitFor({ state: "visible" });
-  return { page, faults, close: () => context.close() };
+  return { page, faults, close };
 }
 
 // A short text that differs for different pictures on the canvas.
@@ -156,6 +160,15 @@ export function page_tests(browser, daemon) {
         await close();
       }
     });
+}
+
+// What axe-core finds to fault, as texts; nothing where it is not installed.
+export async function axe_violations(page) {
+  const axe = package_file("axe-core/axe.min.js");
+  if (!axe) return [];
+  await page.evaluate(readFileSync(axe, "utf8"));
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  return violations.map(({ id, nodes }) => `${id} at ${nodes.map(({ target }) => target)}`);
 }
 
 // The middle of the stage, and its height.
