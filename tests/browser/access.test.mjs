@@ -56,6 +56,7 @@ test("the page asks for a token once, and every request carries it", async () =>
   assert.ok(passed.some((path) => path.endsWith("/frame.png")));
 
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#download").click()]);
+  assert.match(download.url(), /^blob:/, "a link of its own would carry no token");
   assert.equal(download.suggestedFilename(), "paper-20-0.png");
   assert.equal(readFileSync(await download.path()).toString("latin1", 1, 4), "PNG");
   await page.locator("#curl").click();

@@ -99,6 +99,14 @@ page_test(
     await page.route("**/v1/jobs", (route) => route.fulfill({ status: 404, body: "{}" }));
     await watch(page, (samples) => 100 * samples);
     const hanging = [];
+    await page.evaluate(() => {
+      const real_fetch = window.fetch;
+      window.signals = [];
+      window.fetch = (path, options) => {
+        if (options?.signal) window.signals.push(options.signal);
+        return real_fetch(path, options);
+      };
+    });
     await page.route(
       (url) => is_frame(url) && samples_of(url) === "64",
       (route) => hanging.push(route.request()),
@@ -114,8 +122,11 @@ page_test(
     });
     assert.equal(await bar.getAttribute("aria-valuenow"), null, "nothing was measured");
     assert.equal(await page.locator("#progress").textContent(), await bar.getAttribute("aria-valuetext"));
-    await page.mouse.move(300, 300);
-    await page.mouse.wheel(0, 100);
+    const stopped = await page.evaluate(() => {
+      document.getElementById("stage").dispatchEvent(new WheelEvent("wheel", { deltaY: 100, cancelable: true }));
+      return window.signals.at(-1).aborted;
+    });
+    assert.equal(stopped, true, "at once, not only when the view rests again");
     await failed;
     assert.equal(hanging.length, 1);
   },
