@@ -31,7 +31,7 @@ async function post_job(picture) {
   try {
     return `v1/jobs/${(await post_json("v1/jobs", JSON.stringify(job_body(picture)))).id}`;
   } catch (error) {
-    if (error.status === 404 || error.status === 405) return null;
+    if ([403, 404, 405].includes(error.status)) return null;
     throw error;
   }
 }
