@@ -1,5 +1,7 @@
 // Requests to the service. Every failure becomes an ApiError, whatever its cause.
 
+import { access_token, bearer, other_token } from "./access.js";
+
 const kRetryable = new Set([0, 429, 502, 503]); // 0: no answer
 
 // A refusal (problem+json of RFC 9457), or no answer at all: then status is 0.
@@ -7,15 +9,8 @@ export class ApiError extends Error {
   constructor(fields) {
     super(fields.title ?? "The request failed");
     this.name = "ApiError";
-    this.status = fields.status ?? 0;
-    this.title = this.message;
-    this.detail = fields.detail ?? "";
-    this.request_id = fields.request_id ?? "";
-    this.errors = Array.isArray(fields.errors) ? fields.errors : [];
-    this.offset = fields.offset;
-    this.line = fields.line;
-    this.column = fields.column;
-    this.retry_after_seconds = fields.retry_after_seconds;
+    // Also errors, line and column, and retry_after_seconds, where the service gives them.
+    Object.assign(this, { status: 0, detail: "", request_id: "" }, fields, { title: this.message });
   }
 
   // Whether the same request may succeed later.
@@ -31,6 +26,9 @@ export function no_answer(detail = "") {
 export function is_abort(error) {
   return error?.name === "AbortError";
 }
+
+// What to throw when an answer breaks off with `error`.
+export const broken = (error) => (is_abort(error) ? error : no_answer(error.message));
 
 async function problem_of(response) {
   const fields = { status: response.status, title: response.statusText || `Status ${response.status}` };
@@ -50,29 +48,34 @@ async function problem_of(response) {
 
 // fetch() that resolves only to a successful response. Throws ApiError, or AbortError once `signal` fires.
 export async function request(path, options = {}) {
+  const token = access_token();
   let response;
   try {
-    response = await fetch(path, options);
+    response = await fetch(path, { ...options, headers: { ...options.headers, ...bearer() } });
   } catch (error) {
-    throw is_abort(error) ? error : no_answer(error.message);
+    throw broken(error);
   }
-  if (!response.ok) throw await problem_of(response);
-  return response;
+  if (response.ok) return response;
+  if (response.status !== 401 || !(await other_token(token))) throw await problem_of(response);
+  options.signal?.throwIfAborted();
+  return request(path, options);
 }
 
 export async function get_json(path) {
-  return (await request(path, { headers: { Accept: "application/json" } })).json();
+  return (await request(path)).json();
 }
 
 export async function get_text(path) {
   return (await request(path)).text();
 }
 
-// POST v1/scenes: {id, width, height, camera, objects, lights}.
-export async function post_scene(text) {
+export async function post_json(path, text) {
   const headers = { "Content-Type": "application/json" };
-  return (await request("v1/scenes", { method: "POST", headers, body: text })).json();
+  return (await request(path, { method: "POST", headers, body: text })).json();
 }
+
+// {id, width, height, camera, objects, lights}.
+export const post_scene = (text) => post_json("v1/scenes", text);
 
 // Server-Timing as {name: milliseconds}.
 export function server_timing(header) {
@@ -87,14 +90,11 @@ export function server_timing(header) {
 // One picture: {png, stats}. A picture from the browser's cache carries the figures of its first rendering.
 export async function get_frame(url, signal) {
   const response = await request(url, { signal });
-  const timing = server_timing(response.headers.get("Server-Timing"));
+  const { render: render_ms, encode: encode_ms } = server_timing(response.headers.get("Server-Timing"));
   const rays = Number(response.headers.get("X-Rays") ?? NaN);
   try {
-    return {
-      png: await response.blob(),
-      stats: { render_ms: timing.render, encode_ms: timing.encode, rays },
-    };
+    return { png: await response.blob(), stats: { render_ms, encode_ms, rays } };
   } catch (error) {
-    throw is_abort(error) ? error : no_answer(error.message);
+    throw broken(error);
   }
 }

@@ -1,20 +1,21 @@
 // Wires the page together: the URL hash is its state, the player shows it, the controls change it.
 
-import { get_json } from "./api.js";
+import { get_json, post_scene } from "./api.js";
 import { persist, wake_all } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
-import { attach_controls, kTurnStep, kZoomStep } from "./controls.js";
+import { attach_controls, kZoomStep, step } from "./controls.js";
 import { Editor } from "./editor.js";
 import { Gallery } from "./gallery.js";
 import { Hud } from "./hud.js";
 import { Options } from "./options.js";
 import { Player } from "./player.js";
 import { hide_problem, show_problem } from "./problem.js";
-import { quality } from "./quality.js";
-import { SceneLibrary } from "./scenes.js";
+import { show_progress } from "./progress.js";
+import { ladder, quality } from "./quality.js";
+import { own_samples, SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
 import { picture_size } from "./size.js";
-import { format_hash, kDefaults, parse_hash } from "./state.js";
+import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
 import { attach_tabs } from "./tabs.js";
 import { View } from "./view.js";
 
@@ -27,32 +28,31 @@ const state = parse_hash(location.hash);
 const library = new SceneLibrary();
 const camera = new OrbitCamera();
 const view = new View($("stage"), $("canvas"));
-const hud = new Hud(
-  Object.fromEntries(
-    ["fps", "render", "encode", "rays", "size", "skipped"].map((name) => [name, $(`hud-${name}`)]),
-  ),
-);
+const hud = new Hud($("hud"));
 const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
 let scene = null; // the scene shown, or null
 let gallery = null;
 let options = null;
 let opening = 0; // counts scene changes, so that a slow answer to an old one is dropped
 let save_timer = 0;
+let pans = false;
 
 const player = new Player(camera, view, {
   picture: (purpose, level) => scene && picture(purpose, level, camera.view),
+  ladder: () => ({ pictures: scene ? pictures_at_rest() : [], asked: state.samples > 0 }),
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
-    $("stage").dataset.shows = kind;
+    $("stage").dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
     hide_problem($("stage-problem"));
     if (kind === "stream") save_soon();
   },
   waiting: show_waiting,
-  problem: (error) => show_problem($("stage-problem"), error),
-  busy: (busy) => ($("busy").hidden = !busy),
+  problem: fail,
+  progress: (figures) => show_progress($("busy"), $("progress"), figures),
   settled: () => save_now(),
+  rested: () => ($("stage").dataset.shows = "still"),
 });
 
 const editor = new Editor(
@@ -60,6 +60,7 @@ const editor = new Editor(
     text: $("text"),
     card: $("text-problem"),
     note: $("text-note"),
+    lines: $("lines"),
     apply: $("apply"),
     restore: $("restore"),
   },
@@ -70,6 +71,7 @@ const editor = new Editor(
     history.pushState(null, "", current_hash());
     show_stage();
   },
+  post_scene,
 );
 
 function picture(purpose, level, at) {
@@ -87,15 +89,19 @@ function picture(purpose, level, at) {
   return { id: scene.id, moves, ...at, ...size, technique: state.technique, samples };
 }
 
-// What a download or a copied command shows: the view at full size, where it is or will come to rest.
+function pictures_at_rest() {
+  const still = picture("still", 0, camera.view);
+  const counts = ladder(state.samples, own_samples(scene), limits.samples);
+  return counts.map((samples) => ({ ...still, samples }));
+}
+
+// What a download or a copied command shows: the view where it is or will come to rest.
 function current_picture() {
   if (!scene) return null;
   return { picture: picture("still", 0, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
 }
 
-// ---- scenes ----
-
-// Opens the scene that the state names. Waits and tries again for as long as the service does not answer.
+// Opens the scene that the state names, as soon as the service answers.
 async function open_scene(at) {
   const turn = ++opening;
   const wanted = () => turn === opening;
@@ -104,7 +110,7 @@ async function open_scene(at) {
     const opened = await persist(() => library.open(state.scene), show_waiting, wanted);
     if (opened && wanted()) show_scene(opened, at);
   } catch (error) {
-    if (wanted()) show_problem($("stage-problem"), error);
+    if (wanted()) fail(error);
   }
 }
 
@@ -113,7 +119,7 @@ function show_scene(opened, at) {
   scene = opened;
   state.scene = opened.ref;
   camera.use_scene_camera(opened.camera);
-  camera.jump({ azimuth: at.az, elevation: at.el, distance: at.dist, time: at.t });
+  camera.jump(view_of(at));
   hide_problem($("stage-problem"));
   editor.load(opened.text);
   gallery?.mark(opened.ref);
@@ -134,7 +140,7 @@ async function post_again() {
 function pick_sample(name) {
   save_now();
   state.scene = name;
-  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1, t: 0 }));
+  history.pushState(null, "", format_hash({ ...state, az: 0, el: 0, dist: 1, pan: kDefaults.pan, t: 0 }));
   gallery.mark(name);
   open_scene(kDefaults);
   show_stage();
@@ -145,11 +151,9 @@ function show_stage() {
   $("stage").scrollIntoView({ block: "nearest" });
 }
 
-// ---- state ----
-
 function current_hash() {
-  const { azimuth, elevation, distance, time } = camera.view;
-  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance, t: time });
+  const { azimuth, elevation, distance, pan, time } = camera.view;
+  return format_hash({ ...state, az: azimuth, el: elevation, dist: distance, pan, t: time });
 }
 
 function save_now() {
@@ -172,7 +176,7 @@ function load_hash() {
   show_settings();
   if (!same_scene) return open_scene(state);
   opening += 1;
-  camera.jump({ azimuth: state.az, elevation: state.el, distance: state.dist, time: state.t });
+  camera.jump(view_of(state));
   player.invalidate();
   player.playing = state.playing;
 }
@@ -201,10 +205,8 @@ function set_option(key, value) {
   player.refresh();
 }
 
-// ---- messages ----
-
-function announce(text) {
-  $("announcement").textContent = text;
+function fail(error) {
+  show_problem($("stage-problem"), error);
 }
 
 function show_waiting(error, seconds) {
@@ -212,8 +214,6 @@ function show_waiting(error, seconds) {
   $("notice-text").textContent = `${error.title}. Trying again in ${Math.max(1, Math.round(seconds))} s.`;
   $("notice").hidden = false;
 }
-
-// ---- controls ----
 
 function moved() {
   $("hint").hidden = true;
@@ -224,16 +224,38 @@ function moved() {
 const moves = {
   rotate: (azimuth, elevation) => (camera.rotate(azimuth, elevation), moved()),
   dolly: (factor) => (camera.dolly(factor), moved()),
+  pan: (right, up) => pan(right, up),
+  panning: () => pans,
   reset: () => (camera.reset(), moved()),
   toggle_play: () => set_playing(!state.playing),
   hold: (held) => player.hold(held),
 };
 
+// By pixels on the stage: what lies at the target's distance keeps under the pointer.
+function pan(right, up) {
+  if (!scene) return;
+  const { width, height, fov } = picture("still", 0, camera.view);
+  const shown_height = Math.min(view.box.height, (view.box.width * height) / width);
+  camera.pan(right / shown_height, up / shown_height, fov);
+  moved();
+}
+
+// Whether plain drags, arrows and their buttons pan instead of turning.
+function set_panning(on) {
+  pans = on;
+  $("pan").setAttribute("aria-pressed", String(on));
+  for (const name of ["left", "right", "up", "down"]) {
+    const button = document.querySelector(`[data-do="${name}"]`);
+    button.title = `${on ? "Move" : "Turn"} ${name} (arrow key)`;
+  }
+}
+
 const actions = {
-  left: () => moves.rotate(-kTurnStep, 0),
-  right: () => moves.rotate(kTurnStep, 0),
-  up: () => moves.rotate(0, kTurnStep),
-  down: () => moves.rotate(0, -kTurnStep),
+  left: () => step($("stage"), moves, -1, 0, pans),
+  right: () => step($("stage"), moves, 1, 0, pans),
+  up: () => step($("stage"), moves, 0, 1, pans),
+  down: () => step($("stage"), moves, 0, -1, pans),
+  pan: () => set_panning(!pans),
   closer: () => moves.dolly(kZoomStep),
   farther: () => moves.dolly(1 / kZoomStep),
   reset: () => moves.reset(),
@@ -252,25 +274,22 @@ $("speed").addEventListener("input", () => {
   player.refresh_soon();
   save_soon();
 });
-view.on_resize(() => player.refresh_soon());
-const refresh_download = attach_download($("download"), current_picture);
-attach_curl($("curl"), $("curl-dialog"), current_picture, announce);
+new ResizeObserver(() => player.refresh_soon()).observe($("stage"));
+const refresh_download = attach_download($("download"), current_picture, fail);
+attach_curl($("curl"), current_picture, $("announcement"));
 addEventListener("hashchange", load_hash);
 still_please.addEventListener("change", () => (camera.damped = !still_please.matches));
 
-// ---- start ----
-
 async function load_catalog() {
   const [catalog, published] = await Promise.all([get_json("v1/catalog"), get_json("v1/limits")]);
-  limits.side = published.image_side ?? limits.side;
-  limits.pixels = published.image_pixels ?? limits.pixels;
-  limits.samples = published.samples ?? limits.samples;
-  limits.frames = published.orbit_frames ?? limits.frames;
+  const { image_side: side, image_pixels: pixels, samples, orbit_frames: frames } = published;
+  Object.assign(limits, { side, pixels, samples, frames });
   return catalog;
 }
 
 async function start() {
   camera.damped = !still_please.matches;
+  set_panning(false);
   if (still_please.matches) state.playing = false;
   show_settings();
   player.playing = state.playing;
@@ -289,4 +308,4 @@ async function start() {
   await open_scene(state);
 }
 
-start().catch((error) => show_problem($("stage-problem"), error));
+start().catch(fail);

@@ -7,7 +7,7 @@ const sleepers = new Set(); // resolve functions of the attempts that wait now
 export class Backoff {
   #next = kFirst;
 
-  // Seconds to wait after `error`. A random tenth keeps many pages from coming back at the same moment.
+  // Seconds to wait after `error`. A random tenth keeps many pages from coming back at once.
   after(error) {
     const seconds = error?.retry_after_seconds ?? this.#next;
     this.#next = Math.min(kLongest, this.#next * 2);

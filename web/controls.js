@@ -1,9 +1,11 @@
 // Turns pointer, touch, wheel and keyboard input on the stage into camera moves.
-// `on` has: rotate(azimuth, elevation) in degrees, dolly(factor), reset(), toggle_play(), hold(bool).
+// `on` has: rotate(azimuth, elevation) in degrees, dolly(factor), pan(right, up) by pixels of the camera's own
+// move, panning() -> whether plain drags and arrows pan, reset(), toggle_play(), hold(bool).
 
 const kDollyStep = 0.95; // factor of the distance for one wheel notch
 export const kZoomStep = kDollyStep ** 3; // for a key or a button
 export const kTurnStep = 180 / 8; // degrees for an arrow key or a button
+export const kPanStep = 1 / 8; // of the stage's height, likewise
 const kDragThreshold = 3; // pixels; less is a click
 const kWheelNotch = 100; // pixels of wheel movement that count as one step
 const kPinchGain = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
@@ -15,18 +17,28 @@ export function attach_controls(stage, on) {
   stage.addEventListener("dblclick", () => on.reset());
 }
 
+// One step of an arrow key or button: `right` and `up` are -1, 0 or 1.
+export function step(stage, on, right, up, pans) {
+  const pixels = kPanStep * stage.clientHeight;
+  if (pans) on.pan(right * pixels, up * pixels);
+  else on.rotate(right * kTurnStep, up * kTurnStep);
+}
+
 function attach_pointers(stage, on) {
   const pointers = new Map(); // id -> {x, y}
   let dragging = false;
+  let pans = false;
 
   const gap = () => {
     const [a, b] = [...pointers.values()];
     return Math.hypot(a.x - b.x, a.y - b.y);
   };
 
+  stage.addEventListener("contextmenu", (event) => event.preventDefault());
   stage.addEventListener("pointerdown", (event) => {
-    if (event.pointerType === "mouse" && event.button !== 0) return;
+    if (event.pointerType === "mouse" && event.button !== 0 && event.button !== 2) return;
     stage.setPointerCapture(event.pointerId);
+    pans = (event.button === 2 || event.shiftKey || event.ctrlKey || event.metaKey) !== on.panning();
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
   });
 
@@ -43,11 +55,14 @@ function attach_pointers(stage, on) {
     const before = pointers.size === 2 ? gap() : 0;
     last.x = event.clientX;
     last.y = event.clientY;
-    if (pointers.size === 1) {
-      const degrees_per_pixel = 360 / stage.clientHeight;
+    const degrees_per_pixel = 360 / stage.clientHeight;
+    if (pointers.size === 2) {
+      on.pan(-dx / 2, dy / 2); // each finger moves their middle by half its own way
+      if (before > 0 && gap() > 0) on.dolly(before / gap());
+    } else if (pans) {
+      on.pan(-dx, dy);
+    } else {
       on.rotate(-dx * degrees_per_pixel, dy * degrees_per_pixel);
-    } else if (before > 0 && gap() > 0) {
-      on.dolly(before / gap());
     }
   });
 
@@ -75,14 +90,15 @@ function attach_wheel(stage, on) {
   );
 }
 
-// Keys work on the stage, and without it where nothing has the focus and the page has nothing to scroll: so
-// no form field loses a key, and a long page still scrolls. Space plays and pauses in any case.
+// Keys work on the stage, and where nothing has the focus and nothing scrolls: no form field loses a key, and a
+// long page still scrolls. Space plays and pauses in any case.
 function attach_keys(stage, on) {
+  const arrow = (right, up) => (event) => step(stage, on, right, up, event.shiftKey !== on.panning());
   const actions = {
-    ArrowLeft: () => on.rotate(-kTurnStep, 0),
-    ArrowRight: () => on.rotate(kTurnStep, 0),
-    ArrowUp: () => on.rotate(0, kTurnStep),
-    ArrowDown: () => on.rotate(0, -kTurnStep),
+    ArrowLeft: arrow(-1, 0),
+    ArrowRight: arrow(1, 0),
+    ArrowUp: arrow(0, 1),
+    ArrowDown: arrow(0, -1),
     PageUp: () => on.dolly(kZoomStep),
     PageDown: () => on.dolly(1 / kZoomStep),
     "+": () => on.dolly(kZoomStep),
@@ -98,7 +114,7 @@ function attach_keys(stage, on) {
     const action = actions[event.key];
     if (!action || (event.key === " " && event.repeat)) return;
     event.preventDefault();
-    action();
+    action(event);
   });
 }
 

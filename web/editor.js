@@ -1,30 +1,33 @@
-// The scene as text: edit, apply, and jump to what the service found wrong.
+// The scene as text: edit, apply, and see and jump to what is wrong. While the user types, the service checks the
+// text: its store forgets what is not used.
 
-import { locate, offset_of } from "./pointer.js";
-import { hide_problem, show_problem } from "./problem.js";
+import { Gutter } from "./gutter.js";
+import { locate, offset_of, place_of } from "./pointer.js";
+import { hide_problem, places_of, show_problem } from "./problem.js";
+
+const kLetterWidth = 0.61; // of a monospaced font's size
+const kCheckMs = 500; // after the last key
 
 export class Editor {
+  #parts;
   #text;
-  #card;
-  #note;
-  #restore;
+  #gutter;
   #loaded = ""; // the text as it was loaded or applied last
   #draft = ""; // an edit that loading another scene has replaced
+  #timer = 0;
+  #turn = 0; // counts what makes answers stale: edits, loads, applying
+  #told = ""; // what the card says
 
-  // `parts`: {text, card, note, apply, restore}. `on_apply` takes the text and returns a promise; what it
-  // throws is shown in the card.
-  constructor(parts, on_apply) {
+  // `parts`: {text, card, note, lines, apply, restore}. `on_apply` and `on_check` take the text and return a
+  // promise; what they throw is shown in the card.
+  constructor(parts, on_apply, on_check) {
+    this.#parts = parts;
     this.#text = parts.text;
-    this.#card = parts.card;
-    this.#note = parts.note;
-    this.#restore = parts.restore;
+    this.#gutter = new Gutter(parts.lines, parts.text);
     const apply = async () => {
       parts.apply.disabled = true;
       try {
-        await on_apply(this.#text.value);
-        hide_problem(this.#card);
-      } catch (error) {
-        show_problem(this.#card, error, (place) => this.#go_to(place));
+        await this.#try(on_apply, true);
       } finally {
         parts.apply.disabled = false;
       }
@@ -35,11 +38,15 @@ export class Editor {
       event.preventDefault();
       apply();
     });
-    this.#text.addEventListener("input", () => this.#show_note());
-    this.#restore.addEventListener("click", () => {
+    this.#text.addEventListener("input", () => {
+      this.#changed();
+      this.#timer = setTimeout(() => this.#try(on_check, false), kCheckMs);
+    });
+    parts.restore.addEventListener("click", () => {
       this.#text.value = this.#draft;
       this.#draft = "";
-      this.#show_note();
+      this.#changed();
+      this.#try(on_check, false);
       this.#text.focus();
     });
   }
@@ -52,26 +59,61 @@ export class Editor {
       this.#text.scrollTop = 0;
     }
     this.#loaded = text;
-    hide_problem(this.#card);
-    this.#show_note();
+    this.#changed();
+    this.#tell(null);
   }
 
-  #show_note() {
-    this.#note.textContent = this.#text.value === this.#loaded ? "" : "Edited, not applied yet";
-    this.#restore.hidden = this.#draft === "";
+  #changed() {
+    clearTimeout(this.#timer);
+    this.#turn += 1;
+    this.#parts.note.textContent = this.#text.value === this.#loaded ? "" : "Edited, not applied yet";
+    this.#parts.restore.hidden = this.#draft === "";
+    this.#gutter.update();
+  }
+
+  // Of a mere check that had no answer nothing is told.
+  async #try(action, tell_all) {
+    clearTimeout(this.#timer);
+    const turn = ++this.#turn;
+    let problem = null;
+    try {
+      await action(this.#text.value);
+    } catch (error) {
+      problem = error;
+    }
+    if (turn === this.#turn && (tell_all || !problem?.retryable)) this.#tell(problem);
+  }
+
+  #tell(error) {
+    const places = error ? places_of(error) : [];
+    const text = this.#text.value;
+    const faults = places.map((place) => [
+      place_of(text, this.#range(place)[0]).line,
+      place.detail ?? error.detail,
+    ]);
+    this.#gutter.update(new Map(faults.reverse()));
+    this.#text.setAttribute("aria-invalid", String(error !== null));
+    const { card } = this.#parts;
+    const told = error ? JSON.stringify([error.title, error.detail, places]) : "";
+    if (told === this.#told && !card.hidden) return;
+    this.#told = told;
+    if (error) show_problem(card, error, (place) => this.#go_to(place));
+    else hide_problem(card);
+  }
+
+  #range(place) {
+    const text = this.#text.value;
+    if (place.line) {
+      const at = offset_of(text, place.line, place.column);
+      return [at, Math.min(at + 1, text.length)];
+    }
+    // A sentence about an unknown key names it in quotes.
+    const key = /key "((?:[^"\\]|\\.)*)"/.exec(place.detail ?? "")?.[1] ?? null;
+    return locate(text, place.pointer, key);
   }
 
   #go_to(place) {
-    const text = this.#text.value;
-    let range;
-    if (place.line) {
-      const at = offset_of(text, place.line, place.column);
-      range = [at, Math.min(at + 1, text.length)];
-    } else {
-      // A sentence about an unknown key names it in quotes.
-      const key = /key "((?:[^"\\]|\\.)*)"/.exec(place.detail ?? "")?.[1] ?? null;
-      range = locate(text, place.pointer, key);
-    }
+    const range = this.#range(place);
     this.#text.focus();
     this.#text.setSelectionRange(...range);
     this.#scroll_to(...range);
@@ -79,12 +121,10 @@ export class Editor {
 
   // Selecting alone does not bring the place into view.
   #scroll_to(start, end) {
-    const lines = this.#text.value.slice(0, start).split("\n");
-    const style = getComputedStyle(this.#text);
-    const brush = document.createElement("canvas").getContext("2d");
-    brush.font = `${style.fontSize} ${style.fontFamily}`;
-    const right = brush.measureText("0").width * (lines.at(-1).length + end - start + 4);
-    this.#text.scrollTop = Math.max(0, (lines.length - 4) * Number.parseFloat(style.lineHeight));
+    const { line, column } = place_of(this.#text.value, start);
+    const { fontSize, lineHeight } = getComputedStyle(this.#text);
+    const right = kLetterWidth * Number.parseFloat(fontSize) * (column + end - start + 3);
+    this.#text.scrollTop = Math.max(0, (line - 4) * Number.parseFloat(lineHeight));
     this.#text.scrollLeft = Math.max(0, right - this.#text.clientWidth);
   }
 }

@@ -1,9 +1,12 @@
-// The sample scenes, those that show one shape, light or the like under a heading of their own. A thumbnail
-// is asked for once its row is in sight, one at a time, so that thumbnails never crowd out the picture.
+// The sample scenes. A thumbnail is asked for once its row is in sight, one at a time, so that thumbnails never
+// crowd out the picture.
 
+import { get_frame } from "./api.js";
+import { element } from "./problem.js";
 import { title_of } from "./scenes.js";
 import { picture_size } from "./size.js";
 import { frame_url } from "./urls.js";
+import { decode } from "./view.js";
 
 const kThumbnail = { width: 96, height: 72 }; // CSS pixels, as in style.css
 const kFirst = "paper";
@@ -55,31 +58,21 @@ export class Gallery {
     const members = this.#library.samples.filter((sample) => kind_of(sample) === kind);
     if (members.length === 0) return [];
     members.sort((a, b) => (b.name === kFirst) - (a.name === kFirst));
-    const list = document.createElement("ul");
+    const list = element("ul");
     list.append(...members.map((sample) => this.#row(sample)));
     if (!kHeadings[kind]) return [list];
-    const heading = document.createElement("h2");
-    heading.textContent = kHeadings[kind];
-    return [heading, list];
+    return [element("h2", kHeadings[kind]), list];
   }
 
   #row(sample) {
-    const thumbnail = document.createElement("span");
-    thumbnail.className = "thumbnail";
-    thumbnail.dataset.name = sample.name;
-    const title = document.createElement("strong");
-    title.textContent = title_of(sample);
-    const description = document.createElement("span");
-    description.textContent = sample.description ?? "";
-    const text = document.createElement("span");
-    text.className = "words";
-    text.append(title, description);
-    const button = document.createElement("button");
-    button.type = "button";
-    button.dataset.name = sample.name;
+    const thumbnail = element("span", "", "thumbnail");
+    const text = element("span", "", "words");
+    text.append(element("strong", title_of(sample)), element("span", sample.description));
+    const button = element("button");
+    button.dataset.name = thumbnail.dataset.name = sample.name;
     button.append(thumbnail, text);
     button.addEventListener("click", () => this.#on_pick(sample.name));
-    const row = document.createElement("li");
+    const row = element("li");
     row.append(button);
     return row;
   }
@@ -94,10 +87,9 @@ export class Gallery {
       scene,
       limits: this.#limits,
     });
-    const image = new Image(kThumbnail.width, kThumbnail.height);
-    image.alt = "";
-    image.src = frame_url({ id: scene.id, azimuth: 0, elevation: 0, distance: 1, ...size, samples: 1 });
-    await image.decode();
-    box.append(image);
+    const url = frame_url({ id: scene.id, azimuth: 0, elevation: 0, distance: 1, ...size, samples: 1 });
+    const canvas = element("canvas");
+    canvas.getContext("bitmaprenderer").transferFromImageBitmap(await decode((await get_frame(url)).png));
+    box.append(canvas);
   }
 }

@@ -1,17 +1,12 @@
 // The figures under the picture. Written at most four times a second: faster cannot be read.
 
+import { element } from "./problem.js";
+
+const kFields = ["fps", "render", "encode", "rays", "size", "skipped"];
 const kRefreshMs = 250;
 const kWindowMs = 1500; // frames per second are counted over this long
 
-function short(value) {
-  const steps = [
-    [1e9, " G"],
-    [1e6, " M"],
-    [1e3, " k"],
-  ];
-  const [unit, name] = steps.find(([least]) => value >= least) ?? [1, ""];
-  return `${(value / unit).toPrecision(3).replace(/e.*/, "")}${name}`;
-}
+const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
 function milliseconds(value) {
   if (!Number.isFinite(value)) return "–";
@@ -19,15 +14,21 @@ function milliseconds(value) {
 }
 
 export class Hud {
-  #fields;
+  #fields = {}; // elements by name
   #times = []; // when the last frames were drawn
   #last_write = 0;
   #timer = 0;
   #figures = null;
 
-  // `fields`: elements by name: fps, render, encode, rays, size, skipped.
-  constructor(fields) {
-    this.#fields = fields;
+  // Fills `list`, a <dl>.
+  constructor(list) {
+    for (const name of kFields) {
+      const field = (this.#fields[name] = element("dd", "–"));
+      field.id = `hud-${name}`;
+      const pair = element("div");
+      pair.append(element("dt", name === "rays" ? "rays/s" : name), field);
+      list.append(pair);
+    }
   }
 
   // `kind` is "stream", "preview" or "still"; figures that are absent keep their last value.
@@ -55,12 +56,10 @@ export class Hud {
       fps: Number.isFinite(rate) ? rate.toFixed(1) : "–",
       render: milliseconds(render_ms),
       encode: milliseconds(encode_ms),
-      rays: rays > 0 && render_ms > 0 ? short((rays * 1000) / render_ms) : "–",
+      rays: rays > 0 && render_ms > 0 ? short.format((rays * 1000) / render_ms) : "–",
       size: `${width} × ${height}${draft ? ", draft" : ""}`,
       skipped: String(skipped ?? 0),
     };
-    for (const [name, text] of Object.entries(texts)) {
-      if (this.#fields[name].textContent !== text) this.#fields[name].textContent = text;
-    }
+    for (const [name, text] of Object.entries(texts)) this.#fields[name].textContent = text;
   }
 }

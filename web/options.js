@@ -1,16 +1,17 @@
 // The selects under the picture: technique, samples, size.
 
-import { fixed_size, kModes } from "./size.js";
+import { fixed_size, kModes, within } from "./size.js";
 
 const kSamples = [1, 4, 16, 64];
 
+// A link may ask for a value that `options`, [value, label, title] each, lacks: then it is listed too.
 function fill(select, options, value) {
+  const is_chosen = ([key]) => String(key) === String(value);
+  const all = options.some(is_chosen) ? options : [...options, [value, value]];
   select.replaceChildren(
-    ...options.map(([key, label, title]) => {
-      const option = new Option(label, key, false, String(key) === String(value));
-      if (title) option.title = title;
-      return option;
-    }),
+    ...all.map(([key, label, title = ""]) =>
+      Object.assign(new Option(label, key, false, is_chosen([key])), { title }),
+    ),
   );
 }
 
@@ -36,31 +37,19 @@ export class Options {
   // Lists what may be chosen for `scene` (null: none yet) and marks what `state` says.
   show(state, scene) {
     const { technique, samples, size } = this.#selects;
-    const techniques = (this.#catalog.techniques ?? []).map(({ type, summary }) => [
-      type,
-      sentence(type),
-      summary,
-    ]);
-    fill(technique, [["", "Scene’s own"], ...with_value(techniques, state.technique)], state.technique);
-    const counts = kSamples
-      .filter((count) => count <= this.#limits.samples)
-      .map((count) => [count, String(count)]);
-    fill(samples, [[0, "Scene’s own"], ...with_value(counts, state.samples)], state.samples);
-    const sizes = kModes.filter((mode) => this.#fits(mode)).map((mode) => [mode, size_label(mode, scene)]);
-    fill(size, with_value(sizes, state.size), state.size);
+    const { techniques = [] } = this.#catalog;
+    const names = techniques.map(({ type, summary }) => [type, sentence(type), summary]);
+    fill(technique, [["", "Scene’s own"], ...names], state.technique);
+    const counts = kSamples.filter((count) => count <= this.#limits.samples);
+    fill(samples, [[0, "Automatic"], ...counts.map((count) => [count, count])], state.samples);
+    const sizes = kModes.filter((mode) => this.#fits(fixed_size(mode)));
+    fill(size, sizes.map((mode) => [mode, size_label(mode, scene)]), state.size);
   }
 
-  #fits(mode) {
-    const fixed = fixed_size(mode);
+  #fits(fixed) {
     const { side, pixels } = this.#limits;
-    return !fixed || (Math.max(fixed.width, fixed.height) <= side && fixed.width * fixed.height <= pixels);
+    return !fixed || within(fixed, side, pixels).width === fixed.width;
   }
-}
-
-// A link may ask for what the list lacks: then it is listed too.
-function with_value(options, value) {
-  if (!value || options.some(([key]) => String(key) === String(value))) return options;
-  return [...options, [value, String(value)]];
 }
 
 function size_label(mode, scene) {

@@ -4,9 +4,9 @@ import { ApiError, request } from "./api.js";
 import { kFrameType, read_frames } from "./stream.js";
 import { decode } from "./view.js";
 
-// Calls `show(bitmap, header)` for the frames of `url`, one at a time, until the stream ends or `show` returns
-// false. header.skipped counts also the frames that came while an older one was being decoded and gave way to a
-// newer one. Throws ApiError, or AbortError once `signal` fires.
+// Calls `show(bitmap, header)` for the frames of `url` until the stream ends or `show` returns false.
+// header.skipped counts also those that gave way to a newer one here. Throws ApiError, or AbortError once `signal`
+// fires.
 export async function play_stream(url, signal, show) {
   const response = await request(url, { headers: { Accept: kFrameType }, signal });
   const playing = { newest: null, busy: false, over: false, failure: null, late: 0 };

@@ -1,6 +1,5 @@
-// How fast and how fine an orbit is asked for. The service renders every frame of an orbit, so frames that take
-// longer than planned make it turn too slowly. Then the stream is asked for anew: coarser as long as it would
-// stutter, else with fewer frames and a wider step.
+// How fast and how fine an orbit is asked for. Every frame is rendered, so slow frames make it turn too slowly. Then
+// the stream is asked for anew: coarser as long as it would stutter, else with fewer frames and a wider step.
 
 const kMostFps = 30;
 const kSmoothFps = 12; // below this it stutters

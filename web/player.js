@@ -1,10 +1,11 @@
-// Decides what the canvas shows: the orbit's stream while playing, small quick pictures while the view
-// moves under the user's hand, and one full picture once it rests. At most one of them is at work.
+// Decides what the canvas shows: the orbit's stream while playing, small quick pictures while the view moves by
+// hand, and finer and finer full ones once it rests.
 
 import { get_frame, is_abort } from "./api.js";
 import { Backoff } from "./backoff.js";
 import { play_stream } from "./orbit_stream.js";
 import { Pace } from "./pace.js";
+import { Refiner } from "./refine.js";
 import { frame_url, orbit_url } from "./urls.js";
 import { decode } from "./view.js";
 
@@ -12,8 +13,9 @@ const kRestMs = 100; // without input for this long, the view counts as at rest
 const kRestartMs = 150; // changes of size or speed are gathered this long
 const kQuickMs = 60; // previews slower than this get a quarter of each side instead of a half
 
-// `on` has: picture(purpose, level) -> picture or null, missing() -> promise (post the scene again),
-// stats(kind, figures), waiting(error, seconds), problem(error), busy(bool), settled().
+// `on` has: picture(purpose, level) -> picture or null, ladder() -> pictures of the view at rest, missing() ->
+// promise (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error),
+// progress(figures or null), settled() when the view no longer moves, rested() when the picture is final.
 export class Player {
   speed = 20; // degrees per second
   stream_frames = 3600;
@@ -28,6 +30,7 @@ export class Player {
   #last_tick = 0;
   #work = null; // {kind, key, abort} of the stream or still being fetched
   #shown = ""; // address of the still on the canvas
+  #refiner = new Refiner();
   #preview_busy = false;
   #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
   #preview_slow = 0; // level of previews
@@ -48,16 +51,12 @@ export class Player {
     addEventListener("online", () => this.retry_now());
   }
 
-  get playing() {
-    return this.#playing;
-  }
-
   set playing(playing) {
     this.#playing = playing;
     this.refresh();
   }
 
-  // The user moves the view: stop what is shown, follow the camera until it rests.
+  // The user moves the view: follow the camera until it rests.
   input() {
     this.#last_input = performance.now();
     if (this.#moving) return;
@@ -83,7 +82,6 @@ export class Player {
     else this.#start_still();
   }
 
-  // As refresh(), but gathers changes that come in quick succession.
   refresh_soon() {
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.refresh(), kRestartMs);
@@ -94,7 +92,7 @@ export class Player {
     this.refresh();
   }
 
-  // Forgets the picture shown, so that the next refresh fetches even an equal one.
+  // Lets the next refresh fetch even an equal picture.
   invalidate() {
     this.#stop();
     this.#shown = "";
@@ -129,6 +127,7 @@ export class Player {
     const start = performance.now();
     try {
       const frame = await get_frame(url);
+      this.#refiner.note(picture, frame.stats.render_ms);
       const bitmap = await decode(frame.png);
       if (this.#moving && epoch === this.#epoch) this.#draw(url, bitmap, picture, "preview", frame.stats);
       else bitmap.close();
@@ -141,17 +140,21 @@ export class Player {
   }
 
   #start_still() {
-    const picture = this.#on.picture("still", 0);
-    if (!picture) return;
-    const url = frame_url(picture);
-    if (this.#work?.kind === "still" && this.#work.key === url) return;
+    const { pictures, asked } = this.#on.ladder();
+    if (this.#playing) pictures.splice(1); // the orbit is only held for a moment
+    if (pictures.length === 0) return;
+    const key = frame_url(pictures.at(-1));
+    if (this.#work?.kind === "still" && this.#work.key === key) return;
     this.#stop();
-    if (url === this.#shown) return this.#on.stats("still", { width: picture.width, height: picture.height });
-    this.#run("still", url, async (signal) => {
-      const frame = await get_frame(url, signal);
-      const bitmap = await decode(frame.png);
-      signal.throwIfAborted();
-      this.#draw(url, bitmap, picture, "still", frame.stats);
+    const at = pictures.findIndex((picture) => frame_url(picture) === this.#shown);
+    const { width, height, samples } = pictures[at] ?? {};
+    if (at >= 0) this.#on.stats("still", { width, height });
+    this.#run("still", key, async (signal) => {
+      await this.#refiner.climb(pictures.slice(at + 1), { shown: samples ?? 0, asked }, signal, {
+        draw: (picture, bitmap, stats) => this.#draw(frame_url(picture), bitmap, picture, "still", stats),
+        progress: this.#on.progress,
+      });
+      this.#on.rested();
     });
   }
 
@@ -168,7 +171,7 @@ export class Player {
     this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
-  // One stream after the other: each has a limited number of frames, and the pace may want another one.
+  // One stream after the other: each ends after so many frames, and the pace may want another.
   async #stream(signal) {
     const pace = this.#pace;
     for (;;) {
@@ -197,11 +200,11 @@ export class Player {
 
   #draw(url, bitmap, picture, kind, figures) {
     const { width, height } = bitmap;
-    this.#view.draw(bitmap, picture.fills);
+    this.#view.draw(bitmap, picture.fills, kind === "still" && this.#camera.damped);
     this.#shown = url;
     this.#reposts = 0;
     this.#backoff.reset();
-    this.#on.busy(false);
+    if (kind !== "still") this.#on.progress(null);
     const draft = kind === "preview" || (kind === "stream" && this.#pace.level > 0);
     this.#on.stats(kind, { ...figures, width, height, draft });
   }
@@ -209,21 +212,21 @@ export class Player {
   async #run(kind, key, task) {
     const work = { kind, key, abort: new AbortController() };
     this.#work = work;
-    this.#on.busy(true);
+    this.#on.progress({});
     try {
       await task(work.abort.signal);
     } catch (error) {
       if (this.#work === work && !is_abort(error)) this.#fail(error);
     } finally {
       if (this.#work === work) this.#work = null;
-      if (!this.#work) this.#on.busy(false);
+      if (!this.#work) this.#on.progress(null);
     }
   }
 
   #stop() {
     this.#work?.abort.abort();
     this.#work = null;
-    this.#on.busy(false);
+    this.#on.progress(null);
   }
 
   async #fail(error) {

@@ -1,5 +1,5 @@
-// Finds the place in a JSON text that a JSON Pointer (RFC 6901) names. Works on broken text as far as it is
-// whole, and never recurses, so that no text is too deep for it.
+// Finds what a JSON Pointer (RFC 6901) names in a JSON text, in a broken one as far as it is whole. Never recurses:
+// no text is too deep for it.
 
 const kSpace = /[\s,:]*/y;
 const kPlain = /[^\s,:{}[\]"]*/y;
@@ -74,12 +74,13 @@ export function locate(text, pointer, key = null) {
 
 // Offset of a line and column, both counted from 1.
 export function offset_of(text, line, column) {
-  let at = 0;
-  for (let n = 1; n < line; n += 1) {
-    const end = text.indexOf("\n", at);
-    if (end < 0) break;
-    at = end + 1;
-  }
-  const line_end = text.indexOf("\n", at);
-  return Math.min(at + Math.max(0, column - 1), line_end < 0 ? text.length : line_end);
+  const lines = text.split("\n").slice(0, line);
+  const last = lines.pop();
+  return [...lines, ""].join("\n").length + Math.min(Math.max(0, column - 1), last.length);
+}
+
+// {line, column} of an offset.
+export function place_of(text, offset) {
+  const lines = text.slice(0, offset).split("\n");
+  return { line: lines.length, column: lines.at(-1).length + 1 };
 }

@@ -1,6 +1,6 @@
 // An error card: what went wrong, where (one entry a place), and the request id to quote in a report.
 
-function element(name, text, class_name) {
+export function element(name, text, class_name) {
   const made = document.createElement(name);
   if (text) made.textContent = text;
   if (class_name) made.className = class_name;
@@ -8,7 +8,7 @@ function element(name, text, class_name) {
 }
 
 // The places an error names: {label, detail, pointer} or {label, line, column}.
-function places_of(error) {
+export function places_of(error) {
   const places = (error.errors ?? []).map(({ pointer, detail }) => ({
     label: pointer || "/",
     detail,
@@ -28,8 +28,7 @@ function places_of(error) {
 export function show_problem(card, error, on_place) {
   const title = element("h2", error.title ?? error.message);
   const close = element("button", "", "close");
-  close.type = "button";
-  close.setAttribute("aria-label", "Dismiss");
+  close.ariaLabel = "Dismiss";
   close.addEventListener("click", () => hide_problem(card));
   const parts = [close, title];
   const places = places_of(error);
@@ -39,10 +38,7 @@ export function show_problem(card, error, on_place) {
     const list = element("ul");
     for (const place of places) {
       const entry = element(on_place ? "button" : "span", "", "place");
-      if (on_place) {
-        entry.type = "button";
-        entry.addEventListener("click", () => on_place(place));
-      }
+      if (on_place) entry.addEventListener("click", () => on_place(place));
       entry.append(element("code", place.label), element("span", place.detail));
       const row = element("li");
       row.append(entry);

@@ -5,6 +5,15 @@ const kPreviews = [{ part: 1 / 2 }, { part: 1 / 4 }];
 // For the frames of an orbit, each level coarser than the one before.
 const kStreams = [{}, { samples: 1 }, { samples: 1, part: 1 / 2 }, { samples: 1, part: 1 / 4 }];
 
+const kLadder = [1, 4, 16, 64];
+
+// Samples of the pictures at rest, in turn: up to what the user has `chosen` (0: nothing), else up to the usual end
+// or what the scene asks for as its `own`.
+export function ladder(chosen, own, most) {
+  const end = Math.min(most, chosen || Math.max(own, kLadder.at(-1)));
+  return [...kLadder.filter((samples) => samples < end), end];
+}
+
 // {part, samples} for `purpose` "still", "preview" or "stream" at `level`. `part` is a factor of each side,
 // `samples` 0 means the scene's own. An orbit keeps what the user has chosen: a number of samples, or a size.
 export function quality(purpose, level, { samples, size }) {

@@ -1,7 +1,8 @@
-// Scenes the page knows: the service's samples by name, pasted ones by id. The service may forget a scene
-// (a restart, a full store); as long as its text is here it is simply posted again.
+// Scenes the page knows: the service's samples by name, pasted ones by id. The service may forget a scene; as long
+// as its text is here it is posted again.
 
 import { get_json, get_text, post_scene } from "./api.js";
+import { recall, remember } from "./storage.js";
 
 const kStorageKey = "orrery.scenes";
 const kLongestKept = 500_000; // characters; session storage is small
@@ -46,12 +47,13 @@ export class SceneLibrary {
     const name = this.#ids.get(info.id);
     if (name) return { ...info, ref: name, title: title_of(this.sample(name)), text };
     this.#keep(info.id, text);
-    return { ...info, ref: info.id, title: own_title(text), text };
+    return { ...info, ref: info.id, title: info.title || kUntitled, text };
   }
 
   async #fetch(id) {
     const text = pretty(await get_json(`v1/scenes/${id}`));
-    return { ...(await post_scene(text)), ref: id, title: own_title(text), text };
+    const info = await post_scene(text);
+    return { ...info, ref: id, title: info.title || kUntitled, text };
   }
 
   #keep(id, text) {
@@ -59,29 +61,20 @@ export class SceneLibrary {
     if (text.length > kLongestKept) return;
     const kept = kept_texts().filter(([known]) => known !== id);
     kept.push([id, text]);
-    try {
-      sessionStorage.setItem(kStorageKey, JSON.stringify(kept.slice(-kMostKept)));
-    } catch {
-      // Full or forbidden: then a reload has to find the scene on the service.
-    }
+    remember(kStorageKey, kept.slice(-kMostKept));
   }
 }
 
-function own_title(text) {
+// Samples that a scene asks for.
+export function own_samples({ text }) {
   try {
-    return JSON.parse(text).title || kUntitled;
+    return JSON.parse(text).render?.samples ?? 1;
   } catch {
-    return kUntitled; // the service may read what JSON.parse does not, such as a byte order mark
+    return 1; // the service may read what JSON.parse does not, such as a byte order mark
   }
 }
 
-function kept_texts() {
-  try {
-    return JSON.parse(sessionStorage.getItem(kStorageKey)) ?? [];
-  } catch {
-    return [];
-  }
-}
+const kept_texts = () => recall(kStorageKey) ?? [];
 
 // Indented JSON with lists of numbers on one line.
 export function pretty(value) {

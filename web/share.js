@@ -1,11 +1,14 @@
 // Taking the picture along: the download link and the curl command.
 
+import { access_token } from "./access.js";
+import { get_frame } from "./api.js";
 import { curl_command, file_name, frame_url } from "./urls.js";
 
 const kThanksMs = 2000;
 
-// `current()` is {picture, name} of the view as it is now, or null while there is none.
-export function attach_download(link, current) {
+// `current()` is {picture, name} of the view as it is now, or null. A link cannot carry a token: with one the picture
+// is fetched first; `failed(error)` hears if that fails.
+export function attach_download(link, current, failed) {
   const refresh = () => {
     const now = current();
     if (!now) return;
@@ -15,29 +18,38 @@ export function attach_download(link, current) {
   for (const event of ["pointerdown", "pointerenter", "focus", "click", "contextmenu"]) {
     link.addEventListener(event, refresh);
   }
+  link.addEventListener("click", (event) => {
+    if (!access_token()) return;
+    event.preventDefault();
+    save(link.href, link.download).catch(failed);
+  });
   return refresh;
 }
 
-// Where the clipboard is out of reach (plain http from another host) a dialog shows the command instead.
-export function attach_curl(button, dialog, current, announce) {
+async function save(address, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL((await get_frame(address)).png);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), kThanksMs);
+}
+
+// Where the clipboard is out of reach (plain http from another host) a prompt shows the command instead.
+export function attach_curl(button, current, announcement) {
   const label = button.querySelector(".label");
   const usual = label.textContent;
   button.addEventListener("click", async () => {
     const now = current();
     if (!now) return;
-    const command = curl_command(now.picture, now.name, document.baseURI);
+    const command = curl_command(now.picture, now.name, document.baseURI, access_token());
     try {
       await navigator.clipboard.writeText(command);
     } catch {
-      const field = dialog.querySelector("textarea");
-      field.value = command;
-      dialog.showModal();
-      field.select();
-      return;
+      return prompt("This picture with curl", command);
     }
     label.textContent = "Copied";
     button.classList.add("done");
-    announce("The curl command is on the clipboard.");
+    announcement.textContent = "The curl command is on the clipboard.";
     setTimeout(() => {
       label.textContent = usual;
       button.classList.remove("done");

@@ -23,8 +23,8 @@ export function within(size, side, pixels) {
 }
 
 // Size of the picture for `purpose` "still", "stream" or "preview": {width, height, fills, fov}. `part` is a
-// factor of each side. `fov` is set where the box is narrower than the scene's own picture: its angle is
-// vertical, so it has to grow for the sides to stay in view.
+// factor of each side. `fov` is set where the box is narrower than the scene's own picture: its vertical angle
+// grows so that the sides stay in view.
 export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, part = 1 }) {
   const own = { width: scene.width, height: scene.height };
   const fills = mode === "fit" || mode === "half";
@@ -44,7 +44,7 @@ export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, p
 
 const aspect = (size) => size.width / size.height;
 
-// The box itself; but an orthographic view has no angle to widen: in a narrow box it keeps its proportions.
+// The box itself; but an orthographic view has no angle to widen and keeps its proportions.
 function fit(own, box, camera) {
   if (camera?.type !== "orthographic" || aspect(box) >= aspect(own)) return box;
   return { width: box.width, height: box.width / aspect(own) };

@@ -1,13 +1,14 @@
 // What a link to the page says: the URL hash as an object and back.
 
 import { kModes, fixed_size } from "./size.js";
-import { round } from "./urls.js";
+import { pan_text, round } from "./urls.js";
 
 export const kDefaults = Object.freeze({
   scene: "paper",
   az: 0,
   el: 0,
   dist: 1,
+  pan: [0, 0, 0], // metres
   t: 0, // seconds, of what moves in the scene
   speed: 20,
   playing: true,
@@ -16,6 +17,7 @@ export const kDefaults = Object.freeze({
   size: "fit",
 });
 export const kFastest = 120; // degrees per second
+const kFarthestPan = 1e12; // what the service takes
 const kAlways = ["scene", "az", "el", "dist", "speed", "playing"];
 
 // Reads a hash such as "#scene=paper&az=30"; whatever is missing or makes no sense gets its default.
@@ -27,11 +29,13 @@ export function parse_hash(hash) {
   };
   const word = (key, pattern) => (pattern.test(query.get(key) ?? "") ? query.get(key) : kDefaults[key]);
   const size = query.get("size") ?? "";
+  const pan = (query.get("pan") ?? "").split(",").map(Number.parseFloat);
   return {
     scene: word("scene", /^[\w-]{1,100}$/),
     az: number("az", -1e6, 1e6),
     el: number("el", -180, 180),
     dist: number("dist", 0.001, 1000),
+    pan: pan.length === 3 && pan.every((metres) => Math.abs(metres) <= kFarthestPan) ? pan : kDefaults.pan,
     t: number("t", -1e6, 1e6),
     speed: number("speed", 1, kFastest),
     playing: query.has("playing") ? query.get("playing") !== "0" : kDefaults.playing,
@@ -47,6 +51,7 @@ export function format_hash(state) {
     az: round(state.az, 1),
     el: round(state.el, 1),
     dist: round(state.dist, 3),
+    pan: pan_text(state.pan),
     t: round(state.t, 3),
     speed: state.speed,
     playing: state.playing ? 1 : 0,
@@ -56,7 +61,12 @@ export function format_hash(state) {
   };
   const query = new URLSearchParams();
   for (const [key, value] of Object.entries(texts)) {
-    if (kAlways.includes(key) || value !== kDefaults[key]) query.set(key, value);
+    if (value !== "" && (kAlways.includes(key) || value !== kDefaults[key])) query.set(key, value);
   }
   return `#${query}`;
+}
+
+// What the hash says of the view, as the camera takes it.
+export function view_of({ az, el, dist, pan, t }) {
+  return { azimuth: az, elevation: el, distance: dist, pan, time: t };
 }

@@ -1,11 +1,15 @@
-// Reads application/x-orrery-frames: [4 bytes, big-endian: length of the header][header, JSON][PNG bytes]
-// again and again. The header's `bytes` is the length of the PNG.
+// Reads application/x-orrery-frames: [4 bytes, big-endian: length of the header][header, JSON][PNG], repeated. The
+// header's `bytes` is the length of the PNG.
 
-import { is_abort, no_answer } from "./api.js";
+import { broken, no_answer } from "./api.js";
 
 export const kFrameType = "application/x-orrery-frames";
 const kLongestHeader = 64 * 1024;
 const kLongestPicture = 256 * 1024 * 1024;
+
+function check(sound) {
+  if (!sound) throw new Error("The stream is not made of frames");
+}
 
 // Collects bytes as they come and hands out whole frames.
 export class FrameParser {
@@ -32,16 +36,14 @@ export class FrameParser {
       const bytes = this.#take(4);
       if (!bytes) return null;
       this.#header_length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0);
-      if (this.#header_length > kLongestHeader) throw new Error("The stream is not made of frames");
+      check(this.#header_length <= kLongestHeader);
     }
     if (!this.#header) {
       const bytes = this.#take(this.#header_length);
       if (!bytes) return null;
       this.#header = JSON.parse(new TextDecoder().decode(bytes));
       const length = this.#header.bytes;
-      if (!Number.isInteger(length) || length < 0 || length > kLongestPicture) {
-        throw new Error("The stream is not made of frames");
-      }
+      check(Number.isInteger(length) && length >= 0 && length <= kLongestPicture);
     }
     const png = this.#take(this.#header.bytes);
     if (!png) return null;
@@ -74,17 +76,22 @@ export class FrameParser {
   }
 }
 
-// Frames of a response body, as they arrive. Ends with the stream; throws ApiError when it breaks off.
+// Frames of a response body, as they arrive. Throws ApiError when it breaks off.
 export async function* read_frames(body) {
-  const reader = body.getReader();
   const parser = new FrameParser();
+  for await (const chunk of chunks(body)) yield* parser.push(chunk);
+  if (parser.inside_frame) throw no_answer("The stream broke off inside a frame.");
+}
+
+// A response body as it comes.
+export async function* chunks(body) {
+  const reader = body.getReader();
   try {
     for (;;) {
       const { done, value } = await read(reader);
-      if (done) break;
-      yield* parser.push(value);
+      if (done) return;
+      yield value;
     }
-    if (parser.inside_frame) throw no_answer("The stream broke off inside a frame.");
   } finally {
     reader.cancel().catch(() => {}); // the connection is gone already, or goes now
   }
@@ -94,6 +101,6 @@ async function read(reader) {
   try {
     return await reader.read();
   } catch (error) {
-    throw is_abort(error) ? error : no_answer(error.message);
+    throw broken(error);
   }
 }

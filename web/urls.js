@@ -1,7 +1,7 @@
 // Addresses of pictures. Relative, so that the page works below any path; rounded, so that equal views
 // have equal addresses and come from the browser's cache.
 
-// A picture is {id, azimuth, elevation, distance, width, height}, {moves, time} of a scene in which something
+// A picture is {id, azimuth, elevation, distance, pan, width, height}, {moves, time} of a scene in which something
 // moves, and optionally {fov, technique, samples}.
 function query_of(picture) {
   const query = new URLSearchParams({
@@ -11,11 +11,18 @@ function query_of(picture) {
     width: picture.width,
     height: picture.height,
   });
+  const pan = pan_text(picture.pan);
+  if (pan) query.set("pan", pan);
   if (picture.moves) query.set("time", round(picture.time, 3));
   if (picture.fov) query.set("fov", round(picture.fov, 3));
   if (picture.technique) query.set("technique", picture.technique);
   if (picture.samples) query.set("samples", picture.samples);
   return query;
+}
+
+// To six digits, whatever the scene's scale; "" where nothing is panned.
+export function pan_text(pan) {
+  return pan?.some(Boolean) ? pan.map((metres) => Number(metres.toPrecision(6)) + 0).join() : "";
 }
 
 export function round(value, digits) {
@@ -36,12 +43,34 @@ export function orbit_url(picture, { frames, fps, step, time_step }) {
   return `v1/scenes/${picture.id}/orbit?${query}`;
 }
 
+// What POST v1/jobs takes for the same picture.
+export function job_body(picture) {
+  const { azimuth, elevation, distance, fov, width, height, samples, time } = numbers_of(query_of(picture));
+  const { technique, pan } = Object.fromEntries(query_of(picture));
+  return {
+    scene_id: picture.id,
+    camera: {
+      azimuth_degrees: azimuth,
+      elevation_degrees: elevation,
+      distance,
+      pan: pan?.split(",").map(Number),
+      fov_degrees: fov,
+    },
+    image: { width, height },
+    render: { samples, technique, time },
+  };
+}
+
+const numbers_of = (query) => Object.fromEntries([...query].map(([key, text]) => [key, Number(text)]));
+
 export function file_name(name, view) {
   const plain = name.replace(/[^\w-]+/g, "-").slice(0, 40);
   return `${plain}-${Math.round(view.azimuth)}-${Math.round(view.elevation)}.png`;
 }
 
-export function curl_command(picture, name, base) {
+// With `token` the command takes one from the environment.
+export function curl_command(picture, name, base, token = "") {
   const address = new URL(frame_url(picture), base).href.replaceAll("'", "%27");
-  return `curl -fo ${file_name(name, picture)} '${address}'`;
+  const access = token ? '-H "Authorization: Bearer $ORRERY_TOKEN" ' : "";
+  return `curl -fo ${file_name(name, picture)} ${access}'${address}'`;
 }

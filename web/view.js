@@ -2,10 +2,13 @@
 
 import { ApiError } from "./api.js";
 
+const kFadeMs = 180;
+
 export class View {
   #canvas;
   #stage;
   #context;
+  #newest = null; // the bitmap drawn last, or being faded in
 
   constructor(stage, canvas) {
     this.#stage = stage;
@@ -19,24 +22,34 @@ export class View {
   }
 
   // `fills`: the picture has the box's proportions; the odd half pixel of rounding is cut, not framed.
-  draw(bitmap, fills) {
+  // `fades`: it takes over little by little from what is shown. Closes the bitmap.
+  draw(bitmap, fills, fades = false) {
     const canvas = this.#canvas;
-    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
-      canvas.width = bitmap.width;
-      canvas.height = bitmap.height;
+    const { width, height } = bitmap;
+    if (canvas.hidden) fades = false;
+    if (canvas.width !== width || canvas.height !== height) {
+      const before = canvas.cloneNode();
+      before.getContext("2d").drawImage(canvas, 0, 0);
+      canvas.width = width;
+      canvas.height = height;
+      if (fades) this.#context.drawImage(before, 0, 0, width, height);
     }
-    this.#context.drawImage(bitmap, 0, 0);
-    bitmap.close();
     canvas.classList.toggle("fills", fills);
     canvas.hidden = false;
+    this.#newest = bitmap;
+    this.#blend(bitmap, 0, performance.now(), fades ? kFadeMs : 0);
   }
 
-  clear() {
-    this.#canvas.hidden = true;
-  }
-
-  on_resize(action) {
-    new ResizeObserver(action).observe(this.#stage);
+  // `shown`: the bitmap's part in what the canvas shows; the rest is what was there before.
+  #blend(bitmap, shown, start, duration) {
+    if (this.#newest !== bitmap) return bitmap.close();
+    const part = duration > 0 ? Math.min(1, Math.max(shown, (performance.now() - start) / duration)) : 1;
+    this.#context.globalAlpha = part < 1 ? (part - shown) / (1 - shown) : 1;
+    this.#context.drawImage(bitmap, 0, 0);
+    this.#context.globalAlpha = 1;
+    this.#stage.toggleAttribute("data-fading", part < 1);
+    if (part === 1) bitmap.close();
+    else requestAnimationFrame(() => this.#blend(bitmap, part, start, duration));
   }
 }
 

@@ -18,14 +18,15 @@ const load = (name) => import(join(copy, name));
 const { server_timing } = await load("api.js");
 const { persist, wake_all } = await load("backoff.js");
 const { OrbitCamera, elevation_of } = await load("camera.js");
-const { locate, offset_of } = await load("pointer.js");
+const { locate, offset_of, place_of } = await load("pointer.js");
 const { pretty } = await load("scenes.js");
 const { Pace } = await load("pace.js");
-const { quality } = await load("quality.js");
+const { progress_text } = await load("progress.js");
+const { ladder, quality } = await load("quality.js");
 const { picture_size, within } = await load("size.js");
 const { format_hash, parse_hash } = await load("state.js");
 const { FrameParser, read_frames } = await load("stream.js");
-const { curl_command, frame_url } = await load("urls.js");
+const { curl_command, frame_url, job_body } = await load("urls.js");
 
 function frame_bytes(header, png) {
   const text = new TextEncoder().encode(JSON.stringify({ ...header, bytes: png.length }));
@@ -82,7 +83,7 @@ test("the camera glides to its goal and stops there", () => {
     "a sixtieth of a second covers a twentieth of the way",
   );
   for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
-  assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5, time: 0 });
+  assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5, pan: [0, 0, 0], time: 0 });
 });
 
 test("the camera never looks straight along up, wherever the scene's own eye is", () => {
@@ -94,6 +95,42 @@ test("the camera never looks straight along up, wherever the scene's own eye is"
   assert.ok(Math.abs(camera.goal.elevation - 44.9) < 1e-9);
   camera.rotate(0, -1000);
   assert.ok(Math.abs(camera.goal.elevation + 134.9) < 1e-9);
+});
+
+test("the camera pans in its picture's plane, as far as its picture shows", () => {
+  const close_to = (actual, expected) =>
+    actual.forEach((value, axis) => assert.ok(Math.abs(value - expected[axis]) < 1e-12, `${actual} ${expected}`));
+  const own = { type: "perspective", eye: [0, 1, 4], look_at: [0, 1, 0], up: [0, 3, 0], fov_degrees: 90 };
+  const panned = (view, right, up, fov) => {
+    const camera = new OrbitCamera();
+    camera.use_scene_camera({ ...own, ...view.camera });
+    camera.jump({ azimuth: 0, elevation: 0, distance: 1, ...view });
+    camera.pan(right, up, fov);
+    return camera.goal.pan;
+  };
+  close_to(panned({}, 1, 0.5), [8, 4, 0]); // 2 * 4 m * tan 45 high
+  close_to(panned({ distance: 2 }, 0, 1), [0, 16, 0]);
+  close_to(panned({ azimuth: 90 }, 1, 0), [0, 0, -8]); // the eye is at +x, its right is -z
+  close_to(panned({ elevation: 60 }, 0, 1), [0, 4, -4 * Math.sqrt(3)]);
+  const lifted = { eye: [0, 5, 4] }; // 45 degrees up, 4 * sqrt(2) m away
+  close_to(panned({ camera: lifted }, 0, 1), [0, 8, -8]);
+  close_to(panned({ camera: lifted, azimuth: 90, elevation: -45 }, 0.5, 0.25), [0, 2 * Math.SQRT2, -4 * Math.SQRT2]);
+  close_to(panned({}, 0, 1, 2 * (Math.atan(0.5) * 180) / Math.PI), [0, 4, 0]);
+  close_to(panned({ camera: { type: "orthographic", height: 3 }, distance: 2 }, 1, 0), [6, 0, 0]);
+});
+
+test("the camera glides to where it is panned to, and reset takes it back", () => {
+  const camera = new OrbitCamera();
+  camera.pan(1, 0);
+  const goal = camera.goal.pan[0];
+  assert.equal(camera.step(1 / 60), true);
+  assert.ok(Math.abs(camera.view.pan[0] - goal / 20) < 1e-9);
+  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  assert.equal(camera.view.pan[0], goal);
+  camera.reset();
+  assert.equal(camera.step(1 / 60), true);
+  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  assert.deepEqual(camera.view.pan, [0, 0, 0]);
 });
 
 test("reset takes the short way round", () => {
@@ -122,6 +159,11 @@ test("a line and a column lead to their place in the text", () => {
   assert.equal(offset_of("ab\ncd\n", 2, 2), 4);
   assert.equal(offset_of("ab\ncd\n", 1, 99), 2);
   assert.equal(offset_of("ab", 9, 1), 0);
+  const text = "\nab\n\ncd";
+  for (let at = 0; at <= text.length; at += 1) {
+    const { line, column } = place_of(text, at);
+    assert.equal(offset_of(text, line, column), at);
+  }
 });
 
 test("a link restores what it was made from, and nonsense in it is ignored", () => {
@@ -131,13 +173,14 @@ test("a link restores what it was made from, and nonsense in it is ignored", () 
     az: 12.5,
     el: -3,
     dist: 0.5,
+    pan: [0.5, -1e-7, 12345],
     t: 1.25,
     playing: false,
     technique: "raycast",
     samples: 16,
   };
   assert.deepEqual(parse_hash(format_hash(state)), state);
-  const odd = parse_hash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999");
+  const odd = parse_hash("#scene=../x&az=abc&speed=1e9&size=9x&samples=-4&el=1e999&pan=1,2,x");
   assert.deepEqual({ ...odd, speed: 20 }, parse_hash(""));
   assert.equal(odd.speed, 120);
 });
@@ -220,10 +263,53 @@ test("addresses are the same for the same view and safe in a shell", () => {
     frame_url(picture),
     "v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40",
   );
+  assert.match(frame_url({ ...picture, pan: [0, 0, 0] }), /distance=1&width/);
+  const panned = new URL(frame_url({ ...picture, pan: [1.23456789, -2e-7, 0] }), "http://host");
+  assert.equal(panned.searchParams.get("pan"), "1.23457,-2e-7,0");
   assert.equal(
     curl_command(picture, "my scene", "http://host:1/"),
     "curl -fo my-scene-10-0.png 'http://host:1/v1/scenes/ab12/frame.png?azimuth=10&elevation=0&distance=1&width=60&height=40'",
   );
+});
+
+test("a job is asked for the picture that its address names", () => {
+  const view = { id: "ab", azimuth: 10.001, elevation: 0, distance: 2, width: 60, height: 40 };
+  assert.deepEqual(JSON.parse(JSON.stringify(job_body({ ...view, samples: 16 }))), {
+    scene_id: "ab",
+    camera: { azimuth_degrees: 10, elevation_degrees: 0, distance: 2 },
+    image: { width: 60, height: 40 },
+    render: { samples: 16 },
+  });
+  const more = { pan: [1, -2, 1e-7], fov: 50, technique: "raycast", moves: true, time: 1.5 };
+  const { camera, render } = job_body({ ...view, ...more, samples: 4 });
+  assert.deepEqual([camera.pan, camera.fov_degrees], [[1, -2, 1e-7], 50]);
+  assert.deepEqual(render, { samples: 4, technique: "raycast", time: 1.5 });
+});
+
+test("the command takes a token from the environment", () => {
+  const picture = { id: "ab", azimuth: 0, elevation: 0, distance: 1, width: 6, height: 4 };
+  const command = curl_command(picture, "a", "http://host/", "secret");
+  assert.match(command, /^curl -fo a-0-0\.png -H "Authorization: Bearer \$ORRERY_TOKEN" 'http:/);
+  assert.ok(!command.includes("secret"));
+});
+
+test("pictures at rest get finer up to what was chosen, or what the scene asks for", () => {
+  assert.deepEqual(ladder(0, 1, 4096), [1, 4, 16, 64]);
+  assert.deepEqual(ladder(0, 256, 4096), [1, 4, 16, 64, 256]);
+  assert.deepEqual(ladder(0, 1, 32), [1, 4, 16, 32]);
+  assert.deepEqual(ladder(16, 64, 4096), [1, 4, 16]);
+  assert.deepEqual(ladder(1, 64, 4096), [1]);
+});
+
+test("progress says what was measured, and calls a guess a guess", () => {
+  const at = { shown: 16, end: 64 };
+  assert.equal(progress_text({ ...at, part: 0.439, seconds_left: 2.1 }), "16 of 64 samples · 43 % · 3 s left");
+  assert.equal(progress_text({ ...at, part: 0.1 }), "16 of 64 samples · 10 %");
+  assert.equal(progress_text({ ...at, seconds_left: 2.1 }), "16 of 64 samples · about 3 s left");
+  assert.equal(progress_text({ ...at, seconds_left: NaN }), "16 of 64 samples");
+  assert.equal(progress_text({ ...at, seconds_left: -1 }), "16 of 64 samples", "a guess that came to nothing");
+  assert.equal(progress_text({ ...at, part: 0, seconds_left: 600 }), "16 of 64 samples · 0 % · 10 min left");
+  assert.equal(progress_text({}), "");
 });
 
 test("Server-Timing is read by name", () => {

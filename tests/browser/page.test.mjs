@@ -5,11 +5,15 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
 import {
+  axe_violations,
   canvas_digest,
+  drag,
   eventually,
   hash_of,
-  open_page,
+  middle,
+  near,
   package_file,
+  page_tests,
   rest,
   skip_without_browser,
   start_browser,
@@ -24,41 +28,7 @@ after(async () => {
   await daemon.stop();
 });
 
-// Opens the page with `hash`, runs `body(page, context)`, and holds that no faults but `expected` ones arose.
-function page_test(name, hash, body, { expected = /^$/, ...options } = {}) {
-  test(name, async () => {
-    const { page, faults, close } = await open_page(browser, `${daemon.url}#${hash}`, options);
-    try {
-      await body(page, page.context());
-      assert.deepEqual(
-        faults.filter((fault) => !expected.test(fault)),
-        [],
-      );
-    } finally {
-      await close();
-    }
-  });
-}
-
-async function middle(page) {
-  const box = await page.locator("#stage").boundingBox();
-  return { x: box.x + box.width / 2, y: box.y + box.height / 2, height: box.height };
-}
-
-// Drags by (dx, dy) pixels; `held()` runs before the button is let go. Returns the stage's height.
-async function drag(page, dx, dy, held = () => {}) {
-  const { x, y, height } = await middle(page);
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.mouse.move(x + dx / 2, y + dy / 2, { steps: 3 });
-  await page.mouse.move(x + dx, y + dy, { steps: 3 });
-  await held();
-  await page.mouse.up();
-  return height;
-}
-
-const near = (actual, expected, tolerance, what) =>
-  assert.ok(Math.abs(Number(actual) - expected) <= tolerance, `${what}: ${actual} is not near ${expected}`);
+const page_test = page_tests(browser, daemon);
 
 page_test("the paper's scene turns as soon as the page is open", "", async (page) => {
   const seen = new Set();
@@ -77,7 +47,7 @@ page_test("the paper's scene turns as soon as the page is open", "", async (page
   assert.match(await page.locator("#hud-rays").textContent(), /\d/);
 });
 
-page_test("what moves in a scene plays on, and stands still with the picture", "scene=orrery&speed=1", async (page) => {
+page_test("what moves in a scene plays on, and stands still with the picture", "scene=orrery&speed=1&samples=1", async (page) => {
   await eventually("the motion's time in the link", async () => Number((await hash_of(page)).t) > 0.3);
   await page.locator("#play").click();
   const still = await rest(page);
@@ -131,11 +101,12 @@ page_test(
     });
     // Counted inside the page: outside, a request may be seen to begin before the end of the last is told. The
     // large picture at rest does not wait for a small one that is under way.
-    await page.evaluate(() => {
+    await page.evaluate((most) => {
       const real_fetch = window.fetch;
       window.flying = window.most_flying = 0;
       window.fetch = async (...call) => {
-        if (!/[?&]samples=1(&|$)/.test(String(call[0]))) return real_fetch(...call);
+        const query = new URLSearchParams(String(call[0]).split("?")[1]);
+        if (!(query.get("width") <= most)) return real_fetch(...call);
         window.most_flying = Math.max(window.most_flying, (window.flying += 1));
         try {
           return await real_fetch(...call);
@@ -143,16 +114,16 @@ page_test(
           window.flying -= 1;
         }
       };
-    });
+    }, box.width / 2 + 1);
     await drag(page, 120, 0);
     await rest(page);
-    const previews = asked.slice(0, -1);
+    const previews = asked.slice(0, -2);
     assert.ok(previews.length >= 2, `${previews.length} previews`);
     for (const query of previews) {
       assert.ok(query.get("width") <= box.width / 2 + 1 && query.get("samples") === "1", String(query));
     }
-    near(asked.at(-1).get("width"), box.width, 1, "width of the last");
-    assert.equal(asked.at(-1).get("samples"), "4");
+    for (const query of asked.slice(-2)) near(query.get("width"), box.width, 1, "width of the last");
+    assert.deepEqual(asked.slice(-2).map((query) => query.get("samples")), ["1", "4"]);
     assert.equal(await page.evaluate(() => window.most_flying), 1);
   },
 );
@@ -310,7 +281,7 @@ page_test(
 
 page_test(
   "who asks for less motion gets a still",
-  "scene=paper&playing=1",
+  "scene=paper&playing=1&samples=1",
   async (page) => {
     const still = await rest(page);
     await page.waitForTimeout(500);
@@ -336,27 +307,36 @@ page_test(
 );
 
 for (const colorScheme of ["light", "dark"]) {
-  const axe = package_file("axe-core/axe.min.js");
-  page_test(
-    `axe finds nothing to fault in ${colorScheme}`,
-    "playing=0",
-    async (page) => {
-      if (!axe) return console.log("axe-core is not installed: not checked");
-      await page.evaluate(readFileSync(axe, "utf8"));
-      const check = async (where) => {
-        const { violations } = await page.evaluate(() => globalThis.axe.run());
-        const found = violations.map(
-          ({ id, nodes }) => `${where}: ${id} at ${nodes.map(({ target }) => target)}`,
+  for (const width of [1280, 360]) {
+    page_test(
+      `axe finds nothing to fault in ${colorScheme}, ${width} pixels wide`,
+      "playing=0",
+      async (page) => {
+        if (!package_file("axe-core/axe.min.js")) return console.log("axe-core is not installed: not checked");
+        const check = async (where) => assert.deepEqual(await axe_violations(page), [], where);
+        await rest(page);
+        await check("scenes");
+        await page.locator("#pan").click();
+        await check("pan mode");
+        await page.locator("#tab-json").click();
+        await page.locator("#text").fill('{"version": 1, "camera": ');
+        await page.locator("#lines .wrong").waitFor();
+        await check("editor with an error");
+        await page.route("**/frame.png?*", (route) =>
+          route.fulfill({ status: 500, json: { title: "Out of luck", detail: "No light.", request_id: "r1" } }),
         );
-        assert.deepEqual(found, []);
-      };
-      await check("scenes");
-      await page.locator("#tab-json").click();
-      await page.locator("#text").fill('{"version": 1, "camera": ');
-      await page.locator("#apply").click();
-      await page.locator("#text-problem").waitFor({ state: "visible" });
-      await check("editor with an error");
-    },
-    { colorScheme, expected: /status of 400/ },
-  );
+        await page.locator("#size").selectOption("1280x720");
+        await page.locator("#stage-problem").waitFor({ state: "visible" });
+        await check("the picture's error");
+        await page.unroute("**/frame.png?*");
+        await page.route("**/frame.png?*", () => {}); // hangs
+        await page.locator("#size").selectOption("fit");
+        await page.locator("#size").selectOption("half");
+        await page.getByRole("progressbar").waitFor();
+        await page.waitForFunction(() => getComputedStyle(document.getElementById("busy")).opacity === "1");
+        await check("progress");
+      },
+      { colorScheme, viewport: { width, height: 800 }, expected: /status of (400|500)/ },
+    );
+  }
 }

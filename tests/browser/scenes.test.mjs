@@ -49,7 +49,7 @@ async function apply(page, edit) {
 
 daemon_test(
   "what is wrong in a pasted scene is named, and a click leads there",
-  "playing=0",
+  "playing=0&samples=1",
   async (page) => {
     const before = await rest(page);
     const card = page.locator("#text-problem");
@@ -74,7 +74,83 @@ daemon_test(
   },
 );
 
-daemon_test("a pasted scene is shown, and back leads to the one before", "playing=0", async (page) => {
+daemon_test("what is wrong is marked beside the text while it is typed, and nothing is applied", "playing=0&samples=1", async (page) => {
+  const before = await rest(page);
+  const hash = await hash_of(page);
+  const [card, text, wrong] = ["#text-problem", "#text", "#lines .wrong"].map((name) => page.locator(name));
+  await page.locator("#tab-json").click();
+  const good = await text.inputValue();
+  const bad = good.replace(/"radius": 0\.5/, '"radius": -77').replace(/"shininess": 100/, '"shininess": "x"');
+  const line_of = (part) => String(bad.slice(0, bad.indexOf(part)).split("\n").length);
+  await text.fill(bad);
+  await wrong.first().waitFor();
+  const marked = await wrong.allTextContents();
+  assert.deepEqual(new Set(marked), new Set([line_of("-77"), line_of('"x"')]));
+  assert.match(await wrong.first().getAttribute("title"), /number/);
+  assert.match(await wrong.first().getAttribute("aria-label"), /^Line \d+: /);
+  assert.equal(await text.getAttribute("aria-invalid"), "true");
+  await card.locator("button.place", { hasText: "radius" }).click();
+  assert.equal(await selection(page), "-77");
+
+  await text.fill('{\n  "version": 1,\n  "camera" 2\n}');
+  await eventually("the malformed line", async () => (await wrong.allTextContents()).join() === "3");
+  assert.deepEqual(await page.locator("#lines span").allTextContents(), ["1", "2", "3", "4"]);
+
+  await text.fill(good.replace(/"radius": 0\.5/, '"radius": 0.25'));
+  await card.waitFor({ state: "hidden" });
+  assert.equal(await wrong.count(), 0);
+  assert.equal(await text.getAttribute("aria-invalid"), "false");
+  assert.equal(await canvas_digest(page), before);
+  assert.deepEqual(await hash_of(page), hash);
+});
+
+daemon_test("a late answer about an older text is dropped", "playing=0&samples=1", async (page) => {
+  await rest(page);
+  await page.locator("#tab-json").click();
+  const good = await page.locator("#text").inputValue();
+  const held = [];
+  await page.route("**/v1/scenes", (route) => {
+    const is_check = /"radius": (-77|0\.75)/.test(route.request().postData()); // else it is for the gallery
+    return is_check ? void held.push(route) : route.continue();
+  });
+  await page.locator("#text").fill(good.replace(/"radius": 0\.5/, '"radius": -77'));
+  await eventually("the first check", () => held.length === 1);
+  await page.locator("#text").fill(good.replace(/"radius": 0\.5/, '"radius": 0.75'));
+  await eventually("the second check", () => held.length === 2);
+  const answer_to = (route) => page.waitForResponse((response) => response.request() === route.request());
+  const consent = answer_to(held[1]);
+  await held[1].continue();
+  assert.ok((await consent).ok());
+  const refusal = answer_to(held[0]);
+  await held[0].continue();
+  assert.equal((await refusal).status(), 422);
+  await page.waitForTimeout(200);
+  assert.equal(await page.locator("#text-problem").isVisible(), false);
+  assert.equal(await page.locator("#lines .wrong").count(), 0);
+});
+
+daemon_test("the line numbers go with a text of any length", "playing=0&samples=1", async (page) => {
+  await rest(page);
+  await page.locator("#tab-json").click();
+  await page.locator("#text").fill(`{\n${"\n".repeat(5000)}"version": 1, "camera": 2}`);
+  await page.locator("#text-problem .place").first().click();
+  const numbers = await eventually("the last lines", async () => {
+    const shown = (await page.locator("#lines span").allTextContents()).map(Number);
+    return shown.at(-1) === 5002 && shown;
+  });
+  assert.ok(numbers.length < 100, `${numbers.length} rows`);
+  const offset = await page.evaluate(() => {
+    const rows = [...document.querySelectorAll("#lines span")];
+    const text = document.getElementById("text");
+    const row = rows.at(-1).getBoundingClientRect();
+    const height = Number.parseFloat(getComputedStyle(text).lineHeight);
+    const top = text.getBoundingClientRect().top + text.clientTop + 10 + 5001 * height - text.scrollTop;
+    return row.top - top;
+  });
+  assert.ok(Math.abs(offset) <= 1, `the last number is ${offset} pixels from its line`);
+});
+
+daemon_test("a pasted scene is shown, and back leads to the one before", "playing=0&samples=1", async (page) => {
   const before = await rest(page);
   await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": 0.25'));
   await eventually("another picture", async () => (await canvas_digest(page)) !== before);
@@ -88,7 +164,7 @@ daemon_test("a pasted scene is shown, and back leads to the one before", "playin
   assert.match(await page.locator("#text").inputValue(), /"radius": 0\.25/);
 });
 
-daemon_test("an edit that another scene replaces can be brought back", "playing=0", async (page) => {
+daemon_test("an edit that another scene replaces can be brought back", "playing=0&samples=1", async (page) => {
   await page.locator("#tab-json").click();
   await page.locator("#text").fill("my edit");
   await page.locator("#tab-scenes").click();
@@ -98,7 +174,7 @@ daemon_test("an edit that another scene replaces can be brought back", "playing=
   assert.equal(await page.locator("#text").inputValue(), "my edit");
 });
 
-daemon_test("a forgotten scene is posted again", "playing=0", async (page, daemon) => {
+daemon_test("a forgotten scene is posted again", "playing=0&samples=1", async (page, daemon) => {
   const before = await rest(page);
   const link = await page.locator("#download").getAttribute("href");
   const scene = /v1\/scenes\/[0-9a-f]+/.exec(link)[0];
@@ -148,7 +224,7 @@ daemon_test("a hidden tab asks for nothing and goes on when it is seen again", "
   await eventually("frames again", async () => (await digest()) !== frozen);
 });
 
-daemon_test("a link to a scene that nobody knows says so", "playing=0", async (page) => {
+daemon_test("a link to a scene that nobody knows says so", "playing=0&samples=1", async (page) => {
   await page.evaluate((id) => (location.hash = `scene=${id}`), "0".repeat(64));
   const card = page.locator("#stage-problem");
   await card.waitFor({ state: "visible" });

@@ -1,9 +1,11 @@
 // What the browser tests and screenshot.mjs share: a daemon of their own and a Chromium of their own.
 
+import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
+import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 export const kRoot = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
@@ -100,9 +102,13 @@ export async function open_page(browser, url, options = {}) {
     const { origin, protocol } = new URL(request.url());
     if (protocol !== "blob:" && origin !== new URL(url).origin) faults.push(`request to ${request.url()}`);
   });
+  const close = async () => {
+    await page.unrouteAll({ behavior: "ignoreErrors" });
+    await context.close();
+  };
   await page.goto(url);
   await page.locator("#canvas").waitFor({ state: "visible" });
-  return { page, faults, close: () => context.close() };
+  return { page, faults, close };
 }
 
 // A short text that differs for different pictures on the canvas.
@@ -130,8 +136,58 @@ export async function eventually(what, probe, timeout_ms = 15_000) {
   throw new Error(`not within ${timeout_ms} ms: ${what}`);
 }
 
-// Waits until the view rests and its full picture is drawn; returns its digest.
+// Waits until the view rests and its finest picture is drawn; returns its digest.
 export async function rest(page) {
-  await page.locator('#stage[data-shows="still"]').waitFor();
+  await page.locator('#stage[data-shows="still"]:not([data-fading])').waitFor();
   return canvas_digest(page);
 }
+
+// A function that declares a test: it opens the page with `hash`, runs `body(page, context)`, and holds that no
+// faults but `expected` ones arose. Stills have one sample where the hash asks for no number: what rests at once
+// is quicker to look at.
+export function page_tests(browser, daemon) {
+  return (name, hash, body, { expected = /^$/, ...options } = {}) =>
+    test(name, async () => {
+      const view = /playing=0(?!.*samples)/.test(hash) ? `${hash}&samples=1` : hash;
+      const { page, faults, close } = await open_page(browser, `${daemon.url}#${view}`, options);
+      try {
+        await body(page, page.context());
+        assert.deepEqual(
+          faults.filter((fault) => !expected.test(fault)),
+          [],
+        );
+      } finally {
+        await close();
+      }
+    });
+}
+
+// What axe-core finds to fault, as texts; nothing where it is not installed.
+export async function axe_violations(page) {
+  const axe = package_file("axe-core/axe.min.js");
+  if (!axe) return [];
+  await page.evaluate(readFileSync(axe, "utf8"));
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  return violations.map(({ id, nodes }) => `${id} at ${nodes.map(({ target }) => target)}`);
+}
+
+// The middle of the stage, and its height.
+export async function middle(page) {
+  const box = await page.locator("#stage").boundingBox();
+  return { x: box.x + box.width / 2, y: box.y + box.height / 2, height: box.height };
+}
+
+// Drags by (dx, dy) pixels; `held()` runs before the button is let go. Returns the stage's height.
+export async function drag(page, dx, dy, held = () => {}, button = "left") {
+  const { x, y, height } = await middle(page);
+  await page.mouse.move(x, y);
+  await page.mouse.down({ button });
+  await page.mouse.move(x + dx / 2, y + dy / 2, { steps: 3 });
+  await page.mouse.move(x + dx, y + dy, { steps: 3 });
+  await held();
+  await page.mouse.up({ button });
+  return height;
+}
+
+export const near = (actual, expected, tolerance, what) =>
+  assert.ok(Math.abs(Number(actual) - expected) <= tolerance, `${what}: ${actual} is not near ${expected}`);
