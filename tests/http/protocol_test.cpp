@@ -46,7 +46,6 @@ TEST_F(Protocol, DoubtfulFramingIsRefused) {
 
 TEST_F(Protocol, WhatIsNoRequestIsRefused) {
   EXPECT_EQ(status_of("hello\r\n\r\n"), 400);
-  EXPECT_EQ(status_of("\r\n\r\n"), 400);
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\n\r\n"), 400);  // no Host
   EXPECT_EQ(status_of("GET nopath HTTP/1.1\r\nHost: x\r\n\r\n"), 400);
   EXPECT_EQ(status_of("BREW / HTTP/1.1\r\nHost: x\r\n\r\n"), 501);
