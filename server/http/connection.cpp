@@ -161,7 +161,10 @@ Head Connection::read_head() {
 }
 
 std::string Connection::read_body(const Head& head, const Request::BodyLimit& limit) {
-  if (head.chunked || !head.content_length) throw HttpError(411, "A body must come with its Content-Length");
+  if (head.chunked || !head.content_length) {
+    body_left_ = std::numeric_limits<std::size_t>::max();  // whatever comes is no request, but a body
+    throw HttpError(411, "A body must come with its Content-Length");
+  }
   const std::size_t length = *head.content_length;
   if (length > limit.bytes)
     throw HttpError(413, "The body has " + std::to_string(length) + " bytes, at most " +
