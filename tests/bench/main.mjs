@@ -11,13 +11,15 @@ import { kNoise } from "./noise.mjs";
 import { kOrbitHttp } from "./orbit_http.mjs";
 import { kPaperVsPovray } from "./paper_vs_povray.mjs";
 import { kStages } from "./stages.mjs";
-import { kReports } from "./structures.mjs";
+import { kSlowClients } from "./slow_clients.mjs";
+import { kReports as kStructureReports } from "./structures.mjs";
 
 // Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
 // reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages, ...kMotion];
 
+const kReports = [...kStructureReports, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too
@@ -106,7 +108,7 @@ async function main() {
   }
   for (const { name, what, cost, runs, remark } of results)
     console.log(`${name}: ${what}; ${runs} pairs, ratio of ${cost}${remark ? `; ${remark}` : ""}`);
-  for (const report of chosen_of(kReports)) if (!is_missing(report)) report.run(options);
+  for (const report of chosen_of(kReports)) if (!is_missing(report)) await report.run(options);
   if (options.json) writeFileSync(options.json, JSON.stringify(results, null, 2) + "\n");
 }
 

@@ -1,7 +1,8 @@
-import { spawn, spawnSync } from "node:child_process";
+import { spawnSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import http from "node:http";
 import { kOrrery } from "./command.mjs";
+import { start_service } from "./service.mjs";
 
 const kScene = "scenes/paper.json"; // 600x600
 const kFrames = 300, kThreads = 2;
@@ -17,29 +18,6 @@ function command_line_run() {
 }
 
 // ---- with HTTP
-
-// Starts a service on a free port; resolves to {port, pid, stop()}.
-async function start_service() {
-  const child = spawn(kOrrery, ["serve", "--port", "0", "--health-port", "0", "--threads", String(kThreads), "--quiet"], {
-    stdio: ["ignore", "pipe", "ignore"],
-  });
-  const gone = new Promise((resolve) => child.once("close", resolve));
-  const port = await new Promise((resolve, reject) => {
-    let output = "";
-    child.stdout.on("data", (bytes) => {
-      output += bytes;
-      const match = /http:\/\/\S+:(\d+)/.exec(output);
-      if (match) resolve(Number(match[1]));
-    });
-    child.once("error", reject);
-    child.once("close", (code) => reject(new Error(`orrery serve ended with ${code}`)));
-  });
-  const stop = async () => {
-    child.kill("SIGTERM");
-    await gone;
-  };
-  return { port, pid: child.pid, stop };
-}
 
 // Processor seconds of a running process (Linux: clock ticks of 10 ms, and the runs take seconds).
 function cpu_seconds(pid) {
@@ -96,7 +74,7 @@ class FrameCounter {
 
 // A service of its own for each run: nothing is left over from the one before.
 async function http_run() {
-  const service = await start_service();
+  const service = await start_service(["--threads", String(kThreads)]);
   try {
     const id = await post_scene(service.port);
     const cpu_before = cpu_seconds(service.pid);
