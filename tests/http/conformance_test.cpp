@@ -1,6 +1,6 @@
 #include <signal.h>
 
-#include <algorithm>
+#include <thread>
 
 #include "tests/http/daemon.h"
 
