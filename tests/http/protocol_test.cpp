@@ -106,14 +106,14 @@ TEST_F(Protocol, OldClientsGetStreamsThatEndWithTheConnection) {
 }
 
 TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
-  Daemon daemon({"--max-connections", "2", "--max-queue", "2"});
+  Daemon daemon({"--max-connections", "2"});
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
   while (daemon.metric("orrery_connections") > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const RawClient first(daemon.port()), second(daemon.port());  // at work: they make no room
-  for (const RawClient* raw : {&first, &second})
-    raw->send("GET /v1/scenes/" + id +
-              "/frame.png?width=4096&height=4096&samples=4096 HTTP/1.1\r\nHost: x\r\n\r\n");
+  const std::string path = "/v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096";
+  first.send("GET " + path + "&seed=1 HTTP/1.1\r\nHost: x\r\n\r\n");
+  second.send("GET " + path + "&seed=2 HTTP/1.1\r\nHost: x\r\n\r\n");
   while (daemon.metric("orrery_renders_running") + daemon.metric("orrery_renders_waiting") < 2)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const RawClient third(daemon.port());
