@@ -61,7 +61,7 @@ class GridLayout {
   void for_each_along(const SingleRay<T>& ray, const SingleProbe<T>& probe, T from, T to, const Open& open,
                       const Visit& visit) const {
     if (!probe.clip(box_, from, to)) return;
-    const auto [x, y, z] = ray.axis;
+    const int x = ray.axis[0], y = ray.axis[1], z = ray.axis[2];
     const T rounding = kRounding<T> * (box_.magnitude() + max_component(abs(ray.ray.origin)));
     const auto layers = [&](int axis, T first, T last, const auto& enter) {
       along(ray.ray, probe, static_cast<std::size_t>(axis), rounding, first, last, open, enter);

@@ -33,7 +33,9 @@ void rotate(Matrix& m, Matrix& axes, std::size_t p, std::size_t q) {
 }  // namespace
 
 void SurfaceMoments::add(const HullTriangle& triangle) {
-  const auto& [a, b, c] = triangle;
+  const Vec3d& a = triangle[0];
+  const Vec3d& b = triangle[1];
+  const Vec3d& c = triangle[2];
   const double size = length(cross(b - a, c - a)) / 2;
   const Vec3d sum = a + b + c;
   area += size;

@@ -69,8 +69,8 @@ std::span<const RenderOption> render_options() { return kOptions; }
 RenderRequest read_render_options(const OptionValues& values) {
   nlohmann::json request = nlohmann::json::object();
   for (const auto& [name, text] : values) {
-    const auto option =
-        std::find_if(kOptions.begin(), kOptions.end(), [&](const auto& o) { return o.name == name; });
+    const auto option = std::find_if(kOptions.begin(), kOptions.end(),
+                                     [&wanted = name](const auto& o) { return o.name == wanted; });
     request[std::string(option->section)][std::string(option->key)] = value_of(text);
   }
   return read_request(document_of(std::move(request)));

@@ -14,97 +14,158 @@
 namespace orrery {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = Waiting::Clock;
 
 int milliseconds_until(Clock::time_point deadline) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, std::numeric_limits<int>::max()));
 }
 
-// Waits until the socket is ready for `events` or broken. False: time is up.
-bool wait_for(int fd, short events, Clock::time_point deadline) {
-  for (;;) {
-    pollfd ready{fd, events, 0};
-    const int count = poll(&ready, 1, milliseconds_until(deadline));
-    if (count > 0) return true;
-    if (count == 0 || errno != EINTR) return false;
-  }
-}
-
 }  // namespace
 
 Connection::Connection(int fd, int wake, const Patience& patience)
-    : fd_(fd), wake_(wake), patience_(patience) {}
+    : fd_(fd), wake_(wake), patience_(patience), reading_since_(Clock::now()) {}
 
 Connection::~Connection() {
-  // Closing while the client still sends would make it see a broken connection instead of the answer.
-  if (body_left_ > 0 || !received_.empty()) drain();
   shutdown(fd_, SHUT_RDWR);
   close(fd_);
 }
 
-void Connection::drain() {
+void Connection::linger() {
   constexpr std::chrono::seconds kLinger{2};
+  if (broken_ || made_room() || (body_left_ == 0 && received_.empty())) return;
   shutdown(fd_, SHUT_WR);
-  const auto deadline = Clock::now() + kLinger;
+  reading_since_ = Clock::now();
+  last_call_.reset();
+  const auto deadline = reading_since_ + kLinger;
   do received_.clear();
   while (Clock::now() < deadline && receive(deadline));
 }
 
+Connection::Ready Connection::wait(short events, Clock::time_point deadline, bool heed_wake) {
+  if (!waiting_.begin(events == POLLOUT ? *writing_since_ : reading_since_, events)) return Ready::none;
+  pollfd ready[] = {{fd_, events, 0}, {wake_, POLLIN, 0}};
+  int count;
+  do count = poll(ready, heed_wake ? 2 : 1, milliseconds_until(deadline));
+  while (count < 0 && errno == EINTR);
+  if (!waiting_.end() || count <= 0) return Ready::none;
+  return ready[0].revents != 0 ? Ready::socket : Ready::wake;
+}
+
+bool Connection::make_room() {
+  // With something to do at hand it is about to go on.
+  pollfd ready{fd_, waiting_.events(), 0};
+  if (poll(&ready, 1, 0) > 0 || !waiting_.give_up()) return false;
+  shutdown(fd_,
+           waiting_.events() == POLLIN ? SHUT_RD : SHUT_RDWR);  // who sent too slowly can still be told so
+  return true;
+}
+
+bool Connection::skip_empty_lines() {
+  constexpr int kMost = 8;  // any more are taken for the request, and refused
+  while (empty_lines_ < kMost && received_.starts_with("\r\n")) {
+    received_.erase(0, 2);
+    ++empty_lines_;
+  }
+  return !received_.empty() && received_ != "\r";
+}
+
 bool Connection::wait_for_request() {
-  constexpr std::chrono::milliseconds kLastCall{200};  // for who has connected, but not said anything yet
-  const bool fresh = std::exchange(fresh_, false);
-  if (!received_.empty()) return true;
-  pollfd ready[] = {{fd_, POLLIN, 0}, {wake_, POLLIN, 0}};
-  const auto deadline = Clock::now() + patience_.idle;
-  while (poll(ready, 2, milliseconds_until(deadline)) < 0)
-    if (errno != EINTR) return false;
-  // A request that is here already is answered even if idle connections are to end.
-  if (ready[0].revents != 0) return receive(deadline);
-  return ready[1].revents != 0 && fresh && receive(Clock::now() + kLastCall);
+  constexpr std::chrono::milliseconds kFirstWord{200};  // for who has connected, but not said anything yet
+  bool fresh = std::exchange(fresh_, false);
+  reading_since_ = Clock::now();
+  writing_since_.reset();
+  auto deadline = reading_since_ + patience_.idle;
+  while (!skip_empty_lines()) {
+    // A request that is here already is answered even if idle connections are to end.
+    const Ready ready = wait(POLLIN, deadline, true);
+    if (ready == Ready::none) return false;
+    if (ready == Ready::wake) {
+      if (!std::exchange(fresh, false)) return false;
+      deadline = Clock::now() + kFirstWord;
+    }
+    if (!receive(deadline)) return false;
+  }
+  return true;
 }
 
 bool Connection::receive(Clock::time_point deadline) {
   std::array<char, 64 * 1024> bytes;
-  for (;;) {
+  while (!made_room()) {
     const ssize_t count = recv(fd_, bytes.data(), bytes.size(), 0);
     if (count > 0) {
       received_.append(bytes.data(), static_cast<std::size_t>(count));
       return true;
     }
+    if (count == 0) ended_ = true;
     if (count == 0) return false;
     if (errno != EINTR && errno != EAGAIN) {
       broken_ = true;
       return false;
     }
-    if (errno == EAGAIN && !wait_for(fd_, POLLIN, deadline)) return false;
+    if (errno == EAGAIN && !wait_to_receive(deadline)) return false;
   }
+  return false;
+}
+
+bool Connection::wait_to_receive(Clock::time_point deadline) {
+  if (!last_call_) {
+    const Ready ready = wait(POLLIN, deadline, true);
+    if (ready != Ready::wake) return ready == Ready::socket;
+    last_call_ = Clock::now() + patience_.last_call;
+  }
+  return wait(POLLIN, std::min(deadline, *last_call_), false) == Ready::socket;
+}
+
+HttpError Connection::too_late(const std::string& part) const {
+  if (made_room())
+    return {
+        408,
+        part + " came too slowly: others want a connection, and this one has waited longest (connections)"};
+  if (last_call_) return {503, part + " did not come before the service ended", {{"Retry-After", "1"}}};
+  return {408, part + " did not come in time"};
+}
+
+void Connection::count_progress(Clock::time_point& since, std::size_t bytes) const {
+  const auto earned = std::chrono::microseconds(bytes * 1'000'000 / patience_.body_bytes_per_s);
+  since = std::min(Clock::now(), since + earned);
 }
 
 Head Connection::read_head() {
   constexpr std::string_view kEnd = "\r\n\r\n";
   const auto deadline = Clock::now() + patience_.head;
-  std::size_t searched = 0;
+  const auto receive_more = [&] {
+    if (!receive(deadline)) throw too_late("The request's headers");
+  };
+  while (!skip_empty_lines()) receive_more();
+  std::size_t searched = 0, screened = 0;
   for (;;) {
     const std::size_t end = received_.find(kEnd, searched);
-    if (std::min(end, received_.size()) + kEnd.size() > kMaxHeadBytes)
+    const std::size_t size = end == std::string::npos ? received_.size() : end + kEnd.size();
+    screen_head(std::string_view(received_).substr(0, std::min(size, kMaxHeadBytes)), screened);
+    screened = size;
+    if (size > kMaxHeadBytes)
       throw HttpError(431,
                       "The request's headers have more than " + std::to_string(kMaxHeadBytes) + " bytes");
     if (end != std::string::npos) {
-      const std::string bytes = received_.substr(0, end + kEnd.size());
-      received_.erase(0, bytes.size());
+      const std::string bytes = received_.substr(0, size);
+      received_.erase(0, size);
+      empty_lines_ = 0;
       Head head = parse_head(bytes);
       // A chunked body is refused unread, so all that follows is lost.
       body_left_ = head.chunked ? std::numeric_limits<std::size_t>::max() : head.content_length.value_or(0);
       return head;
     }
     searched = received_.size() - std::min(received_.size(), kEnd.size() - 1);
-    if (!receive(deadline)) throw HttpError(408, "The request's headers did not come in time");
+    receive_more();
   }
 }
 
 std::string Connection::read_body(const Head& head, const Request::BodyLimit& limit) {
-  if (head.chunked || !head.content_length) throw HttpError(411, "A body must come with its Content-Length");
+  if (head.chunked || !head.content_length) {
+    body_left_ = std::numeric_limits<std::size_t>::max();  // whatever comes is no request, but a body
+    throw HttpError(411, "A body must come with its Content-Length");
+  }
   const std::size_t length = *head.content_length;
   if (length > limit.bytes)
     throw HttpError(413, "The body has " + std::to_string(length) + " bytes, at most " +
@@ -112,14 +173,17 @@ std::string Connection::read_body(const Head& head, const Request::BodyLimit& li
   if (const auto expect = head.header("Expect")) {
     if (!equal_ignoring_case(*expect, "100-continue"))
       throw HttpError(417, "Expected no Expect but 100-continue");
-    if (received_.empty() && length > 0) httplib::Stream::write(std::string("HTTP/1.1 100 Continue\r\n\r\n"));
+    const bool waits = received_.empty() && length > 0 && head.minor_version == 1;  // RFC 9110, 10.1.1
+    if (waits) httplib::Stream::write(std::string("HTTP/1.1 100 Continue\r\n\r\n"));
   }
+  reading_since_ = Clock::now();
   const auto deadline =
-      Clock::now() + patience_.body_stall + std::chrono::seconds(length / patience_.body_bytes_per_s);
+      reading_since_ + patience_.body_stall + std::chrono::seconds(length / patience_.body_bytes_per_s);
   received_.reserve(std::min<std::size_t>(length, 1 << 20));
   while (received_.size() < length) {
-    if (!receive(std::min(deadline, Clock::now() + patience_.body_stall)))
-      throw HttpError(408, "The body did not come in time");
+    const std::size_t before = received_.size();
+    if (!receive(std::min(deadline, Clock::now() + patience_.body_stall))) throw too_late("The body");
+    count_progress(reading_since_, received_.size() - before);
   }
   std::string body = received_.substr(0, length);
   received_.erase(0, length);
@@ -151,9 +215,11 @@ ssize_t Connection::write(const char* bytes, std::size_t size) {
     const ssize_t count = send(fd_, bytes, size, MSG_NOSIGNAL);
     if (count >= 0) {
       written_ += static_cast<std::uint64_t>(count);
+      if (writing_since_) count_progress(*writing_since_, static_cast<std::size_t>(count));
       return count;
     }
-    if (errno == EINTR || (errno == EAGAIN && wait_for(fd_, POLLOUT, deadline))) continue;
+    if (errno == EAGAIN && !writing_since_) writing_since_ = Clock::now();
+    if (errno == EINTR || (errno == EAGAIN && wait(POLLOUT, deadline, false) == Ready::socket)) continue;
     broken_ = true;
   }
   return -1;

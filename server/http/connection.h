@@ -4,10 +4,12 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "server/http/head.h"
+#include "server/http/waiting.h"
 
 namespace orrery {
 
@@ -18,19 +20,23 @@ struct Patience {
   std::chrono::milliseconds body_stall{10'000};
   std::size_t body_bytes_per_s = 1024;  // or better
   std::chrono::milliseconds write_stall{10'000};
+  std::chrono::milliseconds last_call{1'000};  // for the rest of a request once the service ends
 };
 
 // One client's socket as a stream for httplib. The stream yields only a request line of ours, because what
 // the client sends is read and judged here, once: no second parser can understand it differently. Writing
-// goes to the socket. For the thread that serves the connection, except gone() and abandon().
+// goes to the socket. For the thread that serves the connection, except gone(), abandon(), waiting() and
+// make_room().
 class Connection final : public httplib::Stream {
  public:
-  // Takes the socket, which must not block. `wake` becomes readable when idle connections are to end.
+  // Takes the socket, which must not block. `wake` becomes readable when the service ends: idle connections
+  // end then, and half a request has a last call.
   Connection(int fd, int wake, const Patience& patience);
   ~Connection() override;
   Connection(const Connection&) = delete;
 
-  // Waits for the first byte of a request. False: there will be none.
+  // Waits for the first byte of a request. Empty lines before it are skipped, a few (RFC 9112, 2.2). False:
+  // there will be none.
   bool wait_for_request();
   // Reads up to the empty line. Throws HttpError.
   Head read_head();
@@ -42,8 +48,21 @@ class Connection final : public httplib::Stream {
   // Whether bytes of this request may still be under way; then nothing after it can be understood.
   bool body_unread() const { return body_left_ > 0; }
 
-  bool gone() const;     // the client has closed its side, or the connection is broken
-  void abandon() const;  // breaks it off, from any thread
+  // Before the end of a connection: waits a little for what the client still sends, which would otherwise see
+  // a broken connection instead of the answer.
+  void linger();
+
+  bool gone() const;  // the client has closed its side, or the connection is broken
+  bool left() const { return broken_ || ended_; }  // seen before the answer ended
+  void abandon() const;                            // breaks it off
+
+  // Since when the client has kept its thread waiting; none: it does not. A body that comes, or an answer
+  // that is taken, at the least rate allowed keeps nobody waiting.
+  std::optional<Waiting::Clock::time_point> waiting() const { return waiting_.since(); }
+  // Ends a connection that still waits, and gives its thread back soon. False: it does not wait any more.
+  bool make_room();
+  bool made_room() const { return waiting_.gave_up(); }
+
   std::uint64_t bytes_written() const { return written_; }
   // The client's network: its IPv4 address, or the half of its IPv6 address that it does not choose itself.
   std::string network() const;
@@ -57,19 +76,35 @@ class Connection final : public httplib::Stream {
   socket_t socket() const override { return fd_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = Waiting::Clock;
+  enum class Ready { socket, wake, none };
 
+  // Until the socket is ready for `events` or broken, with `heed_wake` also until the service ends. None:
+  // time is up, or room had to be made.
+  Ready wait(short events, Clock::time_point deadline, bool heed_wake);
   // Appends what has come to `received_`, after waiting for it. False: the client has closed, or time is up.
   bool receive(Clock::time_point deadline);
-  void drain();
+  bool wait_to_receive(Clock::time_point deadline);
+  // Whether something begins that is no empty line.
+  bool skip_empty_lines();
+  // Why `part` of a request did not come.
+  HttpError too_late(const std::string& part) const;
+  // So many bytes more have crossed: the client is late by so much less.
+  void count_progress(Clock::time_point& since, std::size_t bytes) const;
 
   const int fd_, wake_;
   const Patience patience_;
   std::string received_;  // read from the socket, not used yet
   std::string offered_;   // for httplib
   std::size_t body_left_ = 0;
-  bool fresh_ = true;  // no request was waited for yet
+  int empty_lines_ = 0;  // before the request
+  bool fresh_ = true;    // no request was waited for yet
   std::uint64_t written_ = 0;
+  Clock::time_point reading_since_;                 // see waiting()
+  std::optional<Clock::time_point> writing_since_;  // the same for the answer, once it had to wait
+  std::optional<Clock::time_point> last_call_;      // when it ends
+  Waiting waiting_;
+  bool ended_ = false;  // the client sends no more, though it owes something
   mutable std::atomic<bool> broken_{false};
 };
 

@@ -4,11 +4,14 @@
 #include <array>
 #include <charconv>
 
+#include "server/http/authority.h"
+
 namespace orrery {
 namespace {
 
-constexpr std::array<std::string_view, 9> kMethods{"GET",     "HEAD",    "POST",  "PUT",  "DELETE",
-                                                   "CONNECT", "OPTIONS", "TRACE", "PATCH"};
+// CONNECT is not among them: its target is of no form that this service could serve.
+constexpr std::array<std::string_view, 8> kMethods{"GET",    "HEAD",    "POST",  "PUT",
+                                                   "DELETE", "OPTIONS", "TRACE", "PATCH"};
 
 bool is_token(std::string_view text) {  // RFC 9110, 5.6.2
   constexpr std::string_view kMarks = "!#$%&'*+-.^_`|~";
@@ -32,6 +35,10 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+[[noreturn]] void throw_too_long() {
+  throw HttpError(414, "The address has more than " + std::to_string(kMaxTargetBytes) + " bytes");
+}
+
 void parse_request_line(std::string_view line, Head& head) {
   const std::size_t first = line.find(' '), last = line.rfind(' ');
   if (first == std::string_view::npos || first == last)
@@ -39,8 +46,7 @@ void parse_request_line(std::string_view line, Head& head) {
   const std::string_view method = line.substr(0, first), version = line.substr(last + 1);
   const std::string_view target = line.substr(first + 1, last - first - 1);
   if (!is_token(method)) throw HttpError(400, "The method is no word");
-  if (target.size() > kMaxTargetBytes)
-    throw HttpError(414, "The address has more than " + std::to_string(kMaxTargetBytes) + " bytes");
+  if (target.size() > kMaxTargetBytes) throw_too_long();
   const bool visible =
       std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c != 0x7F; });
   if (target.empty() || !visible) throw HttpError(400, "The address has a character that needs a %-escape");
@@ -71,7 +77,10 @@ void parse_header(std::string_view line, Head& head) {
 void judge_framing(Head& head) {
   int hosts = 0;
   for (const auto& [name, value] : head.headers) {
-    if (equal_ignoring_case(name, "Host")) ++hosts;
+    if (equal_ignoring_case(name, "Host")) {
+      ++hosts;
+      if (!value.empty() && !is_authority(value)) throw HttpError(400, "Host is not a host and a port");
+    }
     if (equal_ignoring_case(name, "Transfer-Encoding")) head.chunked = true;
     if (!equal_ignoring_case(name, "Content-Length")) continue;
     std::size_t length = 0;
@@ -122,6 +131,21 @@ Head parse_head(std::string_view bytes) {
   head.keep_alive =
       head.minor_version == 1 ? !connection_says(head, "close") : connection_says(head, "keep-alive");
   return head;
+}
+
+void screen_head(std::string_view bytes, std::size_t from) {
+  for (std::size_t i = from; i < bytes.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(bytes[i]);
+    const bool after_cr = i > 0 && bytes[i - 1] == '\r';
+    if (after_cr != (byte == '\n')) throw HttpError(400, "A line does not end with CR LF");
+    if ((byte < 0x20 && byte != '\t' && byte != '\r' && byte != '\n') || byte == 0x7F)
+      throw HttpError(400, "The request has control characters");
+  }
+  constexpr std::size_t kAroundTarget = 20;  // method, blanks and version have fewer bytes
+  const std::size_t end = bytes.find("\r\n");
+  Head head;
+  if (end != std::string_view::npos && end + 2 > from) parse_request_line(bytes.substr(0, end), head);
+  if (end == std::string_view::npos && bytes.size() > kMaxTargetBytes + kAroundTarget) throw_too_long();
 }
 
 }  // namespace orrery

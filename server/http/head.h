@@ -27,8 +27,13 @@ struct Head {
 };
 
 // Parses the bytes up to and with the empty line (RFC 9112), strictly: lines end with CR LF, names are
-// tokens, nothing is folded; one Host; at most one Content-Length, digits only, and not beside a
-// Transfer-Encoding. Throws HttpError 400, 414, 431, 501 or 505.
+// tokens, nothing is folded; one Host, which may be empty; at most one Content-Length, digits only, and not
+// beside a Transfer-Encoding. Throws HttpError 400, 414, 431, 501 or 505.
 Head parse_head(std::string_view bytes);
+
+// Throws what parse_head() would throw as soon as it is sure, so that nobody waits for the end of what is no
+// request: a TLS handshake, a line of HTTP/0.9, lines that end with LF. `bytes` are those that have come, at
+// most up to the empty line; those before `from` were screened already.
+void screen_head(std::string_view bytes, std::size_t from);
 
 }  // namespace orrery

@@ -1,6 +1,6 @@
 #include "server/http/router.h"
 
-#include <algorithm>
+#include <set>
 
 #include "server/http/target.h"
 
@@ -31,18 +31,22 @@ bool Router::matches(const Route& route, Request& request) {
 
 Response Router::dispatch(Request& request) const {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
-  std::vector<std::string> allowed;
+  const bool all_routes = request.path == "*";
+  std::set<std::string> allowed;
   for (const Route& route : routes_) {
-    if (!matches(route, request)) continue;
-    request.route = route.pattern;
-    if (route.method == method) return route.handler(request);
-    allowed.push_back(route.method);
-    if (route.method == "GET") allowed.push_back("HEAD");
+    if (!all_routes) {
+      if (!matches(route, request)) continue;
+      request.route = route.pattern;
+      if (route.method == method) return route.handler(request);
+    }
+    allowed.insert(route.method);
+    if (route.method == "GET") allowed.insert("HEAD");
   }
   if (allowed.empty()) throw HttpError(404, "There is nothing at " + request.path.substr(0, 200));
-  std::sort(allowed.begin(), allowed.end());
+  allowed.insert("OPTIONS");
   std::string list;
   for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;
+  if (method == "OPTIONS") return Response{.status = 204, .headers = {{"Allow", list}}};
   throw HttpError(405, request.method + " is not possible here, only " + list, {{"Allow", list}});
 }
 

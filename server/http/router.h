@@ -19,8 +19,9 @@ class Router {
   // answers HEAD as well. Routes added first are tried first.
   void add(std::string_view method, std::string_view pattern, Handler handler);
 
-  // Fills request.route and request.path_values and calls the handler. Throws HttpError 404 or 405, and what
-  // the handler throws.
+  // Fills request.route and request.path_values and calls the handler. OPTIONS without a handler is answered
+  // with the methods that there are, for the path "*" with those of all routes (RFC 9110, 9.3.7). Throws
+  // HttpError 404 or 405, and what the handler throws.
   Response dispatch(Request& request) const;
 
  private:

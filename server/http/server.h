@@ -11,7 +11,9 @@
 
 namespace orrery {
 
-// An HTTP/1.1 server: sockets, threads and bytes. What requests mean is the handler's matter.
+// An HTTP/1.1 server: sockets, threads and bytes. What requests mean is the handler's matter. When all
+// connections are taken, a new one gets the place of the one whose client has kept it waiting longest; if all
+// are at work, it is told to come back.
 class HttpServer {
  public:
   struct Options {
@@ -46,8 +48,9 @@ class HttpServer {
   // Accepts connections until drain() was called and the last request was answered.
   void run();
 
-  // Ends idle connections, and each other one after its next answer. New connections are served until run()
-  // returns, so that those who ask learn that the service ends. From any thread.
+  // Ends idle connections, those with half a request after a last call, and each other one after its next
+  // answer. New connections are served until run() returns, so that those who ask learn that the service
+  // ends. From any thread.
   void drain();
 
  private:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/http/authority.h"
+
 namespace orrery {
 namespace {
 
@@ -82,14 +84,29 @@ Fields parse_query(std::string_view text) {
   return query;
 }
 
+// Removes "http://host:port" from the front and returns "host:port"; without a scheme, nothing.
+std::string_view take_authority(std::string_view& target) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (!equal_ignoring_case(target.substr(0, scheme.size()), scheme)) continue;
+    target.remove_prefix(scheme.size());
+    const std::string_view authority = target.substr(0, target.find_first_of("/?"));
+    if (!is_authority(authority)) throw HttpError(400, "The address names no host and port");
+    target.remove_prefix(authority.size());
+    return authority;
+  }
+  return {};
+}
+
 }  // namespace
 
 Target parse_target(std::string_view target) {
   target = target.substr(0, target.find('#'));
+  Target parsed;
+  parsed.authority = take_authority(target);
   const std::size_t mark = target.find('?');
   std::string_view path = target.substr(0, mark);
+  if (path.empty() && !parsed.authority.empty()) path = "/";
   if (!path.starts_with('/')) throw HttpError(400, "The address is no path that starts with /");
-  Target parsed;
   parsed.path = decode(path, false);
   path.remove_prefix(1);
   if (!path.empty())

@@ -13,10 +13,12 @@ struct Target {
   std::vector<std::string> segments;  // of the path, decoded; "/" has none, "/a/" has "a" and ""
   std::string path;                   // decoded
   Fields query;                       // decoded; names are unique
+  std::string authority;              // "host:port" of an absolute target; empty if it is a path
 };
 
-// Throws HttpError 400 for what is no path from the root, a broken %-escape, text that is not UTF-8 or has
-// control characters, or a name that the query has twice.
+// Takes a path from the root, or an absolute address of http or https (RFC 9112, 3.2.2), whose path may be
+// empty. Throws HttpError 400 for anything else, a broken %-escape, text that is not UTF-8 or has control
+// characters, or a name that the query has twice.
 Target parse_target(std::string_view target);
 
 }  // namespace orrery

@@ -29,6 +29,12 @@ bool ConnectionThreads::start(std::function<void()> work) {
   return true;
 }
 
+void ConnectionThreads::start_next(std::function<void()> work) {
+  const std::lock_guard lock(mutex_);
+  waiting_.push_back(std::move(work));
+  changed_.notify_one();
+}
+
 void ConnectionThreads::serve() {
   std::unique_lock lock(mutex_);
   for (;;) {

@@ -17,6 +17,8 @@ class ConnectionThreads {
 
   // Starts the work, or returns false if all threads are busy. `work` throws nothing.
   bool start(std::function<void()> work);
+  // Has the work done by the first thread that is free. REQUIRES: one will be soon.
+  void start_next(std::function<void()> work);
 
  private:
   void serve();
@@ -24,7 +26,7 @@ class ConnectionThreads {
   const std::size_t most_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::function<void()>> waiting_;  // never more than idle threads
+  std::deque<std::function<void()>> waiting_;
   std::size_t idle_ = 0;
   bool closed_ = false;
   std::vector<std::thread> threads_;

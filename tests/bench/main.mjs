@@ -12,6 +12,7 @@ import { kNoise } from "./noise.mjs";
 import { kOrbitHttp } from "./orbit_http.mjs";
 import { kPaperVsPovray } from "./paper_vs_povray.mjs";
 import { measure_service } from "./service.mjs";
+import { kSlowClients } from "./slow_clients.mjs";
 import { kStages } from "./stages.mjs";
 import { kReports as kStructureReports } from "./structures.mjs";
 
@@ -20,7 +21,7 @@ import { kReports as kStructureReports } from "./structures.mjs";
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages, ...kMotion];
 
-const kReports = [...kStructureReports, kDrag];
+const kReports = [...kStructureReports, kDrag, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too

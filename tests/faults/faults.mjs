@@ -7,6 +7,7 @@
 //   target   the GoogleTest executable
 //   tests    patterns for its --gtest_filter; a test of each pattern must fail
 
+import {gateFaults} from "./gate.mjs";
 import {meshFaults} from "./meshes.mjs";
 import {motionFaults} from "./motion.mjs";
 import {structureFaults} from "./structures.mjs";
@@ -459,5 +460,5 @@ const growth = [
 export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
-  ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults,
+  ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults,
 ];

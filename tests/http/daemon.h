@@ -26,6 +26,12 @@ class Daemon {
   int wait();
   bool running() const;
 
+  // The value of a series without labels in /metrics, or -1.
+  double metric(const std::string& series) const;
+  // Memory in use, bytes.
+  double resident_bytes() const;
+  std::size_t open_files() const;
+
   // Processor time used so far, seconds.
   double cpu_seconds() const;
   // Waits until it uses the processor, or until it no longer does. False after `limit_s`.

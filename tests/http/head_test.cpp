@@ -37,6 +37,48 @@ TEST(Head, RefusesControlCharacters) {
     EXPECT_THROW(parse_head(text), HttpError) << text;
 }
 
+TEST(Head, HostIsOneHostAndPortOrEmpty) {
+  const auto parse = [](const std::string& host) {
+    return parse_head("GET / HTTP/1.1\r\nHost: " + host + "\r\n\r\n");
+  };
+  for (const char* host :
+       {"", "a", "a.b-c_d~e", "127.0.0.1:8080", "a:", "[::1]", "[::1]:65535", "%41!$&'()*+,;="})
+    EXPECT_NO_THROW(parse(host)) << host;
+  for (const char* host :
+       {"a b", "a/b", "a@b", "a:b",   ":80", "a:65536", "a:1:2",    "[::1", "[x]", "[::1]x",
+        "%4",  "%zz", "::1", "a\x80", "a#",  "a?",      "http://a", "a\\b", "<a>", "[fe80::1%25eth0]"})
+    EXPECT_THROW(parse(host), HttpError) << host;
+  EXPECT_THROW(parse("a\r\nHost: a"), HttpError);
+}
+
+TEST(Screening, RefusesAtOnceWhatIsNoRequest) {
+  for (const char* text : {"\x16\x03\x01\x02", "GET /\n", "GET / HTTP/1.1\r\nA: b\n", "GET /\r\n",
+                           "GET / HTTP/1.1\rX", "hello\r\n", "\r\n", "\n"})
+    EXPECT_THROW(screen_head(text, 0), HttpError) << text;
+  EXPECT_THROW(screen_head("GET /" + std::string(3000, 'a'), 0), HttpError);
+}
+
+TEST(Screening, LetsWhateverMayBecomeARequestPassPieceByPiece) {
+  const std::string text = "GET /a HTTP/1.1\r\nHost: x\r\nA: \t \xC3\xA9\r\n\r\n";
+  for (std::size_t size = 0; size < text.size(); ++size)
+    EXPECT_NO_THROW(screen_head(text.substr(0, size + 1), size)) << size;
+}
+
+TEST(Target, MayBeAbsolute) {
+  for (const char* text : {"http://a.b:80/c/d?e=f", "HTTP://a.b:80/c/d?e=f", "https://a.b:80/c/d?e=f"}) {
+    const Target target = parse_target(text);
+    EXPECT_EQ(target.authority, "a.b:80") << text;
+    EXPECT_EQ(target.segments, (std::vector<std::string>{"c", "d"})) << text;
+    EXPECT_EQ(target.query, (Fields{{"e", "f"}})) << text;
+  }
+  for (const char* text : {"http://a", "http://a/", "http://a?", "http://[::1]:1"})
+    EXPECT_EQ(parse_target(text).path, "/") << text;
+  EXPECT_EQ(parse_target("/http://a/b").authority, "");
+  for (const char* text : {"http://", "http:///a", "http://?a", "http:a", "http://a@b/", "http://a:b/",
+                           "ftp://a/", "http:/a", "http://a b/", "a:80", "*"})
+    EXPECT_THROW(parse_target(text), HttpError) << text;
+}
+
 TEST(Target, IsDecodedPieceByPiece) {
   const Target target = parse_target("/a%2Fb/c?x=1+2&y=%C3%A9&z&&w=%3D");
   EXPECT_EQ(target.segments, (std::vector<std::string>{"a/b", "c"}));

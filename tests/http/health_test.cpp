@@ -109,7 +109,11 @@ TEST(Health, StrangeRequestsShareOneSeries) {
     raw.receive_all();
   };
   ask("BREW", "/coffee");
-  lines();  // which is counted, too
+  const auto is_counted = [&](const std::string& route) {  // soon after the answer
+    const std::string series = "orrery_request_seconds_count{route=\"" + route + "\"}";
+    return comes_true(daemon, [&](const auto& text) { return value_of(text, series) > 0; });
+  };
+  ASSERT_TRUE(is_counted("none") && is_counted("/metrics"));
   const auto before = lines();
   for (int i = 0; i < 50; ++i) ask("BREW" + std::to_string(i), "/coffee/" + std::to_string(i));
   EXPECT_EQ(lines(), before);

@@ -102,10 +102,10 @@ TEST_F(Info, UnknownPathsAreNotFound) {
 TEST_F(Info, WrongMethodsAreToldWhichAreRight) {
   const auto remove = client_.Delete("/v1/render");
   expect_problem(remove, 405);
-  EXPECT_EQ(remove->get_header_value("Allow"), "POST");
+  EXPECT_EQ(remove->get_header_value("Allow"), "OPTIONS, POST");
   const auto put = client_.Put("/v1/scenes/abc", "{}", "application/json");
   expect_problem(put, 405);
-  EXPECT_EQ(put->get_header_value("Allow"), "DELETE, GET, HEAD");
+  EXPECT_EQ(put->get_header_value("Allow"), "DELETE, GET, HEAD, OPTIONS");
 }
 
 TEST_F(Info, RequestIdIsEchoedIfItIsCleanAndMadeIfNot) {

@@ -13,7 +13,7 @@ const kSamples = 30; // every 10 s, oftener in a short run
 const kMemory = 1.05;
 const kFew = 3;
 // So little that it is full soon, and a scene is forgotten for each that comes.
-const kStore = ["--max-store", 8 << 20];
+const kStore = ["--store-bytes", 8 << 20];
 const kFile = "build/charts/soak.json"; // the figures behind the sparklines
 
 // Does it again and again until the time is over, with rests: the machine is used, not overloaded.

@@ -1,0 +1,56 @@
+#include "server/http/authority.h"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <string>
+
+namespace orrery {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_hexadecimal(char c) { return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
+
+bool is_name(std::string_view text) {  // reg-name, which every IPv4 address is as well
+  constexpr std::string_view kMarks = "-._~!$&'()*+,;=";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    const bool escape =
+        c == '%' && i + 2 < text.size() && is_hexadecimal(text[i + 1]) && is_hexadecimal(text[i + 2]);
+    if (!letter && !is_digit(c) && !escape && kMarks.find(c) == std::string_view::npos) return false;
+  }
+  return !text.empty();
+}
+
+bool is_ipv6(std::string_view text) {
+  in6_addr address;
+  return text.find('\0') == std::string_view::npos &&
+         inet_pton(AF_INET6, std::string(text).c_str(), &address) == 1;
+}
+
+bool is_port(std::string_view text) {
+  int port = 0;
+  for (const char c : text) {
+    if (!is_digit(c)) return false;
+    port = std::min(port * 10 + (c - '0'), 65536);
+  }
+  return port <= 65535;
+}
+
+}  // namespace
+
+bool is_authority(std::string_view text) {
+  std::string_view host = text.substr(0, text.find(':'));
+  if (text.starts_with('[')) {
+    const std::size_t end = text.find(']');
+    if (end == std::string_view::npos || !is_ipv6(text.substr(1, end - 1))) return false;
+    host = text.substr(0, end + 1);
+  } else if (!is_name(host)) {
+    return false;
+  }
+  const std::string_view rest = text.substr(host.size());
+  return rest.empty() || (rest.front() == ':' && is_port(rest.substr(1)));
+}
+
+}  // namespace orrery

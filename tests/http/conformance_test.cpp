@@ -1,0 +1,105 @@
+#include <signal.h>
+
+#include <thread>
+
+#include "tests/http/daemon.h"
+
+// What RFC 9110 and 9112 demand beyond everyday requests.
+namespace orrery {
+namespace {
+
+class Conformance : public HttpTest {
+ protected:
+  // What comes for these bytes, after which the daemon closes.
+  std::string answer_to(const std::string& bytes) {
+    const RawClient raw(daemon().port());
+    raw.send(bytes);
+    return raw.receive_all();
+  }
+};
+
+constexpr const char* kLast = " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+
+TEST_F(Conformance, AbsoluteTargetsAreServed) {  // RFC 9112, 3.2.2
+  for (const char* target : {"http://somewhere/healthz", "HTTP://x:8080/healthz", "https://[::1]/healthz?"})
+    EXPECT_EQ(answer_to(std::string("GET ") + target + kLast).substr(9, 3), "200") << target;
+  EXPECT_EQ(answer_to("GET http://x/nosuch" + std::string(kLast)).substr(9, 3), "404");
+  EXPECT_EQ(answer_to("GET http://x" + std::string(kLast)).substr(9, 3), "200");
+}
+
+TEST_F(Conformance, OptionsOfTheServerAreToldWithoutABody) {  // RFC 9110, 9.3.7
+  const std::string answer = answer_to("OPTIONS *" + std::string(kLast));
+  EXPECT_EQ(answer.substr(0, 25), "HTTP/1.1 204 No Content\r\n");
+  EXPECT_NE(answer.find("\r\nAllow: DELETE, GET, HEAD, OPTIONS, POST, PUT\r\n"), std::string::npos) << answer;
+  EXPECT_EQ(answer.find("Content-Length"), std::string::npos);
+  EXPECT_TRUE(answer.ends_with("\r\n\r\n"));
+}
+
+TEST_F(Conformance, OptionsOfAPathAreItsMethods) {
+  const std::string answer = answer_to("OPTIONS /v1/render" + std::string(kLast));
+  EXPECT_EQ(answer.substr(9, 3), "204");
+  EXPECT_NE(answer.find("\r\nAllow: OPTIONS, POST\r\n"), std::string::npos) << answer;
+  EXPECT_EQ(answer_to("OPTIONS /nosuch" + std::string(kLast)).substr(9, 3), "404");
+}
+
+TEST_F(Conformance, EmptyLinesBeforeARequestAreSkipped) {  // RFC 9112, 2.2
+  const std::string request = std::string("GET /healthz") + kLast;
+  EXPECT_EQ(answer_to("\r\n" + request).substr(9, 3), "200");
+  EXPECT_EQ(answer_to("\r\n\r\n\r\n" + request).substr(9, 3), "200");
+  EXPECT_EQ(answer_to("\n" + request).substr(9, 3), "400");
+  std::string many;
+  for (int i = 0; i < 9; ++i) many += "\r\n";
+  EXPECT_EQ(answer_to(many + request).substr(9, 3), "400");
+}
+
+TEST_F(Conformance, EmptyLinesBetweenRequestsAreSkipped) {
+  const RawClient raw(daemon().port());
+  raw.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n\r\n");
+  EXPECT_EQ(raw.receive_some().substr(9, 3), "200");
+  for (const char* piece : {"\r", "\nGET /nosuch", kLast}) raw.send(piece);
+  EXPECT_NE(raw.receive_all().find("HTTP/1.1 404"), std::string::npos);
+}
+
+TEST_F(Conformance, OldClientsAreNotToldToGoOn) {  // RFC 9110, 10.1.1
+  const RawClient raw(daemon().port());
+  const std::string scene = small_scene().dump();
+  raw.send("POST /v1/render HTTP/1.0\r\nExpect: 100-continue\r\nContent-Length: " +
+           std::to_string(scene.size()) + "\r\n\r\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  raw.send(scene);
+  EXPECT_EQ(raw.receive_all().substr(0, 12), "HTTP/1.1 200");
+}
+
+TEST(Terminated, GivesHalfARequestOneLastCall) {
+  Daemon daemon;
+  const std::string post = "POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n{";
+  const RawClient head(daemon.port()), body(daemon.port()), ends(daemon.port());
+  head.send("GET /healthz HTTP/1.1\r\nHo");
+  ends.send("GET /healthz HTTP/1.1\r\nHo");
+  body.send(post);
+  while (daemon.metric("orrery_connections") < 3) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  daemon.signal(SIGTERM);
+  ends.send("st: x\r\n\r\n");
+  EXPECT_EQ(ends.receive_all().substr(9, 3), "200");
+  for (const RawClient* raw : {&head, &body}) {
+    const std::string answer = raw->receive_all();
+    EXPECT_EQ(answer.substr(9, 3), "503");  // 408 would be that it waited as long as ever
+    EXPECT_NE(answer.find("before the service ended"), std::string::npos) << answer;
+  }
+  EXPECT_EQ(daemon.wait(), 0);
+}
+
+TEST(ClientThatLeaves, AfterTheWholeAnswerHasNotLeftEarly) {
+  Daemon daemon;
+  for (int i = 0; i < 200; ++i) {
+    const RawClient raw(daemon.port());
+    raw.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+    EXPECT_NE(raw.receive_some().find("200"), std::string::npos);
+  }
+  while (daemon.metric("orrery_connections") > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(daemon.metric("orrery_clients_left_total"), 0);
+}
+
+}  // namespace
+}  // namespace orrery
