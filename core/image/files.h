@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,15 +12,18 @@ namespace orrery {
 enum class FileFormat { png, jpeg, exr };
 
 struct PngOptions {
-  int level = 6;  // zlib's, 1..9; 1 for frames of a stream
+  int level = 4;  // zlib's, 1..9; 1 for frames of a stream. 6 takes twice the time for 0 to 10 % fewer bytes
 };
+
+// Asked now and then by what takes long; true ends it with Cancelled.
+using StopEncoding = std::function<bool()>;
 
 // Bytes of a file that holds the picture. PNG and JPEG take srgb8, EXR takes linear32 (half floats would lose
 // what comparisons need, so it stores floats). The same picture gives the same bytes.
-std::string encode_png(const Image& image, const PngOptions& options = {});
+std::string encode_png(const Image& image, const PngOptions& options = {}, const StopEncoding& stop = {});
 std::string encode_jpeg(const Image& image, int quality = 92);
 std::string encode_exr(const Image& image);
-std::string encode(const Image& image, FileFormat format);
+std::string encode(const Image& image, FileFormat format, const StopEncoding& stop = {});
 
 // The pixel format that a file format stores.
 PixelFormat pixels_of(FileFormat format);

@@ -75,7 +75,8 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat forma
     timing.build = rendered.stats.build_ms;
     timing.render = rendered.stats.trace_ms;
     start = Clock::now();
-    picture = {encode(rendered.image, format), rendered.stats};
+    picture = {encode(rendered.image, format, stop), rendered.stats};
+    picture.bytes.shrink_to_fit();  // it may be kept
     timing.encode = milliseconds_since(start);
   });
   return picture;

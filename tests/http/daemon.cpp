@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <sstream>
 #include <thread>
 
@@ -35,8 +36,34 @@ int port_from(int output, const std::string& begin) {
   return line.rfind(begin, 0) == 0 ? std::stoi(line.substr(line.find_last_of(": ") + 1)) : 0;
 }
 
+// Exchanges go to the file that ORRERY_EXCHANGES names, a line of JSON each, to be held against the service's
+// own description of itself (openapi.test.mjs).
+void record(const httplib::Request& request, const httplib::Response& response) {
+  static std::ofstream* const file = [] {
+    const char* path = std::getenv("ORRERY_EXCHANGES");
+    return path ? new std::ofstream(path) : nullptr;
+  }();
+  if (!file) return;
+  static std::mutex mutex;
+  const auto headers_of = [](const httplib::Headers& headers) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const auto& [name, value] : headers) json[name] = value;
+    return json;
+  };
+  const bool text = response.get_header_value("Content-Type").find("json") != std::string::npos;
+  const nlohmann::json exchange = {{"method", request.method},
+                                   {"path", request.path},
+                                   {"request", request.body.size() < 100'000 ? request.body : ""},
+                                   {"status", response.status},
+                                   {"headers", headers_of(response.headers)},
+                                   {"body", text ? response.body : ""}};
+  const std::lock_guard lock(mutex);
+  *file << exchange.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) << std::endl;
+}
+
 httplib::Client client_of(int port) {
   httplib::Client client("127.0.0.1", port);
+  client.set_logger(record);
   client.set_read_timeout(120, 0);
   client.set_keep_alive(true);
   client.set_tcp_nodelay(true);

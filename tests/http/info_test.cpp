@@ -61,6 +61,13 @@ TEST_F(Info, SchemaIsServedWithAnETag) {
   EXPECT_EQ(again->status, 304);
 }
 
+TEST_F(Info, DescribesItself) {
+  const auto description = client_.Get("/openapi.json");
+  ASSERT_TRUE(description && description->status == 200);
+  EXPECT_EQ(nlohmann::json::parse(description->body).at("openapi"), "3.1.0");
+  EXPECT_EQ(get_known("/openapi.json", description->get_header_value("ETag"))->status, 304);
+}
+
 TEST_F(Info, PageIsServedWithTypesAndProtection) {
   const auto page = client_.Get("/");
   ASSERT_TRUE(page && page->status == 200);

@@ -67,6 +67,14 @@ TEST(Png, RoundTripsEveryByteAtEveryLevel) {
     }
 }
 
+TEST(Png, EncodingEndsWhenNobodyWantsIt) {
+  const Image image(8, 200, PixelFormat::srgb8);
+  int asked = 0;
+  EXPECT_THROW(encode_png(image, {}, [&] { return ++asked == 3; }), Cancelled);
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(encode_png(image, {}, [] { return false; }), encode_png(image));
+}
+
 TEST(Exr, RoundTripsEveryFloat) {
   for (const auto& [width, height] : kSizes) {
     const Image image = floats(width, height);
