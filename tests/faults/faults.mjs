@@ -8,6 +8,7 @@
 //   tests    patterns for its --gtest_filter; a test of each pattern must fail
 
 import {gateFaults} from "./gate.mjs";
+import {serviceFaults} from "./service.mjs";
 import {meshFaults} from "./meshes.mjs";
 import {motionFaults} from "./motion.mjs";
 import {structureFaults} from "./structures.mjs";
@@ -460,5 +461,5 @@ const growth = [
 export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
-  ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults,
+  ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
 ];

@@ -22,9 +22,9 @@ const kRegisteredRooms = kFloors[3];
 const kGenerated = ["core/base/version.h"];  // lies in the build folder
 const kMaxLines = 500;
 const kMaxHttplibUsers = 3;  // 20,000 lines of header each
-const kTextFolders = [".ci", "core", "docker", "docs", "scenes", "script", "server", "tests", "web"];
+const kTextFolders = [".ci", "core", "docker", "docs", "packaging", "scenes", "script", "server", "tests", "web"];
 const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", ".cmake"]);
-const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ""]);
+const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ".service", ""]);
 const kUnread = new Set(["package-lock.json", "LICENSE"]);
 const kLibraries = [
   {name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
