@@ -8,8 +8,8 @@
 
 #include "core/base/version.h"
 #include "server/http/cors.h"
-#include "server/http/problem.h"
 #include "server/routes/access.h"
+#include "server/routes/problem.h"
 #include "server/routes/routes.h"
 
 namespace orrery {

@@ -5,7 +5,8 @@
 #include "server/http/router.h"
 #include "server/routes/answers.h"
 
-// GET / and the files of the page, GET /scenes/{name}.json, GET /openapi.json: what was built into the program.
+// GET / and the files of the page, GET /scenes/{name}.json, GET /openapi.json: what was built into the
+// program.
 namespace orrery {
 namespace {
 

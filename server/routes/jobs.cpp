@@ -6,10 +6,10 @@
 #include "core/params/params.h"
 #include "core/plan/plan.h"
 #include "server/app/picture_key.h"
-#include "server/http/problem.h"
 #include "server/http/router.h"
 #include "server/routes/answers.h"
 #include "server/routes/order.h"
+#include "server/routes/problem.h"
 
 // /v1/jobs: pictures and orbits that take longer than anybody holds a connection open for.
 namespace orrery {

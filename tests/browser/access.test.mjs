@@ -4,15 +4,9 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { axe_violations, eventually, rest, skip_without_browser, start_browser, start_daemon } from "./support.mjs";
+import { axe_violations, eventually, rest, start_both } from "./support.mjs";
 
-skip_without_browser();
-const daemon = await start_daemon();
-const browser = await start_browser();
-after(async () => {
-  await browser.close();
-  await daemon.stop();
-});
+const { daemon, browser } = await start_both(after);
 
 const kToken = "correct-horse";
 const kHash = "#scene=paper&playing=0&samples=1&az=20";

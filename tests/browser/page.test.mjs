@@ -15,18 +15,10 @@ import {
   package_file,
   page_tests,
   rest,
-  skip_without_browser,
-  start_browser,
-  start_daemon,
+  start_both,
 } from "./support.mjs";
 
-skip_without_browser();
-const daemon = await start_daemon();
-const browser = await start_browser();
-after(async () => {
-  await browser.close();
-  await daemon.stop();
-});
+const { daemon, browser } = await start_both(after);
 
 const page_test = page_tests(browser, daemon);
 

@@ -11,18 +11,10 @@ import {
   near,
   page_tests,
   rest,
-  skip_without_browser,
-  start_browser,
-  start_daemon,
+  start_both,
 } from "./support.mjs";
 
-skip_without_browser();
-const daemon = await start_daemon();
-const browser = await start_browser();
-after(async () => {
-  await browser.close();
-  await daemon.stop();
-});
+const { daemon, browser } = await start_both(after);
 const page_test = page_tests(browser, daemon);
 
 // A small white ball at the point that is looked at, before black.

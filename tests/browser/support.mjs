@@ -142,6 +142,18 @@ export async function rest(page) {
   return canvas_digest(page);
 }
 
+// A daemon and a browser for the tests of a file, which end with them; `after` is that of node:test.
+export async function start_both(after) {
+  skip_without_browser();
+  const daemon = await start_daemon();
+  const browser = await start_browser();
+  after(async () => {
+    await browser.close();
+    await daemon.stop();
+  });
+  return { daemon, browser };
+}
+
 // A function that declares a test: it opens the page with `hash`, runs `body(page, context)`, and holds that no
 // faults but `expected` ones arose. Stills have one sample where the hash asks for no number: what rests at once
 // is quicker to look at.

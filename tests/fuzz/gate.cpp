@@ -6,7 +6,7 @@
 #include <string>
 
 #include "server/http/exchange.h"
-#include "server/http/problem.h"
+#include "server/routes/problem.h"
 #include "server/http/router.h"
 
 // Any bytes as what a client sends on one connection before it closes its side: every request is answered or

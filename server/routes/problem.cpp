@@ -1,4 +1,4 @@
-#include "server/http/problem.h"
+#include "server/routes/problem.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
