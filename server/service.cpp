@@ -39,6 +39,15 @@ void add_common_headers(const Request& request, Response& response) {
       .set("Content-Security-Policy", "default-src 'self'");
 }
 
+// What not everyone may see is kept by nobody but who asked; and what a link gave, not beyond the link's end.
+void keep_private(Audience audience, Response& response) {
+  const std::string kept = find_field(response.headers, "Cache-Control").value_or("");
+  constexpr std::string_view kPublic = "public, ";
+  if (audience == Audience::all || !kept.starts_with(kPublic)) return;
+  response.set("Cache-Control",
+               audience == Audience::link ? "private, no-cache" : "private, " + kept.substr(kPublic.size()));
+}
+
 HttpServer::Options options_of(const Settings& settings) {
   return {.host = settings.host,
           .port = settings.port,
@@ -131,8 +140,10 @@ Response Service::answer(const Router& router, Request& request) {
     if (auto answer = preflight(request, app_.settings().cors_origins)) {
       response = std::move(*answer);
     } else {
-      if (&router == &router_) require_access(app_.access(), request);
+      refuse_foreign(request, app_.settings().cors_origins);
+      const Audience audience = &router == &router_ ? require_access(app_.access(), request) : Audience::all;
       response = router.dispatch(request);
+      keep_private(audience, response);
     }
   } catch (...) {
     response = problem_response(std::current_exception(), request.id);

@@ -40,7 +40,7 @@ class WorkerPool {
   int threads() const;
 
   // Has `task` done by one of the threads, soon. It must not throw and must not wait.
-  void enqueue(std::function<void()> task);
+  void enqueue(bool background, std::function<void()> task);
   // Calls work(step, thread) for each 0 <= step < count on the threads, 0 <= thread < threads(), and returns
   // after the last. Callers share the threads evenly; those in the background have what the others leave.
   // Once a step returns false or throws, no more are begun; what was thrown first is thrown here.

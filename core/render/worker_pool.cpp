@@ -153,7 +153,9 @@ WorkerPool::~WorkerPool() = default;
 
 int WorkerPool::threads() const { return parts_->foreground.threads(); }
 
-void WorkerPool::enqueue(std::function<void()> task) { parts_->foreground.enqueue(std::move(task)); }
+void WorkerPool::enqueue(bool background, std::function<void()> task) {
+  (background ? parts_->background : parts_->foreground).enqueue(std::move(task));
+}
 
 void WorkerPool::for_each(int count, bool background, const Step& work) {
   (background ? parts_->background : parts_->foreground).for_each(count, work);

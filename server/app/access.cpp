@@ -1,8 +1,8 @@
 #include "server/app/access.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "core/base/error.h"
@@ -15,17 +15,22 @@ namespace {
 constexpr std::size_t kLeastKeyBytes = 32;
 constexpr std::size_t kMostFileBytes = 1 << 20;
 
+// Only of a file that lies there: a pipe might never end.
 std::string read_file(const std::string& path) {
+  std::error_code problem;
+  if (!std::filesystem::is_regular_file(path, problem)) throw InputError(path, "is no file that can be read");
   std::ifstream file(path, std::ios::binary);
-  std::string bytes;
-  if (file) bytes.assign(std::istreambuf_iterator<char>(file), {});
-  if (!file || bytes.size() > kMostFileBytes)
-    throw InputError(path,
-                     file ? "has more than " + std::to_string(kMostFileBytes) + " bytes" : "cannot be read");
+  if (!file) throw InputError(path, "cannot be read");
+  std::string bytes(kMostFileBytes + 1, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  if (bytes.size() > kMostFileBytes)
+    throw InputError(path, "has more than " + std::to_string(kMostFileBytes) + " bytes");
   return bytes;
 }
 
 void take_scopes(std::string_view list, bool (&may)[kScopes.size()]) {
+  if (list.empty()) throw InputError("", "expected a scope: read, render or write");
   std::istringstream scopes{std::string(list)};
   for (std::string scope; std::getline(scopes, scope, ',');) {
     const auto known = std::find(kScopes.begin(), kScopes.end(), scope);

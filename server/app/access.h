@@ -11,8 +11,8 @@
 
 namespace orrery {
 
-// What the holder of a token may do: look at what is there; have pictures made of it; keep and remove scenes
-// and assets.
+// What the holder of a token may do: look at what is there, pictures included; have pictures made of other
+// scenes, and jobs done; keep and remove scenes and assets.
 enum class Scope { read, render, write };
 inline constexpr std::array<std::string_view, 3> kScopes{"read", "render", "write"};
 

@@ -37,12 +37,12 @@ int Admission::waiting() const {
 }
 bool Admission::full() const {
   const std::lock_guard lock(mutex_);
-  return running_ >= limits_.running && !fits(kLeastCost);
+  return running_ >= limits_.running && !fits(Lane::interactive, kLeastCost);
 }
 
 Admission::Ticket Admission::enter(const Demand& demand, const Stop& stop) {
   std::unique_lock lock(mutex_);
-  if (!place_free(demand.lane) || !queue_.empty()) make_room(demand);
+  if (!place_free(demand.lane)) make_room(demand);
   return wait_for_turn(lock, demand, true, stop);
 }
 
@@ -69,7 +69,7 @@ Admission::Ticket Admission::wait_for_turn(std::unique_lock<std::mutex>& lock, c
   start_next();
   if (state == Waiting::waits) throw Cancelled();
   throw ClientBusy("Others wait for their turn, and you had asked for more than they (queue_rays)",
-                   retry_after_s());
+                   retry_after_s(demand.lane));
 }
 
 void Admission::start_next() {
@@ -78,6 +78,7 @@ void Admission::start_next() {
     virtual_time_[static_cast<int>(it->demand.lane)] = it->finish;
     if (running_++ == 0) measured_ = Clock::now();
     if (it->demand.lane == Lane::batch) ++running_batch_;
+    latest_ = it->demand.lane;
     it->changed.notify_one();
   }
 }
@@ -97,7 +98,7 @@ bool Admission::place_free(Lane lane) const {
 
 Admission::Queue::iterator Admission::next() {
   auto best = queue_.end();
-  const bool batch_starves = running_batch_ == 0;
+  const bool batch_starves = running_batch_ == 0 && latest_ != Lane::batch;
   const auto rank = [&](const Waiting& w) {
     const bool first = batch_starves == (w.demand.lane == Lane::batch);
     return std::pair(first ? 0 : 1, w.finish);
@@ -116,27 +117,24 @@ double Admission::virtual_finish(const Demand& demand) const {
   return start + demand.cost;
 }
 
-double Admission::waiting_cost() const {
+double Admission::waiting_cost(Lane lane, const std::string* client) const {
   double sum = 0;
   for (const Waiting& w : queue_)
-    if (w.state == Waiting::waits) sum += w.demand.cost;
+    if (w.state == Waiting::waits && w.may_be_dropped && w.demand.lane == lane &&
+        (!client || w.demand.client == *client))
+      sum += w.demand.cost;
   return sum;
 }
 
-double Admission::waiting_cost(const std::string& client) const {
-  double sum = 0;
-  for (const Waiting& w : queue_)
-    if (w.state == Waiting::waits && w.demand.client == client) sum += w.demand.cost;
-  return sum;
-}
-
-bool Admission::fits(double cost) const {
-  const double waiting = waiting_cost();
+bool Admission::fits(Lane lane, double cost) const {
+  const double waiting = waiting_cost(lane);
   return waiting == 0 || waiting + cost <= limits_.queue_rays;
 }
 
-Admission::Queue::iterator Admission::newest_of_greediest() {
-  const auto counts = [](const Waiting& w) { return w.may_be_dropped && w.state == Waiting::waits; };
+Admission::Queue::iterator Admission::newest_of_greediest(Lane lane) {
+  const auto counts = [&](const Waiting& w) {
+    return w.may_be_dropped && w.state == Waiting::waits && w.demand.lane == lane;
+  };
   std::map<std::string, double> costs;
   for (const Waiting& w : queue_)
     if (counts(w)) costs[w.demand.client] += w.demand.cost;
@@ -148,17 +146,16 @@ Admission::Queue::iterator Admission::newest_of_greediest() {
 }
 
 void Admission::make_room(const Demand& demand) {
-  while (!fits(demand.cost)) {
-    const auto greediest = newest_of_greediest();
-    const double own = waiting_cost(demand.client) + demand.cost;
-    if (greediest == queue_.end() || greediest->demand.client == demand.client ||
-        own >= waiting_cost(greediest->demand.client)) {
-      const std::string told = "Work of " + in_millions(waiting_cost()) + " rays waits already, at most " +
+  const Lane lane = demand.lane;
+  while (!fits(lane, demand.cost)) {
+    const auto greediest = newest_of_greediest(lane);
+    const double own = waiting_cost(lane, &demand.client) + demand.cost;
+    if (greediest->demand.client == demand.client || own >= waiting_cost(lane, &greediest->demand.client)) {
+      const double all = waiting_cost(lane), mine = waiting_cost(lane, &demand.client);
+      const std::string told = "Work of " + in_millions(all) + " rays waits already, at most " +
                                in_millions(limits_.queue_rays) + " may (queue_rays)";
-      const bool alone = waiting_cost(demand.client) == waiting_cost();
-      if (waiting_cost(demand.client) > 0 && !alone)
-        throw ClientBusy(told + ", much of it yours", retry_after_s());
-      throw Busy(told, retry_after_s());
+      if (mine > 0 && mine < all) throw ClientBusy(told + ", much of it yours", retry_after_s(lane));
+      throw Busy(told, retry_after_s(lane));
     }
     greediest->state = Waiting::dropped;
     greediest->changed.notify_one();
@@ -174,9 +171,9 @@ void Admission::measure(double cost) {
   busy_s_ = busy_s_ * faded + seconds;
 }
 
-double Admission::retry_after_s() const {
+double Admission::retry_after_s(Lane lane) const {
   const double rate = busy_s_ > 0 ? done_cost_ / busy_s_ : kExpectedRate;
-  return std::clamp(waiting_cost() / rate, 1.0, 30.0);
+  return std::clamp(waiting_cost(lane) / rate, 1.0, 30.0);
 }
 
 }  // namespace orrery

@@ -35,18 +35,21 @@ double cost_of(const Plan& plan);
 // What reading so many bytes of JSON or of a mesh is expected to cost, in the same unit.
 double cost_of_reading(std::size_t bytes);
 
-// Lets a few pieces of work run at once; what waits is bounded by its cost.
-//  - Interactive work goes first. Batch work has at most half of the places, and always one.
+// Lets a few pieces of work run at once; what waits in a lane is bounded by its cost.
+//  - Interactive work goes first. Batch work has at most half of the places, and one of every two that come
+//  free
+//    as long as it has none.
 //  - Within a lane, clients share by cost: each piece starts in the order of its client's virtual finish time
 //    (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for.
-//  - When all is full, who has most waiting makes room for who has less (longest queue drop: McKenney,
+//  - When a lane is full, who has most waiting in it makes room for who has less (longest queue drop:
+//  McKenney,
 //    "Stochastic Fairness Queueing", 1990).
 // Safe from any thread.
 class Admission {
  public:
   struct Limits {
     int running;        // pieces of work at once
-    double queue_rays;  // cost of all that wait; one may wait whatever it costs
+    double queue_rays;  // cost of what waits in a lane; one may wait whatever it costs
   };
   explicit Admission(const Limits& limits) : limits_(limits) {}
 
@@ -97,20 +100,21 @@ class Admission {
   // Below: with mutex_ held.
   void start_next();
   void make_room(const Demand& demand);
-  bool fits(double cost) const;
+  bool fits(Lane lane, double cost) const;
   bool place_free(Lane lane) const;
   double virtual_finish(const Demand& demand) const;
   Queue::iterator next();  // who may start now; end: none
-  double waiting_cost() const;
-  double waiting_cost(const std::string& client) const;
-  Queue::iterator newest_of_greediest();
-  double retry_after_s() const;
+  // Of a lane, without work that began: all, or one client's.
+  double waiting_cost(Lane lane, const std::string* client = nullptr) const;
+  Queue::iterator newest_of_greediest(Lane lane);
+  double retry_after_s(Lane lane) const;
   void measure(double cost);
 
   const Limits limits_;
   mutable std::mutex mutex_;  // guards all below
   Queue queue_;
   int running_ = 0, running_batch_ = 0;
+  Lane latest_ = Lane::interactive;  // that had a turn
   double virtual_time_[2] = {0, 0};  // of a lane: finish of the piece that started last
   // The measured rate: cost done and seconds in which something ran, recent ones counting more.
   double done_cost_ = 0, busy_s_ = 0;

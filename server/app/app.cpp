@@ -5,22 +5,32 @@
 
 namespace orrery {
 
+namespace {
+
+Settings decided(Settings settings, const WorkerPool& pool) {
+  if (settings.renders == 0) settings.renders = 2 * pool.threads();
+  return settings;
+}
+
+}  // namespace
+
 App::App(const Settings& settings)
-    : settings_(settings),
-      access_(settings.tokens_file, settings.share_key_file),
+    : access_(settings.tokens_file, settings.share_key_file),
       pool_(settings.threads),
+      settings_(decided(settings, pool_)),
       scenes_(settings.store_bytes),
       assets_(settings.asset_store_bytes),
       pictures_(settings.picture_bytes),
-      admission_({settings.renders > 0 ? settings.renders : 2 * pool_.threads(), settings.queue_rays}),
+      admission_({settings_.renders, settings_.queue_rays}),
       means_{pool_, admission_, draining_, ends_, rays_},
       orbits_(means_, settings.orbits, settings.request_seconds),
-      jobs_(means_, {settings.jobs, settings.job_bytes, settings.job_seconds, settings.job_kept_seconds}) {}
+      jobs_(means_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
+                     settings.job_kept_seconds}) {}
 
 template <class Work>
 void App::watched(const std::function<bool()>& gone, const Work& work) {
   require_open();
-  const Watch watch(gone, ends_, settings_.request_seconds);
+  const Watch watch(gone, ends_, settings_.request_seconds, "request_seconds");
   try {
     work([&] { return watch.stop(); });
   } catch (const Cancelled&) {

@@ -84,11 +84,11 @@ class App {
   Picture make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
                const std::function<bool()>& gone, Timing& timing);
 
-  const Settings settings_;
   std::atomic<bool> draining_{false}, ends_{false};
   std::atomic<std::uint64_t> rays_{0};
   Access access_;
   WorkerPool pool_;
+  const Settings settings_;  // with what is left to the machine decided
   SceneStore scenes_;
   AssetStore assets_;
   Pictures pictures_;

@@ -17,7 +17,11 @@ Job::Job(std::string id, JobSpec spec, const Means& means, std::chrono::seconds 
 
 Job::~Job() {
   cancel();
-  thread_.join();
+  release();
+}
+
+void Job::release() {
+  if (thread_.joinable()) thread_.join();
 }
 
 void Job::cancel() { cancelled_ = true; }
@@ -25,10 +29,11 @@ void Job::cancel() { cancelled_ = true; }
 bool Job::stop() const { return cancelled_ || means_.draining; }
 
 void Job::run() {
-  const Watch watch([this] { return stop(); }, means_.ends, limit_);
+  const Watch watch([this] { return stop(); }, means_.ends, limit_, "job_seconds");
   int next = 0;
   const Pipeline pipeline{
       .pool = means_.pool,
+      .background = true,
       .next = [&]() -> std::optional<std::int64_t> {
         if (watch.stop()) throw Cancelled();
         if (next == spec_.frames) return std::nullopt;
@@ -82,6 +87,7 @@ void Job::end(std::exception_ptr error) {
   error_ = error;
   state_ = !error ? JobState::done : cancelled_ ? JobState::cancelled : JobState::failed;
   ended_ = Clock::now();
+  spec_.scene.reset();
   changed_.notify_all();
 }
 

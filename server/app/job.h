@@ -42,8 +42,8 @@ struct JobStatus {
   std::exception_ptr error;                // why it failed
 };
 
-// Renders on a thread of its own, frame by frame in the batch lane's turn, and keeps the pictures. Safe from
-// any thread.
+// Renders on a thread of its own, frame by frame in the batch lane's turn, and keeps the pictures, but not
+// the scene once it has ended. Safe from any thread.
 class Job {
  public:
   // `room`: called with the bytes of each picture before it is kept; throws if there is no room for them.
@@ -56,18 +56,21 @@ class Job {
   Job(const Job&) = delete;
 
   const std::string& id() const { return id_; }
-  const JobSpec& spec() const { return spec_; }
+  const std::string& client() const { return spec_.client; }
+  int frames() const { return spec_.frames; }
   JobStatus status() const;
   std::optional<Clock::time_point> ended() const;
   std::size_t bytes() const;  // of the pictures
 
-  // Frame 0, 1, ...; null as long as it is not rendered. REQUIRES: frame < spec().frames.
+  // Frame 0, 1, ...; null as long as it is not rendered. REQUIRES: frame < frames().
   Picture frame(int number) const;
 
   // Waits until more than `frames` are done, the job has ended, or `until`.
   JobStatus wait(int frames, Clock::time_point until) const;
 
   void cancel();
+  // Gives its thread back. REQUIRES: it has ended; one caller at a time.
+  void release();
 
  private:
   void run();
@@ -78,7 +81,7 @@ class Job {
   JobStatus status_locked() const;
 
   const std::string id_;
-  const JobSpec spec_;
+  JobSpec spec_;
   const Means means_;
   const std::chrono::seconds limit_;
   const Room room_;

@@ -16,21 +16,33 @@ Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::strin
   const std::lock_guard lock(mutex_);
   forget_old();
   const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) {
-    return !key.empty() && e.key == key && e.job->spec().client == spec.client;
+    return !key.empty() && e.key == key && e.job->client() == spec.client;
   });
   if (known != entries_.end()) {
     if (known->content == content) return {known->job, true};
     throw InputError("", "another job was started by the Idempotency-Key " + key.substr(0, 80));
   }
-  const auto under_way =
-      std::count_if(entries_.begin(), entries_.end(), [](const Entry& e) { return !e.job->ended(); });
-  if (under_way >= limits_.under_way)
-    throw Busy(std::to_string(under_way) + " jobs are under way already (jobs)", 10);
+  require_place(spec.client);
   constexpr std::size_t kIdBytes = 16;  // nobody can guess it
   auto job = std::make_shared<Job>(random_hex(kIdBytes), std::move(spec), means_, limits_.run_time,
                                    [this](std::size_t bytes) { make_room(bytes); });
   entries_.push_back({job, key, content});
   return {job, false};
+}
+
+void Jobs::require_place(const std::string& client) const {
+  constexpr double kRetry_s = 10;
+  int under_way = 0, own = 0;
+  for (const Entry& entry : entries_) {
+    if (entry.job->ended()) continue;
+    ++under_way;
+    own += entry.job->client() == client;
+  }
+  if (under_way >= limits_.under_way)
+    throw Busy(std::to_string(under_way) + " jobs are under way already (jobs)", kRetry_s);
+  if (own >= std::max(1, limits_.under_way / 2))
+    throw ClientBusy(
+        std::to_string(own) + " jobs of yours are under way already, which is half of all (jobs)", kRetry_s);
 }
 
 Jobs::JobPtr Jobs::find(const std::string& id) {
@@ -68,9 +80,15 @@ std::size_t Jobs::bytes_kept() const {
 
 void Jobs::forget_old() {
   const auto now = Clock::now();
+  auto surplus = -static_cast<std::ptrdiff_t>(limits_.ended);
+  for (const Entry& entry : entries_) {
+    if (!entry.job->ended()) continue;
+    entry.job->release();
+    ++surplus;
+  }
   std::erase_if(entries_, [&](const Entry& entry) {
     const auto ended = entry.job->ended();
-    return ended && now - *ended > limits_.kept;
+    return ended && (surplus-- > 0 || now - *ended > limits_.kept);
   });
 }
 

@@ -12,7 +12,8 @@ namespace orrery {
 class Jobs {
  public:
   struct Limits {
-    int under_way;                  // at once (jobs)
+    int under_way;                  // at once (jobs); half of them for one client
+    int ended;                      // that are kept (jobs_kept)
     std::size_t bytes;              // of the pictures of all (job_bytes)
     std::chrono::seconds run_time;  // of one (job_seconds)
     std::chrono::seconds kept;      // after its end (job_kept_seconds)
@@ -28,7 +29,8 @@ class Jobs {
     bool known;  // the client has started it before, by the same key
   };
   // Starts a job. With a `key` (not empty), a job that the same client started by it is returned instead, if
-  // `content` is the same, or else InputError thrown. Throws Busy if too many are under way.
+  // `content` is the same, or else InputError thrown. Throws Busy if too many are under way, ClientBusy if
+  // too many of them are this client's.
   Started start(JobSpec spec, const std::string& key, const std::string& content);
   // Throws NotFound.
   JobPtr find(const std::string& id);
@@ -45,6 +47,7 @@ class Jobs {
   };
   void make_room(std::size_t bytes);  // throws InputError
   // Below: with mutex_ held.
+  void require_place(const std::string& client) const;
   void forget_old();
   std::size_t bytes_kept() const;
 

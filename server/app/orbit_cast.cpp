@@ -44,6 +44,7 @@ void OrbitCast::wake() {
 
 void OrbitCast::run() {
   const Pipeline pipeline{.pool = means_.pool,
+                          .background = false,
                           .next = [this] { return next(); },
                           .render = [this](std::int64_t n) { return render(n); },
                           .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
@@ -115,7 +116,7 @@ std::optional<std::int64_t> OrbitCast::next() {
 }
 
 RenderResult OrbitCast::render(std::int64_t number) {
-  const Watch watch([this] { return pointless(); }, means_.ends, frame_time_);
+  const Watch watch([this] { return pointless(); }, means_.ends, frame_time_, "request_seconds");
   const auto stop = [&] { return watch.stop(); };
   try {
     const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));

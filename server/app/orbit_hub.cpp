@@ -1,5 +1,7 @@
 #include "server/app/orbit_hub.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 
 namespace orrery {
@@ -12,8 +14,16 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
     if (!cast || cast->spec().key != spec.key) continue;
     if (auto viewer = OrbitCast::join(cast)) return viewer;
   }
+  constexpr double kRetry_s = 5;
   if (static_cast<int>(casts_.size()) >= most_)
-    throw Busy(std::to_string(casts_.size()) + " orbits are being watched already (orbits)", 5);
+    throw Busy(std::to_string(casts_.size()) + " orbits are being watched already (orbits)", kRetry_s);
+  const auto own = std::count_if(casts_.begin(), casts_.end(), [&](const auto& known) {
+    const auto cast = known.lock();
+    return cast && cast->spec().client == spec.client;
+  });
+  if (own >= std::max(1, most_ / 2))
+    throw ClientBusy(
+        std::to_string(own) + " orbits of yours are being watched, which is half of all (orbits)", kRetry_s);
   const auto cast = std::make_shared<OrbitCast>(spec, means_, frame_time_);
   casts_.push_back(cast);
   return OrbitCast::join(cast);

@@ -14,7 +14,8 @@ class OrbitHub {
   OrbitHub(const Means& means, int most_orbits, std::chrono::seconds frame_time)
       : means_(means), most_(most_orbits), frame_time_(frame_time) {}
 
-  // Joins those who watch the same orbit, or starts it. Throws Busy if there are too many different ones.
+  // Joins those who watch the same orbit, or starts it. Throws Busy if there are too many different ones,
+  // ClientBusy if too many of them are this client's.
   std::unique_ptr<OrbitCast::Viewer> watch(const OrbitSpec& spec);
 
   std::size_t count();  // of different ones that are watched

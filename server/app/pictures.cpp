@@ -1,5 +1,7 @@
 #include "server/app/pictures.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -69,8 +71,13 @@ bool Pictures::nobody_waits(const Work& work) {
 }
 
 void Pictures::keep(const std::string& key, const PicturePtr& picture) {
-  const std::size_t bytes = sizeof(Picture) + key.size() + picture->bytes.capacity();
-  if (bytes <= kept_.most_bytes()) kept_.add(key, bytes, [&] { return picture; });
+  // A small one lies alone on its page of memory, between what was needed for a moment.
+  constexpr std::size_t kPage_bytes = 4096;
+  const std::size_t bytes = kPage_bytes + key.size() + picture->bytes.capacity();
+  if (bytes > kept_.most_bytes()) return;
+  kept_.add(key, bytes, [&] { return picture; });
+  constexpr unsigned kTrimEvery = 256;
+  if (++added_ % kTrimEvery == 0) malloc_trim(0);  // the rest of those pages, which the heap would keep
 }
 
 }  // namespace orrery

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -57,6 +58,7 @@ class Pictures {
   void keep(const std::string& key, const PicturePtr& picture);
 
   Lru<PicturePtr> kept_;
+  std::atomic<unsigned> added_{0};
   std::mutex mutex_;
   std::map<std::string, WorkPtr> under_way_;  // guarded by mutex_, and what it points at
 };

@@ -31,7 +31,7 @@ class Line {
       return entered_++;
     }();
     const auto shared = std::make_shared<RenderResult>(std::move(rendered));
-    pipeline_.pool.enqueue([this, place, number, shared, render_ms] {
+    pipeline_.pool.enqueue(pipeline_.background, [this, place, number, shared, render_ms] {
       Encoded encoded{.number = number, .frame = {}, .error = {}};
       try {
         encoded.frame = encode_frame(std::move(*shared), render_ms, pipeline_.encode);

@@ -13,6 +13,7 @@ namespace orrery {
 // from the first frame to the last and no others to share the cores with; they must not wait.
 struct Pipeline {
   WorkerPool& pool;
+  bool background;                                    // others come first
   std::function<std::optional<std::int64_t>()> next;  // number of the frame to render; none: the end
   std::function<RenderResult(std::int64_t)> render;
   std::function<std::string(const Image&)> encode;     // several at once

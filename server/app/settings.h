@@ -29,10 +29,11 @@ struct Settings {
   int renders = 0;
   double queue_rays = 100e6;
   double interactive_rays = 50e6;
-  int orbits = 32;
+  int orbits = 64;
   int orbit_frames = 3600;
   std::chrono::seconds request_seconds{60};
-  int jobs = 16;
+  int jobs = 32;
+  int jobs_kept = 1000;
   std::size_t job_bytes = 512 << 20;
   std::chrono::seconds job_seconds{3600};
   std::chrono::seconds job_kept_seconds{3600};

@@ -18,10 +18,13 @@ class TimedOut : public Error {
 // ends. Safe from any thread.
 class Watch {
  public:
-  Watch(std::function<bool()> gone, const std::atomic<bool>& program_ends, std::chrono::seconds limit)
+  // limit_name: in /v1/limits.
+  Watch(std::function<bool()> gone, const std::atomic<bool>& program_ends, std::chrono::seconds limit,
+        const char* limit_name)
       : gone_(std::move(gone)),
         program_ends_(program_ends),
         limit_(limit),
+        limit_name_(limit_name),
         deadline_(std::chrono::steady_clock::now() + limit) {}
 
   bool stop() const { return program_ends_ || std::chrono::steady_clock::now() >= deadline_ || gone_(); }
@@ -35,6 +38,7 @@ class Watch {
   const std::function<bool()> gone_;
   const std::atomic<bool>& program_ends_;
   const std::chrono::seconds limit_;
+  const char* const limit_name_;
   const std::chrono::steady_clock::time_point deadline_;
 };
 

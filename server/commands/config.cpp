@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -61,20 +62,28 @@ void add_limit(CLI::App& app, const Limit& limit, Settings& settings) {
       ->group(kLimits);
 }
 
-// A value in a file as the text that a flag would have.
-std::string text_of(const nlohmann::json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_boolean() || value.is_number()) return value.dump();
-  throw InputError("", "expected a number, a text, true, false, or a list of texts");
+// A value in a file as the texts that its flag would have.
+std::vector<std::string> texts_of(const nlohmann::json& value, bool list) {
+  if (value.is_string()) return {value.get<std::string>()};
+  if (value.is_number_float() && std::trunc(value.get<double>()) == value.get<double>() &&
+      std::abs(value.get<double>()) < 1e15)
+    return {std::to_string(value.get<std::int64_t>())};  // 1e6 is a whole number
+  if (value.is_boolean() || value.is_number()) return {value.dump()};
+  if (!list || !value.is_array())
+    throw InputError(
+        "", list ? "expected a text or a list of texts" : "expected a number, a text, true or false");
+  std::vector<std::string> texts;
+  for (const auto& entry : value) {
+    if (!entry.is_string()) throw InputError("", "expected a list of texts");
+    texts.push_back(entry.get<std::string>());
+  }
+  return texts;
 }
 
 void take(CLI::Option& option, const nlohmann::json& value) {
-  if (option.count() > 0) return;
-  if (value.is_array())
-    for (const auto& entry : value) option.add_result(text_of(entry));
-  else
-    option.add_result(text_of(value));
-  if (value.is_array() && value.empty()) return;
+  const std::vector<std::string> texts = texts_of(value, option.get_delimiter() != '\0');
+  if (option.count() > 0 || texts.empty()) return;
+  for (const std::string& text : texts) option.add_result(text);
   try {
     option.run_callback();
   } catch (const CLI::ParseError& error) {

@@ -123,6 +123,7 @@ class Turn {
     const double cpu_before = cpu_seconds();
     const Pipeline pipeline{
         .pool = pool_,
+        .background = false,
         .next = [&] { return next < options_.frames ? std::optional(next++) : std::nullopt; },
         .render = [&](std::int64_t n) { return render(n); },
         .encode =

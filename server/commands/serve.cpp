@@ -35,7 +35,9 @@ struct Options {
   std::string config, log = isatty(STDERR_FILENO) ? "text" : "json";
 };
 
-void require_guard(const Settings& settings) {
+void require_sense(const Settings& settings) {
+  if (settings.port == settings.health_port && settings.port != 0)
+    throw InputError("--health-port", "is the same as --port, " + std::to_string(settings.port));
   if (settings.insecure || !settings.tokens_file.empty() || is_loopback(settings.host)) return;
   throw InputError("--host",
                    settings.host +
@@ -88,7 +90,7 @@ int run_service(const Settings& settings, const Log& log) {
 int serve(CLI::App& app, const Options& options) {
   if (!options.config.empty()) read_config_file(app, options.config);
   const Settings& settings = options.settings;
-  require_guard(settings);
+  require_sense(settings);
   if (options.print_config) std::cout << config_text(app);
   if (options.check_config) const Access access(settings.tokens_file, settings.share_key_file);
   if (options.print_config || options.check_config) return kDone;

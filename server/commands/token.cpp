@@ -20,8 +20,10 @@ struct Options {
 };
 
 int make_token(const Options& options) {
-  if (options.name.find_first_of(" \t\r\n#") != std::string::npos)
-    throw InputError("NAME", "expected a word without blanks and #");
+  const bool word =
+      !options.name.empty() && std::all_of(options.name.begin(), options.name.end(),
+                                           [](char c) { return c > ' ' && c != 0x7F && c != '#'; });
+  if (!word) throw InputError("NAME", "expected a word of plain characters without #");
   require_scopes(options.scopes);
   constexpr std::size_t kBytes = 32;
   const std::string token = random_hex(kBytes);

@@ -28,6 +28,12 @@ class Budget {
     ~Share() {
       if (from_) from_->taken_ -= bytes_;
     }
+    // Takes what it has not yet of so many bytes. Throws Busy if there are not so many left.
+    void grow(std::size_t bytes) {
+      if (bytes <= bytes_) return;
+      from_->take_more(bytes - bytes_);
+      bytes_ = bytes;
+    }
 
    private:
     friend class Budget;
@@ -36,8 +42,10 @@ class Budget {
     std::size_t bytes_ = 0;
   };
 
-  // Throws Busy if there are not so many left.
-  Share take(std::size_t bytes) {
+  Share share() { return {this, 0}; }
+
+ private:
+  void take_more(std::size_t bytes) {
     constexpr double kRetry_s = 2;
     std::size_t taken = taken_;
     do {
@@ -46,10 +54,8 @@ class Budget {
                        std::to_string(most_) + " (" + name_ + ")",
                    kRetry_s);
     } while (!taken_.compare_exchange_weak(taken, taken + bytes));
-    return {this, bytes};
   }
 
- private:
   const std::size_t most_;
   const char* const name_;
   std::atomic<std::size_t> taken_{0};

@@ -161,7 +161,8 @@ Head Connection::read_head() {
   }
 }
 
-std::string Connection::read_body(const Head& head, const Request::BodyLimit& limit) {
+std::string Connection::read_body(const Head& head, const Request::BodyLimit& limit,
+                                  const std::function<void(std::size_t)>& received) {
   if (head.chunked || !head.content_length) {
     body_left_ = std::numeric_limits<std::size_t>::max();  // whatever comes is no request, but a body
     throw HttpError(411, "A body must come with its Content-Length");
@@ -184,6 +185,7 @@ std::string Connection::read_body(const Head& head, const Request::BodyLimit& li
     const std::size_t before = received_.size();
     if (!receive(std::min(deadline, Clock::now() + patience_.body_stall))) throw too_late("The body");
     count_progress(reading_since_, received_.size() - before);
+    received(std::min(received_.size(), length));
   }
   std::string body = received_.substr(0, length);
   received_.erase(0, length);

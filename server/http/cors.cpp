@@ -1,6 +1,7 @@
 #include "server/http/cors.h"
 
 #include <algorithm>
+#include <array>
 
 namespace orrery {
 namespace {
@@ -22,6 +23,18 @@ std::optional<Response> preflight(const Request& request, const std::vector<std:
                "Authorization, Content-Type, Idempotency-Key, If-None-Match, Last-Event-ID, X-Request-ID");
   response.set("Access-Control-Max-Age", "600");
   return response;
+}
+
+void refuse_foreign(const Request& request, const std::vector<std::string>& origins) {
+  constexpr std::array<std::string_view, 3> kSafe{"GET", "HEAD", "OPTIONS"};
+  const auto origin = request.header("Origin");
+  if (!origin || std::find(kSafe.begin(), kSafe.end(), request.method) != kSafe.end()) return;
+  const std::size_t slashes = origin->find("//");
+  const bool own = slashes != std::string::npos &&
+                   equal_ignoring_case(origin->substr(slashes + 2), request.header("Host").value_or(""));
+  if (!own && !is_listed(request, origins))
+    throw HttpError(
+        403, "Pages of the origin " + origin->substr(0, 100) + " may change nothing here (cors_origins)");
 }
 
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response) {

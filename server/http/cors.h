@@ -12,6 +12,10 @@ namespace orrery {
 // The answer to a preflight request; none if this is none, or its origin is not listed.
 std::optional<Response> preflight(const Request& request, const std::vector<std::string>& origins);
 
+// Refuses what a page of another origin, not listed, asks a browser to change: browsers send some such
+// requests without asking first. Throws HttpError 403.
+void refuse_foreign(const Request& request, const std::vector<std::string>& origins);
+
 // Lets pages of a listed origin read the answer.
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response);
 

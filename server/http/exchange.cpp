@@ -167,9 +167,9 @@ void Exchanger::take(Exchange& exchange) {
   request.gone = [&connection = exchange.connection] { return connection.gone(); };
   request.body_limit = {max_body_, "body_bytes"};
   request.read_body = [this, &exchange] {
-    const std::size_t length = exchange.head.content_length.value_or(0);
-    if (length <= exchange.request.body_limit.bytes) exchange.body = bodies_.take(length);
-    return exchange.connection.read_body(exchange.head, exchange.request.body_limit);
+    exchange.body = bodies_.share();  // of what has come: what is only announced takes nothing from others
+    return exchange.connection.read_body(exchange.head, exchange.request.body_limit,
+                                         [&exchange](std::size_t bytes) { exchange.body.grow(bytes); });
   };
   exchange.keep_alive = head.keep_alive && !draining_;
 }

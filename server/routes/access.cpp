@@ -48,19 +48,31 @@ std::string_view bearer_of(std::string_view header) {
   return header.substr(kBearer.size());
 }
 
+void require_scope(const Access::Holder& holder, Scope scope) {
+  const auto index = static_cast<std::size_t>(scope);
+  if (!holder.may[index]) throw HttpError(403, "The token lacks the scope " + std::string(kScopes[index]));
+}
+
 }  // namespace
 
-void require_access(const Access& access, Request& request) {
-  if (!request.path.starts_with("/v1/") || pass_by_link(access, request) || !access.needs_token()) return;
+Audience require_access(const Access& access, Request& request) {
+  if (!request.path.starts_with("/v1/")) return Audience::all;
+  if (pass_by_link(access, request)) return Audience::link;
+  if (!access.needs_token()) return Audience::all;
   const std::string header = request.header("Authorization").value_or("");
   const auto holder = access.holder_of(bearer_of(header));
   if (!holder)
     throw HttpError(401,
                     header.empty() ? "A token is needed (Authorization: Bearer)" : "The token is not known",
                     {{"WWW-Authenticate", header.empty() ? "Bearer" : "Bearer error=\"invalid_token\""}});
-  const auto scope = static_cast<std::size_t>(scope_of(request));
-  if (!holder->may[scope]) throw HttpError(403, "The token lacks the scope " + std::string(kScopes[scope]));
+  require_scope(*holder, scope_of(request));
+  if (request.path == "/v1/shares") require_scope(*holder, Scope::read);  // what a link gives, its maker has
   request.client = holder->name;
+  return Audience::holders;
+}
+
+bool is_link(const Request& request) {
+  return find_field(request.query, kExpires) || find_field(request.query, kSignature);
 }
 
 std::string link_parameters(const Access& access, const Request& target, std::int64_t expires) {

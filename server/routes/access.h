@@ -5,11 +5,16 @@
 
 namespace orrery {
 
+// Who may see the answer: all, all who show a token, or who has the link.
+enum class Audience { all, holders, link };
+
 // Lets a request pass that shows a token of the scope it needs or a signed link, or needs neither; notes who
 // it is from. What lies outside of /v1/ is open to all. A link's own parameters are taken out of the query.
 // Throws HttpError 401 or 403.
-void require_access(const Access& access, Request& request);
+Audience require_access(const Access& access, Request& request);
 
+// Whether the address has parameters of a link.
+bool is_link(const Request& request);
 // The parameters that make an address a link: "expires=...&signature=...".
 std::string link_parameters(const Access& access, const Request& target, std::int64_t expires);
 

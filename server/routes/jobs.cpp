@@ -93,8 +93,8 @@ int frame_of(const Job& job, const std::string& name) {
   int number = -1;
   const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
   const bool canonical = problem == std::errc() && name == std::to_string(number) + ".png";
-  if (canonical && number >= 0 && number < job.spec().frames) return number;
-  throw HttpError(404, "The job has frames 0.png to " + std::to_string(job.spec().frames - 1) + ".png");
+  if (canonical && number >= 0 && number < job.frames()) return number;
+  throw HttpError(404, "The job has frames 0.png to " + std::to_string(job.frames() - 1) + ".png");
 }
 
 Response get_frame(App& app, Request& request) {
@@ -165,7 +165,7 @@ Response get_events(App& app, Request& request) {
     if (problem != std::errc() || end != last->data() + last->size() || seen < 0)
       throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
   }
-  if (seen > job->spec().frames) return {.status = 204};  // it has seen the end: no need to come again
+  if (seen > job->frames()) return {.status = 204};  // it has seen the end: no need to come again
   Response response;
   response.set("Content-Type", "text/event-stream");
   response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/params/params.h"
@@ -13,7 +14,7 @@ namespace {
 
 Response share(App& app, Request& request) {
   constexpr std::int64_t kLongest_s = 366 * 86400, kUsual_s = 7 * 86400;
-  constexpr std::size_t kLongestPath = 2000;
+  constexpr std::size_t kLongestPath = 1900;  // what is added has its place in a target, too
   std::string path;
   std::int64_t seconds = kUsual_s;
   read_document(parse_document(read_json(request)), [&](Params& p) {
@@ -21,11 +22,15 @@ Response share(App& app, Request& request) {
     seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
   });
   if (!path.starts_with("/v1/")) throw InputError("/path", "expected an address that begins with /v1/");
+  const bool plain =
+      std::all_of(path.begin(), path.end(), [](char c) { return c > ' ' && c < 0x7F && c != '#'; });
+  if (!plain) throw InputError("/path", "expected an address without blanks and #, escaped by %");
   Request target;
   try {
     Target parsed = parse_target(path);
     target.path = std::move(parsed.path);
     target.query = std::move(parsed.query);
+    if (is_link(target)) throw HttpError(422, "expected an address that is no link yet");
   } catch (const HttpError& error) {
     throw InputError("/path", error.what());
   }

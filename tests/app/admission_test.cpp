@@ -127,6 +127,33 @@ TEST(Admission, WhatWaitsIsBoundedByItsCost) {
   EXPECT_EQ(waiters.order().size(), 12U);
 }
 
+TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
+  Admission admission({.running = 2, .queue_rays = 100});
+  Waiters waiters(admission);
+  {
+    const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever);
+    waiters.add("b1", demand("a", 1e6, Lane::batch));
+    EXPECT_FALSE(admission.full());
+    const auto interactive = admission.enter(demand("a"), kNever);  // at once
+    waiters.add("i1", demand("b"));
+    EXPECT_EQ(waiters.order(), Order{});
+  }
+  waiters.join();
+  EXPECT_EQ(waiters.order().size(), 2U);
+}
+
+TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
+  Admission admission({.running = 1, .queue_rays = 1000});
+  Waiters waiters(admission);
+  {
+    const auto ticket = admission.enter(demand("z"), kNever);
+    for (const char* name : {"b1", "b2", "b3"}) waiters.add(name, demand("a", 10, Lane::batch));
+    for (const char* name : {"i1", "i2"}) waiters.add(name, demand("b"));
+  }
+  waiters.join();
+  EXPECT_EQ(waiters.order(), (Order{"b1", "i1", "b2", "i2", "b3"}));
+}
+
 TEST(Admission, WhoHasMostWaitingMakesRoom) {
   Admission admission({.running = 1, .queue_rays = 100});
   Waiters waiters(admission);
@@ -156,7 +183,7 @@ TEST(Admission, WorkThatBeganIsNotTurnedAway) {
       done = true;
     });
     while (admission.waiting() == 0) std::this_thread::yield();
-    EXPECT_THROW(admission.enter(demand("b", 1), kNever), Busy);
+    EXPECT_FALSE(admission.full());  // nor does it keep others from waiting
   }
   again.join();
   EXPECT_TRUE(done);

@@ -14,7 +14,7 @@ import {fileURLToPath} from "node:url";
 import {faults as all} from "./faults.mjs";
 
 const kRoot = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
-const kTestMinutes = 5;  // a fault may also keep a test from ending
+const kTestMinutes = 2;  // a fault may also keep a test from ending
 const kNamesShown = 4;
 
 class Stop extends Error {}
@@ -49,7 +49,7 @@ class Copy {
     this.source = join(folder, "source");
     this.build = join(folder, "build");
     // Paths below the folder do not count for ccache: every temporary folder profits from the last one.
-    this.environment = {CCACHE_BASEDIR: folder, ...process.env};
+    this.environment = {CCACHE_BASEDIR: folder, ...process.env, ORRERY_BIN: join(this.build, "orrery")};
     mkdirSync(this.source, {recursive: true});
     copyTree(this.source);
   }
@@ -61,7 +61,8 @@ class Copy {
   }
   buildTargets(targets) {
     const parallel = ["--parallel", String(availableParallelism())];
-    return run("cmake", ["--build", this.build, ...parallel, "--target", ...targets], {env: this.environment});
+    return run("cmake", ["--build", this.build, ...parallel, "--target", "orrery", ...targets],
+               {env: this.environment});
   }
   // Runs the tests that match the patterns; returns what ran, what failed, and the output.
   test(target, patterns) {

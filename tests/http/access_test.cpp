@@ -108,6 +108,9 @@ TEST(Access, SignedLinksNeedNoTokenUntilTheyExpire) {
   EXPECT_EQ(picture->status, 200);
   EXPECT_EQ(picture->body, client.Get(frame, bearer("r"))->body);
   EXPECT_EQ(picture->get_header_value("ETag"), client.Get(frame, bearer("r"))->get_header_value("ETag"));
+  EXPECT_EQ(picture->get_header_value("Cache-Control"), "private, no-cache");
+  EXPECT_EQ(client.Get(frame, bearer("r"))->get_header_value("Cache-Control"),
+            "private, max-age=31536000, immutable");
   std::string turned = link, longer = link, tampered = link;
   turned.replace(turned.find("azimuth=30"), 10, "azimuth=31");
   longer.replace(longer.find("expires=") + 8, 1, "9");
@@ -125,6 +128,8 @@ TEST(Access, SignedLinksNeedNoTokenUntilTheyExpire) {
   expect_problem(share({{"path", "/healthz"}}), 422);
   expect_problem(share({{"path", "/v1/%zz"}}), 422);
   expect_problem(share({{"path", frame}, {"seconds", 0}}), 422);
+  for (const char* wrong : {"/v1/limits#a", "/v1/limits?expires=5", "/v1/limits?signature=5", "/v1/a b"})
+    expect_problem(share({{"path", wrong}}), 422);
 }
 
 TEST(Access, FilesThatCannotBeUsedKeepTheServiceFromStarting) {
@@ -165,6 +170,17 @@ TEST(Cors, OnlyListedOriginsMayRead) {
   EXPECT_NE(preflight->get_header_value("Access-Control-Allow-Methods").find("PUT"), std::string::npos);
   EXPECT_NE(preflight->get_header_value("Access-Control-Allow-Headers").find("Authorization"),
             std::string::npos);
+}
+
+TEST(Cors, PagesFromElsewhereChangeNothing) {
+  Daemon daemon({"--cors-origins", "https://a.example"});
+  const auto post = [&](const std::string& origin) {
+    return daemon.client().Post("/v1/scenes", {{"Origin", origin}}, small_scene().dump(), "text/plain");
+  };
+  for (const char* origin : {"https://evil.example", "null", "http://127.0.0.1:1", "127.0.0.1"})
+    expect_problem(post(origin), 403);
+  EXPECT_EQ(post("http://127.0.0.1:" + std::to_string(daemon.port()))->status, 201);
+  EXPECT_EQ(post("https://a.example")->status, 200);
 }
 
 TEST(Cors, IsOffUnlessAsked) {

@@ -176,10 +176,10 @@ json post_job(Daemon& daemon, const json& body, int status = 202) {
 }
 
 TEST(JobLimits, AreHeldAndNamed) {
-  Daemon daemon({"--jobs", "2", "--job-bytes", "3000"});
+  Daemon daemon({"--jobs", "4", "--job-bytes", "3000"});
   const json first = post_job(daemon, endless());
   post_job(daemon, endless());
-  const json problem = post_job(daemon, endless(), 503);
+  const json problem = post_job(daemon, endless(), 429);
   EXPECT_NE(problem.at("detail").get<std::string>().find("(jobs)"), std::string::npos);
   daemon.client().Delete("/v1/jobs/" + first.at("id").get<std::string>());
   const json many = post_job(daemon, {{"scene", small_scene()}, {"orbit", {{"frames", 100}}}});
@@ -188,6 +188,36 @@ TEST(JobLimits, AreHeldAndNamed) {
   EXPECT_EQ(told.back().name, "failed");
   EXPECT_NE(told.back().data.at("error").at("detail").get<std::string>().find("(job_bytes)"),
             std::string::npos);
+}
+
+TEST(JobLimits, AreForAllClientsTogether) {
+  Daemon daemon({"--jobs", "1"});
+  const json first = post_job(daemon, endless());
+  EXPECT_NE(post_job(daemon, endless(), 503).at("detail").get<std::string>().find("(jobs)"),
+            std::string::npos);
+}
+
+TEST(JobLimits, EndedJobsKeepNeitherThreadsNorMoreThanTheirNumber) {
+  Daemon daemon({"--jobs-kept", "3"});
+  std::vector<std::string> paths;
+  for (int i = 0; i < 20; ++i) {
+    const json job = post_job(daemon, {{"scene", small_scene()}, {"camera", {{"azimuth_degrees", i}}}});
+    paths.push_back("/v1/jobs/" + job.at("id").get<std::string>());
+    daemon.client().Get(paths.back() + "/events");
+  }
+  int there = 0;
+  for (const std::string& path : paths) there += daemon.client().Get(path)->status == 200;
+  EXPECT_EQ(there, 3);
+  EXPECT_EQ(daemon.client().Get(paths.back())->status, 200);
+}
+
+TEST(JobLimits, JobsThatWaitKeepNobodyElseOut) {
+  Daemon daemon;
+  for (int i = 0; i < 4; ++i) post_job(daemon, endless());
+  EXPECT_TRUE(daemon.wait_until_working());
+  const auto result = daemon.client().Post("/v1/render", small_scene().dump(), kJson);
+  EXPECT_EQ(result->status, 200) << result->body;
+  EXPECT_EQ(json::parse(daemon.client().Get("/readyz")->body).at("status"), "ok");
 }
 
 TEST(JobLimits, TheOldestResultsMakeRoomForNewOnes) {
@@ -222,6 +252,8 @@ TEST(JobLimits, AJobThatTakesTooLongFails) {
       parse_events(daemon.client().Get("/v1/jobs/" + job.at("id").get<std::string>() + "/events")->body);
   EXPECT_EQ(told.back().name, "failed");
   EXPECT_EQ(told.back().data.at("error").at("status"), 504);
+  EXPECT_NE(told.back().data.at("error").at("detail").get<std::string>().find("(job_seconds)"),
+            std::string::npos);
 }
 
 TEST(JobLimits, AJobEndsWithTheService) {

@@ -56,7 +56,9 @@ TEST(ClientsThatDawdle, ShareALimitOfBytes) {
     return "POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(bytes) + "\r\n\r\n{";
   };
   auto slow = std::make_unique<RawClient>(daemon.port());
-  slow->send(head(1'000'000));
+  slow->send(head(1'000'000) + std::string(950'000, ' '));
+  const RawClient tells(daemon.port());  // and sends nothing, which takes nothing
+  tells.send(head(1'000'000));
   const auto post_until = [&](int status) {
     for (int i = 0;; ++i) {
       auto result = daemon.client().Post("/v1/scenes", std::string(600'000, ' '), "application/json");

@@ -60,7 +60,12 @@ TEST_F(Render, AcceptChoosesTheFormat) {
   const auto type_for = [&](const char* accept) {
     const auto result = render(small_scene(), {{"Accept", accept}});
     EXPECT_EQ(result->status, 200);
-    return result->get_header_value("Content-Type");
+    const std::string type = result->get_header_value("Content-Type");
+    const std::string begin = type == "image/png"    ? "\x89PNG"
+                              : type == "image/jpeg" ? "\xff\xd8\xff"
+                                                     : "\x76\x2f\x31\x01";
+    EXPECT_TRUE(result->body.starts_with(begin)) << type;
+    return type;
   };
   EXPECT_EQ(type_for("image/jpeg"), "image/jpeg");
   EXPECT_EQ(type_for("image/x-exr"), "image/x-exr");
