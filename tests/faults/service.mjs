@@ -36,7 +36,7 @@ export const serviceFaults = [
         "test_http", "JobTest.DeletedIsCancelled*"),
   entry(21, "a cancelled render's steps are drained in turn with others'", "core/render/worker_pool.cpp",
         "if (!go_on && loop.next < loop.count) {", "if (false) {", "test_http", "JobLimits.AreHeld*"),
-  entry(22, "every token may do everything", "server/routes/access.cpp", "if (!holder->may[scope])", "if (false)", "test_http",
+  entry(22, "every token may do everything", "server/routes/access.cpp", "if (!holder.may[index])", "if (false)", "test_http",
         "Access.NeedsAToken*"),
   entry(22, "links do not end", "server/routes/access.cpp", "if (now > Access::Time", "if (false && now > Access::Time", "test_http",
         "Access.SignedLinks*"),

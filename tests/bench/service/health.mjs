@@ -39,6 +39,9 @@ function report(what, answers) {
   ];
 }
 
+// One picture that waits fills the queue, however large it is.
+const kShortQueue = ["--queue-rays", 1, "--interactive-rays", 1e12];
+
 async function run({ seconds }) {
   return with_service(async (service, scenes) => {
     const load = closed_loop(
@@ -60,7 +63,7 @@ async function run({ seconds }) {
       rows: [...report("/healthz, health port", apart), ...report("/healthz, main port", main)],
       remark: `the queue was full in ${percent(full)} of the looks; each probe makes a connection, which is timed too`,
     };
-  });
+  }, kShortQueue);
 }
 
 export const kHealth = { name: "health", what: "/healthz while pool and queue are full", seconds: 60, run };

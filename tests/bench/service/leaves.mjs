@@ -96,6 +96,9 @@ async function leave_waiting(service, gauges, scenes, times) {
   return took.filter(is_time);
 }
 
+// All pictures in one lane, so that long ones keep short ones waiting.
+const kOneLane = ["--interactive-rays", 1e12];
+
 async function run({ times }) {
   return with_service(async (service, scenes) => {
     const gauges = new Gauges(service);
@@ -117,7 +120,7 @@ async function run({ times }) {
         `the service took ${left_over.toFixed(2)} cores after those that were traced; ` +
         `16 Mpixel take ${large.parts}; times include asking /metrics`,
     };
-  });
+  }, kOneLane);
 }
 
 export const kLeaves = {
