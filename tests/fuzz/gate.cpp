@@ -6,8 +6,8 @@
 #include <string>
 
 #include "server/http/exchange.h"
-#include "server/routes/problem.h"
 #include "server/http/router.h"
+#include "server/routes/problem.h"
 
 // Any bytes as what a client sends on one connection before it closes its side: every request is answered or
 // the connection ends, and what comes back are whole answers of ours alone, however the bytes try to end up
