@@ -28,9 +28,9 @@ App::App(const Settings& settings)
                      settings.job_kept_seconds}) {}
 
 template <class Work>
-void App::watched(const std::function<bool()>& gone, const Work& work) {
+void App::watched(const Asker& asker, const Work& work) {
   require_open();
-  const Watch watch(gone, ends_, settings_.request_seconds, "request_seconds");
+  const Watch watch(asker.gone, ends_, settings_.request_seconds, "request_seconds", asker.since);
   try {
     work([&] { return watch.stop(); });
   } catch (const Cancelled&) {
@@ -40,7 +40,7 @@ void App::watched(const std::function<bool()>& gone, const Work& work) {
 
 void App::read(std::size_t bytes, const Asker& asker, Timing& timing,
                const std::function<void(const MeshSource&)>& work) {
-  watched(asker.gone, [&](const auto& stop) {
+  watched(asker, [&](const auto& stop) {
     const auto start = Clock::now();
     const Reading reading(assets_, admission_, asker.client, bytes, stop);
     work(reading);
@@ -51,7 +51,7 @@ void App::read(std::size_t bytes, const Asker& asker, Timing& timing,
 
 AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, const Asker& asker) {
   AssetStore::Added added;
-  watched(asker.gone, [&](const auto& stop) {
+  watched(asker, [&](const auto& stop) {
     const auto ticket =
         admission_.enter({Lane::interactive, asker.client, cost_of_reading(bytes.size())}, stop);
     added = assets_.add(sha256, std::move(bytes));
@@ -66,16 +66,17 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
                       cost};
   const auto start = Clock::now();
   const Pictures::Found found = pictures_.get(
-      key + std::to_string(static_cast<int>(format)), asker.gone,
-      [&](const Pictures::Gone& gone) { return make(scene, plan, format, demand, gone, timing); });
+      key + std::to_string(static_cast<int>(format)), asker.gone, [&](const Pictures::Gone& gone) {
+        return make(scene, plan, format, demand, {asker.client, gone, asker.since}, timing);
+      });
   if (!found.made_here) timing.queue += milliseconds_since(start);
   return {found.picture, found.made_here};
 }
 
 Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-                  const std::function<bool()>& gone, Timing& timing) {
+                  const Asker& asker, Timing& timing) {
   Picture picture;
-  watched(gone, [&](const auto& stop) {
+  watched(asker, [&](const auto& stop) {
     auto start = Clock::now();
     const auto ticket = admission_.enter(demand, stop);
     timing.queue += milliseconds_since(start);
@@ -94,7 +95,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat forma
 
 void App::settle(const PreparedScene& scene, Plan& plan, const Asker& asker) {
   if (!plan.try_accelerators) return;
-  watched(asker.gone, [&](const auto& stop) {
+  watched(asker, [&](const auto& stop) {
     const auto ticket = admission_.enter({Lane::interactive, asker.client, kLeastCost}, stop);
     orrery::settle(scene, plan, stop);
   });

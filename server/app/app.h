@@ -33,6 +33,7 @@ struct Rendered {
 struct Asker {
   std::string client;          // whose share of the work it is
   std::function<bool()> gone;  // whether nobody waits for it any more
+  Clock::time_point since = Clock::now();
 };
 
 // All that the service owns, and what its routes ask of it. Safe from any thread.
@@ -80,9 +81,9 @@ class App {
  private:
   // Calls work(stop); `stop` says when it should end early.
   template <class Work>
-  void watched(const std::function<bool()>& gone, const Work& work);
+  void watched(const Asker& asker, const Work& work);
   Picture make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-               const std::function<bool()>& gone, Timing& timing);
+               const Asker& asker, Timing& timing);
 
   std::atomic<bool> draining_{false}, ends_{false};
   std::atomic<std::uint64_t> rays_{0};

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "core/base/error.h"
+#include "server/app/watch.h"
 
 namespace orrery {
 
@@ -48,6 +49,8 @@ Pictures::Found Pictures::make_for_all(const std::string& key, const WorkPtr& wo
   } catch (const Busy&) {
     error = std::current_exception();
   } catch (const Cancelled&) {  // another may have come at the last moment
+    error = std::current_exception();
+  } catch (const TimedOut&) {  // it came first, and others have more time
     error = std::current_exception();
   } catch (...) {
     error = std::current_exception();

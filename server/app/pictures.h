@@ -36,8 +36,8 @@ class Pictures {
   };
   // The picture called `key`. Where there is none, calls make(gone) on this thread; its `gone` says that
   // neither this caller nor others who came meanwhile wait any more. Throws what `make` throws, also for
-  // those others, except that Busy and Cancelled concern the maker alone: one of the others then makes it.
-  // Throws Cancelled once `gone` says so.
+  // those others, except that Busy, Cancelled and TimedOut concern the maker alone: one of the others then
+  // makes it. Throws Cancelled once `gone` says so.
   Found get(const std::string& key, const Gone& gone, const std::function<Picture(const Gone&)>& make);
 
   std::size_t bytes() const { return kept_.bytes(); }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 
+#include "core/base/clock.h"
 #include "core/base/error.h"
 
 namespace orrery {
@@ -18,18 +19,16 @@ class TimedOut : public Error {
 // ends. Safe from any thread.
 class Watch {
  public:
-  // limit_name: in /v1/limits.
+  // limit_name: in /v1/limits. The limit counts from `since`.
   Watch(std::function<bool()> gone, const std::atomic<bool>& program_ends, std::chrono::seconds limit,
-        const char* limit_name)
+        const char* limit_name, Clock::time_point since = Clock::now())
       : gone_(std::move(gone)),
         program_ends_(program_ends),
         limit_(limit),
         limit_name_(limit_name),
-        deadline_(std::chrono::steady_clock::now() + limit) {}
+        deadline_(since + limit) {}
 
-  bool stop() const { return program_ends_ || std::chrono::steady_clock::now() >= deadline_ || gone_(); }
-
-  std::chrono::steady_clock::time_point deadline() const { return deadline_; }
+  bool stop() const { return program_ends_ || Clock::now() >= deadline_ || gone_(); }
 
   // Throws what stop() was true for: Cancelled, TimedOut or Busy.
   [[noreturn]] void explain() const;
@@ -39,7 +38,7 @@ class Watch {
   const std::atomic<bool>& program_ends_;
   const std::chrono::seconds limit_;
   const char* const limit_name_;
-  const std::chrono::steady_clock::time_point deadline_;
+  const Clock::time_point deadline_;
 };
 
 }  // namespace orrery

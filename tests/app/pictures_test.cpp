@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "server/app/watch.h"
 
 // What is made once for all who ask, and what is kept.
 namespace orrery {
@@ -138,6 +139,15 @@ TEST(Pictures, RefusedToOneAreMadeByTheNext) {
         EXPECT_TRUE(found.made_here);
         EXPECT_EQ(found.picture->bytes, "y");
       });
+}
+
+TEST(Pictures, WhoseTimeIsUpForOneAreMadeByTheNext) {
+  Pair pair;
+  pair.run(
+      [&](const auto& get) {
+        EXPECT_THROW(get([&](const auto&) -> Picture { throw TimedOut("too long"); }), TimedOut);
+      },
+      [&](const auto& get) { EXPECT_TRUE(get([](const auto&) { return picture("y"); }).made_here); });
 }
 
 TEST(Pictures, ThatFailFailForAll) {
