@@ -19,8 +19,6 @@ inline constexpr std::array<std::string_view, 3> kScopes{"read", "render", "writ
 // Who may use the service: holders of a token, and those whom they gave a signed link. Safe from any thread.
 class Access {
  public:
-  using Time = std::chrono::system_clock::time_point;
-
   // tokens_file: a line each, "NAME SCOPE[,SCOPE...] SHA256-OF-TOKEN"; # begins a comment. Empty: everyone
   // may do everything. share_key_file: bytes, at least 32, that links are signed with. Empty: there are no
   // links. Throws InputError that names the file and the line.
