@@ -41,17 +41,13 @@ void take_scopes(std::string_view list, bool (&may)[kScopes.size()]) {
   }
 }
 
-bool is_sha256(std::string_view text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
 Access::Holder read_holder(const std::string& line) {
   std::istringstream words(line);
   std::string name, scopes, hash, more;
   words >> name >> scopes >> hash;
   if (hash.empty() || words >> more)
     throw InputError("", "expected a name, scopes and the SHA-256 of a token, with blanks between them");
-  if (!is_sha256(hash)) throw InputError("", "expected a SHA-256 of 64 digits 0-9, a-f as the last word");
+  if (!is_sha256_hex(hash)) throw InputError("", "expected a SHA-256 of 64 digits 0-9, a-f as the last word");
   Access::Holder holder{.name = name, .token_sha256 = hash, .may = {}};
   take_scopes(scopes, holder.may);
   return holder;

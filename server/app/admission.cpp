@@ -26,6 +26,14 @@ double cost_of(const Plan& plan) {
 
 double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
 
+void Places::require_one_more(int all, int own) const {
+  if (all >= most) throw Busy(std::to_string(all) + " " + what + " already (" + limit + ")", retry_s);
+  if (own >= std::max(1, most / 2))
+    throw ClientBusy(std::to_string(own) + " " + what +
+                         " already that you asked for, which is half of all (" + limit + ")",
+                     retry_s);
+}
+
 int Admission::running() const {
   const std::lock_guard lock(mutex_);
   return running_;

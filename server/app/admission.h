@@ -19,6 +19,16 @@ class ClientBusy : public Busy {
   using Busy::Busy;
 };
 
+// Holds that there is a place for one more of `what`, of which there are `all` now, `own` of them this
+// client's: at most `most` (the limit called `limit`), and half of them for one client. Throws Busy or
+// ClientBusy.
+struct Places {
+  const char *what, *limit;  // "jobs are under way", "jobs"
+  int most;
+  double retry_s;
+  void require_one_more(int all, int own) const;
+};
+
 enum class Lane { interactive, batch };  // somebody waits for it; or it is long
 
 // A piece of work that waits for its turn.

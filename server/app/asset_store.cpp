@@ -1,14 +1,11 @@
 #include "server/app/asset_store.h"
 
-#include <algorithm>
-
 #include "core/base/hash.h"
 
 namespace orrery {
 
 void AssetStore::require_name(const std::string& name) {
-  const auto hexadecimal = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-  if (name.size() != 64 || !std::all_of(name.begin(), name.end(), hexadecimal))
+  if (!is_sha256_hex(name))
     throw InputError(
         "", "an asset is named by the SHA-256 of its bytes: 64 digits 0-9, a-f; got " + name.substr(0, 80));
 }

@@ -31,18 +31,14 @@ Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::strin
 }
 
 void Jobs::require_place(const std::string& client) const {
-  constexpr double kRetry_s = 10;
   int under_way = 0, own = 0;
   for (const Entry& entry : entries_) {
     if (entry.job->ended()) continue;
     ++under_way;
     own += entry.job->client() == client;
   }
-  if (under_way >= limits_.under_way)
-    throw Busy(std::to_string(under_way) + " jobs are under way already (jobs)", kRetry_s);
-  if (own >= std::max(1, limits_.under_way / 2))
-    throw ClientBusy(
-        std::to_string(own) + " jobs of yours are under way already, which is half of all (jobs)", kRetry_s);
+  Places{.what = "jobs are under way", .limit = "jobs", .most = limits_.under_way, .retry_s = 10}
+      .require_one_more(under_way, own);
 }
 
 Jobs::JobPtr Jobs::find(const std::string& id) {

@@ -14,16 +14,12 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
     if (!cast || cast->spec().key != spec.key) continue;
     if (auto viewer = OrbitCast::join(cast)) return viewer;
   }
-  constexpr double kRetry_s = 5;
-  if (static_cast<int>(casts_.size()) >= most_)
-    throw Busy(std::to_string(casts_.size()) + " orbits are being watched already (orbits)", kRetry_s);
   const auto own = std::count_if(casts_.begin(), casts_.end(), [&](const auto& known) {
     const auto cast = known.lock();
     return cast && cast->spec().client == spec.client;
   });
-  if (own >= std::max(1, most_ / 2))
-    throw ClientBusy(
-        std::to_string(own) + " orbits of yours are being watched, which is half of all (orbits)", kRetry_s);
+  Places{.what = "orbits are being watched", .limit = "orbits", .most = most_, .retry_s = 5}.require_one_more(
+      static_cast<int>(casts_.size()), static_cast<int>(own));
   const auto cast = std::make_shared<OrbitCast>(spec, means_, frame_time_);
   casts_.push_back(cast);
   return OrbitCast::join(cast);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
+#include "core/base/number.h"
 #include "core/load/load.h"
 #include "core/params/json.h"
 
@@ -51,14 +51,8 @@ nlohmann::json value_of(const std::string& text) {
     return list;
   }
   if (text == "true" || text == "false") return text == "true";
-  const char* const end = text.data() + text.size();
-  std::int64_t whole = 0;  // a double would round it
-  if (const auto [rest, problem] = std::from_chars(text.data(), end, whole);
-      problem == std::errc() && rest == end)
-    return whole;
-  double number = 0;
-  const auto [rest, problem] = std::from_chars(text.data(), end, number);
-  if (problem == std::errc() && rest == end && std::isfinite(number)) return number;
+  if (const auto whole = number_in<std::int64_t>(text)) return *whole;  // a double would round it
+  if (const auto number = number_in<double>(text); number && std::isfinite(*number)) return *number;
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/clock.h"
 #include "server/http/head.h"
 #include "server/http/waiting.h"
 

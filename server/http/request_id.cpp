@@ -4,19 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+
+#include "core/base/hash.h"
 
 namespace orrery {
 
 std::string random_hex(std::size_t bytes) {
-  std::array<std::uint8_t, 64> random{};
+  std::array<char, 64> random{};
   [[maybe_unused]] const ssize_t filled = getrandom(random.data(), bytes, 0);  // so few always come
-  std::string id;
-  for (std::size_t i = 0; i < bytes; ++i) {
-    id += "0123456789abcdef"[random[i] >> 4];
-    id += "0123456789abcdef"[random[i] & 15];
-  }
-  return id;
+  return hex_of({random.data(), bytes});
 }
 
 bool is_request_id(std::string_view text) {

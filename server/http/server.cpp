@@ -20,8 +20,6 @@
 namespace orrery {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Wakes all who wait for it, now and later.
 class Alarm {
  public:

@@ -1,7 +1,9 @@
 #include "server/routes/access.h"
 
 #include <algorithm>
-#include <charconv>
+#include <chrono>
+
+#include "core/base/number.h"
 
 namespace orrery {
 namespace {
@@ -28,14 +30,11 @@ Scope scope_of(const Request& request) {
 bool pass_by_link(const Access& access, Request& request) {
   const auto signature = find_field(request.query, kSignature);
   if (!signature || scope_of(request) != Scope::read) return false;
-  const std::string text = find_field(request.query, kExpires).value_or("");
-  std::int64_t expires = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), expires);
-  const bool whole = problem == std::errc() && end == text.data() + text.size();
-  if (!whole || !access.is_signed(address_of(request), expires, *signature))
+  const auto expires = number_in<std::int64_t>(find_field(request.query, kExpires).value_or(""));
+  if (!expires || !access.is_signed(address_of(request), *expires, *signature))
     throw HttpError(403, "The link is not one that this service has signed");
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  if (std::chrono::duration_cast<std::chrono::seconds>(now).count() > expires)
+  if (std::chrono::duration_cast<std::chrono::seconds>(now).count() > *expires)
     throw HttpError(403, "The link has expired");
   std::erase_if(request.query,
                 [](const auto& field) { return field.first == kExpires || field.first == kSignature; });

@@ -1,8 +1,8 @@
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/number.h"
 #include "core/params/params.h"
 #include "core/plan/plan.h"
 #include "server/app/picture_key.h"
@@ -90,10 +90,9 @@ Response get_job(App& app, Request& request) {
 
 // "12.png": 12. Throws HttpError 404 for what is no frame of the job.
 int frame_of(const Job& job, const std::string& name) {
-  int number = -1;
-  const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
-  const bool canonical = problem == std::errc() && name == std::to_string(number) + ".png";
-  if (canonical && number >= 0 && number < job.frames()) return number;
+  const auto number = number_in<int>(std::string_view(name).substr(0, name.find('.')));
+  if (number && name == std::to_string(*number) + ".png" && *number >= 0 && *number < job.frames())
+    return *number;
   throw HttpError(404, "The job has frames 0.png to " + std::to_string(job.frames() - 1) + ".png");
 }
 
@@ -161,9 +160,8 @@ Response get_events(App& app, Request& request) {
   negotiate(request, kType);
   int seen = 0;
   if (const auto last = request.header("Last-Event-ID")) {
-    const auto [end, problem] = std::from_chars(last->data(), last->data() + last->size(), seen);
-    if (problem != std::errc() || end != last->data() + last->size() || seen < 0)
-      throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
+    seen = number_in<int>(*last).value_or(-1);
+    if (seen < 0) throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
   }
   if (seen > job->frames()) return {.status = 204};  // it has seen the end: no need to come again
   Response response;

@@ -1,8 +1,8 @@
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/number.h"
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
 #include "server/http/router.h"
@@ -21,10 +21,8 @@ double number_of(const Request& request, std::string_view name, double min, doub
                  std::vector<Problem>& problems) {
   for (const auto& [key, text] : request.query) {
     if (key != name) continue;
-    double number = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (problem == std::errc() && end == text.data() + text.size() && number >= min && number <= max)
-      return number;
+    const auto number = number_in<double>(text);
+    if (number && *number >= min && *number <= max) return *number;
     char range[96];
     std::snprintf(range, sizeof range, "expected a number >= %g and <= %g, got ", min, max);
     problems.push_back(

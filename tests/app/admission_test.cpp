@@ -20,12 +20,12 @@ class Waiters {
   explicit Waiters(Admission& admission) : admission_(admission) {}
   ~Waiters() { join(); }
 
-  // Returns once `name` waits.
+  // Returns once `name` waits, or was turned away.
   void add(const std::string& name, const Demand& demand) {
-    const int before = admission_.waiting();
+    const auto settled = [&] { return admission_.waiting() + order().size(); };
+    const auto before = settled();
     threads_.emplace_back([this, name, demand] { wait(name, demand); });
-    while (admission_.waiting() == before && !over_) std::this_thread::yield();
-    over_ = false;
+    while (settled() == before) std::this_thread::yield();
   }
   void join() {
     for (std::thread& thread : threads_) thread.join();
@@ -50,12 +50,10 @@ class Waiters {
   void note(const std::string& what) {
     const std::lock_guard lock(mutex_);
     order_.push_back(what);
-    over_ = true;
   }
 
   Admission& admission_;
   std::vector<std::thread> threads_;
-  std::atomic<bool> over_{false};
   std::mutex mutex_;
   Order order_;
 };

@@ -36,7 +36,7 @@ export const serviceFaults = [
         "test_http", "JobTest.DeletedIsCancelled*"),
   entry(22, "every token may do everything", "server/routes/access.cpp", "if (!holder.may[index])", "if (false)", "test_http",
         "Access.NeedsAToken*"),
-  entry(22, "links do not end", "server/routes/access.cpp", "if (std::chrono::duration_cast<std::chrono::seconds>(now).count() > expires)", "if (false)", "test_http",
+  entry(22, "links do not end", "server/routes/access.cpp", "if (std::chrono::duration_cast<std::chrono::seconds>(now).count() > *expires)", "if (false)", "test_http",
         "Access.SignedLinks*"),
   entry(22, "a link holds for other parameters", "server/routes/access.cpp", "text += '\\n' + name + '=' + value;", "", "test_http",
         "Access.SignedLinks*"),
