@@ -1,13 +1,21 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
+#include "core/math/lanes.h"
+
 // Sample positions made of integers alone, from (seed, pixel, sample, dimension): no state, the same for any
-// order of evaluation.
+// order of evaluation. Bits are 32, in one number or in each lane of several.
 namespace orrery {
 
+using BitLanes = stdx::rebind_simd_t<std::uint32_t, Lanes<float>>;
+template <class N>
+concept Bits32 = std::same_as<N, std::uint32_t> || std::same_as<N, BitLanes>;
+
 // A bijective mix of 32 bits (Wellons' search for low bias: shifts 16, 15, 16).
-inline std::uint32_t mix_bits(std::uint32_t x) {
+template <Bits32 Bits>
+[[gnu::always_inline]] inline Bits mix_bits(Bits x) {
   x ^= x >> 16;
   x *= 0x7feb352du;
   x ^= x >> 15;
@@ -16,27 +24,31 @@ inline std::uint32_t mix_bits(std::uint32_t x) {
   return x;
 }
 
-inline std::uint32_t combine_bits(std::uint32_t a, std::uint32_t b) {
-  return mix_bits(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u));
+template <Bits32 Bits>
+[[gnu::always_inline]] inline Bits combine_bits(std::uint32_t a, Bits b) {
+  return mix_bits<Bits>(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u));
 }
 
-inline std::uint32_t reverse_bits(std::uint32_t x) {
-  x = __builtin_bswap32(x);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+template <Bits32 Bits>
+[[gnu::always_inline]] inline Bits reverse_bits(Bits x) {
+  x = x << 16 | x >> 16;
+  x = (x & 0x00ff00ffu) << 8 | ((x >> 8) & 0x00ff00ffu);
+  x = (x & 0x0f0f0f0fu) << 4 | ((x >> 4) & 0x0f0f0f0fu);
+  x = (x & 0x33333333u) << 2 | ((x >> 2) & 0x33333333u);
+  return (x & 0x55555555u) << 1 | ((x >> 1) & 0x55555555u);
 }
 
 // Owen's nested uniform scrambling by hashing (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020,
-// after Laine and Karras): every bit is flipped by a hash of the higher ones.
-inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
-  x = reverse_bits(x);
-  x += seed;
+// after Laine and Karras), of numbers whose bits are reversed: every bit is flipped by a hash of the lower
+// ones.
+template <Bits32 Bits>
+[[gnu::always_inline]] inline Bits scramble_reversed(std::uint32_t reversed, const Bits& seed) {
+  Bits x = reversed + seed;
   x ^= x * 0x6c50b47cu;
   x ^= x * 0xb82f1e52u;
   x ^= x * 0xc7afe638u;
   x ^= x * 0x8d22f6e6u;
-  return reverse_bits(x);
+  return x;
 }
 
 // Second dimension of Sobol's sequence; the first is reverse_bits. Together every aligned block of 2^m
@@ -48,17 +60,25 @@ inline std::uint32_t sobol_second(std::uint32_t index) {
   return result;
 }
 
-struct SamplePoint {
-  float u, v;  // in [0, 1)
-};
-
 // Top 24 bits as a float in [0, 1): never rounds up to 1.
 inline float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+[[gnu::always_inline]] inline Lanes<float> unit_float(const BitLanes& bits) {
+  using Signed = stdx::rebind_simd_t<std::int32_t, BitLanes>;  // what machines convert
+  return stdx::static_simd_cast<Lanes<float>>(stdx::static_simd_cast<Signed>(bits >> 8)) * 0x1p-24f;
+}
+
+template <class Unit>
+struct SamplePoint {
+  Unit u, v;  // in [0, 1)
+};
 
 // Point `sample` of the scrambled sequence that belongs to `stream` (a hash of seed, pixel and purpose).
-inline SamplePoint stratified_point(std::uint32_t sample, std::uint32_t stream) {
-  return {unit_float(owen_scramble(reverse_bits(sample), stream)),
-          unit_float(owen_scramble(sobol_second(sample), mix_bits(stream + 0x68bc21ebu)))};
+template <Bits32 Bits>
+[[gnu::always_inline]] inline auto stratified_point(std::uint32_t sample, const Bits& stream) {
+  const std::uint32_t second = reverse_bits(sobol_second(sample));
+  const Bits u = reverse_bits(scramble_reversed(sample, stream)),
+             v = reverse_bits(scramble_reversed(second, mix_bits<Bits>(stream + 0x68bc21ebu)));
+  return SamplePoint<decltype(unit_float(u))>{unit_float(u), unit_float(v)};
 }
 
 }  // namespace orrery

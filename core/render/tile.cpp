@@ -3,7 +3,23 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/math/sampling.h"
+
 namespace orrery {
+namespace {
+
+constexpr int kRow = 65536;  // pixels are numbered row by row as if rows were this long
+
+// Numbers of a tile's pixels beside that of its first, by slot.
+constexpr auto kPixels = [] {
+  std::array<std::uint32_t, kBatch> numbers{};
+  for (int slot = 0; slot < kBatch; ++slot)
+    numbers[static_cast<std::size_t>(slot)] =
+        static_cast<std::uint32_t>(tile_pixel(slot).y * kRow + tile_pixel(slot).x);
+  return numbers;
+}();
+
+}  // namespace
 
 template <class T>
 TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
@@ -34,12 +50,12 @@ template <class T>
 void TileRenderer<T>::place_samples(int x0, int y0, int sample) {
   const auto seed =
       combine_bits(static_cast<std::uint32_t>(plan_.seed), static_cast<std::uint32_t>(plan_.seed >> 32));
-  for (int slot = 0; slot < kBatch; ++slot) {
-    const TilePixel p = tile_pixel(slot);
-    const auto pixel = static_cast<std::uint32_t>((y0 + p.y) * kMaxSide + x0 + p.x);
-    const SamplePoint point = stratified_point(static_cast<std::uint32_t>(sample), combine_bits(seed, pixel));
-    samples_.u[slot] = point.u;
-    samples_.v[slot] = point.v;
+  const auto first = static_cast<std::uint32_t>(y0 * kRow + x0);
+  for (int slot = 0; slot < kBatch; slot += kWidth<float>) {
+    const BitLanes pixel = first + BitLanes(&kPixels[static_cast<std::size_t>(slot)], stdx::element_aligned);
+    const auto point = stratified_point(static_cast<std::uint32_t>(sample), combine_bits(seed, pixel));
+    samples_.u.put(slot, point.u);
+    samples_.v.put(slot, point.v);
   }
 }
 

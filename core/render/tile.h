@@ -23,8 +23,6 @@ class TileRenderer {
   void add_to(RenderStats& stats) const;
 
  private:
-  static constexpr int kMaxSide = 65536;  // pixels are numbered row by row as if rows were this long
-
   void place_samples(int x0, int y0, int sample);
   void clear_sums();
   void add_sample();

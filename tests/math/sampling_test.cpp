@@ -20,7 +20,7 @@ TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
       const int down = count / across;
       std::set<std::pair<int, int>> taken;
       for (int sample = 0; sample < count; ++sample) {
-        const SamplePoint p = stratified_point(static_cast<std::uint32_t>(sample), mix_bits(stream));
+        const auto p = stratified_point(static_cast<std::uint32_t>(sample), mix_bits(stream));
         taken.insert({static_cast<int>(p.u * static_cast<float>(across)),
                       static_cast<int>(p.v * static_cast<float>(down))});
       }
@@ -37,7 +37,7 @@ TEST_P(Stratification, HoldsForEveryAlignedBlock) {
   for (int block = 0; block < 16; ++block) {
     std::set<std::pair<int, int>> taken;
     for (int i = 0; i < count; ++i) {
-      const SamplePoint p = stratified_point(static_cast<std::uint32_t>(block * count + i), 12345);
+      const auto p = stratified_point(static_cast<std::uint32_t>(block * count + i), 12345u);
       taken.insert({static_cast<int>(p.u * static_cast<float>(side)),
                     static_cast<int>(p.v * static_cast<float>(side))});
     }
@@ -60,7 +60,7 @@ TEST(Sampling, MixingAndScramblingLoseNothing) {
   std::set<std::uint32_t> mixed, scrambled, reversed;
   for (std::uint32_t i = 0; i < 65536; ++i) {
     mixed.insert(mix_bits(i));
-    scrambled.insert(owen_scramble(i << 16, 99));
+    scrambled.insert(scramble_reversed(i, 99u));
     reversed.insert(reverse_bits(i));
     EXPECT_EQ(reverse_bits(reverse_bits(i * 2654435761u)), i * 2654435761u);
   }
@@ -69,13 +69,26 @@ TEST(Sampling, MixingAndScramblingLoseNothing) {
   EXPECT_EQ(reversed.size(), 65536u);
 }
 
+// Each lane gets what a number alone gets.
+TEST(Sampling, LanesAreNumbers) {
+  for (std::uint32_t sample = 0; sample < 300; ++sample) {
+    const BitLanes streams([&](std::uint32_t lane) { return mix_bits(1000 * sample + lane); });
+    const auto points = stratified_point(sample, streams);
+    for (std::size_t lane = 0; lane < streams.size(); ++lane) {
+      const auto alone = stratified_point(sample, static_cast<std::uint32_t>(streams[lane]));
+      EXPECT_EQ(points.u[lane], alone.u);
+      EXPECT_EQ(points.v[lane], alone.v);
+    }
+  }
+}
+
 // Correlation between the samples of neighbouring streams stays below 4 standard deviations.
 TEST(Sampling, StreamsAreIndependent) {
   constexpr int kPairs = 100'000;
   double sum = 0;
   for (std::uint32_t pixel = 0; pixel < kPairs; ++pixel) {
-    const SamplePoint a = stratified_point(0, combine_bits(7, pixel)),
-                      b = stratified_point(0, combine_bits(7, pixel + 1));
+    const auto a = stratified_point(0, combine_bits(7, pixel)),
+               b = stratified_point(0, combine_bits(7, pixel + 1));
     sum += (static_cast<double>(a.u) - 0.5) * (static_cast<double>(b.u) - 0.5) * 12;
   }
   EXPECT_LT(std::abs(sum) / kPairs, 4 / std::sqrt(static_cast<double>(kPairs)));
