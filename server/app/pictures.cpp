@@ -44,7 +44,9 @@ Pictures::Found Pictures::make_for_all(const std::string& key, const WorkPtr& wo
   bool theirs = false;  // whether the error concerns the others
   PicturePtr picture;
   try {
-    picture = std::make_shared<const Picture>(make([this, &work] { return nobody_waits(*work); }));
+    Picture made = make([this, &work] { return nobody_waits(*work); });
+    made.bytes.shrink_to_fit();  // it grew by doubling
+    picture = std::make_shared<const Picture>(std::move(made));
     keep(key, picture);
   } catch (const Busy&) {
     error = std::current_exception();
@@ -74,13 +76,10 @@ bool Pictures::nobody_waits(const Work& work) {
 }
 
 void Pictures::keep(const std::string& key, const PicturePtr& picture) {
-  // A small one lies alone on its page of memory, between what was needed for a moment.
-  constexpr std::size_t kPage_bytes = 4096;
-  const std::size_t bytes = kPage_bytes + key.size() + picture->bytes.capacity();
-  if (bytes > kept_.most_bytes()) return;
-  kept_.add(key, bytes, [&] { return picture; });
-  constexpr unsigned kTrimEvery = 256;
-  if (++added_ % kTrimEvery == 0) malloc_trim(0);  // the rest of those pages, which the heap would keep
+  constexpr std::size_t kBeside = 4096;  // what the allocator adds to a large block, and the entries here
+  const std::size_t bytes =
+      kBeside + key.size() + malloc_usable_size(const_cast<char*>(picture->bytes.data()));
+  if (bytes <= kept_.most_bytes()) kept_.add(key, bytes, [&] { return picture; });
 }
 
 }  // namespace orrery

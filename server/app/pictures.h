@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -58,7 +57,6 @@ class Pictures {
   void keep(const std::string& key, const PicturePtr& picture);
 
   Lru<PicturePtr> kept_;
-  std::atomic<unsigned> added_{0};
   std::mutex mutex_;
   std::map<std::string, WorkPtr> under_way_;  // guarded by mutex_, and what it points at
 };

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <malloc.h>
 #include <unistd.h>
 
 #include <mutex>
@@ -51,15 +50,6 @@ void announce(const Service& service, const Settings& settings) {
             << service.port() << "\nhealth and metrics on port " << service.health_port() << std::endl;
 }
 
-// What is allocated for a moment goes back to the system: it does not stay in an arena of each connection's
-// thread, and images leave no holes among the pictures that are kept, which are smaller.
-void tame_memory() {
-  constexpr int kArenas = 2, kImage_bytes = 64 << 10, kSpare_bytes = 1 << 20;
-  mallopt(M_ARENA_MAX, kArenas);
-  mallopt(M_TRIM_THRESHOLD, kSpare_bytes);
-  mallopt(M_MMAP_THRESHOLD, kImage_bytes);  // fixed, too: it would grow with what is freed
-}
-
 int run_service(const Settings& settings, const Log& log) {
   // The signals are taken before the service starts threads; it learns of them once it is there.
   std::mutex mutex;
@@ -94,7 +84,6 @@ int serve(CLI::App& app, const Options& options) {
   if (options.print_config) std::cout << config_text(app);
   if (options.check_config) const Access access(settings.tokens_file, settings.share_key_file);
   if (options.print_config || options.check_config) return kDone;
-  tame_memory();
   const Log log(options.log == "json" ? LogForm::json : LogForm::text,
                 options.quiet ? LogLevel::warning : LogLevel::info);
   return run_service(settings, log);
