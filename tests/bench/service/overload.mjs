@@ -14,7 +14,7 @@ const kGoodput = 0.9;
 const kRefusal_ms = 20;
 const kMemory = 1.1;
 
-const picture = (scenes) => new_picture(scenes.paper, 200, 16); // some 30 ms of one core
+const picture = (scenes) => new_picture(scenes.paper, 200, 64); // some 30 ms of one core
 
 // Cores that the service and this process take while `work` runs, and how late this process's own timers are.
 async function watched(service, work) {
