@@ -23,6 +23,7 @@ App::App(const Settings& settings)
       pictures_(settings.picture_bytes),
       admission_({settings_.renders, settings_.queue_rays}),
       means_{pool_, admission_, draining_, ends_, rays_},
+      streams_(settings_.connections),
       orbits_(means_, settings.orbits, settings.request_seconds),
       jobs_(means_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
                      settings.job_kept_seconds}) {}

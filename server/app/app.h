@@ -16,6 +16,7 @@
 #include "server/app/pictures.h"
 #include "server/app/scene_store.h"
 #include "server/app/settings.h"
+#include "server/app/streams.h"
 
 namespace orrery {
 
@@ -47,6 +48,7 @@ class App {
   Access& access() { return access_; }
   SceneStore& scenes() { return scenes_; }
   AssetStore& assets() { return assets_; }
+  Streams& streams() { return streams_; }
   OrbitHub& orbits() { return orbits_; }
   Jobs& jobs() { return jobs_; }
   const Pictures& pictures() const { return pictures_; }
@@ -95,6 +97,7 @@ class App {
   Pictures pictures_;
   Admission admission_;
   const Means means_;
+  Streams streams_;
   OrbitHub orbits_;
   Jobs jobs_;
 };

@@ -167,9 +167,9 @@ Response get_events(App& app, Request& request) {
   Response response;
   response.set("Content-Type", "text/event-stream");
   response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");
-  response.stream = [events = Events{job, seen}, gone = request.gone](Sink& sink) mutable {
-    events.send(sink, gone);
-  };
+  if (request.method == "HEAD") return response;
+  response.stream = [place = app.streams().open(request.client), events = Events{job, seen},
+                     gone = request.gone](Sink& sink) mutable { events.send(sink, gone); };
   return response;
 }
 

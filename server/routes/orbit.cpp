@@ -92,6 +92,7 @@ std::string part(const OrbitFrame& frame, bool last) {
 
 // What is sent of an orbit whose first frame is there.
 struct Show {
+  std::shared_ptr<const void> place;
   std::shared_ptr<OrbitCast::Viewer> viewer;
   std::shared_ptr<const OrbitFrame> first;
   std::function<bool()> gone;
@@ -121,7 +122,10 @@ Response orbit(App& app, Request& request) {
                                          : std::string(kFrames));
   response.set("Cache-Control", "no-store").set("Vary", "Accept").set("X-Accel-Buffering", "no");
   if (request.method == "HEAD") return response;
-  Show show{.viewer = app.orbits().watch(spec), .first = {}, .gone = request.gone};
+  Show show{.place = app.streams().open(request.client),
+            .viewer = app.orbits().watch(spec),
+            .first = {},
+            .gone = request.gone};
   show.first = show.viewer->next(show.gone);  // what fails here has a status of its own
   if (!show.first && request.gone()) throw Cancelled("the client has gone");
   if (!show.first) throw Busy("The service ends", 5);

@@ -57,6 +57,28 @@ json endless() {
           {"render", {{"samples", 4096}, {"precision", "double"}}}};
 }
 
+// Eight connections: streams may have six of them, and one client half of these.
+TEST(Streams, LeaveConnectionsToOthers) {
+  Daemon daemon({"--connections", "8"});
+  httplib::Client client = daemon.client();
+  const auto started = client.Post("/v1/jobs", endless().dump(), kJson);
+  const std::string events = json::parse(started->body).at("events");
+  const auto watch = [&](const RawClient& watcher) {
+    watcher.send("GET " + events + " HTTP/1.1\r\nHost: x\r\n\r\n");
+    return watcher.receive_some().substr(9, 3);
+  };
+  RawClient first(daemon.port()), second(daemon.port()), third(daemon.port());
+  for (const RawClient* watcher : {&first, &second, &third}) EXPECT_EQ(watch(*watcher), "200");
+
+  const auto refused = client.Get(events);
+  EXPECT_EQ(refused->status, 429) << refused->body;
+  EXPECT_EQ(refused->get_header_value("Retry-After"), "5");
+  EXPECT_EQ(json::parse(refused->body).at("detail"),
+            "3 streams are open already that you asked for, which is half of all (connections)");
+  third.close();
+  while (watch(RawClient(daemon.port())) != "200") continue;  // once the service has noticed
+}
+
 TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
   const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}});
   EXPECT_EQ(job.at("frames"), 4);
