@@ -140,7 +140,8 @@ Response Service::answer(const Router& router, Request& request) {
     if (auto answer = preflight(request, app_.settings().cors_origins)) {
       response = std::move(*answer);
     } else {
-      refuse_foreign(request, app_.settings().cors_origins);
+      const Settings& settings = app_.settings();
+      refuse_foreign(request, settings.cors_origins, settings.insecure || !settings.tokens_file.empty());
       const Audience audience = &router == &router_ ? require_access(app_.access(), request) : Audience::all;
       response = router.dispatch(request);
       keep_private(audience, response);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string>
 
+#include "server/http/message.h"
+
 namespace orrery {
 namespace {
 
@@ -39,6 +41,13 @@ bool is_port(std::string_view text) {
 }
 
 }  // namespace
+
+bool names_no_domain(std::string_view text) {
+  if (text.starts_with('[')) return true;
+  const std::string host(text.substr(0, text.find(':')));
+  in_addr address;
+  return equal_ignoring_case(host, "localhost") || inet_pton(AF_INET, host.c_str(), &address) == 1;
+}
 
 bool is_authority(std::string_view text) {
   std::string_view host = text.substr(0, text.find(':'));

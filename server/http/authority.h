@@ -9,4 +9,8 @@ namespace orrery {
 // is not empty (RFC 9110, 4.2.1); the port may be.
 bool is_authority(std::string_view text);
 
+// Whether its host is an address or localhost: what no owner of a domain can let stand for this machine.
+// REQUIRES: is_authority(text).
+bool names_no_domain(std::string_view text);
+
 }  // namespace orrery

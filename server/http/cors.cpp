@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "server/http/authority.h"
+
 namespace orrery {
 namespace {
 
@@ -25,13 +27,14 @@ std::optional<Response> preflight(const Request& request, const std::vector<std:
   return response;
 }
 
-void refuse_foreign(const Request& request, const std::vector<std::string>& origins) {
+void refuse_foreign(const Request& request, const std::vector<std::string>& origins, bool domains) {
   constexpr std::array<std::string_view, 3> kSafe{"GET", "HEAD", "OPTIONS"};
   const auto origin = request.header("Origin");
   if (!origin || std::find(kSafe.begin(), kSafe.end(), request.method) != kSafe.end()) return;
+  const std::string host = request.header("Host").value_or("");
   const std::size_t slashes = origin->find("//");
-  const bool own = slashes != std::string::npos &&
-                   equal_ignoring_case(origin->substr(slashes + 2), request.header("Host").value_or(""));
+  const bool own = slashes != std::string::npos && equal_ignoring_case(origin->substr(slashes + 2), host) &&
+                   (domains || names_no_domain(host));
   if (!own && !is_listed(request, origins))
     throw HttpError(
         403, "Pages of the origin " + origin->substr(0, 100) + " may change nothing here (cors_origins)");

@@ -13,8 +13,9 @@ namespace orrery {
 std::optional<Response> preflight(const Request& request, const std::vector<std::string>& origins);
 
 // Refuses what a page of another origin, not listed, asks a browser to change: browsers send some such
-// requests without asking first. Throws HttpError 403.
-void refuse_foreign(const Request& request, const std::vector<std::string>& origins);
+// requests without asking first. `domains`: whether a domain may be our own origin. Without access control it
+// may not, as its owner can let it stand for this machine (DNS rebinding). Throws HttpError 403.
+void refuse_foreign(const Request& request, const std::vector<std::string>& origins, bool domains);
 
 // Lets pages of a listed origin read the answer.
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response);

@@ -183,6 +183,27 @@ TEST(Cors, PagesFromElsewhereChangeNothing) {
   EXPECT_EQ(post("https://a.example")->status, 200);
 }
 
+// The owner of a domain can let it stand for this machine, and his pages then are of the same origin.
+TEST(Cors, DomainsChangeNothingUnlessAccessIsControlled) {
+  const auto post = [](Daemon& daemon, const std::string& host) {
+    const std::string here = host + ":" + std::to_string(daemon.port());
+    return daemon.client().Post("/v1/scenes", {{"Host", here}, {"Origin", "http://" + here}},
+                                small_scene().dump(), "application/json");
+  };
+  Daemon daemon, insecure({"--insecure"}), listed({"--cors-origins", "http://proxy.example"});
+  for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil", "1270001"})
+    expect_problem(post(daemon, host), 403);
+  for (const char* host : {"localhost", "LOCALHOST", "127.0.0.1", "[::1]"})
+    EXPECT_LE(post(daemon, host)->status, 201) << host;
+  EXPECT_EQ(post(insecure, "render.example")->status, 201);
+  expect_problem(post(listed, "proxy.example"), 403);  // the port is part of the origin
+  EXPECT_EQ(listed.client()
+                .Post("/v1/scenes", {{"Host", "proxy.example"}, {"Origin", "http://proxy.example"}},
+                      small_scene().dump(), "application/json")
+                ->status,
+            201);
+}
+
 TEST(Cors, IsOffUnlessAsked) {
   Daemon daemon;
   const auto result = daemon.client().Get("/v1/limits", {{"Origin", "https://a.example"}});
