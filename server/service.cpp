@@ -141,7 +141,7 @@ Response Service::answer(const Router& router, Request& request) {
       response = std::move(*answer);
     } else {
       const Settings& settings = app_.settings();
-      refuse_foreign(request, settings.cors_origins, settings.insecure || !settings.tokens_file.empty());
+      refuse_foreign(request, settings.cors_origins, !settings.tokens_file.empty());
       const Audience audience = &router == &router_ ? require_access(app_.access(), request) : Audience::all;
       response = router.dispatch(request);
       keep_private(audience, response);

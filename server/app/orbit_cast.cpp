@@ -74,10 +74,12 @@ bool OrbitCast::at_end(const Mailbox& mailbox) const {
   return delivered_ >= mailbox.end || (over_ && finished_.empty());
 }
 
-bool OrbitCast::pointless() const {
+bool OrbitCast::pointless() {
   if (means_.ends) return true;
   const std::lock_guard lock(mutex_);
-  return mailboxes_.empty();
+  if (!mailboxes_.empty()) return false;
+  closed_ = true;
+  return true;
 }
 
 std::optional<std::int64_t> OrbitCast::next() {

@@ -44,7 +44,7 @@ class OrbitCast {
   void run();
   std::optional<std::int64_t> next();
   RenderResult render(std::int64_t number);
-  bool pointless() const;
+  bool pointless();  // whether nobody watches any more; then nobody can join either
   void deliver(std::int64_t number, Frame&& frame);
   // Below: with mutex_ held.
   void post();  // puts finished frames into the mailboxes, as far as they may

@@ -44,9 +44,7 @@ Pictures::Found Pictures::make_for_all(const std::string& key, const WorkPtr& wo
   bool theirs = false;  // whether the error concerns the others
   PicturePtr picture;
   try {
-    Picture made = make([this, &work] { return nobody_waits(*work); });
-    made.bytes.shrink_to_fit();  // it grew by doubling
-    picture = std::make_shared<const Picture>(std::move(made));
+    picture = std::make_shared<const Picture>(make([this, &work] { return nobody_waits(*work); }));
     keep(key, picture);
   } catch (const Busy&) {
     error = std::current_exception();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -11,7 +12,8 @@ namespace orrery {
 // others. Safe from any thread.
 class Streams {
  public:
-  explicit Streams(std::size_t connections) : most_(static_cast<int>(connections - connections / 4)) {}
+  explicit Streams(std::size_t connections)
+      : most_(std::max(1, static_cast<int>(connections - (connections + 3) / 4))) {}
 
   // One more for this client, as long as the object lives. Throws Busy or ClientBusy if that is too much.
   std::shared_ptr<const void> open(const std::string& client);

@@ -115,7 +115,8 @@ void add_settings(CLI::App& app, Settings& settings) {
   add(app, "share_key_file", settings.share_key_file, "FILE",
       "At least 32 secret bytes that links are signed with (POST /v1/shares); read again on SIGHUP");
   add(app, "cors_origins", settings.cors_origins, "ORIGIN,...",
-      "Origins whose pages may use the service; * for all")
+      "Origins whose pages may use the service, also its own if that is a domain and there are no "
+      "tokens; * for all")
       ->delimiter(',');
   app.add_flag("--insecure", settings.insecure,
                "Allow an address that other machines can reach without tokens")
