@@ -16,8 +16,10 @@ AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes) 
     throw InputError("",
                      "the SHA-256 of these bytes is " + hash + ", which must be the name they are put under");
   if (const auto known = assets_.find(sha256)) return {*known, true};
-  if (bytes.size() > assets_.most_bytes())
-    throw InputError("", "the file has " + std::to_string(bytes.size()) + " bytes, at most " +
+  constexpr std::size_t kEntry = 512;  // what a file takes in memory beside its bytes
+  const std::size_t size = bytes.size() + kEntry;
+  if (size > assets_.most_bytes())
+    throw InputError("", "the file takes " + std::to_string(size) + " bytes of memory, at most " +
                              std::to_string(assets_.most_bytes()) + " are kept (asset_store_bytes)");
   const TriangleMesh mesh = read_mesh(bytes);
   auto asset = std::make_shared<Asset>();
@@ -25,7 +27,7 @@ AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes) 
   asset->vertices = mesh.positions.size();
   asset->triangles = mesh.triangles.size();
   asset->bytes = std::move(bytes);
-  const auto added = assets_.add(sha256, asset->bytes.size(), [&asset] { return asset; });
+  const auto added = assets_.add(sha256, size, [&asset] { return asset; });
   return {added.value, added.known};
 }
 

@@ -75,8 +75,10 @@ bool Pictures::nobody_waits(const Work& work) {
 
 void Pictures::keep(const std::string& key, const PicturePtr& picture) {
   constexpr std::size_t kBeside = 4096;  // what the allocator adds to a large block, and the entries here
-  const std::size_t bytes =
-      kBeside + key.size() + malloc_usable_size(const_cast<char*>(picture->bytes.data()));
+  const std::string& held = picture->bytes;
+  const bool has_block = held.capacity() > std::string().capacity();
+  const std::size_t block = has_block ? malloc_usable_size(const_cast<char*>(held.data())) : 0;
+  const std::size_t bytes = kBeside + key.size() + block;
   if (bytes <= kept_.most_bytes()) kept_.add(key, bytes, [&] { return picture; });
 }
 

@@ -12,8 +12,8 @@ const kSample_s = 10;
 const kSamples = 30; // every 10 s, oftener in a short run
 const kMemory = 1.05;
 const kFew = 3;
-// So little that it is full soon, and a scene is forgotten for each that comes.
-const kStore = ["--store-bytes", 8 << 20];
+// So little that they are full soon, and a scene or an asset is forgotten for each that comes.
+const kStore = ["--store-bytes", 8 << 20, "--asset-bytes", 1 << 20, "--asset-store-bytes", 1 << 20];
 const kFile = "build/charts/soak.json"; // the figures behind the sparklines
 
 // Does it again and again until the time is over, with rests: the machine is used, not overloaded.
