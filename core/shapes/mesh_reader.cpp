@@ -8,6 +8,7 @@ namespace {
 constexpr MeshLimits kLimits;
 constexpr std::size_t kMostNameLength = 1024;
 
+// Consistent, whatever was wrong and has been noted.
 TriangleMesh read_inline(Params& p) {
   TriangleMesh mesh;
   mesh.positions = p.points("positions", "Vertices, in metres.", {3, kLimits.vertices});
@@ -17,9 +18,11 @@ TriangleMesh read_inline(Params& p) {
   mesh.normals =
       p.directions("normals", "Direction to shade with at each vertex; left out, triangles are flat.",
                    {0, kLimits.vertices});
-  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
     p.fail("normals", "expected as many as positions (" + std::to_string(mesh.positions.size()) + "), got " +
                           std::to_string(mesh.normals.size()));
+    mesh.normals.clear();
+  }
   for (const auto& triple : triples) {
     if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported already
     mesh.triangles.push_back({static_cast<std::uint32_t>(triple[0]), static_cast<std::uint32_t>(triple[1]),
@@ -109,15 +112,16 @@ VertexKey MeshReader::read_key(Params& p, const MeshSource& source, const Triang
     positions = std::move(mesh.positions);
     if (!rest.normals.empty() && normals.empty()) normals = std::move(mesh.normals);
   }
-  const auto expect = [&](const char* what, const std::vector<Vec3d>& given, std::size_t count) {
-    if (given.empty() || given.size() == count) return;
+  const auto taken = [&](const char* what, std::vector<Vec3d>& given, std::size_t count,
+                         const SharedVectors& resting) {
+    if (given.empty()) return resting;
+    if (given.size() == count) return share(std::move(given));
     p.fail(what, "expected as many as the mesh has without motion (" + std::to_string(count) + "), got " +
                      std::to_string(given.size()));
+    return resting;
   };
-  expect("positions", positions, rest.positions.size());
-  expect("normals", normals, rest.normals.size());
-  return {positions.empty() ? at_rest.positions : share(std::move(positions)),
-          normals.empty() ? at_rest.normals : share(std::move(normals))};
+  return {taken("positions", positions, rest.positions.size(), at_rest.positions),
+          taken("normals", normals, rest.normals.size(), at_rest.normals)};
 }
 
 bool MeshReader::fits(std::size_t vertices, std::size_t triangles, Params& p) {
