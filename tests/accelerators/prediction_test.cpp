@@ -120,6 +120,7 @@ void expect_no_change(const Subject& subject, const std::string& accelerator, in
   Rays<T> rays = neighbouring_rays<T>(count / 2, 4);
   const Rays<T> others = any_rays<T>(3, count / 2, 5);
   rays.insert(rays.end(), others.begin(), others.end());
+  rays = enough_of(rays);
   Structure<T> reference(subject.scene, "list");
   for (const T reach : {T(0.8), std::numeric_limits<T>::infinity()}) {
     const std::vector<char> expected = reference.occluded(rays, reach);
