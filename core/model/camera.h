@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/math/sampling.h"
 #include "core/model/batch.h"
 
 namespace orrery {

@@ -39,21 +39,18 @@ struct Demand {
 };
 
 inline constexpr double kLeastCost = 20'000;  // what the fixed work of a render amounts to
-// What rendering is expected to cost, in rays: pixels x samples x levels of depth, and a little for every
-// one.
+// What rendering is expected to cost, in rays: pixels x samples x levels of depth, and a little for each.
 double cost_of(const Plan& plan);
 // What reading so many bytes of JSON or of a mesh is expected to cost, in the same unit.
 double cost_of_reading(std::size_t bytes);
 
 // Lets a few pieces of work run at once; what waits in a lane is bounded by its cost.
-//  - Interactive work goes first. Batch work has at most half of the places, and one of every two that come
-//  free
-//    as long as it has none.
-//  - Within a lane, clients share by cost: each piece starts in the order of its client's virtual finish time
-//    (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for.
+//  - Interactive work goes first. Batch work has at most half of the places, and one of every two that
+//    come free as long as it has none.
+//  - Within a lane, clients share by cost: each piece starts in the order of its client's virtual finish
+//    time (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for.
 //  - When a lane is full, who has most waiting in it makes room for who has less (longest queue drop:
-//  McKenney,
-//    "Stochastic Fairness Queueing", 1990).
+//    McKenney, "Stochastic Fairness Queueing", 1990).
 // Safe from any thread.
 class Admission {
  public:
