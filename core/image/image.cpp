@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -69,6 +70,11 @@ void Image::set_row(int x, int y, int count, const float* red, const float* gree
     std::memcpy(out, &pixels[lanes - 1], 3);
     out += 3;
   }
+}
+
+std::span<const float> Image::values() const {
+  assert(format_ == PixelFormat::linear32);
+  return {reinterpret_cast<const float*>(data_.get()), bytes().size() / sizeof(float)};
 }
 
 Vec3f Image::linear(int x, int y) const {

@@ -35,6 +35,9 @@ class Image {
   }
   std::span<std::byte> bytes() { return {data_.get(), row_bytes() * static_cast<std::size_t>(height_)}; }
 
+  // Red, green and blue of all pixels, row by row. REQUIRES: linear32.
+  std::span<const float> values() const;
+
   // Linear colour of a pixel, whatever the format.
   Vec3f linear(int x, int y) const;
 

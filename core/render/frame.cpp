@@ -1,4 +1,5 @@
 #include <atomic>
+#include <numeric>
 #include <vector>
 
 #include "core/base/clock.h"
@@ -21,15 +22,18 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   std::vector<std::unique_ptr<TileRenderer<T>>> renderers(static_cast<std::size_t>(pool.threads()));
   const int across = (plan.width + kTileSide - 1) / kTileSide,
             down = (plan.height + kTileSide - 1) / kTileSide;
+  std::vector<double> cpu_ms(renderers.size());
   std::atomic<int> done = 0;
   std::atomic<bool> stopped = false;
   const auto start = Clock::now();
   pool.for_each(across * down, control.background, [&](int tile, int thread) {
     if (control.stop && !stopped && control.stop()) stopped = true;
     if (stopped) return false;
+    const double cpu_before = thread_cpu_ms();
     auto& renderer = renderers[static_cast<std::size_t>(thread)];
     if (!renderer) renderer = std::make_unique<TileRenderer<T>>(world, plan);
     renderer->render(tile % across * kTileSide, tile / across * kTileSide, control.stop, image);
+    cpu_ms[static_cast<std::size_t>(thread)] += thread_cpu_ms() - cpu_before;
     if (control.progress) control.progress(++done, across * down);
     return true;
   });
@@ -41,6 +45,7 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   if (stopped) throw Cancelled();
   stats.mean_cut /= static_cast<double>(plan.width) * plan.height;
   stats.trace_ms = milliseconds_since(start);
+  stats.cpu_ms = std::accumulate(cpu_ms.begin(), cpu_ms.end(), 0.0);
   return {std::move(image), stats};
 }
 

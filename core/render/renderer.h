@@ -66,6 +66,7 @@ struct RenderStats {
   AcceleratorFacts structure;        // what the rays were traced with
   double build_ms = 0;               // making the scene ready, where it was not yet
   double trace_ms = 0;               // wall clock
+  double cpu_ms = 0;                 // of tracing, on all threads together
   std::uint64_t non_finite_pixels = 0;
 };
 

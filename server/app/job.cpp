@@ -40,7 +40,7 @@ void Job::run() {
         return next++;
       },
       .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
-      .encode = [](const Image& image) { return encode_png(image); },
+      .encode = [this](const Image& image) { return spec_.study ? "" : encode_png(image); },
       .deliver = [this](std::int64_t, Frame&& frame) { keep(std::move(frame)); }};
   std::exception_ptr error;
   try {
@@ -56,26 +56,45 @@ void Job::run() {
   end(error);
 }
 
+RenderRequest Job::request(int number) const {
+  return spec_.study ? spec_.study->request(number) : spec_.path.at(number);
+}
+
+double Job::whole_cost() const {
+  const auto cost = [&](int number) { return cost_of(make_plan(spec_.scene->scene(), request(number))); };
+  if (!spec_.study) return spec_.frames * cost(0);
+  double sum = 0;
+  for (int number = 0; number < spec_.frames; ++number) sum += cost(number);
+  return sum;
+}
+
 RenderResult Job::render(int number, const Watch& watch) {
   const auto stop = [&] { return watch.stop(); };
-  const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number));
-  const auto ticket = means_.admission.enter_again({Lane::batch, spec_.client, cost_of(plan)}, stop);
+  const Plan plan = make_plan(spec_.scene->scene(), request(number));
+  const double cost = cost_of(plan);
+  const auto ticket = means_.admission.enter_again({Lane::batch, spec_.client, cost}, stop);
   {
     const std::lock_guard lock(mutex_);
     if (!started_) started_ = Clock::now();
+    if (cost_ == 0) cost_ = whole_cost();
     state_ = JobState::running;
   }
-  const auto progress = [this](int, int total) {
+  const auto progress = [this, cost](int, int total) {
     const std::lock_guard lock(mutex_);
     tiles_a_frame_ = total;
     ++tiles_done_;
+    cost_done_ += cost / total;
   };
-  return means_.render(*spec_.scene, plan, PixelFormat::srgb8,
-                       {.stop = stop, .progress = progress, .background = true});
+  Study* study = spec_.study.get();
+  RenderResult rendered =
+      means_.render(*spec_.scene, plan, study ? PixelFormat::linear32 : PixelFormat::srgb8,
+                    {.stop = stop, .progress = progress, .background = true});
+  if (study) study->see(rendered);
+  return rendered;
 }
 
 void Job::keep(Frame&& frame) {
-  room_(frame.bytes.size());
+  if (!spec_.study) room_(frame.bytes.size());
   const std::lock_guard lock(mutex_);
   bytes_ += frame.bytes.size();
   pictures_.push_back(std::make_shared<const std::string>(std::move(frame.bytes)));
@@ -131,8 +150,8 @@ JobStatus Job::status_locked() const {
   if (!started_) return status;
   status.elapsed_s = milliseconds_since(*started_) / 1000;
   if (ended_) status.elapsed_s -= milliseconds_since(*ended_) / 1000;
-  if (state_ == JobState::running && tiles_done_ > 0)
-    status.remaining_s = status.elapsed_s * double(status.tiles - tiles_done_) / double(tiles_done_);
+  if (state_ == JobState::running && cost_done_ > 0)
+    status.remaining_s = status.elapsed_s * std::max(0.0, cost_ / cost_done_ - 1);
   return status;
 }
 

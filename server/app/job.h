@@ -11,16 +11,18 @@
 #include <thread>
 #include <vector>
 
+#include "core/study/study.h"
 #include "server/app/means.h"
 #include "server/app/orbit.h"
 #include "server/app/watch.h"
 
 namespace orrery {
 
-// Long work: a picture, or the frames of an orbit.
+// Long work: a picture, the frames of an orbit, or the pictures that make a chart, which are not kept.
 struct JobSpec {
   std::shared_ptr<const PreparedScene> scene;
-  OrbitPath path;
+  OrbitPath path;                // of the frames,
+  std::shared_ptr<Study> study;  // unless there is this
   int frames = 1;
   std::string client;  // who asked for it
 };
@@ -62,8 +64,11 @@ class Job {
   std::optional<Clock::time_point> ended() const;
   std::size_t bytes() const;  // of the pictures
 
-  // Frame 0, 1, ...; null as long as it is not rendered. REQUIRES: frame < frames().
+  // Frame 0, 1, ...; null as long as it is not rendered. REQUIRES: frame < frames(), no study().
   Picture frame(int number) const;
+
+  // What the job measures; null if it does not. REQUIRES, to look at its chart: the job is done.
+  std::shared_ptr<const Study> study() const { return spec_.study; }
 
   // Waits until more than `frames` are done, the job has ended, or `until`.
   JobStatus wait(int frames, Clock::time_point until) const;
@@ -75,6 +80,8 @@ class Job {
  private:
   void run();
   bool stop() const;
+  RenderRequest request(int number) const;
+  double whole_cost() const;  // of all frames, in rays by estimate
   RenderResult render(int number, const Watch& watch);
   void keep(Frame&& frame);
   void end(std::exception_ptr error);
@@ -93,6 +100,7 @@ class Job {
   JobState state_ = JobState::waiting;
   std::exception_ptr error_;
   std::int64_t tiles_a_frame_ = 0, tiles_done_ = 0;
+  double cost_done_ = 0, cost_ = 0;
   std::optional<Clock::time_point> started_, ended_;
   std::thread thread_;  // last: it uses the others
 };

@@ -21,6 +21,13 @@ FileFormat format_of(const std::string& path) {
   throw InputError("--output", "expected a name that ends in .png, .jpg or .exr, got " + path);
 }
 
+void require_writable(const std::string& path) {
+  if (std::filesystem::exists(path)) return;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+    throw FileError("cannot write " + path + ": " + std::strerror(errno));
+}
+
 void write_file(const std::string& path, std::string_view bytes) {
   // Where the name is no plain file (a device, a pipe), there is nothing to put in its place.
   std::error_code ignored;

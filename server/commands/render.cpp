@@ -39,6 +39,7 @@ RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, 
 int render(const Options& options) {
   const FileFormat format = options.output ? format_of(*options.output) : FileFormat::png;
   const RenderRequest request = read_render_flags(options.render);
+  if (options.output) require_writable(*options.output);
   RunStats stats;
   auto start = Clock::now();
   std::optional<ProgressBar> bar(std::in_place, "tiles");

@@ -22,7 +22,8 @@ std::string address_of(const Request& request) {
 
 Scope scope_of(const Request& request) {
   if (request.method == "GET" || request.method == "HEAD") return Scope::read;
-  const bool renders = request.path == "/v1/render" || request.path.starts_with("/v1/jobs");
+  const bool renders = request.path == "/v1/render" || request.path.starts_with("/v1/jobs") ||
+                       request.path.ends_with("/charts");
   return renders ? Scope::render : Scope::write;
 }
 

@@ -1,5 +1,4 @@
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
@@ -7,33 +6,14 @@
 #include "core/plan/plan.h"
 #include "server/app/picture_key.h"
 #include "server/http/router.h"
-#include "server/routes/answers.h"
+#include "server/routes/job_answers.h"
 #include "server/routes/order.h"
-#include "server/routes/problem.h"
 
 // /v1/jobs: pictures and orbits that take longer than anybody holds a connection open for.
 namespace orrery {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string path_of(const Job& job) { return "/v1/jobs/" + job.id(); }
-
-ordered_json status_json(const Job& job, const JobStatus& status) {
-  const auto milli = [](double seconds) { return std::round(seconds * 1000) / 1000; };
-  ordered_json json = {{"id", job.id()},
-                       {"state", name_of(status.state)},
-                       {"frames", status.frames},
-                       {"frames_done", status.frames_done},
-                       {"tiles", status.tiles},
-                       {"tiles_done", status.tiles_done},
-                       {"elapsed_s", milli(status.elapsed_s)},
-                       {"events", path_of(job) + "/events"},
-                       {"first_frame", path_of(job) + "/frames/0.png"}};
-  if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
-  if (status.error) json["error"] = ordered_json::parse(problem_response(status.error, job.id()).body);
-  return json;
-}
 
 JobSpec read_job(App& app, Request& request, Timing& timing) {
   JobSpec spec;
@@ -64,32 +44,24 @@ JobSpec read_job(App& app, Request& request, Timing& timing) {
   return spec;
 }
 
-Response start_job(App& app, Request& request) {
+Response start_orbit(App& app, Request& request) {
   app.require_open();
-  const std::string key = request.header("Idempotency-Key").value_or("");
-  constexpr std::size_t kLongestKey = 255;
-  if (key.size() > kLongestKey)
-    throw HttpError(400, "Idempotency-Key has more than " + std::to_string(kLongestKey) + " characters");
   Timing timing;
   JobSpec spec = read_job(app, request, timing);
   const std::string content = canonical_orbit(spec.scene->scene(), spec.path, spec.frames);
-  const Jobs::Started started = app.jobs().start(std::move(spec), key, content);
-  Response response = json_answer(202, status_json(*started.job, started.job->status()));
-  response.set("Location", path_of(*started.job));
-  response.set("Server-Timing", server_timing(timing));
-  response.set("Cache-Control", "no-store");
-  return response;
+  return start_job(app, request, std::move(spec), content, timing);
 }
 
 Response get_job(App& app, Request& request) {
   const auto job = app.jobs().find(request.path_value("id"));
-  Response response = json_answer(200, status_json(*job, job->status()));
+  Response response = json_answer(200, job_json(*job, job->status()));
   response.set("Cache-Control", "no-store");
   return response;
 }
 
 // "12.png": 12. Throws HttpError 404 for what is no frame of the job.
 int frame_of(const Job& job, const std::string& name) {
+  if (job.study()) throw HttpError(404, "The job makes a chart and keeps no pictures");
   const auto number = number_in<int>(std::string_view(name).substr(0, name.find('.')));
   if (number && name == std::to_string(*number) + ".png" && *number >= 0 && *number < job.frames())
     return *number;
@@ -100,18 +72,9 @@ Response get_frame(App& app, Request& request) {
   const auto job = app.jobs().find(request.path_value("id"));
   const int number = frame_of(*job, request.path_value("frame"));
   const auto picture = job->frame(number);
-  if (!picture) {
-    const JobStatus status = job->status();
-    throw HttpError(409, "Frame " + std::to_string(number) + " is not rendered: " +
-                             std::to_string(status.frames_done) + " of " + std::to_string(status.frames) +
-                             " are, and the job is " + std::string(name_of(status.state)));
-  }
-  const std::string etag = "\"" + job->id() + "-" + std::to_string(number) + "\"";
-  Response response{.status = 304};
-  if (!has_current(request, etag)) response = text_response(200, "image/png", *picture);
-  response.set("ETag", etag);
-  response.set("Cache-Control", "private, max-age=31536000, immutable");
-  return response;
+  if (!picture) refuse_result("Frame " + std::to_string(number), job->status());
+  return result_response(request, "\"" + job->id() + "-" + std::to_string(number) + "\"", "image/png",
+                         *picture);
 }
 
 std::string event(std::string_view name, int id, const ordered_json& data) {
@@ -136,9 +99,9 @@ struct Events {
       std::string text;
       for (; seen < status.frames_done; ++seen) text += frame_event(status);
       if (ended)
-        text += event(name_of(status.state), status.frames + 1, status_json(*job, status));
+        text += event(name_of(status.state), status.frames + 1, job_json(*job, status));
       else if (moved && text.empty())
-        text = event("progress", seen, status_json(*job, status));
+        text = event("progress", seen, job_json(*job, status));
       if (text.empty() && Clock::now() - spoke > kSilence) text = ": still waiting\n\n";
       if (!text.empty()) spoke = Clock::now();
       if ((!text.empty() && !sink.write(text)) || ended || gone()) return;
@@ -147,9 +110,9 @@ struct Events {
 
  private:
   std::string frame_event(const JobStatus& status) const {
-    ordered_json json = status_json(*job, status);
+    ordered_json json = job_json(*job, status);
     json["frame"] = seen;
-    json["href"] = path_of(*job) + "/frames/" + std::to_string(seen) + ".png";
+    if (!job->study()) json["href"] = job_path(*job) + "/frames/" + std::to_string(seen) + ".png";
     return event("frame", seen + 1, json);
   }
 };
@@ -181,7 +144,7 @@ Response remove_job(App& app, Request& request) {
 }  // namespace
 
 void add_jobs_routes(Router& router, App& app) {
-  router.add("POST", "/v1/jobs", [&app](Request& request) { return start_job(app, request); });
+  router.add("POST", "/v1/jobs", [&app](Request& request) { return start_orbit(app, request); });
   router.add("GET", "/v1/jobs/{id}", [&app](Request& request) { return get_job(app, request); });
   router.add("DELETE", "/v1/jobs/{id}", [&app](Request& request) { return remove_job(app, request); });
   router.add("GET", "/v1/jobs/{id}/events", [&app](Request& request) { return get_events(app, request); });

@@ -2,6 +2,7 @@
 
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
+#include "core/study/study.h"
 #include "server/http/head.h"
 #include "server/http/router.h"
 #include "server/routes/answers.h"
@@ -19,6 +20,9 @@ nlohmann::ordered_json limits_json(const Settings& settings) {
                                  {"image_pixels", kMaxImagePixels},
                                  {"samples", kMaxSamples},
                                  {"ray_depth", kMaxDepth},
+                                 {"chart_pixels", kMostChartPixels},
+                                 {"chart_samples", kMostChartSamples},
+                                 {"chart_rounds", kMostChartRounds},
                                  {"objects", kMaxObjects},
                                  {"lights", kMaxLights},
                                  {"instanced_primitives", kMaxInstanced},

@@ -150,7 +150,7 @@ TEST_F(CommandLine, WhatIsNoSceneFileIsRefused) {
 
 TEST_F(CommandLine, EveryCommandExplainsItself) {
   EXPECT_EQ(run("--help").status, 0);
-  for (const char* command : {"serve", "render", "orbit", "check", "explain"}) {
+  for (const char* command : {"serve", "render", "orbit", "check", "explain", "chart"}) {
     const Outcome help = run(std::string(command) + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos) << command;
@@ -163,6 +163,18 @@ TEST_F(CommandLine, SchemaCatalogAndExplainPrintJson) {
   const std::string scene = write("s.json", kScene);
   EXPECT_FALSE(nlohmann::json::parse(run("explain --json " + scene).out).at("decisions").empty());
   EXPECT_NE(run("explain " + scene).out.find("shadows"), std::string::npos);
+}
+
+TEST_F(CommandLine, ChartWritesWhatTheEndingSays) {
+  const std::string few = "chart " + write("s.json", kScene) + " --chart-samples 4 --rounds 1 -o ";
+  for (const char* name : {"c.svg", "c.csv", "c.json"}) EXPECT_EQ(run(few + file(name)).status, 0) << name;
+  EXPECT_EQ(nlohmann::json::parse(bytes_of(file("c.json"))).at("points").size(), 4U);
+  const Outcome wrong = run(few + file("c.png"));
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("--output"), std::string::npos) << wrong.err;
+  EXPECT_NE(run(few + file("c.svg") + " --samples 4").err.find("--samples"), std::string::npos);
+  EXPECT_EQ(run(few + file("c.svg") + " --rounds 99").status, 2);
+  EXPECT_EQ(run(few + file("nowhere/c.svg")).status, 1);
 }
 
 TEST_F(CommandLine, OrbitWritesNumberedFrames) {

@@ -63,7 +63,11 @@ TEST(Access, NeedsATokenOfTheScope) {
   expect_problem(post("/v1/render", "r", scene), 403);
   expect_problem(post("/v1/scenes", "p", scene), 403);
   EXPECT_EQ(post("/v1/render", "p", scene)->status, 200);
-  EXPECT_EQ(post("/v1/scenes", "k", scene)->status, 201);
+  const auto kept = post("/v1/scenes", "k", scene);
+  EXPECT_EQ(kept->status, 201);
+  const std::string charts = kept->get_header_value("Location") + "/charts";
+  expect_problem(post(charts.c_str(), "k", "{}"), 403);
+  EXPECT_EQ(post(charts.c_str(), "p", "{}")->status, 202);
   expect_problem(post("/v1/render", "k", scene), 403);
   expect_problem(post("/v1/jobs", "k", scene), 403);
   expect_problem(client.Delete("/v1/scenes/x", bearer("p")), 403);

@@ -50,6 +50,7 @@ TEST_F(Info, LimitsArePublished) {
   EXPECT_EQ(limits.at("image_pixels"), 16777216);
   EXPECT_EQ(limits.at("samples"), 4096);
   EXPECT_EQ(limits.at("orbit_frames"), 3600);
+  EXPECT_EQ(limits.at("chart_pixels"), 1048576);
 }
 
 TEST_F(Info, SchemaIsServedWithAnETag) {

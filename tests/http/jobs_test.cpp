@@ -31,6 +31,8 @@ std::vector<Event> parse_events(const std::string& text) {
   return events;
 }
 
+std::string path(const json& job) { return "/v1/jobs/" + job.at("id").get<std::string>(); }
+
 class JobTest : public HttpTest {
  protected:
   json start(const json& body, const httplib::Headers& headers = {}) {
@@ -41,7 +43,6 @@ class JobTest : public HttpTest {
     EXPECT_EQ(result->get_header_value("Location"), path(job));
     return job;
   }
-  static std::string path(const json& job) { return "/v1/jobs/" + job.at("id").get<std::string>(); }
   std::vector<Event> events(const json& job, const httplib::Headers& headers = {}) {
     const auto result = client_.Get(path(job) + "/events", headers);
     EXPECT_EQ(result->get_header_value("Content-Type"), "text/event-stream");
@@ -197,16 +198,20 @@ json post_job(Daemon& daemon, const json& body, int status = 202) {
   return json::parse(result->body);
 }
 
+// What is told of a job until it ends.
+std::vector<Event> events_of(Daemon& daemon, const json& job) {
+  return parse_events(daemon.client().Get(path(job) + "/events")->body);
+}
+
 TEST(JobLimits, AreHeldAndNamed) {
   Daemon daemon({"--jobs", "4", "--job-bytes", "3000"});
   const json first = post_job(daemon, endless());
   post_job(daemon, endless());
   const json problem = post_job(daemon, endless(), 429);
   EXPECT_NE(problem.at("detail").get<std::string>().find("(jobs)"), std::string::npos);
-  daemon.client().Delete("/v1/jobs/" + first.at("id").get<std::string>());
-  const json many = post_job(daemon, {{"scene", small_scene()}, {"orbit", {{"frames", 100}}}});
-  const std::string path = "/v1/jobs/" + many.at("id").get<std::string>();
-  const auto told = parse_events(daemon.client().Get(path + "/events")->body);
+  daemon.client().Delete(path(first));
+  const auto told =
+      events_of(daemon, post_job(daemon, {{"scene", small_scene()}, {"orbit", {{"frames", 100}}}}));
   EXPECT_EQ(told.back().name, "failed");
   EXPECT_NE(told.back().data.at("error").at("detail").get<std::string>().find("(job_bytes)"),
             std::string::npos);
@@ -224,11 +229,11 @@ TEST(JobLimits, EndedJobsKeepNeitherThreadsNorMoreThanTheirNumber) {
   std::vector<std::string> paths;
   for (int i = 0; i < 20; ++i) {
     const json job = post_job(daemon, {{"scene", small_scene()}, {"camera", {{"azimuth_degrees", i}}}});
-    paths.push_back("/v1/jobs/" + job.at("id").get<std::string>());
-    daemon.client().Get(paths.back() + "/events");
+    paths.push_back(path(job));
+    EXPECT_EQ(events_of(daemon, job).back().name, "done");
   }
   int there = 0;
-  for (const std::string& path : paths) there += daemon.client().Get(path)->status == 200;
+  for (const std::string& kept : paths) there += daemon.client().Get(kept)->status == 200;
   EXPECT_EQ(there, 3);
   EXPECT_EQ(daemon.client().Get(paths.back())->status, 200);
 }
@@ -247,8 +252,8 @@ TEST(JobLimits, TheOldestResultsMakeRoomForNewOnes) {
   std::vector<std::string> paths;
   for (int i = 0; i < 8; ++i) {
     const json job = post_job(daemon, {{"scene", small_scene()}, {"camera", {{"azimuth_degrees", i}}}});
-    paths.push_back("/v1/jobs/" + job.at("id").get<std::string>());
-    EXPECT_EQ(parse_events(daemon.client().Get(paths.back() + "/events")->body).back().name, "done");
+    paths.push_back(path(job));
+    EXPECT_EQ(events_of(daemon, job).back().name, "done");
   }
   EXPECT_EQ(daemon.client().Get(paths.front())->status, 404);
   EXPECT_EQ(daemon.client().Get(paths.back())->status, 200);
@@ -257,21 +262,18 @@ TEST(JobLimits, TheOldestResultsMakeRoomForNewOnes) {
 TEST(JobLimits, ResultsAreKeptForTheTimeStated) {
   Daemon daemon({"--job-kept-seconds", "1"});
   const json job = post_job(daemon, {{"scene", small_scene()}});
-  const std::string path = "/v1/jobs/" + job.at("id").get<std::string>();
-  daemon.client().Get(path + "/events");
+  events_of(daemon, job);
   int status = 200;
   for (int i = 0; i < 400 && status == 200; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    status = daemon.client().Get(path)->status;
+    status = daemon.client().Get(path(job))->status;
   }
   EXPECT_EQ(status, 404);
 }
 
 TEST(JobLimits, AJobThatTakesTooLongFails) {
   Daemon daemon({"--job-seconds", "1"});
-  const json job = post_job(daemon, endless());
-  const auto told =
-      parse_events(daemon.client().Get("/v1/jobs/" + job.at("id").get<std::string>() + "/events")->body);
+  const auto told = events_of(daemon, post_job(daemon, endless()));
   EXPECT_EQ(told.back().name, "failed");
   EXPECT_EQ(told.back().data.at("error").at("status"), 504);
   EXPECT_NE(told.back().data.at("error").at("detail").get<std::string>().find("(job_seconds)"),
@@ -283,9 +285,7 @@ TEST(JobLimits, AJobEndsWithTheService) {
   const json job = post_job(daemon, endless());
   EXPECT_TRUE(daemon.wait_until_working());
   std::vector<Event> told;
-  std::thread watcher([&] {
-    told = parse_events(daemon.client().Get("/v1/jobs/" + job.at("id").get<std::string>() + "/events")->body);
-  });
+  std::thread watcher([&] { told = events_of(daemon, job); });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   daemon.signal(SIGTERM);
   watcher.join();

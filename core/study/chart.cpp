@@ -1,0 +1,81 @@
+#include "core/study/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace orrery {
+
+double Point::rmse() const {
+  return std::sqrt(mean([](const Sighting& s) { return s.difference.rmse * s.difference.rmse; }));
+}
+
+double Point::rmse_sd() const {
+  if (rounds.size() < 2) return 0;
+  const double middle = mean([](const Sighting& s) { return s.difference.rmse; });
+  double squares = 0;
+  for (const Sighting& s : rounds) squares += (s.difference.rmse - middle) * (s.difference.rmse - middle);
+  return std::sqrt(squares / static_cast<double>(rounds.size() - 1));
+}
+
+double Point::cpu_ms() const {
+  std::vector<double> times;
+  for (const Sighting& s : rounds) times.push_back(s.cpu_ms);
+  std::sort(times.begin(), times.end());
+  const std::size_t half = times.size() / 2;
+  return times.size() % 2 == 1 ? times[half] : (times[half - 1] + times[half]) / 2;
+}
+
+double Point::rays() const {
+  return mean([](const Sighting& s) { return s.rays; });
+}
+
+double Chart::cheapest_ms() const {
+  double cheapest = std::numeric_limits<double>::infinity();
+  for (const Point& p : points) cheapest = std::min(cheapest, p.cpu_ms());
+  return cheapest;
+}
+
+void mark_front(std::vector<Point>& points) {
+  constexpr double kNearer = 0.99;
+  std::vector<Point*> by_time;
+  for (Point& p : points) by_time.push_back(&p);
+  std::stable_sort(by_time.begin(), by_time.end(), [](const Point* a, const Point* b) {
+    return std::pair(a->cpu_ms(), a->rmse()) < std::pair(b->cpu_ms(), b->rmse());
+  });
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Point* p : by_time) {
+    p->on_front = p->rmse() < nearest * kNearer;
+    if (p->on_front) nearest = p->rmse();
+  }
+}
+
+std::string line_name(const Rung& rung) {
+  return rung.technique + " " + std::to_string(rung.max_depth) + (rung.double_precision ? ", double" : "");
+}
+
+std::string csv_of(const Chart& chart) {
+  std::string text =
+      "technique,max_depth,precision,samples,accelerator,cpu_ms,times_cheapest,rays,rmse,rmse_sd,relative_"
+      "mse,"
+      "mean_absolute,largest,bias,psnr_db,non_finite,on_front\r\n";
+  const double cheapest = chart.cheapest_ms();
+  for (const Point& p : chart.points) {
+    const auto mean = [&](double Difference::*value) {
+      return p.mean([&](const Sighting& s) { return s.difference.*value; });
+    };
+    char line[512];
+    std::snprintf(
+        line, sizeof line, "%s,%d,%s,%d,%s,%.6g,%.6g,%.0f,%.9g,%.3g,%.9g,%.9g,%.9g,%.9g,%.6g,%.0f,%s\r\n",
+        p.rung.technique.c_str(), p.rung.max_depth, p.rung.double_precision ? "double" : "float",
+        p.rung.samples, p.accelerator.c_str(), p.cpu_ms(), p.cpu_ms() / cheapest, p.rays(), p.rmse(),
+        p.rmse_sd(), mean(&Difference::relative_mse), mean(&Difference::mean_absolute),
+        mean(&Difference::largest), mean(&Difference::bias), mean(&Difference::psnr_db),
+        p.mean([](const Sighting& s) { return double(s.difference.non_finite); }), p.on_front ? "yes" : "no");
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace orrery

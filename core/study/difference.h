@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace orrery {
+
+// How far a picture x is from a reference r, over all channels of linear colour; d = x - r.
+struct Difference {
+  double rmse = 0;           // sqrt(mean d^2)
+  double relative_mse = 0;   // mean of d^2 / (r + 0.01)^2: what the eye forgives in bright places counts less
+  double mean_absolute = 0;  // mean |d|
+  double largest = 0;        // max |d|
+  double bias = 0;           // mean d
+  double psnr_db = 0;  // 10 log10 of 1 / mean d^2, of x and r cut to 0..1; infinite where these are equal
+  std::uint64_t non_finite = 0;  // values of x or r left out of all the others
+};
+
+// REQUIRES: as many values in both.
+Difference difference(std::span<const float> picture, std::span<const float> reference);
+
+}  // namespace orrery

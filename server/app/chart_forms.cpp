@@ -1,0 +1,79 @@
+#include "server/app/chart_forms.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json rung_json(const Rung& rung) {
+  return {{"technique", rung.technique},
+          {"max_depth", rung.max_depth},
+          {"precision", rung.double_precision ? "double" : "float"},
+          {"samples", rung.samples}};
+}
+
+ordered_json point_json(const Point& point, double cheapest_ms) {
+  const auto mean = [&](double Difference::*value) {
+    return point.mean([&](const Sighting& s) { return s.difference.*value; });
+  };
+  ordered_json json = rung_json(point.rung);
+  json["accelerator"] = point.accelerator;
+  json["cpu_ms"] = point.cpu_ms();
+  json["times_cheapest"] = point.cpu_ms() / cheapest_ms;
+  json["rays"] = point.rays();
+  json["rmse"] = point.rmse();
+  json["rmse_sd"] = point.rmse_sd();
+  json["relative_mse"] = mean(&Difference::relative_mse);
+  json["mean_absolute"] = mean(&Difference::mean_absolute);
+  json["largest"] = mean(&Difference::largest);
+  json["bias"] = mean(&Difference::bias);
+  const double psnr_db = mean(&Difference::psnr_db);
+  json["psnr_db"] = std::isfinite(psnr_db) ? ordered_json(psnr_db) : ordered_json();  // null: no difference
+  json["non_finite"] = point.mean([](const Sighting& s) { return double(s.difference.non_finite); });
+  json["on_front"] = point.on_front;
+  return json;
+}
+
+std::string json_of(const Chart& chart) {
+  const double cheapest_ms = chart.cheapest_ms();
+  ordered_json points = ordered_json::array();
+  for (const Point& point : chart.points) points.push_back(point_json(point, cheapest_ms));
+  ordered_json reference = rung_json(chart.reference);
+  reference["cpu_ms"] = chart.reference_cpu_ms;
+  reference["rmse"] = chart.reference_rmse;
+  const ordered_json json = {{"scene", {{"id", chart.scene_id}, {"title", chart.title}}},
+                             {"image", {{"width", chart.width}, {"height", chart.height}}},
+                             {"rounds", chart.points.front().rounds.size()},
+                             {"reference", std::move(reference)},
+                             {"cheapest_ms", cheapest_ms},
+                             {"points", std::move(points)}};
+  return json.dump(2) + "\n";
+}
+
+constexpr std::array kForms{ChartForm{".svg", "image/svg+xml", svg_of},
+                            ChartForm{".csv", "text/csv; charset=utf-8", csv_of},
+                            ChartForm{".json", "application/json", json_of}};
+
+}  // namespace
+
+void read_extent(Params& p, Study::Extent& extent) {
+  extent.samples = static_cast<int>(p.integer("samples", "Of the highest rung: 1, 4, 16, ... up to it.", 1,
+                                              kMostChartSamples, extent.samples));
+  extent.rounds = static_cast<int>(p.integer("rounds", "Pictures of each rung, with different seeds.", 1,
+                                             kMostChartRounds, extent.rounds));
+}
+
+const ChartForm* chart_form_of(std::string_view name) {
+  const auto found = std::find_if(kForms.begin(), kForms.end(),
+                                  [&](const ChartForm& f) { return name.ends_with(f.ending); });
+  return found == kForms.end() ? nullptr : &*found;
+}
+
+}  // namespace orrery

@@ -1,0 +1,81 @@
+#include <CLI/CLI.hpp>
+
+#include "core/study/study.h"
+#include "server/app/chart_forms.h"
+#include "server/app/render_options.h"
+#include "server/commands/commands.h"
+#include "server/commands/output_file.h"
+#include "server/commands/progress.h"
+#include "server/commands/render_flags.h"
+#include "server/commands/scene_file.h"
+#include "server/commands/signals.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  orrery chart scenes/glass.json -o glass.svg
+  orrery chart scenes/paper.json -o paper.csv --width 300 --height 300 --chart-samples 256
+
+Renders the scene in many ways, some rounds of each, and charts what they cost against how far they are from the
+picture in double precision with four times the samples. On a busy machine times mean little; errors do.
+)";
+
+struct Options {
+  std::string scene, output;
+  int threads = 0;
+  Study::Extent extent;
+  RenderFlags render;
+};
+
+int chart(const Options& options) {
+  const ChartForm* form = chart_form_of(options.output);
+  if (!form)
+    throw InputError("--output", "expected a name that ends in .svg, .csv or .json, got " + options.output);
+  const RenderRequest request = read_render_flags(options.render);
+  require_writable(options.output);
+  std::optional<ProgressBar> bar(std::in_place, "pictures");
+  bar->say("reading " + options.scene);
+  const PreparedScene scene(load_scene_file(options.scene));
+  const SignalWatch signals;
+  Study study =
+      with_names_for(Naming::command_line, [&] { return Study(scene.scene(), request, options.extent); });
+  WorkerPool pool(options.threads);
+  for (int number = 0; number < study.pictures(); ++number) {
+    const Plan plan = plan_for(scene.scene(), study.request(number));
+    study.see(render_frame(scene, plan, PixelFormat::linear32, pool,
+                           {.stop = [&] { return signals.interrupted(); }, .progress = {}}));
+    bar->update(number + 1, study.pictures());
+  }
+  bar.reset();
+  write_file(options.output, form->write(study.chart()));
+  return kDone;
+}
+
+}  // namespace
+
+Command add_chart(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* app = root.add_subcommand("chart", "Chart speed against accuracy of a picture");
+  app->footer(kExamples);
+  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
+  app->add_option("-o,--output", options->output, "The chart; its ending chooses a drawing, a table or JSON")
+      ->type_name("FILE.{svg,csv,json}")
+      ->required();
+  app->add_option("--chart-samples", options->extent.samples, "Of the highest rung: 1, 4, 16, ... up to it")
+      ->check(CLI::Range(1, kMostChartSamples).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  app->add_option("--rounds", options->extent.rounds, "Pictures of each rung, with different seeds")
+      ->check(CLI::Range(1, kMostChartRounds).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->type_name("N");
+  add_render_flags(*app, options->render);
+  return {app, [options] { return chart(*options); }};
+}
+
+}  // namespace orrery

@@ -1,0 +1,63 @@
+#include "server/routes/job_answers.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "server/http/router.h"
+#include "server/routes/problem.h"
+
+namespace orrery {
+
+using nlohmann::ordered_json;
+
+std::string job_path(const Job& job) { return "/v1/jobs/" + job.id(); }
+
+ordered_json job_json(const Job& job, const JobStatus& status) {
+  const auto milli = [](double seconds) { return std::round(seconds * 1000) / 1000; };
+  ordered_json json = {{"id", job.id()},
+                       {"state", name_of(status.state)},
+                       {"frames", status.frames},
+                       {"frames_done", status.frames_done},
+                       {"tiles", status.tiles},
+                       {"tiles_done", status.tiles_done},
+                       {"elapsed_s", milli(status.elapsed_s)},
+                       {"events", job_path(job) + "/events"}};
+  if (const auto study = job.study())
+    json["chart"] = "/v1/scenes/" + study->scene_id() + "/charts/" + job.id() + ".svg";
+  else
+    json["first_frame"] = job_path(job) + "/frames/0.png";
+  if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
+  if (status.error) json["error"] = ordered_json::parse(problem_response(status.error, job.id()).body);
+  return json;
+}
+
+Response start_job(App& app, Request& request, JobSpec spec, const std::string& content,
+                   const Timing& timing) {
+  const std::string key = request.header("Idempotency-Key").value_or("");
+  constexpr std::size_t kLongestKey = 255;
+  if (key.size() > kLongestKey)
+    throw HttpError(400, "Idempotency-Key has more than " + std::to_string(kLongestKey) + " characters");
+  const Jobs::Started started = app.jobs().start(std::move(spec), key, content);
+  Response response = json_answer(202, job_json(*started.job, started.job->status()));
+  response.set("Location", job_path(*started.job));
+  response.set("Server-Timing", server_timing(timing));
+  response.set("Cache-Control", "no-store");
+  return response;
+}
+
+void refuse_result(const std::string& what, const JobStatus& status) {
+  throw HttpError(409, what + " is not made: " + std::to_string(status.frames_done) + " of " +
+                           std::to_string(status.frames) + " pictures are, and the job is " +
+                           std::string(name_of(status.state)));
+}
+
+Response result_response(const Request& request, const std::string& etag, std::string_view type,
+                         const std::string& bytes) {
+  Response response{.status = 304};
+  if (!has_current(request, etag)) response = text_response(200, type, bytes);
+  response.set("ETag", etag);
+  response.set("Cache-Control", "private, max-age=31536000, immutable");
+  return response;
+}
+
+}  // namespace orrery

@@ -1,0 +1,127 @@
+#include <algorithm>
+
+#include "tests/http/daemon.h"
+
+// Speed against accuracy, measured by the service.
+namespace orrery {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kJson = "application/json";
+
+json ends_on(const std::string& name) {
+  return {{"image", {{"width", 16}, {"height", 12}}},
+          {"chart", {{"samples", 4}, {"rounds", 2}}},
+          {"render", {{"max_depth", 1}, {"technique", name}}}};
+}
+
+class ChartTest : public HttpTest {
+ protected:
+  std::string scene_ = "/v1/scenes/" + post_scene(small_scene().dump());
+
+  json start(const json& body, const httplib::Headers& headers = {}) {
+    const auto result = client_.Post(scene_ + "/charts", headers, body.dump(), kJson);
+    EXPECT_EQ(result->status, 202) << result->body;
+    const json job = json::parse(result->body);
+    EXPECT_EQ(result->get_header_value("Location"), "/v1/jobs/" + job.at("id").get<std::string>());
+    EXPECT_EQ(job.at("chart"), scene_ + "/charts/" + job.at("id").get<std::string>() + ".svg");
+    return job;
+  }
+  // Where it is, without its ending, once it is made.
+  std::string made(const json& job) {
+    const auto told = client_.Get(job.at("events").get<std::string>());
+    EXPECT_NE(told->body.find("event: done"), std::string::npos) << told->body;
+    return scene_ + "/charts/" + job.at("id").get<std::string>();
+  }
+};
+
+TEST_F(ChartTest, CanBeHadAsDrawingTableAndNumbers) {
+  const json job = start(ends_on("whitted"));
+  EXPECT_EQ(job.at("frames"), 2 + 2 * 8);  // raycast and whitted, both precisions, 1 and 4 samples
+  const std::string path = made(job);
+  const auto numbers = client_.Get(path + ".json"), drawing = client_.Get(path + ".svg"),
+             table = client_.Get(path + ".csv");
+  EXPECT_EQ(numbers->get_header_value("Content-Type"), kJson);
+  EXPECT_EQ(drawing->get_header_value("Content-Type"), "image/svg+xml");
+  EXPECT_EQ(table->get_header_value("Content-Type"), "text/csv; charset=utf-8");
+  EXPECT_EQ(drawing->body.rfind("<svg ", 0), 0U);
+  const json chart = json::parse(numbers->body);
+  ASSERT_EQ(chart.at("points").size(), 8U);
+  EXPECT_EQ(std::count(table->body.begin(), table->body.end(), '\n'), 8 + 1);
+  EXPECT_EQ(chart.at("image"), json({{"width", 16}, {"height", 12}}));
+  EXPECT_EQ(chart.at("reference").at("samples"), 16);
+  const auto rmse = [&](std::size_t i) { return chart.at("points").at(i).at("rmse").get<double>(); };
+  EXPECT_LT(rmse(5), rmse(4));  // 4 samples and 1, of the model that is the reference's
+  EXPECT_GT(rmse(1), rmse(5));
+  for (const json& point : chart.at("points")) EXPECT_GT(point.at("cpu_ms").get<double>(), 0);
+  EXPECT_EQ(get_known(path + ".svg", drawing->get_header_value("ETag"))->status, 304);
+  EXPECT_NE(drawing->get_header_value("ETag"), table->get_header_value("ETag"));
+}
+
+TEST_F(ChartTest, KeepsNoPictures) {
+  Daemon daemon({"--job-bytes", "1"});
+  const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), kJson);
+  const std::string path = posted->get_header_value("Location") + "/charts";
+  const json job = json::parse(daemon.client().Post(path, ends_on("whitted").dump(), kJson)->body);
+  EXPECT_FALSE(job.contains("first_frame"));
+  const auto told = daemon.client().Get(job.at("events").get<std::string>());
+  EXPECT_NE(told->body.find("event: done"), std::string::npos) << told->body;
+  EXPECT_EQ(told->body.find("href"), std::string::npos);
+  expect_problem(daemon.client().Get("/v1/jobs/" + job.at("id").get<std::string>() + "/frames/0.png"), 404);
+}
+
+TEST_F(ChartTest, IsAConflictUntilItIsMade) {
+  const json job = start({{"image", {{"width", 1024}, {"height", 1024}}}, {"chart", {{"samples", 1024}}}});
+  const std::string id = job.at("id");
+  const json problem = expect_problem(client_.Get(scene_ + "/charts/" + id + ".svg"), 409);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("0 of "), std::string::npos);
+  EXPECT_EQ(client_.Delete("/v1/jobs/" + id)->status, 204);
+  expect_problem(client_.Get(scene_ + "/charts/" + id + ".svg"), 404);
+}
+
+TEST_F(ChartTest, BelongsToItsScene) {
+  const std::string path = made(start(ends_on("raycast")));
+  const std::string id = path.substr(path.rfind('/') + 1);
+  expect_problem(client_.Get("/v1/scenes/" + post_scene(moving_scene().dump()) + "/charts/" + id + ".svg"),
+                 404);
+  for (const char* wrong : {"", ".png", ".svg.csv", ".SVG"}) expect_problem(client_.Get(path + wrong), 404);
+  expect_problem(client_.Get(scene_ + "/charts/.svg"), 404);
+  const auto other = client_.Post("/v1/jobs", small_scene().dump(), kJson);
+  expect_problem(
+      client_.Get(scene_ + "/charts/" + json::parse(other->body).at("id").get<std::string>() + ".svg"), 404);
+  expect_problem(client_.Post("/v1/scenes/nothing/charts", "{}", kJson), 404);
+}
+
+TEST_F(ChartTest, TheSameKeyStartsOneJob) {
+  const httplib::Headers key{{"Idempotency-Key", "chart-1"}};
+  const json job = start(ends_on("whitted"), key);
+  EXPECT_EQ(start(ends_on("whitted"), key).at("id"), job.at("id"));
+  json same = ends_on("whitted");
+  same["render"]["accelerator"] = "auto";
+  EXPECT_EQ(start(same, key).at("id"), job.at("id"));
+  json other = ends_on("whitted");
+  other["render"]["accelerator"] = "list";
+  expect_problem(client_.Post(scene_ + "/charts", key, other.dump(), kJson), 422);
+}
+
+TEST_F(ChartTest, WrongInputIsRefusedAtItsPlace) {
+  const auto pointer = [&](const json& body) {
+    const json problem = expect_problem(client_.Post(scene_ + "/charts", body.dump(), kJson), 422);
+    return problem.at("errors").at(0).at("pointer").get<std::string>();
+  };
+  EXPECT_EQ(pointer({{"chart", {{"samples", 0}}}}), "/chart/samples");
+  EXPECT_EQ(pointer({{"chart", {{"samples", 1025}}}}), "/chart/samples");
+  EXPECT_EQ(pointer({{"chart", {{"rounds", 17}}}}), "/chart/rounds");
+  EXPECT_EQ(pointer({{"chart", {{"round", 1}}}}), "/chart");
+  EXPECT_EQ(pointer({{"render", {{"samples", 4}}}}), "/render/samples");
+  EXPECT_EQ(pointer({{"render", {{"precision", "float"}}}}), "/render/precision");
+  EXPECT_EQ(pointer({{"image", {{"width", 1025}, {"height", 1024}}}}), "/image");
+  EXPECT_EQ(pointer({{"scene", small_scene()}}), "/scene");
+  EXPECT_EQ(pointer({{"scene_id", "x"}}), "/scene_id");
+  expect_problem(client_.Post(scene_ + "/charts", "[", kJson), 400);
+  EXPECT_EQ(client_.Post(scene_ + "/charts", "", kJson)->status, 202);
+}
+
+}  // namespace
+}  // namespace orrery
