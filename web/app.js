@@ -51,6 +51,7 @@ const player = new Player(camera, view, {
   waiting: show_waiting,
   problem: fail,
   progress: (figures) => show_progress($("busy"), $("progress"), figures),
+  stale: () => delete $("stage").dataset.shows,
   settled: () => save_now(),
   rested: () => ($("stage").dataset.shows = "still"),
 });
@@ -217,7 +218,6 @@ function show_waiting(error, seconds) {
 
 function moved() {
   $("hint").hidden = true;
-  $("stage").dataset.shows = "preview";
   player.input();
 }
 
@@ -250,11 +250,12 @@ function set_panning(on) {
   }
 }
 
+const by = (x, y) => () => step($("stage"), moves, x, y, pans);
 const actions = {
-  left: () => step($("stage"), moves, -1, 0, pans),
-  right: () => step($("stage"), moves, 1, 0, pans),
-  up: () => step($("stage"), moves, 0, 1, pans),
-  down: () => step($("stage"), moves, 0, -1, pans),
+  left: by(-1, 0),
+  right: by(1, 0),
+  up: by(0, 1),
+  down: by(0, -1),
   pan: () => set_panning(!pans),
   closer: () => moves.dolly(kZoomStep),
   farther: () => moves.dolly(1 / kZoomStep),

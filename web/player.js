@@ -15,7 +15,8 @@ const kQuickMs = 60; // previews slower than this get a quarter of each side ins
 
 // `on` has: picture(purpose, level) -> picture or null, ladder() -> pictures of the view at rest, missing() ->
 // promise (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error),
-// progress(figures or null), settled() when the view no longer moves, rested() when the picture is final.
+// progress(figures or null), stale() when another picture is due, settled() when the view no longer moves,
+// rested() when the picture is final.
 export class Player {
   speed = 20; // degrees per second
   stream_frames = 3600;
@@ -75,7 +76,6 @@ export class Player {
   // Scene, size or options changed: show what is right now.
   refresh() {
     clearTimeout(this.#timer);
-    this.#timer = 0;
     if (this.#moving) return;
     if (!this.#visible) return this.#stop();
     if (this.#playing && !this.#held) this.#start_stream();
@@ -227,6 +227,7 @@ export class Player {
     this.#work?.abort.abort();
     this.#work = null;
     this.#on.progress(null);
+    this.#on.stale();
   }
 
   async #fail(error) {

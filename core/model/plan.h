@@ -14,6 +14,9 @@ struct AcceleratorType;
 struct TechniqueType;
 
 enum class Precision { automatic, single_precision, double_precision };
+inline constexpr const char* precision_name(bool double_precision) {
+  return double_precision ? "double" : "float";
+}
 
 // Who proposes what may stand in a shadow ray's way, before the accelerator is asked; and their names.
 enum class Prediction { none, network, last, random };

@@ -132,7 +132,7 @@ class Planner {
     const Precision asked = request_.precision.value_or(scene_.render.precision);
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
-      return decide("precision", plan_.double_precision ? "double" : "float", "as asked");
+      return decide("precision", precision_name(plan_.double_precision), "as asked");
     }
     const double largest = std::max(scene_.facts.magnitude, max_component(abs(plan_.camera.eye)));
     const bool perspective = plan_.camera.projection == Projection::perspective;
@@ -141,7 +141,7 @@ class Planner {
     const double detail = std::min(scene_.facts.smallest_feature, footprint);
     const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
     plan_.double_precision = !(rounding <= detail / 10);
-    decide("precision", plan_.double_precision ? "double" : "float",
+    decide("precision", precision_name(plan_.double_precision),
            plan_.double_precision
                ? "coordinates are too large for the smallest shape or pixel in float"
                : "8 ulp of the largest coordinate are below a tenth of the smallest shape and pixel");

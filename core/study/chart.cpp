@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace orrery {
@@ -53,29 +52,6 @@ void mark_front(std::vector<Point>& points) {
 
 std::string line_name(const Rung& rung) {
   return rung.technique + " " + std::to_string(rung.max_depth) + (rung.double_precision ? ", double" : "");
-}
-
-std::string csv_of(const Chart& chart) {
-  std::string text =
-      "technique,max_depth,precision,samples,accelerator,cpu_ms,times_cheapest,rays,rmse,rmse_sd,relative_"
-      "mse,"
-      "mean_absolute,largest,bias,psnr_db,non_finite,on_front\r\n";
-  const double cheapest = chart.cheapest_ms();
-  for (const Point& p : chart.points) {
-    const auto mean = [&](double Difference::*value) {
-      return p.mean([&](const Sighting& s) { return s.difference.*value; });
-    };
-    char line[512];
-    std::snprintf(
-        line, sizeof line, "%s,%d,%s,%d,%s,%.6g,%.6g,%.0f,%.9g,%.3g,%.9g,%.9g,%.9g,%.9g,%.6g,%.0f,%s\r\n",
-        p.rung.technique.c_str(), p.rung.max_depth, p.rung.double_precision ? "double" : "float",
-        p.rung.samples, p.accelerator.c_str(), p.cpu_ms(), p.cpu_ms() / cheapest, p.rays(), p.rmse(),
-        p.rmse_sd(), mean(&Difference::relative_mse), mean(&Difference::mean_absolute),
-        mean(&Difference::largest), mean(&Difference::bias), mean(&Difference::psnr_db),
-        p.mean([](const Sighting& s) { return double(s.difference.non_finite); }), p.on_front ? "yes" : "no");
-    text += line;
-  }
-  return text;
 }
 
 }  // namespace orrery

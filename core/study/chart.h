@@ -62,8 +62,6 @@ void mark_front(std::vector<Point>& points);
 // "whitted 5, double": what a line of the chart joins.
 std::string line_name(const Rung& rung);
 
-// A line of names, then one for each point; RFC 4180.
-std::string csv_of(const Chart& chart);
 // A drawing of 860 x 520: RMSE over CPU time as a multiple of the cheapest point's, both logarithmic.
 std::string svg_of(const Chart& chart);
 

@@ -84,13 +84,16 @@ void Study::add_rungs(const Plan& plan, int most_samples) {
   }
 }
 
+std::size_t Study::place_of(int number) const {
+  return static_cast<std::size_t>(number - kReferences) % chart_.points.size();
+}
+
 RenderRequest Study::request(int number) const {
   assert(number >= 0 && number < pictures());
-  const int rungs = static_cast<int>(chart_.points.size()), place = number - kReferences;
-  const bool is_reference = place < 0;
-  const Rung& rung =
-      is_reference ? chart_.reference : chart_.points[static_cast<std::size_t>(place % rungs)].rung;
-  const int seed_step = is_reference ? number : kReferences + place / rungs;
+  const bool is_reference = number < kReferences;
+  const Rung& rung = is_reference ? chart_.reference : chart_.points[place_of(number)].rung;
+  const int rounds_before = (number - kReferences) / static_cast<int>(chart_.points.size());
+  const int seed_step = is_reference ? number : kReferences + rounds_before;
   RenderRequest request = view_;
   request.technique = rung.technique;
   request.max_depth = rung.max_depth;
@@ -117,7 +120,7 @@ void Study::see(const RenderResult& rendered) {
   if (seen_ < kReferences) {
     see_reference(rendered);
   } else {
-    Point& point = chart_.points[static_cast<std::size_t>(seen_ - kReferences) % chart_.points.size()];
+    Point& point = chart_.points[place_of(seen_)];
     point.accelerator = rendered.stats.accelerator->name;
     point.rounds.push_back({.difference = difference(rendered.image.values(), reference_),
                             .cpu_ms = std::max(rendered.stats.cpu_ms, kClockStep_ms),

@@ -42,6 +42,7 @@ class Study {
 
  private:
   void add_rungs(const Plan& plan, int most_samples);
+  std::size_t place_of(int number) const;  // among the points
   void see_reference(const RenderResult& rendered);
 
   RenderRequest view_;

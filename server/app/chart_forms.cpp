@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 ordered_json rung_json(const Rung& rung) {
   return {{"technique", rung.technique},
           {"max_depth", rung.max_depth},
-          {"precision", rung.double_precision ? "double" : "float"},
+          {"precision", precision_name(rung.double_precision)},
           {"samples", rung.samples}};
 }
 
@@ -41,10 +41,32 @@ ordered_json point_json(const Point& point, double cheapest_ms) {
   return json;
 }
 
-std::string json_of(const Chart& chart) {
-  const double cheapest_ms = chart.cheapest_ms();
+ordered_json points_json(const Chart& chart) {
   ordered_json points = ordered_json::array();
+  const double cheapest_ms = chart.cheapest_ms();
   for (const Point& point : chart.points) points.push_back(point_json(point, cheapest_ms));
+  return points;
+}
+
+// A line of names, then one for each point; nothing between the commas for null. RFC 4180.
+std::string csv_of(const Chart& chart) {
+  const ordered_json points = points_json(chart);
+  std::string text;
+  const auto add_line = [&](const auto& text_of) {
+    for (const auto& member : points.front().items()) text += text_of(member.key()) + ",";
+    text.replace(text.size() - 1, 1, "\r\n");
+  };
+  add_line([](const std::string& name) { return name; });
+  for (const ordered_json& point : points)
+    add_line([&](const std::string& name) {
+      const ordered_json& value = point.at(name);
+      if (value.is_null()) return std::string();
+      return value.is_string() ? value.get<std::string>() : value.dump();
+    });
+  return text;
+}
+
+std::string json_of(const Chart& chart) {
   ordered_json reference = rung_json(chart.reference);
   reference["cpu_ms"] = chart.reference_cpu_ms;
   reference["rmse"] = chart.reference_rmse;
@@ -52,8 +74,8 @@ std::string json_of(const Chart& chart) {
                              {"image", {{"width", chart.width}, {"height", chart.height}}},
                              {"rounds", chart.points.front().rounds.size()},
                              {"reference", std::move(reference)},
-                             {"cheapest_ms", cheapest_ms},
-                             {"points", std::move(points)}};
+                             {"cheapest_ms", chart.cheapest_ms()},
+                             {"points", points_json(chart)}};
   return json.dump(2) + "\n";
 }
 

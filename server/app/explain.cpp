@@ -33,7 +33,7 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
           {"image", {{"width", plan.width}, {"height", plan.height}}},
           {"technique", plan.technique->name},
           {"accelerator", plan.accelerator->name},
-          {"precision", plan.double_precision ? "double" : "float"},
+          {"precision", precision_name(plan.double_precision)},
           {"samples", plan.samples},
           {"max_depth", plan.max_depth},
           {"min_contribution", plan.min_contribution},

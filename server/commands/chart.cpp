@@ -23,7 +23,7 @@ picture in double precision with four times the samples. On a busy machine times
 )";
 
 struct Options {
-  std::string scene, output;
+  std::string output;
   int threads = 0;
   Study::Extent extent;
   RenderFlags render;
@@ -36,8 +36,8 @@ int chart(const Options& options) {
   const RenderRequest request = read_render_flags(options.render);
   require_writable(options.output);
   std::optional<ProgressBar> bar(std::in_place, "pictures");
-  bar->say("reading " + options.scene);
-  const PreparedScene scene(load_scene_file(options.scene));
+  bar->say("reading " + options.render.scene);
+  const PreparedScene scene(load_scene_file(options.render.scene));
   const SignalWatch signals;
   Study study =
       with_names_for(Naming::command_line, [&] { return Study(scene.scene(), request, options.extent); });
@@ -59,7 +59,6 @@ Command add_chart(CLI::App& root) {
   const auto options = std::make_shared<Options>();
   CLI::App* app = root.add_subcommand("chart", "Chart speed against accuracy of a picture");
   app->footer(kExamples);
-  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
   app->add_option("-o,--output", options->output, "The chart; its ending chooses a drawing, a table or JSON")
       ->type_name("FILE.{svg,csv,json}")
       ->required();
@@ -71,9 +70,7 @@ Command add_chart(CLI::App& root) {
       ->check(CLI::Range(1, kMostChartRounds).description(""))
       ->type_name("N")
       ->capture_default_str();
-  app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->type_name("N");
+  add_threads_flag(*app, options->threads);
   add_render_flags(*app, options->render);
   return {app, [options] { return chart(*options); }};
 }

@@ -21,14 +21,13 @@ is not needed.
 )";
 
 struct Options {
-  std::string scene;
   bool json = false;
   RenderFlags render;
 };
 
 int explain(const Options& options) {
   const RenderRequest request = read_render_flags(options.render);
-  const PreparedScene prepared(load_scene_file(options.scene));
+  const PreparedScene prepared(load_scene_file(options.render.scene));
   const Scene& scene = prepared.scene();
   Plan plan = plan_for(scene, request);
   settle(prepared, plan);
@@ -42,7 +41,6 @@ Command add_explain(CLI::App& root) {
   const auto options = std::make_shared<Options>();
   CLI::App* app = root.add_subcommand("explain", "Say what a render would model, and why no more");
   app->footer(kExamples);
-  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
   app->add_flag("--json", options->json, "Print JSON");
   add_render_flags(*app, options->render);
   return {app, [options] { return explain(*options); }};

@@ -39,7 +39,7 @@ CLI::Validator within(double min, double max) {
 }
 
 struct Options {
-  std::string scene, output, stats;
+  std::string output, stats;
   int frames = 120, threads = 0;
   double step = 0, time_step = 0;
   CLI::Option *step_given = nullptr, *time_step_given = nullptr;
@@ -104,13 +104,14 @@ class Turn {
         names_(options.discard ? "frame-%d.png" : options.output),
         format_(format_of(names_.of(0))),
         first_(read_render_flags(options.render)),
-        scene_(load_scene_file(options.scene)),
+        scene_(load_scene_file(options.render.scene)),
         path_(full_turn(scene_.scene(), first_, options.frames)),
         pool_(options.threads) {
     if (options.step_given->count() > 0) path_.step_degrees = options.step;
     if (options.time_step_given->count() > 0) path_.step_seconds = options.time_step;
     plan_for(scene_.scene(), first_);  // complains before any work
     for (const int frame : {0, options.frames - 1}) plan(frame);
+    if (!options.discard) require_writable(names_.of(0));
   }
 
   int threads() const { return pool_.threads(); }
@@ -120,7 +121,7 @@ class Turn {
     ProgressBar bar("frames");
     std::int64_t next = 0;
     const auto start = Clock::now();
-    const double cpu_before = cpu_seconds();
+    const double cpu_before = process_cpu_ms();
     const Pipeline pipeline{
         .pool = pool_,
         .background = false,
@@ -138,7 +139,7 @@ class Turn {
             }};
     pipeline.run();
     totals.seconds = milliseconds_since(start) / 1000;
-    totals.cpu_s = cpu_seconds() - cpu_before;
+    totals.cpu_s = (process_cpu_ms() - cpu_before) / 1000;
     return totals;
   }
 
@@ -177,7 +178,6 @@ Command add_orbit(CLI::App& root) {
   const auto options = std::make_shared<Options>();
   CLI::App* app = root.add_subcommand("orbit", "Render the frames of a turn about the scene");
   app->footer(kExamples);
-  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
   app->add_option("--frames", options->frames, "How many")
       ->check(CLI::Range(1, 1'000'000).description(""))
       ->type_name("N")
@@ -198,9 +198,7 @@ Command add_orbit(CLI::App& root) {
                 "Render and encode, but write nothing: prints how fast that is")
       ->excludes(output);
   app->add_flag("--stats{text}", options->stats, "Print what it took; --stats=json for programs");
-  app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->type_name("N");
+  add_threads_flag(*app, options->threads);
   add_render_flags(*app, options->render);
   return {app, [options] { return orbit(*options); }};
 }

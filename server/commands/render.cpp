@@ -22,7 +22,7 @@ Examples:
 )";
 
 struct Options {
-  std::string scene, stats;
+  std::string stats;
   std::optional<std::string> output;
   int threads = 0;
   RenderFlags render;
@@ -43,18 +43,18 @@ int render(const Options& options) {
   RunStats stats;
   auto start = Clock::now();
   std::optional<ProgressBar> bar(std::in_place, "tiles");
-  bar->say("reading " + options.scene);
-  const PreparedScene scene(load_scene_file(options.scene));
+  bar->say("reading " + options.render.scene);
+  const PreparedScene scene(load_scene_file(options.render.scene));
   stats.load_ms = milliseconds_since(start);
   const SignalWatch signals;  // after reading, which a signal ends as it would any program
   const Plan plan = plan_for(scene.scene(), request);
   WorkerPool pool(options.threads);
   stats.threads = pool.threads();
 
-  const double cpu_before = cpu_seconds();
+  const double cpu_before = process_cpu_ms();
   const RenderResult result = render_with_progress(scene, plan, pixels_of(format), pool, signals, *bar);
   bar.reset();
-  stats.render_cpu_s = cpu_seconds() - cpu_before;
+  stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   stats.render = result.stats;
   if (options.output) {
     start = Clock::now();
@@ -75,14 +75,11 @@ Command add_render(CLI::App& root) {
   const auto options = std::make_shared<Options>();
   CLI::App* app = root.add_subcommand("render", "Render a scene to a picture");
   app->footer(kExamples);
-  app->add_option("SCENE", options->scene, "The scene's JSON file, or - for standard input")->required();
   app->add_option("-o,--output", options->output, "The picture; its ending chooses PNG, JPEG or EXR")
       ->type_name("FILE.{png,jpg,exr}");
   app->add_flag("--stats{text}", options->stats,
                 "Print what was traced and what it took; --stats=json for programs");
-  app->add_option("--threads", options->threads, "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->type_name("N");
+  add_threads_flag(*app, options->threads);
   add_render_flags(*app, options->render);
   return {app, [options] { return render(*options); }};
 }

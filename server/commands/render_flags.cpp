@@ -8,6 +8,7 @@
 namespace orrery {
 
 void add_render_flags(CLI::App& app, RenderFlags& flags) {
+  app.add_option("SCENE", flags.scene, "The scene's JSON file, or - for standard input")->required();
   const auto options = render_options();
   flags.values.resize(options.size());
   for (std::size_t i = 0; i < options.size(); ++i) {
@@ -23,6 +24,12 @@ void add_render_flags(CLI::App& app, RenderFlags& flags) {
       ->type_name("N")
       ->capture_default_str()
       ->group("Advanced");
+}
+
+void add_threads_flag(CLI::App& app, int& threads) {
+  app.add_option("--threads", threads, "Threads that render; 0: one a core")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->type_name("N");
 }
 
 RenderRequest read_render_flags(const RenderFlags& flags) {

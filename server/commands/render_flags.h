@@ -15,6 +15,7 @@ namespace orrery {
 
 // The options of every command that renders or plans. Must stay where it is once added to a command line.
 struct RenderFlags {
+  std::string scene;                  // a file's name, or "-"
   std::vector<std::string> values;    // as render_options()
   std::vector<CLI::Option*> options;  // likewise
   bool full_model = false;
@@ -22,6 +23,7 @@ struct RenderFlags {
 };
 
 void add_render_flags(CLI::App& app, RenderFlags& flags);
+void add_threads_flag(CLI::App& app, int& threads);
 
 // Both throw InputError with the names of the command line.
 RenderRequest read_render_flags(const RenderFlags& flags);

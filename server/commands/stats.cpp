@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "core/base/clock.h"
 #include "core/base/version.h"
 #include "core/math/instruction_level.h"
 #include "core/model/technique.h"
@@ -59,12 +59,6 @@ void prediction_text(std::string& text, const Plan& plan, const TraceCounts& cou
 
 }  // namespace
 
-double cpu_seconds() {
-  timespec used{};  // unlike getrusage, up to date for threads that run right now
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-  return double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
-}
-
 ordered_json stats_json(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
   return {{"width", plan.width},
@@ -72,7 +66,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"samples", plan.samples},
           {"technique", plan.technique->name},
           {"accelerator", stats.render.accelerator->name},
-          {"precision", plan.double_precision ? "double" : "float"},
+          {"precision", precision_name(plan.double_precision)},
           {"reorder", plan.reorder},
           {"prediction", name_of(plan.prediction)},
           {"instructions", instruction_level()},
@@ -101,7 +95,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
           {"encode_ms", stats.encode_ms},
           {"mrays_per_s", mrays_per_s(stats.render)},
           {"render_cpu_s", stats.render_cpu_s},
-          {"cpu_s", cpu_seconds()}};
+          {"cpu_s", process_cpu_ms() / 1000}};
 }
 
 std::string stats_text(const Plan& plan, const RunStats& stats) {
@@ -110,7 +104,7 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   line(text, "%-12s %d x %d, %d a pixel", "picture", plan.width, plan.height, plan.samples);
   line(text, "%-12s %s, %s%s, %s, %s, threads %d", "rendered by", plan.technique->name,
        stats.render.accelerator->name, plan.reorder ? " of sorted rays" : "",
-       plan.double_precision ? "double" : "float", std::string(instruction_level()).c_str(), stats.threads);
+       precision_name(plan.double_precision), std::string(instruction_level()).c_str(), stats.threads);
   rays_text(text, counts.rays);
   const AcceleratorFacts& structure = stats.render.structure;
   line(text, "%-12s %14zu bytes, %d nodes deep, %zu references", "structure", structure.bytes,
@@ -130,7 +124,8 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   line(text, "%-12s %11.1f ms tracing, %.2f million rays/s", "", stats.render.trace_ms,
        mrays_per_s(stats.render));
   line(text, "%-12s %11.1f ms encoding", "", stats.encode_ms);
-  line(text, "%-12s %12.3f s rendering, %.3f s in all", "processor", stats.render_cpu_s, cpu_seconds());
+  line(text, "%-12s %12.3f s rendering, %.3f s in all", "processor", stats.render_cpu_s,
+       process_cpu_ms() / 1000);
   return text;
 }
 

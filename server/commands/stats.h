@@ -8,9 +8,6 @@
 
 namespace orrery {
 
-// Processor time that this process has used so far, on all its threads.
-double cpu_seconds();
-
 // What a render did and what it cost.
 struct RunStats {
   int threads = 0;

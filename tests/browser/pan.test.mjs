@@ -63,8 +63,10 @@ async function open_ball(page, camera, view) {
   const id = await post_ball(camera);
   await page.evaluate((hash) => (location.hash = hash), `scene=${id}&playing=0&samples=1&${view}`);
   await eventually("the ball", async () => (await hash_of(page)).scene === id);
-  await page.waitForFunction(() => document.title.startsWith("Your scene"));
+  await opened_ball(page);
 }
+
+const opened_ball = (page) => page.waitForFunction(() => document.title.startsWith("Your scene"));
 
 const still = { reducedMotion: "reduce" };
 
@@ -118,7 +120,8 @@ page_test(
     await rest(page);
     assert.equal((await hash_of(page)).pan, undefined, "another scene starts from its own view");
     await page.goBack();
-    await eventually("the panned view", async () => (await hash_of(page)).pan === panned.pan);
+    await opened_ball(page);
+    assert.equal((await hash_of(page)).pan, panned.pan);
     await at(page, -50, 90, "after going back");
   },
   still,

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <sstream>
 
 #include "tests/http/daemon.h"
 
@@ -16,6 +16,41 @@ json ends_on(const std::string& name) {
           {"render", {{"max_depth", 1}, {"technique", name}}}};
 }
 
+using Cells = std::vector<std::vector<std::string>>;
+
+// Of a table, its line of names first.
+Cells cells(const std::string& csv) {
+  Cells all;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_EQ(line.back(), '\r');
+    line.back() = ',';
+    all.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) all.back().push_back(cell);
+  }
+  return all;
+}
+
+// What the table of these points is to be.
+Cells cells(const json& points) {
+  Cells all(1);
+  for (const std::string name : {"technique", "max_depth", "precision", "samples", "accelerator", "cpu_ms",
+                                 "times_cheapest", "rays", "rmse", "rmse_sd", "relative_mse", "mean_absolute",
+                                 "largest", "bias", "psnr_db", "non_finite", "on_front"})
+    all.front().push_back(name);
+  for (const json& point : points) {
+    all.emplace_back();
+    for (const std::string& name : all.front()) {
+      const json& value = point.at(name);
+      all.back().push_back(value.is_null()     ? ""
+                           : value.is_string() ? value.get<std::string>()
+                                               : value.dump());
+    }
+  }
+  return all;
+}
+
 class ChartTest : public HttpTest {
  protected:
   std::string scene_ = "/v1/scenes/" + post_scene(small_scene().dump());
@@ -24,7 +59,7 @@ class ChartTest : public HttpTest {
     const auto result = client_.Post(scene_ + "/charts", headers, body.dump(), kJson);
     EXPECT_EQ(result->status, 202) << result->body;
     const json job = json::parse(result->body);
-    EXPECT_EQ(result->get_header_value("Location"), "/v1/jobs/" + job.at("id").get<std::string>());
+    EXPECT_EQ(result->get_header_value("Location"), job_path(job));
     EXPECT_EQ(job.at("chart"), scene_ + "/charts/" + job.at("id").get<std::string>() + ".svg");
     return job;
   }
@@ -48,7 +83,7 @@ TEST_F(ChartTest, CanBeHadAsDrawingTableAndNumbers) {
   EXPECT_EQ(drawing->body.rfind("<svg ", 0), 0U);
   const json chart = json::parse(numbers->body);
   ASSERT_EQ(chart.at("points").size(), 8U);
-  EXPECT_EQ(std::count(table->body.begin(), table->body.end(), '\n'), 8 + 1);
+  EXPECT_EQ(cells(table->body), cells(chart.at("points")));
   EXPECT_EQ(chart.at("image"), json({{"width", 16}, {"height", 12}}));
   EXPECT_EQ(chart.at("reference").at("samples"), 16);
   const auto rmse = [&](std::size_t i) { return chart.at("points").at(i).at("rmse").get<double>(); };
@@ -68,7 +103,7 @@ TEST_F(ChartTest, KeepsNoPictures) {
   const auto told = daemon.client().Get(job.at("events").get<std::string>());
   EXPECT_NE(told->body.find("event: done"), std::string::npos) << told->body;
   EXPECT_EQ(told->body.find("href"), std::string::npos);
-  expect_problem(daemon.client().Get("/v1/jobs/" + job.at("id").get<std::string>() + "/frames/0.png"), 404);
+  expect_problem(daemon.client().Get(job_path(job) + "/frames/0.png"), 404);
 }
 
 TEST_F(ChartTest, IsAConflictUntilItIsMade) {
@@ -76,7 +111,7 @@ TEST_F(ChartTest, IsAConflictUntilItIsMade) {
   const std::string id = job.at("id");
   const json problem = expect_problem(client_.Get(scene_ + "/charts/" + id + ".svg"), 409);
   EXPECT_NE(problem.at("detail").get<std::string>().find("0 of "), std::string::npos);
-  EXPECT_EQ(client_.Delete("/v1/jobs/" + id)->status, 204);
+  EXPECT_EQ(client_.Delete(job_path(job))->status, 204);
   expect_problem(client_.Get(scene_ + "/charts/" + id + ".svg"), 404);
 }
 

@@ -243,6 +243,8 @@ nlohmann::json small_scene(const nlohmann::json& more) {
   return scene;
 }
 
+std::string job_path(const nlohmann::json& job) { return "/v1/jobs/" + job.at("id").get<std::string>(); }
+
 nlohmann::json moving_scene() {
   const nlohmann::json ball = {
       {"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", 0.4}, {"material", "plum"}};

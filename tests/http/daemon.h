@@ -97,6 +97,9 @@ nlohmann::json small_scene(const nlohmann::json& more = nlohmann::json::object()
 // The same with a ball that moves to the side from 0 to 2 s.
 nlohmann::json moving_scene();
 
+// Where the job that an answer tells of is to be asked for.
+std::string job_path(const nlohmann::json& job);
+
 // The body is problem details that agree with the status; returns it.
 nlohmann::json expect_problem(const httplib::Result& result, int status);
 

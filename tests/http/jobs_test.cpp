@@ -31,8 +31,6 @@ std::vector<Event> parse_events(const std::string& text) {
   return events;
 }
 
-std::string path(const json& job) { return "/v1/jobs/" + job.at("id").get<std::string>(); }
-
 class JobTest : public HttpTest {
  protected:
   json start(const json& body, const httplib::Headers& headers = {}) {
@@ -40,15 +38,15 @@ class JobTest : public HttpTest {
     EXPECT_TRUE(result);
     EXPECT_EQ(result->status, 202) << result->body;
     const json job = json::parse(result->body);
-    EXPECT_EQ(result->get_header_value("Location"), path(job));
+    EXPECT_EQ(result->get_header_value("Location"), job_path(job));
     return job;
   }
   std::vector<Event> events(const json& job, const httplib::Headers& headers = {}) {
-    const auto result = client_.Get(path(job) + "/events", headers);
+    const auto result = client_.Get(job_path(job) + "/events", headers);
     EXPECT_EQ(result->get_header_value("Content-Type"), "text/event-stream");
     return parse_events(result->body);
   }
-  json status(const json& job) { return json::parse(client_.Get(path(job))->body); }
+  json status(const json& job) { return json::parse(client_.Get(job_path(job))->body); }
 };
 
 const json kOrbit = {{"frames", 4}, {"step_degrees", 30}};
@@ -94,16 +92,17 @@ TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
   EXPECT_GT(told.back().data.at("tiles"), 0);
   const std::string scene = "/v1/scenes/" + post_scene(small_scene().dump()) + "/frame.png";
   for (int i = 0; i < 4; ++i) {
-    const auto frame = client_.Get(path(job) + "/frames/" + std::to_string(i) + ".png");
+    const auto frame = client_.Get(job_path(job) + "/frames/" + std::to_string(i) + ".png");
     EXPECT_EQ(frame->get_header_value("Content-Type"), "image/png");
     EXPECT_EQ(frame->body, client_.Get(scene + "?azimuth=" + std::to_string(30 * i))->body) << i;
-    EXPECT_EQ(get_known(path(job) + "/frames/" + std::to_string(i) + ".png", frame->get_header_value("ETag"))
-                  ->status,
-              304);
+    EXPECT_EQ(
+        get_known(job_path(job) + "/frames/" + std::to_string(i) + ".png", frame->get_header_value("ETag"))
+            ->status,
+        304);
   }
-  expect_problem(client_.Get(path(job) + "/frames/4.png"), 404);
-  expect_problem(client_.Get(path(job) + "/frames/00.png"), 404);
-  expect_problem(client_.Get(path(job) + "/frames/0.jpg"), 404);
+  expect_problem(client_.Get(job_path(job) + "/frames/4.png"), 404);
+  expect_problem(client_.Get(job_path(job) + "/frames/00.png"), 404);
+  expect_problem(client_.Get(job_path(job) + "/frames/0.jpg"), 404);
 }
 
 TEST_F(JobTest, WhoComesBackMissesNoEvent) {
@@ -115,12 +114,12 @@ TEST_F(JobTest, WhoComesBackMissesNoEvent) {
   EXPECT_EQ(rest[2].name, "done");
   EXPECT_EQ(events(job, {{"Last-Event-ID", "4"}}).size(), 1U);
   EXPECT_EQ(client_
-                .Get(path(job) + "/events",
+                .Get(job_path(job) + "/events",
                      {{"Last-Event-ID", std::to_string(all.back().id)}, {"Connection", "close"}})
                 ->status,
             204);
   for (const char* wrong : {"x", "-1", "1x", "99999999999"})
-    expect_problem(client_.Get(path(job) + "/events", {{"Last-Event-ID", wrong}}), 400);
+    expect_problem(client_.Get(job_path(job) + "/events", {{"Last-Event-ID", wrong}}), 400);
 }
 
 TEST_F(JobTest, GoesOnWithoutAnyoneAndIsOverOnce) {
@@ -128,18 +127,18 @@ TEST_F(JobTest, GoesOnWithoutAnyoneAndIsOverOnce) {
   for (int i = 0; i < 400 && status(job).at("state") != "done"; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(status(job).at("state"), "done");
-  EXPECT_TRUE(is_png(client_.Get(path(job) + "/frames/0.png")->body));
-  EXPECT_EQ(client_.Delete(path(job))->status, 204);
-  expect_problem(client_.Get(path(job)), 404);
-  expect_problem(client_.Get(path(job) + "/frames/0.png"), 404);
-  expect_problem(client_.Delete(path(job)), 404);
+  EXPECT_TRUE(is_png(client_.Get(job_path(job) + "/frames/0.png")->body));
+  EXPECT_EQ(client_.Delete(job_path(job))->status, 204);
+  expect_problem(client_.Get(job_path(job)), 404);
+  expect_problem(client_.Get(job_path(job) + "/frames/0.png"), 404);
+  expect_problem(client_.Delete(job_path(job)), 404);
 }
 
 TEST_F(JobTest, AFrameThatIsNotThereYetIsAConflict) {
   const json job = start(endless());
-  const json problem = expect_problem(client_.Get(path(job) + "/frames/0.png"), 409);
+  const json problem = expect_problem(client_.Get(job_path(job) + "/frames/0.png"), 409);
   EXPECT_NE(problem.at("detail").get<std::string>().find("0 of 1"), std::string::npos);
-  client_.Delete(path(job));
+  client_.Delete(job_path(job));
 }
 
 TEST_F(JobTest, DeletedIsCancelledAndThoseWhoWatchLearnOfIt) {
@@ -147,11 +146,11 @@ TEST_F(JobTest, DeletedIsCancelledAndThoseWhoWatchLearnOfIt) {
   const json job = start(endless());
   EXPECT_TRUE(daemon().wait_until_working());
   std::vector<Event> told;
-  std::thread watcher([&] { told = parse_events(daemon().client().Get(path(job) + "/events")->body); });
+  std::thread watcher([&] { told = parse_events(daemon().client().Get(job_path(job) + "/events")->body); });
   for (int i = 0; i < 400 && status(job).at("tiles_done") == 0; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_EQ(client_.Delete(path(job))->status, 204);
+  EXPECT_EQ(client_.Delete(job_path(job))->status, 204);
   watcher.join();
   ASSERT_FALSE(told.empty());
   EXPECT_EQ(told.back().name, "cancelled");
@@ -200,7 +199,7 @@ json post_job(Daemon& daemon, const json& body, int status = 202) {
 
 // What is told of a job until it ends.
 std::vector<Event> events_of(Daemon& daemon, const json& job) {
-  return parse_events(daemon.client().Get(path(job) + "/events")->body);
+  return parse_events(daemon.client().Get(job_path(job) + "/events")->body);
 }
 
 TEST(JobLimits, AreHeldAndNamed) {
@@ -209,7 +208,7 @@ TEST(JobLimits, AreHeldAndNamed) {
   post_job(daemon, endless());
   const json problem = post_job(daemon, endless(), 429);
   EXPECT_NE(problem.at("detail").get<std::string>().find("(jobs)"), std::string::npos);
-  daemon.client().Delete(path(first));
+  daemon.client().Delete(job_path(first));
   const auto told =
       events_of(daemon, post_job(daemon, {{"scene", small_scene()}, {"orbit", {{"frames", 100}}}}));
   EXPECT_EQ(told.back().name, "failed");
@@ -229,7 +228,7 @@ TEST(JobLimits, EndedJobsKeepNeitherThreadsNorMoreThanTheirNumber) {
   std::vector<std::string> paths;
   for (int i = 0; i < 20; ++i) {
     const json job = post_job(daemon, {{"scene", small_scene()}, {"camera", {{"azimuth_degrees", i}}}});
-    paths.push_back(path(job));
+    paths.push_back(job_path(job));
     EXPECT_EQ(events_of(daemon, job).back().name, "done");
   }
   int there = 0;
@@ -252,7 +251,7 @@ TEST(JobLimits, TheOldestResultsMakeRoomForNewOnes) {
   std::vector<std::string> paths;
   for (int i = 0; i < 8; ++i) {
     const json job = post_job(daemon, {{"scene", small_scene()}, {"camera", {{"azimuth_degrees", i}}}});
-    paths.push_back(path(job));
+    paths.push_back(job_path(job));
     EXPECT_EQ(events_of(daemon, job).back().name, "done");
   }
   EXPECT_EQ(daemon.client().Get(paths.front())->status, 404);
@@ -266,7 +265,7 @@ TEST(JobLimits, ResultsAreKeptForTheTimeStated) {
   int status = 200;
   for (int i = 0; i < 400 && status == 200; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    status = daemon.client().Get(path(job))->status;
+    status = daemon.client().Get(job_path(job))->status;
   }
   EXPECT_EQ(status, 404);
 }

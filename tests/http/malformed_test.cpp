@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/http/daemon.h"
+#include "tests/support/sanitized.h"
 
 // Bytes that no honest client sends: each gets the right answer, and the daemon goes on as before.
 namespace orrery {
@@ -86,14 +87,8 @@ TEST_P(Malformed, GetsTheRightAnswerAndTheNextClientToo) {
 INSTANTIATE_TEST_SUITE_P(Http, Malformed, ::testing::ValuesIn(all_cases()),
                          [](const auto& raw) { return raw.param.name; });
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // freed memory is kept to find who still uses it
-#else
-constexpr bool kSanitized = false;
-#endif
-
 TEST(MalformedTable, AgainAndAgainTakesNoMemoryAndNoDescriptors) {
-  constexpr double kMost = kSanitized ? 1e12 : 32 << 20;
+  constexpr double kMost = test::kSanitized ? 1e12 : 32 << 20;
   const Daemon daemon;
   const std::vector<RawCase> cases = all_cases();
   const auto send_all = [&] {
@@ -102,7 +97,7 @@ TEST(MalformedTable, AgainAndAgainTakesNoMemoryAndNoDescriptors) {
   for (int i = 0; i < 2; ++i) send_all();  // buffers that stay
   const double memory = daemon.resident_bytes();
   const std::size_t files = daemon.open_files();
-  for (int i = 0; i < (kSanitized ? 5 : 50); ++i) send_all();
+  for (int i = 0; i < (test::kSanitized ? 5 : 50); ++i) send_all();
   EXPECT_LE(daemon.resident_bytes() - memory, kMost);
   EXPECT_LE(daemon.open_files(), files + 2);  // a thread may be closing yet
   RecordProperty("growth_bytes", static_cast<int>(daemon.resident_bytes() - memory));

@@ -135,16 +135,5 @@ TEST(Drawing, ShortensALongTitle) {
   EXPECT_EQ(svg.find("\xC3..."), std::string::npos);
 }
 
-TEST(Table, HasALineForEachPoint) {
-  std::istringstream lines(csv_of(chart()));
-  std::vector<std::ptrdiff_t> commas;
-  for (std::string line; std::getline(lines, line);) {
-    EXPECT_EQ(line.back(), '\r');
-    commas.push_back(std::count(line.begin(), line.end(), ','));
-  }
-  EXPECT_THAT(commas, testing::ElementsAre(16, 16, 16, 16, 16));
-  EXPECT_THAT(csv_of(chart()), testing::HasSubstr("\r\nwhitted,5,float,4,bvh,8,4,0,0.025,0,"));
-}
-
 }  // namespace
 }  // namespace orrery::test

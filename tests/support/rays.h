@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/scene.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
 
 // Single rays against the shapes of a scene, in any precision. The kernels see whole batches.
@@ -37,19 +38,16 @@ struct Spot {
 template <class T>
 using Rays = std::vector<Ray<T>>;
 
-// All of them; under a sanitizer, which wants to see all of the code but not all numbers and makes rays up to
-// a hundred times slower, some 2000 of those all over.
+// All of them; under a sanitizer, which wants to see all of the code but not all numbers, some 2000 of those
+// all over.
 template <class T>
 Rays<T> enough_of(const Rays<T>& rays) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  if (!kSanitized) return rays;
   constexpr std::size_t kEnough = 2000;
   Rays<T> some;
   for (std::size_t i = 0; i < rays.size(); i += std::max<std::size_t>(1, rays.size() / kEnough))
     some.push_back(rays[i]);
   return some;
-#else
-  return rays;
-#endif
 }
 
 template <class T>
