@@ -69,12 +69,12 @@ class Watertight : public testing::TestWithParam<std::string> {
   void expect_no_leak(const Vec3d& middle, int count) {
     const Ball ball = ball_around(middle);
     Structure<T> structure(scene_of_ball(ball), GetParam());
-    const Rays<T> rays = aimed<T>(ball, middle, count);
+    const Rays<T> rays = enough_of(aimed<T>(ball, middle, count));
     int out = 0;
     for (const auto& hit : structure.closest(rays)) out += !hit.met();
-    EXPECT_EQ(out, 0) << "of " << count << " rays";
+    EXPECT_EQ(out, 0) << "of " << rays.size() << " rays";
     for (const char occluded : structure.occluded(rays, std::numeric_limits<T>::infinity())) out += !occluded;
-    EXPECT_EQ(out, 0) << "of " << count << " shadow rays";
+    EXPECT_EQ(out, 0) << "of " << rays.size() << " shadow rays";
   }
   // The production structure gets a million.
   static int rays() { return GetParam() == "bottom-up" ? 1'000'000 : 50'000; }
