@@ -27,10 +27,11 @@ const still_please = matchMedia("(prefers-reduced-motion: reduce)");
 const state = parse_hash(location.hash);
 const library = new SceneLibrary();
 const camera = new OrbitCamera();
-const view = new View($("stage"), $("canvas"));
+const stage = $("stage");
+const view = new View(stage, $("canvas"));
 const hud = new Hud($("hud"));
 const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
-let scene = null; // the scene shown, or null
+let scene = null; // the scene shown; null while another is opened
 let gallery = null;
 let options = null;
 let opening = 0; // counts scene changes, so that a slow answer to an old one is dropped
@@ -43,17 +44,17 @@ const player = new Player(camera, view, {
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
-    $("stage").dataset.shows = kind === "still" ? "refining" : kind;
+    stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
-    hide_problem($("stage-problem"));
+    hide_fail();
     if (kind === "stream") save_soon();
   },
   waiting: show_waiting,
   problem: fail,
   progress: (figures) => show_progress($("busy"), $("progress"), figures),
-  stale: () => delete $("stage").dataset.shows,
+  stale: () => delete stage.dataset.shows,
   settled: () => save_now(),
-  rested: () => ($("stage").dataset.shows = "still"),
+  rested: () => (stage.dataset.shows = "still"),
 });
 
 const editor = new Editor(
@@ -66,7 +67,9 @@ const editor = new Editor(
     restore: $("restore"),
   },
   async (text) => {
+    const turn = opening;
     const posted = await library.post(text);
+    if (turn !== opening) return; // another was picked
     save_now();
     show_scene(posted, kDefaults);
     history.pushState(null, "", current_hash());
@@ -106,10 +109,13 @@ function current_picture() {
 async function open_scene(at) {
   const turn = ++opening;
   const wanted = () => turn === opening;
+  scene = null;
   player.invalidate();
   try {
     const opened = await persist(() => library.open(state.scene), show_waiting, wanted);
-    if (opened && wanted()) show_scene(opened, at);
+    if (!wanted()) return;
+    show_scene(opened, at);
+    save_now();
   } catch (error) {
     if (wanted()) fail(error);
   }
@@ -121,20 +127,22 @@ function show_scene(opened, at) {
   state.scene = opened.ref;
   camera.use_scene_camera(opened.camera);
   camera.jump(view_of(at));
-  hide_problem($("stage-problem"));
+  hide_fail();
   editor.load(opened.text);
   gallery?.mark(opened.ref);
   options?.show(state, opened);
   document.title = `${opened.title} · orrery`;
-  $("stage").setAttribute("aria-label", `${opened.title}, orbit view`);
+  stage.setAttribute("aria-label", `${opened.title}, orbit view`);
   refresh_download();
   player.invalidate();
   player.refresh();
 }
 
 async function post_again() {
-  const posted = await library.post(scene.text);
-  scene = { ...scene, id: posted.id };
+  const turn = opening;
+  const { id } = await library.post(scene.text);
+  if (turn !== opening) return;
+  scene = { ...scene, id };
   player.refresh();
 }
 
@@ -149,7 +157,7 @@ function pick_sample(name) {
 
 // On a narrow page the picture may be out of sight.
 function show_stage() {
-  $("stage").scrollIntoView({ block: "nearest" });
+  stage.scrollIntoView({ block: "nearest" });
 }
 
 function current_hash() {
@@ -169,14 +177,11 @@ function save_soon() {
 
 // The user went back, forward, or edited the address.
 function load_hash() {
-  clearTimeout(save_timer);
-  save_timer = 0;
   const next = parse_hash(location.hash);
   const same_scene = scene && next.scene === scene.ref;
   Object.assign(state, next, { playing: next.playing && (!still_please.matches || state.playing) });
   show_settings();
   if (!same_scene) return open_scene(state);
-  opening += 1;
   camera.jump(view_of(state));
   player.invalidate();
   player.playing = state.playing;
@@ -201,10 +206,13 @@ function set_playing(playing) {
 function set_option(key, value) {
   save_now();
   state[key] = value;
+  if (!scene) return;
   history.pushState(null, "", current_hash());
-  hide_problem($("stage-problem"));
+  hide_fail();
   player.refresh();
 }
+
+const hide_fail = () => hide_problem($("stage-problem"));
 
 function fail(error) {
   show_problem($("stage-problem"), error);
@@ -250,7 +258,7 @@ function set_panning(on) {
   }
 }
 
-const by = (x, y) => () => step($("stage"), moves, x, y, pans);
+const by = (x, y) => () => step(stage, moves, x, y, pans);
 const actions = {
   left: by(-1, 0),
   right: by(1, 0),
@@ -264,7 +272,7 @@ const actions = {
   retry: () => (wake_all(), player.retry_now()),
 };
 
-attach_controls($("stage"), moves);
+attach_controls(stage, moves);
 attach_tabs($("tabs"));
 for (const button of document.querySelectorAll("[data-do]")) {
   button.addEventListener("click", actions[button.dataset.do]);
@@ -275,7 +283,7 @@ $("speed").addEventListener("input", () => {
   player.refresh_soon();
   save_soon();
 });
-new ResizeObserver(() => player.refresh_soon()).observe($("stage"));
+new ResizeObserver(() => player.refresh_soon()).observe(stage);
 const refresh_download = attach_download($("download"), current_picture, fail);
 attach_curl($("curl"), current_picture, $("announcement"));
 addEventListener("hashchange", load_hash);

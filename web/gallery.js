@@ -49,8 +49,7 @@ export class Gallery {
 
   mark(ref) {
     for (const button of this.#root.querySelectorAll("button")) {
-      if (button.dataset.name === ref) button.setAttribute("aria-current", "true");
-      else button.removeAttribute("aria-current");
+      button.ariaCurrent = button.dataset.name === ref ? "true" : null;
     }
   }
 

@@ -18,6 +18,10 @@ double Point::rmse_sd() const {
   return std::sqrt(squares / static_cast<double>(rounds.size() - 1));
 }
 
+double Point::psnr_db() const {
+  return -10 * std::log10(mean([](const Sighting& s) { return s.difference.cut_mse; }));
+}
+
 double Point::cpu_ms() const {
   std::vector<double> times;
   for (const Sighting& s : rounds) times.push_back(s.cpu_ms);

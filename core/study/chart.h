@@ -31,6 +31,7 @@ struct Point {
 
   double rmse() const;     // sqrt of the mean square error of all rounds
   double rmse_sd() const;  // standard deviation of the rounds' errors; 0 for one round
+  double psnr_db() const;  // 10 log10 of 1 / mean square error of all rounds, cut to 0..1; may be infinite
   double cpu_ms() const;   // median of the rounds
   double rays() const;     // mean of the rounds
   // Mean of the rounds, whatever `value` takes from a Sighting.

@@ -12,7 +12,7 @@ struct Difference {
   double mean_absolute = 0;  // mean |d|
   double largest = 0;        // max |d|
   double bias = 0;           // mean d
-  double psnr_db = 0;  // 10 log10 of 1 / mean d^2, of x and r cut to 0..1; infinite where these are equal
+  double cut_mse = 0;        // mean d^2 of x and r cut to 0..1
   std::uint64_t non_finite = 0;  // values of x or r left out of all the others
 };
 

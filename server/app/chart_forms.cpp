@@ -34,8 +34,8 @@ ordered_json point_json(const Point& point, double cheapest_ms) {
   json["mean_absolute"] = mean(&Difference::mean_absolute);
   json["largest"] = mean(&Difference::largest);
   json["bias"] = mean(&Difference::bias);
-  const double psnr_db = mean(&Difference::psnr_db);
-  json["psnr_db"] = std::isfinite(psnr_db) ? ordered_json(psnr_db) : ordered_json();  // null: no difference
+  const double psnr_db = point.psnr_db();
+  json["psnr_db"] = std::isfinite(psnr_db) ? ordered_json(psnr_db) : ordered_json();
   json["non_finite"] = point.mean([](const Sighting& s) { return double(s.difference.non_finite); });
   json["on_front"] = point.on_front;
   return json;

@@ -30,7 +30,7 @@ struct Options {
 };
 
 int chart(const Options& options) {
-  const ChartForm* form = chart_form_of(options.output);
+  const ChartForm* form = chart_form_of(ending_of(options.output));
   if (!form)
     throw InputError("--output", "expected a name that ends in .svg, .csv or .json, got " + options.output);
   const RenderRequest request = read_render_flags(options.render);

@@ -12,9 +12,25 @@
 
 namespace orrery {
 
-FileFormat format_of(const std::string& path) {
+namespace {
+
+// Where the name is no plain file (a device, a pipe), there is nothing to put in its place.
+bool is_replaced(const std::string& path) {
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  return kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
+}
+
+}  // namespace
+
+std::string ending_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+FileFormat format_of(const std::string& path) {
+  const std::string ending = ending_of(path);
   if (ending == ".png") return FileFormat::png;
   if (ending == ".jpg" || ending == ".jpeg") return FileFormat::jpeg;
   if (ending == ".exr") return FileFormat::exr;
@@ -22,18 +38,15 @@ FileFormat format_of(const std::string& path) {
 }
 
 void require_writable(const std::string& path) {
-  if (std::filesystem::exists(path)) return;
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+  const std::string place = !is_replaced(path) ? path : folder.empty() ? "." : folder;
+  errno = std::filesystem::is_directory(path) ? EISDIR : 0;
+  if (errno != 0 || access(place.c_str(), W_OK) != 0)
     throw FileError("cannot write " + path + ": " + std::strerror(errno));
 }
 
 void write_file(const std::string& path, std::string_view bytes) {
-  // Where the name is no plain file (a device, a pipe), there is nothing to put in its place.
-  std::error_code ignored;
-  const auto kind = std::filesystem::status(path, ignored).type();
-  const bool replace =
-      kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
+  const bool replace = is_replaced(path);
   const std::string written = replace ? path + ".part-" + std::to_string(getpid()) : path;
   errno = 0;
   std::ofstream out(written, std::ios::binary);
@@ -41,6 +54,7 @@ void write_file(const std::string& path, std::string_view bytes) {
   out.close();
   if (out && (!replace || std::rename(written.c_str(), path.c_str()) == 0)) return;
   const std::string reason = errno ? ": " + std::string(std::strerror(errno)) : "";
+  std::error_code ignored;
   if (replace) std::filesystem::remove(written, ignored);
   throw FileError("cannot write " + path + reason);
 }

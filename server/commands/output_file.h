@@ -7,6 +7,8 @@
 
 namespace orrery {
 
+// ".png" of "a/b.PNG".
+std::string ending_of(const std::string& path);
 // The format that the ending of a file's name stands for. Throws InputError.
 FileFormat format_of(const std::string& path);
 

@@ -206,6 +206,82 @@ daemon_test(
   },
 );
 
+// Scenes posted with `words` in them get `answer(route)`.
+const on_post = (page, words, answer) =>
+  page.route(/v1\/scenes$/, (route) =>
+    route.request().postData()?.includes(words) ? answer(route) : route.continue(),
+  );
+const late = async (route) => {
+  await new Promise((resolve) => setTimeout(resolve, 1500));
+  await route.continue();
+};
+
+const shows = (page) => page.locator("#stage").getAttribute("data-shows");
+const pick = (page, name) => page.locator(`#gallery button[data-name="${name}"]`).click();
+const title = (page, start) => page.waitForFunction((text) => document.title.startsWith(text), start);
+
+daemon_test("as long as a scene is on its way, no other is shown for it", "scene=paper&playing=0&samples=1", async (page) => {
+  await rest(page);
+  await on_post(page, '"Glass"', late);
+  await pick(page, "glass");
+  await page.locator("#samples").selectOption("4");
+  await page.setViewportSize({ width: 1000, height: 700 });
+  await page.locator('[data-do="left"]').click();
+  await page.waitForTimeout(700);
+  assert.equal(await shows(page), null);
+  await title(page, "Glass");
+  await rest(page);
+  const { scene, az, samples } = await hash_of(page);
+  assert.deepEqual([scene, az, samples], ["glass", "0", "4"]);
+  await page.reload();
+  const again = await rest(page);
+  assert.equal((await hash_of(page)).scene, "glass");
+  assert.equal(await canvas_digest(page), again);
+});
+
+daemon_test("back from a scene that never came marks the one that is shown", "scene=paper&playing=0&samples=1", async (page) => {
+  await rest(page);
+  await on_post(page, '"Glass"', (route) => route.fulfill({ status: 404, body: "gone" }));
+  await pick(page, "glass");
+  const card = page.locator("#stage-problem");
+  await card.waitFor({ state: "visible" });
+  await page.setViewportSize({ width: 1000, height: 700 });
+  await page.waitForTimeout(400);
+  assert.equal(await shows(page), null);
+  assert.equal(await card.isVisible(), true);
+  await page.goBack();
+  await rest(page);
+  assert.equal(await page.locator("#gallery [aria-current]").getAttribute("data-name"), "paper");
+  assert.equal(await card.isVisible(), false);
+});
+
+daemon_test("the scene picked last stays, whatever is posted late", "scene=paper&playing=0&samples=1", async (page) => {
+  await rest(page);
+  await on_post(page, '"radius": 0.25', late);
+  await apply(page, (text) => text.replace(/"radius": 0\.5/, '"radius": 0.25'));
+  await page.locator("#tab-scenes").click();
+  await pick(page, "glass");
+  await title(page, "Glass");
+  const picked = await rest(page);
+  await page.waitForTimeout(2000);
+  assert.equal((await hash_of(page)).scene, "glass");
+  assert.equal(await rest(page), picked);
+});
+
+daemon_test("a forgotten scene that is posted late replaces no other", "scene=paper&playing=0&samples=1", async (page) => {
+  await rest(page);
+  await page.route(/frame\.png.*samples=4/, (route) => route.fulfill({ status: 404, body: "{}" }), { times: 1 });
+  await on_post(page, "The paper's scene", late);
+  const again = page.waitForRequest((request) => request.postData()?.includes("The paper's scene"));
+  await page.locator("#samples").selectOption("4");
+  await again;
+  await pick(page, "glass");
+  await title(page, "Glass");
+  const picked = await rest(page);
+  await page.waitForTimeout(2000);
+  assert.equal(await rest(page), picked);
+});
+
 daemon_test("a hidden tab asks for nothing and goes on when it is seen again", "", async (page) => {
   const show = (visibility) =>
     page.evaluate((state) => {

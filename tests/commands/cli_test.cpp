@@ -175,6 +175,7 @@ TEST_F(CommandLine, ChartWritesWhatTheEndingSays) {
   EXPECT_NE(run(few + file("c.svg") + " --samples 4").err.find("--samples"), std::string::npos);
   EXPECT_EQ(run(few + file("c.svg") + " --rounds 99").status, 2);
   EXPECT_EQ(run(few + file("nowhere/c.svg")).status, 1);
+  EXPECT_EQ(run(few + file("C.SVG")).status, 0);
 }
 
 TEST_F(CommandLine, OrbitWritesNumberedFrames) {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <sstream>
+#include <limits>
 
 // What is made of measurements: front, table, drawing.
 namespace orrery::test {
@@ -50,6 +50,9 @@ TEST(Point, SumsUpItsRounds) {
   EXPECT_DOUBLE_EQ(p.rmse(), std::sqrt((0.09 + 0.16) / 3));
   EXPECT_NEAR(p.rmse_sd(), 0.20816659994661327, 1e-12);  // of 0.3, 0.4, 0
   EXPECT_EQ(point(5, 0.3).rmse_sd(), 0);
+  EXPECT_EQ(p.psnr_db(), std::numeric_limits<double>::infinity());
+  p.rounds[1].difference.cut_mse = 0.03;
+  EXPECT_NEAR(p.psnr_db(), 20, 1e-12);
 }
 
 Chart chart() {
