@@ -40,7 +40,8 @@ FileFormat format_of(const std::string& path) {
 void require_writable(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const std::string place = !is_replaced(path) ? path : folder.empty() ? "." : folder;
-  errno = std::filesystem::is_directory(path) ? EISDIR : 0;
+  std::error_code ignored;
+  errno = std::filesystem::is_directory(path, ignored) ? EISDIR : 0;
   if (errno != 0 || access(place.c_str(), W_OK) != 0)
     throw FileError("cannot write " + path + ": " + std::strerror(errno));
 }

@@ -64,7 +64,8 @@ Response get_chart(App& app, Request& request) {
     throw HttpError(404, "The job makes no chart of this scene");
   const JobStatus status = job->status();
   if (status.state != JobState::done) refuse_result("The chart", status);
-  return result_response(request, "\"" + name + "\"", form->type, form->write(study->chart()));
+  return result_response(request, "\"" + name + "\"", form->type,
+                         [&] { return form->write(study->chart()); });
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ void refuse_result(const std::string& what, const JobStatus& status) {
 }
 
 Response result_response(const Request& request, const std::string& etag, std::string_view type,
-                         const std::string& bytes) {
+                         const std::function<std::string()>& write) {
   Response response{.status = 304};
-  if (!has_current(request, etag)) response = text_response(200, type, bytes);
+  if (!has_current(request, etag)) response = text_response(200, type, write());
   response.set("ETag", etag);
   response.set("Cache-Control", "private, max-age=31536000, immutable");
   return response;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "server/routes/answers.h"
 
 // What routes that start and follow jobs share.
@@ -17,8 +19,8 @@ Response start_job(App& app, Request& request, JobSpec spec, const std::string& 
 // Throws HttpError 409: `what` is not made yet, or will not be.
 [[noreturn]] void refuse_result(const std::string& what, const JobStatus& status);
 
-// What a job has made, which never changes; 304 for who knows it.
+// What a job has made, which never changes; 304 for who knows it, and then `write` is not called.
 Response result_response(const Request& request, const std::string& etag, std::string_view type,
-                         const std::string& bytes);
+                         const std::function<std::string()>& write);
 
 }  // namespace orrery

@@ -74,7 +74,7 @@ Response get_frame(App& app, Request& request) {
   const auto picture = job->frame(number);
   if (!picture) refuse_result("Frame " + std::to_string(number), job->status());
   return result_response(request, "\"" + job->id() + "-" + std::to_string(number) + "\"", "image/png",
-                         *picture);
+                         [&] { return *picture; });
 }
 
 std::string event(std::string_view name, int id, const ordered_json& data) {

@@ -251,7 +251,7 @@ class SlowViewer {
   RawClient raw_;
 };
 
-constexpr const char* kLargeFrames = "frames=24&fps=10&width=640&height=480&distance=1.1";
+const std::string kLargeFrames = "frames=24&width=640&height=480&distance=1.1";
 
 void expect_some_skipped(const std::vector<StreamedFrame>& seen) {
   ASSERT_FALSE(seen.empty());
@@ -261,20 +261,16 @@ void expect_some_skipped(const std::vector<StreamedFrame>& seen) {
 }
 
 TEST_F(OrbitStream, SlowViewerMissesFramesAndTheFastOneNone) {
-  const std::string url = path(kLargeFrames);
-  int missed = -1;
-  for (int turn = 0; turn < 5 && missed != 0; ++turn) {  // a busy machine may hold up any client
-    const SlowViewer slow(daemon().port(), url);
-    const auto fast = parse_frames(client_.Get(url, kFrames)->body);
-    expect_some_skipped(slow.receive());  // only now
-    ASSERT_FALSE(fast.empty());
-    missed = fast.back().header.at("skipped");
-  }
-  EXPECT_EQ(missed, 0);
+  const std::string url = path(kLargeFrames + "&fps=4");  // a busy machine is quick enough
+  const SlowViewer slow(daemon().port(), url);
+  const auto fast = parse_frames(client_.Get(url, kFrames)->body);
+  expect_some_skipped(slow.receive());  // only now
+  ASSERT_FALSE(fast.empty());
+  EXPECT_EQ(fast.back().header.at("skipped"), 0);
 }
 
 TEST_F(OrbitStream, SlowViewerAloneIsShownWhatIsDueNow) {
-  const SlowViewer slow(daemon().port(), path(kLargeFrames));
+  const SlowViewer slow(daemon().port(), path(kLargeFrames + "&fps=10"));
   std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // longer than the orbit
   ASSERT_TRUE(daemon().wait_until_idle());  // where rendering is slow: until none is taken
   std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // 10 frames are due meanwhile
