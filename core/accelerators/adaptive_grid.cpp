@@ -8,7 +8,7 @@ namespace {
 constexpr GridOptions kNested{.cells = 0.25, .references = 12, .most = 12, .levels = 8};
 
 template <class T>
-using AdaptiveGrid = SingleWalk<T, GridTree<T, kNested>>;
+using AdaptiveGrid = SingleRayAccelerator<T, GridTree<T, kNested>>;
 
 }  // namespace
 

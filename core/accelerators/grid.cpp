@@ -7,7 +7,7 @@ namespace {
 constexpr GridOptions kUniform{.cells = 2, .references = 16, .most = 0, .levels = 1};
 
 template <class T>
-using UniformGrid = SingleWalk<T, GridTree<T, kUniform>>;
+using UniformGrid = SingleRayAccelerator<T, GridTree<T, kUniform>>;
 
 }  // namespace
 

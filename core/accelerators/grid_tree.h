@@ -4,7 +4,7 @@
 
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/grid_layout.h"
-#include "core/accelerators/single_walk.h"
+#include "core/accelerators/single_ray.h"
 
 namespace orrery {
 
@@ -26,10 +26,10 @@ class GridTree {
     std::size_t left = (kOptions.references - 1) * items.size();  // references that may still be made
     Bounds<T> all;
     for (const auto& item : items) all.include(item.box);
-    Crowd whole{all, {}, 0, 0};
+    PendingCell whole{all, {}, 0, 0};
     for (std::uint32_t i = 0; i < items.size(); ++i) whole.items.push_back(i);
     cells_.emplace_back();
-    std::deque<Crowd> open{std::move(whole)};
+    std::deque<PendingCell> open{std::move(whole)};
     for (; !open.empty(); open.pop_front())
       if (!divide(open.front(), items, left, open)) add_cell(open.front(), items, primitives);
     blocks_.pack();
@@ -44,12 +44,12 @@ class GridTree {
   }
 
   template <Query kQuery>
-  void walk(Trip<T>& trip) const {
-    enter<kQuery>(trip, cells_.front(), T(0), trip.hit.t);
+  void traverse(TraversalState<T>& state) const {
+    enter<kQuery>(state, cells_.front(), T(0), state.hit.t);
   }
 
  private:
-  using Places = std::vector<std::uint32_t>;
+  using PrimitiveIndices = std::vector<std::uint32_t>;
   struct Grid {
     GridLayout<T> layout;
     std::size_t first;  // cell
@@ -59,86 +59,86 @@ class GridTree {
     std::uint32_t first = 0, count = 0;  // block names; or the place of a grid, and kGrid
   };
   // A cell that may become a grid.
-  struct Crowd {
+  struct PendingCell {
     Bounds<T> box;
-    Places items;  // ascending
+    PrimitiveIndices items;  // ascending
     int level;
     std::size_t cell;
   };
 
   // What of the items lies in the box.
-  static Bounds<T> around(const Crowd& crowd, const std::vector<TreeItem<T>>& items) {
+  static Bounds<T> around(const PendingCell& cell, const std::vector<TreeItem<T>>& items) {
     Bounds<T> box;
-    for (const std::uint32_t item : crowd.items) {
+    for (const std::uint32_t item : cell.items) {
       Bounds<T> part = items[item].box;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        (&part.lo.x)[axis] = std::max((&part.lo.x)[axis], (&crowd.box.lo.x)[axis]);
-        (&part.hi.x)[axis] = std::min((&part.hi.x)[axis], (&crowd.box.hi.x)[axis]);
+        (&part.lo.x)[axis] = std::max((&part.lo.x)[axis], (&cell.box.lo.x)[axis]);
+        (&part.hi.x)[axis] = std::min((&part.hi.x)[axis], (&cell.box.hi.x)[axis]);
       }
       box.include(part);
     }
     return box;
   }
 
-  // Makes a grid of the crowd, with fewer cells while they would share too many; false if none helps.
-  bool divide(Crowd& crowd, const std::vector<TreeItem<T>>& items, std::size_t& left,
-              std::deque<Crowd>& open) {
-    const std::size_t count = crowd.items.size();
-    if (crowd.level >= kOptions.levels || (crowd.level > 0 && count <= kOptions.most)) return false;
-    const Bounds<T> box = around(crowd, items);
+  // Makes a grid of the cell, with fewer cells while they would share too many; false if none helps.
+  bool divide(PendingCell& cell, const std::vector<TreeItem<T>>& items, std::size_t& left,
+              std::deque<PendingCell>& open) {
+    const std::size_t count = cell.items.size();
+    if (cell.level >= kOptions.levels || (cell.level > 0 && count <= kOptions.most)) return false;
+    const Bounds<T> box = around(cell, items);
     for (double cells = kOptions.cells * static_cast<double>(count); cells >= 2; cells /= 8) {
       const GridLayout<T> layout(box, cells);
       std::size_t made = 0;
-      for (const std::uint32_t item : crowd.items)
+      for (const std::uint32_t item : cell.items)
         layout.for_each_touching(items[item].box, [&](const CellIndex&) { ++made; });
-      const bool shared = crowd.level > 0 && made > 4 * count;
+      const bool shared = cell.level > 0 && made > 4 * count;
       if (made > left + count || shared) continue;
       left = left + count - made;
-      depth_ = std::max(depth_, crowd.level + 1);
-      add_grid(layout, crowd, items, open);
+      depth_ = std::max(depth_, cell.level + 1);
+      add_grid(layout, cell, items, open);
       return true;
     }
     return false;
   }
 
-  void add_grid(const GridLayout<T>& layout, Crowd& crowd, const std::vector<TreeItem<T>>& items,
-                std::deque<Crowd>& open) {
+  void add_grid(const GridLayout<T>& layout, PendingCell& cell, const std::vector<TreeItem<T>>& items,
+                std::deque<PendingCell>& open) {
     const std::size_t first = cells_.size();
-    cells_[crowd.cell] = {static_cast<std::uint32_t>(grids_.size()), kGrid};
+    cells_[cell.cell] = {static_cast<std::uint32_t>(grids_.size()), kGrid};
     cells_.resize(first + layout.cells());
     grids_.push_back({layout, first});
-    std::vector<Places> members(layout.cells());
-    for (const std::uint32_t item : crowd.items)
+    std::vector<PrimitiveIndices> members(layout.cells());
+    for (const std::uint32_t item : cell.items)
       layout.for_each_touching(items[item].box,
                                [&](const CellIndex& i) { members[layout.number(i)].push_back(item); });
-    crowd.items = {};
+    cell.items = {};
     layout.for_each_touching(layout.box(), [&](const CellIndex& i) {
-      Places& here = members[layout.number(i)];
+      PrimitiveIndices& here = members[layout.number(i)];
       if (!here.empty())
-        open.push_back({layout.cell(i), std::move(here), crowd.level + 1, first + layout.number(i)});
+        open.push_back({layout.cell(i), std::move(here), cell.level + 1, first + layout.number(i)});
     });
   }
 
-  void add_cell(const Crowd& crowd, const std::vector<TreeItem<T>>& items,
+  void add_cell(const PendingCell& cell, const std::vector<TreeItem<T>>& items,
                 const PrimitiveList<T>& primitives) {
-    Places places;
-    for (const std::uint32_t item : crowd.items) places.push_back(items[item].primitive);
+    PrimitiveIndices places;
+    for (const std::uint32_t item : cell.items) places.push_back(items[item].primitive);
     const std::size_t first = names_.size();
     blocks_.add_all(primitives, places, names_);
-    cells_[crowd.cell] = {static_cast<std::uint32_t>(first),
-                          static_cast<std::uint32_t>(names_.size() - first)};
+    cells_[cell.cell] = {static_cast<std::uint32_t>(first),
+                         static_cast<std::uint32_t>(names_.size() - first)};
   }
 
   template <Query kQuery>
-  void enter(Trip<T>& trip, const Cell& cell, T from, T to) const {
+  void enter(TraversalState<T>& state, const Cell& cell, T from, T to) const {
     if (cell.count != kGrid)
-      return trip.template meet<kQuery>(blocks_, std::span(names_).subspan(cell.first, cell.count));
+      return state.template meet<kQuery>(blocks_, std::span(names_).subspan(cell.first, cell.count));
     const Grid& grid = grids_[cell.first];
     grid.layout.for_each_along(
-        trip.ray, trip.probe, from, to, [&](T near) { return trip.open(near); },
+        state.ray, state.probe, from, to, [&](T near) { return state.open(near); },
         [&](const CellIndex& i, T near, T far) {
-          ++trip.counts.node_visits;
-          enter<kQuery>(trip, cells_[grid.first + grid.layout.number(i)], near, far);
+          ++state.counts.node_visits;
+          enter<kQuery>(state, cells_[grid.first + grid.layout.number(i)], near, far);
         });
   }
 

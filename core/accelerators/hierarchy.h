@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/accelerators/batch_traversal.h"
 #include "core/accelerators/unbounded.h"
-#include "core/accelerators/walk.h"
 
 namespace orrery {
 
@@ -17,13 +17,13 @@ class Hierarchy final : public Accelerator<T> {
                AcceleratorCounts& counts) const override {
     unbounded_.closest(rays, groups, hits, counts);
     if (tree_.empty()) return;
-    Walk<T>(tree_, rays, groups, hits.t, &hits.primitive).template run<Query::closest>(counts);
+    BatchTraversal<T>(tree_, rays, groups, hits.t, &hits.primitive).template run<Query::closest>(counts);
   }
 
   void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
     const Groups open = unbounded_.occlude(rays, groups, counts);
     if (tree_.empty()) return;
-    Walk<T>(tree_, rays, open, rays.t_max, nullptr).template run<Query::occlude>(counts);
+    BatchTraversal<T>(tree_, rays, open, rays.t_max, nullptr).template run<Query::occlude>(counts);
   }
 
   AcceleratorFacts facts() const override {
@@ -31,7 +31,7 @@ class Hierarchy final : public Accelerator<T> {
             .depth = tree_.depth(),
             .references = tree_.blocks().references() + unbounded_.size(),
             .refitted = refitted_,
-            .worsening = tree_.worsening()};
+            .surface_area_growth = tree_.surface_area_growth()};
   }
 
   AcceleratorPtr<T> refitted(const PrimitiveList<T>& moved) const override {
@@ -39,7 +39,7 @@ class Hierarchy final : public Accelerator<T> {
     next->unbounded_ = Unbounded<T>(moved);
     if (!tree_.empty()) next->tree_.follow(moved);
     next->refitted_ = true;
-    if (!(next->tree_.worsening() <= kMostWorsening)) return nullptr;
+    if (!(next->tree_.surface_area_growth() <= kMaxSurfaceAreaGrowth)) return nullptr;
     return next;
   }
 

@@ -41,7 +41,7 @@ class MedianSplitter {
 };
 
 template <class T>
-using KdMedian = SingleWalk<T, SpaceTree<T, MedianSplitter<T>>>;
+using KdMedian = SingleRayAccelerator<T, SpaceTree<T, MedianSplitter<T>>>;
 
 }  // namespace
 

@@ -62,7 +62,7 @@ class SurfaceSplitter {
 };
 
 template <class T>
-using KdSah = SingleWalk<T, SpaceTree<T, SurfaceSplitter<T>>>;
+using KdSah = SingleRayAccelerator<T, SpaceTree<T, SurfaceSplitter<T>>>;
 
 }  // namespace
 

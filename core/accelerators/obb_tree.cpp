@@ -27,22 +27,22 @@ class OrientedTree {
   }
 
   template <Query kQuery>
-  void walk(Trip<T>& trip) const {
+  void traverse(TraversalState<T>& state) const {
     std::array<Entry, kDeepestTree + 1> open;
     std::size_t count = 0;
-    if (T from(0); enters(trip, nodes_[0], from)) open[count++] = {0, from};
+    if (T from(0); enters(state, nodes_[0], from)) open[count++] = {0, from};
     while (count > 0) {
       const Entry at = open[--count];
-      if (!trip.open(at.from)) continue;
-      ++trip.counts.node_visits;
+      if (!state.open(at.from)) continue;
+      ++state.counts.node_visits;
       const Node& node = nodes_[at.node];
       if (node.leaf) {
-        trip.template meet<kQuery>(blocks_, std::span(&node.next, 1));
+        state.template meet<kQuery>(blocks_, std::span(&node.next, 1));
         continue;
       }
       Entry near{node.next, T(0)}, far{node.next + 1, T(0)};
-      const bool enters_near = enters(trip, nodes_[near.node], near.from);
-      const bool enters_far = enters(trip, nodes_[far.node], far.from);
+      const bool enters_near = enters(state, nodes_[near.node], near.from);
+      const bool enters_far = enters(state, nodes_[far.node], far.from);
       if (enters_near && enters_far && far.from < near.from) std::swap(near, far);
       if (enters_far) open[count++] = far;
       if (enters_near) open[count++] = near;
@@ -62,13 +62,13 @@ class OrientedTree {
     T from;
   };
 
-  bool enters(Trip<T>& trip, const Node& node, T& from) const {
-    T to = trip.hit.t;
-    ++trip.counts.box_tests;
-    if (!trip.probe.clip(node.box, from, to)) return false;
+  bool enters(TraversalState<T>& state, const Node& node, T& from) const {
+    T to = state.hit.t;
+    ++state.counts.box_tests;
+    if (!state.probe.clip(node.box, from, to)) return false;
     if (node.oriented == kNone) return true;
-    ++trip.counts.box_tests;
-    return oriented_[node.oriented].clip(trip.ray.ray, from, to);
+    ++state.counts.box_tests;
+    return oriented_[node.oriented].clip(state.ray.ray, from, to);
   }
 
   // Node `me` becomes node `at` of the tree; what is in it is added to `hull`.
@@ -110,7 +110,7 @@ class OrientedTree {
 };
 
 template <class T>
-using ObbTree = SingleWalk<T, OrientedTree<T>>;
+using ObbTree = SingleRayAccelerator<T, OrientedTree<T>>;
 
 }  // namespace
 

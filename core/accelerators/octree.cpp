@@ -41,7 +41,7 @@ class OctantSplitter {
 };
 
 template <class T>
-using Octree = SingleWalk<T, SpaceTree<T, OctantSplitter<T>>>;
+using Octree = SingleRayAccelerator<T, SpaceTree<T, OctantSplitter<T>>>;
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/accelerators/single_walk.h"
+#include "core/accelerators/single_ray.h"
 
 namespace orrery {
 

@@ -22,17 +22,17 @@ class OneEach {
   }
 
   template <Query kQuery>
-  void walk(Trip<T>& trip) const {
+  void traverse(TraversalState<T>& state) const {
     for (const Boxed& boxed : boxed_) {
-      T from(0), to = trip.hit.t;
+      T from(0), to = state.hit.t;
       if (to < 0) return;
-      ++trip.counts.box_tests;
-      if (!trip.probe.clip(boxed.box, from, to)) continue;
+      ++state.counts.box_tests;
+      if (!state.probe.clip(boxed.box, from, to)) continue;
       if (boxed.oriented != kNone) {
-        ++trip.counts.box_tests;
-        if (!oriented_[boxed.oriented].clip(trip.ray.ray, from, to)) continue;
+        ++state.counts.box_tests;
+        if (!oriented_[boxed.oriented].clip(state.ray.ray, from, to)) continue;
       }
-      trip.template meet<kQuery>(blocks_, std::span(&boxed.block, 1));
+      state.template meet<kQuery>(blocks_, std::span(&boxed.block, 1));
     }
   }
 
@@ -63,7 +63,7 @@ class OneEach {
 };
 
 template <class T>
-using OrientedBoxes = SingleWalk<T, OneEach<T>>;
+using OrientedBoxes = SingleRayAccelerator<T, OneEach<T>>;
 
 }  // namespace
 

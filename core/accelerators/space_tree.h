@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/accelerators/box_tree.h"
-#include "core/accelerators/single_walk.h"
+#include "core/accelerators/single_ray.h"
 
 namespace orrery {
 
@@ -61,25 +61,25 @@ class SpaceTree {
   // Cells from near to far. Where a ray crosses a plane so close to the end of a stretch that rounding may
   // decide, both sides are walked.
   template <Query kQuery>
-  void walk(Trip<T>& trip) const {
-    Stretch at{0, 0, trip.hit.t};
-    if (!trip.probe.clip(box_, at.from, at.to)) return;
+  void traverse(TraversalState<T>& state) const {
+    Stretch at{0, 0, state.hit.t};
+    if (!state.probe.clip(box_, at.from, at.to)) return;
     std::array<Stretch, kDeepest> later;
     std::size_t waiting = 0;
     for (;;) {
-      ++trip.counts.node_visits;
+      ++state.counts.node_visits;
       const Node& node = nodes_[at.node];
       if (node.axis == kLeaf) {
-        trip.template meet<kQuery>(blocks_, std::span(names_).subspan(node.first, node.count));
+        state.template meet<kQuery>(blocks_, std::span(names_).subspan(node.first, node.count));
         do {
           if (waiting == 0) return;
           at = later[--waiting];
-        } while (!trip.open(at.from));
+        } while (!state.open(at.from));
         continue;
       }
-      const bool down = trip.probe.descending(node.axis);
-      const Stretch near{node.first + down, at.from, min_first(at.to, latest(trip, node))};
-      const Stretch far{node.first + !down, max_first(at.from, trip.probe.earliest(node.axis, node.plane)),
+      const bool down = state.probe.descending(node.axis);
+      const Stretch near{node.first + down, at.from, min_first(at.to, latest(state, node))};
+      const Stretch far{node.first + !down, max_first(at.from, state.probe.earliest(node.axis, node.plane)),
                         at.to};
       const bool enters_far = far.from <= far.to * kFarther<T>;
       if (near.from <= near.to) {
@@ -105,8 +105,8 @@ class SpaceTree {
     T from, to;
   };
 
-  static T latest(const Trip<T>& trip, const Node& node) {
-    return trip.probe.latest(node.axis, node.plane) * kFarther<T>;
+  static T latest(const TraversalState<T>& state, const Node& node) {
+    return state.probe.latest(node.axis, node.plane) * kFarther<T>;
   }
 
   // False, and nothing is changed, if that would help no ray or cost too many references.

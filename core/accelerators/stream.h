@@ -28,7 +28,7 @@ class Slots {
 
 // Rays, or packets, that walk a tree side by side, with their probes and hits.
 template <class RaysOf, class ProbeOf, class HitOf, int kMost>
-struct Walkers {
+struct TraversalGroup {
   static constexpr int kCapacity = kMost;
   Slots<RaysOf, kMost> rays;
   Slots<ProbeOf, kMost> probes;
@@ -44,16 +44,16 @@ struct Walkers {
   }
 };
 
-// Takes many walkers through a tree together: each node is opened once for all that enter it, so that the
+// Takes many rays through a tree together: each node is opened once for all that enter it, so that the
 // machine finds long loops instead of guesses (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream
 // Tracing", HPG 2009). For Query::closest they go on in the order of distance, as those agree about it.
-template <Query kQuery, class T, class Walking>
+template <Query kQuery, class T, class Traversals>
 class Stream {
  public:
-  Stream(const WideTree<T>& tree, Walking& walkers, AcceleratorCounts& counts)
-      : tree_(tree), walkers_(walkers), counts_(counts) {}
+  Stream(const WideTree<T>& tree, Traversals& traversals, AcceleratorCounts& counts)
+      : tree_(tree), traversals_(traversals), counts_(counts) {}
 
-  // The walkers with these numbers. REQUIRES: kPad more can be read behind them.
+  // The traversals with these numbers. REQUIRES: kPad more can be read behind them.
   static constexpr int kPad = 16;
   void run(const std::int32_t* ids, int count) { visit(tree_.root(), ids, count, room_.data()); }
 
@@ -63,7 +63,7 @@ class Stream {
   static constexpr std::size_t kLists = static_cast<std::size_t>(kWidth<T>);
   static constexpr int kStep = static_cast<int>(Id::size());
 
-  // The walkers that enter one child of a node.
+  // The traversals that enter one child of a node.
   struct List {
     T near;
     Child child;
@@ -102,7 +102,7 @@ class Stream {
     flush();
   }
 
-  // Holds the walkers against the children of a node; returns how many of these get a list. Lists go to
+  // Holds the traversals against the children of a node; returns how many of these get a list. Lists go to
   // `room`, which is moved on.
   std::size_t enter(const typename WideTree<T>::Node& node, const std::int32_t* ids, int count,
                     std::int32_t*& room, Lists& lists) {
@@ -112,7 +112,7 @@ class Stream {
     for (int i = 0; i < count; ++i) {
       Lanes<T> near;
       const unsigned entered =
-          walkers_.probes[ids[i]].enter(node.planes, walkers_.hits[ids[i]].limit(), near);
+          traversals_.probes[ids[i]].enter(node.planes, traversals_.hits[ids[i]].limit(), near);
       nearest = min_first(nearest, near);
       all |= entered;
       masks[i] = static_cast<std::int32_t>(entered);
@@ -151,33 +151,33 @@ class Stream {
     return static_cast<int>(end - to);
   }
 
-  // Notes that the walkers have to be tested with a block.
+  // Notes that the traversals have to be tested with a block.
   void meet(Child leaf, const std::int32_t* ids, int count) {
     if (met_ > 0 && Blocks<T>::pack_number(leaf) != Blocks<T>::pack_number(leaf_)) flush();
     leaf_ = leaf;
     for (int i = 0; i < count; ++i) {
-      if (met_ == meetings_.size()) flush();
-      meetings_[met_++] = {Blocks<T>::block_of(leaf), ids[i]};
+      if (met_ == pairs_.size()) flush();
+      pairs_[met_++] = {Blocks<T>::block_of(leaf), ids[i]};
     }
   }
 
   void flush() {
     if (met_ == 0) return;
     const auto& pack = tree_.blocks().pack_of(leaf_);
-    const std::span<const Meeting> meetings(meetings_.data(), met_);
+    const std::span<const RayBlockPair> pairs(pairs_.data(), met_);
     if constexpr (kQuery == Query::closest)
-      pack.closest(meetings, walkers_.rays.data(), walkers_.hits.data(), counts_);
+      pack.closest(pairs, traversals_.rays.data(), traversals_.hits.data(), counts_);
     else
-      pack.occlude(meetings, walkers_.rays.data(), walkers_.hits.data(), counts_);
+      pack.occlude(pairs, traversals_.rays.data(), traversals_.hits.data(), counts_);
     met_ = 0;
   }
 
   const WideTree<T>& tree_;
-  Walking& walkers_;
+  Traversals& traversals_;
   AcceleratorCounts& counts_;
-  Child leaf_ = 0;  // one of the pack that meetings_ are with
+  Child leaf_ = 0;  // one of the pack that pairs_ are with
   std::size_t met_ = 0;
-  std::array<Meeting, 1024> meetings_;
+  std::array<RayBlockPair, 1024> pairs_;
   alignas(64) std::array<std::int32_t, kRoom> room_;
 };
 

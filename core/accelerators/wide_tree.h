@@ -45,7 +45,7 @@ class WideTree {
     nodes_.shrink_to_fit();
     blocks_.pack();
     measure(primitives);
-    looseness_as_built_ = looseness_;
+    relative_surface_area_as_built_ = relative_surface_area_;
   }
 
   // Has the boxes follow the primitives, which stand in the order they had, to where they are now.
@@ -65,7 +65,7 @@ class WideTree {
   // How much larger the boxes have become beside what they hold since the tree was built, by their surfaces,
   // to which the rays that enter them are proportional. (By what they hold and not by the root's box: of a
   // tree that was built while all stood in one place, this tells that it is worth nothing elsewhere.)
-  double worsening() const { return looseness_ / looseness_as_built_; }
+  double surface_area_growth() const { return relative_surface_area_ / relative_surface_area_as_built_; }
 
   bool empty() const { return blocks_.empty(); }
   int depth() const { return depth_; }
@@ -75,7 +75,7 @@ class WideTree {
   const Blocks<T>& blocks() const { return blocks_; }
   const Bounds<T>& box() const { return box_; }
   // Mean of the longest side of a leaf's box.
-  T grain() const { return grain_; }
+  T mean_leaf_extent() const { return mean_leaf_extent_; }
   static bool is_leaf(Child child) { return (child & kLeaf) != 0; }
 
  private:
@@ -140,15 +140,16 @@ class WideTree {
         if (node.has(i)) add(node.child[i], node.box_of(i));
     for (const auto& primitive : primitives)
       if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
-    looseness_ = area / held;
-    grain_ = static_cast<T>(sides / static_cast<double>(leaves));
+    relative_surface_area_ = area / held;
+    mean_leaf_extent_ = static_cast<T>(sides / static_cast<double>(leaves));
   }
 
   Child root_ = 0;
   int depth_ = 0;
   Bounds<T> box_;
-  T grain_ = 0;
-  double looseness_ = 1, looseness_as_built_ = 1;  // surface of all boxes over that of the primitives' own
+  T mean_leaf_extent_ = 0;
+  double relative_surface_area_ = 1,
+         relative_surface_area_as_built_ = 1;  // surface of all boxes over that of the primitives' own
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };

@@ -18,22 +18,22 @@ std::size_t drop_degenerate(TriangleMesh& mesh);
 std::size_t weld(TriangleMesh& mesh);
 
 // The place of each vertex: vertices that stand together have the same number. Numbers begin at 0.
-using Places = std::vector<std::uint32_t>;
-Places places_of(const std::vector<Vec3d>& positions);
+using PositionIndices = std::vector<std::uint32_t>;
+PositionIndices position_indices_of(const std::vector<Vec3d>& positions);
 // Vertices that share a place, but stand apart in `positions`, get different ones.
-void divide_places(Places& places, const std::vector<Vec3d>& positions);
+void split_position_indices(PositionIndices& places, const std::vector<Vec3d>& positions);
 
 // Pairs of triangles around one place, which smooth_normals() compares. REQUIRES: a place for each vertex.
-std::uint64_t count_pairs(const TriangleMesh& mesh, const Places& places);
+std::uint64_t count_pairs(const TriangleMesh& mesh, const PositionIndices& places);
 
 // Gives the mesh vertex normals: at each corner, the mean of the normals of the triangles around its place
 // whose normals differ from its own triangle's by less than `crease_degrees` (in [0, 180]), each weighted by
 // its angle there (Thuermer and Wuethrich, Computing Vertex Normals from Polygonal Facets, 1998). A vertex
 // whose corners differ becomes several; vertices that are equal become one, and those that no triangle uses
 // go. Replaces normals, keeps uvs. REQUIRES: a place for each vertex.
-void smooth_normals(TriangleMesh& mesh, double crease_degrees, const Places& places);
+void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionIndices& places);
 inline void smooth_normals(TriangleMesh& mesh, double crease_degrees) {
-  smooth_normals(mesh, crease_degrees, places_of(mesh.positions));
+  smooth_normals(mesh, crease_degrees, position_indices_of(mesh.positions));
 }
 
 // Takes out the vertices that no triangle uses.

@@ -28,7 +28,7 @@ struct Corners {
   std::vector<std::uint32_t> position;  // place of each corner
   std::vector<std::uint32_t> first, list;
 
-  Corners(const TriangleMesh& mesh, const Places& places) {
+  Corners(const TriangleMesh& mesh, const PositionIndices& places) {
     const std::size_t count = places.empty() ? 0 : *std::max_element(places.begin(), places.end()) + 1;
     position.reserve(3 * mesh.triangles.size());
     first.assign(count + 1, 0);
@@ -82,19 +82,19 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
 
 }  // namespace
 
-Places places_of(const std::vector<Vec3d>& positions) {
-  Places places(positions.size(), 0);
-  divide_places(places, positions);
+PositionIndices position_indices_of(const std::vector<Vec3d>& positions) {
+  PositionIndices places(positions.size(), 0);
+  split_position_indices(places, positions);
   return places;
 }
 
-void divide_places(Places& places, const std::vector<Vec3d>& positions) {
+void split_position_indices(PositionIndices& places, const std::vector<Vec3d>& positions) {
   VertexList apart(true, false);  // with the old place for a normal
   for (std::size_t v = 0; v < places.size(); ++v)
     places[v] = apart.add({positions[v], Vec3d(places[v], 0, 0), {}});
 }
 
-std::uint64_t count_pairs(const TriangleMesh& mesh, const Places& places) {
+std::uint64_t count_pairs(const TriangleMesh& mesh, const PositionIndices& places) {
   std::vector<std::uint64_t> corners(places.size(), 0);  // of each place
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle) ++corners[places[vertex]];
@@ -103,7 +103,7 @@ std::uint64_t count_pairs(const TriangleMesh& mesh, const Places& places) {
   return pairs;
 }
 
-void smooth_normals(TriangleMesh& mesh, double crease_degrees, const Places& places) {
+void smooth_normals(TriangleMesh& mesh, double crease_degrees, const PositionIndices& places) {
   const Corners corners(mesh, places);
   const Facets facets(mesh);
   const double min_cosine = sine_cosine_degrees(crease_degrees).cosine;

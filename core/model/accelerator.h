@@ -25,11 +25,12 @@ struct AcceleratorFacts {
   int depth = 0;               // nodes on the longest way to a primitive
   std::size_t references = 0;  // places that name a primitive: more than there are, where cells share some
   bool refitted = false;       // its boxes followed primitives that moved since it was built
-  double worsening = 1;        // how much larger they are since then beside what they hold, by their surfaces
+  double surface_area_growth =
+      1;  // how much larger they are since then beside what they hold, by their surfaces
 };
 
-// Beyond this worsening a new structure is built.
-inline constexpr double kMostWorsening = 1.5;
+// Beyond this surface_area_growth a new structure is built.
+inline constexpr double kMaxSurfaceAreaGrowth = 1.5;
 
 // Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive,
 // equal distances going to the lower number. Immutable once built; calls may run on any number of threads.
@@ -41,7 +42,8 @@ class Accelerator {
   virtual AcceleratorFacts facts() const = 0;
 
   // The same structure where the primitives have moved: `moved` has them in the same order. Null if it has to
-  // be built anew, because it cannot follow, or because its boxes would be kMostWorsening times as large.
+  // be built anew, because it cannot follow, or because its boxes would be kMaxSurfaceAreaGrowth times as
+  // large.
   virtual std::unique_ptr<Accelerator> refitted(const PrimitiveList<T>& /*moved*/) const { return nullptr; }
 
   // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max and hits.primitive

@@ -98,7 +98,7 @@ struct PacketHit {
 };
 
 // One of the rays, or packets, and a block of primitives that it has to be tested with.
-struct Meeting {
+struct RayBlockPair {
   std::uint32_t block;
   std::int32_t ray;
 };

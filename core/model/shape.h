@@ -26,22 +26,22 @@ struct Surface {
 
 // Primitives of one kernel in an order that a structure chose, laid out in blocks of kBlock<T>, so that a
 // packet meets one of them, or a single ray a block of them, at once. Hits and ties are those of
-// ShapeKernel::closest(), bit for bit. A call takes the meetings in their order, with rays and hits at the
+// ShapeKernel::closest(), bit for bit. A call takes the pairs in their order, with rays and hits at the
 // places they name, and counts its work. Const and free of state.
 template <class T>
 class PackedPrimitives {
  public:
   virtual ~PackedPrimitives() = default;
 
-  using Meetings = std::span<const Meeting>;
-  virtual void closest(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+  using RayBlockPairs = std::span<const RayBlockPair>;
+  virtual void closest(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
-  virtual void closest(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+  virtual void closest(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
   // Sets t to -1 for rays that meet something in (0, t).
-  virtual void occlude(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+  virtual void occlude(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
-  virtual void occlude(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+  virtual void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
 
   virtual std::size_t bytes() const = 0;

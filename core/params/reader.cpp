@@ -38,9 +38,9 @@ std::optional<double> number_in(const json& value, const Range& range) {
 Reader::Reader(const Document& document, ProblemList& problems)
     : document_(document), problems_(problems), object_(&json_of(document)) {}
 
-Reader::Reader(Reader& parent, const Place& place, const json& object)
+Reader::Reader(Reader& parent, const Location& location, const json& object)
     : parent_(&parent),
-      place_(place),
+      location_(location),
       document_(parent.document_),
       problems_(parent.problems_),
       object_(&object) {
@@ -216,7 +216,7 @@ void Reader::do_fail(Key key, std::string detail) {
 }
 
 std::string Reader::do_pointer(Key key) const {
-  std::string text = parent_ ? parent_->place_text(place_) : document_.pointer();
+  std::string text = parent_ ? parent_->location_text(location_) : document_.pointer();
   if (!key.empty()) text += pointer_step(key);
   return text;
 }

@@ -25,7 +25,7 @@ class ProblemList {
 };
 
 // Where an object is in its parent: at a key, and if that holds a list or a map, at which element of it.
-struct Place {
+struct Location {
   std::string_view key;
   std::optional<std::size_t> index = {};
   std::optional<std::string_view> name = {};
@@ -41,7 +41,7 @@ class Reader final : public Params {
  public:
   // The root. REQUIRES: json_of(document) is an object.
   Reader(const Document& document, ProblemList& problems);
-  Reader(Reader& parent, const Place& place, const nlohmann::json& object);
+  Reader(Reader& parent, const Location& location, const nlohmann::json& object);
 
   // Every key must have been asked for. Not called when the type is unknown: so are its keys then.
   void finish();
@@ -85,20 +85,20 @@ class Reader final : public Params {
   const nlohmann::json* find_list(Key key, Count count, std::string_view noun);
 
   // Checks one three of numbers; notes what is wrong with it and leaves `three` alone.
-  void read_three(const nlohmann::json& value, const Place& place, Kind kind, const Range& range,
+  void read_three(const nlohmann::json& value, const Location& location, Kind kind, const Range& range,
                   Vec3d& three);
-  void read_triple(const nlohmann::json& value, const Place& place, std::int64_t bound,
+  void read_triple(const nlohmann::json& value, const Location& location, std::int64_t bound,
                    std::array<std::int64_t, 3>& triple);
   // Runs `read` over the object `value`, and checks that it leaves no key unread.
-  void read_inside(const nlohmann::json& value, const Place& place, const Read& read);
+  void read_inside(const nlohmann::json& value, const Location& location, const Read& read);
 
   void note(std::string pointer, std::string detail);
   void note_value(std::string pointer, const std::string& expected, const nlohmann::json& got,
                   const std::string& hint = "");
-  std::string place_text(const Place& place) const;  // JSON Pointer
+  std::string location_text(const Location& location) const;  // JSON Pointer
 
   Reader* parent_ = nullptr;
-  Place place_;
+  Location location_;
   const Document& document_;
   ProblemList& problems_;
   const nlohmann::json* object_;

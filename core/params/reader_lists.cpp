@@ -21,17 +21,18 @@ std::string three_text(bool number_too, bool not_zero, const Range& range) {
 
 }  // namespace
 
-std::string Reader::place_text(const Place& place) const {
-  std::string text = pointer(place.key);
-  if (place.index) text += "/" + std::to_string(*place.index);
-  if (place.name) text += pointer_step(*place.name);
+std::string Reader::location_text(const Location& location) const {
+  std::string text = pointer(location.key);
+  if (location.index) text += "/" + std::to_string(*location.index);
+  if (location.name) text += pointer_step(*location.name);
   return text;
 }
 
-void Reader::read_three(const json& value, const Place& place, Kind kind, const Range& range, Vec3d& three) {
+void Reader::read_three(const json& value, const Location& location, Kind kind, const Range& range,
+                        Vec3d& three) {
   const bool number_too = kind == Kind::coefficient;
   const auto note_whole = [&] {
-    note_value(place_text(place), three_text(number_too, kind == Kind::direction, range), value);
+    note_value(location_text(location), three_text(number_too, kind == Kind::direction, range), value);
   };
   if (number_too && !value.is_array()) {
     const std::optional<double> number = number_in(value, range);
@@ -48,7 +49,7 @@ void Reader::read_three(const json& value, const Place& place, Kind kind, const 
       numbers[i] = *number;
     } else {
       all_right = false;
-      note_value(place_text(place) + "/" + std::to_string(i), "a number" + range_text(range), value[i]);
+      note_value(location_text(location) + "/" + std::to_string(i), "a number" + range_text(range), value[i]);
     }
   }
   if (!all_right) return;
@@ -88,18 +89,18 @@ std::vector<Vec3d> Reader::do_threes(Key key, Doc, Kind kind, Count count) {
   return all;
 }
 
-void Reader::read_triple(const json& value, const Place& place, std::int64_t bound,
+void Reader::read_triple(const json& value, const Location& location, std::int64_t bound,
                          std::array<std::int64_t, 3>& triple) {
   const Range range{.min = 0, .max = static_cast<double>(bound), .exclusive_max = true};
   const auto expected = [&](const char* what) { return what + range_text(range); };
   if (!value.is_array() || value.size() != 3)
-    return note_value(place_text(place), expected("3 integers"), value);
+    return note_value(location_text(location), expected("3 integers"), value);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::optional<double> number = number_in(value[i], range);
     if (number && *number == std::trunc(*number)) {
       triple[i] = static_cast<std::int64_t>(*number);
     } else {
-      note_value(place_text(place) + "/" + std::to_string(i), expected("an integer"), value[i]);
+      note_value(location_text(location) + "/" + std::to_string(i), expected("an integer"), value[i]);
     }
   }
 }
@@ -111,9 +112,9 @@ std::vector<std::array<std::int64_t, 3>> Reader::do_triples(Key key, Doc, Count 
   return all;
 }
 
-void Reader::read_inside(const json& value, const Place& place, const Read& read) {
-  if (!value.is_object()) return note_value(place_text(place), "an object", value);
-  Reader inside(*this, place, value);
+void Reader::read_inside(const json& value, const Location& location, const Read& read) {
+  if (!value.is_object()) return note_value(location_text(location), "an object", value);
+  Reader inside(*this, location, value);
   read(inside);
   inside.finish();
 }
@@ -140,13 +141,13 @@ void Reader::do_each_named(Key key, Doc, Count count, const ReadNamed& read) {
     return note(pointer(key), "expected " + expected() + ", got " + std::to_string(map->size()));
   }
   for (const auto& [name, value] : map->get_ref<const json::object_t&>()) {
-    const Place place{.key = key, .name = name};
+    const Location location{.key = key, .name = name};
     if (name.empty() || character_count(name) > kMaxNameLength) {
-      note(place_text(place), "expected a name of 1 to " + std::to_string(kMaxNameLength) +
-                                  " characters, got " + in_quotes(name));
+      note(location_text(location), "expected a name of 1 to " + std::to_string(kMaxNameLength) +
+                                        " characters, got " + in_quotes(name));
       continue;
     }
-    read_inside(value, place, [&, &name = name](Params& inside) { read(name, inside); });
+    read_inside(value, location, [&, &name = name](Params& inside) { read(name, inside); });
   }
 }
 

@@ -17,7 +17,7 @@ struct ShadowRay {
 
 // Every n-th of the rays it is given; n doubles whenever there are too many.
 template <class T>
-class Thinned {
+class DecimatingSampler {
  public:
   void add(const ShadowRay<T>& ray) {
     if (given_++ % every_ != 0) return;
@@ -38,7 +38,7 @@ class Thinned {
 template <class T>
 class Recorder final : public Accelerator<T> {
  public:
-  Recorder(const Accelerator<T>& behind, Thinned<T>& into) : behind_(behind), into_(into) {}
+  Recorder(const Accelerator<T>& behind, DecimatingSampler<T>& into) : behind_(behind), into_(into) {}
   AcceleratorFacts facts() const override { return behind_.facts(); }
   void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
@@ -55,7 +55,7 @@ class Recorder final : public Accelerator<T> {
 
  private:
   const Accelerator<T>& behind_;
-  Thinned<T>& into_;
+  DecimatingSampler<T>& into_;
 };
 
 // What up to a batch of rays meet.
@@ -85,7 +85,7 @@ void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay
 template <class T>
 std::vector<OcclusionSample> sample_occlusion(const World<T>& world, const Plan& plan,
                                               const std::function<bool()>& stop) {
-  Thinned<T> thinned;
+  DecimatingSampler<T> thinned;
   try_tiles<T>({world.geometry, std::make_shared<const Recorder<T>>(*world.accelerator, thinned)}, plan,
                kTiles, stop);
   const std::span<const ShadowRay<T>> rays = thinned.rays();

@@ -13,14 +13,14 @@ constexpr int kTiles = 3, kDeepest = 3;  // of the rays that are tried
 constexpr int kListMayPay = 64;          // primitives
 constexpr double kGain = 0.85;           // of its cost, at most, must another take to replace the usual one
 
-struct Tried {
+struct TrialResult {
   const AcceleratorType* type;
   double cost;  // a ray
 };
 
 template <class T>
-Tried try_one(PreparedScene::Parts& parts, const AcceleratorType& type, const Plan& plan,
-              const std::function<bool()>& stop) {
+TrialResult try_one(PreparedScene::Parts& parts, const AcceleratorType& type, const Plan& plan,
+                    const std::function<bool()>& stop) {
   double build_ms = 0;
   const TraceCounts counts =
       try_tiles(world_for<T>(parts, type, plan.time, build_ms, stop), plan, kTiles, stop);
@@ -32,17 +32,17 @@ template <class T>
 Decision choose(PreparedScene::Parts& parts, const Plan& plan, const std::function<bool()>& stop) {
   Plan shallow = plan;
   shallow.max_depth = std::min(plan.max_depth, kDeepest);
-  std::vector<Tried> tried{try_one<T>(parts, *plan.accelerator, shallow, stop)};
+  std::vector<TrialResult> tried{try_one<T>(parts, *plan.accelerator, shallow, stop)};
   const bool few = parts.scene->primitive_count() <= kListMayPay;
   for (const auto& type : accelerator_types()) {
     const std::string_view name = type.name;
     if (name == "boxes" || (name == "list" && few)) tried.push_back(try_one<T>(parts, type, shallow, stop));
   }
-  const auto cheapest = std::min_element(tried.begin(), tried.end(),
-                                         [](const Tried& a, const Tried& b) { return a.cost < b.cost; });
-  const Tried& best = cheapest->cost < kGain * tried.front().cost ? *cheapest : tried.front();
+  const auto cheapest = std::min_element(
+      tried.begin(), tried.end(), [](const TrialResult& a, const TrialResult& b) { return a.cost < b.cost; });
+  const TrialResult& best = cheapest->cost < kGain * tried.front().cost ? *cheapest : tried.front();
   std::string reason = "by what was counted on some tiles, times what each costs, in ns a ray:";
-  for (const Tried& t : tried) {
+  for (const TrialResult& t : tried) {
     char text[80];
     std::snprintf(text, sizeof text, "%s %s %.3g", &t == &tried.front() ? "" : ",", t.type->name, t.cost);
     reason += text;

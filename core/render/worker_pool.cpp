@@ -23,16 +23,16 @@ namespace {
 //
 // They are our own rather than a task arena's: there, a caller that waits for its last tile may be handed the
 // whole of another's frame to do first, and a small picture waits for a large one.
-class Crew {
+class WorkerThreads {
  public:
-  Crew(int count, int niceness) {
+  WorkerThreads(int count, int niceness) {
     for (int i = 0; i < count; ++i)
       threads_.emplace_back([this, i, niceness] {
         if (niceness > 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
         serve(i);
       });
   }
-  ~Crew() {
+  ~WorkerThreads() {
     {
       const std::lock_guard lock(mutex_);
       ends_ = true;
@@ -144,7 +144,7 @@ struct WorkerPool::Parts {
         foreground(count, 0),
         background(count, 10) {}
   tbb::global_control builders;  // what builds structures takes no more threads than what renders
-  Crew foreground, background;
+  WorkerThreads foreground, background;
 };
 
 WorkerPool::WorkerPool(int threads)

@@ -44,14 +44,14 @@ struct Taken {
 template <class T>
 class PackedInstances final : public PackedPrimitives<T> {
  public:
-  using Meetings = typename PackedPrimitives<T>::Meetings;
+  using RayBlockPairs = typename PackedPrimitives<T>::RayBlockPairs;
 
   PackedInstances(std::shared_ptr<const PlacedList<T>> placed, std::span<const int> indices)
       : placed_(std::move(placed)), indices_(indices.begin(), indices.end()) {}
 
-  void closest(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+  void closest(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(meetings, kBatch, [&](const Placed<T>& placed, Meetings some) {
+    each_instance(pairs, kBatch, [&](const Placed<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, rays, hits);
       counts.primitive_tests += active_rays(visit->rays, visit_groups(some));
       placed.model->accelerator->closest(visit->rays, visit_groups(some), visit->hits, counts);
@@ -66,9 +66,9 @@ class PackedInstances final : public PackedPrimitives<T> {
     });
   }
 
-  void occlude(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+  void occlude(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(meetings, kBatch, [&](const Placed<T>& placed, Meetings some) {
+    each_instance(pairs, kBatch, [&](const Placed<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, rays, hits);
       counts.primitive_tests += active_rays(visit->rays, visit_groups(some));
       placed.model->accelerator->occlude(visit->rays, visit_groups(some), counts);
@@ -77,9 +77,9 @@ class PackedInstances final : public PackedPrimitives<T> {
     });
   }
 
-  void closest(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+  void closest(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(meetings, kBatch / kWidth<T>, [&](const Placed<T>& placed, Meetings some) {
+    each_instance(pairs, kBatch / kWidth<T>, [&](const Placed<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, packets, hits);
       counts.primitive_tests += active_rays(visit->rays, packet_groups(some));
       placed.model->accelerator->closest(visit->rays, packet_groups(some), visit->hits, counts);
@@ -94,9 +94,9 @@ class PackedInstances final : public PackedPrimitives<T> {
     });
   }
 
-  void occlude(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+  void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(meetings, kBatch / kWidth<T>, [&](const Placed<T>& placed, Meetings some) {
+    each_instance(pairs, kBatch / kWidth<T>, [&](const Placed<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, packets, hits);
       counts.primitive_tests += active_rays(visit->rays, packet_groups(some));
       placed.model->accelerator->occlude(visit->rays, packet_groups(some), counts);
@@ -114,45 +114,44 @@ class PackedInstances final : public PackedPrimitives<T> {
  private:
   static constexpr std::size_t kSize = static_cast<std::size_t>(kBlock<T>);
 
-  // Calls act(instance, meetings) with up to `most` meetings of one block, for each instance in it.
+  // Calls act(instance, pairs) with up to `most` pairs of one block, for each instance in it.
   template <class Act>
-  void each_instance(Meetings meetings, int most, const Act& act) const {
-    while (!meetings.empty()) {
-      const std::uint32_t block = meetings.front().block;
+  void each_instance(RayBlockPairs pairs, int most, const Act& act) const {
+    while (!pairs.empty()) {
+      const std::uint32_t block = pairs.front().block;
       std::size_t count = 1;
-      while (count < std::min(meetings.size(), static_cast<std::size_t>(most)) &&
-             meetings[count].block == block)
+      while (count < std::min(pairs.size(), static_cast<std::size_t>(most)) && pairs[count].block == block)
         ++count;
       for (std::size_t place = 0; place < kSize; ++place)
         if (const int index = indices_[block * kSize + place]; index != kNothing)
-          act((*placed_)[static_cast<std::size_t>(index)], meetings.first(count));
-      meetings = meetings.subspan(count);
+          act((*placed_)[static_cast<std::size_t>(index)], pairs.first(count));
+      pairs = pairs.subspan(count);
     }
   }
 
-  static Groups visit_groups(Meetings some) {
+  static Groups visit_groups(RayBlockPairs some) {
     return Groups::covering(0, static_cast<int>(some.size()), kWidth<T>);
   }
-  static Groups packet_groups(Meetings some) {
+  static Groups packet_groups(RayBlockPairs some) {
     return Groups::covering(0, static_cast<int>(some.size()) * kWidth<T>, kWidth<T>);
   }
 
-  static std::unique_ptr<Visit<T>> gather(const Placed<T>& placed, Meetings some, const SingleRay<T>* rays,
-                                          const SingleHit<T>* hits) {
+  static std::unique_ptr<Visit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
+                                          const SingleRay<T>* rays, const SingleHit<T>* hits) {
     std::unique_ptr<Visit<T>> visit(new Visit<T>);
     RayBatch<T>& batch = visit->rays;
     batch.count = static_cast<int>(some.size());
     const int room = (batch.count + kWidth<T> - 1) / kWidth<T> * kWidth<T>;
     for (int i = 0; i < room; ++i) {
-      const Meeting& meeting = some[std::min(static_cast<std::size_t>(i), some.size() - 1)];
-      batch.set(i, rays[meeting.ray].ray, i < batch.count ? hits[meeting.ray].t : T(-1));
+      const RayBlockPair& pair = some[std::min(static_cast<std::size_t>(i), some.size() - 1)];
+      batch.set(i, rays[pair.ray].ray, i < batch.count ? hits[pair.ray].t : T(-1));
     }
     for (int i = 0; i < room; i += kWidth<T>) visit->put(i, placed.to_model(batch.at(i)), batch.t_max.at(i));
     return visit;
   }
 
-  static std::unique_ptr<Visit<T>> gather(const Placed<T>& placed, Meetings some, const Packet<T>* packets,
-                                          const PacketHit<T>* hits) {
+  static std::unique_ptr<Visit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
+                                          const Packet<T>* packets, const PacketHit<T>* hits) {
     std::unique_ptr<Visit<T>> visit(new Visit<T>);
     visit->rays.count = static_cast<int>(some.size()) * kWidth<T>;
     for (std::size_t k = 0; k < some.size(); ++k)

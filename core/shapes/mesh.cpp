@@ -80,7 +80,7 @@ class MeshSet final : public ShapeSet {
     left_out_ += drop_degenerate(object.mesh);
     drop_unused(object.mesh);
     if (!object.crease_degrees) return true;
-    const Places places = places_of(object.mesh.positions);
+    const PositionIndices places = position_indices_of(object.mesh.positions);
     if (!may_compare(count_pairs(object.mesh, places), p)) return false;
     smooth_normals(object.mesh, *object.crease_degrees, places);
     return true;
@@ -88,8 +88,8 @@ class MeshSet final : public ShapeSet {
   bool take_moving(MeshObject& object, Params& p) {
     MovingMesh moving{object.mesh.triangles, std::move(object.keys), object.crease_degrees, {}, 0};
     if (object.crease_degrees) {
-      moving.always = places_of(*moving.keys.values[0].positions);
-      for (const VertexKey& key : moving.keys.values) divide_places(moving.always, *key.positions);
+      moving.always = position_indices_of(*moving.keys.values[0].positions);
+      for (const VertexKey& key : moving.keys.values) split_position_indices(moving.always, *key.positions);
       moving.most_pairs = kRoomForMoments * count_pairs(object.mesh, moving.always);
       if (!may_compare(moving.most_pairs, p)) return false;
     }

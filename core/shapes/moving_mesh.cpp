@@ -28,7 +28,7 @@ TriangleMesh MovingMesh::at(double time) const {
   const VertexKey vertices = keys.at(time);
   TriangleMesh mesh{*vertices.positions, triangles, *vertices.normals, {}};
   if (crease_degrees) {
-    const Places now = places_of(mesh.positions);
+    const PositionIndices now = position_indices_of(mesh.positions);
     smooth_normals(mesh, *crease_degrees, count_pairs(mesh, now) <= most_pairs ? now : always);
   }
   return mesh;

@@ -26,7 +26,7 @@ struct MovingMesh {
   // that compares more than `most_pairs` because much of the mesh meets for a moment, of those that do so at
   // all keys.
   std::optional<double> crease_degrees;
-  Places always;  // together at all keys
+  PositionIndices always;  // together at all keys
   std::uint64_t most_pairs;
 
   // The mesh as it stands at `time`, in seconds. Its triangles keep their order.

@@ -35,44 +35,44 @@ class PackedRecords final : public PackedPrimitives<T> {
       fill(blocks_[b], records, first, indices.subspan(b * kB, kB));
   }
 
-  using Meetings = typename PackedPrimitives<T>::Meetings;
+  using RayBlockPairs = typename PackedPrimitives<T>::RayBlockPairs;
 
-  [[gnu::flatten]] void closest(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+  [[gnu::flatten]] void closest(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                                 AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
-    for (const Meeting& meeting : meetings) {
-      const Block& block = blocks_[meeting.block];
+    for (const RayBlockPair& pair : pairs) {
+      const Block& block = blocks_[pair.block];
       tested += block.count;
-      SingleHit<T>& hit = hits[meeting.ray];
-      const B t = distance(block.core, rays[meeting.ray]);
+      SingleHit<T>& hit = hits[pair.ray];
+      const B t = distance(block.core, rays[pair.ray]);
       const unsigned reached = bits_of(t <= B(std::min(hit.t, kFar))) & block.filled();
       if (reached != 0) take_nearest(block, t, reached, hit);
     }
     counts.primitive_tests += tested;
   }
 
-  [[gnu::flatten]] void occlude(Meetings meetings, const SingleRay<T>* rays, SingleHit<T>* hits,
+  [[gnu::flatten]] void occlude(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                                 AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
-    for (const Meeting& meeting : meetings) {
-      const Block& block = blocks_[meeting.block];
-      SingleHit<T>& hit = hits[meeting.ray];
+    for (const RayBlockPair& pair : pairs) {
+      const Block& block = blocks_[pair.block];
+      SingleHit<T>& hit = hits[pair.ray];
       if (hit.t < 0) continue;
       tested += block.count;
-      if ((bits_of(distance(block.core, rays[meeting.ray]) < B(hit.t)) & block.filled()) != 0) hit.t = T(-1);
+      if ((bits_of(distance(block.core, rays[pair.ray]) < B(hit.t)) & block.filled()) != 0) hit.t = T(-1);
     }
     counts.primitive_tests += tested;
   }
 
-  [[gnu::flatten]] void closest(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+  [[gnu::flatten]] void closest(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                                 AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
-    for (const Meeting& meeting : meetings) {
-      const Block& block = blocks_[meeting.block];
-      PacketHit<T>& hit = hits[meeting.ray];
+    for (const RayBlockPair& pair : pairs) {
+      const Block& block = blocks_[pair.block];
+      PacketHit<T>& hit = hits[pair.ray];
       tested += block.count * active_in(hit);
-      for_each(block, packets[meeting.ray], [&](const Core<N>& core, IndexOf<T> id) {
-        const N t = distance(core, packets[meeting.ray]);
+      for_each(block, packets[pair.ray], [&](const Core<N>& core, IndexOf<T> id) {
+        const N t = distance(core, packets[pair.ray]);
         if (!any(t <= min_first(hit.t, N(kFar)))) return;
         const auto nearer = takes_over(t, IndexLanes<T>(id), hit.t, hit.primitive);
         stdx::where(nearer, hit.t) = t;
@@ -83,16 +83,16 @@ class PackedRecords final : public PackedPrimitives<T> {
     counts.primitive_tests += tested;
   }
 
-  [[gnu::flatten]] void occlude(Meetings meetings, const Packet<T>* packets, PacketHit<T>* hits,
+  [[gnu::flatten]] void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                                 AcceleratorCounts& counts) const override {
     std::uint64_t tested = 0;
-    for (const Meeting& meeting : meetings) {
-      const Block& block = blocks_[meeting.block];
-      PacketHit<T>& hit = hits[meeting.ray];
+    for (const RayBlockPair& pair : pairs) {
+      const Block& block = blocks_[pair.block];
+      PacketHit<T>& hit = hits[pair.ray];
       if (hit.farthest < 0) continue;
       tested += block.count * active_in(hit);
-      for_each(block, packets[meeting.ray], [&](const Core<N>& core, IndexOf<T>) {
-        stdx::where(distance(core, packets[meeting.ray]) < hit.t, hit.t) = N(T(-1));
+      for_each(block, packets[pair.ray], [&](const Core<N>& core, IndexOf<T>) {
+        stdx::where(distance(core, packets[pair.ray]) < hit.t, hit.t) = N(T(-1));
       });
       hit.farthest = stdx::hmax(hit.t);
     }

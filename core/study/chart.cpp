@@ -7,31 +7,31 @@
 namespace orrery {
 
 double Point::rmse() const {
-  return std::sqrt(mean([](const Sighting& s) { return s.difference.rmse * s.difference.rmse; }));
+  return std::sqrt(mean([](const Measurement& s) { return s.difference.rmse * s.difference.rmse; }));
 }
 
 double Point::rmse_sd() const {
   if (rounds.size() < 2) return 0;
-  const double middle = mean([](const Sighting& s) { return s.difference.rmse; });
+  const double middle = mean([](const Measurement& s) { return s.difference.rmse; });
   double squares = 0;
-  for (const Sighting& s : rounds) squares += (s.difference.rmse - middle) * (s.difference.rmse - middle);
+  for (const Measurement& s : rounds) squares += (s.difference.rmse - middle) * (s.difference.rmse - middle);
   return std::sqrt(squares / static_cast<double>(rounds.size() - 1));
 }
 
 double Point::psnr_db() const {
-  return -10 * std::log10(mean([](const Sighting& s) { return s.difference.cut_mse; }));
+  return -10 * std::log10(mean([](const Measurement& s) { return s.difference.cut_mse; }));
 }
 
 double Point::cpu_ms() const {
   std::vector<double> times;
-  for (const Sighting& s : rounds) times.push_back(s.cpu_ms);
+  for (const Measurement& s : rounds) times.push_back(s.cpu_ms);
   std::sort(times.begin(), times.end());
   const std::size_t half = times.size() / 2;
   return times.size() % 2 == 1 ? times[half] : (times[half - 1] + times[half]) / 2;
 }
 
 double Point::rays() const {
-  return mean([](const Sighting& s) { return s.rays; });
+  return mean([](const Measurement& s) { return s.rays; });
 }
 
 double Chart::cheapest_ms() const {
@@ -54,8 +54,9 @@ void mark_front(std::vector<Point>& points) {
   }
 }
 
-std::string line_name(const Rung& rung) {
-  return rung.technique + " " + std::to_string(rung.max_depth) + (rung.double_precision ? ", double" : "");
+std::string line_name(const Configuration& configuration) {
+  return configuration.technique + " " + std::to_string(configuration.max_depth) +
+         (configuration.double_precision ? ", double" : "");
 }
 
 }  // namespace orrery

@@ -8,24 +8,24 @@
 namespace orrery {
 
 // One way to make the picture.
-struct Rung {
+struct Configuration {
   std::string technique;
   int max_depth = 0;
   bool double_precision = false;
   int samples = 1;
 };
 
-// What a picture of some rung cost, and how far it was off.
-struct Sighting {
+// What a picture of some configuration cost, and how far it was off.
+struct Measurement {
   Difference difference;  // from the reference
   double cpu_ms = 0;      // of all threads together, without building
   double rays = 0;        // traced
 };
 
-// Several pictures of one rung, by different seeds.
+// Several pictures of one configuration, by different seeds.
 struct Point {
-  Rung rung;
-  std::vector<Sighting> rounds;
+  Configuration configuration;
+  std::vector<Measurement> rounds;
   std::string accelerator;  // that the plan or the view chose
   bool on_front = false;    // no other is both as fast and as near, and better in one of the two
 
@@ -34,11 +34,11 @@ struct Point {
   double psnr_db() const;  // 10 log10 of 1 / mean square error of all rounds, cut to 0..1; may be infinite
   double cpu_ms() const;   // median of the rounds
   double rays() const;     // mean of the rounds
-  // Mean of the rounds, whatever `value` takes from a Sighting.
+  // Mean of the rounds, whatever `value` takes from a Measurement.
   template <class Value>
   double mean(const Value& value) const {
     double sum = 0;
-    for (const Sighting& s : rounds) sum += value(s);
+    for (const Measurement& s : rounds) sum += value(s);
     return sum / static_cast<double>(rounds.size());
   }
 };
@@ -47,7 +47,7 @@ struct Point {
 struct Chart {
   std::string scene_id, title;
   int width = 0, height = 0;
-  Rung reference;
+  Configuration reference;
   double reference_cpu_ms = 0;  // of one of the two
   // What the reference itself may be off, as an RMSE: half of that between two pictures with different seeds,
   // of which it is the mean. Smaller errors mean nothing.
@@ -61,7 +61,7 @@ struct Chart {
 void mark_front(std::vector<Point>& points);
 
 // "whitted 5, double": what a line of the chart joins.
-std::string line_name(const Rung& rung);
+std::string line_name(const Configuration& configuration);
 
 // A drawing of 860 x 520: RMSE over CPU time as a multiple of the cheapest point's, both logarithmic.
 std::string svg_of(const Chart& chart);

@@ -155,24 +155,26 @@ class Drawing {
 
   void draw_lines() {
     for (std::size_t from = 0, to = 0; from < chart_.points.size(); from = to) {
-      const Rung& rung = chart_.points[from].rung;
-      while (to < chart_.points.size() && line_name(chart_.points[to].rung) == line_name(rung)) ++to;
-      const char* color = color_of(rung);
+      const Configuration& configuration = chart_.points[from].configuration;
+      while (to < chart_.points.size() &&
+             line_name(chart_.points[to].configuration) == line_name(configuration))
+        ++to;
+      const char* color = color_of(configuration);
       std::string path;
       for (std::size_t i = from; i < to; ++i)
         path += print("%.1f,%.1f ", x_of(chart_.points[i]), y_of(chart_.points[i]));
       text_ += "<polyline points=\"" + path + "\" fill=\"none\" stroke=\"" + color + "\"" +
-               (rung.double_precision ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
+               (configuration.double_precision ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
       for (std::size_t i = from; i < to; ++i) draw_mark(chart_.points[i], color);
     }
   }
 
   void draw_mark(const Point& p, const char* color) {
     const double x = x_of(p), y = y_of(p);
-    text_ += mark(x, y, p.rung.double_precision, p.on_front ? color : "#ffffff", color,
-                  print("%s, %d samples: %.3g ms, RMSE %.3g", line_name(p.rung).c_str(), p.rung.samples,
-                        p.cpu_ms(), p.rmse()));
-    if (p.on_front) text_ += words(x + 8, y - 7, std::to_string(p.rung.samples), "font-size=\"11\"");
+    text_ += mark(x, y, p.configuration.double_precision, p.on_front ? color : "#ffffff", color,
+                  print("%s, %d samples: %.3g ms, RMSE %.3g", line_name(p.configuration).c_str(),
+                        p.configuration.samples, p.cpu_ms(), p.rmse()));
+    if (p.on_front) text_ += words(x + 8, y - 7, std::to_string(p.configuration.samples), "font-size=\"11\"");
   }
 
   static std::string mark(double x, double y, bool square, const char* fill, const char* stroke,
@@ -185,13 +187,13 @@ class Drawing {
   }
 
   // One for each technique and depth.
-  const char* color_of(const Rung& rung) const {
+  const char* color_of(const Configuration& configuration) const {
     std::size_t models = 0;
     for (std::size_t i = 0; i < chart_.points.size(); ++i) {
-      const Rung& at = chart_.points[i].rung;
-      if (at.technique == rung.technique && at.max_depth == rung.max_depth) break;
-      const bool last_of_model = chart_.points[i + 1].rung.technique != at.technique ||
-                                 chart_.points[i + 1].rung.max_depth != at.max_depth;
+      const Configuration& at = chart_.points[i].configuration;
+      if (at.technique == configuration.technique && at.max_depth == configuration.max_depth) break;
+      const bool last_of_model = chart_.points[i + 1].configuration.technique != at.technique ||
+                                 chart_.points[i + 1].configuration.max_depth != at.max_depth;
       models += last_of_model;
     }
     return kColors[models % kColors.size()];
@@ -200,12 +202,13 @@ class Drawing {
   void draw_legend() {
     double y = kTop + 12;
     const double x = kRight + 28;
-    const Rung* before = nullptr;
+    const Configuration* before = nullptr;
     for (const Point& p : chart_.points) {
-      if (before && line_name(*before) == line_name(p.rung)) continue;
-      before = &p.rung;
-      text_ += mark(x, y - 4, p.rung.double_precision, color_of(p.rung), color_of(p.rung), "");
-      text_ += words(x + 16, y, line_name(p.rung));
+      if (before && line_name(*before) == line_name(p.configuration)) continue;
+      before = &p.configuration;
+      text_ += mark(x, y - 4, p.configuration.double_precision, color_of(p.configuration),
+                    color_of(p.configuration), "");
+      text_ += words(x + 16, y, line_name(p.configuration));
       y += 22;
     }
     for (const char* note : {"technique and ray depth", "", "filled: no other is faster",

@@ -14,9 +14,9 @@ namespace orrery {
 namespace {
 
 constexpr int kReferences = 2;   // pictures that make the reference
-constexpr int kMoreSamples = 4;  // of the reference, than the highest rung has
+constexpr int kMoreSamples = 4;  // of the reference, than the highest configuration has
 constexpr double kClockStep_ms = 1e-6;
-constexpr int kStep = 4;  // from rung to rung
+constexpr int kStep = 4;  // from configuration to configuration
 static_assert(kMostChartSamples * kMoreSamples <= kMaxSamples);
 
 void require_chartable(const RenderRequest& view, const Plan& plan) {
@@ -31,9 +31,9 @@ void require_chartable(const RenderRequest& view, const Plan& plan) {
 }
 
 // The models that are no more than the plan's, the simplest first.
-std::vector<Rung> models_up_to(const Plan& plan) {
-  const Rung whole{.technique = plan.technique->name, .max_depth = plan.max_depth};
-  std::vector<Rung> models;
+std::vector<Configuration> models_up_to(const Plan& plan) {
+  const Configuration whole{.technique = plan.technique->name, .max_depth = plan.max_depth};
+  std::vector<Configuration> models;
   if (plan.specular && plan.technique->secondary_rays) {
     for (const TechniqueType& type : technique_types())
       if (!type.secondary_rays) models.push_back({.technique = type.name, .max_depth = 0});
@@ -45,11 +45,13 @@ std::vector<Rung> models_up_to(const Plan& plan) {
 }
 
 bool same_work(const Point& a, const Point& b) {
-  const auto rung = [](const Point& p) { return std::pair(p.rung.double_precision, p.rung.samples); };
-  return rung(a) == rung(b) && a.rays() == b.rays() && a.rmse() == b.rmse();
+  const auto configuration = [](const Point& p) {
+    return std::pair(p.configuration.double_precision, p.configuration.samples);
+  };
+  return configuration(a) == configuration(b) && a.rays() == b.rays() && a.rmse() == b.rmse();
 }
 
-// Rungs that turned out to do what a simpler model does: the scene has no deeper rays.
+// Configurations that turned out to do what a simpler model does: the scene has no deeper rays.
 void leave_out_same(std::vector<Point>& points) {
   std::vector<Point> different;
   for (Point& p : points)
@@ -68,18 +70,18 @@ Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent
   chart_.title = scene.title;
   chart_.width = plan.width;
   chart_.height = plan.height;
-  add_rungs(plan, extent.samples);
+  add_configurations(plan, extent.samples);
   pictures_ = kReferences + extent.rounds * static_cast<int>(chart_.points.size());
   chart_.reference = {plan.technique->name, plan.max_depth, true,
-                      chart_.points.back().rung.samples * kMoreSamples};
+                      chart_.points.back().configuration.samples * kMoreSamples};
 }
 
-void Study::add_rungs(const Plan& plan, int most_samples) {
-  for (Rung rung : models_up_to(plan)) {
+void Study::add_configurations(const Plan& plan, int most_samples) {
+  for (Configuration configuration : models_up_to(plan)) {
     for (const bool doubles : {false, true}) {
-      rung.double_precision = doubles;
-      for (rung.samples = 1; rung.samples <= most_samples; rung.samples *= kStep)
-        chart_.points.push_back({.rung = rung, .rounds = {}, .accelerator = {}});
+      configuration.double_precision = doubles;
+      for (configuration.samples = 1; configuration.samples <= most_samples; configuration.samples *= kStep)
+        chart_.points.push_back({.configuration = configuration, .rounds = {}, .accelerator = {}});
     }
   }
 }
@@ -91,21 +93,23 @@ std::size_t Study::place_of(int number) const {
 RenderRequest Study::request(int number) const {
   assert(number >= 0 && number < pictures());
   const bool is_reference = number < kReferences;
-  const Rung& rung = is_reference ? chart_.reference : chart_.points[place_of(number)].rung;
+  const Configuration& configuration =
+      is_reference ? chart_.reference : chart_.points[place_of(number)].configuration;
   const int rounds_before = (number - kReferences) / static_cast<int>(chart_.points.size());
   const int seed_step = is_reference ? number : kReferences + rounds_before;
   RenderRequest request = view_;
-  request.technique = rung.technique;
-  request.max_depth = rung.max_depth;
-  request.precision = rung.double_precision ? Precision::double_precision : Precision::single_precision;
-  request.samples = rung.samples;
+  request.technique = configuration.technique;
+  request.max_depth = configuration.max_depth;
+  request.precision =
+      configuration.double_precision ? Precision::double_precision : Precision::single_precision;
+  request.samples = configuration.samples;
   request.seed = (seed_ + static_cast<std::uint64_t>(seed_step)) % (std::uint64_t{kMaxSeed} + 1);
   return request;
 }
 
-void Study::see_reference(const RenderResult& rendered) {
+void Study::add_reference(const RenderResult& rendered) {
   const auto values = rendered.image.values();
-  if (seen_ == 0) {
+  if (added_ == 0) {
     reference_.assign(values.begin(), values.end());
     return;
   }
@@ -115,18 +119,18 @@ void Study::see_reference(const RenderResult& rendered) {
     reference_[i] = static_cast<float>((double(reference_[i]) + double(values[i])) / kReferences);
 }
 
-void Study::see(const RenderResult& rendered) {
+void Study::add(const RenderResult& rendered) {
   assert(!complete());
-  if (seen_ < kReferences) {
-    see_reference(rendered);
+  if (added_ < kReferences) {
+    add_reference(rendered);
   } else {
-    Point& point = chart_.points[place_of(seen_)];
+    Point& point = chart_.points[place_of(added_)];
     point.accelerator = rendered.stats.accelerator->name;
     point.rounds.push_back({.difference = difference(rendered.image.values(), reference_),
                             .cpu_ms = std::max(rendered.stats.cpu_ms, kClockStep_ms),
                             .rays = double(rendered.stats.counts.rays.total())});
   }
-  if (++seen_ < pictures()) return;
+  if (++added_ < pictures()) return;
   reference_ = {};
   leave_out_same(chart_.points);
   mark_front(chart_.points);

@@ -26,7 +26,7 @@ double cost_of(const Plan& plan) {
 
 double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
 
-void Places::require_one_more(int all, int own) const {
+void Quota::require_one_more(int all, int own) const {
   if (all >= most) throw Busy(std::to_string(all) + " " + what + " already (" + limit + ")", retry_s);
   if (own >= std::max(1, most / 2))
     throw ClientBusy(std::to_string(own) + " " + what +

@@ -22,7 +22,7 @@ class ClientBusy : public Busy {
 // Holds that there is a place for one more of `what`, of which there are `all` now, `own` of them this
 // client's: at most `most` (the limit called `limit`), and half of them for one client. Throws Busy or
 // ClientBusy.
-struct Places {
+struct Quota {
   const char *what, *limit;  // "jobs are under way", "jobs"
   int most;
   double retry_s;

@@ -22,16 +22,16 @@ App::App(const Settings& settings)
       assets_(settings.asset_store_bytes),
       pictures_(settings.picture_bytes),
       admission_({settings_.renders, settings_.queue_rays}),
-      means_{pool_, admission_, draining_, ends_, rays_},
+      services_{pool_, admission_, draining_, ends_, rays_},
       streams_(settings_.connections),
-      orbits_(means_, settings.orbits, settings.request_seconds),
-      jobs_(means_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
-                     settings.job_kept_seconds}) {}
+      orbits_(services_, settings.orbits, settings.request_seconds),
+      jobs_(services_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
+                        settings.job_kept_seconds}) {}
 
 template <class Work>
-void App::watched(const Asker& asker, const Work& work) {
+void App::watched(const Caller& caller, const Work& work) {
   require_open();
-  const Watch watch(asker.gone, ends_, settings_.request_seconds, "request_seconds", asker.since);
+  const Watch watch(caller.gone, ends_, settings_.request_seconds, "request_seconds", caller.since);
   try {
     work([&] { return watch.stop(); });
   } catch (const Cancelled&) {
@@ -39,51 +39,51 @@ void App::watched(const Asker& asker, const Work& work) {
   }
 }
 
-void App::read(std::size_t bytes, const Asker& asker, Timing& timing,
+void App::read(std::size_t bytes, const Caller& caller, Timing& timing,
                const std::function<void(const MeshSource&)>& work) {
-  watched(asker, [&](const auto& stop) {
+  watched(caller, [&](const auto& stop) {
     const auto start = Clock::now();
-    const Reading reading(assets_, admission_, asker.client, bytes, stop);
+    const Reading reading(assets_, admission_, caller.client, bytes, stop);
     work(reading);
     timing.queue += reading.waited_ms();
     timing.load += milliseconds_since(start) - reading.waited_ms();
   });
 }
 
-AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, const Asker& asker) {
+AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, const Caller& caller) {
   AssetStore::Added added;
-  watched(asker, [&](const auto& stop) {
+  watched(caller, [&](const auto& stop) {
     const auto ticket =
-        admission_.enter({Lane::interactive, asker.client, cost_of_reading(bytes.size())}, stop);
+        admission_.enter({Lane::interactive, caller.client, cost_of_reading(bytes.size())}, stop);
     added = assets_.add(sha256, std::move(bytes));
   });
   return added;
 }
 
 Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-                     const Asker& asker, Timing& timing) {
+                     const Caller& caller, Timing& timing) {
   const double cost = cost_of(plan);
-  const Demand demand{cost > settings_.interactive_rays ? Lane::batch : Lane::interactive, asker.client,
+  const Demand demand{cost > settings_.interactive_rays ? Lane::batch : Lane::interactive, caller.client,
                       cost};
   const auto start = Clock::now();
   const Pictures::Found found = pictures_.get(
-      key + std::to_string(static_cast<int>(format)), asker.gone, [&](const Pictures::Gone& gone) {
-        return make(scene, plan, format, demand, {asker.client, gone, asker.since}, timing);
+      key + std::to_string(static_cast<int>(format)), caller.gone, [&](const Pictures::Gone& gone) {
+        return make(scene, plan, format, demand, {caller.client, gone, caller.since}, timing);
       });
   if (!found.made_here) timing.queue += milliseconds_since(start);
   return {found.picture, found.made_here};
 }
 
 Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-                  const Asker& asker, Timing& timing) {
+                  const Caller& caller, Timing& timing) {
   Picture picture;
-  watched(asker, [&](const auto& stop) {
+  watched(caller, [&](const auto& stop) {
     auto start = Clock::now();
     const auto ticket = admission_.enter(demand, stop);
     timing.queue += milliseconds_since(start);
     RenderResult rendered =
-        means_.render(scene, plan, pixels_of(format),
-                      {.stop = stop, .progress = {}, .background = demand.lane == Lane::batch});
+        services_.render(scene, plan, pixels_of(format),
+                         {.stop = stop, .progress = {}, .background = demand.lane == Lane::batch});
     timing.build = rendered.stats.build_ms;
     timing.render = rendered.stats.trace_ms;
     start = Clock::now();
@@ -94,10 +94,10 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat forma
   return picture;
 }
 
-void App::settle(const PreparedScene& scene, Plan& plan, const Asker& asker) {
+void App::settle(const PreparedScene& scene, Plan& plan, const Caller& caller) {
   if (!plan.try_accelerators) return;
-  watched(asker, [&](const auto& stop) {
-    const auto ticket = admission_.enter({Lane::interactive, asker.client, kLeastCost}, stop);
+  watched(caller, [&](const auto& stop) {
+    const auto ticket = admission_.enter({Lane::interactive, caller.client, kLeastCost}, stop);
     orrery::settle(scene, plan, stop);
   });
 }

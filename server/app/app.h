@@ -11,9 +11,9 @@
 #include "server/app/admission.h"
 #include "server/app/asset_store.h"
 #include "server/app/jobs.h"
-#include "server/app/means.h"
 #include "server/app/orbit_hub.h"
 #include "server/app/pictures.h"
+#include "server/app/render_services.h"
 #include "server/app/scene_store.h"
 #include "server/app/settings.h"
 #include "server/app/streams.h"
@@ -31,7 +31,7 @@ struct Rendered {
 };
 
 // Who asks for something.
-struct Asker {
+struct Caller {
   std::string client;          // whose share of the work it is
   std::function<bool()> gone;  // whether nobody waits for it any more
   Clock::time_point since = Clock::now();
@@ -57,17 +57,17 @@ class App {
 
   // Calls `work` to read a text of so many bytes that may name assets: in its turn if that takes long. Throws
   // what `work` does, ClientBusy, Busy, Cancelled, TimedOut.
-  void read(std::size_t bytes, const Asker& asker, Timing& timing,
+  void read(std::size_t bytes, const Caller& caller, Timing& timing,
             const std::function<void(const MeshSource&)>& work);
-  AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Asker& asker);
+  AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Caller& caller);
 
   // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded
   // in its turn, once for all who ask. Throws as read().
   Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-                  const Asker& asker, Timing& timing);
+                  const Caller& caller, Timing& timing);
 
   // Settles the plan in its turn, as render() would. Throws likewise.
-  void settle(const PreparedScene& scene, Plan& plan, const Asker& asker);
+  void settle(const PreparedScene& scene, Plan& plan, const Caller& caller);
 
   // The service is about to end: no new work; what runs goes on.
   bool draining() const { return draining_; }
@@ -83,9 +83,9 @@ class App {
  private:
   // Calls work(stop); `stop` says when it should end early.
   template <class Work>
-  void watched(const Asker& asker, const Work& work);
+  void watched(const Caller& caller, const Work& work);
   Picture make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-               const Asker& asker, Timing& timing);
+               const Caller& caller, Timing& timing);
 
   std::atomic<bool> draining_{false}, ends_{false};
   std::atomic<std::uint64_t> rays_{0};
@@ -96,7 +96,7 @@ class App {
   AssetStore assets_;
   Pictures pictures_;
   Admission admission_;
-  const Means means_;
+  const RenderServices services_;
   Streams streams_;
   OrbitHub orbits_;
   Jobs jobs_;

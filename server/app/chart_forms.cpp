@@ -12,18 +12,18 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json rung_json(const Rung& rung) {
-  return {{"technique", rung.technique},
-          {"max_depth", rung.max_depth},
-          {"precision", precision_name(rung.double_precision)},
-          {"samples", rung.samples}};
+ordered_json configuration_json(const Configuration& configuration) {
+  return {{"technique", configuration.technique},
+          {"max_depth", configuration.max_depth},
+          {"precision", precision_name(configuration.double_precision)},
+          {"samples", configuration.samples}};
 }
 
 ordered_json point_json(const Point& point, double cheapest_ms) {
   const auto mean = [&](double Difference::*value) {
-    return point.mean([&](const Sighting& s) { return s.difference.*value; });
+    return point.mean([&](const Measurement& s) { return s.difference.*value; });
   };
-  ordered_json json = rung_json(point.rung);
+  ordered_json json = configuration_json(point.configuration);
   json["accelerator"] = point.accelerator;
   json["cpu_ms"] = point.cpu_ms();
   json["times_cheapest"] = point.cpu_ms() / cheapest_ms;
@@ -36,7 +36,7 @@ ordered_json point_json(const Point& point, double cheapest_ms) {
   json["bias"] = mean(&Difference::bias);
   const double psnr_db = point.psnr_db();
   json["psnr_db"] = std::isfinite(psnr_db) ? ordered_json(psnr_db) : ordered_json();
-  json["non_finite"] = point.mean([](const Sighting& s) { return double(s.difference.non_finite); });
+  json["non_finite"] = point.mean([](const Measurement& s) { return double(s.difference.non_finite); });
   json["on_front"] = point.on_front;
   return json;
 }
@@ -67,7 +67,7 @@ std::string csv_of(const Chart& chart) {
 }
 
 std::string json_of(const Chart& chart) {
-  ordered_json reference = rung_json(chart.reference);
+  ordered_json reference = configuration_json(chart.reference);
   reference["cpu_ms"] = chart.reference_cpu_ms;
   reference["rmse"] = chart.reference_rmse;
   const ordered_json json = {{"scene", {{"id", chart.scene_id}, {"title", chart.title}}},
@@ -86,10 +86,11 @@ constexpr std::array kForms{ChartForm{".svg", "image/svg+xml", svg_of},
 }  // namespace
 
 void read_extent(Params& p, Study::Extent& extent) {
-  extent.samples = static_cast<int>(p.integer("samples", "Of the highest rung: 1, 4, 16, ... up to it.", 1,
-                                              kMostChartSamples, extent.samples));
-  extent.rounds = static_cast<int>(p.integer("rounds", "Pictures of each rung, with different seeds.", 1,
-                                             kMostChartRounds, extent.rounds));
+  extent.samples =
+      static_cast<int>(p.integer("samples", "Of the highest configuration: 1, 4, 16, ... up to it.", 1,
+                                 kMostChartSamples, extent.samples));
+  extent.rounds = static_cast<int>(p.integer(
+      "rounds", "Pictures of each configuration, with different seeds.", 1, kMostChartRounds, extent.rounds));
 }
 
 const ChartForm* chart_form_of(std::string_view name) {

@@ -7,10 +7,10 @@
 
 namespace orrery {
 
-Job::Job(std::string id, JobSpec spec, const Means& means, std::chrono::seconds limit, Room room)
+Job::Job(std::string id, JobSpec spec, const RenderServices& services, std::chrono::seconds limit, Room room)
     : id_(std::move(id)),
       spec_(std::move(spec)),
-      means_(means),
+      services_(services),
       limit_(limit),
       room_(std::move(room)),
       thread_([this] { run(); }) {}
@@ -26,13 +26,13 @@ void Job::release() {
 
 void Job::cancel() { cancelled_ = true; }
 
-bool Job::stop() const { return cancelled_ || means_.draining; }
+bool Job::stop() const { return cancelled_ || services_.draining; }
 
 void Job::run() {
-  const Watch watch([this] { return stop(); }, means_.ends, limit_, "job_seconds");
+  const Watch watch([this] { return stop(); }, services_.ends, limit_, "job_seconds");
   int next = 0;
   const Pipeline pipeline{
-      .pool = means_.pool,
+      .pool = services_.pool,
       .background = true,
       .next = [&]() -> std::optional<std::int64_t> {
         if (watch.stop()) throw Cancelled();
@@ -47,7 +47,7 @@ void Job::run() {
     try {
       pipeline.run();
     } catch (const Cancelled&) {
-      if (means_.draining || means_.ends) throw Busy("The service ends", 5);
+      if (services_.draining || services_.ends) throw Busy("The service ends", 5);
       watch.explain();
     }
   } catch (...) {
@@ -72,7 +72,7 @@ RenderResult Job::render(int number, const Watch& watch) {
   const auto stop = [&] { return watch.stop(); };
   const Plan plan = make_plan(spec_.scene->scene(), request(number));
   const double cost = cost_of(plan);
-  const auto ticket = means_.admission.enter_again({Lane::batch, spec_.client, cost}, stop);
+  const auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, cost}, stop);
   {
     const std::lock_guard lock(mutex_);
     if (!started_) started_ = Clock::now();
@@ -87,9 +87,9 @@ RenderResult Job::render(int number, const Watch& watch) {
   };
   Study* study = spec_.study.get();
   RenderResult rendered =
-      means_.render(*spec_.scene, plan, study ? PixelFormat::linear32 : PixelFormat::srgb8,
-                    {.stop = stop, .progress = progress, .background = true});
-  if (study) study->see(rendered);
+      services_.render(*spec_.scene, plan, study ? PixelFormat::linear32 : PixelFormat::srgb8,
+                       {.stop = stop, .progress = progress, .background = true});
+  if (study) study->add(rendered);
   return rendered;
 }
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/study/study.h"
-#include "server/app/means.h"
 #include "server/app/orbit.h"
+#include "server/app/render_services.h"
 #include "server/app/watch.h"
 
 namespace orrery {
@@ -53,7 +53,7 @@ class Job {
   using Picture = std::shared_ptr<const std::string>;  // a PNG file
 
   // `means` outlive it. It ends as TimedOut after `limit`.
-  Job(std::string id, JobSpec spec, const Means& means, std::chrono::seconds limit, Room room);
+  Job(std::string id, JobSpec spec, const RenderServices& services, std::chrono::seconds limit, Room room);
   ~Job();  // cancels it
   Job(const Job&) = delete;
 
@@ -89,7 +89,7 @@ class Job {
 
   const std::string id_;
   JobSpec spec_;
-  const Means means_;
+  const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
   std::atomic<bool> cancelled_{false};

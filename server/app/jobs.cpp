@@ -24,7 +24,7 @@ Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::strin
   }
   require_place(spec.client);
   constexpr std::size_t kIdBytes = 16;  // nobody can guess it
-  auto job = std::make_shared<Job>(random_hex(kIdBytes), std::move(spec), means_, limits_.run_time,
+  auto job = std::make_shared<Job>(random_hex(kIdBytes), std::move(spec), services_, limits_.run_time,
                                    [this](std::size_t bytes) { make_room(bytes); });
   entries_.push_back({job, key, content});
   return {job, false};
@@ -37,7 +37,7 @@ void Jobs::require_place(const std::string& client) const {
     ++under_way;
     own += entry.job->client() == client;
   }
-  Places{.what = "jobs are under way", .limit = "jobs", .most = limits_.under_way, .retry_s = 10}
+  Quota{.what = "jobs are under way", .limit = "jobs", .most = limits_.under_way, .retry_s = 10}
       .require_one_more(under_way, own);
 }
 

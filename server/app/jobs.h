@@ -18,7 +18,7 @@ class Jobs {
     std::chrono::seconds run_time;  // of one (job_seconds)
     std::chrono::seconds kept;      // after its end (job_kept_seconds)
   };
-  Jobs(const Means& means, const Limits& limits) : means_(means), limits_(limits) {}
+  Jobs(const RenderServices& services, const Limits& limits) : services_(services), limits_(limits) {}
   ~Jobs();
   Jobs(const Jobs&) = delete;
 
@@ -51,7 +51,7 @@ class Jobs {
   void forget_old();
   std::size_t bytes_kept() const;
 
-  const Means means_;
+  const RenderServices services_;
   const Limits limits_;
   std::mutex mutex_;
   std::vector<Entry> entries_;  // the oldest first; guarded by mutex_

@@ -15,8 +15,8 @@ constexpr double kLongestPeriod_s = 1e6;       // a clock counts no more than 29
 
 }  // namespace
 
-OrbitCast::OrbitCast(OrbitSpec spec, const Means& means, std::chrono::seconds frame_time)
-    : spec_(std::move(spec)), means_(means), frame_time_(frame_time) {}
+OrbitCast::OrbitCast(OrbitSpec spec, const RenderServices& services, std::chrono::seconds frame_time)
+    : spec_(std::move(spec)), services_(services), frame_time_(frame_time) {}
 
 OrbitCast::~OrbitCast() {
   if (thread_.joinable()) thread_.join();
@@ -43,7 +43,7 @@ void OrbitCast::wake() {
 }
 
 void OrbitCast::run() {
-  const Pipeline pipeline{.pool = means_.pool,
+  const Pipeline pipeline{.pool = services_.pool,
                           .background = false,
                           .next = [this] { return next(); },
                           .render = [this](std::int64_t n) { return render(n); },
@@ -75,7 +75,7 @@ bool OrbitCast::at_end(const Mailbox& mailbox) const {
 }
 
 bool OrbitCast::pointless() {
-  if (means_.ends) return true;
+  if (services_.ends) return true;
   const std::lock_guard lock(mutex_);
   if (!mailboxes_.empty()) return false;
   closed_ = true;
@@ -91,7 +91,7 @@ std::optional<std::int64_t> OrbitCast::next() {
   };
   bool waited = false;
   for (;;) {
-    if (means_.draining || means_.ends || !anyone_wants(next_)) {
+    if (services_.draining || services_.ends || !anyone_wants(next_)) {
       closed_ = true;
       return std::nullopt;
     }
@@ -118,12 +118,13 @@ std::optional<std::int64_t> OrbitCast::next() {
 }
 
 RenderResult OrbitCast::render(std::int64_t number) {
-  const Watch watch([this] { return pointless(); }, means_.ends, frame_time_, "request_seconds");
+  const Watch watch([this] { return pointless(); }, services_.ends, frame_time_, "request_seconds");
   const auto stop = [&] { return watch.stop(); };
   try {
     const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
-    const auto ticket = means_.admission.enter_again({Lane::interactive, spec_.client, cost_of(plan)}, stop);
-    return means_.render(*spec_.scene, plan, PixelFormat::srgb8, {.stop = stop, .progress = {}});
+    const auto ticket =
+        services_.admission.enter_again({Lane::interactive, spec_.client, cost_of(plan)}, stop);
+    return services_.render(*spec_.scene, plan, PixelFormat::srgb8, {.stop = stop, .progress = {}});
   } catch (const Cancelled&) {
     watch.explain();
   }
@@ -169,7 +170,7 @@ OrbitCast::Viewer::~Viewer() {
 std::shared_ptr<const OrbitFrame> OrbitCast::Viewer::next(const std::function<bool()>& gone) {
   std::unique_lock lock(cast_->mutex_);
   while (!mailbox_->frame) {
-    if (cast_->at_end(*mailbox_) || cast_->means_.ends) {
+    if (cast_->at_end(*mailbox_) || cast_->services_.ends) {
       if (cast_->failure_) std::rethrow_exception(cast_->failure_);
       return nullptr;
     }

@@ -7,8 +7,8 @@
 #include <mutex>
 #include <thread>
 
-#include "server/app/means.h"
 #include "server/app/orbit.h"
+#include "server/app/render_services.h"
 
 namespace orrery {
 
@@ -20,7 +20,7 @@ namespace orrery {
 class OrbitCast {
  public:
   // frame_time: that one frame may take.
-  OrbitCast(OrbitSpec spec, const Means& means, std::chrono::seconds frame_time);
+  OrbitCast(OrbitSpec spec, const RenderServices& services, std::chrono::seconds frame_time);
   ~OrbitCast();
 
   const OrbitSpec& spec() const { return spec_; }
@@ -29,7 +29,7 @@ class OrbitCast {
   // None once the cast is ending.
   static std::unique_ptr<Viewer> join(const std::shared_ptr<OrbitCast>& cast);
 
-  // To be called when means.draining changed.
+  // To be called when services.draining changed.
   void wake();
 
  private:
@@ -53,7 +53,7 @@ class OrbitCast {
   bool at_end(const Mailbox& mailbox) const;  // nothing more will be put into it
 
   const OrbitSpec spec_;
-  const Means means_;
+  const RenderServices services_;
   const std::chrono::seconds frame_time_;
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable changed_;

@@ -18,9 +18,9 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
     const auto cast = known.lock();
     return cast && cast->spec().client == spec.client;
   });
-  Places{.what = "orbits are being watched", .limit = "orbits", .most = most_, .retry_s = 5}.require_one_more(
+  Quota{.what = "orbits are being watched", .limit = "orbits", .most = most_, .retry_s = 5}.require_one_more(
       static_cast<int>(casts_.size()), static_cast<int>(own));
-  const auto cast = std::make_shared<OrbitCast>(spec, means_, frame_time_);
+  const auto cast = std::make_shared<OrbitCast>(spec, services_, frame_time_);
   casts_.push_back(cast);
   return OrbitCast::join(cast);
 }

@@ -11,8 +11,8 @@ namespace orrery {
 // The orbits that are being watched. Safe from any thread.
 class OrbitHub {
  public:
-  OrbitHub(const Means& means, int most_orbits, std::chrono::seconds frame_time)
-      : means_(means), most_(most_orbits), frame_time_(frame_time) {}
+  OrbitHub(const RenderServices& services, int most_orbits, std::chrono::seconds frame_time)
+      : services_(services), most_(most_orbits), frame_time_(frame_time) {}
 
   // Joins those who watch the same orbit, or starts it. Throws Busy if there are too many different ones,
   // ClientBusy if too many of them are this client's.
@@ -20,13 +20,13 @@ class OrbitHub {
 
   std::size_t count();  // of different ones that are watched
 
-  // To be called when means.draining changed.
+  // To be called when services.draining changed.
   void wake();
 
  private:
   void forget_ended();  // with mutex_ held
 
-  const Means means_;
+  const RenderServices services_;
   const int most_;
   const std::chrono::seconds frame_time_;
   std::mutex mutex_;

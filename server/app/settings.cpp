@@ -48,7 +48,7 @@ double Limit::value(const Settings& settings) const {
         else
           return static_cast<double>(field);
       },
-      place);
+      setting);
 }
 
 void Limit::set(Settings& settings, std::int64_t value) const {
@@ -57,7 +57,7 @@ void Limit::set(Settings& settings, std::int64_t value) const {
         auto& field = settings.*member;
         field = std::decay_t<decltype(field)>(value);
       },
-      place);
+      setting);
 }
 
 }  // namespace orrery

@@ -48,10 +48,10 @@ struct Settings {
 // A limit that can be set, under the one name that flags (--body-bytes), environment (ORRERY_BODY_BYTES),
 // files, /v1/limits and errors use.
 struct Limit {
-  using Place = std::variant<std::size_t Settings::*, int Settings::*, double Settings::*,
-                             std::chrono::seconds Settings::*>;
+  using Member = std::variant<std::size_t Settings::*, int Settings::*, double Settings::*,
+                              std::chrono::seconds Settings::*>;
   std::string_view name;
-  Place place;
+  Member setting;
   std::int64_t min, max;
   std::string_view help;
 

@@ -4,15 +4,15 @@
 
 namespace orrery {
 
-class Streams::Place {
+class Streams::Slot {
  public:
   // With mutex_ held.
-  Place(Streams& of, const std::string& client) : of_(of), entry_(of.by_client_.try_emplace(client).first) {
+  Slot(Streams& of, const std::string& client) : of_(of), entry_(of.by_client_.try_emplace(client).first) {
     ++entry_->second;
     ++of_.all_;
   }
-  Place(const Place&) = delete;
-  ~Place() {
+  Slot(const Slot&) = delete;
+  ~Slot() {
     const std::lock_guard lock(of_.mutex_);
     --of_.all_;
     if (--entry_->second == 0) of_.by_client_.erase(entry_);
@@ -26,9 +26,9 @@ class Streams::Place {
 std::shared_ptr<const void> Streams::open(const std::string& client) {
   const std::lock_guard lock(mutex_);
   const auto own = by_client_.find(client);
-  Places{.what = "streams are open", .limit = "connections", .most = most_, .retry_s = 5}.require_one_more(
+  Quota{.what = "streams are open", .limit = "connections", .most = most_, .retry_s = 5}.require_one_more(
       all_, own == by_client_.end() ? 0 : own->second);
-  return std::make_shared<const Place>(*this, client);
+  return std::make_shared<const Slot>(*this, client);
 }
 
 }  // namespace orrery

@@ -19,7 +19,7 @@ class Streams {
   std::shared_ptr<const void> open(const std::string& client);
 
  private:
-  class Place;
+  class Slot;
 
   const int most_;
   std::mutex mutex_;

@@ -44,7 +44,7 @@ int chart(const Options& options) {
   WorkerPool pool(options.threads);
   for (int number = 0; number < study.pictures(); ++number) {
     const Plan plan = plan_for(scene.scene(), study.request(number));
-    study.see(render_frame(scene, plan, PixelFormat::linear32, pool,
+    study.add(render_frame(scene, plan, PixelFormat::linear32, pool,
                            {.stop = [&] { return signals.interrupted(); }, .progress = {}}));
     bar->update(number + 1, study.pictures());
   }
@@ -62,11 +62,12 @@ Command add_chart(CLI::App& root) {
   app->add_option("-o,--output", options->output, "The chart; its ending chooses a drawing, a table or JSON")
       ->type_name("FILE.{svg,csv,json}")
       ->required();
-  app->add_option("--chart-samples", options->extent.samples, "Of the highest rung: 1, 4, 16, ... up to it")
+  app->add_option("--chart-samples", options->extent.samples,
+                  "Of the highest configuration: 1, 4, 16, ... up to it")
       ->check(CLI::Range(1, kMostChartSamples).description(""))
       ->type_name("N")
       ->capture_default_str();
-  app->add_option("--rounds", options->extent.rounds, "Pictures of each rung, with different seeds")
+  app->add_option("--rounds", options->extent.rounds, "Pictures of each configuration, with different seeds")
       ->check(CLI::Range(1, kMostChartRounds).description(""))
       ->type_name("N")
       ->capture_default_str();

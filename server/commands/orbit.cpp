@@ -61,7 +61,7 @@ struct Totals {
     bytes += frame.bytes.size();
     rays += frame.stats.counts.rays.total();
     refitted += frame.stats.structure.refitted;
-    worst = std::max(worst, frame.stats.structure.worsening);
+    worst = std::max(worst, frame.stats.structure.surface_area_growth);
     build_ms += frame.stats.build_ms;
     render_ms += frame.render_ms;
     encode_ms += frame.encode_ms;
@@ -75,7 +75,7 @@ nlohmann::ordered_json json_of(const Totals& t, int threads) {
           {"cpu_s", t.cpu_s},
           {"build_ms", t.build_ms / t.frames},
           {"refitted", t.refitted},
-          {"worsening", t.worst},
+          {"surface_area_growth", t.worst},
           {"render_ms", t.render_ms / t.frames},
           {"encode_ms", t.encode_ms / t.frames},
           {"bytes", t.bytes},

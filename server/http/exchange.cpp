@@ -28,7 +28,7 @@ void name_host(Fields& headers, const std::string& authority) {
 
 // How the handlers inside httplib get at the exchange: it rides on a callback that only httplib's client
 // uses.
-struct Rider {
+struct ExchangeHandle {
   Exchange* exchange;
   bool operator()(std::uint64_t, std::uint64_t) const { return true; }
 };
@@ -113,11 +113,13 @@ class Exchanger::Engine final : public httplib::Server {
     exchange.connection.offer(head_only ? "HEAD / HTTP/1.1\r\n\r\n" : "GET / HTTP/1.1\r\n\r\n");
     bool closed = false;
     return process_request(exchange.connection, false, closed,
-                           [&](httplib::Request& in) { in.progress = Rider{&exchange}; });
+                           [&](httplib::Request& in) { in.progress = ExchangeHandle{&exchange}; });
   }
 
  private:
-  static Exchange& exchange_of(const httplib::Request& in) { return *in.progress.target<Rider>()->exchange; }
+  static Exchange& exchange_of(const httplib::Request& in) {
+    return *in.progress.target<ExchangeHandle>()->exchange;
+  }
 };
 
 Exchanger::Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler)

@@ -81,7 +81,7 @@ Fit fit_of(std::string_view entry, std::string_view type) {
 
 }  // namespace
 
-Asker asker_of(const Request& request) { return {request.client, request.gone}; }
+Caller caller_of(const Request& request) { return {request.client, request.gone}; }
 
 std::string read_json(Request& request) {
   require_json(request);

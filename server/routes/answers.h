@@ -12,7 +12,7 @@
 // What several routes need to read a request and to write an answer.
 namespace orrery {
 
-Asker asker_of(const Request& request);
+Caller caller_of(const Request& request);
 
 // The body, which says to be JSON. Throws HttpError for a content type or coding that is not accepted, or if
 // it does not come.

@@ -32,7 +32,7 @@ Response put_asset(App& app, Request& request) {
   if (request.header("Content-Encoding"))
     throw HttpError(415, "A body must not be compressed (Content-Encoding)");
   request.body_limit = {app.settings().asset_bytes, "asset_bytes"};
-  const AssetStore::Added added = app.add_asset(id, request.read_body(), asker_of(request));
+  const AssetStore::Added added = app.add_asset(id, request.read_body(), caller_of(request));
   const AssetStore::Asset& asset = *added.asset;
   Response response = json_answer(added.known ? 200 : 201, {{"id", id},
                                                             {"format", names_of(asset).name},

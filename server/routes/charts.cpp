@@ -17,10 +17,10 @@ struct ChartOrder {
   Study::Extent extent;
 };
 
-ChartOrder read_order(App& app, Request& request, Timing& timing) {
+ChartOrder read_render_order(App& app, Request& request, Timing& timing) {
   const std::string body = read_json(request);
   ChartOrder order;
-  app.read(body.size(), asker_of(request), timing, [&](const MeshSource&) {
+  app.read(body.size(), caller_of(request), timing, [&](const MeshSource&) {
     const Document document = parse_document(body.empty() ? "{}" : body);
     for (const char* key : {"scene", "scene_id"})
       if (document.member(key)) throw InputError(std::string("/") + key, "the address names the scene");
@@ -47,7 +47,7 @@ Response start_chart(App& app, Request& request) {
   spec.scene = app.scenes().find(request.path_value("id"));
   spec.client = request.client;
   Timing timing;
-  const ChartOrder order = read_order(app, request, timing);
+  const ChartOrder order = read_render_order(app, request, timing);
   const Scene& scene = spec.scene->scene();
   spec.study = std::make_shared<Study>(scene, order.view, order.extent);
   spec.frames = spec.study->pictures();

@@ -7,7 +7,7 @@
 #include "server/app/picture_key.h"
 #include "server/http/router.h"
 #include "server/routes/job_answers.h"
-#include "server/routes/order.h"
+#include "server/routes/render_order.h"
 
 // /v1/jobs: pictures and orbits that take longer than anybody holds a connection open for.
 namespace orrery {
@@ -21,7 +21,7 @@ JobSpec read_job(App& app, Request& request, Timing& timing) {
   double step_degrees = 0;
   std::optional<double> time_step_s;
   bool orbits = false;
-  const Order order = read_order(app, request, timing, [&](Params& p) {
+  const RenderOrder order = read_render_order(app, request, timing, [&](Params& p) {
     orbits = p.has("orbit");
     p.optional_object("orbit", "A turn of the camera; missing: one picture.", [&](Params& o) {
       const std::int64_t most = app.settings().orbit_frames;

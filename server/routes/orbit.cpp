@@ -91,23 +91,23 @@ std::string part(const OrbitFrame& frame, bool last) {
 }
 
 // What is sent of an orbit whose first frame is there.
-struct Show {
+struct OrbitRequest {
   std::shared_ptr<const void> place;
   std::shared_ptr<OrbitCast::Viewer> viewer;
   std::shared_ptr<const OrbitFrame> first;
   std::function<bool()> gone;
 };
 
-void send_frames(const Show& show, Sink& sink) {
-  for (auto frame = show.first; frame; frame = show.viewer->next(show.gone))
-    if (!sink.write(framed(*frame, show.viewer->skipped()))) return;
+void send_frames(const OrbitRequest& orbit, Sink& sink) {
+  for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone))
+    if (!sink.write(framed(*frame, orbit.viewer->skipped()))) return;
 }
 
-void send_parts(const Show& show, Sink& sink) {
+void send_parts(const OrbitRequest& orbit, Sink& sink) {
   if (!sink.write("--" + std::string(kBoundary) + "\r\n")) return;
   bool ended = false;
-  for (auto frame = show.first; frame; frame = show.viewer->next(show.gone)) {
-    ended = show.viewer->at_end();
+  for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone)) {
+    ended = orbit.viewer->at_end();
     if (!sink.write(part(*frame, ended))) return;
   }
   if (!ended) sink.write("\r\n--" + std::string(kBoundary) + "--\r\n");
@@ -122,14 +122,14 @@ Response orbit(App& app, Request& request) {
                                          : std::string(kFrames));
   response.set("Cache-Control", "no-store").set("Vary", "Accept").set("X-Accel-Buffering", "no");
   if (request.method == "HEAD") return response;
-  Show show{.place = app.streams().open(request.client),
-            .viewer = app.orbits().watch(spec),
-            .first = {},
-            .gone = request.gone};
-  show.first = show.viewer->next(show.gone);  // what fails here has a status of its own
-  if (!show.first && request.gone()) throw Cancelled("the client has gone");
-  if (!show.first) throw Busy("The service ends", 5);
-  response.stream = [show, multipart](Sink& sink) { (multipart ? send_parts : send_frames)(show, sink); };
+  OrbitRequest orbit{.place = app.streams().open(request.client),
+                     .viewer = app.orbits().watch(spec),
+                     .first = {},
+                     .gone = request.gone};
+  orbit.first = orbit.viewer->next(orbit.gone);  // what fails here has a status of its own
+  if (!orbit.first && request.gone()) throw Cancelled("the client has gone");
+  if (!orbit.first) throw Busy("The service ends", 5);
+  response.stream = [orbit, multipart](Sink& sink) { (multipart ? send_parts : send_frames)(orbit, sink); };
   return response;
 }
 

@@ -4,7 +4,7 @@
 #include "server/app/picture_key.h"
 #include "server/http/router.h"
 #include "server/routes/answers.h"
-#include "server/routes/order.h"
+#include "server/routes/render_order.h"
 
 // POST /v1/render: a scene, or a request {scene or scene_id, camera, image, render}, to a picture.
 namespace orrery {
@@ -28,12 +28,12 @@ Response render(App& app, Request& request) {
   constexpr std::array kTypes{kKinds[0].type, kKinds[1].type, kKinds[2].type};
   const std::string_view type = negotiate(request, kTypes);
   Timing timing;
-  const Order order = read_order(app, request, timing);
+  const RenderOrder order = read_render_order(app, request, timing);
   const auto start = Clock::now();
   const Plan plan = make_plan(order.scene->scene(), order.request);
   timing.plan = milliseconds_since(start);
   const Rendered rendered = app.render(*order.scene, plan, etag_of(order.scene->scene(), order.request),
-                                       format_of(type), asker_of(request), timing);
+                                       format_of(type), caller_of(request), timing);
   Response response = picture_response(type, rendered, timing);
   response.set("Vary", "Accept");
   response.set("Cache-Control", "no-store");

@@ -46,7 +46,7 @@ Response add_scene(App& app, Request& request) {
   Timing timing;
   const std::string body = read_json(request);
   SceneStore::Added added;
-  app.read(body.size(), asker_of(request), timing, [&](const MeshSource& meshes) {
+  app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
     added = app.scenes().add(load_scene(parse_document(body), meshes));
   });
   const Scene& scene = added.scene->scene();

@@ -85,7 +85,7 @@ Followed follow(const Json& json, const std::string& accelerator, int frames, in
     expect_agreement(*now, list, rays, {T(0.7), T(3), T(1e30)});
     expect_agreement(fresh, list, rays, {T(3)});
     (now->facts().refitted ? followed.refitted : followed.built) += 1;
-    followed.worst = std::max(followed.worst, now->facts().worsening);
+    followed.worst = std::max(followed.worst, now->facts().surface_area_growth);
     EXPECT_FALSE(fresh.facts().refitted);
     before = std::move(now);
   }
@@ -100,7 +100,7 @@ class Motion : public StructureTest {
     const bool hierarchy = GetParam() == "bottom-up" || GetParam() == "bvh";
     EXPECT_EQ(followed.refitted > 1, hierarchy);
     EXPECT_GT(followed.built, 1);
-    EXPECT_LE(followed.worst, kMostWorsening);
+    EXPECT_LE(followed.worst, kMaxSurfaceAreaGrowth);
   }
 };
 

@@ -10,7 +10,7 @@
 namespace orrery {
 namespace {
 
-using Order = std::vector<std::string>;
+using RenderOrder = std::vector<std::string>;
 
 const Admission::Stop kNever = [] { return false; };
 
@@ -31,7 +31,7 @@ class Waiters {
     for (std::thread& thread : threads_) thread.join();
     threads_.clear();
   }
-  Order order() {
+  RenderOrder order() {
     const std::lock_guard lock(mutex_);
     return order_;
   }
@@ -55,7 +55,7 @@ class Waiters {
   Admission& admission_;
   std::vector<std::thread> threads_;
   std::mutex mutex_;
-  Order order_;
+  RenderOrder order_;
 };
 
 Demand demand(const std::string& client, double cost = 10, Lane lane = Lane::interactive) {
@@ -71,7 +71,8 @@ TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
     for (const char* name : {"b1", "b2"}) waiters.add(name, demand("b", 15));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (Order{"a1", "b1", "a2", "a3", "b2", "a4"}));  // finish at 10 15 20 30 30 40
+  EXPECT_EQ(waiters.order(),
+            (RenderOrder{"a1", "b1", "a2", "a3", "b2", "a4"}));  // finish at 10 15 20 30 30 40
 }
 
 TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
@@ -87,10 +88,10 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
     }
     while (waiters.order().size() < 2) std::this_thread::yield();
     EXPECT_EQ(admission.waiting(), 1);  // half of the places are batch work's, and that is one
-    EXPECT_EQ(waiters.order(), (Order{"i1", "i2"}));
+    EXPECT_EQ(waiters.order(), (RenderOrder{"i1", "i2"}));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (Order{"i1", "i2", "batch"}));
+  EXPECT_EQ(waiters.order(), (RenderOrder{"i1", "i2", "batch"}));
 
   const auto first = admission.enter(demand("z"), kNever);
   Waiters others(admission);
@@ -100,7 +101,7 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
     others.add("batch", demand("a", 10, Lane::batch));
   }
   others.join();
-  EXPECT_EQ(others.order(), (Order{"batch", "i"}));  // none of it ran
+  EXPECT_EQ(others.order(), (RenderOrder{"batch", "i"}));  // none of it ran
 }
 
 TEST(Admission, WhatWaitsIsBoundedByItsCost) {
@@ -114,7 +115,7 @@ TEST(Admission, WhatWaitsIsBoundedByItsCost) {
     EXPECT_THROW(admission.enter(demand("a", 1), kNever), Busy);
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (Order{"large"}));
+  EXPECT_EQ(waiters.order(), (RenderOrder{"large"}));
   {
     const auto ticket = admission.enter(demand("z"), kNever);
     for (int i = 0; i < 10; ++i) waiters.add("small", demand("a", 10));
@@ -134,7 +135,7 @@ TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
     EXPECT_FALSE(admission.full());
     const auto interactive = admission.enter(demand("a"), kNever);  // at once
     waiters.add("i1", demand("b"));
-    EXPECT_EQ(waiters.order(), Order{});
+    EXPECT_EQ(waiters.order(), RenderOrder{});
   }
   waiters.join();
   EXPECT_EQ(waiters.order().size(), 2U);
@@ -149,7 +150,7 @@ TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
     for (const char* name : {"i1", "i2"}) waiters.add(name, demand("b"));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (Order{"b1", "i1", "b2", "i2", "b3"}));
+  EXPECT_EQ(waiters.order(), (RenderOrder{"b1", "i1", "b2", "i2", "b3"}));
 }
 
 TEST(Admission, WhoHasMostWaitingMakesRoom) {
@@ -160,14 +161,14 @@ TEST(Admission, WhoHasMostWaitingMakesRoom) {
     for (const char* name : {"a1", "a2", "a3"}) waiters.add(name, demand("a", 30));
     waiters.add("b1", demand("b", 30));
     while (waiters.order().empty()) std::this_thread::yield();
-    EXPECT_EQ(waiters.order(), (Order{"a3 429"}));
+    EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429"}));
     waiters.add("a4", demand("a", 30));  // now a has 60 and b 30
-    EXPECT_EQ(waiters.order(), (Order{"a3 429", "a4 429"}));
+    EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429", "a4 429"}));
     waiters.add("b2", demand("b", 30));  // which would not leave b with less than a
-    EXPECT_EQ(waiters.order(), (Order{"a3 429", "a4 429", "b2 429"}));
+    EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429", "a4 429", "b2 429"}));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (Order{"a3 429", "a4 429", "b2 429", "a1", "b1", "a2"}));
+  EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429", "a4 429", "b2 429", "a1", "b1", "a2"}));
 }
 
 TEST(Admission, WorkThatBeganIsNotTurnedAway) {

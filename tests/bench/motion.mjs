@@ -71,10 +71,10 @@ function comparison(subject, what, words) {
     needs: [kProgram],
     start: async () => {
       const { facts, ...sides } = await start_two_sided(kProgram, [path_of(subject), what]);
-      const { frames, refitted, worsening, primitives } = facts;
+      const { frames, refitted, surface_area_growth, primitives } = facts;
       const remark =
         `${primitives} primitives; of ${frames} frames ${refitted} followed the one before; ` +
-        `boxes at most ${worsening.toFixed(2)} times as large beside what they hold as when built`;
+        `boxes at most ${surface_area_growth.toFixed(2)} times as large beside what they hold as when built`;
       return { ...sides, remark };
     },
   };

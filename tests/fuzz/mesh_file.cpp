@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     orrery::weld(mesh);
     orrery::drop_degenerate(mesh);
     if (mesh.triangles.empty()) return 0;
-    const orrery::Places places = orrery::places_of(mesh.positions);
+    const orrery::PositionIndices places = orrery::position_indices_of(mesh.positions);
     if (orrery::count_pairs(mesh, places) < 1'000'000) orrery::smooth_normals(mesh, 40, places);
     mesh.positions.size() <= limits.vertices ? check(mesh, limits) : void();
   } catch (const orrery::InputError& error) {

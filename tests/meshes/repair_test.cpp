@@ -97,7 +97,7 @@ TEST(SmoothNormals, ComparesTheTrianglesAroundEachPlace) {
   fan.positions.push_back({0, 0, 1});
   for (int i = 0; i <= 100; ++i) fan.positions.push_back({std::cos(0.01 * i), std::sin(0.01 * i), 0});
   for (std::uint32_t i = 1; i <= 100; ++i) fan.triangles.push_back({0, i, i + 1});
-  EXPECT_EQ(count_pairs(fan, places_of(fan.positions)), 100u * 100 + 99 * 2 * 2 + 2);
+  EXPECT_EQ(count_pairs(fan, position_indices_of(fan.positions)), 100u * 100 + 99 * 2 * 2 + 2);
 }
 
 TEST(DropUnused, KeepsWhatTrianglesUseInItsOrder) {

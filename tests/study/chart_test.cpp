@@ -10,10 +10,10 @@ namespace orrery::test {
 namespace {
 
 Point point(double cpu_ms, double rmse, int samples = 1) {
-  Sighting sighting;
+  Measurement sighting;
   sighting.cpu_ms = cpu_ms;
   sighting.difference.rmse = rmse;
-  return {.rung = {.technique = "whitted", .max_depth = 5, .samples = samples},
+  return {.configuration = {.technique = "whitted", .max_depth = 5, .samples = samples},
           .rounds = {sighting},
           .accelerator = "bvh"};
 }

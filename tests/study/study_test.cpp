@@ -21,22 +21,25 @@ Chart chart_of(const Json& scene, const RenderRequest& view, const Study::Extent
   Study study(prepared.scene(), view, extent);
   for (int number = 0; number < study.pictures(); ++number) {
     EXPECT_FALSE(study.complete());
-    study.see(made(prepared, study.request(number)));
+    study.add(made(prepared, study.request(number)));
   }
   EXPECT_TRUE(study.complete());
   return study.chart();
 }
 
-const Point& find(const Chart& chart, const Rung& rung) {
+const Point& find(const Chart& chart, const Configuration& configuration) {
   for (const Point& p : chart.points)
-    if (line_name(p.rung) == line_name(rung) && p.rung.samples == rung.samples) return p;
+    if (line_name(p.configuration) == line_name(configuration) &&
+        p.configuration.samples == configuration.samples)
+      return p;
   throw std::runtime_error("no such point");
 }
 
 std::vector<std::string> lines_of(const Chart& chart) {
   std::vector<std::string> names;
   for (const Point& p : chart.points)
-    if (names.empty() || names.back() != line_name(p.rung)) names.push_back(line_name(p.rung));
+    if (names.empty() || names.back() != line_name(p.configuration))
+      names.push_back(line_name(p.configuration));
   return names;
 }
 
@@ -108,21 +111,22 @@ TEST(Study, MeasuresWhatAnyoneWould) {
   const auto prepared = load(scene);
   Study again(*prepared, view, {.samples = 4, .rounds = 1});
   const Picture first = render(scene, again.request(0)), second = render(scene, again.request(1)),
-                rung = render(scene, again.request(3));
+                configuration = render(scene, again.request(3));
   double squares = 0, between = 0;
-  for (std::size_t i = 0; i < rung.pixels.size(); ++i) {
+  for (std::size_t i = 0; i < configuration.pixels.size(); ++i) {
     const auto add = [&](float Vec3f::*c) {
-      squares += std::pow(rung.pixels[i].*c - (double(first.pixels[i].*c) + second.pixels[i].*c) / 2, 2);
+      squares +=
+          std::pow(configuration.pixels[i].*c - (double(first.pixels[i].*c) + second.pixels[i].*c) / 2, 2);
       between += std::pow(double(first.pixels[i].*c) - second.pixels[i].*c, 2);
     };
     add(&Vec3f::x);
     add(&Vec3f::y);
     add(&Vec3f::z);
   }
-  const double count = 3.0 * double(rung.pixels.size());
+  const double count = 3.0 * double(configuration.pixels.size());
   EXPECT_NEAR(chart.points[1].rmse(), std::sqrt(squares / count), 1e-7);
   EXPECT_NEAR(chart.reference_rmse, std::sqrt(between / count) / 2, 1e-7);
-  EXPECT_EQ(chart.points[1].rays(), double(rung.stats.counts.rays.total()));
+  EXPECT_EQ(chart.points[1].rays(), double(configuration.stats.counts.rays.total()));
   EXPECT_GT(chart.points[1].cpu_ms(), 0);
 }
 

@@ -41,7 +41,7 @@ int run(const std::string& path, const std::string& what) {
     followed =
         make(scene, plan, scene->motion.first + share * (scene->motion.last - scene->motion.first), before);
     refitted += followed.accelerator->facts().refitted;
-    worst = std::max(worst, followed.accelerator->facts().worsening);
+    worst = std::max(worst, followed.accelerator->facts().surface_area_growth);
   }
   const PrimitiveList<float>& primitives = followed.geometry->primitives;
   const World<float> fresh{followed.geometry, build_or_refit<float>(*plan.accelerator, primitives, nullptr)};
@@ -57,7 +57,7 @@ int run(const std::string& path, const std::string& what) {
   const int repeats = std::max(1, static_cast<int>(kLeastSeconds / seconds_of(false)));
   std::printf("%s\n", nlohmann::json({{"frames", kFrames},
                                       {"refitted", refitted},
-                                      {"worsening", worst},
+                                      {"surface_area_growth", worst},
                                       {"primitives", primitives.size()}})
                           .dump()
                           .c_str());

@@ -1,4 +1,4 @@
-#include "server/routes/order.h"
+#include "server/routes/render_order.h"
 
 #include "core/load/load.h"
 #include "server/routes/answers.h"
@@ -22,10 +22,11 @@ SceneStore::Prepared find(App& app, const Document& id) {
 
 }  // namespace
 
-Order read_order(App& app, Request& request, Timing& timing, const std::function<void(Params&)>& more) {
+RenderOrder read_render_order(App& app, Request& request, Timing& timing,
+                              const std::function<void(Params&)>& more) {
   const std::string body = read_json(request);
-  Order order;
-  app.read(body.size(), asker_of(request), timing, [&](const MeshSource& meshes) {
+  RenderOrder order;
+  app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
     const Document document = parse_document(body);
     const auto scene = document.member("scene"), id = document.member("scene_id");
     if (scene && id) throw InputError("/scene_id", "expected either scene or scene_id, got both");

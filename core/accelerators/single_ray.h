@@ -8,7 +8,7 @@ namespace orrery {
 
 // One ray on its way through a structure.
 template <class T>
-struct Trip {
+struct TraversalState {
   SingleRay<T> ray;
   SingleProbe<T> probe;
   SingleHit<T> hit;
@@ -20,42 +20,43 @@ struct Trip {
   template <Query kQuery>
   void meet(const Blocks<T>& blocks, std::span<const BlockName> names) {
     for (const BlockName name : names) {
-      const Meeting meeting{Blocks<T>::block_of(name), 0};
+      const RayBlockPair pair{Blocks<T>::block_of(name), 0};
       const auto& pack = blocks.pack_of(name);
       if constexpr (kQuery == Query::closest)
-        pack.closest(std::span(&meeting, 1), &ray, &hit, counts);
+        pack.closest(std::span(&pair, 1), &ray, &hit, counts);
       else
-        pack.occlude(std::span(&meeting, 1), &ray, &hit, counts);
+        pack.occlude(std::span(&pair, 1), &ray, &hit, counts);
     }
   }
 };
 
 // A structure that rays walk one by one: Tree is built from a PrimitiveList and has
-//   template <Query> void walk(Trip<T>&) const;   takes a ray through it
+//   template <Query> void traverse(TraversalState<T>&) const;   takes a ray through it
 //   bool empty() const; AcceleratorFacts facts() const;
 // Unbounded primitives stand apart and are always tested.
 template <class T, class Tree>
-class SingleWalk final : public Accelerator<T> {
+class SingleRayAccelerator final : public Accelerator<T> {
  public:
-  explicit SingleWalk(const PrimitiveList<T>& primitives) : unbounded_(primitives), tree_(primitives) {}
+  explicit SingleRayAccelerator(const PrimitiveList<T>& primitives)
+      : unbounded_(primitives), tree_(primitives) {}
 
   void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     unbounded_.closest(rays, groups, hits, counts);
     for_each_active(groups, hits.t, [&](int i) {
-      Trip<T> trip = begin(rays, i, {hits.t[i], hits.primitive[i]}, counts);
-      tree_.template walk<Query::closest>(trip);
-      hits.t[i] = trip.hit.t;
-      hits.primitive[i] = trip.hit.primitive;
+      TraversalState<T> state = begin(rays, i, {hits.t[i], hits.primitive[i]}, counts);
+      tree_.template traverse<Query::closest>(state);
+      hits.t[i] = state.hit.t;
+      hits.primitive[i] = state.hit.primitive;
     });
   }
 
   void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
     const Groups open = unbounded_.occlude(rays, groups, counts);
     for_each_active(open, rays.t_max, [&](int i) {
-      Trip<T> trip = begin(rays, i, {rays.t_max[i], kNoPrimitive}, counts);
-      tree_.template walk<Query::occlude>(trip);
-      rays.t_max[i] = trip.hit.t;
+      TraversalState<T> state = begin(rays, i, {rays.t_max[i], kNoPrimitive}, counts);
+      tree_.template traverse<Query::occlude>(state);
+      rays.t_max[i] = state.hit.t;
     });
   }
 
@@ -75,7 +76,8 @@ class SingleWalk final : public Accelerator<T> {
         if (t[i] > 0) visit(i);
   }
 
-  static Trip<T> begin(const RayBatch<T>& rays, int i, const SingleHit<T>& hit, AcceleratorCounts& counts) {
+  static TraversalState<T> begin(const RayBatch<T>& rays, int i, const SingleHit<T>& hit,
+                                 AcceleratorCounts& counts) {
     const Ray<T> ray = rays[i];
     return {SingleRay<T>::of(ray), SingleProbe<T>(ray), hit, counts};
   }

@@ -7,12 +7,12 @@ namespace orrery {
 // The rays of a batch on their way through a tree: registers of rays that run alike as packets, the others
 // one by one.
 template <class T>
-class Walk {
+class BatchTraversal {
  public:
   // `t`: the ends of the active rays, which become the distances of hits, or -1 where occluded.
   // `primitive`: of the hits, or null. REQUIRES: all outlive this.
-  Walk(const WideTree<T>& tree, const RayBatch<T>& rays, const Groups& groups, Array<T>& t,
-       Array<IndexOf<T>>* primitive)
+  BatchTraversal(const WideTree<T>& tree, const RayBatch<T>& rays, const Groups& groups, Array<T>& t,
+                 Array<IndexOf<T>>* primitive)
       : tree_(tree), t_(t), primitive_(primitive) {
     for (const int group : groups) add(rays.at(group), group);
   }
@@ -34,7 +34,7 @@ class Walk {
  private:
   using N = Lanes<T>;
   // A packet that is wider than so many leaves meets too much that most of its rays do not.
-  static constexpr T kGrains = 1;
+  static constexpr T kMaxPacketExtent = 1;
 
   void add(const Ray<N>& ray, int group) {
     const auto active = t_.at(group) > N(T(0));
@@ -45,7 +45,8 @@ class Walk {
     const unsigned any_x = x & bits, any_y = y & bits;
     const bool shared = (any_x == 0 || any_x == bits) && (any_y == 0 || any_y == bits);
     const PacketProbe<T> probe(ray, active);
-    if (probe.narrow() && shared && probe.width_at(tree_.box()) < kGrains * tree_.grain()) {
+    if (probe.narrow() && shared &&
+        probe.width_at(tree_.box()) < kMaxPacketExtent * tree_.mean_leaf_extent()) {
       const auto& axis = kCyclicAxes[any_x ? 0 : any_y ? 1 : 2];
       return add_packet(packet_of(ray, shear, axis, active), probe, group);
     }
@@ -97,18 +98,18 @@ class Walk {
   }
 
   // Those whose directions have the same signs agree about what is nearer: they go together.
-  template <Query kQuery, class Walking>
-  void run_all(Walking& walkers, AcceleratorCounts& counts) const {
-    if (walkers.count == 0) return;
-    using Streaming = Stream<kQuery, T, Walking>;
-    const auto octant = [&](int i) -> std::size_t { return walkers.probes[i].octant(); };
+  template <Query kQuery, class Traversals>
+  void run_all(Traversals& traversals, AcceleratorCounts& counts) const {
+    if (traversals.count == 0) return;
+    using Streaming = Stream<kQuery, T, Traversals>;
+    const auto octant = [&](int i) -> std::size_t { return traversals.probes[i].octant(); };
     std::array<int, 9> begin{};  // of each octant; the last is the end of all
-    for (int i = 0; i < walkers.count; ++i) ++begin[octant(i) + 1];
+    for (int i = 0; i < traversals.count; ++i) ++begin[octant(i) + 1];
     for (std::size_t o = 0; o < 8; ++o) begin[o + 1] += begin[o];
-    std::array<std::int32_t, Walking::kCapacity + Streaming::kPad> ids;
+    std::array<std::int32_t, Traversals::kCapacity + Streaming::kPad> ids;
     std::array<int, 9> next = begin;
-    for (int i = 0; i < walkers.count; ++i) ids[static_cast<std::size_t>(next[octant(i)]++)] = i;
-    Streaming stream(tree_, walkers, counts);
+    for (int i = 0; i < traversals.count; ++i) ids[static_cast<std::size_t>(next[octant(i)]++)] = i;
+    Streaming stream(tree_, traversals, counts);
     for (std::size_t o = 0; o < 8; ++o)
       if (begin[o] < begin[o + 1]) stream.run(ids.data() + begin[o], begin[o + 1] - begin[o]);
   }
@@ -116,8 +117,8 @@ class Walk {
   const WideTree<T>& tree_;
   Array<T>& t_;
   Array<IndexOf<T>>* const primitive_;
-  Walkers<Packet<T>, PacketProbe<T>, PacketHit<T>, kBatch / kWidth<T>> packets_;
-  Walkers<SingleRay<T>, SingleProbe<T>, SingleHit<T>, kBatch> singles_;
+  TraversalGroup<Packet<T>, PacketProbe<T>, PacketHit<T>, kBatch / kWidth<T>> packets_;
+  TraversalGroup<SingleRay<T>, SingleProbe<T>, SingleHit<T>, kBatch> singles_;
 };
 
 }  // namespace orrery

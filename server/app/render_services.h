@@ -9,7 +9,7 @@
 namespace orrery {
 
 // What all who render share. It outlives them.
-struct Means {
+struct RenderServices {
   WorkerPool& pool;
   Admission& admission;
   const std::atomic<bool>& draining;  // no new work; what goes on and on ends at its next frame
