@@ -19,10 +19,10 @@ class GridLayout {
   GridLayout(const Bounds<T>& box, double cells) : box_(box), count_(sides_for(box.hi - box.lo, cells)) {
     constexpr T kWider = 1 + 4 * std::numeric_limits<T>::epsilon();  // so that the last plane is not inside
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const T extent = (&box.hi.x)[axis] - (&box.lo.x)[axis];
-      T& size = (&size_.x)[axis];
+      const T extent = box.hi[axis] - box.lo[axis];
+      T& size = size_[axis];
       size = extent / static_cast<T>(count_[axis]) * kWider;
-      (&per_size_.x)[axis] = size > 0 ? 1 / size : 0;
+      per_size_[axis] = size > 0 ? 1 / size : 0;
     }
   }
 
@@ -36,7 +36,7 @@ class GridLayout {
            static_cast<std::size_t>(i[0]);
   }
   // Side i - 1 and side i of a layer meet here.
-  T plane(std::size_t axis, int i) const { return (&box_.lo.x)[axis] + (&size_.x)[axis] * static_cast<T>(i); }
+  T plane(std::size_t axis, int i) const { return box_.lo[axis] + size_[axis] * static_cast<T>(i); }
   Bounds<T> cell(const CellIndex& i) const {
     return {{plane(0, i[0]), plane(1, i[1]), plane(2, i[2])},
             {plane(0, i[0] + 1), plane(1, i[1] + 1), plane(2, i[2] + 1)}};
@@ -88,10 +88,10 @@ class GridLayout {
     for (int pass = 0; pass < 3; ++pass) {
       double volume = 1, axes = 0;
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!thin[axis]) volume *= double{(&extent.x)[axis]}, ++axes;
+        if (!thin[axis]) volume *= double{extent[axis]}, ++axes;
       const double side = axes > 0 ? std::pow(volume / cells, 1 / axes) : 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double fit = side > 0 ? double{(&extent.x)[axis]} / side : 0;
+        const double fit = side > 0 ? double{extent[axis]} / side : 0;
         thin[axis] = thin[axis] || !(fit >= 1);
         count[axis] = thin[axis] ? 1 : static_cast<int>(std::min(std::round(fit), kMostASide));
       }
@@ -107,7 +107,7 @@ class GridLayout {
 
   // First and last layer that touch lo..hi.
   std::array<int, 2> touching(std::size_t axis, T lo, T hi) const {
-    const T from = (&box_.lo.x)[axis], per = (&per_size_.x)[axis];
+    const T from = box_.lo[axis], per = per_size_[axis];
     int i = layer(axis, (lo - from) * per), j = layer(axis, (hi - from) * per);
     while (i > 0 && plane(axis, i) >= lo) --i;
     while (i + 1 < count_[axis] && plane(axis, i + 1) < lo) ++i;
@@ -120,8 +120,8 @@ class GridLayout {
   void along(const Ray<T>& ray, const SingleProbe<T>& probe, std::size_t axis, T rounding, T from, T to,
              const Open& open, const Visit& visit) const {
     const bool down = probe.descending(axis);
-    const T per = (&per_size_.x)[axis], slack = T(0.001) + rounding * per;
-    const T begin = ((&ray.origin.x)[axis] + (&ray.direction.x)[axis] * from - (&box_.lo.x)[axis]) * per;
+    const T per = per_size_[axis], slack = T(0.001) + rounding * per;
+    const T begin = (ray.origin[axis] + ray.direction[axis] * from - box_.lo[axis]) * per;
     const int step = down ? -1 : 1, end = down ? -1 : count_[axis];
     for (int i = layer(axis, down ? begin + slack : begin - slack); i != end; i += step) {
       T near = from, far = to;

@@ -72,8 +72,8 @@ class GridTree {
     for (const std::uint32_t item : cell.items) {
       Bounds<T> part = items[item].box;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        (&part.lo.x)[axis] = std::max((&part.lo.x)[axis], (&cell.box.lo.x)[axis]);
-        (&part.hi.x)[axis] = std::min((&part.hi.x)[axis], (&cell.box.hi.x)[axis]);
+        part.lo[axis] = std::max(part.lo[axis], cell.box.lo[axis]);
+        part.hi[axis] = std::min(part.hi[axis], cell.box.hi[axis]);
       }
       box.include(part);
     }

@@ -19,7 +19,7 @@ class MedianSplitter {
     std::vector<double> centers;
     for (const std::uint32_t item : cell.items) {
       const Bounds<T>& box = items_[item].box;
-      centers.push_back((double{(&box.lo.x)[axis]} + double{(&box.hi.x)[axis]}) / 2);
+      centers.push_back((double{box.lo[axis]} + double{box.hi[axis]}) / 2);
     }
     const auto middle = centers.begin() + static_cast<std::ptrdiff_t>(centers.size() / 2);
     std::nth_element(centers.begin(), middle, centers.end());
@@ -32,7 +32,7 @@ class MedianSplitter {
     std::size_t count = 0;
     for (const std::uint32_t item : cell.items) {
       const Bounds<T>& box = items_[item].box;
-      count += (&box.lo.x)[axis] <= static_cast<T>(at) && (&box.hi.x)[axis] >= static_cast<T>(at);
+      count += box.lo[axis] <= static_cast<T>(at) && box.hi[axis] >= static_cast<T>(at);
     }
     return count;
   }

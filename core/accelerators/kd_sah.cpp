@@ -35,15 +35,15 @@ class SurfaceSplitter {
 
   void sweep(const SpaceCell<T>& cell, std::size_t axis, double whole, double& least,
              std::optional<SpacePlane>& best) const {
-    const double lo = (&cell.box.lo.x)[axis], hi = (&cell.box.hi.x)[axis], step = (hi - lo) / kBins;
+    const double lo = cell.box.lo[axis], hi = cell.box.hi[axis], step = (hi - lo) / kBins;
     if (!(step > 0)) return;
     std::array<std::size_t, kBins> starts{}, ends{};
     const auto bin = [&](double at) {
       return static_cast<std::size_t>(std::clamp((at - lo) / step, 0.0, double(kBins - 1)));
     };
     for (const std::uint32_t item : cell.items) {
-      ++starts[bin((&items_[item].box.lo.x)[axis])];
-      ++ends[bin((&items_[item].box.hi.x)[axis])];
+      ++starts[bin(items_[item].box.lo[axis])];
+      ++ends[bin(items_[item].box.hi[axis])];
     }
     std::size_t below = 0, above = cell.items.size();
     for (std::size_t k = 1; k < kBins; ++k) {
@@ -51,7 +51,7 @@ class SurfaceSplitter {
       above -= ends[k - 1];
       const double at = lo + step * static_cast<double>(k);
       Bounds<T> left = cell.box, right = cell.box;
-      (&left.hi.x)[axis] = (&right.lo.x)[axis] = static_cast<T>(at);
+      left.hi[axis] = right.lo[axis] = static_cast<T>(at);
       const double parts = half_area(left) * cost_of(below) + half_area(right) * cost_of(above);
       const double cost = (kVisitCost + parts / whole) * (below == 0 || above == 0 ? kEmptyShare : 1.0);
       if (cost < least) least = cost, best = SpacePlane{axis, at};

@@ -15,7 +15,7 @@ class OctantSplitter {
   std::optional<SpacePlane> split(const SpaceCell<T>& cell) const {
     const auto axis = static_cast<std::size_t>(cell.depth % 3);
     if (axis == 0 && !pays(cell)) return {};
-    const auto lo = double{(&cell.box.lo.x)[axis]}, hi = double{(&cell.box.hi.x)[axis]};
+    const auto lo = double{cell.box.lo[axis]}, hi = double{cell.box.hi[axis]};
     return SpacePlane{axis, (lo + hi) / 2};
   }
 
@@ -31,7 +31,7 @@ class OctantSplitter {
       const Bounds<T>& box = items_[item].box;
       std::size_t octants = 1;
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if ((&box.lo.x)[axis] <= (&middle.x)[axis] && (&box.hi.x)[axis] >= (&middle.x)[axis]) octants *= 2;
+        if (box.lo[axis] <= middle[axis] && box.hi[axis] >= middle[axis]) octants *= 2;
       copies += octants;
     }
     return copies < 3 * cell.items.size();

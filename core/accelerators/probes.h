@@ -71,7 +71,7 @@ class SingleProbe {
   T latest(std::size_t axis, T plane) const { return plane * inverse_[axis] - far_offset_[axis]; }
   // Leaves what of from..to lies in the box; false if nothing does.
   bool clip(const Bounds<T>& box, T& from, T& to) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) clip(axis, (&box.lo.x)[axis], (&box.hi.x)[axis], from, to);
+    for (std::size_t axis = 0; axis < 3; ++axis) clip(axis, box.lo[axis], box.hi[axis], from, to);
     return from <= to;
   }
   void clip(std::size_t axis, T lo, T hi, T& from, T& to) const {
@@ -121,8 +121,8 @@ class PacketProbe {
   T width_at(const Bounds<T>& box) const {
     T distance = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      distance = std::max({distance, (&box.lo.x)[axis] - axis_[axis].near_origin,
-                           axis_[axis].near_origin - (&box.hi.x)[axis]});
+      distance = std::max(
+          {distance, box.lo[axis] - axis_[axis].near_origin, axis_[axis].near_origin - box.hi[axis]});
     return origins_ + directions_ * distance;
   }
 

@@ -113,16 +113,16 @@ class SpaceTree {
   bool divide(SpaceCell<T>& cell, const SpacePlane& plane, const std::vector<TreeItem<T>>& items,
               std::size_t& left, std::deque<SpaceCell<T>>& open) {
     const T at = static_cast<T>(plane.at);
-    T& lo = (&cell.box.lo.x)[plane.axis];
-    T& hi = (&cell.box.hi.x)[plane.axis];
+    T& lo = cell.box.lo[plane.axis];
+    T& hi = cell.box.hi[plane.axis];
     if (!(lo < at && at < hi) || cell.depth + 1 >= kDeepest) return false;
     SpaceCell<T> below{cell.box, {}, cell.depth + 1, nodes_.size()};
     SpaceCell<T> above{cell.box, {}, cell.depth + 1, nodes_.size() + 1};
-    (&below.box.hi.x)[plane.axis] = at;
-    (&above.box.lo.x)[plane.axis] = at;
+    below.box.hi[plane.axis] = at;
+    above.box.lo[plane.axis] = at;
     for (const std::uint32_t item : cell.items) {
-      if ((&items[item].box.lo.x)[plane.axis] <= at) below.items.push_back(item);
-      if ((&items[item].box.hi.x)[plane.axis] >= at) above.items.push_back(item);
+      if (items[item].box.lo[plane.axis] <= at) below.items.push_back(item);
+      if (items[item].box.hi[plane.axis] >= at) above.items.push_back(item);
     }
     const std::size_t added = below.items.size() + above.items.size() - cell.items.size();
     if (added > left) return false;

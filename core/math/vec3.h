@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <type_traits>
 
 namespace orrery {
@@ -12,13 +14,27 @@ struct Vec3 {
   N x{}, y{}, z{};
 
   Vec3() = default;
-  Vec3(N x_, N y_, N z_) : x(x_), y(y_), z(z_) {}
-  explicit Vec3(N all) : x(all), y(all), z(all) {}
+  constexpr Vec3(N x_, N y_, N z_) : x(x_), y(y_), z(z_) {}
+  constexpr explicit Vec3(N all) : x(all), y(all), z(all) {}
   template <class M>
-  requires(!std::is_same_v<M, N>) explicit Vec3(const Vec3<M>& v)
+  requires(!std::is_same_v<M, N>) constexpr explicit Vec3(const Vec3<M>& v)
       : x(static_cast<N>(v.x)), y(static_cast<N>(v.y)), z(static_cast<N>(v.z)) {}
 
+  // The component along `axis`: 0 is x, 1 is y, 2 is z. REQUIRES: axis < 3.
+  [[gnu::always_inline]] constexpr N& operator[](std::size_t axis) { return at(*this, axis); }
+  [[gnu::always_inline]] constexpr const N& operator[](std::size_t axis) const { return at(*this, axis); }
+
   bool operator==(const Vec3&) const = default;
+
+ private:
+  // At run time one indexed load and no branch: traversals choose the axis per ray.
+  template <class V>
+  [[gnu::always_inline]] static constexpr auto& at(V& v, std::size_t axis) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(N), "the components follow each other in memory");
+    assert(axis < 3);
+    if (std::is_constant_evaluated()) return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+    return (&v.x)[axis];
+  }
 };
 
 using Vec3d = Vec3<double>;

@@ -40,7 +40,7 @@ struct Ball {
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     using T = ScalarOf<N>;
     if (!packet.one_origin) return MaskOf<N>(true);
-    const auto at = [&](int axis) { return (&center.x)[axis] - N((&packet.origin.x)[axis]); };
+    const auto at = [&](int axis) { return center[axis] - N(packet.origin[axis]); };
     const auto [x_axis, y_axis, z_axis] = packet.axis;
     const N x = at(x_axis), y = at(y_axis), z = at(z_axis);
     const auto steepest = [&](std::size_t side) {

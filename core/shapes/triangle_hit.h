@@ -29,7 +29,7 @@ template <class N>
 // One coordinate of a point as seen from `origin`.
 template <class N, class O>
 [[gnu::always_inline]] inline N moved(const Vec3<N>& point, const Vec3<O>& origin, int axis) {
-  return (&point.x)[axis] - N((&origin.x)[axis]);
+  return point[axis] - N(origin[axis]);
 }
 
 }  // namespace detail

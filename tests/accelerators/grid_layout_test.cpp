@@ -29,8 +29,8 @@ Cells touched(const GridLayout<T>& layout, const Ray<T>& ray, long double pad) {
     const Bounds<T> cell = layout.cell(i);
     long double from = 0, to = std::numeric_limits<long double>::infinity();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const long double o = (&ray.origin.x)[axis], d = (&ray.direction.x)[axis];
-      const long double lo = (&cell.lo.x)[axis] - pad, hi = (&cell.hi.x)[axis] + pad;
+      const long double o = ray.origin[axis], d = ray.direction[axis];
+      const long double lo = cell.lo[axis] - pad, hi = cell.hi[axis] + pad;
       if (d == 0) {
         if (o < lo || o > hi) return false;
         continue;

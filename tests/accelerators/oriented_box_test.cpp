@@ -45,8 +45,8 @@ void expect_inside(const OrientedBox<double>& box, const Hull& hull) {
     for (const Vec3d& p : triangle)
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double along = dot(box.axes[axis], p - box.center);
-        EXPECT_GE(along, (&box.box.lo.x)[axis] - pad);
-        EXPECT_LE(along, (&box.box.hi.x)[axis] + pad);
+        EXPECT_GE(along, box.box.lo[axis] - pad);
+        EXPECT_LE(along, box.box.hi[axis] + pad);
       }
 }
 

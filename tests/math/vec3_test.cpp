@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/math/lanes.h"
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
@@ -48,6 +49,16 @@ TEST(Vec3, ProductsObeyTheirLaws) {
     EXPECT_NEAR(dot(cross(a, b), cross(a, b)) + dot(a, b) * dot(a, b), dot(a, a) * dot(b, b), 1e-12);
   }
   EXPECT_EQ(cross(Vec3d(1, 0, 0), Vec3d(0, 1, 0)), Vec3d(0, 0, 1));
+}
+
+TEST(Vec3, AnIndexNamesTheComponentOfItsAxis) {
+  Vec3d v(1, 2, 3);
+  v[2] += 4;
+  EXPECT_EQ(v, Vec3d(1, 2, 7));
+  const Vec3<Lanes<float>> lanes(Lanes<float>(1), Lanes<float>(2), Lanes<float>(3));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_TRUE(all(lanes[axis] == Lanes<float>(static_cast<float>(axis + 1))));
+  static_assert(Vec3d(1, 2, 3)[0] == 1 && Vec3d(1, 2, 3)[1] == 2 && Vec3d(1, 2, 3)[2] == 3);
 }
 
 }  // namespace
