@@ -71,7 +71,7 @@ HttpServer::Options health_options_of(const Settings& settings) {
 
 Service::Service(const Settings& settings, const Log& log)
     : log_(log),
-      app_(settings),
+      app_(settings, timer_),
       server_(options_of(settings), handler_of(router_)),
       health_(health_options_of(settings), handler_of(health_router_)) {
   add_routes(router_, app_);

@@ -30,6 +30,7 @@ class Service {
   void note(const Request& request, const Response& response, std::uint64_t bytes, bool gone);
 
   const Log& log_;
+  SteadyTimer timer_;
   App app_;
   Metrics metrics_;
   Router router_, health_router_;

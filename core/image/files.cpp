@@ -20,7 +20,7 @@ constexpr std::array<unsigned char, 4> kExrMagic = {0x76, 0x2f, 0x31, 0x01};
 
 }  // namespace
 
-std::string encode(const Image& image, FileFormat format, const StopEncoding& stop) {
+std::string encode(const Image& image, FileFormat format, std::stop_token stop) {
   switch (format) {
     case FileFormat::png: return encode_png(image, {}, stop);
     case FileFormat::jpeg: return encode_jpeg(image);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <functional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -15,15 +15,13 @@ struct PngOptions {
   int level = 4;  // zlib's, 1..9; 1 for frames of a stream. 6 takes twice the time for 0 to 10 % fewer bytes
 };
 
-// Asked now and then by what takes long; true ends it with Cancelled.
-using StopEncoding = std::function<bool()>;
-
 // Bytes of a file that holds the picture. PNG and JPEG take srgb8, EXR takes linear32 (half floats would lose
 // what comparisons need, so it stores floats). The same picture gives the same bytes.
-std::string encode_png(const Image& image, const PngOptions& options = {}, const StopEncoding& stop = {});
+// A stop request ends what takes long with Cancelled.
+std::string encode_png(const Image& image, const PngOptions& options = {}, std::stop_token stop = {});
 std::string encode_jpeg(const Image& image, int quality = 92);
 std::string encode_exr(const Image& image);
-std::string encode(const Image& image, FileFormat format, const StopEncoding& stop = {});
+std::string encode(const Image& image, FileFormat format, std::stop_token stop = {});
 
 // The pixel format that a file format stores.
 PixelFormat pixels_of(FileFormat format);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <stop_token>
 
 #include "core/model/counts.h"
 #include "core/model/plan.h"
@@ -20,10 +20,10 @@ template <class T>
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  // Follows the camera rays to the end. Slots of inactive rays get the background. `stop` (if there is one)
-  // is asked now and then; once it says yes the rest is left, the result means nothing and false is returned.
+  // Follows the camera rays to the end. Slots of inactive rays get the background. Looks at `stop`
+  // now and then; once a stop is requested the rest is left, the result means nothing and false is returned.
   virtual bool trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
-                     const std::function<bool()>& stop = {}) = 0;
+                     std::stop_token stop = {}) = 0;
 };
 
 template <class T>

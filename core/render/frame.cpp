@@ -27,7 +27,7 @@ RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat fo
   std::atomic<bool> stopped = false;
   const auto start = Clock::now();
   pool.for_each(across * down, control.background, [&](int tile, int thread) {
-    if (control.stop && !stopped && control.stop()) stopped = true;
+    if (control.stop.stop_requested()) stopped = true;
     if (stopped) return false;
     const double cpu_before = thread_cpu_ms();
     auto& renderer = renderers[static_cast<std::size_t>(thread)];

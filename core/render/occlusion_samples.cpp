@@ -83,8 +83,7 @@ void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay
 }  // namespace
 
 template <class T>
-std::vector<OcclusionSample> sample_occlusion(const World<T>& world, const Plan& plan,
-                                              const std::function<bool()>& stop) {
+std::vector<OcclusionSample> sample_occlusion(const World<T>& world, const Plan& plan, std::stop_token stop) {
   DecimatingSampler<T> thinned;
   try_tiles<T>({world.geometry, std::make_shared<const Recorder<T>>(*world.accelerator, thinned)}, plan,
                kTiles, stop);
@@ -96,9 +95,7 @@ std::vector<OcclusionSample> sample_occlusion(const World<T>& world, const Plan&
   return samples;
 }
 
-template std::vector<OcclusionSample> sample_occlusion(const World<float>&, const Plan&,
-                                                       const std::function<bool()>&);
-template std::vector<OcclusionSample> sample_occlusion(const World<double>&, const Plan&,
-                                                       const std::function<bool()>&);
+template std::vector<OcclusionSample> sample_occlusion(const World<float>&, const Plan&, std::stop_token);
+template std::vector<OcclusionSample> sample_occlusion(const World<double>&, const Plan&, std::stop_token);
 
 }  // namespace orrery

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "core/accelerators/network_predictor.h"
@@ -9,9 +10,9 @@
 namespace orrery {
 
 // Shadow rays of some tiles of the picture that the plan asks for, spread evenly over all of them, and what
-// each met first. At most 16,384. Throws Cancelled if `stop` said so.
+// each met first. At most 16,384. Throws Cancelled if `stop` is requested.
 template <class T>
 std::vector<OcclusionSample> sample_occlusion(const World<T>& world, const Plan& plan,
-                                              const std::function<bool()>& stop = {});
+                                              std::stop_token stop = {});
 
 }  // namespace orrery

@@ -1,8 +1,6 @@
 #include "core/render/prepare.h"
 
 #include <algorithm>
-#include <chrono>
-#include <thread>
 
 #include "core/accelerators/reordered.h"
 #include "core/base/clock.h"
@@ -39,7 +37,7 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
 
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double time, double& build_ms,
-                   const std::function<bool()>& stop) {
+                   std::stop_token stop) {
   const auto lock = lock_unless(parts.mutex, stop);
   auto& moments = made_of<T>(parts).moments;
   bring_forward(moments, time);
@@ -60,7 +58,7 @@ namespace {
 
 template <class T>
 PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, const Plan& plan,
-                            double& build_ms, const std::function<bool()>& stop) {
+                            double& build_ms, std::stop_token stop) {
   const auto lock = lock_unless(parts.trying, stop);
   PredictorPtr<T>& network = made_of<T>(parts).network;
   if (!network) {
@@ -74,8 +72,7 @@ PredictorPtr<T> network_for(PreparedScene::Parts& parts, const World<T>& world, 
 }  // namespace
 
 template <class T>
-World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms,
-                   const std::function<bool()>& stop) {
+World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms, std::stop_token stop) {
   const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.time, build_ms, stop);
   const PrimitiveList<T>& primitives = bare.geometry->primitives;
   auto asked = plan.reorder ? reordered(bare.accelerator) : bare.accelerator;
@@ -89,19 +86,15 @@ World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_
 }
 
 template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
-                                const std::function<bool()>&);
+                                std::stop_token);
 template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
-                                 const std::function<bool()>&);
-template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
-template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, const std::function<bool()>&);
+                                 std::stop_token);
+template World<float> world_for(PreparedScene::Parts&, const Plan&, double&, std::stop_token);
+template World<double> world_for(PreparedScene::Parts&, const Plan&, double&, std::stop_token);
 
-std::unique_lock<std::mutex> lock_unless(std::mutex& mutex, const std::function<bool()>& stop) {
-  std::unique_lock lock(mutex, std::defer_lock);
-  while (!lock.try_lock()) {
-    if (stop && stop()) throw Cancelled();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return lock;
+std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::stop_token& stop) {
+  if (!mutex.lock_unless(stop)) throw Cancelled();
+  return {mutex, std::adopt_lock};
 }
 
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {

@@ -4,8 +4,10 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 
 #include "core/accelerators/prediction.h"
+#include "core/base/stoppable_mutex.h"
 #include "core/model/world.h"
 #include "core/render/renderer.h"
 
@@ -28,27 +30,27 @@ struct PreparedScene::Parts {
     PredictorPtr<T> network;         // trained on the first plan that wanted one
   };
   std::shared_ptr<const Scene> scene;
-  std::mutex trying;  // held while structures are tried or a network trained, so that it is done once
-  std::mutex mutex;   // guards the rest; all is built under it, so that it is built once
+  StoppableMutex trying;  // held while structures are tried or a network trained, so that it is done once
+  StoppableMutex mutex;   // guards the rest; all is built under it, so that it is built once
   Made<float> made_float;
   Made<double> made_double;
 };
 
 // The scene in number type T with an accelerator, as it stands at `time`, a moment of its motion in seconds;
-// adds the milliseconds spent building, if any. Throws Cancelled if `stop` said so while another built.
+// adds the milliseconds spent building, if any. Throws Cancelled if `stop` is requested while another built.
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double time,
-                   double& build_ms, const std::function<bool()>& stop = {});
+                   double& build_ms, std::stop_token stop = {});
 
 // The same with the accelerator of a settled plan and the stages that it wants in front of it, which change
 // no answer: prediction first, then reordering. Of these only the network takes time to make. Throws
-// Cancelled if `stop` said so.
+// Cancelled if `stop` is requested.
 template <class T>
 World<T> world_for(PreparedScene::Parts& parts, const Plan& plan, double& build_ms,
-                   const std::function<bool()>& stop = {});
+                   std::stop_token stop = {});
 
-// Waits for the mutex. Throws Cancelled once `stop` says so.
-std::unique_lock<std::mutex> lock_unless(std::mutex& mutex, const std::function<bool()>& stop);
+// Waits for the mutex. Throws Cancelled once `stop` is requested.
+std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::stop_token& stop);
 
 // What was built in number type T.
 template <class T>

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <stop_token>
 
 #include "core/image/image.h"
 #include "core/model/counts.h"
@@ -52,11 +53,11 @@ class WorkerPool {
   std::unique_ptr<Parts> parts_;
 };
 
-// How a caller follows a render. Both are called from worker threads, several at once.
+// How a caller follows a render.
 struct RenderControl {
-  std::function<bool()> stop;                         // asked before each tile; true ends it with Cancelled
-  std::function<void(int done, int total)> progress;  // tiles
-  bool background = false;                            // others come first
+  std::stop_token stop = {};                               // a stop request ends it with Cancelled
+  std::function<void(int done, int total)> progress = {};  // tiles; called from several threads at once
+  bool background = false;                                 // others come first
 };
 
 struct RenderStats {
@@ -78,11 +79,11 @@ struct RenderResult {
 // If the plan leaves the accelerator open: takes the one whose counted work on some tiles of the picture
 // costs least, and says so in the plan's decisions. Once for a scene and number type; later plans follow, so
 // that frames of one scene do not change it. Returns the milliseconds that took. Throws
-// Cancelled if `stop` said so.
-double settle(const PreparedScene& scene, Plan& plan, const std::function<bool()>& stop = {});
+// Cancelled if `stop` is requested.
+double settle(const PreparedScene& scene, Plan& plan, std::stop_token stop = {});
 
 // Renders one frame on the pool; a plan that is not settled is settled first. Throws Cancelled if
-// control.stop said so. The picture depends on scene and plan alone: not on threads, their order or the
+// control.stop is requested. The picture depends on scene and plan alone: not on threads, their order or the
 // machine's vector width.
 RenderResult render_frame(const PreparedScene& scene, const Plan& plan, PixelFormat format, WorkerPool& pool,
                           const RenderControl& control = {});

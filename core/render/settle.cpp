@@ -20,7 +20,7 @@ struct TrialResult {
 
 template <class T>
 TrialResult try_one(PreparedScene::Parts& parts, const AcceleratorType& type, const Plan& plan,
-                    const std::function<bool()>& stop) {
+                    std::stop_token stop) {
   double build_ms = 0;
   const TraceCounts counts =
       try_tiles(world_for<T>(parts, type, plan.time, build_ms, stop), plan, kTiles, stop);
@@ -29,7 +29,7 @@ TrialResult try_one(PreparedScene::Parts& parts, const AcceleratorType& type, co
 }
 
 template <class T>
-Decision choose(PreparedScene::Parts& parts, const Plan& plan, const std::function<bool()>& stop) {
+Decision choose(PreparedScene::Parts& parts, const Plan& plan, std::stop_token stop) {
   Plan shallow = plan;
   shallow.max_depth = std::min(plan.max_depth, kDeepest);
   std::vector<TrialResult> tried{try_one<T>(parts, *plan.accelerator, shallow, stop)};
@@ -52,7 +52,7 @@ Decision choose(PreparedScene::Parts& parts, const Plan& plan, const std::functi
 
 }  // namespace
 
-double settle(const PreparedScene& scene, Plan& plan, const std::function<bool()>& stop) {
+double settle(const PreparedScene& scene, Plan& plan, std::stop_token stop) {
   if (!plan.try_accelerators) return 0;
   plan.try_accelerators = false;
   PreparedScene::Parts& parts = scene.parts();

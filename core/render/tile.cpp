@@ -29,11 +29,11 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
 }
 
 template <class T>
-void TileRenderer<T>::render(int x0, int y0, const std::function<bool()>& stop, Image& image) {
+void TileRenderer<T>::render(int x0, int y0, std::stop_token stop, Image& image) {
   if (plan_.samples > 1) clear_sums();
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   for (int sample = 0; sample < plan_.samples; ++sample) {
-    if (sample > 0 && stop && stop()) stopped_ = true;
+    if (sample > 0 && stop.stop_requested()) stopped_ = true;
     if (stopped_) return;
     if (plan_.samples > 1) place_samples(x0, y0, sample);
     generate_rays(plan_.camera, plan_.width, plan_.height, x0, y0, samples_, rays_);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <functional>
+#include <stop_token>
 
 #include "core/model/technique.h"
 #include "core/render/renderer.h"
@@ -14,9 +14,9 @@ class TileRenderer {
  public:
   TileRenderer(const World<T>& world, const Plan& plan);
 
-  // Sets the pixels of the tile whose first pixel is (x0, y0). Asks `stop` (if there is one) now and then;
-  // once it says yes the tile is left unfinished and stopped() is true.
-  void render(int x0, int y0, const std::function<bool()>& stop, Image& image);
+  // Sets the pixels of the tile whose first pixel is (x0, y0). Looks at `stop` now and then; once a
+  // stop is requested the tile is left unfinished and stopped() is true.
+  void render(int x0, int y0, std::stop_token stop, Image& image);
   bool stopped() const { return stopped_; }
 
   // Adds what the tiles so far took; mean_cut is summed, not yet divided.

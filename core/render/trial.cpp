@@ -8,7 +8,7 @@
 namespace orrery {
 
 template <class T>
-TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, const std::function<bool()>& stop) {
+TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, std::stop_token stop) {
   const int across = (plan.width + kTileSide - 1) / kTileSide,
             down = (plan.height + kTileSide - 1) / kTileSide;
   const int tiles = across * down, count = std::min(most, tiles);
@@ -23,12 +23,12 @@ TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, const s
     const int tile = static_cast<int>((std::int64_t{2} * i + 1) * tiles / (2 * count));
     generate_rays(plan.camera, plan.width, plan.height, tile % across * kTileSide, tile / across * kTileSide,
                   middle, *rays);
-    if ((stop && stop()) || !tracer->trace(*rays, *result, counts, stop)) throw Cancelled();
+    if (stop.stop_requested() || !tracer->trace(*rays, *result, counts, stop)) throw Cancelled();
   }
   return counts;
 }
 
-template TraceCounts try_tiles(const World<float>&, const Plan&, int, const std::function<bool()>&);
-template TraceCounts try_tiles(const World<double>&, const Plan&, int, const std::function<bool()>&);
+template TraceCounts try_tiles(const World<float>&, const Plan&, int, std::stop_token);
+template TraceCounts try_tiles(const World<double>&, const Plan&, int, std::stop_token);
 
 }  // namespace orrery

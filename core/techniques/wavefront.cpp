@@ -11,7 +11,7 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
 
 template <class T>
 bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
-                         const std::function<bool()>& stop) {
+                         std::stop_token stop) {
   out_ = &out;
   counts_ = &counts;
   const Groups all = Groups::covering(0, kBatch, kWidth<T>);
@@ -23,13 +23,13 @@ bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, Tr
   for (int i = 0; i < kBatch; ++i) camera->slot[i] = static_cast<IndexOf<T>>(i);
   for (const int i : all) camera->throughput.put(i, Vec3<N>(N(T(1))));
   waiting_.push_back(std::move(camera));
-  constexpr int kAskEvery = 16;  // batches: a tree of glass in glass can grow to billions of rays
+  constexpr int kLookEvery = 16;  // batches: a tree of glass in glass can grow to billions of rays
   for (int batches = 1; !waiting_.empty(); ++batches) {
     auto batch = std::move(waiting_.back());
     waiting_.pop_back();
     run(*batch);
     spare_.push_back(std::move(batch));
-    if (batches % kAskEvery == 0 && stop && stop()) {
+    if (batches % kLookEvery == 0 && stop.stop_requested()) {
       waiting_.clear();
       return false;
     }

@@ -18,7 +18,7 @@ class Wavefront : public Tracer<T> {
 
   Wavefront(const World<T>& world, const Plan& plan);
   bool trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
-             const std::function<bool()>& stop) final;
+             std::stop_token stop) final;
 
  protected:
   // What the current batch met, for scatter(). Groups name the registers with a specular surface.

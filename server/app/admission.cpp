@@ -48,29 +48,22 @@ bool Admission::full() const {
   return running_ >= limits_.running && !fits(Lane::interactive, kLeastCost);
 }
 
-Admission::Ticket Admission::enter(const Demand& demand, const Stop& stop) {
+Admission::Ticket Admission::enter(const Demand& demand, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   if (!place_free(demand.lane)) make_room(demand);
   return wait_for_turn(lock, demand, true, stop);
 }
 
-Admission::Ticket Admission::enter_again(const Demand& demand, const Stop& stop) {
+Admission::Ticket Admission::enter_again(const Demand& demand, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   return wait_for_turn(lock, demand, false, stop);
 }
 
 Admission::Ticket Admission::wait_for_turn(std::unique_lock<std::mutex>& lock, const Demand& demand,
-                                           bool may_be_dropped, const Stop& stop) {
-  constexpr std::chrono::milliseconds kAsk{20};
+                                           bool may_be_dropped, const std::stop_token& stop) {
   const auto place = queue_.emplace(queue_.end(), demand, may_be_dropped, virtual_finish(demand));
   start_next();
-  bool give_up = false;
-  while (place->state == Waiting::waits && !give_up) {
-    place->changed.wait_for(lock, kAsk);
-    lock.unlock();
-    give_up = stop();
-    lock.lock();
-  }
+  place->changed.wait(lock, stop, [&] { return place->state != Waiting::waits; });
   const auto state = place->state;
   queue_.erase(place);
   if (state == Waiting::starts) return Ticket(*this, demand.lane, demand.cost);  // who gives up finds it soon
@@ -84,7 +77,7 @@ void Admission::start_next() {
   for (auto it = next(); it != queue_.end(); it = next()) {
     it->state = Waiting::starts;
     virtual_time_[static_cast<int>(it->demand.lane)] = it->finish;
-    if (running_++ == 0) measured_ = Clock::now();
+    if (running_++ == 0) measured_ = timer_.now();
     if (it->demand.lane == Lane::batch) ++running_batch_;
     latest_ = it->demand.lane;
     it->changed.notify_one();
@@ -171,7 +164,7 @@ void Admission::make_room(const Demand& demand) {
 }
 
 void Admission::measure(double cost) {
-  const auto now = Clock::now();
+  const auto now = timer_.now();
   const double seconds = std::chrono::duration<double>(now - std::exchange(measured_, now)).count();
   if (cost == 0) return;  // it was broken off: nobody knows how much of it was done
   const double faded = std::exp(-seconds / kMemory_s);

@@ -2,14 +2,14 @@
 
 #include <condition_variable>
 #include <exception>
-#include <functional>
 #include <list>
 #include <mutex>
+#include <stop_token>
 #include <string>
 
-#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/model/plan.h"
+#include "server/app/timer.h"
 
 namespace orrery {
 
@@ -58,7 +58,8 @@ class Admission {
     int running;        // pieces of work at once
     double queue_rays;  // cost of what waits in a lane; one may wait whatever it costs
   };
-  explicit Admission(const Limits& limits) : limits_(limits) {}
+  // `timer` must outlive it.
+  Admission(const Limits& limits, const Timer& timer) : limits_(limits), timer_(timer) {}
 
   // The right to work. Ends with the object.
   class Ticket {
@@ -82,13 +83,11 @@ class Admission {
   // Whether small work would be turned away.
   bool full() const;
 
-  using Stop = std::function<bool()>;
-
   // Waits for a place. Throws ClientBusy or Busy if too much waits already, with the time after which that
-  // will be done at the rate measured; Cancelled once `stop` says so, which is asked every 20 ms.
-  Ticket enter(const Demand& demand, const Stop& stop);
+  // will be done at the rate measured; Cancelled once `stop` is requested.
+  Ticket enter(const Demand& demand, const std::stop_token& stop);
   // As enter(), for work that began and must go on: never too much waits, and it is not turned away.
-  Ticket enter_again(const Demand& demand, const Stop& stop);
+  Ticket enter_again(const Demand& demand, const std::stop_token& stop);
 
  private:
   struct Waiting {
@@ -97,12 +96,12 @@ class Admission {
     bool may_be_dropped;
     double finish;  // virtual time
     enum { waits, starts, dropped } state = waits;
-    std::condition_variable changed;
+    std::condition_variable_any changed;
   };
   using Queue = std::list<Waiting>;  // in order of arrival; who starts leaves it
 
   Ticket wait_for_turn(std::unique_lock<std::mutex>& lock, const Demand& demand, bool may_be_dropped,
-                       const Stop& stop);
+                       const std::stop_token& stop);
   void leave(Lane lane, double cost);
   // Below: with mutex_ held.
   void start_next();
@@ -118,6 +117,7 @@ class Admission {
   void measure(double cost);
 
   const Limits limits_;
+  const Timer& timer_;
   mutable std::mutex mutex_;  // guards all below
   Queue queue_;
   int running_ = 0, running_batch_ = 0;

@@ -14,26 +14,28 @@ Settings decided(Settings settings, const WorkerPool& pool) {
 
 }  // namespace
 
-App::App(const Settings& settings)
-    : access_(settings.tokens_file, settings.share_key_file),
+App::App(const Settings& settings, Timer& timer)
+    : timer_(timer),
+      access_(settings.tokens_file, settings.share_key_file),
       pool_(settings.threads),
       settings_(decided(settings, pool_)),
       scenes_(settings.store_bytes),
       assets_(settings.asset_store_bytes),
       pictures_(settings.picture_bytes),
-      admission_({settings_.renders, settings_.queue_rays}),
-      services_{pool_, admission_, draining_, ends_, rays_},
+      admission_({settings_.renders, settings_.queue_rays}, timer),
+      services_{pool_, admission_, timer, drains_.get_token(), ends_.get_token(), rays_},
       streams_(settings_.connections),
       orbits_(services_, settings.orbits, settings.request_seconds),
       jobs_(services_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
                         settings.job_kept_seconds}) {}
 
 template <class Work>
-void App::watched(const Caller& caller, const Work& work) {
+void App::watched(const Caller& caller, Clock::time_point since, const Work& work) {
   require_open();
-  const Watch watch(caller.gone, ends_, settings_.request_seconds, "request_seconds", caller.since);
+  const Watch watch(caller.gone, ends_.get_token(), timer_, since,
+                    {settings_.request_seconds, "request_seconds"});
   try {
-    work([&] { return watch.stop(); });
+    work(watch.stop());
   } catch (const Cancelled&) {
     watch.explain();
   }
@@ -41,7 +43,7 @@ void App::watched(const Caller& caller, const Work& work) {
 
 void App::read(std::size_t bytes, const Caller& caller, Timing& timing,
                const std::function<void(const MeshSource&)>& work) {
-  watched(caller, [&](const auto& stop) {
+  watched(caller, timer_.now(), [&](const std::stop_token& stop) {
     const auto start = Clock::now();
     const Reading reading(assets_, admission_, caller.client, bytes, stop);
     work(reading);
@@ -52,7 +54,7 @@ void App::read(std::size_t bytes, const Caller& caller, Timing& timing,
 
 AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, const Caller& caller) {
   AssetStore::Added added;
-  watched(caller, [&](const auto& stop) {
+  watched(caller, timer_.now(), [&](const std::stop_token& stop) {
     const auto ticket =
         admission_.enter({Lane::interactive, caller.client, cost_of_reading(bytes.size())}, stop);
     added = assets_.add(sha256, std::move(bytes));
@@ -66,54 +68,52 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
   const Demand demand{cost > settings_.interactive_rays ? Lane::batch : Lane::interactive, caller.client,
                       cost};
   const auto start = Clock::now();
+  const auto since = timer_.now();
   const Pictures::Found found = pictures_.get(
-      key + std::to_string(static_cast<int>(format)), caller.gone, [&](const Pictures::Gone& gone) {
-        return make(scene, plan, format, demand, {caller.client, gone, caller.since}, timing);
+      key + std::to_string(static_cast<int>(format)), caller.gone, [&](const std::stop_token& nobody_waits) {
+        Picture picture;
+        watched({caller.client, nobody_waits}, since, [&](const std::stop_token& stop) {
+          picture = make(scene, plan, format, demand, stop, timing);
+        });
+        return picture;
       });
   if (!found.made_here) timing.queue += milliseconds_since(start);
   return {found.picture, found.made_here};
 }
 
 Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-                  const Caller& caller, Timing& timing) {
-  Picture picture;
-  watched(caller, [&](const auto& stop) {
-    auto start = Clock::now();
-    const auto ticket = admission_.enter(demand, stop);
-    timing.queue += milliseconds_since(start);
-    RenderResult rendered =
-        services_.render(scene, plan, pixels_of(format),
-                         {.stop = stop, .progress = {}, .background = demand.lane == Lane::batch});
-    timing.build = rendered.stats.build_ms;
-    timing.render = rendered.stats.trace_ms;
-    start = Clock::now();
-    picture = {encode(rendered.image, format, stop), rendered.stats};
-    picture.bytes.shrink_to_fit();  // it may be kept
-    timing.encode = milliseconds_since(start);
-  });
+                  const std::stop_token& stop, Timing& timing) {
+  auto start = Clock::now();
+  const auto ticket = admission_.enter(demand, stop);
+  timing.queue += milliseconds_since(start);
+  RenderResult rendered = services_.render(scene, plan, pixels_of(format),
+                                           {.stop = stop, .background = demand.lane == Lane::batch});
+  timing.build = rendered.stats.build_ms;
+  timing.render = rendered.stats.trace_ms;
+  start = Clock::now();
+  Picture picture{encode(rendered.image, format, stop), rendered.stats};
+  picture.bytes.shrink_to_fit();  // it may be kept
+  timing.encode = milliseconds_since(start);
   return picture;
 }
 
 void App::settle(const PreparedScene& scene, Plan& plan, const Caller& caller) {
   if (!plan.try_accelerators) return;
-  watched(caller, [&](const auto& stop) {
+  watched(caller, timer_.now(), [&](const std::stop_token& stop) {
     const auto ticket = admission_.enter({Lane::interactive, caller.client, kLeastCost}, stop);
     orrery::settle(scene, plan, stop);
   });
 }
 
-void App::drain() {
-  draining_ = true;
-  orbits_.wake();
-}
+void App::drain() { drains_.request_stop(); }
 
 std::string_view App::readiness() const {
-  if (draining_) return "draining";
+  if (draining()) return "draining";
   return admission_.full() ? "full" : "ok";
 }
 
 void App::require_open() const {
-  if (draining_) throw Busy("The service is about to end and takes no new work", 5);
+  if (draining()) throw Busy("The service is about to end and takes no new work", 5);
 }
 
 }  // namespace orrery

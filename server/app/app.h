@@ -3,6 +3,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -32,19 +33,20 @@ struct Rendered {
 
 // Who asks for something.
 struct Caller {
-  std::string client;          // whose share of the work it is
-  std::function<bool()> gone;  // whether nobody waits for it any more
-  Clock::time_point since = Clock::now();
+  std::string client;    // whose share of the work it is
+  std::stop_token gone;  // requested once nobody waits for it any more
 };
 
 // All that the service owns, and what its routes ask of it. Safe from any thread.
 class App {
  public:
   // Throws InputError for files of the settings that cannot be used.
-  explicit App(const Settings& settings);
+  // `timer` must outlive it.
+  App(const Settings& settings, Timer& timer);
   App(const App&) = delete;
 
   const Settings& settings() const { return settings_; }
+  const Timer& timer() const { return timer_; }
   Access& access() { return access_; }
   SceneStore& scenes() { return scenes_; }
   AssetStore& assets() { return assets_; }
@@ -70,24 +72,25 @@ class App {
   void settle(const PreparedScene& scene, Plan& plan, const Caller& caller);
 
   // The service is about to end: no new work; what runs goes on.
-  bool draining() const { return draining_; }
+  bool draining() const { return drains_.stop_requested(); }
   // Whether new work is taken: "ok", or why not: "draining" or "full".
   std::string_view readiness() const;
   void drain();
   // What still runs ends now.
-  void end() { ends_ = true; }
+  void end() { ends_.request_stop(); }
 
   // Throws Busy while draining.
   void require_open() const;
 
  private:
-  // Calls work(stop); `stop` says when it should end early.
+  // Calls work(stop), which is stopped when it should end early; its time counts from `since`.
   template <class Work>
-  void watched(const Caller& caller, const Work& work);
+  void watched(const Caller& caller, Clock::time_point since, const Work& work);
   Picture make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-               const Caller& caller, Timing& timing);
+               const std::stop_token& stop, Timing& timing);
 
-  std::atomic<bool> draining_{false}, ends_{false};
+  Timer& timer_;
+  std::stop_source drains_, ends_;
   std::atomic<std::uint64_t> rays_{0};
   Access access_;
   WorkerPool pool_;

@@ -24,18 +24,17 @@ void Job::release() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Job::cancel() { cancelled_ = true; }
-
-bool Job::stop() const { return cancelled_ || services_.draining; }
+void Job::cancel() { cancelled_.request_stop(); }
 
 void Job::run() {
-  const Watch watch([this] { return stop(); }, services_.ends, limit_, "job_seconds");
+  const Watch watch(cancelled_.get_token(), services_.draining, services_.timer, services_.timer.now(),
+                    {limit_, "job_seconds"});
   int next = 0;
   const Pipeline pipeline{
       .pool = services_.pool,
       .background = true,
       .next = [&]() -> std::optional<std::int64_t> {
-        if (watch.stop()) throw Cancelled();
+        if (watch.stop().stop_requested()) throw Cancelled();
         if (next == spec_.frames) return std::nullopt;
         return next++;
       },
@@ -47,7 +46,6 @@ void Job::run() {
     try {
       pipeline.run();
     } catch (const Cancelled&) {
-      if (services_.draining || services_.ends) throw Busy("The service ends", 5);
       watch.explain();
     }
   } catch (...) {
@@ -69,13 +67,12 @@ double Job::whole_cost() const {
 }
 
 RenderResult Job::render(int number, const Watch& watch) {
-  const auto stop = [&] { return watch.stop(); };
   const Plan plan = make_plan(spec_.scene->scene(), request(number));
   const double cost = cost_of(plan);
-  const auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, cost}, stop);
+  const auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, cost}, watch.stop());
   {
     const std::lock_guard lock(mutex_);
-    if (!started_) started_ = Clock::now();
+    if (!started_) started_ = services_.timer.now();
     if (cost_ == 0) cost_ = whole_cost();
     state_ = JobState::running;
   }
@@ -84,11 +81,12 @@ RenderResult Job::render(int number, const Watch& watch) {
     tiles_a_frame_ = total;
     ++tiles_done_;
     cost_done_ += cost / total;
+    changed_.notify_all();
   };
   Study* study = spec_.study.get();
   RenderResult rendered =
       services_.render(*spec_.scene, plan, study ? PixelFormat::linear32 : PixelFormat::srgb8,
-                       {.stop = stop, .progress = progress, .background = true});
+                       {.stop = watch.stop(), .progress = progress, .background = true});
   if (study) study->add(rendered);
   return rendered;
 }
@@ -104,8 +102,8 @@ void Job::keep(Frame&& frame) {
 void Job::end(std::exception_ptr error) {
   const std::lock_guard lock(mutex_);
   error_ = error;
-  state_ = !error ? JobState::done : cancelled_ ? JobState::cancelled : JobState::failed;
-  ended_ = Clock::now();
+  state_ = !error ? JobState::done : cancelled_.stop_requested() ? JobState::cancelled : JobState::failed;
+  ended_ = services_.timer.now();
   spec_.scene.reset();
   changed_.notify_all();
 }
@@ -131,10 +129,13 @@ Job::Picture Job::frame(int number) const {
   return index < pictures_.size() ? pictures_[index] : nullptr;
 }
 
-JobStatus Job::wait(int frames, Clock::time_point until) const {
+JobStatus Job::wait(int frames, std::optional<std::int64_t> tiles, Clock::time_point until,
+                    const std::stop_token& stop) const {
   std::unique_lock lock(mutex_);
-  changed_.wait_until(
-      lock, until, [&] { return has_ended(state_) || pictures_.size() > static_cast<std::size_t>(frames); });
+  wait_until(services_.timer, changed_, lock, stop, until, [&] {
+    return has_ended(state_) || pictures_.size() > static_cast<std::size_t>(frames) ||
+           (tiles && tiles_done_ != *tiles);
+  });
   return status_locked();
 }
 
@@ -148,8 +149,8 @@ JobStatus Job::status_locked() const {
                    .remaining_s = {},
                    .error = state_ == JobState::failed ? error_ : nullptr};
   if (!started_) return status;
-  status.elapsed_s = milliseconds_since(*started_) / 1000;
-  if (ended_) status.elapsed_s -= milliseconds_since(*ended_) / 1000;
+  const auto until = ended_.value_or(services_.timer.now());
+  status.elapsed_s = std::chrono::duration<double>(until - *started_).count();
   if (state_ == JobState::running && cost_done_ > 0)
     status.remaining_s = status.elapsed_s * std::max(0.0, cost_ / cost_done_ - 1);
   return status;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -52,7 +53,7 @@ class Job {
   using Room = std::function<void(std::size_t bytes)>;
   using Picture = std::shared_ptr<const std::string>;  // a PNG file
 
-  // `means` outlive it. It ends as TimedOut after `limit`.
+  // What `services` refers to must outlive it. It ends as TimedOut after `limit`.
   Job(std::string id, JobSpec spec, const RenderServices& services, std::chrono::seconds limit, Room room);
   ~Job();  // cancels it
   Job(const Job&) = delete;
@@ -70,8 +71,10 @@ class Job {
   // What the job measures; null if it does not. REQUIRES, to look at its chart: the job is done.
   std::shared_ptr<const Study> study() const { return spec_.study; }
 
-  // Waits until more than `frames` are done, the job has ended, or `until`.
-  JobStatus wait(int frames, Clock::time_point until) const;
+  // Waits until more than `frames` are done, the job has ended, `until` has come or `stop` is requested; if
+  // `tiles` is given, also until another number of tiles is done.
+  JobStatus wait(int frames, std::optional<std::int64_t> tiles, Clock::time_point until,
+                 const std::stop_token& stop) const;
 
   void cancel();
   // Gives its thread back. REQUIRES: it has ended; one caller at a time.
@@ -79,7 +82,6 @@ class Job {
 
  private:
   void run();
-  bool stop() const;
   RenderRequest request(int number) const;
   double whole_cost() const;  // of all frames, in rays by estimate
   RenderResult render(int number, const Watch& watch);
@@ -92,9 +94,9 @@ class Job {
   const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
-  std::atomic<bool> cancelled_{false};
+  std::stop_source cancelled_;
   mutable std::mutex mutex_;  // guards all below
-  mutable std::condition_variable changed_;
+  mutable std::condition_variable_any changed_;
   std::vector<Picture> pictures_;
   std::size_t bytes_ = 0;
   JobState state_ = JobState::waiting;

@@ -75,7 +75,7 @@ std::size_t Jobs::bytes_kept() const {
 }
 
 void Jobs::forget_old() {
-  const auto now = Clock::now();
+  const auto now = services_.timer.now();
   auto surplus = -static_cast<std::ptrdiff_t>(limits_.ended);
   for (const Entry& entry : entries_) {
     if (!entry.job->ended()) continue;

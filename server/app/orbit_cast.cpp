@@ -9,9 +9,8 @@
 namespace orrery {
 namespace {
 
-constexpr std::chrono::milliseconds kAsk{20};  // how often those who wait look whether it is still worth it
-constexpr std::int64_t kAhead = 3;             // frames rendered before a mailbox takes the first of them
-constexpr double kLongestPeriod_s = 1e6;       // a clock counts no more than 292 years
+constexpr std::int64_t kAhead = 3;        // frames rendered before a mailbox takes the first of them
+constexpr double kLongestPeriod_s = 1e6;  // a clock counts no more than 292 years
 
 }  // namespace
 
@@ -30,16 +29,11 @@ std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCa
       cast->mailboxes_.end(),
       {.begin = begin, .end = begin + cast->spec_.frames, .frame = cast->latest_, .number = begin});
   if (!cast->thread_.joinable()) {
-    cast->start_ = Clock::now();
+    cast->start_ = cast->services_.timer.now();
     cast->thread_ = std::thread([c = cast.get()] { c->run(); });
   }
   cast->changed_.notify_all();
   return std::unique_ptr<Viewer>(new Viewer(cast, mailbox));
-}
-
-void OrbitCast::wake() {
-  const std::lock_guard lock(mutex_);
-  changed_.notify_all();
 }
 
 void OrbitCast::run() {
@@ -74,14 +68,6 @@ bool OrbitCast::at_end(const Mailbox& mailbox) const {
   return delivered_ >= mailbox.end || (over_ && finished_.empty());
 }
 
-bool OrbitCast::pointless() {
-  if (services_.ends) return true;
-  const std::lock_guard lock(mutex_);
-  if (!mailboxes_.empty()) return false;
-  closed_ = true;
-  return true;
-}
-
 std::optional<std::int64_t> OrbitCast::next() {
   std::unique_lock lock(mutex_);
   const auto period =
@@ -89,42 +75,41 @@ std::optional<std::int64_t> OrbitCast::next() {
   const auto due = [&](std::int64_t n) {
     return start_ + std::chrono::duration_cast<Clock::duration>(period * static_cast<double>(n));
   };
+  const auto over = [&] { return !anyone_wants(next_); };
+  const std::stop_token& ends = services_.draining;
   bool waited = false;
-  for (;;) {
-    if (services_.draining || services_.ends || !anyone_wants(next_)) {
-      closed_ = true;
-      return std::nullopt;
-    }
-    const auto now = Clock::now();
-    if (spec_.fps == 0) {
-      if (next_ - delivered_ < kAhead) return next_++;
-      changed_.wait_for(lock, kAsk);
-    } else if (now < due(next_)) {
-      changed_.wait_until(lock, due(next_));
-    } else if (!anyone_free(next_)) {
-      waited = true;
-      changed_.wait_for(lock, kAsk);
-    } else {
-      const auto on_time = static_cast<std::int64_t>((now - start_) / period);
-      std::int64_t end = 0;
-      for (const Mailbox& m : mailboxes_) end = std::max(end, m.end);
-      if (waited)
-        next_ = std::clamp(on_time, next_, end - 1);
-      else if (on_time > next_)
-        start_ += now - due(next_);
-      return next_++;
-    }
+  if (spec_.fps == 0) {
+    changed_.wait(lock, ends, [&] { return over() || next_ - delivered_ < kAhead; });
+  } else {
+    wait_until(services_.timer, changed_, lock, ends, due(next_), over);
+    waited = !over() && !anyone_free(next_);
+    changed_.wait(lock, ends, [&] { return over() || anyone_free(next_); });
   }
+  if (over() || ends.stop_requested()) {
+    closed_ = true;
+    return std::nullopt;
+  }
+  if (spec_.fps > 0) {
+    const auto now = services_.timer.now();
+    const auto on_time = static_cast<std::int64_t>((now - start_) / period);
+    std::int64_t end = 0;
+    for (const Mailbox& m : mailboxes_) end = std::max(end, m.end);
+    if (waited)
+      next_ = std::clamp(on_time, next_, end - 1);
+    else if (on_time > next_)
+      start_ += now - due(next_);
+  }
+  return next_++;
 }
 
 RenderResult OrbitCast::render(std::int64_t number) {
-  const Watch watch([this] { return pointless(); }, services_.ends, frame_time_, "request_seconds");
-  const auto stop = [&] { return watch.stop(); };
+  const Watch watch(nobody_watches_.get_token(), services_.ends, services_.timer, services_.timer.now(),
+                    {frame_time_, "request_seconds"});
   try {
     const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
     const auto ticket =
-        services_.admission.enter_again({Lane::interactive, spec_.client, cost_of(plan)}, stop);
-    return services_.render(*spec_.scene, plan, PixelFormat::srgb8, {.stop = stop, .progress = {}});
+        services_.admission.enter_again({Lane::interactive, spec_.client, cost_of(plan)}, watch.stop());
+    return services_.render(*spec_.scene, plan, PixelFormat::srgb8, {.stop = watch.stop()});
   } catch (const Cancelled&) {
     watch.explain();
   }
@@ -162,23 +147,23 @@ void OrbitCast::post() {
 }
 
 OrbitCast::Viewer::~Viewer() {
-  const std::lock_guard lock(cast_->mutex_);
-  cast_->mailboxes_.erase(mailbox_);
-  cast_->post();
+  {
+    const std::lock_guard lock(cast_->mutex_);
+    cast_->mailboxes_.erase(mailbox_);
+    cast_->post();
+    if (!cast_->mailboxes_.empty()) return;
+    cast_->closed_ = true;
+  }
+  cast_->nobody_watches_.request_stop();
 }
 
-std::shared_ptr<const OrbitFrame> OrbitCast::Viewer::next(const std::function<bool()>& gone) {
+std::shared_ptr<const OrbitFrame> OrbitCast::Viewer::next(const std::stop_token& gone) {
   std::unique_lock lock(cast_->mutex_);
-  while (!mailbox_->frame) {
-    if (cast_->at_end(*mailbox_) || cast_->services_.ends) {
-      if (cast_->failure_) std::rethrow_exception(cast_->failure_);
-      return nullptr;
-    }
-    cast_->changed_.wait_for(lock, kAsk);
-    lock.unlock();
-    const bool left = gone();
-    lock.lock();
-    if (left) return nullptr;
+  cast_->changed_.wait(lock, gone, [&] { return mailbox_->frame || cast_->at_end(*mailbox_); });
+  if (!mailbox_->frame) {
+    const bool cut_short = !gone.stop_requested() && !cast_->services_.ends.stop_requested();
+    if (cut_short && cast_->failure_) std::rethrow_exception(cast_->failure_);
+    return nullptr;
   }
   const auto frame = std::move(mailbox_->frame);
   mailbox_->frame = nullptr;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <list>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include "server/app/orbit.h"
@@ -29,9 +29,6 @@ class OrbitCast {
   // None once the cast is ending.
   static std::unique_ptr<Viewer> join(const std::shared_ptr<OrbitCast>& cast);
 
-  // To be called when services.draining changed.
-  void wake();
-
  private:
   struct Mailbox {
     std::int64_t begin, end;  // numbers of the frames this viewer gets
@@ -44,7 +41,6 @@ class OrbitCast {
   void run();
   std::optional<std::int64_t> next();
   RenderResult render(std::int64_t number);
-  bool pointless();  // whether nobody watches any more; then nobody can join either
   void deliver(std::int64_t number, Frame&& frame);
   // Below: with mutex_ held.
   void post();  // puts finished frames into the mailboxes, as far as they may
@@ -55,8 +51,9 @@ class OrbitCast {
   const OrbitSpec spec_;
   const RenderServices services_;
   const std::chrono::seconds frame_time_;
-  mutable std::mutex mutex_;  // guards all below
-  std::condition_variable changed_;
+  std::stop_source nobody_watches_;  // then nobody can join either
+  mutable std::mutex mutex_;         // guards all below
+  std::condition_variable_any changed_;
   std::list<Mailbox> mailboxes_;
   std::int64_t next_ = 0;  // number of the frame to render next
   std::deque<std::pair<std::int64_t, std::shared_ptr<const OrbitFrame>>> finished_;  // not delivered yet
@@ -75,10 +72,9 @@ class OrbitCast::Viewer {
   ~Viewer();
   Viewer(const Viewer&) = delete;
 
-  // The newest frame not seen yet; waits for it. None at the end of the orbit, when the program ends, or once
-  // `gone` says so, which is asked every 20 ms. Throws what kept a frame from being rendered, such as
-  // TimedOut.
-  std::shared_ptr<const OrbitFrame> next(const std::function<bool()>& gone);
+  // The newest frame not seen yet; waits for it. None at the end of the orbit, when the service ends, or once
+  // `gone` is requested. Throws what kept a frame from being rendered, such as TimedOut.
+  std::shared_ptr<const OrbitFrame> next(const std::stop_token& gone);
   // Frames of the orbit up to the last one got that this viewer missed.
   std::int64_t skipped() const { return skipped_; }
   // Whether the frame got last was the last.

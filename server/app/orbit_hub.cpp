@@ -35,10 +35,4 @@ std::size_t OrbitHub::count() {
   return casts_.size();
 }
 
-void OrbitHub::wake() {
-  const std::lock_guard lock(mutex_);
-  for (const auto& known : casts_)
-    if (const auto cast = known.lock()) cast->wake();
-}
-
 }  // namespace orrery

@@ -20,9 +20,6 @@ class OrbitHub {
 
   std::size_t count();  // of different ones that are watched
 
-  // To be called when services.draining changed.
-  void wake();
-
  private:
   void forget_ended();  // with mutex_ held
 

@@ -2,49 +2,53 @@
 
 #include <malloc.h>
 
-#include <algorithm>
-#include <chrono>
-
 #include "core/base/error.h"
 #include "server/app/watch.h"
 
 namespace orrery {
 
-Pictures::Found Pictures::get(const std::string& key, const Gone& gone,
-                              const std::function<Picture(const Gone&)>& make) {
-  constexpr std::chrono::milliseconds kAsk{20};
+Pictures::Found Pictures::get(const std::string& key, const std::stop_token& gone, const Make& make) {
   for (;;) {
     std::unique_lock lock(mutex_);
     if (const auto kept = kept_.find(key)) return {*kept, false};
     const auto [entry, first] = under_way_.try_emplace(key);
     if (first) entry->second = std::make_shared<Work>();
     const WorkPtr work = entry->second;
-    const auto self = work->waiting.insert(work->waiting.end(), &gone);
-    if (first) {
-      lock.unlock();
-      return make_for_all(key, work, make);
-    }
-    bool left = false;
-    while (!work->done && !left) {
-      work->changed.wait_for(lock, kAsk);
-      lock.unlock();
-      left = gone();
-      lock.lock();
-    }
-    work->waiting.erase(self);
-    if (work->picture) return {work->picture, false};
-    if (work->error) std::rethrow_exception(work->error);
-    if (left) throw Cancelled("the client has gone");
+    ++work->waiting;
+    lock.unlock();
+    const std::stop_callback leaves(gone, [this, &work] { leave(*work); });
+    if (first) return make_for_all(key, work, make);
+    lock.lock();
+    work->changed.wait(lock, gone, [&] { return work->done; });
+    const PicturePtr picture = work->picture;
+    const std::exception_ptr error = work->error;
+    lock.unlock();  // before `leaves` goes: it may be waiting for the mutex
+    if (picture) return {picture, false};
+    if (error) std::rethrow_exception(error);
+    if (gone.stop_requested()) throw Cancelled("the client has gone");
   }
 }
 
-Pictures::Found Pictures::make_for_all(const std::string& key, const WorkPtr& work,
-                                       const std::function<Picture(const Gone&)>& make) {
+int Pictures::waiting(const std::string& key) const {
+  const std::lock_guard lock(mutex_);
+  const auto work = under_way_.find(key);
+  return work == under_way_.end() ? 0 : work->second->waiting;
+}
+
+void Pictures::leave(Work& work) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (--work.waiting > 0) return;
+  }
+  work.nobody_waits.request_stop();
+}
+
+Pictures::Found Pictures::make_for_all(const std::string& key, const WorkPtr& work, const Make& make) {
   std::exception_ptr error;
   bool theirs = false;  // whether the error concerns the others
   PicturePtr picture;
   try {
-    picture = std::make_shared<const Picture>(make([this, &work] { return nobody_waits(*work); }));
+    picture = std::make_shared<const Picture>(make(work->nobody_waits.get_token()));
     keep(key, picture);
   } catch (const Busy&) {
     error = std::current_exception();
@@ -66,11 +70,6 @@ Pictures::Found Pictures::make_for_all(const std::string& key, const WorkPtr& wo
   }
   if (error) std::rethrow_exception(error);
   return {picture, true};
-}
-
-bool Pictures::nobody_waits(const Work& work) {
-  const std::lock_guard lock(mutex_);
-  return std::all_of(work.waiting.begin(), work.waiting.end(), [](const Gone* gone) { return (*gone)(); });
 }
 
 void Pictures::keep(const std::string& key, const PicturePtr& picture) {

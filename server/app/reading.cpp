@@ -3,7 +3,7 @@
 namespace orrery {
 
 Reading::Reading(const MeshSource& meshes, Admission& admission, std::string client, std::size_t bytes,
-                 Admission::Stop stop)
+                 std::stop_token stop)
     : meshes_(meshes),
       admission_(admission),
       demand_{Lane::interactive, std::move(client), cost_of_reading(bytes)},

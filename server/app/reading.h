@@ -1,7 +1,7 @@
 #pragma once
 
-#include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "core/model/mesh_source.h"
@@ -15,7 +15,7 @@ class Reading final : public MeshSource {
  public:
   // `bytes`: of the scene's text. Waits as Admission::enter() if that is large.
   Reading(const MeshSource& meshes, Admission& admission, std::string client, std::size_t bytes,
-          Admission::Stop stop);
+          std::stop_token stop);
 
   TriangleMesh asset(const std::string& sha256) const override;
 
@@ -27,7 +27,7 @@ class Reading final : public MeshSource {
   const MeshSource& meshes_;
   Admission& admission_;
   const Demand demand_;
-  const Admission::Stop stop_;
+  const std::stop_token stop_;
   mutable std::optional<Admission::Ticket> ticket_;
   mutable double waited_ms_ = 0;
 };

@@ -1,20 +1,21 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
+#include <stop_token>
 
 #include "core/render/renderer.h"
 #include "server/app/admission.h"
 
 namespace orrery {
 
-// What all who render share. It outlives them.
+// What all renders share. It must outlive every render that uses it.
 struct RenderServices {
   WorkerPool& pool;
   Admission& admission;
-  const std::atomic<bool>& draining;  // no new work; what goes on and on ends at its next frame
-  const std::atomic<bool>& ends;      // all work ends at once
-  std::atomic<std::uint64_t>& rays;   // traced so far
+  Timer& timer;
+  std::stop_token draining;          // no new work; what goes on and on ends at its next frame
+  std::stop_token ends;              // all work ends at once
+  std::atomic<std::uint64_t>& rays;  // traced so far
 
   // A frame; the caller has a ticket. Throws Cancelled.
   RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat format,

@@ -4,21 +4,26 @@
 
 namespace orrery {
 
-bool Watch::stop() const {
-  constexpr std::chrono::milliseconds kAskEvery{5};
-  const auto now = Clock::now();
-  if (program_ends_ || has_gone_ || now >= deadline_) return true;
-  if (now < ask_at_.load()) return false;
-  ask_at_ = now + kAskEvery;
-  if (gone_()) has_gone_ = true;
-  return has_gone_;
+Watch::Watch(const std::stop_token& gone, const std::stop_token& service_ends, Timer& timer,
+             Clock::time_point since, const Limit& limit)
+    : limit_(limit),
+      on_gone_(gone, Stop{*this, Reason::gone}),
+      on_end_(service_ends, Stop{*this, Reason::service_ends}),
+      on_time_(timer.at(since + limit.time, Stop{*this, Reason::time})) {}
+
+void Watch::Stop::operator()() const {
+  Reason none = Reason::none;
+  if (watch.reason_.compare_exchange_strong(none, reason)) watch.source_.request_stop();
 }
 
 void Watch::explain() const {
-  if (has_gone_) throw Cancelled("the client has gone");  // whoever has come to wait since
-  if (program_ends_) throw Busy("The service ends", 5);
-  throw TimedOut("It took more than " + std::to_string(limit_.count()) + " s (" + limit_name_ +
-                 "); fewer pixels or samples take less");
+  switch (reason_) {
+    case Reason::service_ends: throw Busy("The service ends", 5);
+    case Reason::time:
+      throw TimedOut("It took more than " + std::to_string(limit_.time.count()) + " s (" + limit_.name +
+                     "); fewer pixels or samples take less");
+    default: throw Cancelled("the client has gone");
+  }
 }
 
 }  // namespace orrery

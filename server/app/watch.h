@@ -2,10 +2,10 @@
 
 #include <atomic>
 #include <chrono>
-#include <functional>
+#include <stop_token>
 
-#include "core/base/clock.h"
 #include "core/base/error.h"
+#include "server/app/timer.h"
 
 namespace orrery {
 
@@ -15,33 +15,38 @@ class TimedOut : public Error {
   using Error::Error;
 };
 
-// Says when the work for a request should end early: the client has gone, its time is up, or the program
-// ends. Safe from any thread.
+// Stops the work for a request early: once the client has gone, its time is up, or the service ends. Safe
+// from any thread.
 class Watch {
  public:
-  // limit_name: in /v1/limits. The limit counts from `since`.
-  Watch(std::function<bool()> gone, const std::atomic<bool>& program_ends, std::chrono::seconds limit,
-        const char* limit_name, Clock::time_point since = Clock::now())
-      : gone_(std::move(gone)),
-        program_ends_(program_ends),
-        limit_(limit),
-        limit_name_(limit_name),
-        deadline_(since + limit) {}
+  struct Limit {
+    std::chrono::seconds time;
+    const char* name;  // in /v1/limits
+  };
+  // The limit counts from `since`. `timer` must outlive the watch.
+  Watch(const std::stop_token& gone, const std::stop_token& service_ends, Timer& timer,
+        Clock::time_point since, const Limit& limit);
 
-  // Cheap: asks whether the client has gone every 5 ms, not each time.
-  bool stop() const;
+  // Requested by what comes first.
+  std::stop_token stop() const { return source_.get_token(); }
 
-  // Throws what stop() was true for: Cancelled, TimedOut or Busy.
+  // Throws what came first: Cancelled, Busy or TimedOut.
   [[noreturn]] void explain() const;
 
  private:
-  const std::function<bool()> gone_;
-  const std::atomic<bool>& program_ends_;
-  const std::chrono::seconds limit_;
-  const char* const limit_name_;
-  const Clock::time_point deadline_;
-  mutable std::atomic<Clock::time_point> ask_at_{};
-  mutable std::atomic<bool> has_gone_{false};
+  enum class Reason { none, gone, service_ends, time };
+  struct Stop {
+    Watch& watch;
+    Reason reason;
+    void operator()() const;
+  };
+
+  const Limit limit_;
+  std::stop_source source_;
+  std::atomic<Reason> reason_{Reason::none};
+  // Last: these use the others.
+  const std::stop_callback<Stop> on_gone_, on_end_;
+  const Timer::Alarm on_time_;
 };
 
 }  // namespace orrery

@@ -44,8 +44,7 @@ int chart(const Options& options) {
   WorkerPool pool(options.threads);
   for (int number = 0; number < study.pictures(); ++number) {
     const Plan plan = plan_for(scene.scene(), study.request(number));
-    study.add(render_frame(scene, plan, PixelFormat::linear32, pool,
-                           {.stop = [&] { return signals.interrupted(); }, .progress = {}}));
+    study.add(render_frame(scene, plan, PixelFormat::linear32, pool, {.stop = signals.interrupted()}));
     bar->update(number + 1, study.pictures());
   }
   bar.reset();

@@ -146,8 +146,7 @@ class Turn {
  private:
   Plan plan(std::int64_t frame) const { return plan_for(scene_.scene(), path_.at(frame)); }
   RenderResult render(std::int64_t frame) {
-    return render_frame(scene_, plan(frame), pixels_of(format_), pool_,
-                        {.stop = [this] { return signals_.interrupted(); }, .progress = {}});
+    return render_frame(scene_, plan(frame), pixels_of(format_), pool_, {.stop = signals_.interrupted()});
   }
 
   const Options& options_;

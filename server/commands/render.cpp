@@ -31,9 +31,9 @@ struct Options {
 RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, PixelFormat format,
                                   WorkerPool& pool, const SignalWatch& signals, ProgressBar& bar) {
   bar.say("making " + std::to_string(scene.scene().primitive_count()) + " primitives ready");
-  return render_frame(scene, plan, format, pool,
-                      {.stop = [&] { return signals.interrupted(); },
-                       .progress = [&](int done, int total) { bar.update(done, total); }});
+  return render_frame(
+      scene, plan, format, pool,
+      {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar.update(done, total); }});
 }
 
 int render(const Options& options) {

@@ -63,7 +63,7 @@ int run_service(const Settings& settings, const Log& log) {
   {
     const std::lock_guard lock(mutex);
     running = &service;
-    if (signals.interrupted()) service.stop();
+    if (signals.interrupted().stop_requested()) service.stop();
   }
   announce(service, settings);
   log.write(LogLevel::info, "start",

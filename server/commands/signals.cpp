@@ -16,7 +16,7 @@ namespace orrery {
 struct SignalWatch::Parts {
   sigset_t before{};
   int signals = -1, end = -1;
-  std::atomic<bool> interrupted{false};
+  std::stop_source interrupted;
   std::function<void()> on_first, on_hangup;
   std::thread thread;
 
@@ -31,7 +31,7 @@ struct SignalWatch::Parts {
         on_hangup();
         continue;
       }
-      if (interrupted.exchange(true)) _exit(kInterrupted);
+      if (!interrupted.request_stop()) _exit(kInterrupted);
       if (on_first) on_first();
     }
   }
@@ -62,6 +62,6 @@ SignalWatch::~SignalWatch() {
   pthread_sigmask(SIG_SETMASK, &parts_->before, nullptr);
 }
 
-bool SignalWatch::interrupted() const { return parts_->interrupted; }
+std::stop_token SignalWatch::interrupted() const { return parts_->interrupted.get_token(); }
 
 }  // namespace orrery

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
+#include <stop_token>
 
 namespace orrery {
 
@@ -15,8 +15,8 @@ class SignalWatch {
   ~SignalWatch();
   SignalWatch(const SignalWatch&) = delete;
 
-  // Whether a signal came. Safe from any thread.
-  bool interrupted() const;
+  // Requested by the first signal, before `on_first` is called.
+  std::stop_token interrupted() const;
 
  private:
   struct Parts;

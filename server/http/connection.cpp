@@ -193,13 +193,6 @@ std::string Connection::read_body(const Head& head, const Request::BodyLimit& li
   return body;
 }
 
-bool Connection::gone() const {
-  if (broken_) return true;
-  pollfd ready{fd_, POLLRDHUP, 0};
-  if (poll(&ready, 1, 0) > 0 && (ready.revents & (POLLRDHUP | POLLHUP | POLLERR))) broken_ = true;
-  return broken_;
-}
-
 void Connection::abandon() const {
   broken_ = true;
   shutdown(fd_, SHUT_RDWR);

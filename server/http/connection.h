@@ -26,7 +26,7 @@ struct Patience {
 
 // One client's socket as a stream for httplib. The stream yields only a request line of ours, because what
 // the client sends is read and judged here, once: no second parser can understand it differently. Writing
-// goes to the socket. For the thread that serves the connection, except gone(), abandon(), waiting() and
+// goes to the socket. For the thread that serves the connection, except abandon(), waiting() and
 // make_room().
 class Connection final : public httplib::Stream {
  public:
@@ -56,7 +56,6 @@ class Connection final : public httplib::Stream {
   // a broken connection instead of the answer.
   void linger();
 
-  bool gone() const;  // the client has closed its side, or the connection is broken
   bool left() const { return broken_ || ended_; }  // seen before the answer ended
   void abandon() const;                            // breaks it off
 
@@ -72,7 +71,7 @@ class Connection final : public httplib::Stream {
   std::string network() const;
 
   bool is_readable() const override { return !offered_.empty(); }
-  bool is_writable() const override { return !gone(); }
+  bool is_writable() const override { return !broken_; }
   ssize_t read(char* bytes, std::size_t size) override;
   ssize_t write(const char* bytes, std::size_t size) override;
   void get_remote_ip_and_port(std::string& ip, int& port) const override;

@@ -15,10 +15,13 @@ struct Exchange {
   Response response;
   std::exception_ptr refusal;  // why there is no request
   Budget::Share body;          // as long as it is used
+  std::stop_source gone;       // requested once the client has gone
   bool keep_alive = false;
 };
 
 namespace {
+
+constexpr int kClientGone = 499;  // the status of work that was given up
 
 // The host of an absolute target is meant, whatever Host says (RFC 9112, 3.2.2).
 void name_host(Fields& headers, const std::string& authority) {
@@ -35,11 +38,14 @@ struct ExchangeHandle {
 
 class SinkOfHttplib final : public Sink {
  public:
-  explicit SinkOfHttplib(httplib::DataSink& sink) : sink_(sink) {}
-  bool write(std::string_view bytes) override { return sink_.write(bytes.data(), bytes.size()); }
+  SinkOfHttplib(httplib::DataSink& sink, const std::stop_token& gone) : sink_(sink), gone_(gone) {}
+  bool write(std::string_view bytes) override {
+    return !gone_.stop_requested() && sink_.write(bytes.data(), bytes.size());
+  }
 
  private:
   httplib::DataSink& sink_;
+  const std::stop_token gone_;
 };
 
 // Hands the answer to httplib, which writes it.
@@ -50,14 +56,15 @@ void fill(Exchange& exchange, httplib::Response& out) {
     if (!equal_ignoring_case(name, "Content-Type")) out.set_header(name, value);
   const std::string type = find_field(response.headers, "Content-Type").value_or("");
   if (response.stream && exchange.request.method != "HEAD") {
-    const auto provider = [&response](std::size_t, httplib::DataSink& sink) {
-      SinkOfHttplib adapter(sink);
+    const auto provider = [&response, gone = exchange.request.gone](std::size_t, httplib::DataSink& sink) {
+      SinkOfHttplib adapter(sink, gone);
       try {
         response.stream(adapter);
       } catch (const std::exception& error) {
         response.note = error.what();
         return false;
       }
+      if (gone.stop_requested()) return false;
       sink.done();
       return true;
     };
@@ -122,16 +129,23 @@ class Exchanger::Engine final : public httplib::Server {
   }
 };
 
-Exchanger::Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler)
+Exchanger::Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler,
+                     HangupMonitor& monitor)
     : max_body_(options.max_body),
       handler_(handler),
+      monitor_(monitor),
       bodies_(options.max_bodies, "bodies_bytes"),
       engine_(std::make_unique<Engine>(handler, draining_)) {}
 Exchanger::~Exchanger() = default;
 
 bool Exchanger::exchange(Connection& connection) {
-  Exchange exchange{
-      .connection = connection, .head = {}, .request = {}, .response = {}, .refusal = {}, .body = {}};
+  Exchange exchange{.connection = connection,
+                    .head = {},
+                    .request = {},
+                    .response = {},
+                    .refusal = {},
+                    .body = {},
+                    .gone = {}};
   exchange.request.start = std::chrono::steady_clock::now();
   exchange.request.id = make_request_id();
   try {
@@ -143,9 +157,11 @@ bool Exchanger::exchange(Connection& connection) {
     if (connection.left()) return false;  // it only came and went
   }
   const std::uint64_t before = connection.bytes_written();
+  const HangupMonitor::Watching watching = monitor_.watch(connection.socket(), exchange.gone);
   const bool written = engine_->answer(exchange);
   // Who leaves after the last byte has got its answer.
-  const bool gone = connection.left() || (!written && exchange.response.note.empty());
+  const bool gone = connection.left() || exchange.response.status == kClientGone ||
+                    (!written && exchange.response.note.empty());
   handler_.served(exchange.request, exchange.response, connection.bytes_written() - before, gone);
   return written && exchange.keep_alive;
 }
@@ -166,7 +182,7 @@ void Exchanger::take(Exchange& exchange) {
     request.query = std::move(target.query);
     if (!target.authority.empty()) name_host(request.headers, target.authority);
   }
-  request.gone = [&connection = exchange.connection] { return connection.gone(); };
+  request.gone = exchange.gone.get_token();
   request.body_limit = {max_body_, "body_bytes"};
   request.read_body = [this, &exchange] {
     exchange.body = bodies_.share();  // of what has come: what is only announced takes nothing from others

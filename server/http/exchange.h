@@ -5,6 +5,7 @@
 
 #include "server/http/budget.h"
 #include "server/http/connection.h"
+#include "server/http/hangup_monitor.h"
 #include "server/http/server.h"
 
 namespace orrery {
@@ -15,8 +16,8 @@ struct Exchange;
 // thread.
 class Exchanger {
  public:
-  // `handler` outlives it.
-  Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler);
+  // `handler` and `monitor` must outlive it.
+  Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler, HangupMonitor& monitor);
   ~Exchanger();
 
   // Reads and answers the request that begins there. False if the connection ends with it. Throws nothing but
@@ -32,6 +33,7 @@ class Exchanger {
 
   const std::size_t max_body_;
   const HttpServer::Handler& handler_;
+  HangupMonitor& monitor_;
   Budget bodies_;
   std::atomic<bool> draining_{false};
   const std::unique_ptr<Engine> engine_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,8 +40,7 @@ struct Request {
   BodyLimit body_limit;  // a route may set another
   // Reads the whole body, once. Throws HttpError if it is refused or does not come.
   std::function<std::string()> read_body;
-  // Whether the client has gone. Safe from any thread while the request is being answered.
-  std::function<bool()> gone;
+  std::stop_token gone;  // requested once the client has gone
 
   std::optional<std::string> header(std::string_view name) const { return find_field(headers, name); }
   // REQUIRES: the route has that place.

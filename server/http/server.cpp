@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 #include <list>
 #include <mutex>
 #include <optional>
@@ -20,18 +21,33 @@
 namespace orrery {
 namespace {
 
-// Wakes all who wait for it, now and later.
+// Wakes all who wait for it, from now on until it is silenced.
 class Alarm {
  public:
   Alarm() : fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
   ~Alarm() { close(fd_); }
   Alarm(const Alarm&) = delete;
   int fd() const { return fd_; }
-  void ring() const { eventfd_write(fd_, 1); }  // nobody reads it
+  void ring() const { eventfd_write(fd_, 1); }
+  void silence() const {
+    eventfd_t rings;
+    eventfd_read(fd_, &rings);
+  }
 
  private:
   const int fd_;
 };
+
+// Waits until one of both can be read, or the deadline; none: for ever.
+void wait_for_either(int a, int b, std::optional<Clock::time_point> deadline) {
+  pollfd ready[] = {{a, POLLIN, 0}, {b, POLLIN, 0}};
+  int limit_ms = -1;
+  if (deadline) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now()).count();
+    limit_ms = static_cast<int>(std::clamp<std::int64_t>(left, 0, std::numeric_limits<int>::max()));
+  }
+  poll(ready, 2, limit_ms);
+}
 
 }  // namespace
 
@@ -42,7 +58,7 @@ class HttpServer::Parts {
         handler_(std::move(handler)),
         listener_(std::in_place, options.host, options.port),
         port_(listener_->port()),
-        exchanger_(options, handler_),
+        exchanger_(options, handler_, monitor_),
         threads_(options.max_connections) {}
 
   int port() const { return port_; }
@@ -54,17 +70,10 @@ class HttpServer::Parts {
 
   void run() {
     while (!draining_) {
-      pollfd ready[] = {{listener_->fd(), POLLIN, 0}, {wake_.fd(), POLLIN, 0}};
-      poll(ready, 2, 1000);
+      wait_for_either(listener_->fd(), wake_.fd(), shed_.next_close());
       accept_all();
     }
-    const auto deadline = Clock::now() + options_.grace;
-    while (busy_ > 0 && Clock::now() < deadline) {
-      pollfd ready{listener_->fd(), POLLIN, 0};
-      poll(&ready, 1, 10);
-      accept_all();
-    }
-    if (busy_ > 0) end_now();
+    if (!answer_all(Clock::now() + options_.grace)) end_now();
     accept_all();
     listener_.reset();  // who comes now is refused at once instead of being left without an answer
   }
@@ -119,11 +128,20 @@ class HttpServer::Parts {
            "\r\n\r\n" + response.body;
   }
 
+  // Waits until no request is being answered. False if one still is at the deadline.
+  bool answer_all(Clock::time_point deadline) {
+    while (busy_ > 0 && Clock::now() < deadline) {
+      wait_for_either(listener_->fd(), idle_.fd(), deadline);
+      idle_.silence();
+      accept_all();
+    }
+    return busy_ == 0;
+  }
+
   // The handler is told that time is up; connections that do not end even then are broken off.
   void end_now() {
     handler_.grace_over();
-    const auto deadline = Clock::now() + std::chrono::seconds(2);
-    while (busy_ > 0 && Clock::now() < deadline) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    if (answer_all(Clock::now() + std::chrono::seconds(2))) return;
     const std::lock_guard lock(mutex_);
     for (const Connection* connection : open_) connection->abandon();
   }
@@ -138,7 +156,7 @@ class HttpServer::Parts {
         go_on = exchanger_.exchange(connection);
       } catch (const std::exception&) {  // out of memory before there was a request to answer
       }
-      --busy_;
+      if (--busy_ == 0 && draining_) idle_.ring();
       if (!go_on) break;
     }
     connection.linger();
@@ -155,7 +173,8 @@ class HttpServer::Parts {
   const Handler handler_;
   std::optional<Listener> listener_;
   const int port_;
-  const Alarm wake_;
+  const Alarm wake_, idle_;  // the service ends; nothing is being answered, while it ends
+  HangupMonitor monitor_;
   Exchanger exchanger_;
   Shed shed_;
   std::atomic<bool> draining_{false};

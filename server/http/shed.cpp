@@ -11,9 +11,10 @@ Shed::~Shed() {
 
 void Shed::refuse(int fd, std::string_view bytes) {
   constexpr std::size_t kMost = 256;  // sockets kept open for clients that still send
+  constexpr std::chrono::seconds kTimeToRead{1};
   [[maybe_unused]] const ssize_t sent = send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   shutdown(fd, SHUT_WR);
-  refused_.push_back({fd, std::chrono::steady_clock::now()});
+  refused_.push_back({fd, std::chrono::steady_clock::now() + kTimeToRead});
   if (refused_.size() <= kMost) return;
   close(refused_.front().fd);
   refused_.pop_front();
@@ -21,10 +22,14 @@ void Shed::refuse(int fd, std::string_view bytes) {
 
 void Shed::close_old() {
   const auto now = std::chrono::steady_clock::now();
-  while (!refused_.empty() && now - refused_.front().since > std::chrono::seconds(1)) {
+  while (!refused_.empty() && now >= refused_.front().close_at) {
     close(refused_.front().fd);
     refused_.pop_front();
   }
+}
+
+std::optional<std::chrono::steady_clock::time_point> Shed::next_close() const {
+  return refused_.empty() ? std::nullopt : std::optional(refused_.front().close_at);
 }
 
 }  // namespace orrery

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <deque>
+#include <optional>
 #include <string_view>
 
 namespace orrery {
@@ -14,11 +15,13 @@ class Shed {
   void refuse(int fd, std::string_view bytes);
   // Closes the sockets whose clients had the time to read the answer.
   void close_old();
+  // When the next of them is to be closed; none: there is none.
+  std::optional<std::chrono::steady_clock::time_point> next_close() const;
 
  private:
   struct Refused {
     int fd;
-    std::chrono::steady_clock::time_point since;
+    std::chrono::steady_clock::time_point close_at;
   };
   std::deque<Refused> refused_;  // the oldest first
 };

@@ -85,30 +85,34 @@ std::string event(std::string_view name, int id, const ordered_json& data) {
 // back with the number it saw last misses no frame.
 struct Events {
   std::shared_ptr<Job> job;
-  int seen;  // frames that the client knows of
+  int seen;                 // frames that the client knows of
+  std::int64_t tiles = -1;  // likewise
+  bool ended = false;
 
-  void send(Sink& sink, const std::function<bool()>& gone) {
-    constexpr std::chrono::milliseconds kAsk{100};
-    constexpr std::chrono::seconds kSilence{10};  // after which the client is told that the line is open
-    std::int64_t tiles = -1;
-    auto spoke = Clock::now();
-    for (;;) {
-      const JobStatus status = job->wait(seen, Clock::now() + kAsk);
-      const bool ended = has_ended(status.state);
-      const bool moved = std::exchange(tiles, status.tiles_done) != status.tiles_done;
-      std::string text;
-      for (; seen < status.frames_done; ++seen) text += frame_event(status);
-      if (ended)
-        text += event(name_of(status.state), status.frames + 1, job_json(*job, status));
-      else if (moved && text.empty())
-        text = event("progress", seen, job_json(*job, status));
-      if (text.empty() && Clock::now() - spoke > kSilence) text = ": still waiting\n\n";
-      if (!text.empty()) spoke = Clock::now();
-      if ((!text.empty() && !sink.write(text)) || ended || gone()) return;
+  void send(Sink& sink, const Timer& timer, const std::stop_token& gone) {
+    constexpr std::chrono::milliseconds kLeast{100};  // between two reports of progress
+    constexpr std::chrono::seconds kSilence{10};      // after which the client is told that the line is open
+    std::string text = news(job->status());
+    while (sink.write(text) && !ended && !gone.stop_requested()) {
+      const auto spoke = timer.now();
+      JobStatus status = job->wait(seen, std::nullopt, spoke + kLeast, gone);
+      if (status.frames_done == seen && !has_ended(status.state))
+        status = job->wait(seen, tiles, spoke + kSilence, gone);
+      text = news(status);
     }
   }
 
  private:
+  // What the client does not know yet.
+  std::string news(const JobStatus& status) {
+    const bool moved = std::exchange(tiles, status.tiles_done) != status.tiles_done;
+    ended = has_ended(status.state);
+    std::string text;
+    for (; seen < status.frames_done; ++seen) text += frame_event(status);
+    if (ended) return text + event(name_of(status.state), status.frames + 1, job_json(*job, status));
+    if (!text.empty()) return text;
+    return moved ? event("progress", seen, job_json(*job, status)) : ": still waiting\n\n";
+  }
   std::string frame_event(const JobStatus& status) const {
     ordered_json json = job_json(*job, status);
     json["frame"] = seen;
@@ -132,7 +136,8 @@ Response get_events(App& app, Request& request) {
   response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");
   if (request.method == "HEAD") return response;
   response.stream = [place = app.streams().open(request.client), events = Events{job, seen},
-                     gone = request.gone](Sink& sink) mutable { events.send(sink, gone); };
+                     gone = request.gone,
+                     &timer = app.timer()](Sink& sink) mutable { events.send(sink, timer, gone); };
   return response;
 }
 

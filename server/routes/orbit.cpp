@@ -95,7 +95,7 @@ struct OrbitRequest {
   std::shared_ptr<const void> place;
   std::shared_ptr<OrbitCast::Viewer> viewer;
   std::shared_ptr<const OrbitFrame> first;
-  std::function<bool()> gone;
+  std::stop_token gone;
 };
 
 void send_frames(const OrbitRequest& orbit, Sink& sink) {
@@ -127,7 +127,7 @@ Response orbit(App& app, Request& request) {
                      .first = {},
                      .gone = request.gone};
   orbit.first = orbit.viewer->next(orbit.gone);  // what fails here has a status of its own
-  if (!orbit.first && request.gone()) throw Cancelled("the client has gone");
+  if (!orbit.first && request.gone.stop_requested()) throw Cancelled("the client has gone");
   if (!orbit.first) throw Busy("The service ends", 5);
   response.stream = [orbit, multipart](Sink& sink) { (multipart ? send_parts : send_frames)(orbit, sink); };
   return response;

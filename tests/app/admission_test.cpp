@@ -6,13 +6,15 @@
 #include <thread>
 #include <vector>
 
+#include "tests/app/manual_timer.h"
+
 // Who gets a turn, and who is turned away.
 namespace orrery {
 namespace {
 
 using RenderOrder = std::vector<std::string>;
 
-const Admission::Stop kNever = [] { return false; };
+const std::stop_token kNever;
 
 // People who wait for their turn, each on a thread, and the order in which they got it.
 class Waiters {
@@ -63,7 +65,8 @@ Demand demand(const std::string& client, double cost = 10, Lane lane = Lane::int
 }
 
 TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
-  Admission admission({.running = 1, .queue_rays = 1000});
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -76,7 +79,8 @@ TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
 }
 
 TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
-  Admission admission({.running = 2, .queue_rays = 1000});
+  ManualTimer timer;
+  Admission admission({.running = 2, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
   {
     const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever);
@@ -105,7 +109,8 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
 }
 
 TEST(Admission, WhatWaitsIsBoundedByItsCost) {
-  Admission admission({.running = 1, .queue_rays = 100});
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 100}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -127,7 +132,8 @@ TEST(Admission, WhatWaitsIsBoundedByItsCost) {
 }
 
 TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
-  Admission admission({.running = 2, .queue_rays = 100});
+  ManualTimer timer;
+  Admission admission({.running = 2, .queue_rays = 100}, timer);
   Waiters waiters(admission);
   {
     const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever);
@@ -142,7 +148,8 @@ TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
 }
 
 TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
-  Admission admission({.running = 1, .queue_rays = 1000});
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -154,7 +161,8 @@ TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
 }
 
 TEST(Admission, WhoHasMostWaitingMakesRoom) {
-  Admission admission({.running = 1, .queue_rays = 100});
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 100}, timer);
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
@@ -172,7 +180,8 @@ TEST(Admission, WhoHasMostWaitingMakesRoom) {
 }
 
 TEST(Admission, WorkThatBeganIsNotTurnedAway) {
-  Admission admission({.running = 1, .queue_rays = 10});
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 10}, timer);
   std::atomic<bool> done{false};
   std::thread again;
   {
@@ -189,9 +198,14 @@ TEST(Admission, WorkThatBeganIsNotTurnedAway) {
 }
 
 TEST(Admission, WhoGivesUpLeavesTheQueue) {
-  Admission admission({.running = 1, .queue_rays = 100});
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 100}, timer);
   const auto ticket = admission.enter(demand("z"), kNever);
-  EXPECT_THROW(admission.enter(demand("a"), [] { return true; }), Cancelled);
+  std::stop_source stop;
+  std::thread waits([&] { EXPECT_THROW(admission.enter(demand("a"), stop.get_token()), Cancelled); });
+  while (admission.waiting() == 0) std::this_thread::yield();
+  stop.request_stop();
+  waits.join();
   EXPECT_EQ(admission.waiting(), 0);
   EXPECT_EQ(admission.running(), 1);
 }
@@ -199,10 +213,11 @@ TEST(Admission, WhoGivesUpLeavesTheQueue) {
 // The time after which to come again is the cost that waits over the rate at which work was done.
 TEST(Admission, RetryAfterFollowsTheRateMeasured) {
   const auto told = [](double cost_done) {
-    Admission admission({.running = 1, .queue_rays = 1000});
+    ManualTimer timer;
+    Admission admission({.running = 1, .queue_rays = 1000}, timer);
     {
       const auto ticket = admission.enter(demand("z", cost_done), kNever);
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      timer.advance(std::chrono::milliseconds(50));
     }
     Waiters waiters(admission);
     const auto ticket = admission.enter(demand("z"), kNever);

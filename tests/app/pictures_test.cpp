@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <thread>
 #include <vector>
 
@@ -13,7 +14,7 @@
 namespace orrery {
 namespace {
 
-const Pictures::Gone kStays = [] { return false; };
+const std::stop_token kStays;
 
 Picture picture(std::string bytes) { return {.bytes = std::move(bytes), .stats = {}}; }
 
@@ -46,14 +47,12 @@ TEST(Pictures, TooLargeToKeepAreMadeAllTheSame) {
 
 TEST(Pictures, ThatManyAskForAtOnceAreMadeOnce) {
   Pictures pictures(1 << 20);
-  std::atomic<int> made{0}, here{0}, waiting{0};
+  std::atomic<int> made{0}, here{0};
   std::vector<std::thread> threads;
   for (int i = 0; i < 8; ++i)
     threads.emplace_back([&] {
-      ++waiting;
       const auto found = pictures.get("a", kStays, [&](const auto&) {
-        while (waiting < 8) std::this_thread::yield();
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        while (pictures.waiting("a") < 8) std::this_thread::yield();
         ++made;
         return picture("x");
       });
@@ -68,33 +67,29 @@ TEST(Pictures, ThatManyAskForAtOnceAreMadeOnce) {
 // Has a second caller join the first while that makes the picture.
 struct Pair {
   Pictures pictures{1 << 20};
-  std::atomic<bool> making{false}, first_gone{false}, second_gone{false};
-  std::atomic<int> asked_by_second{0};
+  std::stop_source first_gone, second_gone;
 
+  // Each is called with a function that gets the picture and makes it by what it is given.
   template <class First, class Second>
   void run(const First& first, const Second& second) {
+    std::promise<void> making, joined;
     std::thread one([&] {
-      first([&](const auto& make) {
-        return pictures.get(
-            "a", [&] { return bool(first_gone); },
-            [&](const Pictures::Gone& gone) {
-              making = true;
-              while (asked_by_second == 0) std::this_thread::yield();
-              return make(gone);
-            });
+      first([&](const Pictures::Make& make) {
+        return pictures.get("a", first_gone.get_token(), [&](const std::stop_token& stop) {
+          making.set_value();
+          joined.get_future().wait();
+          return make(stop);
+        });
       });
     });
-    while (!making) std::this_thread::yield();
-    second([&](const auto& make) {
-      return pictures.get(
-          "a",
-          [&] {
-            ++asked_by_second;
-            return bool(second_gone);
-          },
-          make);
+    making.get_future().wait();
+    std::thread two([&] {
+      second([&](const Pictures::Make& make) { return pictures.get("a", second_gone.get_token(), make); });
     });
+    while (pictures.waiting("a") < 2) std::this_thread::yield();
+    joined.set_value();
     one.join();
+    two.join();
   }
 };
 
@@ -102,9 +97,9 @@ TEST(Pictures, AreFinishedForTheOthersWhenTheFirstLeaves) {
   Pair pair;
   pair.run(
       [&](const auto& get) {
-        get([&](const Pictures::Gone& gone) {
-          pair.first_gone = true;
-          EXPECT_FALSE(gone());
+        get([&](const std::stop_token& stop) {
+          pair.first_gone.request_stop();
+          EXPECT_FALSE(stop.stop_requested());
           return picture("x");
         });
       },
@@ -118,9 +113,10 @@ TEST(Pictures, AreGivenUpWhenAllHaveLeft) {
   Pair pair;
   pair.run(
       [&](const auto& get) {
-        EXPECT_THROW(get([&](const Pictures::Gone& gone) -> Picture {
-                       pair.first_gone = pair.second_gone = true;
-                       while (!gone()) std::this_thread::yield();
+        EXPECT_THROW(get([&](const std::stop_token& stop) -> Picture {
+                       pair.first_gone.request_stop();
+                       pair.second_gone.request_stop();
+                       EXPECT_TRUE(stop.stop_requested());
                        throw Cancelled();
                      }),
                      Cancelled);

@@ -2,41 +2,73 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/app/manual_timer.h"
+
 // When work ends early, and for what reason.
 namespace orrery {
 namespace {
 
-const std::atomic<bool> kGoesOn{false};
+using std::chrono::seconds;
 
-TEST(Watch, WhoHasLeftDoesNotComeBack) {
-  bool gone = true;
-  const Watch watch([&] { return gone; }, kGoesOn, std::chrono::seconds(60), "request_seconds");
-  EXPECT_TRUE(watch.stop());
-  gone = false;  // another came to wait for the same
-  EXPECT_TRUE(watch.stop());
+struct Watched {
+  ManualTimer timer;
+  std::stop_source gone, service_ends;
+  Clock::duration age{};  // of the request
+  const Watch& watch() {
+    made.emplace(gone.get_token(), service_ends.get_token(), timer, timer.now() - age,
+                 Watch::Limit{seconds(60), "request_seconds"});
+    return *made;
+  }
+  std::optional<Watch> made;
+};
+
+TEST(Watch, StopsOnceTheClientHasGone) {
+  Watched w;
+  const Watch& watch = w.watch();
+  EXPECT_FALSE(watch.stop().stop_requested());
+  w.gone.request_stop();
+  EXPECT_TRUE(watch.stop().stop_requested());
   EXPECT_THROW(watch.explain(), Cancelled);
 }
 
-TEST(Watch, TimeCountsFromTheRequest) {
-  const auto stays = [] { return false; };
-  const Watch watch(stays, kGoesOn, std::chrono::seconds(60), "request_seconds",
-                    Clock::now() - std::chrono::seconds(61));
-  EXPECT_TRUE(watch.stop());
+TEST(Watch, StopsOnceTheServiceEnds) {
+  Watched w;
+  const Watch& watch = w.watch();
+  w.service_ends.request_stop();
+  EXPECT_TRUE(watch.stop().stop_requested());
+  EXPECT_THROW(watch.explain(), Busy);
+}
+
+TEST(Watch, StopsAtItsTimeWhichCountsFromTheRequest) {
+  Watched w;
+  w.age = seconds(20);
+  const Watch& watch = w.watch();
+  w.timer.advance(seconds(40) - Clock::duration(1));
+  EXPECT_FALSE(watch.stop().stop_requested());
+  w.timer.advance(Clock::duration(1));
+  EXPECT_TRUE(watch.stop().stop_requested());
+  try {
+    watch.explain();
+  } catch (const TimedOut& error) {
+    EXPECT_STREQ(error.what(), "It took more than 60 s (request_seconds); fewer pixels or samples take less");
+  }
+}
+
+TEST(Watch, OfALateRequestStopsAtOnce) {
+  Watched w;
+  w.age = seconds(61);
+  const Watch& watch = w.watch();
+  EXPECT_TRUE(watch.stop().stop_requested());
   EXPECT_THROW(watch.explain(), TimedOut);
 }
 
-TEST(Watch, TheClientIsAskedNowAndThen) {
-  int asked = 0;
-  const auto stays = [&] {
-    ++asked;
-    return false;
-  };
-  const Watch watch(stays, kGoesOn, std::chrono::seconds(60), "request_seconds");
-  const auto start = Clock::now();
-  int looks = 0;
-  for (; asked < 3; ++looks) EXPECT_FALSE(watch.stop());
-  EXPECT_GT(looks, asked);
-  EXPECT_GE(Clock::now() - start, std::chrono::milliseconds(10));  // twice the time between
+TEST(Watch, TellsWhatCameFirst) {
+  Watched w;
+  const Watch& watch = w.watch();
+  w.timer.advance(seconds(60));
+  w.gone.request_stop();
+  w.service_ends.request_stop();
+  EXPECT_THROW(watch.explain(), TimedOut);
 }
 
 }  // namespace

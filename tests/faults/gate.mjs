@@ -42,5 +42,5 @@ export const gateFaults = [
         "wait(POLLIN, deadline, true);\n    if (ready != Ready::wake)", "wait(POLLIN, deadline, false);\n    if (ready != Ready::wake)",
         "Terminated.GivesHalfARequestOneLastCall"),
   entry(18, "who leaves after the whole answer left early", "exchange.cpp", "const bool gone = connection.left() ||",
-        "const bool gone = connection.gone() ||", "ClientThatLeaves.AfterTheWholeAnswerHasNotLeftEarly"),
+        "const bool gone = exchange.gone.stop_requested() || connection.left() ||", "ClientThatLeaves.AfterTheWholeAnswerHasNotLeftEarly"),
 ];

@@ -5,7 +5,10 @@
 
 #include "core/base/error.h"
 #include "core/load/load.h"
+#include "core/render/prepare.h"
+#include "core/render/trial.h"
 #include "tests/support/pictures.h"
+#include "tests/support/stopped.h"
 
 // What a caller may do to a render while it runs, and several renders at once.
 namespace orrery::test {
@@ -35,15 +38,39 @@ TEST(Control, CountsEveryTileOnce) {
 TEST(Control, StopEndsTheRenderAtOnce) {
   const PreparedScene prepared(paper());
   RenderRequest request = size(1000, 1000);
-  request.samples = 1000;
-  std::atomic<int> asked = 0;
-  RenderControl control;
-  control.stop = [&] { return ++asked > 5; };
+  std::atomic<int> tiles = 0;
+  std::stop_source stop;
+  RenderControl control{.stop = stop.get_token()};
+  control.progress = [&](int, int) {
+    if (++tiles == 5) stop.request_stop();
+  };
   EXPECT_THROW(
       render_frame(prepared, make_plan(*paper(), request), PixelFormat::srgb8, shared_pool(), control),
       Cancelled);
-  EXPECT_LT(asked, 100) << "tiles were begun after the stop";
+  EXPECT_LT(tiles, 5 + shared_pool().threads()) << "tiles were begun after the stop";
 }
+
+// Passes on what it is asked, and requests a stop with the third batch.
+class StopsAtThirdBatch final : public Accelerator<float> {
+ public:
+  explicit StopsAtThirdBatch(std::shared_ptr<const Accelerator<float>> behind) : behind_(std::move(behind)) {}
+  AcceleratorFacts facts() const override { return behind_->facts(); }
+  void closest(const RayBatch<float>& rays, const Groups& groups, HitBatch<float>& hits,
+               AcceleratorCounts& counts) const override {
+    if (++batches == 3) stop.request_stop();
+    if (batches > 1000) throw std::runtime_error("it goes on");
+    behind_->closest(rays, groups, hits, counts);
+  }
+  void occlude(RayBatch<float>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    behind_->occlude(rays, groups, counts);
+  }
+
+  mutable int batches = 0;
+  mutable std::stop_source stop;
+
+ private:
+  const std::shared_ptr<const Accelerator<float>> behind_;
+};
 
 // Glass among glass: the tree of one camera ray can grow to billions, so a stop must not wait for its end.
 TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
@@ -56,23 +83,35 @@ TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
       load_scene(R"({"version":1,"camera":{"type":"perspective","eye":[3,2,4],"look_at":[0,0,0]},
       "materials":{"glass":{"type":"refractive","ior":1.5}},"render":{"max_depth":32},"objects":[)" +
                  spheres + "]}");
-  std::atomic<int> asked = 0;
-  RenderControl control;
-  control.stop = [&] { return ++asked > 3; };  // the one tile, then within its tree
-  EXPECT_THROW(render_frame(PreparedScene(scene), make_plan(*scene, size(8, 8)), PixelFormat::srgb8,
-                            shared_pool(), control),
-               Cancelled);
-  EXPECT_LT(asked, 10);
+  const PreparedScene prepared(scene);
+  const Plan plan = make_plan(*scene, size(8, 8));
+  double build_ms = 0;
+  World<float> world = world_for<float>(prepared.parts(), plan, build_ms);
+  const auto stops = std::make_shared<const StopsAtThirdBatch>(world.accelerator);
+  world.accelerator = stops;
+  EXPECT_THROW(try_tiles(world, plan, 1, stops->stop.get_token()), Cancelled);
 }
 
 TEST(Control, AStoppedRenderLeavesTheNextOneWhole) {
   const PreparedScene prepared(paper());
   const Plan plan = make_plan(*paper(), size(64, 64));
-  RenderControl control;
-  control.stop = [] { return true; };
-  EXPECT_THROW(render_frame(prepared, plan, PixelFormat::linear32, shared_pool(), control), Cancelled);
+  EXPECT_THROW(render_frame(prepared, plan, PixelFormat::linear32, shared_pool(), {.stop = stopped()}),
+               Cancelled);
   EXPECT_EQ(render_frame(prepared, plan, PixelFormat::linear32, shared_pool()).stats.counts.rays.camera,
             4096u);
+}
+
+// One thread builds what another waits for: who is told to stop waits no longer.
+TEST(Control, StopEndsTheWaitForWhatAnotherBuilds) {
+  StoppableMutex mutex;
+  mutex.lock();
+  std::stop_source stop;
+  std::thread waits([&] { EXPECT_THROW(lock_unless(mutex, stop.get_token()), Cancelled); });
+  stop.request_stop();
+  waits.join();
+  mutex.unlock();
+  EXPECT_TRUE(mutex.lock_unless({}));
+  mutex.unlock();
 }
 
 TEST(Control, RendersAtTheSameTimeDoNotDisturbEachOther) {

@@ -9,6 +9,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/stopped.h"
 
 // Which structure a render takes that may choose.
 namespace orrery::test {
@@ -124,7 +125,7 @@ TEST(Settle, SaysWhatItWentBy) {
 TEST(Settle, EndsWhenNobodyWaits) {
   const PreparedScene scene(load(sample("glass")));
   Plan plan = make_plan(scene.scene(), {});
-  EXPECT_THROW(settle(scene, plan, [] { return true; }), Cancelled);
+  EXPECT_THROW(settle(scene, plan, stopped()), Cancelled);
 }
 
 TEST(Settle, LeavesAloneWhatWasAskedFor) {

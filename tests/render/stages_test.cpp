@@ -9,6 +9,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 #include "tests/support/scenes.h"
+#include "tests/support/stopped.h"
 
 // What stands in front of a render's accelerator, and what the network is trained on.
 namespace orrery::test {
@@ -80,7 +81,7 @@ TEST(OcclusionSamples, EndWhenNobodyWaits) {
   const PreparedScene scene(load(sample("glass")));
   const Plan plan = make_plan(scene.scene(), asking(Prediction::network));
   double build_ms = 0;
-  EXPECT_THROW(world_for<float>(scene.parts(), plan, build_ms, [] { return true; }), Cancelled);
+  EXPECT_THROW(world_for<float>(scene.parts(), plan, build_ms, stopped()), Cancelled);
   EXPECT_NO_THROW(world_for<float>(scene.parts(), plan, build_ms));
 }
 

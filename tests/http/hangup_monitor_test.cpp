@@ -1,0 +1,79 @@
+#include "server/http/hangup_monitor.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <future>
+#include <optional>
+
+// Who learns that a client has gone.
+namespace orrery {
+namespace {
+
+// Both ends of a connection.
+struct Pair {
+  Pair() { socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends); }
+  ~Pair() {
+    close(ends[0]);
+    hang_up();
+  }
+  void hang_up() {
+    if (ends[1] >= 0) close(ends[1]);
+    ends[1] = -1;
+  }
+  int ends[2];
+};
+
+// What is told of a stop.
+struct Told {
+  std::stop_source source;
+  std::promise<void> promise;
+  std::future<void> future = promise.get_future();
+  std::stop_callback<std::function<void()>> callback{source.get_token(), [this] { promise.set_value(); }};
+};
+
+TEST(HangupMonitor, StopsTheWorkOfWhoHangsUp) {
+  HangupMonitor monitor;
+  Pair stays, leaves;
+  Told staying, leaving;
+  const auto first = monitor.watch(stays.ends[0], staying.source);
+  const auto second = monitor.watch(leaves.ends[0], leaving.source);
+  leaves.hang_up();
+  leaving.future.wait();
+  EXPECT_FALSE(staying.source.stop_requested());
+}
+
+TEST(HangupMonitor, StopsTheWorkOfWhoSendsNoMore) {
+  HangupMonitor monitor;
+  Pair pair;
+  Told told;
+  const auto watching = monitor.watch(pair.ends[0], told.source);
+  EXPECT_EQ(write(pair.ends[1], "bytes", 5), 5);  // which is no end
+  shutdown(pair.ends[1], SHUT_WR);
+  told.future.wait();
+}
+
+TEST(HangupMonitor, StopsTheWorkOfWhoHasLeftBefore) {
+  HangupMonitor monitor;
+  Pair pair;
+  pair.hang_up();
+  Told told;
+  const auto watching = monitor.watch(pair.ends[0], told.source);
+  told.future.wait();
+}
+
+// One connection has many requests, one after another.
+TEST(HangupMonitor, TellsOnlyTheWorkThatGoesOn) {
+  HangupMonitor monitor;
+  Pair pair;
+  Told before, now;
+  { const auto watching = monitor.watch(pair.ends[0], before.source); }
+  const auto watching = monitor.watch(pair.ends[0], now.source);
+  pair.hang_up();
+  now.future.wait();
+  EXPECT_FALSE(before.source.stop_requested());
+}
+
+}  // namespace
+}  // namespace orrery
