@@ -1,8 +1,7 @@
 #include "server/http/exchange.h"
 
-#include <httplib.h>
-
 #include "server/http/request_id.h"
+#include "server/http/response_writer.h"
 #include "server/http/target.h"
 
 namespace orrery {
@@ -26,108 +25,10 @@ void name_host(Fields& headers, const std::string& authority) {
   headers.emplace_back("Host", authority);
 }
 
-// How the handlers inside httplib get at the exchange: it rides on a callback that only httplib's client
-// uses.
-struct ExchangeHandle {
-  Exchange* exchange;
-  bool operator()(std::uint64_t, std::uint64_t) const { return true; }
-};
-
-class SinkOfHttplib final : public Sink {
- public:
-  explicit SinkOfHttplib(httplib::DataSink& sink) : sink_(sink) {}
-  bool write(std::string_view bytes) override { return sink_.write(bytes.data(), bytes.size()); }
-
- private:
-  httplib::DataSink& sink_;
-};
-
-// Hands the answer to httplib, which writes it.
-void fill(Exchange& exchange, httplib::Response& out) {
-  Response& response = exchange.response;
-  out.status = response.status;
-  for (const auto& [name, value] : response.headers)
-    if (!equal_ignoring_case(name, "Content-Type")) out.set_header(name, value);
-  const std::string type = find_field(response.headers, "Content-Type").value_or("");
-  if (response.stream && exchange.request.method != "HEAD") {
-    const auto provider = [&response](std::size_t, httplib::DataSink& sink) {
-      SinkOfHttplib adapter(sink);
-      try {
-        response.stream(adapter);
-      } catch (const std::exception& error) {
-        response.note = error.what();
-        return false;
-      }
-      sink.done();
-      return true;
-    };
-    if (exchange.head.minor_version == 1) return out.set_chunked_content_provider(type, provider);
-    exchange.keep_alive =
-        false;  // HTTP/1.0 knows no chunks: the end of the connection is the end of the body
-    return out.set_content_provider(type, provider);
-  }
-  if (!type.empty()) out.set_header("Content-Type", type);
-  out.body = std::move(response.body);
-}
-
-// Headers that follow from how the connection goes on, and none that would be wrong.
-void finish_headers(Exchange& exchange, httplib::Response& out) {
-  if (exchange.connection.body_unread()) exchange.keep_alive = false;
-  for (const char* name : {"Keep-Alive", "Connection", "Accept-Ranges"}) out.headers.erase(name);
-  if (!exchange.keep_alive)
-    out.set_header("Connection", "close");
-  else if (exchange.head.minor_version == 0)
-    out.set_header("Connection", "keep-alive");
-  const bool length_unknown = exchange.request.method == "HEAD" && out.body.empty();
-  if (length_unknown || out.status == 204 || out.status == 304) out.headers.erase("Content-Length");
-}
-
 }  // namespace
 
-// httplib as a writer of answers: it gets a request line of ours (see Connection), asks for the answer before
-// it would route, and writes it.
-class Exchanger::Engine final : public httplib::Server {
- public:
-  Engine(const HttpServer::Handler& handler, const std::atomic<bool>& draining) {
-    svr_sock_ = 0;  // httplib ends streams while this is no socket; it never uses it here
-    set_pre_routing_handler([&handler](const httplib::Request& in, httplib::Response& out) {
-      Exchange& exchange = exchange_of(in);
-      exchange.response = exchange.refusal ? handler.refuse(exchange.request, exchange.refusal)
-                                           : handler.answer(exchange.request);
-      fill(exchange, out);
-      return HandlerResponse::Handled;
-    });
-    set_post_routing_handler([&draining](const httplib::Request& in, httplib::Response& out) {
-      Exchange& exchange = exchange_of(in);
-      if (draining) exchange.keep_alive = false;
-      finish_headers(exchange, out);
-    });
-    set_exception_handler([](const httplib::Request&, httplib::Response& out, std::exception_ptr) {
-      out.status = 500;  // out of memory, most likely: without a body
-    });
-  }
-  ~Engine() override { svr_sock_ = INVALID_SOCKET; }
-
-  bool answer(Exchange& exchange) {
-    const bool head_only = exchange.request.method == "HEAD";
-    exchange.connection.offer(head_only ? "HEAD / HTTP/1.1\r\n\r\n" : "GET / HTTP/1.1\r\n\r\n");
-    bool closed = false;
-    return process_request(exchange.connection, false, closed,
-                           [&](httplib::Request& in) { in.progress = ExchangeHandle{&exchange}; });
-  }
-
- private:
-  static Exchange& exchange_of(const httplib::Request& in) {
-    return *in.progress.target<ExchangeHandle>()->exchange;
-  }
-};
-
 Exchanger::Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler)
-    : max_body_(options.max_body),
-      handler_(handler),
-      bodies_(options.max_bodies, "bodies_bytes"),
-      engine_(std::make_unique<Engine>(handler, draining_)) {}
-Exchanger::~Exchanger() = default;
+    : max_body_(options.max_body), handler_(handler), bodies_(options.max_bodies, "bodies_bytes") {}
 
 bool Exchanger::exchange(Connection& connection) {
   Exchange exchange{
@@ -143,7 +44,14 @@ bool Exchanger::exchange(Connection& connection) {
     if (connection.left()) return false;  // it only came and went
   }
   const std::uint64_t before = connection.bytes_written();
-  const bool written = engine_->answer(exchange);
+  exchange.response = exchange.refusal ? handler_.refuse(exchange.request, exchange.refusal)
+                                       : handler_.answer(exchange.request);
+  const bool to_the_end = exchange.response.stream && exchange.head.minor_version == 0;
+  if (draining_ || to_the_end || connection.body_unread()) exchange.keep_alive = false;
+  const bool written = write_response(connection, exchange.response,
+                                      {.head_only = exchange.request.method == "HEAD",
+                                       .minor_version = exchange.head.minor_version,
+                                       .keep_alive = exchange.keep_alive});
   // Who leaves after the last byte has got its answer.
   const bool gone = connection.left() || (!written && exchange.response.note.empty());
   handler_.served(exchange.request, exchange.response, connection.bytes_written() - before, gone);

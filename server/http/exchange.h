@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 
 #include "server/http/budget.h"
 #include "server/http/connection.h"
@@ -17,7 +16,6 @@ class Exchanger {
  public:
   // `handler` outlives it.
   Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler);
-  ~Exchanger();
 
   // Reads and answers the request that begins there. False if the connection ends with it. Throws nothing but
   // std::bad_alloc and its like.
@@ -27,14 +25,12 @@ class Exchanger {
   void drain() { draining_ = true; }
 
  private:
-  class Engine;
   void take(Exchange& exchange);
 
   const std::size_t max_body_;
   const HttpServer::Handler& handler_;
   Budget bodies_;
   std::atomic<bool> draining_{false};
-  const std::unique_ptr<Engine> engine_;
 };
 
 }  // namespace orrery
