@@ -172,7 +172,7 @@ Head Connection::read_head() {
   }
 }
 
-std::string Connection::read_body(const Head& head, const Request::BodyLimit& limit,
+std::string Connection::read_body(const Head& head, const BodyLimit& limit,
                                   const std::function<void(std::size_t)>& received) {
   if (head.chunked || !head.content_length) {
     body_left_ = std::numeric_limits<std::size_t>::max();  // whatever comes is no request, but a body

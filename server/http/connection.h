@@ -43,7 +43,7 @@ class Connection final {
   // Reads the body of the request with this head. Throws HttpError.
   // `received` is told how many bytes there are, each time that some have come; what it throws ends the
   // reading.
-  std::string read_body(const Head& head, const Request::BodyLimit& limit,
+  std::string read_body(const Head& head, const BodyLimit& limit,
                         const std::function<void(std::size_t)>& received);
   // Whether bytes of this request may still be under way; then nothing after it can be understood.
   bool body_unread() const { return body_left_ > 0; }

@@ -2,7 +2,6 @@
 
 #include "core/plan/plan.h"
 #include "server/app/picture_key.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 #include "server/routes/render_order.h"
 
@@ -43,7 +42,8 @@ Response render(App& app, Request& request) {
 }  // namespace
 
 void add_render_routes(Router& router, App& app) {
-  router.add("POST", "/v1/render", [&app](Request& request) { return render(app, request); });
+  router.add("POST", "/v1/render", Scope::render, LogLevel::info, json_body(app),
+             [&app](Request& request) { return render(app, request); });
 }
 
 }  // namespace orrery

@@ -24,7 +24,7 @@ SceneStore::Prepared find(App& app, const Document& id) {
 
 RenderOrder read_render_order(App& app, Request& request, Timing& timing,
                               const std::function<void(Params&)>& more) {
-  const std::string body = read_json(request);
+  const std::string body = std::move(request.body);
   RenderOrder order;
   app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
     const Document document = parse_document(body);

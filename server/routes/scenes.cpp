@@ -2,7 +2,6 @@
 
 #include "core/load/load.h"
 #include "server/app/app.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // /v1/scenes: scenes that are kept to be rendered again and again, by the hash of what they say.
@@ -44,7 +43,7 @@ std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }
 Response add_scene(App& app, Request& request) {
   app.require_open();
   Timing timing;
-  const std::string body = read_json(request);
+  const std::string body = std::move(request.body);
   SceneStore::Added added;
   app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
     added = app.scenes().add(load_scene(parse_document(body), meshes));
@@ -77,9 +76,12 @@ Response remove_scene(App& app, Request& request) {
 }  // namespace
 
 void add_scenes_routes(Router& router, App& app) {
-  router.add("POST", "/v1/scenes", [&app](Request& request) { return add_scene(app, request); });
-  router.add("GET", "/v1/scenes/{id}", [&app](Request& request) { return get_scene(app, request); });
-  router.add("DELETE", "/v1/scenes/{id}", [&app](Request& request) { return remove_scene(app, request); });
+  router.add("POST", "/v1/scenes", Scope::write, LogLevel::info, json_body(app),
+             [&app](Request& request) { return add_scene(app, request); });
+  router.add("GET", "/v1/scenes/{id}", Scope::read, LogLevel::info,
+             [&app](Request& request) { return get_scene(app, request); });
+  router.add("DELETE", "/v1/scenes/{id}", Scope::write, LogLevel::info,
+             [&app](Request& request) { return remove_scene(app, request); });
 }
 
 }  // namespace orrery
