@@ -34,6 +34,7 @@ Response render(App& app, Request& request) {
   const Rendered rendered = app.render(*order.scene, plan, etag_of(order.scene->scene(), order.request),
                                        format_of(type), caller_of(request), timing);
   Response response = picture_response(type, rendered, timing);
+  response.set("Orrery-Scene-Id", order.scene->scene().id);
   response.set("Vary", "Accept");
   response.set("Cache-Control", "no-store");
   return response;

@@ -1,6 +1,5 @@
 #include <nlohmann/json.hpp>
 
-#include "core/load/load.h"
 #include "server/app/app.h"
 #include "server/routes/answers.h"
 
@@ -44,12 +43,11 @@ Response add_scene(App& app, Request& request) {
   app.require_open();
   Timing timing;
   const std::string body = std::move(request.body);
-  SceneStore::Added added;
-  app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
-    added = app.scenes().add(load_scene(parse_document(body), meshes));
-  });
-  const Scene& scene = added.scene->scene();
-  Response response = json_answer(added.known ? 200 : 201, summary(scene));
+  SceneStore::Kept kept;
+  app.read(body.size(), caller_of(request), timing,
+           [&](const MeshSource& meshes) { kept = app.scenes().keep(parse_document(body), meshes); });
+  const Scene& scene = kept.scene->scene();
+  Response response = json_answer(kept.known ? 200 : 201, summary(scene));
   response.set("Location", "/v1/scenes/" + scene.id);
   response.set("ETag", etag_of_scene(scene));
   response.set("Server-Timing", server_timing(timing));

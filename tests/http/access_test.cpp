@@ -62,7 +62,12 @@ TEST(Access, NeedsATokenOfTheScope) {
   expect_problem(post("/v1/scenes", "r", scene), 403);
   expect_problem(post("/v1/render", "r", scene), 403);
   expect_problem(post("/v1/scenes", "p", scene), 403);
-  EXPECT_EQ(post("/v1/render", "p", scene)->status, 200);
+  const auto rendered = post("/v1/render", "p", scene);
+  EXPECT_EQ(rendered->status, 200);
+  const std::string cached = "/v1/scenes/" + rendered->get_header_value("Orrery-Scene-Id");
+  expect_problem(client.Get(cached), 401);
+  EXPECT_EQ(client.Get(cached, bearer("r"))->status, 200);
+  expect_problem(client.Delete(cached, bearer("p")), 403);
   const auto kept = post("/v1/scenes", "k", scene);
   EXPECT_EQ(kept->status, 201);
   const std::string charts = kept->get_header_value("Location") + "/charts";
