@@ -51,7 +51,6 @@ void keep_private(Audience audience, Response& response) {
 HttpServer::Options options_of(const Settings& settings) {
   return {.host = settings.host,
           .port = settings.port,
-          .max_body = settings.body_bytes,
           .max_bodies = std::max({settings.bodies_bytes, settings.body_bytes, settings.asset_bytes}),
           .max_connections = settings.connections,
           .grace = settings.grace_seconds};
@@ -61,7 +60,6 @@ HttpServer::Options health_options_of(const Settings& settings) {
   constexpr std::size_t kConnections = 16;
   return {.host = settings.host,
           .port = settings.health_port,
-          .max_body = 0,
           .max_bodies = 0,
           .max_connections = kConnections,
           .grace = std::chrono::seconds(1)};
@@ -76,20 +74,16 @@ Service::Service(const Settings& settings, const Log& log)
       health_(health_options_of(settings), handler_of(health_router_)) {
   add_routes(router_, app_);
   add_health_routes(health_router_, app_);
-  health_router_.add("GET", "/metrics", [this](Request&) { return metrics(); });
+  health_router_.add("GET", "/metrics", Scope::none, LogLevel::debug, [this](Request&) { return metrics(); });
 }
 
 HttpServer::Handler Service::handler_of(const Router& router) {
-  return {.answer = [this, &router](Request& request) { return answer(router, request); },
-          .refuse =
-              [](Request& request, std::exception_ptr error) {
-                Response response = problem_response(error, request.id);
-                add_common_headers(request, response);
-                return response;
-              },
-          .served = [this](const Request& request, const Response& response, std::uint64_t bytes,
-                           bool gone) { note(request, response, bytes, gone); },
-          .grace_over = [this] { app_.end(); }};
+  return {
+      .admit = [this, &router](Request& request) { return admit(router, request); },
+      .refuse = [this](const Request& request, std::exception_ptr error) { return refuse(request, error); },
+      .served = [this](const Request& request, const Response& response, std::uint64_t bytes,
+                       bool gone) { note(request, response, bytes, gone); },
+      .grace_over = [this] { app_.end(); }};
 }
 
 void Service::run() {
@@ -134,21 +128,33 @@ Response Service::metrics() {
       .set("Cache-Control", "no-store");
 }
 
-Response Service::answer(const Router& router, Request& request) {
-  Response response;
-  try {
-    if (auto answer = preflight(request, app_.settings().cors_origins)) {
-      response = std::move(*answer);
-    } else {
-      const Settings& settings = app_.settings();
-      refuse_foreign(request, settings.cors_origins, !settings.tokens_file.empty());
-      const Audience audience = &router == &router_ ? require_access(app_.access(), request) : Audience::all;
-      response = router.dispatch(request);
-      keep_private(audience, response);
-    }
-  } catch (...) {
-    response = problem_response(std::current_exception(), request.id);
-  }
+HttpServer::Admitted Service::admit(const Router& router, Request& request) {
+  const Settings& settings = app_.settings();
+  const auto answered = [this](const Response& response) -> HttpServer::Admitted {
+    return {.body = {}, .answer = [this, response](Request& r) { return finished(r, response); }};
+  };
+  if (const auto answer = preflight(request, settings.cors_origins)) return answered(*answer);
+  refuse_foreign(request, settings.cors_origins, !settings.tokens_file.empty());
+  if (request.method == "OPTIONS")
+    return answered({.status = 204, .headers = {{"Allow", router.allowed_methods(request)}}});
+  const Route& route = router.find(request);
+  const Audience audience = require_access(app_.access(), route.scope, request);
+  HttpServer::Admitted admitted{.body = {}, .answer = [this, &route, audience](Request& r) {
+                                  Response response = route.handler(r);
+                                  keep_private(audience, response);
+                                  return finished(r, std::move(response));
+                                }};
+  if (!route.body) return admitted;
+  route.body->require(request);
+  admitted.body = route.body->limit;
+  return admitted;
+}
+
+Response Service::refuse(const Request& request, std::exception_ptr error) const {
+  return finished(request, problem_response(error, request.id));
+}
+
+Response Service::finished(const Request& request, Response response) const {
   add_common_headers(request, response);
   allow_origin(request, app_.settings().cors_origins, response);
   return response;
@@ -156,7 +162,8 @@ Response Service::answer(const Router& router, Request& request) {
 
 void Service::note(const Request& request, const Response& response, std::uint64_t bytes, bool gone) {
   const double ms = milliseconds_since(request.start);
-  metrics_.count_request(request.route, request.method, response.status, ms / 1000, gone);
+  metrics_.count_request(request.route ? request.route->pattern : "", request.method, response.status,
+                         ms / 1000, gone);
   nlohmann::ordered_json fields = {{"id", request.id},
                                    {"method", request.method},
                                    {"path", request.path.substr(0, 200)},
@@ -166,10 +173,9 @@ void Service::note(const Request& request, const Response& response, std::uint64
   if (response.rays > 0) fields["rays"] = response.rays;
   if (gone) fields["client_left"] = true;
   if (!response.note.empty()) fields["error"] = response.note;
-  const bool health = request.path == "/healthz" || request.path == "/readyz" || request.path == "/metrics";
   const bool failed = response.status == 500 || !response.note.empty();
-  const LogLevel level = failed ? LogLevel::error : health ? LogLevel::debug : LogLevel::info;
-  log_.write(level, "request", fields);
+  const LogLevel usual = request.route ? request.route->log : LogLevel::info;
+  log_.write(failed ? LogLevel::error : usual, "request", fields);
 }
 
 }  // namespace orrery

@@ -3,8 +3,8 @@
 #include "server/app/app.h"
 #include "server/app/log.h"
 #include "server/app/metrics.h"
-#include "server/http/router.h"
 #include "server/http/server.h"
+#include "server/routes/router.h"
 
 namespace orrery {
 
@@ -25,7 +25,9 @@ class Service {
 
  private:
   HttpServer::Handler handler_of(const Router& router);
-  Response answer(const Router& router, Request& request);
+  HttpServer::Admitted admit(const Router& router, Request& request);
+  Response refuse(const Request& request, std::exception_ptr error) const;
+  Response finished(const Request& request, Response response) const;
   Response metrics();
   void note(const Request& request, const Response& response, std::uint64_t bytes, bool gone);
 

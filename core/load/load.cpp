@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/accelerators/registry.h"
+#include "core/base/hash.h"
 #include "core/lights/registry.h"
 #include "core/load/names_of.h"
 #include "core/materials/registry.h"
@@ -212,8 +213,8 @@ class SceneReader {
 
   // To be called once all is read without a problem.
   std::shared_ptr<const Scene> finish(const Document& document) {
-    scene_->id = document.id();
     scene_->canonical = document.canonical();
+    scene_->id = sha256_hex(scene_->canonical);
     number_materials();
     gather_motion();
     gather_shape_facts();

@@ -29,17 +29,7 @@ std::string read_file(const std::string& path) {
   return bytes;
 }
 
-void take_scopes(std::string_view list, bool (&may)[kScopes.size()]) {
-  if (list.empty()) throw InputError("", "expected a scope: read, render or write");
-  std::istringstream scopes{std::string(list)};
-  for (std::string scope; std::getline(scopes, scope, ',');) {
-    const auto known = std::find(kScopes.begin(), kScopes.end(), scope);
-    if (known == kScopes.end())
-      throw InputError("", "there is no scope \"" + scope.substr(0, 40) + "\"" +
-                               did_you_mean(scope, kScopes) + "; there are read, render and write");
-    may[known - kScopes.begin()] = true;
-  }
-}
+constexpr Scope scope_number(std::size_t i) { return static_cast<Scope>(1U << i); }  // of kScopes
 
 Access::Holder read_holder(const std::string& line) {
   std::istringstream words(line);
@@ -48,9 +38,7 @@ Access::Holder read_holder(const std::string& line) {
   if (hash.empty() || words >> more)
     throw InputError("", "expected a name, scopes and the SHA-256 of a token, with blanks between them");
   if (!is_sha256_hex(hash)) throw InputError("", "expected a SHA-256 of 64 digits 0-9, a-f as the last word");
-  Access::Holder holder{.name = name, .token_sha256 = hash, .may = {}};
-  take_scopes(scopes, holder.may);
-  return holder;
+  return {.name = name, .token_sha256 = hash, .scopes = parse_scopes(scopes)};
 }
 
 std::string signed_text(std::string_view address, std::int64_t expires) {
@@ -124,9 +112,24 @@ std::string token_line(std::string_view name, std::string_view scopes, std::stri
   return std::string(name) + " " + std::string(scopes) + " " + sha256_hex(token);
 }
 
-void require_scopes(std::string_view scopes) {
-  bool may[kScopes.size()] = {};
-  take_scopes(scopes, may);
+Scope parse_scopes(std::string_view list) {
+  if (list.empty()) throw InputError("", "expected a scope: read, render or write");
+  std::istringstream names{std::string(list)};
+  Scope scopes = Scope::none;
+  for (std::string name; std::getline(names, name, ',');) {
+    const auto known = std::find(kScopes.begin(), kScopes.end(), name);
+    if (known == kScopes.end())
+      throw InputError("", "there is no scope \"" + name.substr(0, 40) + "\"" + did_you_mean(name, kScopes) +
+                               "; there are read, render and write");
+    scopes = scopes | scope_number(known - kScopes.begin());
+  }
+  return scopes;
+}
+
+std::optional<std::string_view> lacking(Scope held, Scope needed) {
+  for (std::size_t i = 0; i < kScopes.size(); ++i)
+    if ((needed | scope_number(i)) == needed && (held | scope_number(i)) != held) return kScopes[i];
+  return std::nullopt;
 }
 
 }  // namespace orrery

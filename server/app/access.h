@@ -10,10 +10,15 @@
 
 namespace orrery {
 
-// What the holder of a token may do: look at what is there, pictures included; have pictures made of other
-// scenes, and jobs done; keep and remove scenes and assets.
-enum class Scope { read, render, write };
+// What the holder of a token may do, and what a request needs: look at what is there, pictures included; have
+// pictures made of other scenes, and jobs done; keep and remove scenes and assets; or several of these.
+enum class Scope : unsigned { none = 0, read = 1, render = 2, write = 4 };
 inline constexpr std::array<std::string_view, 3> kScopes{"read", "render", "write"};
+constexpr Scope operator|(Scope a, Scope b) {
+  return static_cast<Scope>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+// The name of the first scope of `needed` that `held` lacks; none: it has them all.
+std::optional<std::string_view> lacking(Scope held, Scope needed);
 
 // Who may use the service: holders of a token, and those whom they gave a signed link. Safe from any thread.
 class Access {
@@ -30,7 +35,7 @@ class Access {
 
   struct Holder {
     std::string name, token_sha256;
-    bool may[kScopes.size()];
+    Scope scopes;
   };
   // Who holds the token; none: nobody. Takes as long for every token.
   std::optional<Holder> holder_of(std::string_view token) const;
@@ -55,7 +60,7 @@ class Access {
 // A line for a tokens file.
 std::string token_line(std::string_view name, std::string_view scopes, std::string_view token);
 
-// Throws InputError unless `scopes` is a list of scopes with commas between them.
-void require_scopes(std::string_view scopes);
+// Reads a list of scopes with commas between them. Throws InputError.
+Scope parse_scopes(std::string_view list);
 
 }  // namespace orrery

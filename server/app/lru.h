@@ -27,7 +27,7 @@ class Lru {
       touch(known->second);
       return {known->second.value, true};
     }
-    while (bytes_ + bytes > most_bytes_) erase(entries_.find(uses_.back()));
+    shrink_to(most_bytes_ - bytes);
     uses_.push_front(id);
     bytes_ += bytes;
     return {entries_.emplace(id, Entry{make(), bytes, uses_.begin()}).first->second.value, false};
@@ -50,6 +50,12 @@ class Lru {
     return true;
   }
 
+  // Forgets those not used for longest until the rest take at most so many bytes.
+  void shrink(std::size_t most_bytes) {
+    const std::lock_guard lock(mutex_);
+    shrink_to(most_bytes);
+  }
+
   std::size_t bytes() const {
     const std::lock_guard lock(mutex_);
     return bytes_;
@@ -64,6 +70,10 @@ class Lru {
   };
   using Entries = std::map<std::string, Entry>;
 
+  // Below: with mutex_ held.
+  void shrink_to(std::size_t most_bytes) {
+    while (bytes_ > most_bytes) erase(entries_.find(uses_.back()));
+  }
   void touch(Entry& entry) { uses_.splice(uses_.begin(), uses_, entry.use); }
   void erase(typename Entries::iterator entry) {
     bytes_ -= entry->second.bytes;

@@ -1,6 +1,9 @@
 #include "server/app/scene_store.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
+#include "core/load/load.h"
 
 namespace orrery {
 namespace {
@@ -24,14 +27,51 @@ std::size_t estimated_bytes(const Scene& scene) {
 
 }  // namespace
 
-SceneStore::Added SceneStore::add(std::shared_ptr<const Scene> scene) {
-  const std::size_t size = estimated_bytes(*scene);
-  if (size > scenes_.most_bytes())
+SceneStore::Kept SceneStore::keep(const Document& document, const MeshSource& meshes) {
+  const std::string id = document.id();
+  const Prepared scene = find_or_load(id, document, meshes);
+  const std::size_t size = estimated_bytes(scene->scene()), most = kept_.most_bytes();
+  if (size > most)
     throw InputError("", "the scene takes about " + std::to_string(size) + " bytes of memory, at most " +
-                             std::to_string(scenes_.most_bytes()) + " are kept (store_bytes)");
-  const auto added = scenes_.add(
-      scene->id, size, [&scene] { return std::make_shared<const PreparedScene>(std::move(scene)); });
-  return {added.value, added.known};
+                             std::to_string(most) + " are kept (store_bytes)");
+  const std::lock_guard lock(mutex_);
+  cached_.remove(id);
+  if (const auto known = kept_.find(id)) return {*known, true};
+  cached_.shrink(most - std::min(most, kept_.bytes() + size));
+  return {kept_.add(id, size, [&scene] { return scene; }).value, false};
+}
+
+SceneStore::Prepared SceneStore::get(const Document& document, const MeshSource& meshes) {
+  const std::string id = document.id();
+  const Prepared scene = find_or_load(id, document, meshes);
+  const std::size_t size = estimated_bytes(scene->scene());
+  const std::lock_guard lock(mutex_);
+  if (const auto known = find_locked(id)) return known;
+  const std::size_t room = kept_.most_bytes() - kept_.bytes();
+  if (size > room) return scene;
+  cached_.shrink(room - size);
+  return cached_.add(id, size, [&scene] { return scene; }).value;
+}
+
+SceneStore::Prepared SceneStore::find_or_load(const std::string& id, const Document& document,
+                                              const MeshSource& meshes) {
+  if (auto known = find_known(id)) {
+    ++hits_;
+    return known;
+  }
+  auto loaded = std::make_shared<const PreparedScene>(load_scene(document, meshes));
+  ++loads_;
+  return loaded;
+}
+
+SceneStore::Prepared SceneStore::find_known(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  return find_locked(id);
+}
+
+SceneStore::Prepared SceneStore::find_locked(const std::string& id) {
+  if (const auto kept = kept_.find(id)) return *kept;
+  return cached_.find(id).value_or(nullptr);
 }
 
 SceneStore::Prepared SceneStore::find(const std::string& id) {
@@ -39,12 +79,9 @@ SceneStore::Prepared SceneStore::find(const std::string& id) {
   throw NotFound("There is no scene " + id.substr(0, 64) + " (any more): post it again");
 }
 
-SceneStore::Prepared SceneStore::find_known(const std::string& id) {
-  return scenes_.find(id).value_or(nullptr);
-}
-
 void SceneStore::remove(const std::string& id) {
-  if (!scenes_.remove(id)) throw NotFound("There is no scene " + id.substr(0, 64));
+  const std::lock_guard lock(mutex_);
+  if (!kept_.remove(id) && !cached_.remove(id)) throw NotFound("There is no scene " + id.substr(0, 64));
 }
 
 }  // namespace orrery

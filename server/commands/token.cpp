@@ -24,7 +24,7 @@ int make_token(const Options& options) {
       !options.name.empty() && std::all_of(options.name.begin(), options.name.end(),
                                            [](char c) { return c > ' ' && c != 0x7F && c != '#'; });
   if (!word) throw InputError("NAME", "expected a word of plain characters without #");
-  require_scopes(options.scopes);
+  parse_scopes(options.scopes);
   constexpr std::size_t kBytes = 32;
   const std::string token = random_hex(kBytes);
   std::cout << token_line(options.name, options.scopes, token) << std::endl;

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstddef>
 #include <string>
-#include <utility>
 
 #include "core/base/error.h"
 
@@ -18,31 +17,20 @@ class Budget {
   // Bytes taken, given back with the object.
   class Share {
    public:
-    Share() = default;
-    Share(Share&& other) noexcept : from_(std::exchange(other.from_, nullptr)), bytes_(other.bytes_) {}
-    Share& operator=(Share&& other) noexcept {
-      std::swap(from_, other.from_);
-      std::swap(bytes_, other.bytes_);
-      return *this;
-    }
-    ~Share() {
-      if (from_) from_->taken_ -= bytes_;
-    }
+    explicit Share(Budget& from) : from_(from) {}
+    ~Share() { from_.taken_ -= bytes_; }
+    Share(const Share&) = delete;
     // Takes what it has not yet of so many bytes. Throws Busy if there are not so many left.
     void grow(std::size_t bytes) {
       if (bytes <= bytes_) return;
-      from_->take_more(bytes - bytes_);
+      from_.take_more(bytes - bytes_);
       bytes_ = bytes;
     }
 
    private:
-    friend class Budget;
-    Share(Budget* from, std::size_t bytes) : from_(from), bytes_(bytes) {}
-    Budget* from_ = nullptr;
+    Budget& from_;
     std::size_t bytes_ = 0;
   };
-
-  Share share() { return {this, 0}; }
 
  private:
   void take_more(std::size_t bytes) {

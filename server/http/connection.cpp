@@ -3,10 +3,12 @@
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <limits>
 #include <utility>
@@ -19,6 +21,15 @@ using Clock = Waiting::Clock;
 int milliseconds_until(Clock::time_point deadline) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, std::numeric_limits<int>::max()));
+}
+
+// Drops the first `bytes` of what is left of a message.
+void take_from(msghdr& left, std::size_t bytes) {
+  for (; left.msg_iovlen > 0 && bytes >= left.msg_iov->iov_len; ++left.msg_iov, --left.msg_iovlen)
+    bytes -= left.msg_iov->iov_len;
+  if (left.msg_iovlen == 0) return;
+  left.msg_iov->iov_base = static_cast<char*>(left.msg_iov->iov_base) + bytes;
+  left.msg_iov->iov_len -= bytes;
 }
 
 }  // namespace
@@ -161,7 +172,7 @@ Head Connection::read_head() {
   }
 }
 
-std::string Connection::read_body(const Head& head, const Request::BodyLimit& limit,
+std::string Connection::read_body(const Head& head, const BodyLimit& limit,
                                   const std::function<void(std::size_t)>& received) {
   if (head.chunked || !head.content_length) {
     body_left_ = std::numeric_limits<std::size_t>::max();  // whatever comes is no request, but a body
@@ -175,7 +186,7 @@ std::string Connection::read_body(const Head& head, const Request::BodyLimit& li
     if (!equal_ignoring_case(*expect, "100-continue"))
       throw HttpError(417, "Expected no Expect but 100-continue");
     const bool waits = received_.empty() && length > 0 && head.minor_version == 1;  // RFC 9110, 10.1.1
-    if (waits) httplib::Stream::write(std::string("HTTP/1.1 100 Continue\r\n\r\n"));
+    if (waits) write({"HTTP/1.1 100 Continue\r\n\r\n"});
   }
   reading_since_ = Clock::now();
   const auto deadline =
@@ -198,26 +209,28 @@ void Connection::abandon() const {
   shutdown(fd_, SHUT_RDWR);
 }
 
-ssize_t Connection::read(char* bytes, std::size_t size) {
-  const std::size_t count = offered_.copy(bytes, size);
-  offered_.erase(0, count);
-  return static_cast<ssize_t>(count);
-}
-
-ssize_t Connection::write(const char* bytes, std::size_t size) {
-  const auto deadline = Clock::now() + patience_.write_stall;
-  while (!broken_) {
-    const ssize_t count = send(fd_, bytes, size, MSG_NOSIGNAL);
+bool Connection::write(std::initializer_list<std::string_view> pieces) {
+  assert(pieces.size() <= kMostPieces);
+  std::array<iovec, kMostPieces> vectors;
+  msghdr left{};  // what is not sent yet
+  left.msg_iov = vectors.data();
+  for (const std::string_view piece : pieces)
+    if (!piece.empty()) vectors[left.msg_iovlen++] = {const_cast<char*>(piece.data()), piece.size()};
+  auto deadline = Clock::now() + patience_.write_stall;
+  while (left.msg_iovlen > 0 && !broken_) {
+    const ssize_t count = sendmsg(fd_, &left, MSG_NOSIGNAL);
     if (count >= 0) {
+      take_from(left, static_cast<std::size_t>(count));
       written_ += static_cast<std::uint64_t>(count);
       if (writing_since_) count_progress(*writing_since_, static_cast<std::size_t>(count));
-      return count;
+      deadline = Clock::now() + patience_.write_stall;
+      continue;
     }
     if (errno == EAGAIN && !writing_since_) writing_since_ = Clock::now();
     if (errno == EINTR || (errno == EAGAIN && wait(POLLOUT, deadline, false) == Ready::socket)) continue;
     broken_ = true;
   }
-  return -1;
+  return !broken_;
 }
 
 std::string Connection::network() const {
@@ -234,12 +247,5 @@ std::string Connection::network() const {
   inet_ntop(address.ss_family, bytes, text.data(), text.size());
   return text.data();
 }
-
-void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {
-  ip.clear();
-  port = -1;
-}
-
-void Connection::get_local_ip_and_port(std::string& ip, int& port) const { get_remote_ip_and_port(ip, port); }
 
 }  // namespace orrery

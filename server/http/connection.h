@@ -1,9 +1,9 @@
 #pragma once
 
-#include <httplib.h>
-
 #include <atomic>
 #include <chrono>
+#include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,16 +24,14 @@ struct Patience {
   std::chrono::milliseconds last_call{1'000};  // for the rest of a request once the service ends
 };
 
-// One client's socket as a stream for httplib. The stream yields only a request line of ours, because what
-// the client sends is read and judged here, once: no second parser can understand it differently. Writing
-// goes to the socket. For the thread that serves the connection, except abandon(), waiting() and
-// make_room().
-class Connection final : public httplib::Stream {
+// One client's socket: requests are read from it, answers are written to it. For the thread that serves the
+// connection, except abandon(), waiting() and make_room().
+class Connection final {
  public:
   // Takes the socket, which must not block. `wake` becomes readable when the service ends: idle connections
   // end then, and half a request has a last call.
   Connection(int fd, int wake, const Patience& patience);
-  ~Connection() override;
+  ~Connection();
   Connection(const Connection&) = delete;
 
   // Waits for the first byte of a request. Empty lines before it are skipped, a few (RFC 9112, 2.2). False:
@@ -41,21 +39,25 @@ class Connection final : public httplib::Stream {
   bool wait_for_request();
   // Reads up to the empty line. Throws HttpError.
   Head read_head();
-  // What httplib will read as the next request.
-  void offer(std::string request) { offered_ = std::move(request); }
 
   // Reads the body of the request with this head. Throws HttpError.
   // `received` is told how many bytes there are, each time that some have come; what it throws ends the
   // reading.
-  std::string read_body(const Head& head, const Request::BodyLimit& limit,
+  std::string read_body(const Head& head, const BodyLimit& limit,
                         const std::function<void(std::size_t)>& received);
   // Whether bytes of this request may still be under way; then nothing after it can be understood.
   bool body_unread() const { return body_left_ > 0; }
+
+  // Sends these bytes, one piece after the other, and waits until the kernel has taken them all. False: the
+  // client has left, or takes nothing any more. REQUIRES: at most kMostPieces.
+  static constexpr std::size_t kMostPieces = 4;
+  bool write(std::initializer_list<std::string_view> pieces);
 
   // Before the end of a connection: waits a little for what the client still sends, which would otherwise see
   // a broken connection instead of the answer.
   void linger();
 
+  int fd() const { return fd_; }
   bool left() const { return broken_ || ended_; }  // seen before the answer ended
   void abandon() const;                            // breaks it off
 
@@ -69,14 +71,6 @@ class Connection final : public httplib::Stream {
   std::uint64_t bytes_written() const { return written_; }
   // The client's network: its IPv4 address, or the half of its IPv6 address that it does not choose itself.
   std::string network() const;
-
-  bool is_readable() const override { return !offered_.empty(); }
-  bool is_writable() const override { return !broken_; }
-  ssize_t read(char* bytes, std::size_t size) override;
-  ssize_t write(const char* bytes, std::size_t size) override;
-  void get_remote_ip_and_port(std::string& ip, int& port) const override;
-  void get_local_ip_and_port(std::string& ip, int& port) const override;
-  socket_t socket() const override { return fd_; }
 
  private:
   using Clock = Waiting::Clock;
@@ -98,7 +92,6 @@ class Connection final : public httplib::Stream {
   const int fd_, wake_;
   const Patience patience_;
   std::string received_;  // read from the socket, not used yet
-  std::string offered_;   // for httplib
   std::size_t body_left_ = 0;
   int empty_lines_ = 0;  // before the request
   bool fresh_ = true;    // no request was waited for yet

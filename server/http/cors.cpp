@@ -47,7 +47,7 @@ void allow_origin(const Request& request, const std::vector<std::string>& origin
   if (!is_listed(request, origins)) return;
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
   response.set("Access-Control-Expose-Headers",
-               "ETag, Location, Retry-After, Server-Timing, X-Rays, X-Request-ID");
+               "ETag, Location, Orrery-Scene-Id, Retry-After, Server-Timing, X-Rays, X-Request-ID");
 }
 
 }  // namespace orrery

@@ -1,24 +1,22 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 
 #include "server/http/budget.h"
 #include "server/http/connection.h"
 #include "server/http/hangup_monitor.h"
+#include "server/http/response_writer.h"
 #include "server/http/server.h"
 
 namespace orrery {
 
-struct Exchange;
-
-// One request and its answer, on any connection: from bytes to the handler and back to bytes. Safe from any
-// thread.
+// One request and its answer, on any connection, in one direction: head, admission, body, handler, answer.
+// Safe from any thread.
 class Exchanger {
  public:
   // `handler` and `monitor` must outlive it.
-  Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler, HangupMonitor& monitor);
-  ~Exchanger();
+  Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler, HangupMonitor& monitor)
+      : handler_(handler), monitor_(monitor), bodies_(options.max_bodies, "bodies_bytes") {}
 
   // Reads and answers the request that begins there. False if the connection ends with it. Throws nothing but
   // std::bad_alloc and its like.
@@ -28,15 +26,13 @@ class Exchanger {
   void drain() { draining_ = true; }
 
  private:
-  class Engine;
-  void take(Exchange& exchange);
+  Response response_to(Request& request, const Head& head, Connection& connection, Budget::Share& body);
+  bool send(Connection& connection, const Request& request, Response response, Framing framing);
 
-  const std::size_t max_body_;
   const HttpServer::Handler& handler_;
   HangupMonitor& monitor_;
   Budget bodies_;
   std::atomic<bool> draining_{false};
-  const std::unique_ptr<Engine> engine_;
 };
 
 }  // namespace orrery

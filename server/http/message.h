@@ -15,31 +15,33 @@
 // What routes see of HTTP. No library shows through.
 namespace orrery {
 
+struct Route;
+
 // Names and values in the order they came.
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
 // The value of the first field of that name, whatever its case.
 std::optional<std::string> find_field(const Fields& fields, std::string_view name);
 
+// How long a body may be.
+struct BodyLimit {
+  std::size_t bytes;
+  const char* name;  // in /v1/limits
+};
+
 struct Request {
   std::string method;                 // "HEAD" is answered as "GET", without the body
   std::string path;                   // decoded
   std::vector<std::string> segments;  // of the path, each decoded
-  std::string_view route;             // the pattern that it matches; empty if none
+  const Route* route = nullptr;       // whose path it has; null: none has
   std::string id;      // of this request: sent by the client, or made up; letters, digits, . _ -
   std::string client;  // who asks: the address, or what it is known as
   Fields query;        // decoded; names are unique
   Fields path_values;  // of the route's {places}
   Fields headers;
+  std::string body;  // if the route has one read
   std::chrono::steady_clock::time_point start;
 
-  struct BodyLimit {
-    std::size_t bytes;
-    const char* name;  // in /v1/limits
-  };
-  BodyLimit body_limit;  // a route may set another
-  // Reads the whole body, once. Throws HttpError if it is refused or does not come.
-  std::function<std::string()> read_body;
   std::stop_token gone;  // requested once the client has gone
 
   std::optional<std::string> header(std::string_view name) const { return find_field(headers, name); }

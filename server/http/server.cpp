@@ -15,6 +15,7 @@
 #include "server/http/exchange.h"
 #include "server/http/listener.h"
 #include "server/http/request_id.h"
+#include "server/http/response_writer.h"
 #include "server/http/shed.h"
 #include "server/http/threads.h"
 
@@ -121,11 +122,7 @@ class HttpServer::Parts {
     const Busy busy(std::to_string(options_.max_connections) + " connections are open already (connections)",
                     1);
     const Response response = handler_.refuse(request, std::make_exception_ptr(busy));
-    std::string bytes = "HTTP/1.1 " + std::to_string(response.status) + " " +
-                        std::string(reason_phrase(response.status)) + "\r\n";
-    for (const auto& [name, value] : response.headers) bytes += name + ": " + value + "\r\n";
-    return bytes + "Connection: close\r\nContent-Length: " + std::to_string(response.body.size()) +
-           "\r\n\r\n" + response.body;
+    return response_head(response, {.keep_alive = false}) + response.body;
   }
 
   // Waits until no request is being answered. False if one still is at the deadline.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "server/http/message.h"
@@ -18,18 +19,24 @@ class HttpServer {
  public:
   struct Options {
     std::string host = "127.0.0.1";
-    int port = 0;  // 0: a free one
-    std::size_t max_body = 8 << 20;
+    int port = 0;                        // 0: a free one
     std::size_t max_bodies = 256 << 20;  // of all that are read or used at one time (bodies_bytes)
     std::size_t max_connections = 256;
     std::chrono::seconds grace{30};  // for running requests once drain() was called
   };
 
-  // All are called on several threads at once and throw nothing.
-  struct Handler {
+  // A request that was judged by its head: what is left to be done.
+  struct Admitted {
+    std::optional<BodyLimit> body;  // of the body that is read first; none: none is read
     std::function<Response(Request&)> answer;
-    // For what cannot even be understood as a request: what was thrown about it.
-    std::function<Response(Request&, std::exception_ptr)> refuse;
+  };
+
+  // All are called on several threads at once. What admit() and Admitted::answer() throw is handed
+  // to refuse(); the others throw nothing.
+  struct Handler {
+    std::function<Admitted(Request&)> admit;
+    // The answer to what was thrown about a request, which may not even be understood as one.
+    std::function<Response(const Request&, std::exception_ptr)> refuse;
     // After the answer: bytes sent, and whether the client had left by then.
     std::function<void(const Request&, const Response&, std::uint64_t bytes, bool gone)> served;
     // When the grace after drain() is over: running requests must end now.

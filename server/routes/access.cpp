@@ -20,17 +20,10 @@ std::string address_of(const Request& request) {
   return text;
 }
 
-Scope scope_of(const Request& request) {
-  if (request.method == "GET" || request.method == "HEAD") return Scope::read;
-  const bool renders = request.path == "/v1/render" || request.path.starts_with("/v1/jobs") ||
-                       request.path.ends_with("/charts");
-  return renders ? Scope::render : Scope::write;
-}
-
 // Whether it is a link that holds. Throws HttpError 403 if it is one that does not.
 bool pass_by_link(const Access& access, Request& request) {
   const auto signature = find_field(request.query, kSignature);
-  if (!signature || scope_of(request) != Scope::read) return false;
+  if (!signature) return false;
   const auto expires = number_in<std::int64_t>(find_field(request.query, kExpires).value_or(""));
   if (!expires || !access.is_signed(address_of(request), *expires, *signature))
     throw HttpError(403, "The link is not one that this service has signed");
@@ -49,16 +42,11 @@ std::string_view bearer_of(std::string_view header) {
   return header.substr(kBearer.size());
 }
 
-void require_scope(const Access::Holder& holder, Scope scope) {
-  const auto index = static_cast<std::size_t>(scope);
-  if (!holder.may[index]) throw HttpError(403, "The token lacks the scope " + std::string(kScopes[index]));
-}
-
 }  // namespace
 
-Audience require_access(const Access& access, Request& request) {
-  if (!request.path.starts_with("/v1/")) return Audience::all;
-  if (pass_by_link(access, request)) return Audience::link;
+Audience require_access(const Access& access, Scope needed, Request& request) {
+  if (needed == Scope::none) return Audience::all;
+  if (needed == Scope::read && pass_by_link(access, request)) return Audience::link;
   if (!access.needs_token()) return Audience::all;
   const std::string header = request.header("Authorization").value_or("");
   const auto holder = access.holder_of(bearer_of(header));
@@ -66,8 +54,8 @@ Audience require_access(const Access& access, Request& request) {
     throw HttpError(401,
                     header.empty() ? "A token is needed (Authorization: Bearer)" : "The token is not known",
                     {{"WWW-Authenticate", header.empty() ? "Bearer" : "Bearer error=\"invalid_token\""}});
-  require_scope(*holder, scope_of(request));
-  if (request.path == "/v1/shares") require_scope(*holder, Scope::read);  // what a link gives, its maker has
+  if (const auto scope = lacking(holder->scopes, needed))
+    throw HttpError(403, "The token lacks the scope " + std::string(*scope));
   request.client = holder->name;
   return Audience::holders;
 }

@@ -8,10 +8,9 @@ namespace orrery {
 // Who may see the answer: all, all who show a token, or who has the link.
 enum class Audience { all, holders, link };
 
-// Lets a request pass that shows a token of the scope it needs or a signed link, or needs neither; notes who
-// it is from. What lies outside of /v1/ is open to all. A link's own parameters are taken out of the query.
-// Throws HttpError 401 or 403.
-Audience require_access(const Access& access, Request& request);
+// Lets a request pass that shows a token of the scope it needs or, to read, a signed link, or needs neither;
+// notes who it is from. A link's own parameters are taken out of the query. Throws HttpError 401 or 403.
+Audience require_access(const Access& access, Scope needed, Request& request);
 
 // Whether the address has parameters of a link.
 bool is_link(const Request& request);

@@ -28,8 +28,7 @@ void split(std::string_view list, char separator, const Part& part) {
 }
 
 void require_json(const Request& request) {
-  if (request.header("Content-Encoding"))
-    throw HttpError(415, "A body must not be compressed (Content-Encoding)");
+  refuse_compressed(request);
   const std::string header = request.header("Content-Type").value_or("");
   const std::string_view type = trimmed(std::string_view(header).substr(0, header.find(';')));
   // curl and forms call every body x-www-form-urlencoded; it is read as JSON all the same.
@@ -83,9 +82,13 @@ Fit fit_of(std::string_view entry, std::string_view type) {
 
 Caller caller_of(const Request& request) { return {request.client, request.gone}; }
 
-std::string read_json(Request& request) {
-  require_json(request);
-  return request.read_body();
+RouteBody json_body(const App& app) {
+  return {.limit = {app.settings().body_bytes, "body_bytes"}, .require = require_json};
+}
+
+void refuse_compressed(const Request& request) {
+  if (request.header("Content-Encoding"))
+    throw HttpError(415, "A body must not be compressed (Content-Encoding)");
 }
 
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more) {

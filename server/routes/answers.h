@@ -7,16 +7,17 @@
 
 #include "server/app/app.h"
 #include "server/app/render_options.h"
-#include "server/http/message.h"
+#include "server/routes/router.h"
 
 // What several routes need to read a request and to write an answer.
 namespace orrery {
 
 Caller caller_of(const Request& request);
 
-// The body, which says to be JSON. Throws HttpError for a content type or coding that is not accepted, or if
-// it does not come.
-std::string read_json(Request& request);
+// A body of JSON, of at most `body_bytes`. Refuses other content types, and what is compressed.
+RouteBody json_body(const App& app);
+// Throws HttpError 415 for a body that is compressed.
+void refuse_compressed(const Request& request);
 
 // The options of a render in the query. `more` names what else the query may have; its values are left alone.
 // Throws InputError, with pointers such as "/azimuth".

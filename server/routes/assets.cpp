@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app/app.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // /v1/assets: mesh files that scenes name by the hash of their bytes.
@@ -25,14 +24,15 @@ FormatNames names_of(const AssetStore::Asset& asset) {
 
 std::string etag_of(const std::string& id) { return "\"" + id + "\""; }
 
+void require_asset(const Request& request) {
+  AssetStore::require_name(request.path_value("id"));
+  refuse_compressed(request);
+}
+
 Response put_asset(App& app, Request& request) {
   app.require_open();
   const std::string id = request.path_value("id");
-  AssetStore::require_name(id);
-  if (request.header("Content-Encoding"))
-    throw HttpError(415, "A body must not be compressed (Content-Encoding)");
-  request.body_limit = {app.settings().asset_bytes, "asset_bytes"};
-  const AssetStore::Added added = app.add_asset(id, request.read_body(), caller_of(request));
+  const AssetStore::Added added = app.add_asset(id, std::move(request.body), caller_of(request));
   const AssetStore::Asset& asset = *added.asset;
   Response response = json_answer(added.known ? 200 : 201, {{"id", id},
                                                             {"format", names_of(asset).name},
@@ -66,9 +66,13 @@ Response remove_asset(App& app, Request& request) {
 }  // namespace
 
 void add_assets_routes(Router& router, App& app) {
-  router.add("PUT", "/v1/assets/{id}", [&app](Request& request) { return put_asset(app, request); });
-  router.add("GET", "/v1/assets/{id}", [&app](Request& request) { return get_asset(app, request); });
-  router.add("DELETE", "/v1/assets/{id}", [&app](Request& request) { return remove_asset(app, request); });
+  const RouteBody body{.limit = {app.settings().asset_bytes, "asset_bytes"}, .require = require_asset};
+  router.add("PUT", "/v1/assets/{id}", Scope::write, LogLevel::info, body,
+             [&app](Request& request) { return put_asset(app, request); });
+  router.add("GET", "/v1/assets/{id}", Scope::read, LogLevel::info,
+             [&app](Request& request) { return get_asset(app, request); });
+  router.add("DELETE", "/v1/assets/{id}", Scope::write, LogLevel::info,
+             [&app](Request& request) { return remove_asset(app, request); });
 }
 
 }  // namespace orrery

@@ -5,7 +5,6 @@
 #include "core/plan/plan.h"
 #include "server/app/chart_forms.h"
 #include "server/app/picture_key.h"
-#include "server/http/router.h"
 #include "server/routes/job_answers.h"
 
 // /v1/scenes/{id}/charts: speed against accuracy of a picture, measured by a job.
@@ -18,7 +17,7 @@ struct ChartOrder {
 };
 
 ChartOrder read_render_order(App& app, Request& request, Timing& timing) {
-  const std::string body = read_json(request);
+  const std::string body = std::move(request.body);
   ChartOrder order;
   app.read(body.size(), caller_of(request), timing, [&](const MeshSource&) {
     const Document document = parse_document(body.empty() ? "{}" : body);
@@ -71,9 +70,9 @@ Response get_chart(App& app, Request& request) {
 }  // namespace
 
 void add_charts_routes(Router& router, App& app) {
-  router.add("POST", "/v1/scenes/{id}/charts",
+  router.add("POST", "/v1/scenes/{id}/charts", Scope::render, LogLevel::info, json_body(app),
              [&app](Request& request) { return start_chart(app, request); });
-  router.add("GET", "/v1/scenes/{id}/charts/{chart}",
+  router.add("GET", "/v1/scenes/{id}/charts/{chart}", Scope::read, LogLevel::info,
              [&app](Request& request) { return get_chart(app, request); });
 }
 

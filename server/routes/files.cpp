@@ -2,7 +2,6 @@
 
 #include "core/base/hash.h"
 #include "server/http/embedded.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // GET / and the files of the page, GET /scenes/{name}.json, GET /openapi.json: what was built into the
@@ -31,7 +30,7 @@ std::string_view type_of(std::string_view path) {
 
 void add_file(Router& router, std::string_view address, const EmbeddedFile& file) {
   const std::string etag = "\"" + sha256_hex(file.bytes).substr(0, 32) + "\"";
-  router.add("GET", address, [file, etag](Request& request) {
+  router.add("GET", address, Scope::none, LogLevel::info, [file, etag](Request& request) {
     Response response = has_current(request, etag)
                             ? Response{.status = 304}
                             : text_response(200, type_of(file.path), std::string(file.bytes));

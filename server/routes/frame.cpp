@@ -1,6 +1,5 @@
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // GET /v1/scenes/{id}/frame.png: one picture, a pure function of its address.
@@ -33,7 +32,8 @@ Response frame(App& app, Request& request) {
 }  // namespace
 
 void add_frame_routes(Router& router, App& app) {
-  router.add("GET", "/v1/scenes/{id}/frame.png", [&app](Request& request) { return frame(app, request); });
+  router.add("GET", "/v1/scenes/{id}/frame.png", Scope::read, LogLevel::info,
+             [&app](Request& request) { return frame(app, request); });
 }
 
 }  // namespace orrery

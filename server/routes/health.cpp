@@ -1,5 +1,4 @@
 #include "server/app/app.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // GET /healthz: the process answers. GET /readyz: it takes new work.
@@ -15,8 +14,9 @@ Response status(std::string_view word) {
 }  // namespace
 
 void add_health_routes(Router& router, App& app) {
-  router.add("GET", "/healthz", [](Request&) { return status("ok"); });
-  router.add("GET", "/readyz", [&app](Request&) { return status(app.readiness()); });
+  router.add("GET", "/healthz", Scope::none, LogLevel::debug, [](Request&) { return status("ok"); });
+  router.add("GET", "/readyz", Scope::none, LogLevel::debug,
+             [&app](Request&) { return status(app.readiness()); });
 }
 
 }  // namespace orrery

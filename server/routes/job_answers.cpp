@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "server/http/router.h"
 #include "server/routes/problem.h"
 
 namespace orrery {

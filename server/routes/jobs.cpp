@@ -5,7 +5,6 @@
 #include "core/params/params.h"
 #include "core/plan/plan.h"
 #include "server/app/picture_key.h"
-#include "server/http/router.h"
 #include "server/routes/job_answers.h"
 #include "server/routes/render_order.h"
 
@@ -149,11 +148,15 @@ Response remove_job(App& app, Request& request) {
 }  // namespace
 
 void add_jobs_routes(Router& router, App& app) {
-  router.add("POST", "/v1/jobs", [&app](Request& request) { return start_orbit(app, request); });
-  router.add("GET", "/v1/jobs/{id}", [&app](Request& request) { return get_job(app, request); });
-  router.add("DELETE", "/v1/jobs/{id}", [&app](Request& request) { return remove_job(app, request); });
-  router.add("GET", "/v1/jobs/{id}/events", [&app](Request& request) { return get_events(app, request); });
-  router.add("GET", "/v1/jobs/{id}/frames/{frame}",
+  router.add("POST", "/v1/jobs", Scope::render, LogLevel::info, json_body(app),
+             [&app](Request& request) { return start_orbit(app, request); });
+  router.add("GET", "/v1/jobs/{id}", Scope::read, LogLevel::info,
+             [&app](Request& request) { return get_job(app, request); });
+  router.add("DELETE", "/v1/jobs/{id}", Scope::render, LogLevel::info,
+             [&app](Request& request) { return remove_job(app, request); });
+  router.add("GET", "/v1/jobs/{id}/events", Scope::read, LogLevel::info,
+             [&app](Request& request) { return get_events(app, request); });
+  router.add("GET", "/v1/jobs/{id}/frames/{frame}", Scope::read, LogLevel::info,
              [&app](Request& request) { return get_frame(app, request); });
 }
 

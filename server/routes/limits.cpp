@@ -4,7 +4,6 @@
 #include "core/plan/limits.h"
 #include "core/study/study.h"
 #include "server/http/head.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // GET /v1/limits: what no request may exceed, under the names that errors use.
@@ -37,7 +36,8 @@ nlohmann::ordered_json limits_json(const Settings& settings) {
 }  // namespace
 
 void add_limits_routes(Router& router, App& app) {
-  router.add("GET", "/v1/limits", [&app](Request&) { return json_answer(200, limits_json(app.settings())); });
+  router.add("GET", "/v1/limits", Scope::read, LogLevel::info,
+             [&app](Request&) { return json_answer(200, limits_json(app.settings())); });
 }
 
 }  // namespace orrery

@@ -5,7 +5,6 @@
 #include "core/base/number.h"
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // GET /v1/scenes/{id}/orbit: the frames of a turn of the camera, as they are rendered.
@@ -136,7 +135,8 @@ Response orbit(App& app, Request& request) {
 }  // namespace
 
 void add_orbit_routes(Router& router, App& app) {
-  router.add("GET", "/v1/scenes/{id}/orbit", [&app](Request& request) { return orbit(app, request); });
+  router.add("GET", "/v1/scenes/{id}/orbit", Scope::read, LogLevel::info,
+             [&app](Request& request) { return orbit(app, request); });
 }
 
 }  // namespace orrery

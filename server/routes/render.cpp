@@ -2,7 +2,6 @@
 
 #include "core/plan/plan.h"
 #include "server/app/picture_key.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 #include "server/routes/render_order.h"
 
@@ -35,6 +34,7 @@ Response render(App& app, Request& request) {
   const Rendered rendered = app.render(*order.scene, plan, etag_of(order.scene->scene(), order.request),
                                        format_of(type), caller_of(request), timing);
   Response response = picture_response(type, rendered, timing);
+  response.set("Orrery-Scene-Id", order.scene->scene().id);
   response.set("Vary", "Accept");
   response.set("Cache-Control", "no-store");
   return response;
@@ -43,7 +43,8 @@ Response render(App& app, Request& request) {
 }  // namespace
 
 void add_render_routes(Router& router, App& app) {
-  router.add("POST", "/v1/render", [&app](Request& request) { return render(app, request); });
+  router.add("POST", "/v1/render", Scope::render, LogLevel::info, json_body(app),
+             [&app](Request& request) { return render(app, request); });
 }
 
 }  // namespace orrery

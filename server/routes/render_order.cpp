@@ -6,13 +6,6 @@
 namespace orrery {
 namespace {
 
-// What was built for a scene that is kept is used again.
-SceneStore::Prepared prepare(App& app, const Document& document, const MeshSource& meshes) {
-  auto scene = load_scene(document, meshes);
-  if (auto known = app.scenes().find_known(scene->id)) return known;
-  return std::make_shared<const PreparedScene>(std::move(scene));
-}
-
 SceneStore::Prepared find(App& app, const Document& id) {
   const std::string text = id.canonical();  // in quotes if it is one
   if (!text.starts_with('"'))
@@ -24,14 +17,14 @@ SceneStore::Prepared find(App& app, const Document& id) {
 
 RenderOrder read_render_order(App& app, Request& request, Timing& timing,
                               const std::function<void(Params&)>& more) {
-  const std::string body = read_json(request);
+  const std::string body = std::move(request.body);
   RenderOrder order;
   app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
     const Document document = parse_document(body);
     const auto scene = document.member("scene"), id = document.member("scene_id");
     if (scene && id) throw InputError("/scene_id", "expected either scene or scene_id, got both");
     if (scene || id) order.request = read_request(document, more);
-    order.scene = id ? find(app, *id) : prepare(app, scene ? *scene : document, meshes);
+    order.scene = id ? find(app, *id) : app.scenes().get(scene ? *scene : document, meshes);
   });
   return order;
 }

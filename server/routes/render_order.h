@@ -16,7 +16,7 @@ struct RenderOrder {
 };
 
 // Reads {scene or scene_id, camera, image, render} or, if it has neither of the first two, a scene; `more`
-// may read other keys of the former. Throws what read_json, App::read and read_request do.
+// may read other keys of the former. Takes the request's body. Throws what App::read and read_request do.
 RenderOrder read_render_order(App& app, Request& request, Timing& timing,
                               const std::function<void(Params&)>& more = {});
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/app/app.h"
-#include "server/http/router.h"
+#include "server/routes/router.h"
 
 namespace orrery {
 

@@ -1,8 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "core/load/load.h"
 #include "server/app/app.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // /v1/scenes: scenes that are kept to be rendered again and again, by the hash of what they say.
@@ -44,13 +42,12 @@ std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }
 Response add_scene(App& app, Request& request) {
   app.require_open();
   Timing timing;
-  const std::string body = read_json(request);
-  SceneStore::Added added;
-  app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
-    added = app.scenes().add(load_scene(parse_document(body), meshes));
-  });
-  const Scene& scene = added.scene->scene();
-  Response response = json_answer(added.known ? 200 : 201, summary(scene));
+  const std::string body = std::move(request.body);
+  SceneStore::Kept kept;
+  app.read(body.size(), caller_of(request), timing,
+           [&](const MeshSource& meshes) { kept = app.scenes().keep(parse_document(body), meshes); });
+  const Scene& scene = kept.scene->scene();
+  Response response = json_answer(kept.known ? 200 : 201, summary(scene));
   response.set("Location", "/v1/scenes/" + scene.id);
   response.set("ETag", etag_of_scene(scene));
   response.set("Server-Timing", server_timing(timing));
@@ -77,9 +74,12 @@ Response remove_scene(App& app, Request& request) {
 }  // namespace
 
 void add_scenes_routes(Router& router, App& app) {
-  router.add("POST", "/v1/scenes", [&app](Request& request) { return add_scene(app, request); });
-  router.add("GET", "/v1/scenes/{id}", [&app](Request& request) { return get_scene(app, request); });
-  router.add("DELETE", "/v1/scenes/{id}", [&app](Request& request) { return remove_scene(app, request); });
+  router.add("POST", "/v1/scenes", Scope::write, LogLevel::info, json_body(app),
+             [&app](Request& request) { return add_scene(app, request); });
+  router.add("GET", "/v1/scenes/{id}", Scope::read, LogLevel::info,
+             [&app](Request& request) { return get_scene(app, request); });
+  router.add("DELETE", "/v1/scenes/{id}", Scope::write, LogLevel::info,
+             [&app](Request& request) { return remove_scene(app, request); });
 }
 
 }  // namespace orrery

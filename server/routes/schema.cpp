@@ -1,6 +1,5 @@
 #include "core/base/hash.h"
 #include "core/load/load.h"
-#include "server/http/router.h"
 #include "server/routes/answers.h"
 
 // GET /schemas/scene.json: the JSON Schema of scenes.
@@ -9,7 +8,7 @@ namespace orrery {
 void add_schema_routes(Router& router, App&) {
   const std::string schema = scene_schema();
   const std::string etag = "\"" + sha256_hex(schema).substr(0, 32) + "\"";
-  router.add("GET", "/schemas/scene.json", [schema, etag](Request& request) {
+  router.add("GET", "/schemas/scene.json", Scope::none, LogLevel::info, [schema, etag](Request& request) {
     Response response = has_current(request, etag) ? Response{.status = 304}
                                                    : text_response(200, "application/schema+json", schema);
     response.set("ETag", etag).set("Cache-Control", "no-cache");

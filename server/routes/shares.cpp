@@ -3,7 +3,6 @@
 
 #include "core/params/params.h"
 #include "server/app/app.h"
-#include "server/http/router.h"
 #include "server/http/target.h"
 #include "server/routes/access.h"
 #include "server/routes/answers.h"
@@ -17,7 +16,7 @@ Response share(App& app, Request& request) {
   constexpr std::size_t kLongestPath = 1900;  // what is added has its place in a target, too
   std::string path;
   std::int64_t seconds = kUsual_s;
-  read_document(parse_document(read_json(request)), [&](Params& p) {
+  read_document(parse_document(request.body), [&](Params& p) {
     path = p.text("path", "What is shared, beginning with /v1/.", kLongestPath);
     seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
   });
@@ -49,7 +48,9 @@ Response share(App& app, Request& request) {
 }  // namespace
 
 void add_shares_routes(Router& router, App& app) {
-  router.add("POST", "/v1/shares", [&app](Request& request) { return share(app, request); });
+  // What a link gives, its maker has to have.
+  router.add("POST", "/v1/shares", Scope::write | Scope::read, LogLevel::info, json_body(app),
+             [&app](Request& request) { return share(app, request); });
 }
 
 }  // namespace orrery

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "server/http/exchange.h"
-#include "server/http/router.h"
 #include "server/routes/problem.h"
+#include "server/routes/router.h"
 
 // Any bytes as what a client sends on one connection before it closes its side: every request is answered or
 // the connection ends, and what comes back are whole answers of ours alone, however the bytes try to end up
@@ -22,14 +22,14 @@ void require(bool holds) {
 }
 
 Router make_router() {
+  const RouteBody body{.limit = {1000, "limit"}, .require = [](const Request&) {}};
   Router router;
-  router.add("GET", "/", [](Request&) { return text_response(200, "text/plain", "root"); });
-  router.add("POST", "/a/{b}", [](Request& request) {
-    request.body_limit = {1000, "limit"};
-    return text_response(200, "text/plain",
-                         std::to_string(request.read_body().size()) + request.path_value("b"));
+  router.add("GET", "/", Scope::none, LogLevel::info,
+             [](Request&) { return text_response(200, "text/plain", "root"); });
+  router.add("POST", "/a/{b}", Scope::none, LogLevel::info, body, [](Request& request) {
+    return text_response(200, "text/plain", std::to_string(request.body.size()) + request.path_value("b"));
   });
-  router.add("GET", "/stream", [](Request&) {
+  router.add("GET", "/stream", Scope::none, LogLevel::info, [](Request&) {
     Response response;
     response.set("Content-Type", "text/plain");
     response.stream = [](Sink& sink) { sink.write("part"); };
@@ -43,16 +43,13 @@ HttpServer::Handler make_handler(const Router& router) {
     response.set("X-Request-ID", request.id);
     return response;
   };
-  return {.answer =
-              [&router, with_id](Request& request) {
-                try {
-                  return with_id(request, router.dispatch(request));
-                } catch (...) {
-                  return with_id(request, problem_response(std::current_exception(), request.id));
-                }
-              },
+  return {.admit = [&router, with_id](Request& request) -> HttpServer::Admitted {
+            const Route& route = router.find(request);
+            return {.body = route.body ? std::optional(route.body->limit) : std::nullopt,
+                    .answer = [&route, with_id](Request& r) { return with_id(r, route.handler(r)); }};
+          },
           .refuse =
-              [with_id](Request& request, std::exception_ptr error) {
+              [with_id](const Request& request, std::exception_ptr error) {
                 return with_id(request, problem_response(error, request.id));
               },
           .served = [](const Request&, const Response& response, std::uint64_t,
@@ -105,7 +102,8 @@ std::string received_from(int fd) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Router router = make_router();
   static const HttpServer::Handler handler = make_handler(router);
-  static Exchanger exchanger({.max_body = 1000, .max_bodies = 2000}, handler);
+  static HangupMonitor monitor;
+  static Exchanger exchanger({.max_bodies = 2000}, handler, monitor);
   static const int wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   constexpr std::size_t kMost = 20'000;
   constexpr int kRequests = 100;  // whose answers have room in the socket

@@ -35,9 +35,9 @@ httplib::Headers bearer(const std::string& token) { return {{"Authorization", "B
 
 struct Guarded {
   Folder folder;
-  std::string tokens = folder.write("tokens", "# people\n" + line("reader", "read", "r") +
-                                                  line("painter", "read,render", "p") + "\n" +
-                                                  line("keeper", "read,write", "k"));
+  std::string tokens = folder.write(
+      "tokens", "# people\n" + line("reader", "read", "r") + line("painter", "read,render", "p") + "\n" +
+                    line("keeper", "read,write", "k") + line("filler", "write", "w"));
   std::string key = folder.write("key", std::string(32, 'k'));
   Daemon daemon{{"--tokens-file", tokens, "--share-key-file", key}};
   httplib::Client client = daemon.client();
@@ -62,7 +62,12 @@ TEST(Access, NeedsATokenOfTheScope) {
   expect_problem(post("/v1/scenes", "r", scene), 403);
   expect_problem(post("/v1/render", "r", scene), 403);
   expect_problem(post("/v1/scenes", "p", scene), 403);
-  EXPECT_EQ(post("/v1/render", "p", scene)->status, 200);
+  const auto rendered = post("/v1/render", "p", scene);
+  EXPECT_EQ(rendered->status, 200);
+  const std::string cached = "/v1/scenes/" + rendered->get_header_value("Orrery-Scene-Id");
+  expect_problem(client.Get(cached), 401);
+  EXPECT_EQ(client.Get(cached, bearer("r"))->status, 200);
+  expect_problem(client.Delete(cached, bearer("p")), 403);
   const auto kept = post("/v1/scenes", "k", scene);
   EXPECT_EQ(kept->status, 201);
   const std::string charts = kept->get_header_value("Location") + "/charts";
@@ -71,6 +76,12 @@ TEST(Access, NeedsATokenOfTheScope) {
   expect_problem(post("/v1/render", "k", scene), 403);
   expect_problem(post("/v1/jobs", "k", scene), 403);
   expect_problem(client.Delete("/v1/scenes/x", bearer("p")), 403);
+  EXPECT_EQ(client.Head("/v1/limits")->status, 401);
+  EXPECT_EQ(client.Head("/v1/limits", bearer("r"))->status, 200);
+  expect_problem(client.Delete("/v1/jobs/x", bearer("k")), 403);
+  expect_problem(client.Delete("/v1/jobs/x", bearer("p")), 404);
+  const auto share = expect_problem(post("/v1/shares", "w", R"({"path": "/v1/limits"})"), 403);
+  EXPECT_EQ(share.at("detail"), "The token lacks the scope read");
   for (const char* open :
        {"/", "/app.js", "/schemas/scene.json", "/healthz", "/readyz", "/scenes/paper.json"})
     EXPECT_EQ(client.Get(open)->status, 200) << open;

@@ -54,6 +54,23 @@ TEST_F(Assets, SceneThatNamesAMeshIsRendered) {
   EXPECT_EQ(client_.Get("/v1/scenes/" + id + "/frame.png?azimuth=20")->status, 200) << "the scene keeps it";
 }
 
+TEST_F(Assets, OfARenderedSceneAreNotReadAgain) {
+  const std::string hash = sha256_hex(kTetrahedron);
+  const auto scene = small_scene({{"title", "rendered, not kept"},
+                                  {"objects", {{{"type", "mesh"}, {"asset", hash}, {"material", "ball"}}}},
+                                  {"materials", {{"ball", {{"type", "rough"}}}}}});
+  put("/v1/assets/" + hash, kTetrahedron);
+  const auto render = [&](int azimuth) {
+    const nlohmann::json order = {{"scene", scene}, {"camera", {{"azimuth_degrees", azimuth}}}};
+    return client_.Post("/v1/render", order.dump(2), "application/json");
+  };
+  EXPECT_EQ(render(10)->status, 200);
+  EXPECT_EQ(client_.Delete("/v1/assets/" + hash)->status, 204);
+  EXPECT_EQ(render(20)->status, 200) << "nothing of it is loaded";
+  EXPECT_EQ(client_.Post("/v1/scenes", scene.dump(), "application/json")->status, 201);
+  EXPECT_EQ(client_.Post("/v1/scenes", scene.dump(), "application/json")->status, 200);
+}
+
 TEST_F(Assets, NothingButAMeshUnderItsOwnHashIsTaken) {
   expect_problem(put(path_of("something else"), kTetrahedron), 422);
   expect_problem(put("/v1/assets/short", kTetrahedron), 422);

@@ -175,8 +175,10 @@ TEST(OrbitFailure, StreamThatFailsIsBrokenOff) {
   };
   std::promise<std::pair<std::string, bool>> served;  // the note, and whether the client left
   HttpServer server({.host = "127.0.0.1", .port = 0},
-                    {.answer = answer,
-                     .refuse = [](Request&, std::exception_ptr) { return Response{}; },
+                    {.admit = [&](Request&) -> HttpServer::Admitted {
+                       return {{}, answer};
+                     },
+                     .refuse = [](const Request&, std::exception_ptr) { return Response{}; },
                      .served =
                          [&](const Request&, const Response& response, std::uint64_t, bool gone) {
                            served.set_value({response.note, gone});

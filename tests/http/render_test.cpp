@@ -85,6 +85,23 @@ TEST_F(Render, StoredSceneIsNamedById) {
   expect_problem(render({{"scene_id", std::string(64, '0')}}), 404);
 }
 
+TEST_F(Render, RenderedSceneIsFoundByTheIdThatTheAnswerTells) {
+  const auto scene = small_scene({{"title", "found again"}});
+  const auto rendered = render(scene);
+  ASSERT_TRUE(rendered && rendered->status == 200);
+  const std::string id = rendered->get_header_value("Orrery-Scene-Id");
+  const std::string path = "/v1/scenes/" + id;
+  EXPECT_EQ(nlohmann::json::parse(client_.Get(path)->body), scene);
+  EXPECT_EQ(client_.Get(path + "/frame.png")->body, rendered->body);
+  EXPECT_EQ(render({{"scene_id", id}})->get_header_value("Orrery-Scene-Id"), id);
+  const auto kept = client_.Post("/v1/scenes", scene.dump(), "application/json");
+  EXPECT_EQ(kept->status, 201) << "kept from now on";
+  EXPECT_EQ(nlohmann::json::parse(kept->body).at("id"), id);
+  EXPECT_EQ(client_.Post("/v1/scenes", scene.dump(), "application/json")->status, 200);
+  EXPECT_EQ(client_.Delete(path)->status, 204);
+  expect_problem(client_.Get(path), 404);
+}
+
 TEST_F(Render, ErrorsInsideARequestPointFromItsRoot) {
   auto scene = small_scene();
   scene["objects"][0]["radius"] = -1;

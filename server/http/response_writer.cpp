@@ -1,0 +1,91 @@
+#include "server/http/response_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <iterator>
+
+namespace orrery {
+namespace {
+
+// Whether an answer of this status may have a body at all (RFC 9110, 6.4.1).
+bool may_have_body(int status) { return status >= 200 && status != 204 && status != 304; }
+
+bool is_streamed(const Response& response, const Framing& framing) {
+  return response.stream && !framing.head_only && may_have_body(response.status);
+}
+
+void append_header(std::string& text, std::string_view name, std::string_view value) {
+  text.append(name).append(": ");
+  std::transform(value.begin(), value.end(), std::back_inserter(text), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x20 || byte == 0x7F ? ' ' : c;
+  });
+  text += "\r\n";
+}
+
+// The parts of an answer as chunks, or as they are, to the end of the connection (RFC 9112, 7.1 and 6.3).
+class BodySink final : public Sink {
+ public:
+  BodySink(Connection& connection, bool chunked, const std::stop_token& gone)
+      : connection_(connection), chunked_(chunked), gone_(gone) {}
+
+  bool write(std::string_view bytes) override {
+    if (gone_.stop_requested()) return whole_ = false;
+    if (bytes.empty()) return whole_;  // an empty chunk would be the last
+    if (!chunked_) return whole_ = whole_ && connection_.write({bytes});
+    std::array<char, 20> size;
+    const auto end = std::to_chars(size.data(), size.data() + size.size(), bytes.size(), 16).ptr;
+    return whole_ = whole_ && connection_.write({std::string_view(size.data(), end), "\r\n", bytes, "\r\n"});
+  }
+  // Ends the body. Returns whether all of it was written.
+  bool finish() {
+    return whole_ && !gone_.stop_requested() && (!chunked_ || connection_.write({"0\r\n\r\n"}));
+  }
+
+ private:
+  Connection& connection_;
+  const bool chunked_;
+  const std::stop_token gone_;
+  bool whole_ = true;  // so far
+};
+
+}  // namespace
+
+std::string response_head(const Response& response, const Framing& framing) {
+  std::string text = "HTTP/1.1 " + std::to_string(response.status) + " ";
+  text.append(reason_phrase(response.status)).append("\r\n");
+  for (const auto& [name, value] : response.headers) append_header(text, name, value);
+  if (is_streamed(response, framing)) {
+    if (framing.minor_version == 1) append_header(text, "Transfer-Encoding", "chunked");
+  } else if (!response.stream && may_have_body(response.status)) {
+    // A route may answer HEAD without making the body: its length is then unknown, not 0.
+    const bool unknown = framing.head_only && response.body.empty();
+    if (!unknown) append_header(text, "Content-Length", std::to_string(response.body.size()));
+  }
+  if (!framing.keep_alive)
+    append_header(text, "Connection", "close");
+  else if (framing.minor_version == 0)
+    append_header(text, "Connection", "keep-alive");
+  return text + "\r\n";
+}
+
+bool write_response(Connection& connection, Response& response, const Framing& framing,
+                    const std::stop_token& gone) {
+  const std::string head = response_head(response, framing);
+  if (!is_streamed(response, framing)) {
+    const bool without_body = framing.head_only || !may_have_body(response.status);
+    return connection.write({head, without_body ? std::string_view() : response.body});
+  }
+  if (!connection.write({head})) return false;
+  BodySink sink(connection, framing.minor_version == 1, gone);
+  try {
+    response.stream(sink);
+  } catch (const std::exception& error) {
+    response.note = error.what();
+    return false;
+  }
+  return sink.finish();
+}
+
+}  // namespace orrery

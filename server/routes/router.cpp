@@ -1,0 +1,68 @@
+#include "server/routes/router.h"
+
+#include <set>
+
+#include "server/http/target.h"
+
+namespace orrery {
+namespace {
+
+bool is_place(std::string_view segment) { return segment.starts_with('{') && segment.ends_with('}'); }
+
+}  // namespace
+
+void Router::add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
+                 Route::Handler handler) {
+  routes_.push_back({.method = std::string(method),
+                     .pattern = std::string(pattern),
+                     .segments = parse_target(pattern).segments,
+                     .scope = scope,
+                     .log = log,
+                     .body = {},
+                     .handler = std::move(handler)});
+}
+
+void Router::add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
+                 const RouteBody& body, Route::Handler handler) {
+  add(method, pattern, scope, log, std::move(handler));
+  routes_.back().body = body;
+}
+
+bool Router::matches(const Route& route, Request& request) {
+  if (route.segments.size() != request.segments.size()) return false;
+  Fields values;
+  for (std::size_t i = 0; i < route.segments.size(); ++i) {
+    const std::string& wanted = route.segments[i];
+    if (is_place(wanted) && !request.segments[i].empty())
+      values.emplace_back(wanted.substr(1, wanted.size() - 2), request.segments[i]);
+    else if (wanted != request.segments[i])
+      return false;
+  }
+  request.route = &route;
+  request.path_values = std::move(values);
+  return true;
+}
+
+const Route& Router::find(Request& request) const {
+  const std::string_view method = request.method == "HEAD" ? "GET" : std::string_view(request.method);
+  for (const Route& route : routes_)
+    if (route.method == method && matches(route, request)) return route;
+  const std::string allowed = allowed_methods(request);
+  throw HttpError(405, request.method + " is not possible here, only " + allowed, {{"Allow", allowed}});
+}
+
+std::string Router::allowed_methods(Request& request) const {
+  std::set<std::string> methods;
+  for (const Route& route : routes_) {
+    if (request.path != "*" && !matches(route, request)) continue;
+    methods.insert(route.method);
+    if (route.method == "GET") methods.insert("HEAD");
+  }
+  if (methods.empty()) throw HttpError(404, "There is nothing at " + request.path.substr(0, 200));
+  methods.insert("OPTIONS");
+  std::string list;
+  for (const std::string& name : methods) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+}  // namespace orrery

@@ -1,0 +1,140 @@
+#include "server/app/scene_store.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+
+// Which scenes are loaded, and which go when there is no more room.
+namespace orrery {
+namespace {
+
+std::string text_of(const std::string& title, const std::string& objects) {
+  return R"({"version": 1, "title": ")" + title +
+         R"(", "camera": {"type": "perspective", "eye": [0, 1, 4], "look_at": [0, 0, 0]},)"
+         R"( "materials": {"m": {"type": "rough"}}, "objects": [)" +
+         objects + "]}";
+}
+
+Document ball(const std::string& title) {
+  return parse_document(
+      text_of(title, R"({"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "m"})"));
+}
+
+// The same object so many times: its size grows with that.
+Document balls(const std::string& title, int count) {
+  std::string objects;
+  for (int i = 0; i < count; ++i)
+    objects += std::string(i > 0 ? "," : "") +
+               R"({"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "m"})";
+  return parse_document(text_of(title, objects));
+}
+
+// One triangle, and how often it was read.
+class CountedMeshes final : public MeshSource {
+ public:
+  TriangleMesh asset(const std::string&) const override {
+    ++reads;
+    return {
+        .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}, .normals = {}, .uvs = {}};
+  }
+  mutable int reads = 0;
+};
+
+const MeshSource kNoMeshes;
+
+std::size_t size_of(const Document& document) {
+  SceneStore store(1 << 30);
+  store.keep(document, kNoMeshes);
+  return store.bytes();
+}
+
+bool has(SceneStore& store, const Document& document) {
+  try {
+    return store.find(document.id())->scene().id == document.id();
+  } catch (const NotFound&) {
+    return false;
+  }
+}
+
+TEST(SceneStore, KnownScenesAreNotLoadedAndTheirMeshesNotRead) {
+  const std::string mesh = R"({"type": "mesh", "asset": ")" + std::string(64, 'a') + R"(", "material": "m"})";
+  const CountedMeshes meshes;
+  SceneStore store(1 << 30);
+  const auto rendered = store.get(parse_document(text_of("mesh", mesh)), meshes);
+  EXPECT_EQ(store.loads(), 1u);
+  EXPECT_EQ(store.hits(), 0u);
+  EXPECT_EQ(meshes.reads, 1);
+  const auto again = store.get(parse_document("\n " + text_of("mesh", " " + mesh)), meshes);
+  EXPECT_EQ(again, rendered) << "what was built for it is used again";
+  const SceneStore::Kept kept = store.keep(parse_document(text_of("mesh", mesh)), meshes);
+  EXPECT_EQ(kept.scene, rendered);
+  EXPECT_FALSE(kept.known) << "it was rendered, not kept";
+  EXPECT_TRUE(store.keep(parse_document(text_of("mesh", mesh)), meshes).known);
+  EXPECT_EQ(store.get(parse_document(text_of("mesh", mesh)), meshes), rendered);
+  EXPECT_EQ(store.loads(), 1u);
+  EXPECT_EQ(store.hits(), 4u);
+  EXPECT_EQ(meshes.reads, 1);
+  store.get(parse_document(text_of("other", mesh)), meshes);
+  EXPECT_EQ(store.loads(), 2u);
+  EXPECT_EQ(meshes.reads, 2);
+}
+
+TEST(SceneStore, CachedScenesPushOutOneAnotherButNoneThatIsKept) {
+  SceneStore store(3 * size_of(ball("kept")) + 100);
+  store.keep(ball("kept"), kNoMeshes);
+  for (const char* title : {"aaaa", "bbbb", "cccc"}) store.get(ball(title), kNoMeshes);
+  EXPECT_FALSE(has(store, ball("aaaa")));
+  EXPECT_TRUE(has(store, ball("bbbb")) && has(store, ball("cccc")));
+  for (int i = 0; i < 10; ++i) store.get(ball(std::to_string(1000 + i)), kNoMeshes);
+  EXPECT_TRUE(has(store, ball("kept"))) << "although it was not used for longest";
+  EXPECT_LE(store.bytes(), 3 * size_of(ball("kept")) + 100);
+}
+
+TEST(SceneStore, WhereKeptScenesLeaveNoRoomNothingIsCached) {
+  SceneStore store(2 * size_of(ball("kept")) - 1);
+  store.keep(ball("kept"), kNoMeshes);
+  EXPECT_EQ(store.get(ball("more"), kNoMeshes)->scene().title, "more");
+  EXPECT_FALSE(has(store, ball("more")));
+  EXPECT_TRUE(has(store, ball("kept")));
+  EXPECT_EQ(store.bytes(), size_of(ball("kept")));
+}
+
+TEST(SceneStore, KeptScenesPushOutCachedOnesFirst) {
+  SceneStore store(3 * size_of(ball("kept")) + 100);
+  store.keep(ball("old1"), kNoMeshes);
+  store.get(ball("cach"), kNoMeshes);
+  store.keep(ball("old2"), kNoMeshes);
+  store.get(ball("cach"), kNoMeshes);  // used last, and goes first
+  store.keep(ball("new1"), kNoMeshes);
+  EXPECT_FALSE(has(store, ball("cach")));
+  EXPECT_TRUE(has(store, ball("old2")) && has(store, ball("new1")) && has(store, ball("old1")));
+  store.keep(ball("new2"), kNoMeshes);  // now the one used longest ago
+  EXPECT_FALSE(has(store, ball("old2")));
+  EXPECT_TRUE(has(store, ball("new1")) && has(store, ball("new2")) && has(store, ball("old1")));
+}
+
+TEST(SceneStore, WhatIsTooLargeToKeepIsSaidToBe) {
+  const Document large = balls("large", 100);
+  SceneStore store(size_of(large) - 1);
+  try {
+    store.keep(large, kNoMeshes);
+    ADD_FAILURE() << "kept";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("store_bytes"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(store.get(large, kNoMeshes)->scene().object_count, 100);
+  EXPECT_EQ(store.bytes(), 0u);
+}
+
+TEST(SceneStore, CachedScenesCanBeRemovedLikeKeptOnes) {
+  SceneStore store(1 << 30);
+  store.get(ball("cached"), kNoMeshes);
+  store.keep(ball("kept"), kNoMeshes);
+  store.remove(ball("cached").id());
+  store.remove(ball("kept").id());
+  EXPECT_THROW(store.remove(ball("kept").id()), NotFound);
+  EXPECT_EQ(store.bytes(), 0u);
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,127 @@
+#include "server/routes/routes.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "server/http/embedded.h"
+#include "server/http/target.h"
+
+// What each route asks of a token, and how loudly it is logged.
+namespace orrery {
+namespace {
+
+Request request_for(const std::string& method, const std::string& path) {
+  Request request;
+  request.method = method;
+  Target target = parse_target(path);
+  request.path = std::move(target.path);
+  request.segments = std::move(target.segments);
+  return request;
+}
+
+class Routes : public ::testing::Test {
+ protected:
+  Routes() {
+    add_routes(router_, app_);
+    add_health_routes(health_, app_);
+  }
+  const Route& find(const std::string& method, const std::string& path) const {
+    Request request = request_for(method, path);
+    return router_.find(request);
+  }
+
+  SteadyTimer timer_;
+  App app_{Settings(), timer_};
+  Router router_, health_;
+};
+
+struct Wanted {
+  const char *method, *path;
+  Scope scope;
+};
+
+TEST_F(Routes, AskForTheScopesThatTheyAreFor) {
+  for (const auto& [method, path, scope] : {
+           Wanted{"POST", "/v1/render", Scope::render},
+           Wanted{"POST", "/v1/jobs", Scope::render},
+           Wanted{"DELETE", "/v1/jobs/a", Scope::render},
+           Wanted{"POST", "/v1/scenes/a/charts", Scope::render},
+           Wanted{"POST", "/v1/scenes", Scope::write},
+           Wanted{"DELETE", "/v1/scenes/a", Scope::write},
+           Wanted{"PUT", "/v1/assets/a", Scope::write},
+           Wanted{"DELETE", "/v1/assets/a", Scope::write},
+           Wanted{"POST", "/v1/shares", Scope::read | Scope::write},
+       })
+    EXPECT_EQ(find(method, path).scope, scope) << method << " " << path;
+  for (const char* path :
+       {"/v1/scenes/a", "/v1/scenes/a/frame.png", "/v1/scenes/a/orbit", "/v1/scenes/a/explain",
+        "/v1/scenes/a/charts/b.svg", "/v1/jobs/a", "/v1/jobs/a/events", "/v1/jobs/a/frames/0.png",
+        "/v1/assets/a", "/v1/catalog", "/v1/limits"})
+    for (const char* method : {"GET", "HEAD"}) EXPECT_EQ(find(method, path).scope, Scope::read) << path;
+  for (const char* path :
+       {"/", "/app.js", "/scenes/paper.json", "/openapi.json", "/schemas/scene.json", "/healthz", "/readyz"})
+    EXPECT_EQ(find("GET", path).scope, Scope::none) << path;
+}
+
+// A path of the description as one that may be asked for.
+std::string with_places_filled(std::string path) {
+  if (path.starts_with("/scenes/")) return "/scenes/paper.json";  // a route for each sample
+  for (std::size_t at; (at = path.find('{')) != std::string::npos;)
+    path.replace(at, path.find('}') - at + 1, "a");
+  return path;
+}
+
+TEST_F(Routes, AreThoseThatTheDescriptionHas) {
+  const auto files = embedded_files();
+  const auto file = std::find_if(files.begin(), files.end(),
+                                 [](const auto& f) { return f.path == "server/routes/openapi.json"; });
+  ASSERT_NE(file, files.end());
+  int found = 0;
+  const auto description = nlohmann::json::parse(file->bytes);
+  for (const auto& [path, item] : description.at("paths").items()) {
+    std::set<std::string> described{"OPTIONS"};
+    for (const char* method : {"get", "post", "put", "delete"}) {
+      if (!item.contains(method)) continue;
+      std::string upper = method;
+      for (char& c : upper) c = static_cast<char>(c - 'a' + 'A');
+      described.insert(upper);
+      if (upper == "GET") described.insert("HEAD");
+    }
+    std::string list;
+    for (const std::string& method : described) list += (list.empty() ? "" : ", ") + method;
+    Request request = request_for("OPTIONS", with_places_filled(path));
+    EXPECT_EQ(router_.allowed_methods(request), list) << path;
+    ++found;
+  }
+  EXPECT_GT(found, 15);
+}
+
+TEST_F(Routes, OnlyThoseThatSupervisorsAskAreLoggedQuietly) {
+  for (const char* path : {"/healthz", "/readyz"}) {
+    EXPECT_EQ(find("GET", path).log, LogLevel::debug);
+    Request request = request_for("HEAD", path);
+    EXPECT_EQ(health_.find(request).log, LogLevel::debug);
+  }
+  for (const char* path : {"/", "/v1/limits", "/v1/scenes/a/frame.png"})
+    EXPECT_EQ(find("GET", path).log, LogLevel::info);
+}
+
+TEST_F(Routes, BodiesAreReadWhereTheyMeanSomething) {
+  for (const char* path : {"/v1/render", "/v1/scenes", "/v1/jobs", "/v1/scenes/a/charts", "/v1/shares"}) {
+    const Route& route = find("POST", path);
+    ASSERT_TRUE(route.body) << path;
+    EXPECT_EQ(std::string(route.body->limit.name), "body_bytes");
+    EXPECT_EQ(route.body->limit.bytes, app_.settings().body_bytes);
+  }
+  const Route& asset = find("PUT", "/v1/assets/a");
+  ASSERT_TRUE(asset.body);
+  EXPECT_EQ(std::string(asset.body->limit.name), "asset_bytes");
+  EXPECT_EQ(asset.body->limit.bytes, app_.settings().asset_bytes);
+  for (const char* path : {"/v1/scenes/a", "/v1/jobs/a"}) EXPECT_FALSE(find("DELETE", path).body) << path;
+  EXPECT_FALSE(find("GET", "/v1/limits").body);
+}
+
+}  // namespace
+}  // namespace orrery
