@@ -63,16 +63,23 @@ Imf::FrameBuffer frame_of(std::byte* first, int width) {
 
 }  // namespace
 
-std::string encode_exr(const Image& image) {
+std::string encode_exr(const Image& image, std::span<const ExrLayer> layers) {
   assert(image.format() == PixelFormat::linear32);
   std::string out;
   StringStream stream(out);
   Imf::Header header(image.width(), image.height());
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const char* name : kChannels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  for (const ExrLayer& layer : layers) header.channels().insert(layer.name, Imf::Channel(Imf::FLOAT));
   {
     Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(frame_of(const_cast<std::byte*>(image.bytes().data()), image.width()));  // only read
+    Imf::FrameBuffer frame =
+        frame_of(const_cast<std::byte*>(image.bytes().data()), image.width());  // only read
+    for (const ExrLayer& layer : layers)
+      frame.insert(layer.name,
+                   Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(layer.values.data())),
+                              sizeof(float), sizeof(float) * std::size_t(image.width())));
+    file.setFrameBuffer(frame);
     file.writePixels(image.height());
   }
   return out;

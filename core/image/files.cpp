@@ -20,19 +20,6 @@ constexpr std::array<unsigned char, 4> kExrMagic = {0x76, 0x2f, 0x31, 0x01};
 
 }  // namespace
 
-std::string encode(const Image& image, FileFormat format, std::stop_token stop) {
-  switch (format) {
-    case FileFormat::png: return encode_png(image, {}, stop);
-    case FileFormat::jpeg: return encode_jpeg(image);
-    case FileFormat::exr: return encode_exr(image);
-  }
-  return {};
-}
-
-PixelFormat pixels_of(FileFormat format) {
-  return format == FileFormat::exr ? PixelFormat::linear32 : PixelFormat::srgb8;
-}
-
 Image decode_image(std::span<const std::byte> bytes, std::size_t max_pixels) {
   if (starts_with(bytes, kPngMagic)) return decode_png(bytes, max_pixels);
   if (starts_with(bytes, kJpegMagic)) return decode_jpeg(bytes, max_pixels);

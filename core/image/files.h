@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/image/image.h"
 
@@ -20,11 +21,12 @@ struct PngOptions {
 // A stop request ends what takes long with Cancelled.
 std::string encode_png(const Image& image, const PngOptions& options = {}, std::stop_token stop = {});
 std::string encode_jpeg(const Image& image, int quality = 92);
-std::string encode_exr(const Image& image);
-std::string encode(const Image& image, FileFormat format, std::stop_token stop = {});
-
-// The pixel format that a file format stores.
-PixelFormat pixels_of(FileFormat format);
+// One more channel of an EXR file: as many values as the picture has pixels, row by row.
+struct ExrLayer {
+  std::string name;
+  std::vector<float> values;
+};
+std::string encode_exr(const Image& image, std::span<const ExrLayer> layers = {});
 
 // Reads a picture of any of the three formats, told by its first bytes. Throws InputError if it is none of
 // them, is damaged or has more than `max_pixels`.

@@ -89,6 +89,27 @@ Vec3f Image::linear(int x, int y) const {
   return {values[0], values[1], values[2]};
 }
 
+Image Image::copy() const {
+  Image copy(width_, height_, format_);
+  std::memcpy(copy.data_.get(), data_.get(), bytes().size());
+  return copy;
+}
+
+Image srgb_of(const Image& linear) {
+  constexpr int kAtOnce = 256;
+  Image encoded(linear.width(), linear.height(), PixelFormat::srgb8);
+  alignas(64) std::array<std::array<float, kAtOnce>, 3> row;
+  const float* value = linear.values().data();
+  for (int y = 0; y < linear.height(); ++y)
+    for (int x = 0; x < linear.width(); x += kAtOnce) {
+      const int count = std::min(kAtOnce, linear.width() - x);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+        for (auto& channel : row) channel[i] = *value++;
+      encoded.set_row(x, y, count, row[0].data(), row[1].data(), row[2].data());
+    }
+  return encoded;
+}
+
 float decode_srgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }

@@ -38,6 +38,8 @@ class Image {
   // Red, green and blue of all pixels, row by row. REQUIRES: linear32.
   std::span<const float> values() const;
 
+  Image copy() const;
+
   // Linear colour of a pixel, whatever the format.
   Vec3f linear(int x, int y) const;
 
@@ -49,6 +51,9 @@ class Image {
   PixelFormat format_;
   std::unique_ptr<std::byte[], Free> data_;
 };
+
+// The same picture for the eye. REQUIRES: linear32.
+Image srgb_of(const Image& linear);
 
 // Linear value of an sRGB code / 255, both in [0, 1] (IEC 61966-2-1).
 float decode_srgb(float encoded);

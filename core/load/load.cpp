@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "core/accelerators/registry.h"
 #include "core/base/hash.h"
+#include "core/cameras/registry.h"
 #include "core/lights/registry.h"
 #include "core/load/names_of.h"
 #include "core/materials/registry.h"
@@ -24,27 +24,18 @@ std::vector<Choice> choices_of(const Types& types) {
   return choices;
 }
 
-constexpr std::array kProjections{
-    Choice{"perspective", "Everything is seen from one point."},
-    Choice{"orthographic", "Everything is seen along parallel rays."},
-};
-
-void read_camera(Params& p, Camera& camera) {
-  const auto projection = p.pick("type", "Projection.", kProjections);
-  if (!projection) return;
-  camera.projection = *projection == 0 ? Projection::perspective : Projection::orthographic;
-  camera.eye = p.point("eye", "Where the picture is taken from, in metres.");
-  camera.look_at = p.point("look_at", "What stands in the middle of the picture, in metres.");
-  camera.up = p.direction("up", "Direction that is up in the picture.", Vec3d(0, 1, 0));
-  if (camera.projection == Projection::perspective)
-    camera.fov_degrees = p.number("fov_degrees", "Vertical angle of the picture, for any aspect.",
-                                  {.min = 0, .max = 180, .exclusive_min = true, .exclusive_max = true}, 45.0);
-  else
-    camera.height = p.positive("height", "Metres that the picture's height shows.");
-  const Vec3d view = safe_normalize(camera.look_at - camera.eye);
+void read_camera(Params& p, Scene& scene) {
+  const auto type = p.pick("type", "Projection.", choices_of(camera_types()));
+  if (!type) return;
+  CameraPlacement& placement = scene.placement;
+  placement.eye = p.point("eye", "Where the picture is taken from, in metres.");
+  placement.look_at = p.point("look_at", "What stands in the middle of the picture, in metres.");
+  placement.up = p.direction("up", "Direction that is up in the picture.", Vec3d(0, 1, 0));
+  scene.camera = camera_types()[*type].read(p);
+  const Vec3d view = safe_normalize(placement.look_at - placement.eye);
   if (view == Vec3d())
     p.fail("look_at", "expected a point other than eye");
-  else if (!(length(cross(view, camera.up)) > 1e-9))
+  else if (!(length(cross(view, placement.up)) > 1e-9))
     p.fail("up", "expected a direction that is not along the view");
 }
 
@@ -110,22 +101,24 @@ class ObjectReader {
     if (!type) return;
     const std::size_t material = p.reference("material", "Name of its material.", materials);
     const int primitives = shapes_[*type]->add(p, meshes);
-    objects_by_shape_[*type].push_back({material, primitives});
+    objects_by_shape_[*type].push_back({material, primitives, count_++});
   }
 
-  // Calls visit(material name, primitives) in the order of the primitives' numbers.
+  // Calls visit(material name, primitives, object) in the order of the primitives' numbers.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& objects : objects_by_shape_)
-      for (const auto& [material, primitives] : objects)
-        visit(material, static_cast<std::size_t>(primitives));
+      for (const auto& [material, primitives, object] : objects)
+        visit(material, static_cast<std::size_t>(primitives), object);
   }
 
  private:
   struct ObjectOf {
     std::size_t material;
     int primitives;
+    std::int32_t object;  // counted as they were read
   };
+  std::int32_t count_ = 0;
   std::vector<std::unique_ptr<ShapeSet>>& shapes_;
   std::vector<std::vector<ObjectOf>> objects_by_shape_;
 };
@@ -174,14 +167,14 @@ class SceneReader {
   explicit SceneReader(const MeshSource& meshes)
       : meshes_(meshes), scene_(std::make_shared<Scene>()), objects_(scene_->shapes) {
     for (const auto& type : material_types()) scene_->materials.push_back(type.make());
+    for (const auto& type : light_types()) scene_->light_sets.push_back(type.make());
   }
 
   void read(Params& p) {
     p.integer("version", "Version of this format.", 1, 1);
     scene_->title = p.text("title", "A name for people.", 200, "");
     scene_->description = p.text("description", "What there is to see.", 200, "");
-    p.object("camera", "Where the picture is taken from.",
-             [&](Params& c) { read_camera(c, scene_->camera); });
+    p.object("camera", "Where the picture is taken from.", [&](Params& c) { read_camera(c, *scene_); });
     p.optional_object("image", "Size of the picture.", [&](Params& i) { read_image(i, scene_->render); });
     scene_->ambient = p.color("ambient", "Light that comes from everywhere.", Vec3d(0));
     scene_->background = p.color("background", "What a ray sees that meets nothing.", Vec3d(0));
@@ -216,6 +209,7 @@ class SceneReader {
     scene_->canonical = document.canonical();
     scene_->id = sha256_hex(scene_->canonical);
     number_materials();
+    number_objects();
     gather_motion();
     gather_shape_facts();
     gather_material_facts();
@@ -239,7 +233,10 @@ class SceneReader {
 
   void read_light(Params& p) {
     const auto type = p.pick("type", "Kind of light.", choices_of(light_types()));
-    if (type) scene_->lights.push_back(light_types()[*type].make(p));
+    if (!type) return;
+    LightSet& set = *scene_->light_sets[*type];
+    scene_->lights.push_back({*type, set.size()});
+    set.add(p);
   }
 
   void read_model(const std::string& name, Params& p) {
@@ -256,7 +253,7 @@ class SceneReader {
     for (std::size_t set = 1; set < first.size(); ++set)
       first[set] = first[set - 1] + scene_->materials[set - 1]->size();
     const auto number = [&](const ObjectReader& objects, std::vector<std::int32_t>& into) {
-      objects.for_each([&](std::size_t name, std::size_t primitives) {
+      objects.for_each([&](std::size_t name, std::size_t primitives, std::int32_t) {
         const MaterialPlace place = places_[name];
         used_sets_.push_back(place.set);
         into.insert(into.end(), primitives, first[place.set] + place.index);
@@ -271,15 +268,23 @@ class SceneReader {
     }
   }
 
+  // Which primitives belong to which object: each run lasts until the next, so empty ones are left out.
+  void number_objects() {
+    std::int32_t primitive = 0, resting = 0;
+    const auto add = [&](std::size_t primitives, std::int32_t object) {
+      if (primitives > 0) scene_->object_runs.push_back({primitive, object});
+      primitive += static_cast<std::int32_t>(primitives);
+    };
+    objects_.for_each([&](std::size_t, std::size_t primitives, std::int32_t object) {
+      add(primitives, object);
+      ++resting;
+    });
+    for (const Instance& instance : scene_->instances)
+      add(scene_->models[instance.model].material_of.size(), resting++);
+  }
+
   void gather_material_facts() {
-    SceneFacts& facts = scene_->facts;
-    for (const std::size_t set : used_sets_) {
-      const MaterialTraits traits = scene_->materials[set]->traits();
-      facts.materials.lit |= traits.lit;
-      facts.materials.mirrors |= traits.mirrors;
-      facts.materials.transmits |= traits.transmits;
-      facts.materials.filters |= traits.filters;
-    }
+    for (const std::size_t set : used_sets_) scene_->facts.materials |= scene_->materials[set]->traits();
   }
 
   // Of what stands in the scene.

@@ -6,9 +6,9 @@
 #include "core/model/record.h"
 
 // A material type is one record, `template <class N> struct Rough`, with
-//   static Rough<double> read(Params&);
+//   static Rough<double> read(Params&);         in the .cpp, which registers the type
 //   MaterialTraits traits() const;              of a Rough<double>
-// and a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
+// and its formulas; and a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
 namespace orrery {
 
 // The materials of one type in the render's precision, and the loop over the lanes that have one of them.
@@ -45,13 +45,7 @@ class MaterialSetOf final : public MaterialSet {
   int size() const override { return static_cast<int>(records_.size()); }
   MaterialTraits traits() const override {
     MaterialTraits all;
-    for (const auto& record : records_) {
-      const MaterialTraits one = record.traits();
-      all.lit |= one.lit;
-      all.mirrors |= one.mirrors;
-      all.transmits |= one.transmits;
-      all.filters |= one.filters;
-    }
+    for (const auto& record : records_) all |= record.traits();
     return all;
   }
   MaterialKernelPtr<float> kernel(float, int first) const override {

@@ -1,36 +1,22 @@
-#include "core/materials/fresnel.h"
+#include "core/materials/reflective.h"
+
 #include "core/materials/material_set.h"
+#include "core/math/mirror.h"
 #include "core/params/params.h"
 
 namespace orrery {
-namespace {
 
 template <class N>
-struct Reflective {
-  Vec3<N> n, k;  // index of refraction and extinction
-  Vec3<N> f0;    // reflectance along the normal
-  N exact;       // 1: Fresnel's equations, 0: Schlick's approximation
+Reflective<double> Reflective<N>::read(Params& p) {
+  const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
+  const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
+  const bool exact =
+      p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
+  const Vec3d f0(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z));
+  return {n, k, f0, exact ? 1.0 : 0.0};
+}
 
-  static Reflective<double> read(Params& p) {
-    const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
-    const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
-    const bool exact =
-        p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
-    const Vec3d f0(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z));
-    return {n, k, f0, exact ? 1.0 : 0.0};
-  }
-  MaterialTraits traits() const { return {.mirrors = true}; }
-
-  Vec3<N> reflectance(const N& cosine) const {
-    const auto equations = exact > N(ScalarOf<N>(0));
-    Vec3<N> r(fresnel_schlick(f0.x, cosine), fresnel_schlick(f0.y, cosine), fresnel_schlick(f0.z, cosine));
-    if (any(equations))
-      r = {select(equations, fresnel_conductor(n.x, k.x, cosine), r.x),
-           select(equations, fresnel_conductor(n.y, k.y, cosine), r.y),
-           select(equations, fresnel_conductor(n.z, k.z, cosine), r.z)};
-    return r;
-  }
-};
+namespace {
 
 template <class T>
 class ReflectiveKernel final : public MaterialRecords<Reflective, T> {
@@ -46,6 +32,18 @@ class ReflectiveKernel final : public MaterialRecords<Reflective, T> {
       out.reflectance.put(i, mine, metal.reflectance(min_first(one, max_first(zero, cosine))));
       out.transmittance.put(i, mine, Vec3<N>(zero));
       out.filter.put(i, mine, Vec3<N>(one));
+    });
+  }
+
+  void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+              const PathDraws<T>&, const Groups& groups, ScatterBatch<T>& out) const override {
+    const N zero(T(0)), one(T(1));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Reflective<N>& metal) {
+      const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);
+      const N cosine = min_first(one, max_first(zero, N(-dot(direction, normal))));
+      out.direction.put(i, mine, mirrored(direction, normal, surface.geometric.at(i)));
+      out.weight.put(i, mine, metal.reflectance(cosine));
+      out.pdf.put(i, mine, zero);
     });
   }
 };

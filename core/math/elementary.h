@@ -45,6 +45,14 @@ template <class To, class From>
     return stdx::static_simd_cast<To>(x);
 }
 
+template <class N>
+[[gnu::always_inline]] inline MaskOf<N> mask_cast_to(const auto& mask) {
+  if constexpr (std::is_arithmetic_v<N>)
+    return mask;
+  else
+    return mask_cast<N>(mask);
+}
+
 }  // namespace detail
 
 // log2(x). REQUIRES: x positive and normal (other values give a meaningless finite number).
@@ -95,6 +103,68 @@ template <class N>
   const auto vanishing = x < N(kSmallest);
   const N power = exp2_flushed(y * log2_normal(select(vanishing, N(T(1)), x)));
   return select(vanishing, select(y > N(T(0)), N(T(0)), N(T(1))), power);
+}
+
+// Sine and cosine of `turns` whole turns, for |turns| <= 2^20: within 2 ulp of 1, exact at quarters.
+template <class N>
+struct SineCosineOf {
+  N sine, cosine;
+};
+template <class N>
+[[gnu::always_inline]] inline SineCosineOf<N> sine_cosine_turns(const N& turns) {
+  using T = ScalarOf<N>;
+  using Integer = typename detail::IntegerOf<N>::type;
+  constexpr int kTerms = sizeof(T) == 4 ? 5 : 10;
+  constexpr T kRounder = T(3) * T(std::int64_t{1} << (detail::FloatFormat<T>::kMantissaBits - 1));
+  const N quarter = (turns * T(4) + kRounder) - kRounder;
+  const N x = (turns - quarter * T(0.25)) * T(6.28318530717958647692528676655900577L);
+  const N x2 = x * x;
+  N sine(T(1)), cosine(T(1));
+#pragma GCC unroll 16
+  for (int k = kTerms; k >= 1; --k) {
+    sine = T(1) - sine * x2 * (T(1) / (T(2 * k) * T(2 * k + 1)));
+    cosine = T(1) - cosine * x2 * (T(1) / (T(2 * k - 1) * T(2 * k)));
+  }
+  sine = x * sine;
+  const Integer q = detail::convert<Integer>(quarter) & Integer(3);
+  const auto swapped = detail::mask_cast_to<N>((q & Integer(1)) != Integer(0));
+  const auto sine_negative = detail::mask_cast_to<N>((q & Integer(2)) != Integer(0));
+  const auto cosine_negative = detail::mask_cast_to<N>(((q + Integer(1)) & Integer(2)) != Integer(0));
+  const N s = select(swapped, cosine, sine), c = select(swapped, sine, cosine);
+  return {select(sine_negative, N(-s), s), select(cosine_negative, N(-c), c)};
+}
+
+// Angle of the direction (x, y) from the x axis toward the y axis, in turns, in [-1/2, 1/2]; 0 for (0, 0).
+// The tangent's angle is halved three times, atan t = 2 atan(t / (1 + sqrt(1 + t^2))); then Taylor's series.
+template <class N>
+[[gnu::always_inline]] inline N direction_turns(const N& x, const N& y) {
+  using T = ScalarOf<N>;
+  using std::abs;
+  using std::sqrt;
+  const N zero(T(0)), ax = abs(x), ay = abs(y);
+  const auto steep = ay > ax;
+  const N larger = select(steep, ay, ax), smaller = select(steep, ax, ay);
+  N t = select(larger > zero, N(smaller / larger), zero);
+#pragma GCC unroll 3
+  for (int halving = 0; halving < 3; ++halving) t = t / (T(1) + sqrt(T(1) + t * t));
+  constexpr int kTerms = sizeof(T) == 4 ? 4 : sizeof(T) == 8 ? 9 : 11;
+  const N t2 = t * t;
+  N series(T(1) / T(2 * kTerms + 1));
+#pragma GCC unroll 16
+  for (int k = kTerms - 1; k >= 0; --k) series = T(1) / T(2 * k + 1) - series * t2;
+  constexpr T kTurnsPerRadian = T(0.159154943091895335768883763372514362L);
+  N turns = T(8) * t * series * kTurnsPerRadian;
+  turns = select(steep, N(T(0.25) - turns), turns);
+  turns = select(x < zero, N(T(0.5) - turns), turns);
+  return select(y < zero, N(-turns), turns);
+}
+
+// The same in [0, 1].
+template <class N>
+[[gnu::always_inline]] inline N positive_turns(const N& x, const N& y) {
+  using T = ScalarOf<N>;
+  const N turns = direction_turns(x, y);
+  return select(turns < N(T(0)), N(turns + T(1)), turns);
 }
 
 }  // namespace orrery

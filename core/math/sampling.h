@@ -9,9 +9,8 @@
 // order of evaluation. Bits are 32, in one number or in each lane of several.
 namespace orrery {
 
-using BitLanes = stdx::rebind_simd_t<std::uint32_t, Lanes<float>>;
 template <class N>
-concept Bits32 = std::same_as<N, std::uint32_t> || std::same_as<N, BitLanes>;
+concept Bits32 = std::same_as<ScalarOf<N>, std::uint32_t>;
 
 // A bijective mix of 32 bits (Wellons' search for low bias: shifts 16, 15, 16).
 template <Bits32 Bits>
@@ -62,9 +61,11 @@ inline std::uint32_t sobol_second(std::uint32_t index) {
 
 // Top 24 bits as a float in [0, 1): never rounds up to 1.
 inline float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
-[[gnu::always_inline]] inline Lanes<float> unit_float(const BitLanes& bits) {
-  using Signed = stdx::rebind_simd_t<std::int32_t, BitLanes>;  // what machines convert
-  return stdx::static_simd_cast<Lanes<float>>(stdx::static_simd_cast<Signed>(bits >> 8)) * 0x1p-24f;
+template <Bits32 Bits>
+requires(!std::same_as<Bits, std::uint32_t>) [[gnu::always_inline]] inline auto unit_float(const Bits& bits) {
+  using Signed = stdx::rebind_simd_t<std::int32_t, Bits>;  // what machines convert
+  using Floats = stdx::rebind_simd_t<float, Bits>;
+  return stdx::static_simd_cast<Floats>(stdx::static_simd_cast<Signed>(bits >> 8)) * 0x1p-24f;
 }
 
 template <class Unit>

@@ -108,12 +108,14 @@ struct Ray {
   [[gnu::always_inline]] Vec3<N> at(const N& t) const { return origin + direction * t; }
 };
 
-// Rays on their way. t_max is the far end (exclusive); a ray with t_max < 0 is inactive: it hits nothing.
+// Rays of a batch. t_max is the far end in units of the direction's length (exclusive); a ray with t_max < 0
+// is inactive: it hits nothing.
 template <class T>
 struct RayBatch {
   int count = 0;
   Vec3Array<T> origin, direction;
   Array<T> t_max;
+  Array<T> time;  // seconds of the scene's motion; filled only where rays of one picture differ in it
 
   [[gnu::always_inline]] Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
   // One of them.
@@ -143,12 +145,32 @@ Groups with_active_rays(const RayBatch<T>& rays, const Groups& groups) {
 
 inline constexpr int kNoPrimitive = -1;
 
-// Nearest hit so far of each ray: t starts as the ray's t_max, primitive as kNoPrimitive.
+// What the stages of a plan read of a hit beside t, primitive, position, normals, side, step and material.
+// Arrays that no stage reads are not filled.
+struct SurfaceFields {
+  bool parameters = false;  // u and v of hits and surfaces, tangent
+  bool identity = false;    // instance of hits, object of surfaces
+  bool footprint = false;   // width and spread of rays, footprint of surfaces
+
+  SurfaceFields& operator|=(const SurfaceFields& other) {
+    parameters |= other.parameters;
+    identity |= other.identity;
+    footprint |= other.footprint;
+    return *this;
+  }
+};
+
+// Nearest hit so far of each ray: t starts as the ray's t_max, primitive as kNoPrimitive. The rest is derived
+// from these two once per ray, after the search has ended (ShapeKernel::parameters()), because a search
+// replaces most of the hits that it finds.
 template <class T>
 struct HitBatch {
   Array<T> t;
   Array<IndexOf<T>> primitive;
+  Array<T> u, v;  // the shape's own parameters (of a triangle: weights of its second and third vertex)
+  Array<IndexOf<T>> instance;  // that the primitive belongs to, counted from 0; kNoInstance for none
 };
+inline constexpr int kNoInstance = -1;
 
 // Where a hit at t on primitive `id` takes the place of (best, best_id): it is nearer, or as near and of a
 // lower number. Neither NaN nor infinity is a hit.
@@ -168,6 +190,11 @@ struct SurfaceBatch {
   Array<T> side;           // +1: the ray came from the outside, -1: from the inside
   Array<T> step;           // metres along `geometric` that clear the surface of rounding
   Array<IndexOf<T>> material;
+  // See SurfaceFields.
+  Vec3Array<T> tangent;  // unit, along which u grows, at right angles to the true normal
+  Array<T> u, v;         // texture coordinates: those of a mesh if it has any, else the shape's parameters
+  Array<T> footprint;    // metres that a pixel covers here, across the ray
+  Array<IndexOf<T>> object;  // number of the object in the scene: `objects` first, then `instances`
 };
 
 }  // namespace orrery

@@ -1,17 +1,18 @@
 #pragma once
 
-#include "core/model/batch.h"
+#include <memory>
+#include <vector>
 
+#include "core/model/tile.h"
+
+// Cameras. Right-handed; metres; degrees in scenes and requests.
 namespace orrery {
 
-enum class Projection { perspective, orthographic };
+class Params;
 
-// Where the picture is taken from. Right-handed; metres; degrees.
-struct Camera {
-  Projection projection = Projection::perspective;
+// Where a scene's own camera stands.
+struct CameraPlacement {
   Vec3d eye{0, 0, 4}, look_at{0, 0, 0}, up{0, 1, 0};
-  double fov_degrees = 45;  // perspective: vertical angle of the picture, for any aspect
-  double height = 2;        // orthographic: metres that the picture's height shows
 };
 
 // A place on an orbit, relative to the scene's own camera: a turn about `up` through `look_at` (anticlockwise
@@ -25,39 +26,68 @@ struct Orbit {
 // The camera's place and directions, unit and at right angles to each other.
 struct CameraFrame {
   Vec3d eye, right, up, back;
-  Projection projection;
-  double half_extent;  // half the picture's height: of the plane at distance 1, or in metres if orthographic
-  double distance;     // from eye to look_at
+  double distance = 0;     // from eye to look_at, metres
+  double half_extent = 0;  // half the picture's height: see Camera::half_extent()
 };
-
-// The frame at `orbit`. The lift stops at straight above and below, where the picture stays upright by
-// azimuth: nothing is divided by the cosine of the elevation. REQUIRES: eye, look_at and up span a plane.
-CameraFrame frame_at(const Camera& camera, const Orbit& orbit);
-
-// The side of the square of pixels that one batch of camera rays covers.
-inline constexpr int kTileSide = 32;
-static_assert(kTileSide * kTileSide == kBatch);
-
-// Pixel of slot `slot` within its tile. Slots run in blocks of 4x4 pixels, so that the rays of one register
-// are neighbours whatever its width.
-struct TilePixel {
-  int x, y;
-};
-constexpr TilePixel tile_pixel(int slot) {
-  const int block = slot / 16, within = slot % 16;
-  constexpr int kBlocks = kTileSide / 4;
-  return {block % kBlocks * 4 + within % 4, block / kBlocks * 4 + within / 4};
-}
 
 // Where in its pixel each slot of a tile is sampled, in [0, 1).
 struct TileSamples {
   Array<float> u, v;
+
+  static TileSamples centres() {
+    TileSamples samples;
+    samples.u.values.fill(0.5f);
+    samples.v.values.fill(0.5f);
+    return samples;
+  }
 };
 
-// One ray a slot for the tile whose first pixel is (x0, y0) of a width x height picture; pixels beyond the
-// picture get inactive rays. Row 0 is the top.
-template <class T>
-void generate_rays(const CameraFrame& frame, int width, int height, int x0, int y0,
-                   const TileSamples& samples, RayBatch<T>& out);
+// How rays leave the camera: one object a type. Const and free of state.
+class Camera {
+ public:
+  virtual ~Camera() = default;
+
+  // Name and value of what a scene says about this type beside the placement.
+  struct Parameter {
+    const char* name;
+    double value;
+  };
+  virtual std::vector<Parameter> parameters() const = 0;
+  virtual const char* type() const = 0;
+  // Whether all rays have one direction.
+  virtual bool parallel() const = 0;
+  // Half the picture's height: in metres if parallel, else of the plane at distance 1 from the eye.
+  // `distance` is the orbit's factor of the own distance.
+  virtual double half_extent(double distance) const = 0;
+  // The same with another vertical angle, in (0, 180) degrees; null if it has no angle.
+  virtual std::unique_ptr<Camera> with_fov(double /*degrees*/) const { return nullptr; }
+
+  // One ray a slot for a tile of a picture of width x height pixels; slots beyond the tile's pixels get
+  // inactive rays.
+  virtual void generate(const CameraFrame& frame, int width, int height, const TileView& tile,
+                        const TileSamples& samples, RayBatch<float>& out) const = 0;
+  virtual void generate(const CameraFrame& frame, int width, int height, const TileView& tile,
+                        const TileSamples& samples, RayBatch<double>& out) const = 0;
+};
+
+struct CameraType {
+  const char* name;
+  const char* summary;
+  std::unique_ptr<Camera> (*read)(Params&);
+};
+
+// The frame of `camera` at `orbit`. The lift stops at straight above and below, where the picture stays
+// upright by azimuth: nothing is divided by the cosine of the elevation. REQUIRES: eye, look_at and up span a
+// plane.
+CameraFrame frame_at(const CameraPlacement& placement, const Camera& camera, const Orbit& orbit);
+
+// Metres across the ray that a pixel covers: `width` at the ray's origin, and `spread` more per metre.
+struct PixelFootprint {
+  double width, spread;
+};
+inline PixelFootprint pixel_footprint(const CameraFrame& frame, const Camera& camera, int height) {
+  const double pixel = 2 * frame.half_extent / height;
+  return camera.parallel() ? PixelFootprint{pixel, 0} : PixelFootprint{0, pixel};
+}
 
 }  // namespace orrery

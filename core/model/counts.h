@@ -34,11 +34,13 @@ struct RayCounts {
 struct TraceCounts {
   RayCounts rays;
   AcceleratorCounts accelerator;
-  std::uint64_t cut_rays = 0;  // not traced: too deep or too weak
+  std::uint64_t camera_hits = 0;  // camera rays that met something
+  std::uint64_t cut_rays = 0;     // not traced: too deep or too weak
 
   void add(const TraceCounts& other) {
     rays.add(other.rays);
     accelerator.add(other.accelerator);
+    camera_hits += other.camera_hits;
     cut_rays += other.cut_rays;
   }
 };

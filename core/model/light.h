@@ -2,40 +2,87 @@
 
 #include <memory>
 
-#include "core/model/batch.h"
+#include "core/model/draws.h"
 
+// Lights. As with shapes, a scene keeps all lights of one type together (a LightSet, in double precision) and
+// makes a kernel of them in the plan's number type, whose calls take whole batches.
+//
+// Convention: a white Lambert surface that faces a light of intensity 1 reads 1.
 namespace orrery {
 
 class Params;
 
-// One light source as seen from every surface point of a batch.
+// Light as it arrives at every surface point of a batch.
 template <class T>
 struct LightBatch {
   // Rays that ask whether the light is seen. The light fills the unit direction toward it and t_max (metres
-  // to it, infinite if it is directional, -1 if it sends nothing here); the origins are there before.
+  // to it, infinite if it is directional, -1 if it sends nothing here). Their origins are set once the
+  // direction is known: on the side of the surface that the light comes from.
   RayBatch<T> shadow;
-  Vec3Array<T> incident;       // intensity that arrives, after attenuation and cone
-  Vec3Array<T> radiance;       // filled by the material: what leaves toward the viewer
-  bool constant_half = false;  // one direction to the light and one to the viewer for the whole batch
+  // Radiance times cosine at the light over the density with which it was drawn and the probability of the
+  // choice; of a light that is one point, its intensity after attenuation and cone.
+  Vec3Array<T> incident;
 };
 
-// Convention: a white Lambert surface that faces a light of intensity 1 reads 1.
-class Light {
+// Which light of a kernel a batch asks, and the probability with which it was chosen.
+template <class T>
+struct LightChoice {
+  int index;  // within the kernel
+  T probability = 1;
+};
+
+// Const and free of state: any number of threads may call it at once.
+template <class T>
+class LightKernel {
  public:
-  virtual ~Light() = default;
-  // Fills direction, t_max and incident for `groups`. Const and free of state.
-  virtual void illuminate(const SurfaceBatch<float>& surface, const Groups& groups,
-                          LightBatch<float>& out) const = 0;
-  virtual void illuminate(const SurfaceBatch<double>& surface, const Groups& groups,
-                          LightBatch<double>& out) const = 0;
-  virtual Vec3d intensity() const = 0;                // at the source
-  virtual bool directional() const { return false; }  // the same direction everywhere
+  virtual ~LightKernel() = default;
+
+  // Draws a point of the light for every surface point of `groups`: fills direction, t_max and incident.
+  virtual void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
+                      const Groups& groups, LightBatch<T>& out) const = 0;
+
+  // Density per solid angle with which sample() draws the directions of `rays` from `surface`; 0 for a light
+  // of which no ray can hit anything, because it is a point or infinitely narrow.
+  virtual void pdf(const SurfaceBatch<T>& /*surface*/, const RayBatch<T>& /*rays*/,
+                   const LightChoice<T>& /*choice*/, const Groups& groups, Array<T>& out) const {
+    for (const int i : groups) out.put(i, Lanes<T>(T(0)));
+  }
+
+  // Adds what rays see that meet the light itself, or that leave the scene. Lights that no ray can hit add
+  // nothing.
+  virtual void emitted(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/, const Groups& /*groups*/,
+                       Vec3Array<T>& /*radiance*/) const {}
+};
+template <class T>
+using LightKernelPtr = std::unique_ptr<LightKernel<T>>;
+
+// What the plan may use about a type of light.
+struct LightTraits {
+  bool delta = true;      // no ray can hit it: only sample() finds it
+  bool parallel = false;  // the same direction everywhere
+};
+
+class LightSet {
+ public:
+  virtual ~LightSet() = default;
+  virtual void add(Params& params) = 0;
+  virtual int size() const = 0;
+  virtual LightTraits traits() const = 0;
+  virtual Vec3d intensity(int index) const = 0;  // at the source, per channel
+  virtual LightKernelPtr<float> kernel(float) const = 0;
+  virtual LightKernelPtr<double> kernel(double) const = 0;
+};
+
+// One light of a scene: a type's place in the registry and its number within the set.
+struct LightPlace {
+  std::size_t set;
+  int index;
 };
 
 struct LightType {
   const char* name;
   const char* summary;
-  std::unique_ptr<Light> (*make)(Params& params);
+  std::unique_ptr<LightSet> (*make)();
 };
 
 }  // namespace orrery

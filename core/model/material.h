@@ -2,8 +2,7 @@
 
 #include <memory>
 
-#include "core/model/batch.h"
-#include "core/model/light.h"
+#include "core/model/draws.h"
 
 // Materials. As with shapes, a scene keeps all materials of one type together and makes a kernel of them in
 // the plan's number type. Radiance and coefficients are linear, per channel.
@@ -19,34 +18,69 @@ struct SpecularBatch {
   Vec3Array<T> reflectance, transmittance, refracted, filter;
 };
 
-// Const and free of state.
+// Two directions at each surface point: that of the ray which met it, and one away from it.
+template <class T>
+struct Directions {
+  const Vec3Array<T>& ray;     // unit, toward the surface
+  const Vec3Array<T>& light;   // unit, away from the surface
+  const Array<T>& reach;       // metres along `light`; lanes without a positive number are not asked for
+  bool constant_half = false;  // both directions are the same for the whole batch
+};
+
+// One direction drawn at each surface point.
+template <class T>
+struct ScatterBatch {
+  Vec3Array<T> direction;  // unit, away from the surface
+  Vec3Array<T> weight;     // reflected share of radiance times cosine over density; 0: nothing goes on
+  Array<T> pdf;            // density per solid angle; 0 of a direction that no other could be
+};
+
+// Const and free of state: any number of threads may call it at once.
 template <class T>
 class MaterialKernel {
  public:
   virtual ~MaterialKernel() = default;
 
   // Sets `radiance` of the lanes with this material to what `ambient` light alone makes leave the surface.
-  virtual void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
-                       Vec3Array<T>& radiance) const;
+  virtual void ambient(const SurfaceBatch<T>&, const Groups&, const Vec3<T>& /*ambient*/,
+                       Vec3Array<T>& /*radiance*/) const {}
 
-  // Light of one source that leaves toward the ray's origin, into `light.radiance`. Lanes that get none, and
-  // lanes of other materials in the group, are left with light.t_max = -1 unless another material set them.
-  virtual void reflect(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, const Groups& groups,
-                       LightBatch<T>& light) const;
+  // Light along `directions.light` that leaves toward the ray's origin: `f_cos` is the share per channel,
+  // cosine included; `pdf` the density per solid angle with which sample() draws that direction. Both are set
+  // for the lanes with this material alone; pdf is 0, and f_cos undefined, where nothing is reflected.
+  virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const Groups&, Vec3Array<T>& /*f_cos*/,
+                        Array<T>& /*pdf*/) const {}
 
-  // Fills `out` for the lanes with this material.
-  virtual void specular(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-                        const Groups& groups, SpecularBatch<T>& out) const;
+  // Draws one direction in which light may have come, for the lanes with this material.
+  virtual void sample(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const PathDraws<T>&,
+                      const Groups&, ScatterBatch<T>&) const {}
+
+  // All directions of a perfectly specular material, for the lanes with it.
+  virtual void specular(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const Groups&,
+                        SpecularBatch<T>&) const {}
+
+  // Adds what the surface itself sends toward the ray's origin.
+  virtual void emitted(const SurfaceBatch<T>&, const Groups&, Vec3Array<T>& /*radiance*/) const {}
 };
 
 template <class T>
 using MaterialKernelPtr = std::unique_ptr<MaterialKernel<T>>;
 
 struct MaterialTraits {
-  bool lit = false;        // answers light sources: `ambient` and `reflect`
+  bool lit = false;        // answers light sources: `ambient` and `evaluate`
   bool mirrors = false;    // `specular` may have reflectance
   bool transmits = false;  // `specular` may have transmittance
   bool filters = false;    // `specular` may have a filter other than 1
+  bool emits = false;      // `emitted` may add something
+
+  MaterialTraits& operator|=(const MaterialTraits& other) {
+    lit |= other.lit;
+    mirrors |= other.mirrors;
+    transmits |= other.transmits;
+    filters |= other.filters;
+    emits |= other.emits;
+    return *this;
+  }
 };
 
 class MaterialSet {
@@ -65,14 +99,5 @@ struct MaterialType {
   const char* summary;
   std::unique_ptr<MaterialSet> (*make)();
 };
-
-template <class T>
-void MaterialKernel<T>::ambient(const SurfaceBatch<T>&, const Groups&, const Vec3<T>&, Vec3Array<T>&) const {}
-template <class T>
-void MaterialKernel<T>::reflect(const RayBatch<T>&, const SurfaceBatch<T>&, const Groups&,
-                                LightBatch<T>&) const {}
-template <class T>
-void MaterialKernel<T>::specular(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&,
-                                 const Groups&, SpecularBatch<T>&) const {}
 
 }  // namespace orrery

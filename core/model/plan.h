@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,7 @@
 namespace orrery {
 
 struct AcceleratorType;
+struct ChannelType;
 struct TechniqueType;
 
 enum class Precision { automatic, single_precision, double_precision };
@@ -25,15 +28,30 @@ inline constexpr std::string_view name_of(Prediction prediction) {
   return kPredictions[static_cast<std::size_t>(prediction)];
 }
 
+// How far a decision may take the picture from the one without it.
+struct Bound {
+  enum class Kind { exact, unknown };
+  Kind kind = Kind::exact;
+  // Largest and root-mean-square difference of a pixel's channel, in linear radiance; none if unknown.
+  std::optional<double> max = 0, rms = 0;
+
+  static Bound unknown() { return {Kind::unknown, std::nullopt, std::nullopt}; }
+};
+inline constexpr std::string_view name_of(Bound::Kind kind) {
+  return kind == Bound::Kind::exact ? "exact" : "unknown";
+}
+
 // One choice the plan made, for people to read.
 struct Decision {
   std::string subject, choice, reason;
+  Bound bound;
 };
 
 // All that a render needs to know beside the scene: what will be modelled and, in `decisions`, why no more.
 struct Plan {
   int width = 0, height = 0, samples = 1;
-  CameraFrame camera;
+  CameraFrame frame;
+  std::shared_ptr<const Camera> camera;
   const TechniqueType* technique = nullptr;
   const AcceleratorType* accelerator = nullptr;
   bool try_accelerators = false;  // for few primitives: others may be cheaper, see settle()
@@ -44,6 +62,8 @@ struct Plan {
   std::uint64_t seed = 0;
   bool reorder = false;  // rays that are alike are asked for together
   Prediction prediction = Prediction::none;
+  std::vector<const ChannelType*> channels;  // beside radiance
+  SurfaceFields fields;                      // what stages and channels read of surfaces
   // Stages that are present.
   bool direct_light = true;    // light sources are evaluated
   bool shadows = true;         // shadow rays are traced

@@ -9,6 +9,7 @@
 
 #include "core/math/affine.h"
 #include "core/math/keys.h"
+#include "core/model/camera.h"
 #include "core/model/light.h"
 #include "core/model/material.h"
 #include "core/model/plan.h"
@@ -93,21 +94,30 @@ struct TimeSpan {
   }
 };
 
+// Primitives with following numbers that belong to one object.
+struct ObjectRun {
+  std::int32_t first_primitive, object;
+};
+
 // A scene as read, in double precision; never changed afterwards, shared between threads. Primitives are
-// numbered set by set in the order of `shapes`, materials likewise in the order of `materials`.
+// numbered set by set in the order of `shapes`, materials likewise in the order of `materials`. Objects are
+// numbered as the scene lists them: `objects` first, then `instances`.
 struct Scene {
   std::string id;  // SHA-256 of the canonical JSON
   std::string canonical;
   std::string title, description;
-  Camera camera;
+  CameraPlacement placement;
+  std::shared_ptr<const Camera> camera;
   RenderSettings render;
   Vec3d ambient, background;
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
-  std::vector<std::unique_ptr<Light>> lights;
+  std::vector<std::unique_ptr<LightSet>> light_sets;
+  std::vector<LightPlace> lights;  // in the order of the file
   std::deque<Model> models;
   std::vector<Instance> instances;        // their primitives are numbered after those of `shapes`
   std::vector<std::int32_t> material_of;  // of each primitive
+  std::vector<ObjectRun> object_runs;     // ascending; each lasts until the next
   int object_count = 0;
   TimeSpan motion;
   SceneFacts facts;

@@ -24,6 +24,14 @@ struct Surface {
   N magnitude;  // largest absolute coordinate of the shape, at least near the hit: the scale of rounding
 };
 
+// Where on its shape one hit is.
+template <class N>
+struct SurfacePoint {
+  N u, v;           // the shape's own parameters
+  N s, t;           // texture coordinates
+  Vec3<N> tangent;  // unit, along which s grows, at right angles to the true normal
+};
+
 // Primitives of one kernel in an order that a structure chose, laid out in blocks of kBlock<T>, so that a
 // packet meets one of them, or a single ray a block of them, at once. Hits and ties are those of
 // ShapeKernel::closest(), bit for bit. A call takes the pairs in their order, with rays and hits at the
@@ -83,6 +91,10 @@ class ShapeKernel {
   // Fills the surface of every hit in `groups` that belongs to this set, other lanes stay as they are.
   virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
                        SurfaceBatch<T>& out) const = 0;
+
+  // Fills u and v of hits and surfaces and the tangent, likewise. REQUIRES: surface() was called before.
+  virtual void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+                          SurfaceBatch<T>& out) const = 0;
 };
 
 template <class T>

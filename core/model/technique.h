@@ -1,18 +1,22 @@
 #pragma once
 
 #include <stop_token>
+#include <vector>
 
+#include "core/model/channel.h"
 #include "core/model/counts.h"
+#include "core/model/draws.h"
 #include "core/model/plan.h"
 #include "core/model/world.h"
 
 namespace orrery {
 
-// What the camera rays of one batch bring home, by slot. Not averaged, not clamped.
+// What the camera rays of one batch found, by slot. Not averaged, not clamped.
 template <class T>
 struct TraceResult {
   Vec3Array<T> radiance;
   Array<T> cut;  // weight of rays that were not traced, largest channel: the ledger of the depth limit
+  std::vector<ChannelBatch<T>> channels;  // of Plan::channels, in that order
 };
 
 // How light is followed. One tracer belongs to one thread and is used again and again; it keeps its batches.
@@ -20,10 +24,11 @@ template <class T>
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  // Follows the camera rays to the end. Slots of inactive rays get the background. Looks at `stop`
-  // now and then; once a stop is requested the rest is left, the result means nothing and false is returned.
-  virtual bool trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
-                     std::stop_token stop = {}) = 0;
+  // Follows the camera rays to the end. Slots of inactive rays get the background. `draws` has the random
+  // numbers of the batch's slots. `stop` is asked now and then; once a stop is requested the rest is left,
+  // the result means nothing and false is returned.
+  virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
+                     TraceCounts& counts, std::stop_token stop = {}) = 0;
 };
 
 template <class T>

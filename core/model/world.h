@@ -24,6 +24,8 @@ struct Geometry {
   std::vector<ShapeKernelPtr<T>> shapes;
   std::vector<std::shared_ptr<const ModelGeometry<T>>> models;
   std::vector<Materials> materials;
+  std::vector<LightKernelPtr<T>>
+      lights;  // one a type, in the order of Scene::light_sets; null if it has none
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;
   Vec3<T> ambient, background;

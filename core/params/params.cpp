@@ -65,6 +65,10 @@ std::vector<Vec3d> Params::directions(Key key, Doc doc, Count count) {
   return all;
 }
 
+std::vector<std::array<double, 2>> Params::pairs(Key key, Doc doc, Count count) {
+  return do_pairs(key, doc, count);
+}
+
 std::vector<std::array<std::int64_t, 3>> Params::index_triples(Key key, Doc doc, Count count,
                                                                std::int64_t bound) {
   return do_triples(key, doc, count, bound);

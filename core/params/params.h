@@ -126,6 +126,8 @@ class Params {
   std::vector<Vec3d> points(std::string_view key, std::string_view doc, Count count);  // each as point()
   std::vector<Vec3d> directions(std::string_view key, std::string_view doc,
                                 Count count);  // each as direction()
+  // Twos of numbers within +-kMaxCoordinate, e.g. texture coordinates.
+  std::vector<std::array<double, 2>> pairs(std::string_view key, std::string_view doc, Count count);
   // Threes of integers 0 <= i < bound, e.g. the corners of triangles. The schema cannot know `bound`.
   std::vector<std::array<std::int64_t, 3>> index_triples(std::string_view key, std::string_view doc,
                                                          Count count, std::int64_t bound);
@@ -195,6 +197,7 @@ class Params {
   virtual std::string do_text(Key, Doc, std::size_t max_length, const char* fallback) = 0;
   virtual Vec3d do_three(Key, Doc, Kind, const Range&, const Fallback<Vec3d>&) = 0;
   virtual std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) = 0;
+  virtual std::vector<std::array<double, 2>> do_pairs(Key, Doc, Count) = 0;
   virtual std::vector<std::array<std::int64_t, 3>> do_triples(Key, Doc, Count, std::int64_t bound) = 0;
   virtual void do_object(Key, Doc, bool required, const Read&) = 0;
   virtual void do_each(Key, Doc, Count, const Read&) = 0;

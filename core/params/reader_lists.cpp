@@ -89,6 +89,22 @@ std::vector<Vec3d> Reader::do_threes(Key key, Doc, Kind kind, Count count) {
   return all;
 }
 
+std::vector<std::array<double, 2>> Reader::do_pairs(Key key, Doc, Count count) {
+  const json* list = find_list(key, count, "pairs of numbers");
+  std::vector<std::array<double, 2>> all(list ? list->size() : count.min);
+  for (std::size_t i = 0; list && i < all.size(); ++i) {
+    const json& value = (*list)[i];
+    const bool two = value.is_array() && value.size() == 2;
+    const std::optional<double> u = two ? number_in(value[0], kCoordinates) : std::nullopt;
+    const std::optional<double> v = two ? number_in(value[1], kCoordinates) : std::nullopt;
+    if (u && v)
+      all[i] = {*u, *v};
+    else
+      note_value(location_text({key, i}), "2 numbers" + range_text(kCoordinates), value);
+  }
+  return all;
+}
+
 void Reader::read_triple(const json& value, const Location& location, std::int64_t bound,
                          std::array<std::int64_t, 3>& triple) {
   const Range range{.min = 0, .max = static_cast<double>(bound), .exclusive_max = true};

@@ -86,8 +86,8 @@ class Planner {
     std::snprintf(text, sizeof text, "%.6g s", time);
     return text;
   }
-  void decide(std::string subject, std::string choice, std::string reason) {
-    plan_.decisions.push_back({std::move(subject), std::move(choice), std::move(reason)});
+  void decide(std::string subject, std::string choice, std::string reason, const Bound& bound = {}) {
+    plan_.decisions.push_back({std::move(subject), std::move(choice), std::move(reason), bound});
   }
 
   void take_request() {
@@ -111,11 +111,12 @@ class Planner {
   }
 
   void take_camera() {
-    Camera camera = scene_.camera;
+    plan_.camera = scene_.camera;
     if (request_.fov_degrees) {
-      camera.fov_degrees = *request_.fov_degrees;
-      if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
+      if (!(*request_.fov_degrees > 0 && *request_.fov_degrees < 180))
         checks_.fail("/camera/fov_degrees", "expected a number > 0 and < 180");
+      else if (auto turned = scene_.camera->with_fov(*request_.fov_degrees))
+        plan_.camera = std::move(turned);
     }
     const Orbit& orbit = request_.orbit;
     checks_.within("/camera/azimuth_degrees", orbit.azimuth_degrees, -kMaxOrbitDegrees, kMaxOrbitDegrees);
@@ -123,7 +124,7 @@ class Planner {
     checks_.within("/camera/distance", orbit.distance, kMinOrbitDistance, kMaxOrbitDistance);
     for (const double metres : {orbit.pan.x, orbit.pan.y, orbit.pan.z})
       checks_.within("/camera/pan", metres, -kMaxPan, kMaxPan);
-    plan_.camera = frame_at(camera, orbit);
+    plan_.frame = frame_at(scene_.placement, *plan_.camera, orbit);
   }
 
   // Float where 8 ulp of the largest coordinate stay under a tenth of the smallest shape and of a pixel's
@@ -132,20 +133,23 @@ class Planner {
     const Precision asked = request_.precision.value_or(scene_.render.precision);
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
-      return decide("precision", precision_name(plan_.double_precision), "as asked");
+      return decide("precision", precision_name(plan_.double_precision), "as asked", rounding_bound());
     }
-    const double largest = std::max(scene_.facts.magnitude, max_component(abs(plan_.camera.eye)));
-    const bool perspective = plan_.camera.projection == Projection::perspective;
+    const double largest = std::max(scene_.facts.magnitude, max_component(abs(plan_.frame.eye)));
     const double footprint =
-        2 * plan_.camera.half_extent / plan_.height * (perspective ? plan_.camera.distance : 1.0);
+        2 * plan_.frame.half_extent / plan_.height * (plan_.camera->parallel() ? 1.0 : plan_.frame.distance);
     const double detail = std::min(scene_.facts.smallest_feature, footprint);
     const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
     plan_.double_precision = !(rounding <= detail / 10);
     decide("precision", precision_name(plan_.double_precision),
            plan_.double_precision
                ? "coordinates are too large for the smallest shape or pixel in float"
-               : "8 ulp of the largest coordinate are below a tenth of the smallest shape and pixel");
+               : "8 ulp of the largest coordinate are below a tenth of the smallest shape and pixel",
+           rounding_bound());
   }
+
+  // What float does to the picture is not bounded yet; double is what other pictures are held against.
+  Bound rounding_bound() const { return plan_.double_precision ? Bound() : Bound::unknown(); }
 
   void choose_accelerator() {
     const std::string asked = request_.accelerator.value_or(scene_.render.accelerator);
@@ -178,17 +182,19 @@ class Planner {
   }
 
   void choose_lights() {
-    const bool glows = std::any_of(scene_.lights.begin(), scene_.lights.end(),
-                                   [](const auto& light) { return light->intensity() != Vec3d(0); });
+    const bool glows = std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const LightPlace& light) {
+      return scene_.light_sets[light.set]->intensity(light.index) != Vec3d(0);
+    });
     plan_.direct_light = glows && scene_.facts.materials.lit;
     if (!plan_.direct_light) {
       plan_.shadows = false;
       return decide("direct light", "absent",
                     glows ? "no material in use answers light sources" : "no light source");
     }
-    const bool parallel_light = std::any_of(scene_.lights.begin(), scene_.lights.end(),
-                                            [](const auto& light) { return light->directional(); });
-    plan_.constant_half = parallel_light && plan_.camera.projection == Projection::orthographic;
+    const bool parallel_light =
+        std::any_of(scene_.lights.begin(), scene_.lights.end(),
+                    [&](const LightPlace& light) { return scene_.light_sets[light.set]->traits().parallel; });
+    plan_.constant_half = parallel_light && plan_.camera->parallel();
     if (plan_.constant_half)
       decide("half vector", "computed once",
              "the viewer and a light are parallel, so it is the same everywhere");
@@ -209,7 +215,7 @@ class Planner {
     if (!plan_.technique->secondary_rays) {
       plan_.max_depth = 0;
       return decide("mirrored and refracted rays", "absent",
-                    std::string(plan_.technique->name) + " sends none");
+                    std::string(plan_.technique->name) + " sends none", Bound::unknown());
     }
     if (!used.transmits) decide("refracted rays", "absent", "no material in use is transparent");
     if (!plan_.filters) decide("filtering in bodies", "absent", "no body in use weakens light");
@@ -217,7 +223,8 @@ class Planner {
       plan_.max_depth = 1;
       decide("depth", "1", "the only object is convex: its mirrored rays meet nothing");
     } else {
-      decide("depth", std::to_string(plan_.max_depth), "as asked; deeper rays are replaced by ambient light");
+      decide("depth", std::to_string(plan_.max_depth), "as asked; deeper rays are replaced by ambient light",
+             Bound::unknown());
     }
   }
 
@@ -228,8 +235,7 @@ class Planner {
       if (shapes->size() == 0) continue;
       const ShapeTraits traits = shapes->traits();
       if (!traits.convex) return false;
-      const bool outside = plan_.camera.projection == Projection::perspective &&
-                           !contains(shapes->bounds(0), plan_.camera.eye);
+      const bool outside = !plan_.camera->parallel() && !contains(shapes->bounds(0), plan_.frame.eye);
       return !traits.closed || outside;
     }
     return false;

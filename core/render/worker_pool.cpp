@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
-#include "core/render/renderer.h"
+#include "core/render/worker_pool.h"
 
 namespace orrery {
 

@@ -1,75 +1,18 @@
+#include "core/shapes/box.h"
+
 #include "core/params/params.h"
 #include "core/shapes/primitive_set.h"
 
 namespace orrery {
-namespace {
 
 template <class N>
-struct Box {
-  Vec3<N> lo, hi;
-  N magnitude;  // largest absolute coordinate
-
-  static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
-
-  static void read(Params& p, std::vector<Box<double>>& out) {
-    const Vec3d lo = p.point("min", "Corner with the smallest coordinates, in metres.");
-    const Vec3d hi = p.point("max", "Corner with the largest coordinates, in metres.");
-    if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
-      p.fail("max", "expected every coordinate to be larger than that of min");
-    out.push_back({lo, hi, Boundsd::of({lo, hi}).magnitude()});
-  }
-
-  Boundsd bounds() const { return Boundsd::of({lo, hi}); }
-
-  // The nearer face ahead of the origin: of the interval inside all three slabs, the entry, or from within
-  // the exit. A ray in the plane of a face gives NaN there (0 * infinity), which loses against the other
-  // slabs.
-  N distance(const Ray<N>& ray) const {
-    using T = ScalarOf<N>;
-    using std::signbit;
-    const N infinity(std::numeric_limits<T>::infinity());
-    N enter = -infinity, leave = infinity;
-    const auto slab = [&](const N& lo_i, const N& hi_i, const N& o, const N& d) {
-      const auto negative = signbit(d);
-      enter = max_first(enter, N((select(negative, hi_i, lo_i) - o) / d));
-      leave = min_first(leave, N((select(negative, lo_i, hi_i) - o) / d));
-    };
-    slab(lo.x, hi.x, ray.origin.x, ray.direction.x);
-    slab(lo.y, hi.y, ray.origin.y, ray.direction.y);
-    slab(lo.z, hi.z, ray.origin.z, ray.direction.z);
-    const N t = select(enter > N(T(0)), enter, leave);
-    const Vec3<N> sum = ray.origin + ray.direction;
-    const N whole =
-        sum.x + sum.y + sum.z;  // NaN if the ray itself holds one, which must not lose: it is no ray
-    return select(enter <= leave && t > N(T(0)) && whole == whole, t, infinity);
-  }
-
-  // The face is the one that lies nearest, measured in half edges.
-  Surface<N> surface(const Ray<N>& ray, const N& t) const {
-    using T = ScalarOf<N>;
-    const N zero(T(0)), one(T(1));
-    const Vec3<N> near = ray.at(t);
-    const auto offset = [](const N& lo_i, const N& hi_i, const N& x) {
-      return N((x - lo_i) - (hi_i - x)) / N(hi_i - lo_i);  // -1 at lo, +1 at hi
-    };
-    const Vec3<N> u(offset(lo.x, hi.x, near.x), offset(lo.y, hi.y, near.y), offset(lo.z, hi.z, near.z));
-    const Vec3<N> size = abs(u);
-    const auto on_x = size.x >= size.y && size.x >= size.z;
-    const auto on_y = !on_x && size.y >= size.z;
-    const auto on_z = !on_x && !on_y;
-    const Vec3<N> normal(select(on_x, select(u.x > zero, one, -one), zero),
-                         select(on_y, select(u.y > zero, one, -one), zero),
-                         select(on_z, select(u.z > zero, one, -one), zero));
-    const auto settle = [&](const auto& on, const N& x, const N& lo_i, const N& hi_i, const N& side) {
-      return select(on, select(side > zero, hi_i, lo_i), min_first(max_first(x, lo_i), hi_i));
-    };
-    const Vec3<N> position(settle(on_x, near.x, lo.x, hi.x, u.x), settle(on_y, near.y, lo.y, hi.y, u.y),
-                           settle(on_z, near.z, lo.z, hi.z, u.z));
-    return {position, normal, normal, magnitude};
-  }
-};
-
-}  // namespace
+void Box<N>::read(Params& p, std::vector<Box<double>>& out) {
+  const Vec3d lo = p.point("min", "Corner with the smallest coordinates, in metres.");
+  const Vec3d hi = p.point("max", "Corner with the largest coordinates, in metres.");
+  if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
+    p.fail("max", "expected every coordinate to be larger than that of min");
+  out.push_back({lo, hi, Boundsd::of({lo, hi}).magnitude()});
+}
 
 ShapeType box_type() { return {"box", "A box along the axes.", make_shape_set<Box>}; }
 

@@ -1,102 +1,27 @@
+#include "core/shapes/cylinder.h"
+
 #include "core/params/params.h"
 #include "core/shapes/primitive_set.h"
-#include "core/shapes/round_hull.h"
 
 namespace orrery {
-namespace {
 
 template <class N>
-struct Cylinder {
-  Vec3<N> center, axis;  // the axis is a unit vector
-  N radius;
-  N half_length;  // infinite if the cylinder is
-  N magnitude;    // largest absolute coordinate of the finite part that is known, at most
-
-  static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
-
-  static void read(Params& p, std::vector<Cylinder<double>>& out) {
-    const double infinity = std::numeric_limits<double>::infinity();
-    if (p.form({{"base", "top"}, {"point", "axis"}}) == 0) {
-      const Vec3d base = p.point("base", "Centre of one cap, in metres.");
-      const Vec3d top = p.point("top", "Centre of the other cap, in metres.");
-      const double radius = p.positive("radius", "Radius, in metres.");
-      if (base == top) p.fail("top", "expected a point other than base");
-      const double reach = std::max(max_component(abs(base)), max_component(abs(top))) + radius;
-      out.push_back({(base + top) * 0.5, safe_normalize(top - base), radius, length(top - base) / 2, reach});
-    } else {
-      const Vec3d point = p.point("point", "Any point of the axis, in metres.");
-      const Vec3d axis = p.direction("axis", "Direction of the axis; the cylinder has no ends.");
-      const double radius = p.positive("radius", "Radius, in metres.");
-      out.push_back({point, axis, radius, infinity, max_component(abs(point)) + radius});
-    }
+void Cylinder<N>::read(Params& p, std::vector<Cylinder<double>>& out) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  if (p.form({{"base", "top"}, {"point", "axis"}}) == 0) {
+    const Vec3d base = p.point("base", "Centre of one cap, in metres.");
+    const Vec3d top = p.point("top", "Centre of the other cap, in metres.");
+    const double radius = p.positive("radius", "Radius, in metres.");
+    if (base == top) p.fail("top", "expected a point other than base");
+    const double reach = std::max(max_component(abs(base)), max_component(abs(top))) + radius;
+    out.push_back({(base + top) * 0.5, safe_normalize(top - base), radius, length(top - base) / 2, reach});
+  } else {
+    const Vec3d point = p.point("point", "Any point of the axis, in metres.");
+    const Vec3d axis = p.direction("axis", "Direction of the axis; the cylinder has no ends.");
+    const double radius = p.positive("radius", "Radius, in metres.");
+    out.push_back({point, axis, radius, infinity, max_component(abs(point)) + radius});
   }
-
-  Boundsd bounds() const {
-    if (std::isinf(half_length)) return Boundsd::everything();
-    const auto reach = [&](double a) {
-      return std::abs(a) * half_length + radius * std::sqrt(std::max(0.0, 1 - a * a));
-    };
-    return Boundsd::around(center, {reach(axis.x), reach(axis.y), reach(axis.z)});
-  }
-
-  std::vector<HullTriangle> hull() const {
-    return round_hull(Vec3d(center), Vec3d(axis), double(radius), double(half_length));
-  }
-
-  // A capped cylinder is where an infinite one and a slab overlap: the hit is the entry into that interval,
-  // or from within its end. The wall's roots come from the residue as for the sphere, in the plane across the
-  // axis.
-  N distance(const Ray<N>& ray) const {
-    using T = ScalarOf<N>;
-    using std::signbit;
-    using std::sqrt;
-    const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
-    const Vec3<N> f = ray.origin - center;
-    const N along_f = dot(f, axis), along_d = dot(ray.direction, axis);
-    const Vec3<N> f_across = f - axis * along_f, d_across = ray.direction - axis * along_d;
-    const N a = dot(d_across, d_across);
-    const auto parallel = a == zero;
-    const N b = -dot(f_across, d_across);
-    const Vec3<N> residue = f_across + d_across * select(parallel, zero, N(b / a));
-    const N discriminant = radius * radius - dot(residue, residue);
-    const auto meets = discriminant >= zero;
-    if (!any(meets)) return infinity;
-    const N root = sqrt(a * select(meets, discriminant, zero));
-    const N q = b + select(b < zero, -root, root);
-    const N from_axis = length(f_across);
-    const N t0 = (from_axis - radius) * (from_axis + radius) / q, t1 = q / a;
-    const auto inverted = signbit(along_d);
-    const N near_cap = (select(inverted, half_length, -half_length) - along_f) / along_d;
-    const N far_cap = (select(inverted, -half_length, half_length) - along_f) / along_d;
-    const N enter = max_first(select(parallel, -infinity, min_first(t0, t1)), near_cap);
-    const N leave = min_first(select(parallel, infinity, max_first(t0, t1)), far_cap);
-    const N t = select(enter > zero, enter, leave);
-    return select(meets && enter <= leave && t > zero && t < infinity, t, infinity);
-  }
-
-  // Wall or cap: whichever is nearer.
-  Surface<N> surface(const Ray<N>& ray, const N& t) const {
-    using T = ScalarOf<N>;
-    using std::abs;
-    using std::max;
-    const Vec3<N> from_center = ray.at(t) - center;
-    const N along = dot(from_center, axis);
-    const Vec3<N> across = from_center - axis * along;
-    const N from_axis = length(across);
-    const auto cap = abs(half_length - abs(along)) < abs(radius - from_axis);
-    const N cap_side = select(along > N(T(0)), N(T(1)), N(T(-1)));
-    const Vec3<N> outward = across * select(cap, N(T(0)), N(T(1) / from_axis));
-    const N cap_along = select(cap, cap_side, N(T(0)));
-    const Vec3<N> normal = outward + axis * cap_along;
-    const Vec3<N> on_wall = center + axis * along + outward * radius;
-    const Vec3<N> on_cap = center + across + axis * (cap_side * half_length);
-    const Vec3<N> position(select(cap, on_cap.x, on_wall.x), select(cap, on_cap.y, on_wall.y),
-                           select(cap, on_cap.z, on_wall.z));
-    return {position, normal, normal, max(magnitude, max_component(orrery::abs(position)))};
-  }
-};
-
-}  // namespace
+}
 
 ShapeType cylinder_type() {
   return {"cylinder", "A round column, with caps or infinitely long.", make_shape_set<Cylinder>};

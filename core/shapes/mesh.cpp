@@ -44,7 +44,7 @@ class MeshSet final : public ShapeSet {
       for (const VertexKey& key : moving.keys.values)
         for (const SharedVectors& some : {key.positions, key.normals})
           if (counted.insert(some.get()).second) vectors += some->size();
-    return vectors * sizeof(Vec3d);
+    return vectors * sizeof(Vec3d) + table_.uvs.size() * sizeof(table_.uvs[0]);
   }
   Boundsd bounds(int index) const override {
     return table_.corners(static_cast<std::size_t>(index)).bounds();
@@ -86,7 +86,8 @@ class MeshSet final : public ShapeSet {
     return true;
   }
   bool take_moving(MeshObject& object, Params& p) {
-    MovingMesh moving{object.mesh.triangles, std::move(object.keys), object.crease_degrees, {}, 0};
+    MovingMesh moving{
+        object.mesh.triangles, object.mesh.uvs, std::move(object.keys), object.crease_degrees, {}, 0};
     if (object.crease_degrees) {
       moving.always = position_indices_of(*moving.keys.values[0].positions);
       for (const VertexKey& key : moving.keys.values) split_position_indices(moving.always, *key.positions);
@@ -118,6 +119,7 @@ class MeshSet final : public ShapeSet {
          end_of(table_.positions, [](const auto& p) { return p.first_vertex; }), mesh.positions);
     if (from.smooth)
       copy(table_.normals, from.first_normal, from.first_normal + mesh.positions.size(), mesh.normals);
+    if (from.mapped) copy(table_.uvs, from.first_uv, from.first_uv + mesh.positions.size(), mesh.uvs);
     copy(table_.triangles, from.first, end_of(table_.triangles, [](const auto& p) { return p.first; }),
          mesh.triangles);
     for (auto& triangle : mesh.triangles)
@@ -139,10 +141,11 @@ class MeshSet final : public ShapeSet {
       for (const std::uint32_t vertex : {a, b, c}) box.include(mesh.positions[vertex]);
       table_.triangles.push_back({a + first_vertex, b + first_vertex, c + first_vertex});
     }
-    table_.parts.push_back(
-        {first, first_vertex, table_.normals.size(), !mesh.normals.empty(), box.magnitude()});
+    table_.parts.push_back({first, first_vertex, table_.normals.size(), table_.uvs.size(),
+                            !mesh.normals.empty(), !mesh.uvs.empty(), box.magnitude()});
     table_.positions.insert(table_.positions.end(), mesh.positions.begin(), mesh.positions.end());
     table_.normals.insert(table_.normals.end(), mesh.normals.begin(), mesh.normals.end());
+    table_.uvs.insert(table_.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
   }
 
   template <class T>

@@ -23,6 +23,14 @@ TriangleMesh read_inline(Params& p) {
                           std::to_string(mesh.normals.size()));
     mesh.normals.clear();
   }
+  mesh.uvs =
+      p.pairs("uvs", "Texture coordinates (u, v) at each vertex, (0, 0) at the lower left of an image.",
+              {0, kLimits.vertices});
+  if (!mesh.uvs.empty() && mesh.uvs.size() != mesh.positions.size()) {
+    p.fail("uvs", "expected as many as positions (" + std::to_string(mesh.positions.size()) + "), got " +
+                      std::to_string(mesh.uvs.size()));
+    mesh.uvs.clear();
+  }
   for (const auto& triple : triples) {
     if (std::max({triple[0], triple[1], triple[2]}) >= bound) return {};  // reported already
     mesh.triangles.push_back({static_cast<std::uint32_t>(triple[0]), static_cast<std::uint32_t>(triple[1]),

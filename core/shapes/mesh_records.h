@@ -35,16 +35,40 @@ struct MeshTriangle {
   }
 };
 
+// What maps a triangle of a mesh to its parameters.
+template <class N>
+struct MeshMapping {
+  Corners<N> corners;
+  Vec3<N> s, t;  // texture coordinates of its vertices
+
+  // u, v: weights of the second and the third vertex. The tangent is that of s where s and t span the
+  // triangle, and its first edge elsewhere.
+  SurfacePoint<N> parameters(const Ray<N>& ray, const Vec3<N>&) const {
+    using std::abs;
+    using T = ScalarOf<N>;
+    const Vec3<N> weights = corners.weights(ray);
+    const Vec3<N> ab = corners.b - corners.a, ac = corners.c - corners.a;
+    const N s1 = s.y - s.x, t1 = t.y - t.x, s2 = s.z - s.x, t2 = t.z - t.x;
+    const N determinant = s1 * t2 - s2 * t1, zero(T(0));
+    const Vec3<N> along = (ab * t2 - ac * t1) * select(determinant < zero, N(T(-1)), N(T(1)));
+    const auto usable = dot(along, along) > zero && abs(determinant) > zero;
+    const Vec3<N> tangent = normalize(
+        Vec3<N>(select(usable, along.x, ab.x), select(usable, along.y, ab.y), select(usable, along.z, ab.z)));
+    return {weights.y, weights.z, dot(s, weights), dot(t, weights), tangent};
+  }
+};
+
 // Triangles of several meshes over shared vertices.
 template <class T>
 struct MeshTable {
   struct Part {
-    std::size_t first;                       // triangle
-    std::size_t first_vertex, first_normal;  // a normal a vertex, if it is
-    bool smooth;
+    std::size_t first;                                 // triangle
+    std::size_t first_vertex, first_normal, first_uv;  // a normal a vertex, if it is smooth; likewise uvs
+    bool smooth, mapped;
     T magnitude;
   };
   std::vector<Vec3<T>> positions, normals;
+  std::vector<std::array<T, 2>> uvs;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<Part> parts;  // in the order of their triangles
 
@@ -65,10 +89,11 @@ class MeshRecords {
   explicit MeshRecords(const MeshTable<double>& table) {
     for (const auto& v : table.positions) table_.positions.push_back(Vec3<T>(v));
     for (const auto& v : table.normals) table_.normals.push_back(Vec3<T>(v));
+    for (const auto& [u, v] : table.uvs) table_.uvs.push_back({static_cast<T>(u), static_cast<T>(v)});
     table_.triangles = table.triangles;
     for (const auto& part : table.parts)
-      table_.parts.push_back(
-          {part.first, part.first_vertex, part.first_normal, part.smooth, static_cast<T>(part.magnitude)});
+      table_.parts.push_back({part.first, part.first_vertex, part.first_normal, part.first_uv, part.smooth,
+                              part.mapped, static_cast<T>(part.magnitude)});
     flat_.reserve(table.triangles.size());
     for (std::size_t i = 0; i < table.triangles.size(); ++i) {
       const Corners<double> at = table.corners(i);
@@ -91,6 +116,24 @@ class MeshRecords {
     const auto& [a, b, c] = table_.triangles[i];
     return {core(i), {normal(a), normal(b), normal(c)}, flat, part.magnitude};
   }
+
+  template <class N>
+  using Mapping = MeshMapping<N>;
+  // Of a mesh without texture coordinates, they are the weights of the second and the third vertex.
+  struct Mappings {
+    const MeshRecords& records;
+    MeshMapping<T> operator[](std::size_t i) const {
+      const auto& table = records.table_;
+      const auto& part = table.part_of(i);
+      if (!part.mapped) return {table.corners(i), {T(0), T(1), T(0)}, {T(0), T(0), T(1)}};
+      const auto uv = [&](std::uint32_t vertex) {
+        return table.uvs[part.first_uv + vertex - part.first_vertex];
+      };
+      const auto& [a, b, c] = table.triangles[i];
+      return {table.corners(i), {uv(a)[0], uv(b)[0], uv(c)[0]}, {uv(a)[1], uv(b)[1], uv(c)[1]}};
+    }
+  };
+  Mappings mappings() const { return {*this}; }
 
  private:
   MeshTable<T> table_;

@@ -26,7 +26,7 @@ VertexKey mix(const VertexKey& before, const VertexKey& after, double share) {
 
 TriangleMesh MovingMesh::at(double time) const {
   const VertexKey vertices = keys.at(time);
-  TriangleMesh mesh{*vertices.positions, triangles, *vertices.normals, {}};
+  TriangleMesh mesh{*vertices.positions, triangles, *vertices.normals, uvs};
   if (crease_degrees) {
     const PositionIndices now = position_indices_of(mesh.positions);
     smooth_normals(mesh, *crease_degrees, count_pairs(mesh, now) <= most_pairs ? now : always);

@@ -21,6 +21,7 @@ VertexKey mix(const VertexKey& before, const VertexKey& after, double share);
 // A mesh whose vertices move. Triangles that have no area for a while stay.
 struct MovingMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<double, 2>> uvs;  // one a vertex, or none
   Keys<VertexKey> keys;
   // If there is a crease, normals are those of smooth_normals(): of vertices that stand together, or, where
   // that compares more than `most_pairs` because much of the mesh meets for a moment, of those that do so at

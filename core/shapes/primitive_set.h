@@ -6,10 +6,12 @@
 
 // A shape type is one record, `template <class N> struct Sphere`, with
 //   static constexpr ShapeTraits kTraits;
-//   static void read(Params&, std::vector<Sphere<double>>& out);   appends what one object holds
+//   static void read(Params&, std::vector<Sphere<double>>& out);   appends what one object holds; in the
+//                                                 .cpp, which registers the type
 //   Boundsd bounds() const;                                        of a Sphere<double>
 //   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit, or +infinity (or NaN) for none
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
+//   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
 //   std::vector<HullTriangle> hull() const;       if it knows better than bounds(): see ShapeKernel
 //   Core, core()                                  if distance() needs only a part: see packed_records.h
 // and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
@@ -26,6 +28,11 @@ class PlainRecords {
   std::size_t size() const { return records_.size(); }
   const Record<T>& operator[](std::size_t i) const { return records_[i]; }
   decltype(auto) core(std::size_t i) const { return CoreOf<Record, T>::of(records_[i]); }
+
+  // What maps positions to parameters.
+  template <class N>
+  using Mapping = Record<N>;
+  const PlainRecords& mappings() const { return *this; }
 
  private:
   std::vector<Record<T>> records_;
@@ -82,6 +89,24 @@ class PrimitiveKernel final : public ShapeKernel<T> {
       if (!any(mine)) continue;
       const auto shape = fetch_records<Record, T>(records_, id - first_, mine);
       put_surface(shape.surface(rays.at(i), hits.t.at(i)), rays.direction.at(i), i, mine, out);
+    }
+  }
+
+  void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+                  SurfaceBatch<T>& out) const override {
+    const int last = first_ + static_cast<int>(records_.size());
+    for (const int i : groups) {
+      const IndexLanes<T> id = load_index<T>(hits.primitive, i);
+      const auto mine = mask_cast<N>(id >= first_ && id < last);
+      if (!any(mine)) continue;
+      const auto mapping =
+          fetch_records<Records::template Mapping, T>(records_.mappings(), id - first_, mine);
+      const SurfacePoint<N> point = mapping.parameters(rays.at(i), out.position.at(i));
+      hits.u.put(i, mine, point.u);
+      hits.v.put(i, mine, point.v);
+      out.u.put(i, mine, point.s);
+      out.v.put(i, mine, point.t);
+      out.tangent.put(i, mine, point.tangent);
     }
   }
 

@@ -1,89 +1,16 @@
+#include "core/shapes/sphere.h"
+
 #include "core/params/params.h"
 #include "core/shapes/primitive_set.h"
 
 namespace orrery {
-namespace {
-
-// What a test of a ray needs of a sphere.
-template <class N>
-struct Ball {
-  Vec3<N> center;
-  N radius;
-
-  // The discriminant is taken from the part of origin - centre perpendicular to the ray, and the constant
-  // term as a product: neither cancels when the origin is far away or close to a huge sphere (Haines,
-  // Guenther, Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
-  N distance(const Ray<N>& ray) const {
-    using T = ScalarOf<N>;
-    using std::sqrt;
-    const N infinity(std::numeric_limits<T>::infinity());
-    const Vec3<N> f = ray.origin - center;
-    const N a = dot(ray.direction, ray.direction);
-    const N b = -dot(f, ray.direction);
-    const Vec3<N> residue = f + ray.direction * (b / a);
-    const N discriminant = radius * radius - dot(residue, residue);
-    const auto meets = discriminant >= N(T(0));
-    if (!any(meets)) return infinity;
-    const N root = sqrt(a * select(meets, discriminant, N(T(0))));
-    const N q = b + select(b < N(T(0)), -root, root);
-    const N distance_to_center = length(f);
-    const N c = (distance_to_center - radius) * (distance_to_center + radius);
-    const N t0 = c / q, t1 = q / a;
-    const N first = min_first(t0, t1), second = max_first(t0, t1);
-    const N nearest = select(first > N(T(0)), first, select(second > N(T(0)), second, infinity));
-    return select(meets, nearest, infinity);
-  }
-
-  // Whether an active ray of the packet may meet it: not if the rays, as they are sheared to run along z,
-  // pass the centre on one side of it at its own z, farther away than the radius over the least cosine of
-  // their angle with z. The radius grows by what rounding may make of the distance.
-  MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
-    using T = ScalarOf<N>;
-    if (!packet.one_origin) return MaskOf<N>(true);
-    const auto at = [&](int axis) { return center[axis] - N(packet.origin[axis]); };
-    const auto [x_axis, y_axis, z_axis] = packet.axis;
-    const N x = at(x_axis), y = at(y_axis), z = at(z_axis);
-    const auto steepest = [&](std::size_t side) {
-      return std::max(std::abs(packet.shear_lo[side]), std::abs(packet.shear_hi[side]));
-    };
-    const T sx = steepest(0), sy = steepest(1);
-    constexpr T kRounding = 32 * std::numeric_limits<T>::epsilon();
-    const N grown = radius + max_component(abs(Vec3<N>(x, y, z))) * N(kRounding);
-    const N reach = grown * N(std::sqrt(1 + sx * sx + sy * sy) * (1 + kRounding));
-    const auto beside = [&](const N& v, std::size_t side) {
-      const N lo = v - N(packet.shear_lo[side]) * z, hi = v - N(packet.shear_hi[side]) * z;
-      return min_first(lo, hi) > reach || max_first(lo, hi) < -reach;
-    };
-    return !beside(x, 0) && !beside(y, 1);
-  }
-};
 
 template <class N>
-struct Sphere {
-  Ball<N> ball;
-  N magnitude;  // largest absolute coordinate on the sphere
-
-  static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
-
-  static void read(Params& p, std::vector<Sphere<double>>& out) {
-    const Vec3d center = p.point("center", "Centre, in metres.");
-    const double radius = p.positive("radius", "Radius, in metres.");
-    out.push_back({{center, radius}, max_component(abs(center)) + radius});
-  }
-
-  Boundsd bounds() const { return Boundsd::around(ball.center, Vec3d(ball.radius)); }
-
-  using Core = Ball<N>;
-  const Core& core() const { return ball; }
-  N distance(const Ray<N>& ray) const { return ball.distance(ray); }
-
-  Surface<N> surface(const Ray<N>& ray, const N& t) const {
-    const Vec3<N> normal = normalize(ray.at(t) - ball.center);
-    return {ball.center + normal * ball.radius, normal, normal, magnitude};
-  }
-};
-
-}  // namespace
+void Sphere<N>::read(Params& p, std::vector<Sphere<double>>& out) {
+  const Vec3d center = p.point("center", "Centre, in metres.");
+  const double radius = p.positive("radius", "Radius, in metres.");
+  out.push_back({{center, radius}, max_component(abs(center)) + radius});
+}
 
 ShapeType sphere_type() {
   return {"sphere", "Points at one distance from a centre.", make_shape_set<Sphere>};

@@ -30,7 +30,7 @@ class Study {
 
   // Pictures to render: the reference twice, then the configurations, round by round.
   int pictures() const { return pictures_; }
-  // How the picture 0 <= number < pictures() is to be rendered, as linear32.
+  // How the picture 0 <= number < pictures() is to be rendered, as FilmStorage::linear32.
   RenderRequest request(int number) const;
   // Takes the next picture; they come in order.
   void add(const RenderResult& rendered);

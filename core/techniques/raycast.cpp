@@ -14,7 +14,7 @@ class Raycast final : public Wavefront<T> {
   using N = Lanes<T>;
 
   void scatter(const Groups& groups) override {
-    const auto& specular = this->stage_->specular;
+    const auto& specular = this->vertices_->specular;
     for (const int i : groups)
       for (const Vec3<N>& weight : {specular.reflectance.at(i), specular.transmittance.at(i)})
         this->cut(i, this->specular_lanes(i) && max_component(weight) > N(T(0)), weight);

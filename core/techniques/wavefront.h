@@ -2,7 +2,10 @@
 
 #include <vector>
 
-#include "core/techniques/paths.h"
+#include "core/model/path.h"
+#include "core/model/technique.h"
+#include "core/stages/direct_light.h"
+#include "core/stages/lane_masks.h"
 
 // The loop that all techniques share. A batch of rays passes whole through the stages
 //   closest hit -> surface -> ambient and direct light -> shadow rays -> scattering
@@ -17,17 +20,16 @@ class Wavefront : public Tracer<T> {
   using N = Lanes<T>;
 
   Wavefront(const World<T>& world, const Plan& plan);
-  bool trace(const RayBatch<T>& camera_rays, TraceResult<T>& out, TraceCounts& counts,
+  bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out, TraceCounts& counts,
              std::stop_token stop) final;
 
  protected:
   // What the current batch met, for scatter(). Groups name the registers with a specular surface.
-  struct Stage {
+  struct Vertices {
     PathBatch<T>* paths;
     HitBatch<T> hits;
     SurfaceBatch<T> surface;
     SpecularBatch<T> specular;
-    LightBatch<T> light;
     Vec3Array<T> radiance;  // toward each ray's origin, so far
   };
 
@@ -41,29 +43,27 @@ class Wavefront : public Tracer<T> {
   // Stands in for rays that are not traced: ambient light, entered into the ledger.
   void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
   // Lanes of register i whose material is specular.
-  MaskOf<N> specular_lanes(int i) const { return lanes_of(i, &MaterialTraits::mirrors); }
+  MaskOf<N> specular_lanes(int i) const {
+    return lanes_with(geometry_, vertices_->surface, i, &MaterialTraits::mirrors);
+  }
 
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
-  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<Vertices> vertices_;
 
  private:
+  void start(const RayBatch<T>& camera_rays);
   void run(PathBatch<T>& paths);
   void run_slice(const Groups& groups);
-  Groups find_surfaces(const Groups& groups);
-  void find_materials(int i, const IndexLanes<T>& primitive);
-  void light_surfaces(const Groups& groups);
-  void light_from(const Light& light, const Groups& groups);
-  void follow_specular(const Groups& groups);
-  void bring_home(const Groups& groups);
-  MaskOf<N> lanes_of(int i, bool MaterialTraits::*trait) const;
-  Groups groups_of(const Groups& groups, bool MaterialTraits::*trait) const;
+  void record_channels(const Groups& groups, const Groups& met);
   std::unique_ptr<PathBatch<T>> take_batch(int depth);
   void push(std::unique_ptr<PathBatch<T>> batch);
 
+  const std::unique_ptr<DirectLight<T>> direct_light_;
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;
+  const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;
 };

@@ -1,5 +1,8 @@
 #include "server/app/app.h"
 
+#include <optional>
+
+#include "core/render/views.h"
 #include "server/app/reading.h"
 #include "server/app/watch.h"
 
@@ -86,23 +89,26 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat forma
   auto start = Clock::now();
   const auto ticket = admission_.enter(demand, stop);
   timing.queue += milliseconds_since(start);
-  RenderResult rendered = services_.render(scene, plan, pixels_of(format),
-                                           {.stop = stop, .background = demand.lane == Lane::batch});
+  const RenderResult rendered =
+      services_.render(scene, orrery::settle(scene, plan, stop), storage_for(format),
+                       {.stop = stop, .background = demand.lane == Lane::batch});
   timing.build = rendered.stats.build_ms;
   timing.render = rendered.stats.trace_ms;
   start = Clock::now();
-  Picture picture{encode(rendered.image, format, stop), rendered.stats};
+  Picture picture{encode_film(rendered.film, format, {}, stop), rendered.stats};
   picture.bytes.shrink_to_fit();  // it may be kept
   timing.encode = milliseconds_since(start);
   return picture;
 }
 
-void App::settle(const PreparedScene& scene, Plan& plan, const Caller& caller) {
-  if (!plan.try_accelerators) return;
+SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Caller& caller) {
+  if (!plan.try_accelerators) return orrery::settle(scene, plan);
+  std::optional<SettledPlan> settled;
   watched(caller, timer_.now(), [&](const std::stop_token& stop) {
     const auto ticket = admission_.enter({Lane::interactive, caller.client, kLeastCost}, stop);
-    orrery::settle(scene, plan, stop);
+    settled = orrery::settle(scene, plan, stop);
   });
+  return *settled;
 }
 
 void App::drain() { drains_.request_stop(); }

@@ -69,7 +69,7 @@ class App {
                   const Caller& caller, Timing& timing);
 
   // Settles the plan in its turn, as render() would. Throws likewise.
-  void settle(const PreparedScene& scene, Plan& plan, const Caller& caller);
+  SettledPlan settle(const PreparedScene& scene, const Plan& plan, const Caller& caller);
 
   // The service is about to end: no new work; what runs goes on.
   bool draining() const { return drains_.stop_requested(); }

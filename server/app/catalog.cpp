@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/accelerators/registry.h"
+#include "core/cameras/registry.h"
+#include "core/channels/registry.h"
 #include "core/lights/registry.h"
 #include "core/materials/registry.h"
 #include "core/model/scene.h"
@@ -19,6 +21,14 @@ template <class Types>
 ordered_json entries_of(const Types& types) {
   ordered_json entries = ordered_json::array();
   for (const auto& type : types) entries.push_back({{"type", type.name}, {"summary", type.summary}});
+  return entries;
+}
+
+ordered_json channels() {
+  ordered_json entries = ordered_json::array();
+  for (const ChannelType& channel : channel_types())
+    entries.push_back(
+        {{"type", channel.name}, {"summary", channel.summary}, {"components", channel.components}});
   return entries;
 }
 
@@ -62,14 +72,12 @@ ordered_json defaults() {
 }  // namespace
 
 ordered_json catalog_json() {
-  const ordered_json cameras = {
-      {{"type", "perspective"}, {"summary", "Everything is seen from one point."}},
-      {{"type", "orthographic"}, {"summary", "Everything is seen along parallel rays."}}};
   return {{"samples", samples()},
           {"shapes", entries_of(shape_types())},
           {"materials", entries_of(material_types())},
           {"lights", entries_of(light_types())},
-          {"cameras", cameras},
+          {"cameras", entries_of(camera_types())},
+          {"channels", channels()},
           {"techniques", entries_of(technique_types())},
           {"accelerators", entries_of(accelerator_types())},
           {"defaults", defaults()}};

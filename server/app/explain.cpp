@@ -13,6 +13,13 @@ std::uint64_t camera_rays(const Plan& plan) {
   return std::uint64_t(plan.width) * std::uint64_t(plan.height) * std::uint64_t(plan.samples);
 }
 
+nlohmann::ordered_json bound_json(const Bound& bound) {
+  nlohmann::ordered_json json = {{"kind", name_of(bound.kind)}};
+  if (bound.max) json["max"] = *bound.max;
+  if (bound.rms) json["rms"] = *bound.rms;
+  return json;
+}
+
 std::string padded(std::string text, std::size_t width) {
   text.resize(std::max(width, text.size()), ' ');
   return text;
@@ -24,7 +31,8 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
   using nlohmann::ordered_json;
   ordered_json decisions = ordered_json::array();
   for (const Decision& d : plan.decisions)
-    decisions.push_back({{"subject", d.subject}, {"choice", d.choice}, {"reason", d.reason}});
+    decisions.push_back(
+        {{"subject", d.subject}, {"choice", d.choice}, {"reason", d.reason}, {"bound", bound_json(d.bound)}});
   return {{"scene",
            {{"id", scene.id},
             {"objects", scene.object_count},

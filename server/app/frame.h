@@ -3,8 +3,8 @@
 #include <string>
 
 #include "core/base/clock.h"
-#include "core/image/files.h"
 #include "core/render/renderer.h"
+#include "core/render/views.h"
 
 namespace orrery {
 
@@ -18,11 +18,11 @@ struct Frame {
   double render_ms = 0, encode_ms = 0;
 };
 
-// Adds what `encoder` makes of the image, and how long that took.
+// Adds what `encoder` makes of the film, and how long that took.
 template <class Encoder>
 Frame encode_frame(RenderResult&& rendered, double render_ms, const Encoder& encoder) {
   const auto start = Clock::now();
-  Frame frame{.bytes = encoder(rendered.image), .stats = rendered.stats, .render_ms = render_ms};
+  Frame frame{.bytes = encoder(rendered.film), .stats = rendered.stats, .render_ms = render_ms};
   frame.encode_ms = milliseconds_since(start);
   return frame;
 }

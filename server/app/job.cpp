@@ -39,7 +39,7 @@ void Job::run() {
         return next++;
       },
       .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
-      .encode = [this](const Image& image) { return spec_.study ? "" : encode_png(image); },
+      .encode = [this](const Film& film) { return spec_.study ? "" : encode_film(film, FileFormat::png); },
       .deliver = [this](std::int64_t, Frame&& frame) { keep(std::move(frame)); }};
   std::exception_ptr error;
   try {
@@ -84,9 +84,9 @@ RenderResult Job::render(int number, const Watch& watch) {
     changed_.notify_all();
   };
   Study* study = spec_.study.get();
-  RenderResult rendered =
-      services_.render(*spec_.scene, plan, study ? PixelFormat::linear32 : PixelFormat::srgb8,
-                       {.stop = watch.stop(), .progress = progress, .background = true});
+  RenderResult rendered = services_.render(*spec_.scene, settle(*spec_.scene, plan, watch.stop()),
+                                           study ? FilmStorage::linear32 : FilmStorage::srgb8,
+                                           {.stop = watch.stop(), .progress = progress, .background = true});
   if (study) study->add(rendered);
   return rendered;
 }

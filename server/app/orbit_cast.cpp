@@ -37,12 +37,13 @@ std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCa
 }
 
 void OrbitCast::run() {
-  const Pipeline pipeline{.pool = services_.pool,
-                          .background = false,
-                          .next = [this] { return next(); },
-                          .render = [this](std::int64_t n) { return render(n); },
-                          .encode = [](const Image& image) { return encode_png(image, kFrameOfStream); },
-                          .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
+  const Pipeline pipeline{
+      .pool = services_.pool,
+      .background = false,
+      .next = [this] { return next(); },
+      .render = [this](std::int64_t n) { return render(n); },
+      .encode = [](const Film& film) { return encode_film(film, FileFormat::png, kFrameOfStream); },
+      .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
   std::exception_ptr failure;
   try {
     pipeline.run();
@@ -109,7 +110,8 @@ RenderResult OrbitCast::render(std::int64_t number) {
     const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
     const auto ticket =
         services_.admission.enter_again({Lane::interactive, spec_.client, cost_of(plan)}, watch.stop());
-    return services_.render(*spec_.scene, plan, PixelFormat::srgb8, {.stop = watch.stop()});
+    return services_.render(*spec_.scene, settle(*spec_.scene, plan, watch.stop()), FilmStorage::srgb8,
+                            {.stop = watch.stop()});
   } catch (const Cancelled&) {
     watch.explain();
   }

@@ -30,7 +30,9 @@ std::string canonical_request(const Scene& scene, const RenderRequest& request) 
   add("technique", request.technique.value_or(own.technique));
   add("precision", std::to_string(static_cast<int>(request.precision.value_or(own.precision))));
   add("min_contribution", text_of(request.min_contribution.value_or(own.min_contribution)));
-  add("fov", text_of(request.fov_degrees.value_or(scene.camera.fov_degrees)));
+  for (const auto& [name, own_value] : scene.camera->parameters())
+    add(name, text_of(std::string_view(name) == "fov_degrees" ? request.fov_degrees.value_or(own_value)
+                                                              : own_value));
   add("seed", std::to_string(request.seed.value_or(own.seed)));
   add("time", text_of(scene.motion.moment(request.time.value_or(own.time))));
   add("azimuth", text_of(request.orbit.azimuth_degrees));

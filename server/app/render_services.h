@@ -18,9 +18,9 @@ struct RenderServices {
   std::atomic<std::uint64_t>& rays;  // traced so far
 
   // A frame; the caller has a ticket. Throws Cancelled.
-  RenderResult render(const PreparedScene& scene, const Plan& plan, PixelFormat format,
+  RenderResult render(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                       const RenderControl& control) const {
-    RenderResult result = render_frame(scene, plan, format, pool, control);
+    RenderResult result = render_frame(scene, plan, storage, pool, control);
     rays += result.stats.counts.rays.total();
     return result;
   }

@@ -43,8 +43,9 @@ int chart(const Options& options) {
       with_names_for(Naming::command_line, [&] { return Study(scene.scene(), request, options.extent); });
   WorkerPool pool(options.threads);
   for (int number = 0; number < study.pictures(); ++number) {
-    const Plan plan = plan_for(scene.scene(), study.request(number));
-    study.add(render_frame(scene, plan, PixelFormat::linear32, pool, {.stop = signals.interrupted()}));
+    const SettledPlan plan =
+        settle(scene, plan_for(scene.scene(), study.request(number)), signals.interrupted());
+    study.add(render_frame(scene, plan, FilmStorage::linear32, pool, {.stop = signals.interrupted()}));
     bar->update(number + 1, study.pictures());
   }
   bar.reset();

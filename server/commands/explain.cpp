@@ -1,5 +1,5 @@
 #include "server/app/explain.h"
-#include "core/render/renderer.h"
+#include "core/tuning/settle.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -29,9 +29,8 @@ int explain(const Options& options) {
   const RenderRequest request = read_render_flags(options.render);
   const PreparedScene prepared(load_scene_file(options.render.scene));
   const Scene& scene = prepared.scene();
-  Plan plan = plan_for(scene, request);
-  settle(prepared, plan);
-  std::cout << (options.json ? explain_json(scene, plan).dump(2) + "\n" : explain_text(scene, plan));
+  const SettledPlan plan = settle(prepared, plan_for(scene, request));
+  std::cout << (options.json ? explain_json(scene, *plan).dump(2) + "\n" : explain_text(scene, *plan));
   return kDone;
 }
 

@@ -127,10 +127,7 @@ class Turn {
         .background = false,
         .next = [&] { return next < options_.frames ? std::optional(next++) : std::nullopt; },
         .render = [&](std::int64_t n) { return render(n); },
-        .encode =
-            [&](const Image& i) {
-              return format_ == FileFormat::png ? encode_png(i, kFrameOfStream) : encode(i, format_);
-            },
+        .encode = [&](const Film& film) { return encode_film(film, format_, kFrameOfStream); },
         .deliver =
             [&](std::int64_t n, Frame&& frame) {
               if (!options_.discard) write_file(names_.of(n), frame.bytes);
@@ -146,7 +143,9 @@ class Turn {
  private:
   Plan plan(std::int64_t frame) const { return plan_for(scene_.scene(), path_.at(frame)); }
   RenderResult render(std::int64_t frame) {
-    return render_frame(scene_, plan(frame), pixels_of(format_), pool_, {.stop = signals_.interrupted()});
+    const std::stop_token stop = signals_.interrupted();
+    return render_frame(scene_, settle(scene_, plan(frame), stop), storage_for(format_), pool_,
+                        {.stop = stop});
   }
 
   const Options& options_;

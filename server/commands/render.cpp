@@ -28,11 +28,11 @@ struct Options {
   RenderFlags render;
 };
 
-RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, PixelFormat format,
+RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, FileFormat format,
                                   WorkerPool& pool, const SignalWatch& signals, ProgressBar& bar) {
   bar.say("making " + std::to_string(scene.scene().primitive_count()) + " primitives ready");
   return render_frame(
-      scene, plan, format, pool,
+      scene, settle(scene, plan, signals.interrupted()), storage_for(format), pool,
       {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar.update(done, total); }});
 }
 
@@ -52,13 +52,13 @@ int render(const Options& options) {
   stats.threads = pool.threads();
 
   const double cpu_before = process_cpu_ms();
-  const RenderResult result = render_with_progress(scene, plan, pixels_of(format), pool, signals, *bar);
+  const RenderResult result = render_with_progress(scene, plan, format, pool, signals, *bar);
   bar.reset();
   stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   stats.render = result.stats;
   if (options.output) {
     start = Clock::now();
-    const std::string bytes = encode(result.image, format);
+    const std::string bytes = encode_film(result.film, format);
     stats.encode_ms = milliseconds_since(start);
     write_file(*options.output, bytes);
   }

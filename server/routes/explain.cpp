@@ -11,9 +11,9 @@ namespace orrery {
 void add_explain_routes(Router& router, App& app) {
   router.add("GET", "/v1/scenes/{id}/explain", Scope::read, LogLevel::info, [&app](Request& request) {
     const auto scene = app.scenes().find(request.path_value("id"));
-    Plan plan = plan_of_query(scene->scene(), read_query(request));
-    app.settle(*scene, plan, caller_of(request));
-    return json_answer(200, explain_json(scene->scene(), plan));
+    const SettledPlan plan =
+        app.settle(*scene, plan_of_query(scene->scene(), read_query(request)), caller_of(request));
+    return json_answer(200, explain_json(scene->scene(), *plan));
   });
 }
 

@@ -11,16 +11,12 @@ using nlohmann::ordered_json;
 
 ordered_json list_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
-ordered_json camera_json(const Camera& camera) {
-  const bool perspective = camera.projection == Projection::perspective;
-  ordered_json json = {{"type", perspective ? "perspective" : "orthographic"},
-                       {"eye", list_of(camera.eye)},
-                       {"look_at", list_of(camera.look_at)},
-                       {"up", list_of(camera.up)}};
-  if (perspective)
-    json["fov_degrees"] = camera.fov_degrees;
-  else
-    json["height"] = camera.height;
+ordered_json camera_json(const CameraPlacement& placement, const Camera& camera) {
+  ordered_json json = {{"type", camera.type()},
+                       {"eye", list_of(placement.eye)},
+                       {"look_at", list_of(placement.look_at)},
+                       {"up", list_of(placement.up)}};
+  for (const auto& [name, value] : camera.parameters()) json[name] = value;
   return json;
 }
 
@@ -29,7 +25,7 @@ ordered_json summary(const Scene& scene) {
                           {"title", scene.title},
                           {"width", scene.render.width},
                           {"height", scene.render.height},
-                          {"camera", camera_json(scene.camera)},
+                          {"camera", camera_json(scene.placement, *scene.camera)},
                           {"objects", scene.object_count},
                           {"lights", scene.lights.size()}};
   if (!scene.motion.empty())

@@ -2,7 +2,7 @@
 
 #include "core/accelerators/registry.h"
 #include "core/math/affine.h"
-#include "core/render/geometry.h"
+#include "core/prepare/geometry.h"
 #include "tests/support/agreement.h"
 #include "tests/support/batches.h"
 #include "tests/support/covers.h"

@@ -1,10 +1,10 @@
-#include "core/accelerators/network.h"
+#include "core/stages/network.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-#include "core/accelerators/network_predictor.h"
+#include "core/stages/network_predictor.h"
 #include "tests/support/random.h"
 
 // The network itself: what it computes, and that it learns.

@@ -1,6 +1,6 @@
-#include "core/accelerators/prediction.h"
+#include "core/stages/prediction.h"
 
-#include "core/accelerators/network_predictor.h"
+#include "core/stages/network_predictor.h"
 #include "tests/support/agreement.h"
 #include "tests/support/covers.h"
 #include "tests/support/mixtures.h"

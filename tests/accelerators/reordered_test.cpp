@@ -1,4 +1,4 @@
-#include "core/accelerators/reordered.h"
+#include "core/stages/reordered.h"
 
 #include <algorithm>
 #include <set>

@@ -4,7 +4,7 @@
 
 #include "core/accelerators/registry.h"
 #include "core/base/error.h"
-#include "core/render/prepare.h"
+#include "core/prepare/prepared_scene.h"
 #include "tests/bench/embree.h"
 #include "tests/bench/measuring.h"
 #include "tests/support/batches.h"

@@ -31,7 +31,7 @@ export const motionFaults = [
   {
     fault: 19,
     about: "what moved keeps the kernel it had",
-    file: "core/render/geometry.cpp",
+    file: "core/prepare/geometry.cpp",
     from: "const bool known = before && !posed;",
     to: "const bool known = before;",
     target: "test_render",
@@ -40,7 +40,7 @@ export const motionFaults = [
   {
     fault: 19,
     about: "a model that moves is taken for one that rests",
-    file: "core/render/geometry.cpp",
+    file: "core/prepare/geometry.cpp",
     from: "if (before && rests(model.shapes)) return before;",
     to: "if (before) return before;",
     target: "test_accelerators",

@@ -51,7 +51,7 @@ export const structureFaults = [
   {
     fault: 16,
     about: "normals of instances are turned as directions are",
-    file: "core/shapes/instances.cpp",
+    file: "core/accelerators/instances.cpp",
     from: "normalize(from_world.transposed(found->geometric.at(i)))",
     to: "normalize(to_world.vector(found->geometric.at(i)))",
     target: "test_accelerators",
@@ -60,7 +60,7 @@ export const structureFaults = [
   {
     fault: 16,
     about: "rays keep length 1 in an instance, so that distances are the model's",
-    file: "core/shapes/instances.h",
+    file: "core/accelerators/instances.h",
     from: "return {from_world.point(ray.origin), from_world.vector(ray.direction)};",
     to: "return {from_world.point(ray.origin), normalize(from_world.vector(ray.direction))};",
     target: "test_accelerators",

@@ -12,13 +12,16 @@ const kFloors = [
   ["core/base", "core/math"],
   ["core/params", "core/image", "core/meshes"],
   ["core/model"],
-  ["core/shapes", "core/materials", "core/textures", "core/lights", "core/accelerators", "core/techniques"],
+  ["core/shapes", "core/cameras", "core/materials", "core/lights", "core/accelerators", "core/channels", "core/stages"],
+  ["core/techniques"],
   ["core/plan"],
-  ["core/render", "core/load"],
+  ["core/prepare", "core/load"],
+  ["core/tuning"],
+  ["core/render"],
   ["core/study"],
   ["server"],
 ];
-const kRegisteredRooms = kFloors[3];
+const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques"];
 const kGenerated = ["core/base/version.h"];  // lies in the build folder
 const kMaxLines = 500;
 const kTextFolders = [".ci", "core", "docker", "docs", "packaging", "scenes", "script", "server", "tests", "web"];
@@ -135,13 +138,15 @@ function judgeCycles(includes, complain) {
   for (const path of includes.keys()) visit(path, []);
 }
 
-// A system core/shapes/sphere.cpp is listed if registry.cpp names sphere, make_sphere or sphere_<word>. A
-// .cpp with a header of its own is what several systems of the room share; a system has none.
+// A system core/shapes/sphere.cpp defines sphere_type() (or sphere_channel()) and is listed if registry.cpp
+// names sphere, make_sphere or sphere_<word>. Another .cpp is what several systems of the room share, and has
+// a header of its own.
 function judgeRegistries(contents, complain) {
   for (const path of contents.keys()) {
     if (!path.endsWith(".cpp") || !kRegisteredRooms.includes(dirname(path))) continue;
     const name = basename(path, ".cpp");
-    if (name === "registry" || contents.has(`${dirname(path)}/${name}.h`)) continue;
+    const system = new RegExp(`\\b${name}_(?:type|channel)\\(\\)`).test(contents.get(path));
+    if (name === "registry" || (!system && contents.has(`${dirname(path)}/${name}.h`))) continue;
     const registry = contents.get(`${dirname(path)}/registry.cpp`) ?? "";
     const code = registry.replace(/\/\/.*|\/\*[^]*?\*\/|^\s*#.*/gm, "");
     if (!new RegExp(`\\b(?:make_)?${name}(?:_[a-z]+)?\\b`).test(code)) {
@@ -174,6 +179,7 @@ const kBadTrees = [
   ["neighbour", {"core/shapes/bad.h": '#include "core/lights/light.h"\n', "core/lights/light.h": ""}],
   ["cycle", {"core/base/p.h": '#include "core/base/q.h"\n', "core/base/q.h": '#include "core/base/p.h"\n'}],
   ["registry", {"core/shapes/box.cpp": "int box;\n"}],
+  ["registry", {"core/shapes/box.cpp": "ShapeType box_type() {}\n", "core/shapes/box.h": "#pragma once\n"}],
   ["registry", {"core/shapes/cone.cpp": "", "core/shapes/registry.cpp": "sphere_type(); // cone_type();\n"}],
   ["registry", {"core/shapes/box.cpp": "", "core/shapes/registry.cpp": "sphere_type(); boxes_type();\n"}],
   ["registry", {"core/lights/point.cpp": "int point;\n"}],

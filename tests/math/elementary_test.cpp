@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "tests/support/covers.h"
@@ -109,6 +110,42 @@ TYPED_TEST(Elementary, LanesEqualScalarsToTheBit) {
       EXPECT_EQ(exponential[lane], exp2_flushed(T(-y[lane])));
     }
   }
+}
+
+TYPED_TEST(Elementary, SineAndCosineOfTurnsAreGoodToTwoUlp) {
+  using T = TypeParam;
+  Random random(4);
+  for (int i = 0; i < 100'000; ++i) {
+    const T turns = static_cast<T>(random.between(-3, 3));
+    const auto [sine, cosine] = sine_cosine_turns(turns);
+    const long double angle = 2 * std::numbers::pi_v<long double> * static_cast<long double>(turns);
+    EXPECT_NEAR(static_cast<double>(sine), static_cast<double>(std::sin(angle)), double(2 * this->kUlp))
+        << turns;
+    EXPECT_NEAR(static_cast<double>(cosine), static_cast<double>(std::cos(angle)), double(2 * this->kUlp))
+        << turns;
+  }
+  for (int quarter = -8; quarter <= 8; ++quarter) {
+    const auto [sine, cosine] = sine_cosine_turns(T(quarter) / 4);
+    EXPECT_EQ(std::abs(sine), T(std::abs(quarter % 2)));
+    EXPECT_EQ(std::abs(cosine), T(1 - std::abs(quarter % 2)));
+  }
+}
+
+TYPED_TEST(Elementary, TurnsOfADirectionAreGoodToTwoUlp) {
+  using T = TypeParam;
+  Random random(5);
+  for (int i = 0; i < 100'000; ++i) {
+    const T x = static_cast<T>(random.between(-1, 1) * random.magnitude(1e-6, 1e6)),
+            y = static_cast<T>(random.between(-1, 1) * random.magnitude(1e-6, 1e6));
+    const long double exact = std::atan2(static_cast<long double>(y), static_cast<long double>(x)) /
+                              (2 * std::numbers::pi_v<long double>);
+    EXPECT_NEAR(static_cast<double>(direction_turns(x, y)), static_cast<double>(exact),
+                double(2 * this->kUlp))
+        << x << ", " << y;
+  }
+  EXPECT_EQ(direction_turns(T(0), T(0)), T(0));
+  EXPECT_EQ(direction_turns(T(0), T(2)), T(0.25));
+  EXPECT_EQ(positive_turns(T(0), T(-2)), T(0.75));
 }
 
 }  // namespace

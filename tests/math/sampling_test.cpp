@@ -72,7 +72,8 @@ TEST(Sampling, MixingAndScramblingLoseNothing) {
 // Each lane gets what a number alone gets.
 TEST(Sampling, LanesAreNumbers) {
   for (std::uint32_t sample = 0; sample < 300; ++sample) {
-    const BitLanes streams([&](std::uint32_t lane) { return mix_bits(1000 * sample + lane); });
+    const stdx::native_simd<std::uint32_t> streams(
+        [&](std::uint32_t lane) { return mix_bits(1000 * sample + lane); });
     const auto points = stratified_point(sample, streams);
     for (std::size_t lane = 0; lane < streams.size(); ++lane) {
       const auto alone = stratified_point(sample, static_cast<std::uint32_t>(streams[lane]));

@@ -6,16 +6,16 @@
 
 #include "core/image/files.h"
 #include "core/model/technique.h"
-#include "core/render/prepare.h"
+#include "core/prepare/prepared_scene.h"
 
 namespace orrery {
 
 Picture render_picture(const PreparedScene& scene, const Plan& plan) {
   WorkerPool pool(1);
-  const RenderResult result = render_frame(scene, plan, PixelFormat::linear32, pool);
+  const RenderResult result = render_frame(scene, settle(scene, plan), FilmStorage::linear32, pool);
   Picture picture(plan.width, plan.height);
   for (int y = 0; y < plan.height; ++y)
-    for (int x = 0; x < plan.width; ++x) picture.at(x, y) = result.image.linear(x, y);
+    for (int x = 0; x < plan.width; ++x) picture.at(x, y) = result.film.stored().linear(x, y);
   return picture;
 }
 
@@ -34,14 +34,15 @@ void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
   samples.u.values.fill(0.5f + dx);
   samples.v.values.fill(0.5f + dy);
   const auto rays = std::make_unique<RayBatch<double>>();
-  for (int y0 = 0; y0 < plan.height; y0 += kTileSide)
-    for (int x0 = 0; x0 < plan.width; x0 += kTileSide) {
-      generate_rays(plan.camera, plan.width, plan.height, x0, y0, samples, *rays);
-      visit(*rays, [&](auto& pixels, int slot, const auto& value) {
-        const int x = x0 + tile_pixel(slot).x, y = y0 + tile_pixel(slot).y;
-        if (x < plan.width && y < plan.height) pixels[static_cast<std::size_t>(y * plan.width + x)] = value;
-      });
-    }
+  const TileGrid grid(plan.width, plan.height);
+  for (int number = 0; number < grid.size(); ++number) {
+    const TileView tile = grid.at(number, 1);
+    plan.camera->generate(plan.frame, plan.width, plan.height, tile, samples, *rays);
+    visit(*rays, [&](auto& pixels, int slot, const auto& value) {
+      const int x = tile.x0 + tile_pixel(slot).x, y = tile.y0 + tile_pixel(slot).y;
+      if (x < plan.width && y < plan.height) pixels[static_cast<std::size_t>(y * plan.width + x)] = value;
+    });
+  }
 }
 
 }  // namespace
@@ -53,7 +54,7 @@ Samples render_shifted(const PreparedScene& scene, const Plan& plan, float dx, f
   Samples samples{Picture(plan.width, plan.height), {}};
   samples.cut.resize(samples.picture.pixels.size());
   for_each_tile(plan, dx, dy, [&](const RayBatch<double>& rays, const auto& put) {
-    tracer->trace(rays, *result, counts);
+    tracer->trace(rays, Draws(plan.seed, TileView{0, 0, kTileSide, kTileSide}, 0), *result, counts);
     const Vec3Array<double>& radiance = result->radiance;
     for (int slot = 0; slot < kBatch; ++slot) {
       put(samples.picture.pixels, slot, Vec3f(Vec3d(radiance.x[slot], radiance.y[slot], radiance.z[slot])));

@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/load/load.h"
-#include "core/render/prepare.h"
-#include "core/render/trial.h"
+#include "core/tuning/staged_world.h"
+#include "core/tuning/trial.h"
 #include "tests/support/pictures.h"
 #include "tests/support/stopped.h"
 
@@ -30,7 +30,7 @@ TEST(Control, CountsEveryTileOnce) {
     for (int seen = largest; done > seen && !largest.compare_exchange_weak(seen, done);) {
     }
   };
-  render_frame(prepared, plan, PixelFormat::srgb8, shared_pool(), control);
+  render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_pool(), control);
   EXPECT_EQ(calls, 12);
   EXPECT_EQ(largest, 12);
 }
@@ -44,9 +44,9 @@ TEST(Control, StopEndsTheRenderAtOnce) {
   control.progress = [&](int, int) {
     if (++tiles == 5) stop.request_stop();
   };
-  EXPECT_THROW(
-      render_frame(prepared, make_plan(*paper(), request), PixelFormat::srgb8, shared_pool(), control),
-      Cancelled);
+  EXPECT_THROW(render_frame(prepared, settle(prepared, make_plan(*paper(), request)), FilmStorage::srgb8,
+                            shared_pool(), control),
+               Cancelled);
   EXPECT_LT(tiles, 5 + shared_pool().threads()) << "tiles were begun after the stop";
 }
 
@@ -86,7 +86,7 @@ TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
   const PreparedScene prepared(scene);
   const Plan plan = make_plan(*scene, size(8, 8));
   double build_ms = 0;
-  World<float> world = world_for<float>(prepared.parts(), plan, build_ms);
+  World<float> world = staged_world<float>(prepared.parts(), settle(prepared, plan), build_ms);
   const auto stops = std::make_shared<const StopsAtThirdBatch>(world.accelerator);
   world.accelerator = stops;
   EXPECT_THROW(try_tiles(world, plan, 1, stops->stop.get_token()), Cancelled);
@@ -95,9 +95,11 @@ TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
 TEST(Control, AStoppedRenderLeavesTheNextOneWhole) {
   const PreparedScene prepared(paper());
   const Plan plan = make_plan(*paper(), size(64, 64));
-  EXPECT_THROW(render_frame(prepared, plan, PixelFormat::linear32, shared_pool(), {.stop = stopped()}),
+  EXPECT_THROW(render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool(),
+                            {.stop = stopped()}),
                Cancelled);
-  EXPECT_EQ(render_frame(prepared, plan, PixelFormat::linear32, shared_pool()).stats.counts.rays.camera,
+  EXPECT_EQ(render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool())
+                .stats.counts.rays.camera,
             4096u);
 }
 
@@ -122,9 +124,9 @@ TEST(Control, RendersAtTheSameTimeDoNotDisturbEachOther) {
   for (int i = 0; i < 4; ++i)
     callers.emplace_back([&] {
       for (int frame = 0; frame < 5; ++frame) {
-        const Image image =
-            render_frame(prepared, make_plan(*paper(), size(128, 96)), PixelFormat::linear32, shared_pool())
-                .image;
+        const Image image = render_frame(prepared, settle(prepared, make_plan(*paper(), size(128, 96))),
+                                         FilmStorage::linear32, shared_pool())
+                                .film.image(PixelFormat::linear32);
         for (int y = 0; y < 96; y += 5)
           for (int x = 0; x < 128; x += 5) wrong += image.linear(x, y) != expected.at(x, y);
       }
@@ -136,8 +138,10 @@ TEST(Control, RendersAtTheSameTimeDoNotDisturbEachOther) {
 TEST(Control, PreparationIsPaidOnce) {
   const PreparedScene prepared(load(sample("sphereflake-3")));
   const Plan plan = make_plan(prepared.scene(), size(16, 16));
-  EXPECT_GT(render_frame(prepared, plan, PixelFormat::srgb8, shared_pool()).stats.build_ms, 0);
-  EXPECT_EQ(render_frame(prepared, plan, PixelFormat::srgb8, shared_pool()).stats.build_ms, 0);
+  EXPECT_GT(render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_pool()).stats.build_ms,
+            0);
+  EXPECT_EQ(render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_pool()).stats.build_ms,
+            0);
 }
 
 // An orbit frame is the frame of a scene whose camera stands there.

@@ -19,11 +19,12 @@ namespace fs = std::filesystem;
 
 Image picture_of(const std::string& name) {
   const auto scene = load(sample(name));
+  const PreparedScene prepared(scene);
   RenderRequest request = size(128, 96);
   request.samples = 4;
-  return std::move(
-      render_frame(PreparedScene(scene), make_plan(*scene, request), PixelFormat::srgb8, shared_pool())
-          .image);
+  return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::srgb8,
+                      shared_pool())
+      .film.image(PixelFormat::srgb8);
 }
 
 std::string read(const fs::path& file) {

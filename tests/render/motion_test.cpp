@@ -4,7 +4,7 @@
 
 #include "core/accelerators/registry.h"
 #include "core/plan/plan.h"
-#include "core/render/prepare.h"
+#include "core/prepare/prepared_scene.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
@@ -69,7 +69,8 @@ TEST(Motion, PicturesDoNotDependOnWhichMomentsCameBefore) {
     const PreparedScene prepared(scene);
     for (const double time : {0.0, 1.0, 1.5, 4.0, 2.5, 2.25, 0.0, 9.0}) {
       const Plan plan = make_plan(*scene, at_time(time, request));
-      const Image image = render_frame(prepared, plan, PixelFormat::linear32, shared_pool()).image;
+      const Image image = render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool())
+                              .film.image(PixelFormat::linear32);
       const Picture alone = render(scene, at_time(time));
       int wrong = 0;
       for (int y = 0; y < 72; ++y)
@@ -200,7 +201,9 @@ TEST(Motion, FramesOfManyMomentsAtOnceAreRight) {
       for (int frame = 0; frame < 12; ++frame) {
         const int i = (caller + frame) % 4;
         const Plan plan = make_plan(*scene, at_time(i, size(32, 24)));
-        const Image image = render_frame(prepared, plan, PixelFormat::linear32, shared_pool()).image;
+        const Image image =
+            render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool())
+                .film.image(PixelFormat::linear32);
         for (int y = 0; y < 24; ++y)
           for (int x = 0; x < 32; ++x)
             wrong += image.linear(x, y) != expected[static_cast<std::size_t>(i)].at(x, y);

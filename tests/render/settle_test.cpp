@@ -3,8 +3,8 @@
 #include "core/accelerators/registry.h"
 #include "core/base/error.h"
 #include "core/plan/plan.h"
-#include "core/render/prepare.h"
-#include "core/render/trial.h"
+#include "core/tuning/settle.h"
+#include "core/tuning/trial.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
@@ -87,12 +87,11 @@ TEST(Settle, TakesAStructureThatCostsLittleMoreThanTheBest) {
     const PreparedScene scene(load(json));
     RenderRequest request = square(192);
     request.precision = Precision::single_precision;
-    Plan plan = make_plan(scene.scene(), request);
-    settle(scene, plan);
-    EXPECT_FALSE(plan.try_accelerators);
+    const SettledPlan plan = settle(scene, make_plan(scene.scene(), request));
+    EXPECT_FALSE(plan->try_accelerators);
     double best = std::numeric_limits<double>::infinity();
-    for (const auto& type : accelerator_types()) best = std::min(best, cost(scene, plan, type));
-    EXPECT_LE(cost(scene, plan, *plan.accelerator), 1.25 * best) << plan.accelerator->name;
+    for (const auto& type : accelerator_types()) best = std::min(best, cost(scene, *plan, type));
+    EXPECT_LE(cost(scene, *plan, *plan->accelerator), 1.25 * best) << plan->accelerator->name;
   }
 }
 
@@ -103,20 +102,17 @@ TEST(Settle, KeepsToItsChoiceWhileTheCameraMoves) {
   for (const double azimuth : {0.0, 40.0, 90.0, 200.0}) {
     RenderRequest request = square(64);
     request.orbit.azimuth_degrees = azimuth;
-    Plan plan = make_plan(scene.scene(), request);
-    settle(scene, plan);
-    chosen.insert(plan.accelerator->name);
+    chosen.insert(settle(scene, make_plan(scene.scene(), request))->accelerator->name);
   }
   EXPECT_EQ(chosen.size(), 1u);
 }
 
 TEST(Settle, SaysWhatItWentBy) {
   const PreparedScene scene(load(sample("glass")));
-  Plan plan = make_plan(scene.scene(), {});
-  settle(scene, plan);
-  for (const Decision& decision : plan.decisions) {
+  const SettledPlan plan = settle(scene, make_plan(scene.scene(), {}));
+  for (const Decision& decision : plan->decisions) {
     if (decision.subject != "accelerator") continue;
-    EXPECT_EQ(decision.choice, plan.accelerator->name);
+    EXPECT_EQ(decision.choice, plan->accelerator->name);
     EXPECT_NE(decision.reason.find("bottom-up"), std::string::npos) << decision.reason;
     EXPECT_NE(decision.reason.find("boxes"), std::string::npos) << decision.reason;
   }
@@ -124,17 +120,14 @@ TEST(Settle, SaysWhatItWentBy) {
 
 TEST(Settle, EndsWhenNobodyWaits) {
   const PreparedScene scene(load(sample("glass")));
-  Plan plan = make_plan(scene.scene(), {});
-  EXPECT_THROW(settle(scene, plan, stopped()), Cancelled);
+  EXPECT_THROW(settle(scene, make_plan(scene.scene(), {}), stopped()), Cancelled);
 }
 
 TEST(Settle, LeavesAloneWhatWasAskedFor) {
   const PreparedScene scene(load(sample("glass")));
   RenderRequest request;
   request.accelerator = "octree";
-  Plan plan = make_plan(scene.scene(), request);
-  settle(scene, plan);
-  EXPECT_STREQ(plan.accelerator->name, "octree");
+  EXPECT_STREQ(settle(scene, make_plan(scene.scene(), request))->accelerator->name, "octree");
 }
 
 }  // namespace

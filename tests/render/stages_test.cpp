@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/plan/plan.h"
-#include "core/render/occlusion_samples.h"
-#include "core/render/prepare.h"
+#include "core/tuning/occlusion_samples.h"
+#include "core/tuning/staged_world.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 #include "tests/support/scenes.h"
@@ -79,10 +79,10 @@ TEST(OcclusionSamples, AreSpreadEvenly) {
 
 TEST(OcclusionSamples, EndWhenNobodyWaits) {
   const PreparedScene scene(load(sample("glass")));
-  const Plan plan = make_plan(scene.scene(), asking(Prediction::network));
+  const SettledPlan plan = settle(scene, make_plan(scene.scene(), asking(Prediction::network)));
   double build_ms = 0;
-  EXPECT_THROW(world_for<float>(scene.parts(), plan, build_ms, stopped()), Cancelled);
-  EXPECT_NO_THROW(world_for<float>(scene.parts(), plan, build_ms));
+  EXPECT_THROW(staged_world<float>(scene.parts(), plan, build_ms, stopped()), Cancelled);
+  EXPECT_NO_THROW(staged_world<float>(scene.parts(), plan, build_ms));
 }
 
 TEST(Stages, CountWhatWasProposedAndProved) {
@@ -117,10 +117,10 @@ TEST(Stages, CountTheSameTwice) {
 
 TEST(Stages, NetworkIsTrainedOnceForAScene) {
   const PreparedScene scene(load(sample("paper")));
-  const Plan plan = make_plan(scene.scene(), asking(Prediction::network));
+  const SettledPlan plan = settle(scene, make_plan(scene.scene(), asking(Prediction::network)));
   double first_ms = 0, second_ms = 0;
-  world_for<float>(scene.parts(), plan, first_ms);
-  world_for<float>(scene.parts(), plan, second_ms);
+  staged_world<float>(scene.parts(), plan, first_ms);
+  staged_world<float>(scene.parts(), plan, second_ms);
   EXPECT_GT(first_ms, 0);
   EXPECT_EQ(second_ms, 0);
 }

@@ -13,7 +13,8 @@ namespace orrery::test {
 namespace {
 
 RenderResult made(const PreparedScene& scene, const RenderRequest& request) {
-  return render_frame(scene, make_plan(scene.scene(), request), PixelFormat::linear32, shared_pool());
+  return render_frame(scene, settle(scene, make_plan(scene.scene(), request)), FilmStorage::linear32,
+                      shared_pool());
 }
 
 Chart chart_of(const Json& scene, const RenderRequest& view, const Study::Extent& extent) {

@@ -8,13 +8,13 @@ namespace orrery::test {
 
 // What arrives at a point.
 template <class T>
-struct Arrival {
+struct ArrivingLight {
   Vec3<T> direction;  // toward the light
   T t_max;            // metres to it, infinite for a distant one, -1: no light arrives
   Vec3<T> incident;
 };
 
 template <class T>
-Arrival<T> arrival(const Json& light, const Vec3<T>& at);
+ArrivingLight<T> arrival(const Json& light, const Vec3<T>& at);
 
 }  // namespace orrery::test

@@ -10,7 +10,8 @@ struct Batches {
   RayBatch<T> rays;
   HitBatch<T> hits;
   SurfaceBatch<T> surface;
-  LightBatch<T> light;
+  Vec3Array<T> light, f_cos;
+  Array<T> reach, pdf;
   SpecularBatch<T> specular;
   Vec3Array<T> radiance;
   Groups groups;
@@ -26,10 +27,10 @@ void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
     b.rays.direction.set(i, one.direction);
     b.surface.normal.set(i, one.normal);
     b.surface.geometric.set(i, one.geometric);
-    b.light.shadow.direction.set(i, one.light);
-    b.light.incident.set(i, Vec3<T>(T(1)));
-    b.light.radiance.set(i, Vec3<T>());
-    b.light.shadow.t_max[i] = 1;
+    b.light.set(i, one.light);
+    b.f_cos.set(i, Vec3<T>());
+    b.reach[i] = 1;
+    b.pdf[i] = 0;
     b.surface.side[i] = one.side;
     b.hits.t[i] = one.t;
     b.surface.material[i] = i < count ? 0 : -1;
@@ -53,9 +54,9 @@ std::vector<Vec3<T>> Probe<T>::reflected(std::span<const Case> cases) const {
   while (!cases.empty()) {
     const auto some = cases.first(std::min<std::size_t>(cases.size(), kBatch));
     fill<T>(some, *b);
-    kernel_->reflect(b->rays, b->surface, b->groups, b->light);
+    kernel_->evaluate({b->rays.direction, b->light, b->reach}, b->surface, b->groups, b->f_cos, b->pdf);
     for (int i = 0; i < static_cast<int>(some.size()); ++i)
-      found.push_back(b->light.shadow.t_max[i] > 0 ? b->light.radiance[i] : Vec3<T>());
+      found.push_back(b->pdf[i] > 0 ? b->f_cos[i] : Vec3<T>());
     cases = cases.subspan(some.size());
   }
   return found;

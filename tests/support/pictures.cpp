@@ -41,11 +41,12 @@ Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& r
   const Plan plan = make_plan(*scene, request);
   std::unique_ptr<WorkerPool> own;
   if (threads > 0) own = std::make_unique<WorkerPool>(threads);
-  const RenderResult result = render_frame(prepared, plan, PixelFormat::linear32, own ? *own : shared_pool());
+  const RenderResult result =
+      render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, own ? *own : shared_pool());
   Picture picture{plan.width, plan.height, {}, result.stats};
   picture.pixels.resize(static_cast<std::size_t>(plan.width * plan.height));
-  std::memcpy(static_cast<void*>(picture.pixels.data()), result.image.bytes().data(),
-              result.image.bytes().size());
+  std::memcpy(static_cast<void*>(picture.pixels.data()), result.film.stored().bytes().data(),
+              result.film.stored().bytes().size());
   return picture;
 }
 

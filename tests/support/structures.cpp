@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "core/accelerators/registry.h"
-#include "core/render/geometry.h"
+#include "core/prepare/geometry.h"
 #include "tests/support/batches.h"
 
 namespace orrery::test {

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "core/render/geometry.h"
+#include "core/prepare/geometry.h"
 #include "tests/support/batches.h"
 
 namespace orrery::test {
@@ -62,7 +62,7 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
   batch->count = kBatch;
   recorder_->generations.clear();
   recorder_->shadow.clear();
-  tracer_->trace(*batch, *result, counts_);
+  tracer_->trace(*batch, Draws(plan_.seed, TileView{0, 0, kTileSide, kTileSide}, 0), *result, counts_);
   std::vector<Answer> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
     answers.push_back({result->radiance[i], result->cut[i]});
@@ -76,24 +76,23 @@ std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request
   Tracing tracing(scene, request);
   const Plan plan = make_plan(*tracing.world().geometry->scene, request);
   const auto batch = std::make_unique<RayBatch<double>>();
-  TileSamples centre;
-  centre.u.values.fill(0.5f);
-  centre.v.values.fill(0.5f);
+  const TileSamples centres = TileSamples::centres();
   std::vector<Vec3d> pixels(static_cast<std::size_t>(plan.width * plan.height));
-  for (int y0 = 0; y0 < plan.height; y0 += kTileSide)
-    for (int x0 = 0; x0 < plan.width; x0 += kTileSide) {
-      generate_rays(plan.camera, plan.width, plan.height, x0, y0, centre, *batch);
-      std::vector<Ray<double>> rays;
-      std::vector<std::size_t> places;
-      for (int slot = 0; slot < kBatch; ++slot) {
-        if (batch->t_max[slot] < 0) continue;
-        const TilePixel p = tile_pixel(slot);
-        places.push_back(static_cast<std::size_t>((y0 + p.y) * plan.width + x0 + p.x));
-        rays.push_back({batch->origin[slot], batch->direction[slot]});
-      }
-      const std::vector<Answer> answers = tracing.trace(rays);
-      for (std::size_t i = 0; i < places.size(); ++i) pixels[places[i]] = answers[i].radiance;
+  const TileGrid grid(plan.width, plan.height);
+  for (int number = 0; number < grid.size(); ++number) {
+    const TileView tile = grid.at(number, 1);
+    plan.camera->generate(plan.frame, plan.width, plan.height, tile, centres, *batch);
+    std::vector<Ray<double>> rays;
+    std::vector<std::size_t> places;
+    for (int slot = 0; slot < kBatch; ++slot) {
+      if (batch->t_max[slot] < 0) continue;
+      const TilePixel p = tile_pixel(slot);
+      places.push_back(static_cast<std::size_t>((tile.y0 + p.y) * plan.width + tile.x0 + p.x));
+      rays.push_back({batch->origin[slot], batch->direction[slot]});
     }
+    const std::vector<Answer> answers = tracing.trace(rays);
+    for (std::size_t i = 0; i < places.size(); ++i) pixels[places[i]] = answers[i].radiance;
+  }
   return pixels;
 }
 

@@ -4,8 +4,8 @@
 
 #include "core/model/camera.h"
 #include "core/plan/plan.h"
-#include "core/render/geometry.h"
-#include "core/render/trial.h"
+#include "core/prepare/geometry.h"
+#include "core/tuning/trial.h"
 #include "tests/bench/measuring.h"
 
 // A hierarchy that followed the motion of a scene, frame by frame, against one built anew for the moment.

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/accelerators/reordered.h"
 #include "core/plan/plan.h"
-#include "core/render/prepare.h"
-#include "core/render/trial.h"
+#include "core/stages/reordered.h"
+#include "core/tuning/staged_world.h"
+#include "core/tuning/trial.h"
 #include "tests/bench/measuring.h"
 #include "tests/support/random.h"
 
@@ -137,7 +137,7 @@ Sides sides_of(const PreparedScene& scene, const Task& task) {
   double structure_ms = 0;
   const World<float> bare = world_for<float>(scene.parts(), *plan.accelerator, plan.time, structure_ms);
   sides.without = bare.accelerator;
-  sides.with = world_for<float>(scene.parts(), plan, sides.build_ms).accelerator;
+  sides.with = staged_world<float>(scene.parts(), settle(scene, plan), sides.build_ms).accelerator;
   Calls camera, shadow;
   if (task.stage != "predict") plan.max_depth = 0;
   try_tiles<float>({bare.geometry, std::make_shared<const Recorder>(*bare.accelerator, camera, shadow)}, plan,

@@ -5,9 +5,9 @@
 
 #include "core/accelerators/registry.h"
 #include "core/plan/plan.h"
-#include "core/render/geometry.h"
+#include "core/prepare/geometry.h"
 #include "core/render/renderer.h"
-#include "core/render/trial.h"
+#include "core/tuning/trial.h"
 #include "tests/bench/measuring.h"
 #include "tests/support/batches.h"
 #include "tests/support/random.h"
@@ -165,13 +165,13 @@ ordered_json measure(const std::shared_ptr<const Scene>& scene, const Plan& plan
 int run(const std::string& path, int rounds, bool random, const std::vector<std::string>& names) {
   const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
   const auto scene = load_scene_at(path);
-  Plan plan = make_plan(*scene, {});
-  settle(PreparedScene(scene), plan);
-  const ordered_json structures = plan.double_precision ? measure<double>(scene, plan, rounds, random, names)
-                                                        : measure<float>(scene, plan, rounds, random, names);
+  const SettledPlan plan = settle(PreparedScene(scene), make_plan(*scene, {}));
+  const ordered_json structures = plan->double_precision
+                                      ? measure<double>(scene, *plan, rounds, random, names)
+                                      : measure<float>(scene, *plan, rounds, random, names);
   std::printf("%s\n", ordered_json({{"primitives", scene->primitive_count()},
-                                    {"precision", plan.double_precision ? "double" : "float"},
-                                    {"auto", plan.accelerator->name},
+                                    {"precision", plan->double_precision ? "double" : "float"},
+                                    {"auto", plan->accelerator->name},
                                     {"structures", structures}})
                           .dump()
                           .c_str());

@@ -1,0 +1,34 @@
+#include "core/cameras/camera_of.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+class Orthographic final : public CameraOf<Orthographic> {
+ public:
+  explicit Orthographic(double height) : height_(height) {}
+
+  const char* type() const override { return "orthographic"; }
+  std::vector<Parameter> parameters() const override { return {{"height", height_}}; }
+  bool parallel() const override { return true; }
+  double half_extent(double distance) const override { return height_ / 2 * distance; }
+
+  template <class N>
+  Ray<N> ray(const CameraView<N>& view, const N& sx, const N& sy) const {
+    const Vec3<N> offset = view.right * sx + view.up * sy;
+    return {view.eye + offset, view.forward};
+  }
+
+ private:
+  double height_;  // metres that the picture's height shows
+};
+
+std::unique_ptr<Camera> read(Params& p) {
+  return std::make_unique<Orthographic>(p.positive("height", "Metres that the picture's height shows."));
+}
+
+}  // namespace
+
+CameraType orthographic_type() { return {"orthographic", "Everything is seen along parallel rays.", read}; }
+
+}  // namespace orrery

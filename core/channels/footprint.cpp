@@ -1,0 +1,24 @@
+#include "core/model/channel.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) {
+  for (const int i : groups) value.x.put(i, first.surface.footprint.at(i));
+}
+
+}  // namespace
+
+ChannelType footprint_channel() {
+  return {"footprint",
+          "Metres that a pixel covers on the surface, across the ray.",
+          {"R"},
+          ChannelMean::of_hits,
+          0,
+          {.footprint = true},
+          record<float>,
+          record<double>};
+}
+
+}  // namespace orrery

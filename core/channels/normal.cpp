@@ -1,0 +1,24 @@
+#include "core/model/channel.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) {
+  for (const int i : groups) value.put(i, first.surface.normal.at(i));
+}
+
+}  // namespace
+
+ChannelType normal_channel() {
+  return {"normal",
+          "Unit shading normal on the side of the camera, in the axes of the scene.",
+          {"X", "Y", "Z"},
+          ChannelMean::of_hits,
+          0,
+          {},
+          record<float>,
+          record<double>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,27 @@
+#include "core/model/channel.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) {
+  for (const int i : groups) {
+    const IndexLanes<T> object = load_index<T>(first.surface.object, i);
+    value.x.put(i, stdx::static_simd_cast<Lanes<T>>(object + 1));
+  }
+}
+
+}  // namespace
+
+ChannelType object_channel() {
+  return {"object",
+          "Number of the object, counted from 1 as the scene lists them; 0 is nothing.",
+          {"Id"},
+          ChannelMean::first_sample,
+          0,
+          {.identity = true},
+          record<float>,
+          record<double>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/lights/arrival.h"
+#include "core/lights/attenuation.h"
+#include "core/model/light.h"
+
+namespace orrery {
+
+// Light from one point in a cone: full inside the inner cone, nothing outside the outer one, a smooth step in
+// the cosine between.
+template <class N>
+struct Spot {
+  Vec3<N> position, direction, intensity;
+  Attenuation<N> attenuation;
+  N cos_inner, cos_outer, cos_range;  // cos_range = cos_inner - cos_outer
+
+  static constexpr LightTraits kTraits = {.delta = true};
+  static Spot<double> read(Params& p);
+
+  Arrival<N> arrive(const Vec3<N>& at) const {
+    using T = ScalarOf<N>;
+    const N zero(T(0));
+    const Vec3<N> toward = position - at;
+    const N distance = length(toward);
+    const Vec3<N> to_light = toward / distance;
+    const N beam = cone(N(-dot(to_light, direction)));
+    return {to_light, select(distance > zero && beam > zero, distance, N(T(-1))),
+            intensity * (attenuation.at(distance) * beam)};
+  }
+
+  // Equal angles make the quotient infinite or NaN: a step, full at the angle itself.
+  N cone(const N& cosine) const {
+    using T = ScalarOf<N>;
+    const N x = (cosine - cos_outer) / cos_range;
+    const N unit = max_first(N(T(0)), min_first(N(T(1)), x));
+    return select(cosine >= cos_inner, N(T(1)), N(unit * unit * (T(3) - T(2) * unit)));
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/materials/fresnel.h"
+#include "core/math/vec3.h"
+#include "core/model/material.h"
+
+namespace orrery {
+
+// A metal mirror coloured by Fresnel's law.
+template <class N>
+struct Reflective {
+  Vec3<N> n, k;  // index of refraction and extinction
+  Vec3<N> f0;    // reflectance along the normal
+  N exact;       // 1: Fresnel's equations, 0: Schlick's approximation
+
+  static Reflective<double> read(Params& p);
+  MaterialTraits traits() const { return {.mirrors = true}; }
+
+  Vec3<N> reflectance(const N& cosine) const {
+    const auto equations = exact > N(ScalarOf<N>(0));
+    Vec3<N> r(fresnel_schlick(f0.x, cosine), fresnel_schlick(f0.y, cosine), fresnel_schlick(f0.z, cosine));
+    if (any(equations))
+      r = {select(equations, fresnel_conductor(n.x, k.x, cosine), r.x),
+           select(equations, fresnel_conductor(n.y, k.y, cosine), r.y),
+           select(equations, fresnel_conductor(n.z, k.z, cosine), r.z)};
+    return r;
+  }
+};
+
+}  // namespace orrery

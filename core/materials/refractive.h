@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/materials/fresnel.h"
+#include "core/math/elementary.h"
+#include "core/math/vec3.h"
+#include "core/model/material.h"
+
+namespace orrery {
+
+// Clear glass: mirrors and refracts, may filter light inside.
+template <class N>
+struct Refractive {
+  N ior;                // index inside over index outside
+  N f0;                 // reflectance along the normal
+  N exact;              // 1: Fresnel's equations, 0: Schlick's approximation
+  Vec3<N> log2_filter;  // of what remains of light after one metre inside
+
+  static Refractive<double> read(Params& p);
+  MaterialTraits traits() const {
+    return {.mirrors = true, .transmits = true, .filters = log2_filter != Vec3<N>(N(0))};
+  }
+
+  struct Split {
+    N reflectance;
+    Vec3<N> refracted;  // unit; meaningless where all is mirrored
+  };
+  // Snell's law by the side the ray comes from. Beyond the critical angle all is mirrored and nothing is
+  // lost.
+  Split split(const Vec3<N>& direction, const Vec3<N>& normal, const MaskOf<N>& inside) const {
+    using std::sqrt;
+    using T = ScalarOf<N>;
+    const N zero(T(0)), one(T(1));
+    const N eta = select(inside, ior, N(one / ior));
+    const N cos_incident = min_first(one, max_first(zero, N(-dot(direction, normal))));
+    const N cos2_transmitted = one - eta * eta * (one - cos_incident * cos_incident);
+    const auto total = !(cos2_transmitted > zero);
+    const N cos_transmitted = sqrt(select(total, zero, cos2_transmitted));
+    const N thinner = select(eta > one, cos_transmitted, cos_incident);
+    N r = fresnel_schlick(f0, thinner);
+    const auto equations = exact > zero;
+    if (any(equations)) r = select(equations, fresnel_dielectric(eta, cos_incident, cos_transmitted), r);
+    return {select(total, one, r),
+            normalize(direction * eta + normal * (eta * cos_incident - cos_transmitted))};
+  }
+
+  // What remains of light after so many metres inside.
+  Vec3<N> filter(const N& depth) const {
+    return {exp2_flushed(log2_filter.x * depth), exp2_flushed(log2_filter.y * depth),
+            exp2_flushed(log2_filter.z * depth)};
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <numbers>
+
+#include "core/math/elementary.h"
+#include "core/math/vec3.h"
+
+// Directions over a hemisphere, and bases about a normal.
+namespace orrery {
+
+// Two unit vectors at right angles to the unit vector n and to each other, continuous but at n.z = -0
+// (Duff, Burgess, Christensen, Hery, Kensler, Liani, Villemin, "Building an Orthonormal Basis, Revisited",
+// JCGT 2017).
+template <class N>
+struct Tangents {
+  Vec3<N> first, second;
+};
+template <class N>
+[[gnu::always_inline]] inline Tangents<N> tangents_of(const Vec3<N>& n) {
+  using T = ScalarOf<N>;
+  using std::signbit;
+  const N one(T(1)), sign = select(signbit(n.z), N(-one), one);
+  const N a = N(T(-1)) / (sign + n.z), b = n.x * n.y * a;
+  return {{one + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
+}
+
+// Density per solid angle of cosine_direction().
+template <class N>
+[[gnu::always_inline]] inline N cosine_pdf(const N& cosine) {
+  using T = ScalarOf<N>;
+  return cosine * (T(1) / std::numbers::pi_v<T>);
+}
+
+// The direction about `normal` that u and v in [0, 1) choose, in proportion to its cosine: a point of the
+// unit disk by area, raised onto the hemisphere (Malley).
+template <class N>
+[[gnu::always_inline]] inline Vec3<N> cosine_direction(const Vec3<N>& normal, const N& u, const N& v) {
+  using std::sqrt;
+  using T = ScalarOf<N>;
+  const N radius = sqrt(u), height = sqrt(max_first(N(T(0)), N(T(1) - u)));
+  const auto [sine, cosine] = sine_cosine_turns(v);
+  const Tangents<N> basis = tangents_of(normal);
+  return basis.first * (radius * cosine) + basis.second * (radius * sine) + normal * height;
+}
+
+}  // namespace orrery

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/path.h"
+
+// Channels of a film beside radiance: what camera rays meet first.
+namespace orrery {
+
+// One channel of a batch, by slot.
+template <class T>
+struct ChannelBatch {
+  Vec3Array<T> value;  // as many components as the channel has
+  Array<T> weight;     // 1 where the ray met something, else 0
+};
+
+// What a channel may read of the camera rays' hits.
+template <class T>
+struct FirstHits {
+  const PathBatch<T>& paths;
+  const HitBatch<T>& hits;
+  const SurfaceBatch<T>& surface;
+};
+
+// How the samples of a pixel become one value.
+enum class ChannelMean {
+  of_hits,      // mean over the samples that met something
+  first_sample  // the value of the first sample: numbers that have no mean
+};
+
+struct ChannelType {
+  const char* name;
+  const char* summary;
+  std::vector<const char*> components;  // 1 to 3 suffixes: "X", "Y", "Z"
+  ChannelMean mean;
+  float nothing;         // value of a pixel in which no ray met anything
+  SurfaceFields fields;  // what `record` reads of a surface
+  // Sets the components of the value for the registers of `groups`.
+  void (*record_float)(const FirstHits<float>&, const Groups&, Vec3Array<float>&);
+  void (*record_double)(const FirstHits<double>&, const Groups&, Vec3Array<double>&);
+
+  template <class T>
+  void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) const {
+    if constexpr (std::is_same_v<T, float>)
+      record_float(first, groups, value);
+    else
+      record_double(first, groups, value);
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "core/math/sampling.h"
+#include "core/model/tile.h"
+
+namespace orrery {
+
+// What a pair of random numbers is for. Each purpose has a sequence of its own at each depth.
+enum class SampleSet : std::uint32_t { pixel, light, lobe };
+inline constexpr std::uint32_t kSampleSets = 3;
+
+// The random numbers of one sample of a tile: pure functions of (seed, frame, x, y, sample, set). They do not
+// depend on the tile's place in a schedule, on threads or on the width of registers.
+class Draws {
+ public:
+  Draws(std::uint64_t seed, const TileView& tile, int sample)
+      : seed_(combine_bits(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32))),
+        frame_(static_cast<std::uint32_t>(tile.frame)),
+        first_pixel_(static_cast<std::uint32_t>(tile.y0 * kRow + tile.x0)),
+        sample_(static_cast<std::uint32_t>(sample)) {}
+
+  // Two numbers in [0, 1) for each of these slots of the tile, of paths of this depth (camera rays: 0).
+  template <class T>
+  [[gnu::always_inline]] SamplePoint<Lanes<T>> two(SampleSet set, int depth,
+                                                   const IndexLanes<T>& slot) const {
+    const std::uint32_t number =
+        static_cast<std::uint32_t>(set) + kSampleSets * static_cast<std::uint32_t>(depth);
+    using Bits = stdx::rebind_simd_t<std::uint32_t, Lanes<T>>;
+    Bits stream = combine_bits(seed_, pixel_of(stdx::static_simd_cast<Bits>(slot)));
+    if (number != 0 || frame_ != 0) stream = combine_bits(combine_bits(frame_, number), stream);
+    const auto point = stratified_point(sample_, stream);
+    return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
+  }
+
+ private:
+  static constexpr int kRow = 65536;  // pixels are numbered row by row as if rows were this long
+
+  // Number of the pixel of a slot: see tile_pixel().
+  template <class Bits>
+  [[gnu::always_inline]] Bits pixel_of(const Bits& slot) const {
+    const Bits block = slot >> 4, within = slot & 15u;
+    constexpr std::uint32_t kBlocks = kTileSide / 4;
+    const Bits x = ((block & (kBlocks - 1)) << 2) + (within & 3u), y = ((block >> 3) << 2) + (within >> 2);
+    static_assert(kBlocks == 8);
+    return first_pixel_ + (y << 16) + x;
+  }
+
+  std::uint32_t seed_, frame_, first_pixel_, sample_;
+};
+
+// The random numbers of the paths of a batch, register by register.
+template <class T>
+struct PathDraws {
+  const Draws& draws;
+  const Array<IndexOf<T>>& slot;
+  int depth;
+
+  [[gnu::always_inline]] SamplePoint<Lanes<T>> two(SampleSet set, int i) const {
+    return draws.two<T>(set, depth, load_index<T>(slot, i));
+  }
+};
+
+}  // namespace orrery

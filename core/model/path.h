@@ -1,0 +1,80 @@
+#pragma once
+
+#include "core/math/compress.h"
+#include "core/model/batch.h"
+
+namespace orrery {
+
+// Path vertices on their way: rays of one depth, each with the slot of the camera's batch that its light is
+// added to. The slot tells the pixel and, with the batch's Draws, the sample.
+template <class T>
+struct PathBatch {
+  RayBatch<T> rays;
+  Vec3Array<T> throughput;  // share of the ray's radiance that reaches the slot, per channel
+  Array<IndexOf<T>> slot;
+  // With SurfaceFields::footprint: metres across the ray that a pixel covers at its origin, and how much they
+  // grow per metre.
+  Array<T> width, spread;
+  int depth = 0;  // 0: camera rays
+
+  // Appends the lanes of `mask`. Returns the bits of the mask.
+  unsigned append(const MaskOf<Lanes<T>>& mask, const Ray<Lanes<T>>& ray, const Vec3<Lanes<T>>& weight,
+                  const IndexLanes<T>& slots) {
+    const unsigned bits = bits_of(mask);
+    const int n = rays.count;
+    const auto pack = [&](Vec3Array<T>& to, const Vec3<Lanes<T>>& v) {
+      compress_store(v.x, bits, &to.x[n]);
+      compress_store(v.y, bits, &to.y[n]);
+      compress_store(v.z, bits, &to.z[n]);
+    };
+    pack(rays.origin, ray.origin);
+    pack(rays.direction, ray.direction);
+    pack(throughput, weight);
+    compress_store(slots, bits, &slot[n]);
+    rays.count = n + std::popcount(bits);
+    return bits;
+  }
+  // Gives the rays appended last, those of `bits`, their footprint.
+  void append_footprint(unsigned bits, const Lanes<T>& widths, const Lanes<T>& spreads) {
+    const int n = rays.count - std::popcount(bits);
+    compress_store(widths, bits, &width[n]);
+    compress_store(spreads, bits, &spread[n]);
+  }
+
+  // Makes every ray active without an end, and the rest of the last register inactive but harmless.
+  void seal() {
+    using N = Lanes<T>;
+    for (int i = 0; i < rays.count; i += kWidth<T>) rays.t_max.put(i, N(std::numeric_limits<T>::infinity()));
+    for (int i = rays.count; i % kWidth<T> != 0; ++i) {
+      rays.t_max[i] = -1;
+      rays.origin.x[i] = rays.origin.y[i] = rays.origin.z[i] = 0;
+      rays.direction.x[i] = rays.direction.y[i] = rays.direction.z[i] = 1;
+      throughput.x[i] = throughput.y[i] = throughput.z[i] = 0;
+      slot[i] = 0;
+      width[i] = spread[i] = 0;
+    }
+  }
+
+  // Takes over the rays of `other`, with their footprints if they have any. REQUIRES: they fit.
+  void append(const PathBatch& other, bool footprints) {
+    const auto copy = [&](auto& to, const auto& from) {
+      std::copy_n(from.values.begin(), other.rays.count, to.values.begin() + rays.count);
+    };
+    const auto copy3 = [&](Vec3Array<T>& to, const Vec3Array<T>& from) {
+      copy(to.x, from.x);
+      copy(to.y, from.y);
+      copy(to.z, from.z);
+    };
+    copy3(rays.origin, other.rays.origin);
+    copy3(rays.direction, other.rays.direction);
+    copy3(throughput, other.throughput);
+    copy(slot, other.slot);
+    if (footprints) {
+      copy(width, other.width);
+      copy(spread, other.spread);
+    }
+    rays.count += other.rays.count;
+  }
+};
+
+}  // namespace orrery

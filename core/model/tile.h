@@ -1,0 +1,55 @@
+#pragma once
+
+#include "core/model/batch.h"
+
+namespace orrery {
+
+// The side of the square of pixels that one batch of camera rays covers. Tiles form a fixed grid anchored at
+// pixel (0, 0) of the full picture.
+inline constexpr int kTileSide = 32;
+static_assert(kTileSide * kTileSide == kBatch);
+
+// Pixel of slot `slot` within its tile. Slots run in blocks of 4x4 pixels, so that the rays of one register
+// are neighbours whatever its width.
+struct TilePixel {
+  int x, y;
+};
+constexpr TilePixel tile_pixel(int slot) {
+  const int block = slot / 16, within = slot % 16;
+  constexpr int kBlocks = kTileSide / 4;
+  return {block % kBlocks * 4 + within % 4, block / kBlocks * 4 + within / 4};
+}
+
+// A tile of a picture and which of its samples are meant. Row 0 is the top.
+struct TileView {
+  int x0, y0;               // first pixel, in the full picture; multiples of kTileSide
+  int width, height;        // pixels of the tile that lie within the picture, 1..kTileSide
+  std::uint64_t frame = 0;  // of an animation: pictures of different frames have different samples
+  int first_sample = 0, samples = 1;
+};
+
+// The tiles of a picture, row by row.
+class TileGrid {
+ public:
+  TileGrid(int width, int height)
+      : width_(width),
+        height_(height),
+        across_((width + kTileSide - 1) / kTileSide),
+        down_((height + kTileSide - 1) / kTileSide) {}
+
+  int size() const { return across_ * down_; }
+  // With all samples from 0 up to `samples`. REQUIRES: 0 <= index < size().
+  TileView at(int index, int samples) const {
+    const int x0 = index % across_ * kTileSide, y0 = index / across_ * kTileSide;
+    return {.x0 = x0,
+            .y0 = y0,
+            .width = std::min(kTileSide, width_ - x0),
+            .height = std::min(kTileSide, height_ - y0),
+            .samples = samples};
+  }
+
+ private:
+  int width_, height_, across_, down_;
+};
+
+}  // namespace orrery

@@ -1,0 +1,150 @@
+#include "core/prepare/geometry.h"
+
+#include <algorithm>
+
+#include "core/accelerators/instances.h"
+
+namespace orrery {
+namespace {
+
+using ShapeSets = std::vector<std::unique_ptr<ShapeSet>>;
+
+// Kernels of the sets, and their primitives, which are numbered on from `number`. `before`: the kernels they
+// had at another moment, of which those of resting sets stay, or null.
+template <class T>
+void add_shapes(const ShapeSets& sets, double time, const std::vector<ShapeKernelPtr<T>>* before,
+                std::vector<ShapeKernelPtr<T>>& kernels, PrimitiveList<T>& primitives, int& number) {
+  for (const auto& shapes : sets) {
+    if (shapes->size() == 0) continue;
+    const auto posed = shapes->at(time);
+    const ShapeSet& now = posed ? *posed : *shapes;
+    const bool known = before && !posed;
+    kernels.push_back(known ? (*before)[kernels.size()] : now.kernel(T(), number));
+    for (int i = 0; i < now.size(); ++i) primitives.push_back({kernels.back().get(), i, now.bounds(i)});
+    number += now.size();
+  }
+}
+
+bool rests(const ShapeSets& sets) {
+  return std::all_of(sets.begin(), sets.end(),
+                     [](const auto& shapes) { return shapes->key_times().empty(); });
+}
+
+template <class T>
+std::shared_ptr<const ModelGeometry<T>> make_model(const Model& model, const AcceleratorType& inner,
+                                                   double time,
+                                                   const std::shared_ptr<const ModelGeometry<T>>& before) {
+  if (before && rests(model.shapes)) return before;
+  auto geometry = std::make_shared<ModelGeometry<T>>();
+  int number = 0;
+  add_shapes(model.shapes, time, before ? &before->shapes : nullptr, geometry->shapes, geometry->primitives,
+             number);
+  for (const auto& primitive : geometry->primitives) geometry->bounds.include(primitive.bounds);
+  geometry->accelerator =
+      build_or_refit(inner, geometry->primitives, before ? before->accelerator.get() : nullptr);
+  return geometry;
+}
+
+template <class T>
+Placed<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, const Affined& world_from_model,
+                int& number) {
+  const Affined model_from_world = inverse(world_from_model);
+  // Rows of the inverse stand at right angles, because instances are scaled before they are turned: so what
+  // rounding moves a point across its surface grows with its coordinates alone, not with how uneven the scale
+  // is. 2 > sqrt(3), the most by which a sum of three rows' errors exceeds their length.
+  const double base =
+      2 * 8 * double{std::numeric_limits<T>::epsilon()} * max_component(abs(world_from_model.origin));
+  const int first = number;
+  number += static_cast<int>(model->primitives.size());
+  return {model,
+          first,
+          number,
+          world_from_model.as<T>(),
+          model_from_world.as<T>(),
+          static_cast<T>(2 * stretch(world_from_model)),
+          static_cast<T>(base)};
+}
+
+template <class T>
+void add_instances(const Scene& scene, const AcceleratorType& inner, double time, const Geometry<T>* before,
+                   Geometry<T>& geometry, int& number) {
+  if (scene.instances.empty()) return;
+  for (std::size_t m = 0; m < scene.models.size(); ++m)
+    geometry.models.push_back(
+        make_model<T>(scene.models[m], inner, time, before ? before->models[m] : nullptr));
+  PlacedList<T> placed;
+  std::vector<Boundsd> boxes;
+  for (const Instance& instance : scene.instances) {
+    const auto& model = geometry.models[instance.model];
+    const Affined world_from_model = instance.world_from_model(time);
+    placed.push_back(place<T>(model, world_from_model, number));
+    boxes.push_back(bounds_of(model->bounds, world_from_model));
+  }
+  geometry.shapes.push_back(std::make_shared<InstanceKernel<T>>(std::move(placed)));
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    geometry.primitives.push_back({geometry.shapes.back().get(), static_cast<int>(i), boxes[i]});
+}
+
+}  // namespace
+
+template <class T>
+AcceleratorPtr<T> build_or_refit(const AcceleratorType& type, const PrimitiveList<T>& primitives,
+                                 const Accelerator<T>* before) {
+  AcceleratorPtr<T> accelerator = before ? before->refitted(primitives) : nullptr;
+  return accelerator ? std::move(accelerator) : build(type, primitives);
+}
+
+template <class T>
+std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> scene,
+                                                 const AcceleratorType& inner, double time,
+                                                 const Geometry<T>* before) {
+  auto geometry = std::make_shared<Geometry<T>>();
+  geometry->ambient = Vec3<T>(scene->ambient);
+  geometry->background = Vec3<T>(scene->background);
+  geometry->material_of.assign(scene->material_of.begin(), scene->material_of.end());
+  geometry->primitives.reserve(scene->material_of.size());
+  int number = 0;
+  add_shapes(scene->shapes, time, before ? &before->shapes : nullptr, geometry->shapes, geometry->primitives,
+             number);
+  add_instances(*scene, inner, time, before, *geometry, number);
+  int first = 0;
+  for (const auto& materials : scene->materials) {
+    const int last = first + materials->size();
+    if (last > first)
+      geometry->materials.push_back({materials->kernel(T(), first), first, last, materials->traits()});
+    first = last;
+  }
+  for (const auto& lights : scene->light_sets)
+    geometry->lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
+  geometry->scene = std::move(scene);
+  return geometry;
+}
+
+template <class T>
+AcceleratorFacts facts_of(const World<T>& world) {
+  AcceleratorFacts facts = world.accelerator->facts();
+  int deepest = 0;
+  for (const auto& model : world.geometry->models) {
+    const AcceleratorFacts own = model->accelerator->facts();
+    facts.bytes += own.bytes;
+    facts.references += own.references;
+    deepest = std::max(deepest, own.depth);
+  }
+  facts.depth += deepest;
+  return facts;
+}
+
+template AcceleratorFacts facts_of(const World<float>&);
+template AcceleratorFacts facts_of(const World<double>&);
+template std::shared_ptr<const Geometry<float>> make_geometry(std::shared_ptr<const Scene>,
+                                                              const AcceleratorType&, double,
+                                                              const Geometry<float>*);
+template std::shared_ptr<const Geometry<double>> make_geometry(std::shared_ptr<const Scene>,
+                                                               const AcceleratorType&, double,
+                                                               const Geometry<double>*);
+template AcceleratorPtr<float> build_or_refit(const AcceleratorType&, const PrimitiveList<float>&,
+                                              const Accelerator<float>*);
+template AcceleratorPtr<double> build_or_refit(const AcceleratorType&, const PrimitiveList<double>&,
+                                               const Accelerator<double>*);
+
+}  // namespace orrery

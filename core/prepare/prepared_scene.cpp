@@ -1,0 +1,73 @@
+#include "core/prepare/prepared_scene.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "core/base/clock.h"
+#include "core/base/error.h"
+#include "core/prepare/geometry.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+using Moments = std::list<PreparedScene::Parts::Moment<T>>;
+
+// Puts the moment of that time first.
+template <class T>
+void bring_forward(Moments<T>& moments, double time) {
+  const auto known =
+      std::find_if(moments.begin(), moments.end(), [&](const auto& m) { return m.time == time; });
+  if (known != moments.end()) return moments.splice(moments.begin(), moments, known);
+  moments.push_front({time, {}, {}});
+  if (moments.size() > PreparedScene::kMoments) moments.pop_back();
+}
+
+// What was made with the accelerator for another moment than the first, the newest; an empty world if there
+// is none.
+template <class T>
+World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
+  for (auto moment = std::next(moments.begin()); moment != moments.end(); ++moment)
+    if (const auto made = moment->worlds.find(&type); made != moment->worlds.end()) return made->second;
+  return {};
+}
+
+}  // namespace
+
+template <class T>
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double time, double& build_ms,
+                   std::stop_token stop) {
+  const auto lock = lock_unless(parts.mutex, stop);
+  auto& moments = made_of<T>(parts).moments;
+  bring_forward(moments, time);
+  auto& moment = moments.front();
+  World<T>& world = moment.worlds[&type];
+  if (!world.accelerator) {
+    const auto start = Clock::now();
+    const World<T> before = world_before(moments, type);
+    auto& geometry = moment.geometries[parts.scene->models.empty() ? nullptr : &type];
+    if (!geometry) geometry = make_geometry<T>(parts.scene, type, time, before.geometry.get());
+    world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
+    build_ms += milliseconds_since(start);
+  }
+  return world;
+}
+
+template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
+                                std::stop_token);
+template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
+                                 std::stop_token);
+
+std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::stop_token& stop) {
+  if (!mutex.lock_unless(stop)) throw Cancelled();
+  return {mutex, std::adopt_lock};
+}
+
+PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
+  parts_->scene = std::move(scene);
+}
+PreparedScene::~PreparedScene() = default;
+const Scene& PreparedScene::scene() const { return *parts_->scene; }
+std::shared_ptr<const Scene> PreparedScene::shared_scene() const { return parts_->scene; }
+
+}  // namespace orrery

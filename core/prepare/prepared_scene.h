@@ -1,0 +1,77 @@
+#pragma once
+
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "core/base/stoppable_mutex.h"
+#include "core/model/plan.h"
+#include "core/model/world.h"
+#include "core/stages/prediction.h"
+
+namespace orrery {
+
+// A scene with what rendering it has built so far (its shapes in the render's precision, its accelerators),
+// kept for the next frame. Safe to use from any number of threads; each part is built once.
+class PreparedScene {
+ public:
+  explicit PreparedScene(std::shared_ptr<const Scene> scene);
+  ~PreparedScene();
+
+  const Scene& scene() const;
+  std::shared_ptr<const Scene> shared_scene() const;
+
+  // Of a scene that moves: for so many moments, those asked for last, what was built is kept.
+  static constexpr std::size_t kMoments = 2;
+
+  struct Parts;
+  Parts& parts() const { return *parts_; }
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+// What was built for one scene so far.
+struct PreparedScene::Parts {
+  // The scene as it stands at one moment.
+  template <class T>
+  struct Moment {
+    double time;
+    // By the type of the models' structures; null if there are no models.
+    std::map<const AcceleratorType*, std::shared_ptr<const Geometry<T>>> geometries;
+    std::map<const AcceleratorType*, World<T>> worlds;
+  };
+  template <class T>
+  struct Made {
+    std::list<Moment<T>> moments;    // at most kMoments, the one asked for last first
+    std::optional<Decision> chosen;  // by trial
+    PredictorPtr<T> network;         // trained on the first plan that wanted one
+  };
+  std::shared_ptr<const Scene> scene;
+  StoppableMutex trying;  // held while structures are tried or a network trained, so that it is done once
+  StoppableMutex mutex;   // guards the rest; all is built under it, so that it is built once
+  Made<float> made_float;
+  Made<double> made_double;
+};
+
+// The scene in number type T with an accelerator, as it stands at `time`, a moment of its motion in seconds;
+// adds the milliseconds spent building, if any. Throws Cancelled if `stop` is requested while another built.
+template <class T>
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double time,
+                   double& build_ms, std::stop_token stop = {});
+
+// Waits for the mutex. Throws Cancelled once `stop` is requested.
+std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::stop_token& stop);
+
+// What was built in number type T.
+template <class T>
+PreparedScene::Parts::Made<T>& made_of(PreparedScene::Parts& parts) {
+  if constexpr (std::is_same_v<T, float>)
+    return parts.made_float;
+  else
+    return parts.made_double;
+}
+
+}  // namespace orrery

@@ -1,0 +1,104 @@
+#include "core/render/tile_renderer.h"
+
+#include <algorithm>
+
+namespace orrery {
+namespace {
+
+// The first sample sets the sums.
+template <class T>
+void add(bool first, const Array<T>& value, TileSums::Plane& sum) {
+  if (first)
+    for (std::size_t i = 0; i < kBatch; ++i) sum[i] = static_cast<double>(value.values[i]);
+  else
+    for (std::size_t i = 0; i < kBatch; ++i) sum[i] += static_cast<double>(value.values[i]);
+}
+
+// Of what met something: elsewhere the value is not set.
+template <class T>
+void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, TileSums::Plane& sum) {
+  if (first) sum.fill(0.0);
+  for (std::size_t i = 0; i < kBatch; ++i)
+    if (weight.values[i] > 0) sum[i] += static_cast<double>(value.values[i]);
+}
+
+}  // namespace
+
+template <class T>
+TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
+    : plan_(plan), tracer_(make_tracer(*plan.technique, world, plan)) {
+  sums_.channels.resize(plan.channels.size());
+}
+
+template <class T>
+bool TileRenderer<T>::render(const TileView& tile, std::stop_token stop, Film& film) {
+  sums_.samples = 0;
+  if (tile.first_sample > 0) film.take(tile, sums_);
+  const std::uint64_t cut_before = stats_.counts.cut_rays;
+  cut_.fill(0.0);
+  for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
+    if (sample > tile.first_sample && stop.stop_requested()) return false;
+    const Draws draws(plan_.seed, tile, sample);
+    if (plan_.samples > 1) place_samples(draws);
+    plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
+    if (!tracer_->trace(rays_, draws, result_, stats_.counts, stop)) return false;
+    add_sample();
+  }
+  if (stats_.counts.cut_rays != cut_before) account_cut(tile);
+  stats_.non_finite_pixels += film.put(tile, sums_);
+  return true;
+}
+
+template <class T>
+void TileRenderer<T>::place_samples(const Draws& draws) {
+  const IndexLanes<float> lane([](int i) { return i; });
+  for (int slot = 0; slot < kBatch; slot += kWidth<float>) {
+    const auto point = draws.two<float>(SampleSet::pixel, 0, lane + slot);
+    samples_.u.put(slot, point.u);
+    samples_.v.put(slot, point.v);
+  }
+}
+
+template <class T>
+void TileRenderer<T>::add_sample() {
+  const bool first = sums_.samples == 0;
+  add(first, result_.radiance.x, sums_.radiance[0]);
+  add(first, result_.radiance.y, sums_.radiance[1]);
+  add(first, result_.radiance.z, sums_.radiance[2]);
+  add(false, result_.cut, cut_);
+  for (std::size_t c = 0; c < plan_.channels.size(); ++c) {
+    const ChannelType& type = *plan_.channels[c];
+    if (type.mean == ChannelMean::first_sample && !first) continue;
+    const ChannelBatch<T>& from = result_.channels[c];
+    TileSums::Sums& to = sums_.channels[c];
+    const Array<T>* components[] = {&from.value.x, &from.value.y, &from.value.z};
+    for (std::size_t k = 0; k < type.components.size(); ++k)
+      add_weighted(first, *components[k], from.weight, to.value[k]);
+    add(first, from.weight, to.weight);
+  }
+  ++sums_.samples;
+}
+
+template <class T>
+void TileRenderer<T>::account_cut(const TileView& tile) {
+  for (int slot = 0; slot < kBatch; ++slot) {
+    const TilePixel p = tile_pixel(slot);
+    if (p.x >= tile.width || p.y >= tile.height) continue;
+    const double cut = cut_[static_cast<std::size_t>(slot)] / plan_.samples;
+    stats_.mean_cut += cut / (static_cast<double>(plan_.width) * plan_.height);
+    stats_.max_cut = std::max(stats_.max_cut, cut);
+  }
+}
+
+template <class T>
+void TileRenderer<T>::add_to(RenderStats& stats) const {
+  stats.counts.add(stats_.counts);
+  stats.mean_cut += stats_.mean_cut;
+  stats.max_cut = std::max(stats.max_cut, stats_.max_cut);
+  stats.non_finite_pixels += stats_.non_finite_pixels;
+}
+
+template class TileRenderer<float>;
+template class TileRenderer<double>;
+
+}  // namespace orrery

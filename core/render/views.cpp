@@ -1,0 +1,42 @@
+#include "core/render/views.h"
+
+namespace orrery {
+namespace {
+
+// Calls use(picture) with the film's radiance in that format, copying only what is kept otherwise.
+template <class Use>
+std::string with_image(const Film& film, PixelFormat format, const Use& use) {
+  const bool kept = film.storage() != FilmStorage::sums && film.stored().format() == format;
+  return kept ? use(film.stored()) : use(film.image(format));
+}
+
+std::vector<ExrLayer> layers_of(const Film& film) {
+  std::vector<ExrLayer> layers;
+  for (std::size_t channel = 0; channel < film.channels().size(); ++channel) {
+    const ChannelType& type = *film.channels()[channel];
+    for (std::size_t c = 0; c < type.components.size(); ++c)
+      layers.push_back({std::string(type.name) + "." + type.components[c], film.values(channel, c)});
+  }
+  return layers;
+}
+
+}  // namespace
+
+FilmStorage storage_for(FileFormat format) {
+  return format == FileFormat::exr ? FilmStorage::linear32 : FilmStorage::srgb8;
+}
+
+std::string encode_film(const Film& film, FileFormat format, const PngOptions& png, std::stop_token stop) {
+  switch (format) {
+    case FileFormat::png:
+      return with_image(film, PixelFormat::srgb8, [&](const Image& i) { return encode_png(i, png, stop); });
+    case FileFormat::jpeg:
+      return with_image(film, PixelFormat::srgb8, [](const Image& i) { return encode_jpeg(i); });
+    case FileFormat::exr:
+      return with_image(film, PixelFormat::linear32,
+                        [&](const Image& i) { return encode_exr(i, layers_of(film)); });
+  }
+  return {};
+}
+
+}  // namespace orrery

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/math/bounds.h"
+#include "core/math/hemisphere.h"
+#include "core/model/shape.h"
+
+namespace orrery {
+
+// An infinite flat surface.
+template <class N>
+struct Plane {
+  Vec3<N> point, normal;
+
+  static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
+
+  static void read(Params& p, std::vector<Plane<double>>& out);
+
+  Boundsd bounds() const { return Boundsd::everything(); }
+
+  // A ray along the plane never meets it: the quotient is then infinite or NaN, and neither is a hit.
+  N distance(const Ray<N>& ray) const {
+    using T = ScalarOf<N>;
+    const N t = dot(point - ray.origin, normal) / dot(ray.direction, normal);
+    return select(t > N(T(0)), t, N(std::numeric_limits<T>::infinity()));
+  }
+
+  Surface<N> surface(const Ray<N>& ray, const N& t) const {
+    const Vec3<N> near = ray.at(t);
+    const Vec3<N> position = near - normal * dot(near - point, normal);
+    using std::max;
+    return {position, normal, normal, max(max_component(abs(position)), max_component(abs(point)))};
+  }
+
+  // Metres from `point` along two axes of the plane.
+  SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
+    const Tangents<N> axes = tangents_of(normal);
+    const Vec3<N> from = position - point;
+    const N u = dot(from, axes.first), v = dot(from, axes.second);
+    return {u, v, u, v, axes.first};
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "core/model/counts.h"
+#include "core/model/path.h"
+#include "core/model/plan.h"
+#include "core/stages/light_selector.h"
+
+namespace orrery {
+
+// Light that reaches surfaces straight from light sources. Every technique shares this stage. One object
+// belongs to one thread: it keeps its batches.
+template <class T>
+class DirectLight {
+ public:
+  // Geometry, accelerator and plan outlive it.
+  DirectLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan)
+      : geometry_(geometry), accelerator_(accelerator), plan_(plan), lights_(geometry) {}
+
+  // Sets `radiance` of the lanes whose material is lit to what ambient light makes leave them, and adds what
+  // each light does. `groups`: registers with such a lane.
+  void add(const PathBatch<T>& paths, const Draws& draws, const SurfaceBatch<T>& surface,
+           const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts);
+
+ private:
+  using N = Lanes<T>;
+  void add_one(const LightTraits& traits, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
+               const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts);
+
+  const Geometry<T>& geometry_;
+  const Accelerator<T>& accelerator_;
+  const Plan& plan_;
+  const LightSelector<T> lights_;
+  LightBatch<T> light_;
+  Vec3Array<T> f_cos_;
+  Array<T> pdf_;
+};
+
+extern template class DirectLight<float>;
+extern template class DirectLight<double>;
+
+}  // namespace orrery

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/model/world.h"
+
+namespace orrery {
+
+// Lanes of register i whose material has the trait. REQUIRES: the register's materials are set.
+template <class T>
+MaskOf<Lanes<T>> lanes_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, int i,
+                            bool MaterialTraits::*trait) {
+  const IndexLanes<T> material = load_index<T>(surface.material, i);
+  typename Lanes<T>::mask_type lanes(false);
+  for (const auto& m : geometry.materials)
+    if (m.traits.*trait) lanes = lanes || mask_cast<Lanes<T>>(material >= m.first && material < m.last);
+  return lanes;
+}
+
+// The registers of `groups` with such a lane.
+template <class T>
+Groups groups_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const Groups& groups,
+                   bool MaterialTraits::*trait) {
+  Groups chosen;
+  for (const int i : groups)
+    if (any(lanes_with(geometry, surface, i, trait))) chosen.add(i);
+  return chosen;
+}
+
+}  // namespace orrery

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/model/world.h"
+
+namespace orrery {
+
+// Which lights a surface asks. This one asks all of them, each with probability 1, in the order of the scene.
+template <class T>
+class LightSelector {
+ public:
+  explicit LightSelector(const Geometry<T>& geometry) : geometry_(geometry) {}
+
+  // Calls visit(kernel, choice, traits) for each choice.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    const Scene& scene = *geometry_.scene;
+    for (const LightPlace& light : scene.lights)
+      visit(*geometry_.lights[light.set], LightChoice<T>{light.index, 1},
+            scene.light_sets[light.set]->traits());
+  }
+
+ private:
+  const Geometry<T>& geometry_;
+};
+
+}  // namespace orrery

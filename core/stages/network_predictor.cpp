@@ -1,0 +1,131 @@
+#include "core/stages/network_predictor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/stages/network.h"
+
+namespace orrery {
+namespace {
+
+constexpr int kNobody = 0;  // the answer of rays that reach the light, or meet none of the candidates
+
+// The primitives that occlude most of the samples, most first; of as many the one of the lower number.
+std::vector<int> candidates_of(std::span<const OcclusionSample> samples) {
+  std::map<int, int> met;
+  for (const OcclusionSample& sample : samples)
+    if (sample.occluder != kNoPrimitive) ++met[sample.occluder];
+  std::vector<std::pair<int, int>> ranked;
+  for (const auto& [primitive, times] : met) ranked.emplace_back(-times, primitive);
+  std::sort(ranked.begin(), ranked.end());
+  ranked.resize(std::min(ranked.size(), Network::kAnswers - 1));
+  std::vector<int> candidates;
+  for (const auto& [times, primitive] : ranked) candidates.push_back(primitive);
+  return candidates;
+}
+
+// Half of the finite values are no larger. 0 if there are none.
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// One coordinate of the samples' origins, as the network sees it: half of them lie in -1/2 to 1/2, and all
+// between -1 and 1, so that a horizon does not shrink what stands before it to nothing.
+struct Framing {
+  double middle = 0, scale = 0;
+
+  explicit Framing(std::vector<double> values) : middle(median(values)) {
+    for (double& value : values) value = std::abs(value - middle);
+    const double half = median(std::move(values));
+    if (half > 0) scale = 1 / half;
+  }
+  template <class N>
+  N operator()(const N& x) const {
+    using std::abs;
+    using T = ScalarOf<N>;
+    const N scaled = (x - static_cast<T>(middle)) * static_cast<T>(scale);
+    return scaled / (T(1) + abs(scaled));
+  }
+};
+
+std::vector<double> column(std::span<const OcclusionSample> samples, double Vec3d::*axis) {
+  std::vector<double> values;
+  for (const OcclusionSample& sample : samples) values.push_back(sample.ray.origin.*axis);
+  return values;
+}
+
+struct Framings {
+  Framing x, y, z;
+
+  explicit Framings(std::span<const OcclusionSample> samples)
+      : x(column(samples, &Vec3d::x)), y(column(samples, &Vec3d::y)), z(column(samples, &Vec3d::z)) {}
+  template <class N>
+  Network::Inputs<N> inputs(const Ray<N>& ray) const {
+    return {x(ray.origin.x), y(ray.origin.y), z(ray.origin.z),
+            ray.direction.x, ray.direction.y, ray.direction.z};
+  }
+};
+
+template <class T>
+class NetworkPredictor final : public Predictor<T> {
+ public:
+  explicit NetworkPredictor(std::span<const OcclusionSample> samples)
+      : candidates_(candidates_of(samples)), framings_(samples) {
+    if (candidates_.empty()) return;
+    std::vector<NetworkExample> examples;
+    for (const OcclusionSample& sample : samples) {
+      const auto candidate = std::find(candidates_.begin(), candidates_.end(), sample.occluder);
+      const auto place = static_cast<std::size_t>(candidate - candidates_.begin());
+      const bool one = candidate != candidates_.end();
+      NetworkExample example{{}, one ? place + 1 : kNobody};
+      const auto inputs = framings_.inputs(sample.ray);
+      for (std::size_t i = 0; i < inputs.size(); ++i) example.in[i] = static_cast<float>(inputs[i]);
+      examples.push_back(example);
+    }
+    network_ = train_network(examples);
+  }
+
+  // The candidate with the best score, if it is good enough beside kNobody's. Scores that are no numbers
+  // propose nothing.
+  void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const override {
+    for (const int i : groups) {
+      IndexLanes<T> proposed(IndexOf<T>{kNoPrimitive});
+      if (!candidates_.empty()) {
+        Network::Scores<N> scores;
+        network_.score(framings_.inputs(rays.at(i)), scores);
+        N best = scores[kNobody] - N(T(kEager));
+        for (std::size_t c = 0; c < candidates_.size(); ++c) {
+          const auto better = scores[c + 1] > best;
+          best = select(better, scores[c + 1], best);
+          stdx::where(mask_cast<IndexLanes<T>>(better), proposed) = static_cast<IndexOf<T>>(candidates_[c]);
+        }
+      }
+      primitive.put(i, proposed);
+    }
+  }
+
+ private:
+  using N = Lanes<T>;
+  static constexpr double kEager = 2.3;  // ln 10: a test costs a tenth of the traversal that it may save
+
+  std::vector<int> candidates_;
+  Framings framings_;
+  Network network_;
+};
+
+}  // namespace
+
+template <class T>
+PredictorPtr<T> network_predictor(std::span<const OcclusionSample> samples) {
+  return std::make_shared<const NetworkPredictor<T>>(samples);
+}
+
+template PredictorPtr<float> network_predictor(std::span<const OcclusionSample>);
+template PredictorPtr<double> network_predictor(std::span<const OcclusionSample>);
+
+}  // namespace orrery

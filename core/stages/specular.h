@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/model/path.h"
+#include "core/stages/lane_masks.h"
+
+namespace orrery {
+
+// Asks the specular materials of the registers of `groups` where light goes on. With `filters`, throughput
+// takes on what bodies leave of light that crossed them.
+template <class T>
+void evaluate_specular(const Geometry<T>& geometry, bool filters, const HitBatch<T>& hits,
+                       const SurfaceBatch<T>& surface, const Groups& groups, PathBatch<T>& paths,
+                       SpecularBatch<T>& out) {
+  for (const auto& m : geometry.materials)
+    if (m.traits.mirrors) m.kernel->specular(paths.rays, hits, surface, groups, out);
+  if (!filters) return;
+  for (const int i : groups) {
+    const auto filtered = lanes_with(geometry, surface, i, &MaterialTraits::mirrors);
+    paths.throughput.put(i, filtered, paths.throughput.at(i) * out.filter.at(i));
+  }
+}
+
+}  // namespace orrery

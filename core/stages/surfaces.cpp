@@ -1,0 +1,75 @@
+#include "core/stages/surfaces.h"
+
+#include <algorithm>
+
+namespace orrery {
+namespace {
+
+// Neighbours mostly meet the same primitive.
+template <class T>
+void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i,
+                    const IndexLanes<T>& primitive, SurfaceBatch<T>& surface) {
+  const auto material = [&](IndexOf<T> p) {
+    return p < 0 ? -1 : geometry.material_of[static_cast<std::size_t>(p)];
+  };
+  const IndexOf<T> first = primitive[0];
+  if (all(primitive == first)) return surface.material.put(i, IndexLanes<T>(material(first)));
+  for (int lane = i; lane < i + kWidth<T>; ++lane) surface.material[lane] = material(hits.primitive[lane]);
+}
+
+template <class T>
+void find_objects(const Scene& scene, const Groups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface) {
+  const auto resting = scene.object_count - static_cast<int>(scene.instances.size());
+  for (const int i : groups)
+    for (int lane = i; lane < i + kWidth<T>; ++lane) {
+      surface.object[lane] = -1;
+      hits.instance[lane] = kNoInstance;
+      const IndexOf<T> primitive = hits.primitive[lane];
+      if (primitive == kNoPrimitive) continue;
+      const auto run =
+          std::upper_bound(scene.object_runs.begin(), scene.object_runs.end(), primitive,
+                           [](IndexOf<T> p, const ObjectRun& r) { return p < r.first_primitive; });
+      surface.object[lane] = std::prev(run)->object;
+      if (surface.object[lane] >= resting) hits.instance[lane] = surface.object[lane] - resting;
+    }
+}
+
+template <class T>
+void find_footprints(const PathBatch<T>& paths, const Groups& groups, const HitBatch<T>& hits,
+                     SurfaceBatch<T>& surface) {
+  for (const int i : groups) surface.footprint.put(i, paths.width.at(i) + paths.spread.at(i) * hits.t.at(i));
+}
+
+}  // namespace
+
+template <class T>
+Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
+                     const Groups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
+                     Vec3Array<T>& radiance) {
+  using N = Lanes<T>;
+  Groups met;
+  const Vec3<N> background(geometry.background);
+  const N zero(T(0));
+  for (const int i : groups) {
+    const IndexLanes<T> primitive = load_index<T>(hits.primitive, i);
+    const auto missed = mask_cast<N>(primitive == kNoPrimitive);
+    radiance.put(i, {select(missed, background.x, zero), select(missed, background.y, zero),
+                     select(missed, background.z, zero)});
+    if (all(missed)) continue;
+    met.add(i);
+    find_materials(geometry, hits, i, primitive, surface);
+  }
+  for (const auto& shapes : geometry.shapes) shapes->surface(paths.rays, hits, met, surface);
+  if (fields.parameters)
+    for (const auto& shapes : geometry.shapes) shapes->parameters(paths.rays, met, hits, surface);
+  if (fields.identity) find_objects(*geometry.scene, met, hits, surface);
+  if (fields.footprint) find_footprints(paths, met, hits, surface);
+  return met;
+}
+
+template Groups find_surfaces(const Geometry<float>&, const SurfaceFields&, const PathBatch<float>&,
+                              const Groups&, HitBatch<float>&, SurfaceBatch<float>&, Vec3Array<float>&);
+template Groups find_surfaces(const Geometry<double>&, const SurfaceFields&, const PathBatch<double>&,
+                              const Groups&, HitBatch<double>&, SurfaceBatch<double>&, Vec3Array<double>&);
+
+}  // namespace orrery

@@ -1,0 +1,65 @@
+#include "core/model/draws.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace orrery::test {
+namespace {
+
+template <class T>
+SamplePoint<double> draw(const Draws& draws, SampleSet set, int depth, int slot) {
+  const auto point = draws.two<T>(set, depth, IndexLanes<T>(static_cast<IndexOf<T>>(slot)));
+  return {static_cast<double>(point.u[0]), static_cast<double>(point.v[0])};
+}
+
+// A random number belongs to a pixel, not to the tile that it is rendered in.
+TEST(Draws, BelongToThePixel) {
+  const Draws whole(7, TileView{0, 0, kTileSide, kTileSide}, 3);
+  const Draws beside(7, TileView{16, 8, kTileSide, kTileSide}, 3);
+  for (int slot = 0; slot < kBatch; ++slot) {
+    const auto [x, y] = tile_pixel(slot);
+    if (x < 16 || y < 8) continue;
+    for (int other = 0; other < kBatch; ++other) {
+      if (tile_pixel(other).x != x - 16 || tile_pixel(other).y != y - 8) continue;
+      const auto a = draw<float>(whole, SampleSet::lobe, 1, slot),
+                 b = draw<float>(beside, SampleSet::lobe, 1, other);
+      ASSERT_EQ(a.u, b.u);
+      ASSERT_EQ(a.v, b.v);
+    }
+  }
+}
+
+TEST(Draws, AreTheSameInFloatAndDouble) {
+  const Draws draws(1, TileView{32, 0, kTileSide, kTileSide}, 9);
+  for (int slot = 0; slot < kBatch; slot += 11) {
+    const auto a = draw<float>(draws, SampleSet::light, 2, slot),
+               b = draw<double>(draws, SampleSet::light, 2, slot);
+    EXPECT_EQ(a.u, b.u);
+    EXPECT_EQ(a.v, b.v);
+  }
+}
+
+// Sets, depths and frames have sequences of their own: no two agree, and their correlation over the pixels of
+// a tile stays below 4 standard deviations.
+TEST(Draws, OfOtherSetsDepthsAndFramesAreOthers) {
+  const TileView tile{0, 0, kTileSide, kTileSide};
+  TileView later = tile;
+  later.frame = 1;
+  const Draws now(1, tile, 0), then(1, later, 0);
+  const std::vector<std::function<double(int)>> all = {
+      [&](int slot) { return draw<float>(now, SampleSet::pixel, 0, slot).u; },
+      [&](int slot) { return draw<float>(now, SampleSet::lobe, 0, slot).u; },
+      [&](int slot) { return draw<float>(now, SampleSet::light, 0, slot).u; },
+      [&](int slot) { return draw<float>(now, SampleSet::lobe, 1, slot).u; },
+      [&](int slot) { return draw<float>(then, SampleSet::pixel, 0, slot).u; }};
+  for (std::size_t a = 0; a < all.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      double sum = 0;
+      for (int slot = 0; slot < kBatch; ++slot) sum += (all[a](slot) - 0.5) * (all[b](slot) - 0.5);
+      EXPECT_LT(std::abs(sum * 12 / std::sqrt(double{kBatch})), 4) << a << " and " << b;
+    }
+}
+
+}  // namespace
+}  // namespace orrery::test

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/batches.h"
+#include "tests/support/shapes.h"
+
+// Parameters and tangents that every registered shape tells of a hit.
+namespace orrery::test {
+namespace {
+
+struct Found {
+  Vec3d position, geometric, tangent;
+  double u, v, s, t;
+};
+
+std::vector<Found> parameters_of(const Json& scene_json, const Rays<double>& rays) {
+  const auto scene = load(scene_json);
+  const auto batch = std::make_unique<RayBatch<double>>();
+  const auto hits = std::make_unique<HitBatch<double>>();
+  const auto surface = std::make_unique<SurfaceBatch<double>>();
+  std::vector<Found> found;
+  for (const auto& shapes : scene->shapes) {
+    if (shapes->size() == 0) continue;
+    const auto kernel = shapes->kernel(double(), 0);
+    for_each_batch<double>(rays, [&](std::span<const Ray<double>> some, std::size_t) {
+      fill_batch(some, std::numeric_limits<double>::infinity(), *batch);
+      const Groups groups = groups_of(*batch);
+      hits->t = batch->t_max;
+      hits->primitive.values.fill(kNoPrimitive);
+      AcceleratorCounts counts;
+      for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, *batch, groups, *hits, counts);
+      kernel->surface(*batch, *hits, groups, *surface);
+      kernel->parameters(*batch, groups, *hits, *surface);
+      for (int i = 0; i < batch->count; ++i)
+        if (hits->primitive[i] != kNoPrimitive)
+          found.push_back({surface->position[i], surface->geometric[i], surface->tangent[i], hits->u[i],
+                           hits->v[i], surface->u[i], surface->v[i]});
+    });
+  }
+  return found;
+}
+
+class ShapeParameters : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShapeParameters, TangentsAreUnitAndLieInTheSurface) {
+  for (const Json& object : shape_samples(GetParam())) {
+    const auto found = parameters_of(scene_with(object), rays_at<double>(object, {1, Vec3d()}, 400, 3));
+    ASSERT_GT(found.size(), 20u) << object;
+    for (const Found& f : found) {
+      ASSERT_NEAR(length(f.tangent), 1, 1e-12) << object;
+      ASSERT_NEAR(dot(f.tangent, f.geometric), 0, 1e-9) << object;
+      ASSERT_TRUE(std::isfinite(f.u) && std::isfinite(f.v) && std::isfinite(f.s) && std::isfinite(f.t));
+    }
+  }
+}
+
+// Of two hits near each other, the one farther along the tangent has the larger u.
+TEST_P(ShapeParameters, TextureCoordinateGrowsAlongTheTangent) {
+  for (const Json& object : shape_samples(GetParam())) {
+    Rays<double> rays;
+    for (const Ray<double>& ray : rays_at<double>(object, {1, Vec3d()}, 300, 5)) rays.push_back(ray);
+    int compared = 0;
+    for (const Ray<double>& ray : rays) {
+      const auto here = parameters_of(scene_with(object), {ray});
+      if (here.empty()) continue;
+      const Vec3d aside = here[0].tangent * 1e-5;
+      const auto there = parameters_of(scene_with(object), {{ray.origin + aside, ray.direction}});
+      if (there.empty() || dot(there[0].geometric, here[0].geometric) < 0.999) continue;
+      const double moved = dot(there[0].position - here[0].position, here[0].tangent);
+      const double grown = there[0].s - here[0].s;
+      if (std::abs(grown) > 0.5 || std::abs(moved) < 5e-6)
+        continue;  // across the seam, or nearly along the ray
+      EXPECT_GT(grown * moved, 0) << object;
+      ++compared;
+    }
+    EXPECT_GT(compared, 10) << object;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShapeParameters, testing::ValuesIn(shape_names()));
+
+TEST(Parameters, OfASphereAreLongitudeAndLatitude) {
+  const Json ball = json("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}");
+  const auto at = [&](const Vec3d& from) {
+    return parameters_of(scene_with(ball), {{from, safe_normalize(-from)}}).at(0);
+  };
+  EXPECT_NEAR(at({9, 0, 0}).u, 0, 1e-15);
+  EXPECT_NEAR(at({0, 0, -9}).u, 0.25, 1e-15);
+  EXPECT_NEAR(at({-9, 0, 1e-9}).u, 0.5, 1e-9);
+  EXPECT_NEAR(at({0, 0, 9}).u, 0.75, 1e-15);
+  EXPECT_NEAR(at({0, 9, 0}).v, 1, 1e-15);
+  EXPECT_NEAR(at({0, -9, 0}).v, 0, 1e-15);
+  EXPECT_NEAR(at({5, 5, 0}).v, 0.75, 1e-15);
+}
+
+TEST(Parameters, OfAMeshAreItsTextureCoordinates) {
+  const Json mesh = json(R"({'type': 'mesh', 'positions': [[0, 0, 0], [4, 0, 0], [0, 4, 0]],
+                             'indices': [[0, 1, 2]], 'uvs': [[0.5, 0], [0.5, 1], [0.25, 0]]})");
+  const Found f = parameters_of(scene_with(mesh), {{{1, 1, 5}, {0, 0, -1}}}).at(0);
+  EXPECT_NEAR(f.u, 0.25, 1e-15);
+  EXPECT_NEAR(f.v, 0.25, 1e-15);
+  EXPECT_NEAR(f.s, 0.4375, 1e-15);
+  EXPECT_NEAR(f.t, 0.25, 1e-15);
+  EXPECT_NEAR(f.tangent.y, -1, 1e-15) << "s falls upward";
+}
+
+TEST(Parameters, UvsMustBeAsManyAsPositions) {
+  EXPECT_EQ(first_problem(scene_with(json(R"({'type': 'mesh', 'positions': [[0, 0, 0], [4, 0, 0], [0, 4, 0]],
+                             'indices': [[0, 1, 2]], 'uvs': [[0.5, 0]]})"))),
+            "/objects/0/uvs");
+  EXPECT_EQ(first_problem(scene_with(json(R"({'type': 'mesh', 'positions': [[0, 0, 0], [4, 0, 0], [0, 4, 0]],
+                             'indices': [[0, 1, 2]], 'uvs': [[0.5, 0], [1, 2, 3], [0, 0]]})"))),
+            "/objects/0/uvs/1");
+}
+
+}  // namespace
+}  // namespace orrery::test
