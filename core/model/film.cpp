@@ -7,14 +7,14 @@
 namespace orrery {
 namespace {
 
-// Means by slot, as 32-bit floats.
-using Means = std::array<Array<float>, 3>;
-
-std::uint64_t take_means(const TileSums& sums, Means& means) {
+void take_means(const TileSums& sums, TileMeans& means) {
   const double share = 1.0 / sums.samples;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < kBatch; ++i)
       means[c].values[i] = static_cast<float>(sums.radiance[c][i] * share);
+}
+
+std::uint64_t count_non_finite(const TileMeans& means) {
   std::uint64_t non_finite = 0;
   for (int i = 0; i < kBatch; i += kWidth<float>) {
     const Lanes<float> sum = means[0].at(i) + means[1].at(i) + means[2].at(i);
@@ -28,7 +28,7 @@ std::size_t slot_of(int x, int y) {
   return static_cast<std::size_t>((y / 4 * (kTileSide / 4) + x / 4) * 16 + y % 4 * 4);
 }
 
-void set_rows(const TileView& tile, const Means& means, Image& image) {
+void set_rows(const TileView& tile, const TileMeans& means, Image& image) {
   alignas(64) std::array<std::array<float, kTileSide>, 3> row;
   for (int y = 0; y < tile.height; ++y) {
     for (int x = 0; x < kTileSide; x += 4)
@@ -87,13 +87,15 @@ int Film::tile_number(const TileView& tile) const {
   return tile.y0 / kTileSide * across + tile.x0 / kTileSide;
 }
 
+std::uint64_t Film::put(const TileView& tile, const TileMeans& means) {
+  set_rows(tile, means, *image_);
+  return count_non_finite(means);
+}
+
 std::uint64_t Film::put(const TileView& tile, const TileSums& sums) {
-  Means means;
-  const std::uint64_t non_finite = take_means(sums, means);
-  if (storage_ != FilmStorage::sums) {
-    set_rows(tile, means, *image_);
-    return non_finite;
-  }
+  TileMeans means;
+  take_means(sums, means);
+  if (storage_ != FilmStorage::sums) return put(tile, means);
   samples_[static_cast<std::size_t>(tile_number(tile))] = sums.samples;
   for_each_pixel(tile, width_, [&](std::size_t pixel, std::size_t slot) {
     for (std::size_t c = 0; c < 3; ++c) radiance_[c][pixel] = sums.radiance[c][slot];
@@ -103,7 +105,7 @@ std::uint64_t Film::put(const TileView& tile, const TileSums& sums) {
       planes_[k].weight[pixel] = sums.channels[k].weight[slot];
     }
   });
-  return non_finite;
+  return count_non_finite(means);
 }
 
 void Film::take(const TileView& tile, TileSums& sums) const {
@@ -123,7 +125,7 @@ Image Film::resolved() const {
   const TileGrid tiles(width_, height_);
   TileSums sums;
   sums.channels.resize(planes_.size());
-  Means means;
+  TileMeans means;
   for (int i = 0; i < tiles.size(); ++i) {
     const TileView tile = tiles.at(i, 0);
     take(tile, sums);

@@ -30,6 +30,9 @@ struct TileSums {
   int samples = 0;
 };
 
+// Mean radiance of one tile, by slot.
+using TileMeans = std::array<Array<float>, 3>;
+
 // A picture while it is made: sums over samples, by channel. Several threads may put different tiles at once.
 class Film {
  public:
@@ -47,6 +50,8 @@ class Film {
 
   // Sets the tile's pixels to these sums. Returns how many of its pixels are not finite.
   std::uint64_t put(const TileView& tile, const TileSums& sums);
+  // Likewise from means, which a film of sums cannot take. REQUIRES: not FilmStorage::sums.
+  std::uint64_t put(const TileView& tile, const TileMeans& means);
   // The sums that were put. REQUIRES: FilmStorage::sums; the tile was put.
   void take(const TileView& tile, TileSums& sums) const;
 

@@ -32,21 +32,43 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
 
 template <class T>
 bool TileRenderer<T>::render(const TileView& tile, std::stop_token stop, Film& film) {
-  sums_.samples = 0;
-  if (tile.first_sample > 0) film.take(tile, sums_);
-  const std::uint64_t cut_before = stats_.counts.cut_rays;
-  cut_.fill(0.0);
-  for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
-    if (sample > tile.first_sample && stop.stop_requested()) return false;
-    const Draws draws(plan_.seed, tile, sample);
-    if (plan_.samples > 1) place_samples(draws);
-    plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
-    if (!tracer_->trace(rays_, draws, result_, stats_.counts, stop)) return false;
-    add_sample();
+  cut_.clear();
+  if (plan_.samples == 1 && film.storage() != FilmStorage::sums) {
+    if (!trace(tile, 0, stop)) return false;
+    put_single(tile, film);
+  } else {
+    sums_.samples = 0;
+    if (tile.first_sample > 0) film.take(tile, sums_);
+    for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
+      if (stop.stop_requested() || !trace(tile, sample, stop)) return false;
+      add_sample();
+    }
+    stats_.non_finite_pixels += film.put(tile, sums_);
   }
-  if (stats_.counts.cut_rays != cut_before) account_cut(tile);
-  stats_.non_finite_pixels += film.put(tile, sums_);
+  if (!cut_.empty()) add_cut(tile);
   return true;
+}
+
+template <class T>
+bool TileRenderer<T>::trace(const TileView& tile, int sample, std::stop_token stop) {
+  const Draws draws(plan_.seed, tile, sample);
+  if (plan_.samples > 1) place_samples(draws);
+  plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
+  const std::uint64_t cut_before = stats_.counts.cut_rays;
+  if (!tracer_->trace(rays_, draws, result_, stats_.counts, stop)) return false;
+  if (stats_.counts.cut_rays == cut_before) return true;
+  cut_.resize(kBatch);
+  for (std::size_t i = 0; i < kBatch; ++i) cut_[i] += static_cast<double>(result_.cut.values[i]);
+  return true;
+}
+
+// One sample is its own mean.
+template <class T>
+void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
+  const Array<T>* const radiance[] = {&result_.radiance.x, &result_.radiance.y, &result_.radiance.z};
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < kBatch; ++i) means_[c].values[i] = static_cast<float>(radiance[c]->values[i]);
+  stats_.non_finite_pixels += film.put(tile, means_);
 }
 
 template <class T>
@@ -65,7 +87,6 @@ void TileRenderer<T>::add_sample() {
   add(first, result_.radiance.x, sums_.radiance[0]);
   add(first, result_.radiance.y, sums_.radiance[1]);
   add(first, result_.radiance.z, sums_.radiance[2]);
-  add(false, result_.cut, cut_);
   for (std::size_t c = 0; c < plan_.channels.size(); ++c) {
     const ChannelType& type = *plan_.channels[c];
     if (type.mean == ChannelMean::first_sample && !first) continue;
@@ -80,7 +101,7 @@ void TileRenderer<T>::add_sample() {
 }
 
 template <class T>
-void TileRenderer<T>::account_cut(const TileView& tile) {
+void TileRenderer<T>::add_cut(const TileView& tile) {
   for (int slot = 0; slot < kBatch; ++slot) {
     const TilePixel p = tile_pixel(slot);
     if (p.x >= tile.width || p.y >= tile.height) continue;

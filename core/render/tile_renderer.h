@@ -19,9 +19,12 @@ class TileRenderer {
   void add_to(RenderStats& stats) const;
 
  private:
+  // Traces one sample of every pixel. False once a stop was requested.
+  bool trace(const TileView& tile, int sample, std::stop_token stop);
   void place_samples(const Draws& draws);
   void add_sample();
-  void account_cut(const TileView& tile);
+  void add_cut(const TileView& tile);
+  void put_single(const TileView& tile, Film& film);
 
   const Plan& plan_;
   TracerPtr<T> tracer_;
@@ -29,7 +32,8 @@ class TileRenderer {
   RayBatch<T> rays_;
   TraceResult<T> result_;
   TileSums sums_;
-  TileSums::Plane cut_;
+  TileMeans means_;
+  std::vector<double> cut_;  // sums by slot of this tile; empty as long as nothing was cut
   RenderStats stats_;
 };
 

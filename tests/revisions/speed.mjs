@@ -1,0 +1,108 @@
+#!/usr/bin/env node
+// Times this tree's build against another revision's, which compare.sh has built: the two take turns, and the
+// ratio of the medians counts.
+//   node tests/revisions/speed.mjs REVISION [--rounds N] [--only WORD]
+
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdirSync } from "node:fs";
+import { spawn } from "node:child_process";
+import { FrameReader, cpu_seconds, post_scene, send } from "../bench/daemon.mjs";
+import { start_two_sided } from "../bench/two_sided.mjs";
+
+const kFlake = "build/bench-scenes/sphereflake.json"; // 7,381 spheres
+
+function arguments_of(words) {
+  const [name, ...rest] = words;
+  const options = { rounds: "7", only: "" };
+  for (let i = 0; i < rest.length; i += 2) options[rest[i].replace("--", "")] = rest[i + 1];
+  if (!name) throw new Error("usage: speed.mjs REVISION [--rounds N] [--only WORD]");
+  const revision = execFileSync("git", ["rev-parse", "--verify", `${name}^{commit}`], { encoding: "utf8" }).trim();
+  return { theirs: `build-revision/${revision}/build`, rounds: Number(options.rounds), only: options.only };
+}
+
+// CPU seconds of rendering alone, on one thread.
+const render = (scene, side, more) => (build) => {
+  const words = ["render", scene, "--width", side, "--height", side, "--threads", 1, "--stats=json", ...more];
+  return JSON.parse(execFileSync(`${build}/orrery`, words.map(String), { encoding: "utf8" })).render_cpu_s;
+};
+
+// CPU seconds of a service that streams an orbit.
+const orbit_http = (frames) => async (build) => {
+  const child = spawn(`${build}/orrery`, ["serve", "--port", "0", "--health-port", "0", "--threads", "2", "--quiet"], {
+    stdio: ["ignore", "pipe", "ignore"],
+  });
+  try {
+    const port = await new Promise((resolve, reject) => {
+      let text = "";
+      child.stdout.on("data", (bytes) => {
+        text += bytes;
+        const match = /http:\/\/\S+:(\d+)/.exec(text);
+        if (match) resolve(Number(match[1]));
+      });
+      child.once("close", () => reject(new Error(`${build}/orrery serve ended`)));
+    });
+    const id = await post_scene(port, "scenes/paper.json");
+    const before = cpu_seconds(child.pid);
+    const response = await send(port, "GET", `/v1/scenes/${id}/orbit?frames=${frames}&fps=0`, {
+      Accept: "application/x-orrery-frames",
+    });
+    let seen = 0;
+    const reader = new FrameReader(() => ++seen);
+    for await (const chunk of response) reader.add(chunk);
+    if (seen !== frames) throw new Error(`${seen} of ${frames} frames came`);
+    return cpu_seconds(child.pid) - before;
+  } finally {
+    child.kill("SIGTERM");
+  }
+};
+
+// A process a side holds the mesh; each run is asked of it.
+function embree_row(kind, triangles) {
+  const sides = new Map();
+  return {
+    name: `embree-${kind}-${triangles / 1000}k`,
+    async run(build) {
+      if (!sides.has(build)) sides.set(build, await start_two_sided(`${build}/bench`, [kind, String(triangles), "default"]));
+      return (await sides.get(build).ours()).cpu_s;
+    },
+    async stop() {
+      for (const side of sides.values()) await side.stop();
+    },
+  };
+}
+
+function rows() {
+  mkdirSync("build/bench-scenes", { recursive: true });
+  if (!existsSync(kFlake)) execFileSync("node", ["scenes/generate-sphereflake.mjs", "4", kFlake]);
+  const plain = (name, run) => ({ name, run, stop: async () => {} });
+  const embree = [70_000, 1_000_000].flatMap((triangles) =>
+    ["primary", "bounce", "anyhit", "build"].map((kind) => embree_row(kind, triangles)),
+  );
+  return [
+    plain("paper", render("scenes/paper.json", 1500, ["--depth", 5])),
+    plain("paper-64-samples", render("scenes/paper.json", 200, ["--samples", 64])),
+    plain("flake", render(kFlake, 700, ["--depth", 5])),
+    plain("instances", render("scenes/instances.json", 700, [])),
+    plain("double", render("scenes/glass.json", 500, ["--precision", "double"])),
+    plain("orbit-http", orbit_http(60)),
+    ...embree,
+  ];
+}
+
+const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+
+const { theirs, rounds, only } = arguments_of(process.argv.slice(2));
+console.log("CPU seconds of theirs over ours, medians of interleaved runs: above 1 this tree is faster\n");
+for (const row of rows().filter(({ name }) => name.includes(only))) {
+  const times = { build: [], [theirs]: [] };
+  try {
+    for (const build of ["build", theirs]) await row.run(build); // warm
+    for (let round = 0; round < rounds; ++round)
+      for (const build of round % 2 ? ["build", theirs] : [theirs, "build"]) times[build].push(await row.run(build));
+  } finally {
+    await row.stop();
+  }
+  const ratios = times.build.map((ours, i) => times[theirs][i] / ours).sort((a, b) => a - b);
+  const ratio = median(times[theirs]) / median(times.build);
+  console.log(`${row.name.padEnd(22)} ${ratio.toFixed(3)}  (pairs ${ratios[0].toFixed(3)} to ${ratios.at(-1).toFixed(3)})`);
+}
