@@ -1,5 +1,6 @@
 #include "server/http/router.h"
 
+#include <algorithm>
 #include <set>
 
 #include "server/http/target.h"
@@ -29,6 +30,16 @@ bool Router::matches(const Route& route, Request& request) {
   return true;
 }
 
+std::string Router::named_below(const Request& request) const {
+  std::string list;
+  for (const Route& route : routes_) {
+    if (route.segments.size() != request.segments.size() + 1 || !is_place(route.segments.back())) continue;
+    if (!std::equal(request.segments.begin(), request.segments.end(), route.segments.begin())) continue;
+    list += (list.empty() ? "" : ", ") + route.method + " " + route.pattern;
+  }
+  return list;
+}
+
 Response Router::dispatch(Request& request) const {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
   const bool all_routes = request.path == "*";
@@ -42,7 +53,11 @@ Response Router::dispatch(Request& request) const {
     allowed.insert(route.method);
     if (route.method == "GET") allowed.insert("HEAD");
   }
-  if (allowed.empty()) throw HttpError(404, "There is nothing at " + request.path.substr(0, 200));
+  if (allowed.empty()) {
+    const std::string below = named_below(request);
+    throw HttpError(404, "There is nothing at " + request.path.substr(0, 200) +
+                             (below.empty() ? "" : ", but there is " + below));
+  }
   allowed.insert("OPTIONS");
   std::string list;
   for (const std::string& name : allowed) list += (list.empty() ? "" : ", ") + name;

@@ -27,7 +27,7 @@ std::string etag_of(const std::string& id) { return "\"" + id + "\""; }
 
 Response put_asset(App& app, Request& request) {
   app.require_open();
-  const std::string id = request.path_value("id");
+  const std::string id = request.path_value("sha256");
   AssetStore::require_name(id);
   if (request.header("Content-Encoding"))
     throw HttpError(415, "A body must not be compressed (Content-Encoding)");
@@ -46,7 +46,7 @@ Response put_asset(App& app, Request& request) {
 }
 
 Response get_asset(App& app, Request& request) {
-  const std::string id = request.path_value("id");
+  const std::string id = request.path_value("sha256");
   const AssetStore::AssetPtr asset = app.assets().find(id);
   Response response{.status = 304};
   if (!has_current(request, etag_of(id))) {
@@ -59,16 +59,17 @@ Response get_asset(App& app, Request& request) {
 }
 
 Response remove_asset(App& app, Request& request) {
-  app.assets().remove(request.path_value("id"));
+  app.assets().remove(request.path_value("sha256"));
   return {.status = 204};
 }
 
 }  // namespace
 
 void add_assets_routes(Router& router, App& app) {
-  router.add("PUT", "/v1/assets/{id}", [&app](Request& request) { return put_asset(app, request); });
-  router.add("GET", "/v1/assets/{id}", [&app](Request& request) { return get_asset(app, request); });
-  router.add("DELETE", "/v1/assets/{id}", [&app](Request& request) { return remove_asset(app, request); });
+  router.add("PUT", "/v1/assets/{sha256}", [&app](Request& request) { return put_asset(app, request); });
+  router.add("GET", "/v1/assets/{sha256}", [&app](Request& request) { return get_asset(app, request); });
+  router.add("DELETE", "/v1/assets/{sha256}",
+             [&app](Request& request) { return remove_asset(app, request); });
 }
 
 }  // namespace orrery

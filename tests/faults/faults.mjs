@@ -13,6 +13,7 @@ import {meshFaults} from "./meshes.mjs";
 import {motionFaults} from "./motion.mjs";
 import {structureFaults} from "./structures.mjs";
 import {stageFaults} from "./stages.mjs";
+import {optionFaults} from "./options.mjs";
 
 const kShapes = "core/shapes";
 const kNear = "N(T(1e-4))";  // the fixed epsilon of fault 4
@@ -462,4 +463,5 @@ export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
   ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
+  ...optionFaults,
 ];
