@@ -43,6 +43,23 @@ std::optional<std::string> unknown_command(int argc, char** argv, const std::vec
   return "there is no command " + word + did_you_mean(word, views) + "; see orrery --help";
 }
 
+// The flags, or else the words, that the command does not know, with the flags that may be meant.
+std::string unknown_words(const CLI::App& app) {
+  const CLI::App& command = *app.get_subcommands().front();
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+  const std::vector<std::string_view> known(flags.begin(), flags.end());
+  std::string text, unknown_flags;
+  for (const std::string& word : app.remaining(true)) {
+    text += " " + word;
+    if (word.starts_with("--"))
+      unknown_flags += " " + word + did_you_mean(word.substr(0, word.find('=')), known);
+  }
+  return "not expected:" + (unknown_flags.empty() ? text : unknown_flags) + "; see orrery " +
+         command.get_name() + " --help";
+}
+
 int run_chosen(const std::vector<Command>& commands) {
   try {
     for (const Command& command : commands)
@@ -75,6 +92,8 @@ int run(int argc, char** argv) {
     if (const auto problem = unknown_command(argc, argv, commands)) return fail(kBadInput, *problem);
     try {
       app.parse(argc, argv);
+    } catch (const CLI::ExtrasError&) {
+      return fail(kBadInput, unknown_words(app));
     } catch (const CLI::ParseError& error) {
       return app.exit(error) == 0 ? kDone : kBadInput;
     }

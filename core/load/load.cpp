@@ -8,10 +8,10 @@
 #include "core/base/hash.h"
 #include "core/cameras/registry.h"
 #include "core/lights/registry.h"
-#include "core/load/names_of.h"
 #include "core/materials/registry.h"
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
+#include "core/plan/options.h"
 #include "core/shapes/registry.h"
 
 namespace orrery {
@@ -32,38 +32,13 @@ void read_camera(Params& p, Scene& scene) {
   placement.look_at = p.point("look_at", "What stands in the middle of the picture, in metres.");
   placement.up = p.direction("up", "Direction that is up in the picture.", Vec3d(0, 1, 0));
   scene.camera = camera_types()[*type].read(p);
+  for (const auto& [name, value] : scene.camera->parameters())
+    if (std::string_view(name) == "fov_degrees") scene.render.fov_degrees = value;
   const Vec3d view = safe_normalize(placement.look_at - placement.eye);
   if (view == Vec3d())
     p.fail("look_at", "expected a point other than eye");
   else if (!(length(cross(view, placement.up)) > 1e-9))
     p.fail("up", "expected a direction that is not along the view");
-}
-
-void read_image(Params& p, RenderSettings& render) {
-  render.width = static_cast<int>(p.integer("width", "Pixels.", 1, kMaxImageSide, 600));
-  render.height = static_cast<int>(p.integer("height", "Pixels.", 1, kMaxImageSide, 600));
-}
-
-void read_render(Params& p, RenderSettings& render) {
-  const std::vector<std::string_view> techniques = technique_names(), accelerators = accelerator_names();
-  render.technique = p.choice("technique", "How light is followed.", techniques, "whitted");
-  render.max_depth = static_cast<int>(
-      p.integer("max_depth", "Deepest ray that is traced; camera rays have depth 0.", 0, kMaxDepth, 5));
-  render.min_contribution =
-      p.number("min_contribution", "Rays with less weight in every channel are not traced.",
-               {.min = 0, .max = 1}, 0.0);
-  render.samples = static_cast<int>(
-      p.integer("samples", "Rays a pixel: one through the centre, more are stratified.", 1, kMaxSamples, 1));
-  render.accelerator = p.choice("accelerator", "How rays find what they meet.", accelerators, "auto");
-  render.precision =
-      precision_of(p.choice("precision", "Number type of rays.", {"auto", "float", "double"}, "auto"));
-  render.seed = static_cast<std::uint64_t>(p.integer("seed", "Seed of all random choices.", 0, kMaxSeed, 0));
-  render.reorder = p.flag("reorder", "Rays that are alike are traced together.", false);
-  render.prediction = prediction_of(
-      p.choice("prediction", "Who proposes what may shadow a point, before the accelerator is asked.",
-               kPredictions, "none"));
-  render.time =
-      p.number("time", "Moment of what moves, in seconds.", {.min = -kMaxTime, .max = kMaxTime}, 0.0);
 }
 
 // Reads each mesh once, however often a scene names it.
@@ -175,7 +150,8 @@ class SceneReader {
     scene_->title = p.text("title", "A name for people.", 200, "");
     scene_->description = p.text("description", "What there is to see.", 200, "");
     p.object("camera", "Where the picture is taken from.", [&](Params& c) { read_camera(c, *scene_); });
-    p.optional_object("image", "Size of the picture.", [&](Params& i) { read_image(i, scene_->render); });
+    p.optional_object("image", "Size of the picture.",
+                      [&](Params& i) { read_scene_options(i, Section::image, scene_->render); });
     scene_->ambient = p.color("ambient", "Light that comes from everywhere.", Vec3d(0));
     scene_->background = p.color("background", "What a ray sees that meets nothing.", Vec3d(0));
     p.each_named("materials", "Materials by name.", {},
@@ -201,7 +177,7 @@ class SceneReader {
     if (scene_->object_count == 0)
       p.fail("objects", "expected 1 to " + std::to_string(kMaxObjects) + " objects or instances, got 0");
     p.optional_object("render", "How the picture is made.",
-                      [&](Params& r) { read_render(r, scene_->render); });
+                      [&](Params& r) { read_scene_options(r, Section::render, scene_->render); });
   }
 
   // To be called once all is read without a problem.

@@ -19,12 +19,14 @@ std::shared_ptr<const Scene> load_scene(const Document& document, const MeshSour
 std::shared_ptr<const Scene> load_scene(std::string_view json, const MeshSource& meshes = MeshSource(),
                                         const JsonLimits& limits = {});
 
-// Reads what a request says beside the scene: {camera: {azimuth_degrees, elevation_degrees, distance, pan,
-// fov_degrees}, image: {width, height}, render: {...}}. The keys scene and scene_id belong to the caller and
-// are allowed, and `more` may read others. Throws as above.
+// Reads what a request says beside the scene: the render options, in {camera: {...}, image: {...}, render:
+// {...}}; see core/plan/options.h. The keys scene and scene_id belong to the caller and are allowed, and
+// `more` may read others. Throws as above.
 RenderRequest read_request(const Document& document, const std::function<void(Params&)>& more = {});
 
-// The JSON Schema of scenes, written from the very code that reads them.
+// The JSON Schemas of scenes and of what requests say beside them, written from the very code that reads
+// them.
 std::string scene_schema();
+std::string request_schema();
 
 }  // namespace orrery

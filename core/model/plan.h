@@ -1,14 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/model/camera.h"
+#include "core/model/render_settings.h"
 
 namespace orrery {
 
@@ -16,16 +15,8 @@ struct AcceleratorType;
 struct ChannelType;
 struct TechniqueType;
 
-enum class Precision { automatic, single_precision, double_precision };
 inline constexpr const char* precision_name(bool double_precision) {
   return double_precision ? "double" : "float";
-}
-
-// Who proposes what may stand in a shadow ray's way, before the accelerator is asked; and their names.
-enum class Prediction { none, network, last, random };
-inline constexpr std::array<std::string_view, 4> kPredictions{"none", "network", "last", "random"};
-inline constexpr std::string_view name_of(Prediction prediction) {
-  return kPredictions[static_cast<std::size_t>(prediction)];
 }
 
 // How far a decision may take the picture from the one without it.
@@ -49,6 +40,7 @@ struct Decision {
 
 // All that a render needs to know beside the scene: what will be modelled and, in `decisions`, why no more.
 struct Plan {
+  RenderSettings asked;  // every option: by the request, or else the scene, or else its default
   int width = 0, height = 0, samples = 1;
   CameraFrame frame;
   std::shared_ptr<const Camera> camera;

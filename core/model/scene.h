@@ -12,23 +12,10 @@
 #include "core/model/camera.h"
 #include "core/model/light.h"
 #include "core/model/material.h"
-#include "core/model/plan.h"
+#include "core/model/render_settings.h"
 #include "core/model/shape.h"
 
 namespace orrery {
-
-// What the scene itself asks of a render; requests may say otherwise.
-struct RenderSettings {
-  int width = 600, height = 600;
-  std::string technique = "whitted", accelerator = "auto";
-  Precision precision = Precision::automatic;
-  int max_depth = 5, samples = 1;
-  double min_contribution = 0;
-  std::uint64_t seed = 0;
-  bool reorder = false;
-  Prediction prediction = Prediction::none;
-  double time = 0;  // seconds
-};
 
 // What the plan wants to know about a scene, computed once.
 struct SceneFacts {
@@ -108,7 +95,7 @@ struct Scene {
   std::string title, description;
   CameraPlacement placement;
   std::shared_ptr<const Camera> camera;
-  RenderSettings render;
+  RenderSettings render;  // the options that scenes may give: as given, or by default
   Vec3d ambient, background;
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;

@@ -17,6 +17,7 @@ Schema number_of(double x) {
 Schema value_of(double x) { return number_of(x); }
 Schema value_of(std::int64_t x) { return x; }
 Schema value_of(bool x) { return x; }
+Schema value_of(std::string_view x) { return x; }
 Schema value_of(const Vec3d& v) { return Schema::array({number_of(v.x), number_of(v.y), number_of(v.z)}); }
 
 Schema number_schema(const char* type, const Range& range) {
@@ -26,6 +27,10 @@ Schema number_schema(const char* type, const Range& range) {
   if (std::isfinite(range.max))
     schema[range.exclusive_max ? "exclusiveMaximum" : "maximum"] = number_of(range.max);
   return schema;
+}
+
+Schema one_of_schema(std::span<const std::string_view> words) {
+  return {{"enum", std::vector<std::string>(words.begin(), words.end())}};
 }
 
 Schema list_schema(Schema items, Count count) {
@@ -111,12 +116,17 @@ bool Describer::do_flag(Key key, Doc doc, const Fallback<bool>& fallback) {
   return fallback.value.value_or(false);
 }
 
-std::string Describer::do_choice(Key key, Doc doc, Options options, const char* fallback) {
-  const std::string otherwise(fallback ? std::string_view(fallback) : options.front());
-  const Schema written = otherwise;
-  add(key, doc, {{"enum", std::vector<std::string>(options.begin(), options.end())}}, !fallback,
-      fallback ? &written : nullptr);
-  return otherwise;
+std::string Describer::do_choice(Key key, Doc doc, Options options,
+                                 const Fallback<std::string_view>& fallback) {
+  add(key, doc, one_of_schema(options), fallback);
+  return std::string(fallback.value.value_or(options.front()));
+}
+
+std::vector<std::string> Describer::do_choices(Key key, Doc doc, Options options) {
+  Schema schema = list_schema(one_of_schema(options), {.min = 0, .max = options.size()});
+  schema["uniqueItems"] = true;
+  add(key, doc, std::move(schema), false);
+  return {};
 }
 
 std::string Describer::do_text(Key key, Doc doc, std::size_t max_length, const char* fallback) {

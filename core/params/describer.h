@@ -49,7 +49,8 @@ class Describer final : public Params {
   std::int64_t do_integer(Key, Doc, std::int64_t min, std::int64_t max,
                           const Fallback<std::int64_t>&) override;
   bool do_flag(Key, Doc, const Fallback<bool>&) override;
-  std::string do_choice(Key, Doc, Options, const char* fallback) override;
+  std::string do_choice(Key, Doc, Options, const Fallback<std::string_view>&) override;
+  std::vector<std::string> do_choices(Key, Doc, Options) override;
   std::string do_text(Key, Doc, std::size_t max_length, const char* fallback) override;
   Vec3d do_three(Key, Doc, Kind, const Range&, const Fallback<Vec3d>&) override;
   std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) override;

@@ -20,13 +20,17 @@ std::int64_t Params::integer(Key key, Doc doc, std::int64_t min, std::int64_t ma
 
 bool Params::flag(Key key, Doc doc, Fallback<bool> fallback) { return do_flag(key, doc, fallback); }
 
-std::string Params::choice(Key key, Doc doc, Options options, const char* fallback) {
+std::string Params::choice(Key key, Doc doc, Options options, Fallback<std::string_view> fallback) {
   return do_choice(key, doc, options, fallback);
 }
 
 std::string Params::choice(Key key, Doc doc, std::initializer_list<std::string_view> options,
-                           const char* fallback) {
+                           Fallback<std::string_view> fallback) {
   return do_choice(key, doc, Options(options.begin(), options.size()), fallback);
+}
+
+std::vector<std::string> Params::choices(Key key, Doc doc, Options options) {
+  return do_choices(key, doc, options);
 }
 
 std::string Params::text(Key key, Doc doc, std::size_t max_length, const char* fallback) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -69,6 +70,7 @@ struct Fallback {
 
   Fallback() = default;
   Fallback(T v) : value(v) {}  // NOLINT: implicit, so that a call site reads p.number(key, doc, range, 0.5)
+  Fallback(const char* word) requires std::same_as<T, std::string_view> : value(word) {}  // NOLINT: likewise
 };
 template <class T>
 Fallback<T> derived(T v) {
@@ -102,11 +104,15 @@ class Params {
   std::int64_t integer(std::string_view key, std::string_view doc, std::int64_t min, std::int64_t max,
                        Fallback<std::int64_t> fallback = {});  // 3.0 is an integer; |limits| <= 2^53
   bool flag(std::string_view key, std::string_view doc, Fallback<bool> fallback = {});
-  // No fallback (null): the key is required. Lengths of text count Unicode characters.
   std::string choice(std::string_view key, std::string_view doc, std::span<const std::string_view> options,
-                     const char* fallback = nullptr);
+                     Fallback<std::string_view> fallback = {});
   std::string choice(std::string_view key, std::string_view doc,
-                     std::initializer_list<std::string_view> options, const char* fallback = nullptr);
+                     std::initializer_list<std::string_view> options,
+                     Fallback<std::string_view> fallback = {});
+  // A list of different options; empty if it is missing.
+  std::vector<std::string> choices(std::string_view key, std::string_view doc,
+                                   std::span<const std::string_view> options);
+  // No fallback (null): the key is required. Its length counts Unicode characters.
   std::string text(std::string_view key, std::string_view doc, std::size_t max_length,
                    const char* fallback = nullptr);
 
@@ -178,7 +184,8 @@ class Params {
   virtual std::int64_t do_integer(Key, Doc, std::int64_t min, std::int64_t max,
                                   const Fallback<std::int64_t>&) = 0;
   virtual bool do_flag(Key, Doc, const Fallback<bool>&) = 0;
-  virtual std::string do_choice(Key, Doc, Options, const char* fallback) = 0;
+  virtual std::string do_choice(Key, Doc, Options, const Fallback<std::string_view>&) = 0;
+  virtual std::vector<std::string> do_choices(Key, Doc, Options) = 0;
   virtual std::string do_text(Key, Doc, std::size_t max_length, const char* fallback) = 0;
   virtual Vec3d do_three(Key, Doc, Kind, const Range&, const Fallback<Vec3d>&) = 0;
   virtual std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) = 0;

@@ -111,15 +111,18 @@ bool Reader::do_flag(Key key, Doc, const Fallback<bool>& fallback) {
   return fallback.value.value_or(false);
 }
 
-std::string Reader::do_choice(Key key, Doc, Options options, const char* fallback) {
+const std::string* Reader::read_choice(const json& value, const Location& location, Options options) {
+  const std::string* word = value.get_ptr<const std::string*>();
+  if (word && std::find(options.begin(), options.end(), *word) != options.end()) return word;
+  note_value(location_text(location), one_of(options), value, word ? did_you_mean(*word, options) : "");
+  return nullptr;
+}
+
+std::string Reader::do_choice(Key key, Doc, Options options, const Fallback<std::string_view>& fallback) {
   const auto expected = [&] { return one_of(options); };
-  const json* value = find(key, fallback ? Need::optional : Need::required, expected);
-  const std::string otherwise(fallback ? std::string_view(fallback) : options.front());
-  if (!value) return otherwise;
-  const std::string* word = value->get_ptr<const std::string*>();
-  if (word && std::find(options.begin(), options.end(), *word) != options.end()) return *word;
-  note_value(pointer(key), expected(), *value, word ? did_you_mean(*word, options) : "");
-  return otherwise;
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const std::string* word = value ? read_choice(*value, {key}, options) : nullptr;
+  return word ? *word : std::string(fallback.value.value_or(options.front()));
 }
 
 std::string Reader::do_text(Key key, Doc, std::size_t max_length, const char* fallback) {

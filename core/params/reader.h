@@ -51,7 +51,8 @@ class Reader final : public Params {
   std::int64_t do_integer(Key, Doc, std::int64_t min, std::int64_t max,
                           const Fallback<std::int64_t>&) override;
   bool do_flag(Key, Doc, const Fallback<bool>&) override;
-  std::string do_choice(Key, Doc, Options, const char* fallback) override;
+  std::string do_choice(Key, Doc, Options, const Fallback<std::string_view>&) override;
+  std::vector<std::string> do_choices(Key, Doc, Options) override;
   std::string do_text(Key, Doc, std::size_t max_length, const char* fallback) override;
   Vec3d do_three(Key, Doc, Kind, const Range&, const Fallback<Vec3d>&) override;
   std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) override;
@@ -90,6 +91,8 @@ class Reader final : public Params {
                   Vec3d& three);
   void read_triple(const nlohmann::json& value, const Location& location, std::int64_t bound,
                    std::array<std::int64_t, 3>& triple);
+  // The word in `value` if it is one of the options; notes what is wrong with it and returns null if not.
+  const std::string* read_choice(const nlohmann::json& value, const Location& location, Options options);
   // Runs `read` over the object `value`, and checks that it leaves no key unread.
   void read_inside(const nlohmann::json& value, const Location& location, const Read& read);
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/params/json.h"
@@ -126,6 +127,20 @@ std::vector<std::array<std::int64_t, 3>> Reader::do_triples(Key key, Doc, Count 
   std::vector<std::array<std::int64_t, 3>> all(list ? list->size() : count.min);
   for (std::size_t i = 0; list && i < all.size(); ++i) read_triple((*list)[i], {key, i}, bound, all[i]);
   return all;
+}
+
+std::vector<std::string> Reader::do_choices(Key key, Doc, Options options) {
+  const json* list = find_list(key, {0, options.size()}, "different words");
+  std::vector<std::string> words;
+  for (std::size_t i = 0; list && i < list->size(); ++i) {
+    const Location location{key, i};
+    const std::string* word = read_choice((*list)[i], location, options);
+    if (!word) continue;
+    if (std::find(words.begin(), words.end(), *word) != words.end())
+      note(location_text(location), "expected different words, got " + in_quotes(*word) + " again");
+    words.push_back(*word);
+  }
+  return words;
 }
 
 void Reader::read_inside(const json& value, const Location& location, const Read& read) {

@@ -25,6 +25,18 @@ std::string lower_case(std::string_view text) {
 // Two slips in a word of three letters would make anything of it.
 int slips_allowed(std::size_t length) { return std::min(kMaxSlips, static_cast<int>((length + 2) / 3)); }
 
+// "w" can only be "width" where nothing else begins so.
+std::optional<std::string> only_one_beginning_with(std::string_view word,
+                                                   std::span<const std::string_view> candidates) {
+  std::optional<std::string> found;
+  for (const std::string_view candidate : candidates) {
+    if (word.empty() || !candidate.starts_with(word)) continue;
+    if (found) return std::nullopt;
+    found = candidate;
+  }
+  return found;
+}
+
 }  // namespace
 
 int edit_distance(std::string_view a, std::string_view b, int limit) {
@@ -65,7 +77,7 @@ std::optional<std::string> nearest(std::string_view word, std::span<const std::s
     const bool elaborates = candidate.size() >= 3 && wanted.starts_with(std::string(candidate) + "_");
     if (abbreviates || elaborates) return std::string(candidate);
   }
-  return std::nullopt;
+  return only_one_beginning_with(wanted, candidates);
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {

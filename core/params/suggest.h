@@ -12,7 +12,8 @@ namespace orrery {
 int edit_distance(std::string_view a, std::string_view b, int limit);
 
 // The candidate that `word` was probably meant to be: equal but for case, at most two slips of the finger
-// away, or the one it abbreviates ("fov" for "fov_degrees"). None if all are too far.
+// away, the one it abbreviates ("fov" for "fov_degrees") or the only one that begins with it ("w" for
+// "width"). None if all are too far.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 // ` (did you mean "radius"?)`, or nothing.

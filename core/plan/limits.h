@@ -16,7 +16,6 @@ inline constexpr int kMaxObjects = 1'000'000;
 inline constexpr std::size_t kMaxInstanced = 20'000'000;  // primitives in all instances
 inline constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53;
 inline constexpr double kMaxOrbitDegrees = 1e9;
-inline constexpr double kMaxPan = 1e12;  // metres, as all coordinates
 inline constexpr double kMinOrbitDistance = 1e-3, kMaxOrbitDistance = 1e3;
 
 }  // namespace orrery

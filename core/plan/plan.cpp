@@ -1,53 +1,23 @@
 #include "core/plan/plan.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 #include <limits>
 
 #include "core/accelerators/registry.h"
-#include "core/base/error.h"
-#include "core/params/motion.h"
-#include "core/plan/limits.h"
+#include "core/channels/registry.h"
+#include "core/plan/options.h"
 #include "core/techniques/registry.h"
 
 namespace orrery {
 namespace {
 
-// Collects what is wrong with a request, in the words of the loader.
-class Checks {
- public:
-  template <class V>
-  V within(const char* pointer, V value, V min, V max) {
-    if (!(value >= min && value <= max))
-      problems_.push_back({pointer, "expected " + text(min) + " to " + text(max) + ", got " + text(value)});
-    return value;
-  }
-  void fail(std::string pointer, std::string detail) {
-    problems_.push_back({std::move(pointer), std::move(detail)});
-  }
-  void throw_if_any() {
-    if (!problems_.empty()) throw InputError(std::move(problems_));
-  }
-
- private:
-  template <class V>
-  static std::string text(V value) {
-    if constexpr (std::is_integral_v<V>) return std::to_string(value);
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.10g", static_cast<double>(value));
-    return buffer;
-  }
-  std::vector<Problem> problems_;
-};
-
+// REQUIRES: a type has the name, as every name that was read has.
 template <class Types>
-auto find_type(const Types& types, const std::string& name, const char* pointer, Checks& checks) {
+auto find_type(const Types& types, const std::string& name) {
   const auto found = std::find_if(types.begin(), types.end(), [&](const auto& t) { return name == t.name; });
-  if (found != types.end()) return &*found;
-  std::string known;
-  for (const auto& t : types) known += (known.empty() ? "" : ", ") + std::string(t.name);
-  checks.fail(pointer, "expected one of " + known + ", got \"" + name.substr(0, 40) + "\"");
-  return &*types.begin();
+  assert(found != types.end());
+  return &*found;
 }
 
 bool contains(const Boundsd& b, const Vec3d& p) {
@@ -62,7 +32,6 @@ class Planner {
 
   Plan make() {
     take_request();
-    checks_.throw_if_any();
     if (scene_.facts.left_out > 0)
       decide("triangles without area", std::to_string(scene_.facts.left_out) + " left out",
              "no ray can meet them");
@@ -91,46 +60,34 @@ class Planner {
   }
 
   void take_request() {
-    const RenderSettings& own = scene_.render;
-    plan_.width = checks_.within("/image/width", request_.width.value_or(own.width), 1, kMaxImageSide);
-    plan_.height = checks_.within("/image/height", request_.height.value_or(own.height), 1, kMaxImageSide);
-    if (std::int64_t{plan_.width} * plan_.height > kMaxImagePixels)
-      checks_.fail("/image", "expected at most " + std::to_string(kMaxImagePixels) + " pixels");
-    plan_.samples = checks_.within("/render/samples", request_.samples.value_or(own.samples), 1, kMaxSamples);
-    plan_.max_depth =
-        checks_.within("/render/max_depth", request_.max_depth.value_or(own.max_depth), 0, kMaxDepth);
-    plan_.min_contribution = checks_.within(
-        "/render/min_contribution", request_.min_contribution.value_or(own.min_contribution), 0.0, 1.0);
-    plan_.seed = request_.seed.value_or(own.seed);
-    plan_.slice = checks_.within("/render/slice", request_.slice, 16, kBatch) / 16 * 16;
-    const std::string technique = request_.technique.value_or(own.technique);
-    plan_.technique = find_type(technique_types(), technique, "/render/technique", checks_);
-    const double time = checks_.within("/render/time", request_.time.value_or(own.time), -kMaxTime, kMaxTime);
-    plan_.time = scene_.motion.moment(time);
+    plan_.asked = resolve(scene_, request_);
+    const RenderSettings& asked = plan_.asked;
+    plan_.width = *asked.width;
+    plan_.height = *asked.height;
+    plan_.samples = *asked.samples;
+    plan_.max_depth = *asked.max_depth;
+    plan_.min_contribution = *asked.min_contribution;
+    plan_.seed = *asked.seed;
+    plan_.slice = request_.slice / 16 * 16;
+    plan_.technique = find_type(technique_types(), *asked.technique);
+    plan_.time = *asked.time;
     take_camera();
   }
 
   void take_camera() {
     plan_.camera = scene_.camera;
-    if (request_.fov_degrees) {
-      if (!(*request_.fov_degrees > 0 && *request_.fov_degrees < 180))
-        checks_.fail("/camera/fov_degrees", "expected a number > 0 and < 180");
-      else if (auto turned = scene_.camera->with_fov(*request_.fov_degrees))
-        plan_.camera = std::move(turned);
+    if (auto turned = scene_.camera->with_fov(*plan_.asked.fov_degrees)) plan_.camera = std::move(turned);
+    plan_.frame = frame_at(scene_.placement, *plan_.camera, orbit_of(plan_.asked));
+    for (const std::string& name : *plan_.asked.layers) {
+      plan_.channels.push_back(find_type(channel_types(), name));
+      plan_.fields |= plan_.channels.back()->fields;
     }
-    const Orbit& orbit = request_.orbit;
-    checks_.within("/camera/azimuth_degrees", orbit.azimuth_degrees, -kMaxOrbitDegrees, kMaxOrbitDegrees);
-    checks_.within("/camera/elevation_degrees", orbit.elevation_degrees, -180.0, 180.0);
-    checks_.within("/camera/distance", orbit.distance, kMinOrbitDistance, kMaxOrbitDistance);
-    for (const double metres : {orbit.pan.x, orbit.pan.y, orbit.pan.z})
-      checks_.within("/camera/pan", metres, -kMaxPan, kMaxPan);
-    plan_.frame = frame_at(scene_.placement, *plan_.camera, orbit);
   }
 
   // Float where 8 ulp of the largest coordinate stay under a tenth of the smallest shape and of a pixel's
   // footprint; double beyond.
   void choose_precision() {
-    const Precision asked = request_.precision.value_or(scene_.render.precision);
+    const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
       return decide("precision", precision_name(plan_.double_precision), "as asked", rounding_bound());
@@ -152,17 +109,15 @@ class Planner {
   Bound rounding_bound() const { return plan_.double_precision ? Bound() : Bound::unknown(); }
 
   void choose_accelerator() {
-    const std::string asked = request_.accelerator.value_or(scene_.render.accelerator);
+    const std::string& asked = *plan_.asked.accelerator;
     if (asked != "auto") {
-      plan_.accelerator = find_type(accelerator_types(), asked, "/render/accelerator", checks_);
-      checks_.throw_if_any();
+      plan_.accelerator = find_type(accelerator_types(), asked);
       return decide("accelerator", asked, "as asked");
     }
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
     plan_.try_accelerators = !few && count <= kMostToTry;
-    plan_.accelerator =
-        find_type(accelerator_types(), few ? "list" : "bottom-up", "/render/accelerator", checks_);
+    plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bottom-up");
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
                : "of all structures it took the least time on every scene measured with more than " +
@@ -170,12 +125,12 @@ class Planner {
   }
 
   void choose_order() {
-    plan_.reorder = request_.reorder.value_or(scene_.render.reorder);
+    plan_.reorder = *plan_.asked.reorder;
     if (plan_.reorder) decide("order of rays", "sorted by origin and direction", "as asked");
   }
 
   void choose_prediction() {
-    plan_.prediction = request_.prediction.value_or(scene_.render.prediction);
+    plan_.prediction = *plan_.asked.prediction;
     if (plan_.prediction != Prediction::none)
       decide("prediction of shadows", std::string(name_of(plan_.prediction)),
              "as asked; what it proposes is tested, so the picture stays the same");
@@ -244,11 +199,18 @@ class Planner {
   const Scene& scene_;
   const RenderRequest& request_;
   Plan plan_;
-  Checks checks_;
 };
 
 }  // namespace
 
 Plan make_plan(const Scene& scene, const RenderRequest& request) { return Planner(scene, request).make(); }
+
+RenderSettings settings_of(const Plan& plan) {
+  RenderSettings settings = plan.asked;
+  settings.accelerator = plan.accelerator->name;
+  settings.precision = plan.double_precision ? Precision::double_precision : Precision::single_precision;
+  settings.max_depth = plan.max_depth;
+  return settings;
+}
 
 }  // namespace orrery

@@ -8,7 +8,11 @@ namespace orrery {
 
 // What to model for this scene and request, and no more: a pure function, cheap enough to call for every
 // frame. The picture it leads to equals the one with every stage present (RenderRequest::full_model), bit for
-// bit. Throws InputError (pointers into /image, /render, /camera) for what is out of range or unknown.
+// bit. REQUIRES: the settings of the request, where given, are ones that read_request() could have returned.
 Plan make_plan(const Scene& scene, const RenderRequest& request);
+
+// Every option, with what the plan decided in place of what was left to it: make_plan() of these settings
+// renders the same picture, by the same structure.
+RenderSettings settings_of(const Plan& plan);
 
 }  // namespace orrery

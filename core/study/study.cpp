@@ -62,9 +62,9 @@ void leave_out_same(std::vector<Point>& points) {
 
 }  // namespace
 
-Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent)
-    : view_(view), seed_(view.seed.value_or(scene.render.seed)) {
+Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent) : view_(view) {
   const Plan plan = make_plan(scene, view);
+  seed_ = plan.seed;
   require_chartable(view, plan);
   chart_.scene_id = scene.id;
   chart_.title = scene.title;

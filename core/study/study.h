@@ -46,7 +46,7 @@ class Study {
   void add_reference(const RenderResult& rendered);
 
   RenderRequest view_;
-  std::uint64_t seed_;
+  std::uint64_t seed_ = 0;
   int pictures_ = 0, added_ = 0;
   std::vector<float> reference_;  // empty once complete
   Chart chart_;

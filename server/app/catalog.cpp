@@ -7,9 +7,9 @@
 #include "core/channels/registry.h"
 #include "core/lights/registry.h"
 #include "core/materials/registry.h"
-#include "core/model/scene.h"
 #include "core/shapes/registry.h"
 #include "core/techniques/registry.h"
+#include "server/app/option_json.h"
 #include "server/http/embedded.h"
 
 namespace orrery {
@@ -50,25 +50,6 @@ ordered_json samples() {
   return samples;
 }
 
-ordered_json defaults() {
-  const RenderSettings own;
-  return {{"width", own.width},
-          {"height", own.height},
-          {"samples", own.samples},
-          {"technique", own.technique},
-          {"max_depth", own.max_depth},
-          {"min_contribution", own.min_contribution},
-          {"seed", own.seed},
-          {"accelerator", own.accelerator},
-          {"precision", "auto"},
-          {"reorder", own.reorder},
-          {"prediction", name_of(own.prediction)},
-          {"azimuth", Orbit{}.azimuth_degrees},
-          {"elevation", Orbit{}.elevation_degrees},
-          {"distance", Orbit{}.distance},
-          {"pan", {0, 0, 0}}};
-}
-
 }  // namespace
 
 ordered_json catalog_json() {
@@ -80,7 +61,7 @@ ordered_json catalog_json() {
           {"channels", channels()},
           {"techniques", entries_of(technique_types())},
           {"accelerators", entries_of(accelerator_types())},
-          {"defaults", defaults()}};
+          {"defaults", options_json(default_settings())}};
 }
 
 }  // namespace orrery

@@ -5,9 +5,14 @@
 
 #include "core/model/accelerator.h"
 #include "core/model/technique.h"
+#include "core/plan/options.h"
+#include "core/plan/plan.h"
+#include "server/app/option_json.h"
 
 namespace orrery {
 namespace {
+
+using nlohmann::ordered_json;
 
 std::uint64_t camera_rays(const Plan& plan) {
   return std::uint64_t(plan.width) * std::uint64_t(plan.height) * std::uint64_t(plan.samples);
@@ -28,33 +33,27 @@ std::string padded(std::string text, std::size_t width) {
 }  // namespace
 
 nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
-  using nlohmann::ordered_json;
+  const RenderSettings settings = settings_of(plan);
   ordered_json decisions = ordered_json::array();
   for (const Decision& d : plan.decisions)
     decisions.push_back(
         {{"subject", d.subject}, {"choice", d.choice}, {"reason", d.reason}, {"bound", bound_json(d.bound)}});
-  return {{"scene",
-           {{"id", scene.id},
-            {"objects", scene.object_count},
-            {"primitives", scene.primitive_count()},
-            {"lights", scene.lights.size()}}},
-          {"image", {{"width", plan.width}, {"height", plan.height}}},
-          {"technique", plan.technique->name},
-          {"accelerator", plan.accelerator->name},
-          {"precision", precision_name(plan.double_precision)},
-          {"samples", plan.samples},
-          {"max_depth", plan.max_depth},
-          {"min_contribution", plan.min_contribution},
-          {"seed", plan.seed},
-          {"reorder", plan.reorder},
-          {"prediction", name_of(plan.prediction)},
-          {"stages",
-           {{"direct_light", plan.direct_light},
-            {"shadows", plan.shadows},
-            {"specular", plan.specular},
-            {"filters", plan.filters}}},
-          {"camera_rays", camera_rays(plan)},
-          {"decisions", std::move(decisions)}};
+  ordered_json json = {{"scene",
+                        {{"id", scene.id},
+                         {"objects", scene.object_count},
+                         {"primitives", scene.primitive_count()},
+                         {"lights", scene.lights.size()}}},
+                       {"image", section_json(settings, Section::image)}};
+  json.update(section_json(settings, Section::render));
+  json["stages"] = {{"direct_light", plan.direct_light},
+                    {"shadows", plan.shadows},
+                    {"specular", plan.specular},
+                    {"filters", plan.filters}};
+  json["camera_rays"] = camera_rays(plan);
+  json["decisions"] = std::move(decisions);
+  json["request"] = {{"scene_id", scene.id}};
+  json["request"].update(ordered_json::parse(to_json(settings)));
+  return json;
 }
 
 std::string explain_text(const Scene& scene, const Plan& plan) {

@@ -8,7 +8,8 @@
 
 namespace orrery {
 
-// What a render will model and, choice by choice, why no more.
+// What a render will model and, choice by choice, why no more. The member "request" is the body of a
+// POST /v1/render that gives the same picture, with every option.
 nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan);
 std::string explain_text(const Scene& scene, const Plan& plan);
 

@@ -1,9 +1,15 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
+#include "core/base/error.h"
+#include "core/params/params.h"
+#include "core/plan/limits.h"
+#include "core/plan/options.h"
 #include "core/plan/request.h"
 #include "server/app/frame.h"
 
@@ -13,25 +19,38 @@ inline constexpr double kLongestStep_s = 3600;  // of the motion, from frame to 
 
 // A turn of the camera about a scene, while what moves in it moves, again and again.
 struct OrbitPath {
-  RenderRequest first;      // frame
+  RenderRequest first;      // frame; every option is given
   TimeSpan motion;          // of the scene
   double step_degrees = 3;  // of azimuth, from frame to frame
   double step_seconds = 0;  // of the motion, likewise
 
   RenderRequest at(std::int64_t frame) const {
     RenderRequest request = first;
-    request.orbit.azimuth_degrees += static_cast<double>(frame) * step_degrees;
+    request.azimuth_degrees = azimuth_degrees(frame);
     request.time = motion.moment_of_loop(*first.time + static_cast<double>(frame) * step_seconds);
     return request;
+  }
+  double azimuth_degrees(std::int64_t frame) const {
+    return *first.azimuth_degrees + static_cast<double>(frame) * step_degrees;
   }
 };
 
 // One turn in so many frames, and what is left of the scene's motion.
 inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int frames) {
   OrbitPath path{first, scene.motion, 360.0 / frames};
-  path.first.time = scene.motion.moment(first.time.value_or(scene.render.time));
+  static_cast<RenderSettings&>(path.first) = resolve(scene, first);
   path.step_seconds = (scene.motion.last - *path.first.time) / frames;
   return path;
+}
+
+// Throws InputError, with the pointer of the step, if the last frame is turned farther than one picture may
+// be.
+inline void require_range(const OrbitPath& path, int frames, std::string_view step_pointer) {
+  const double azimuth = path.azimuth_degrees(frames - 1);
+  if (!(std::abs(azimuth) <= kMaxOrbitDegrees))
+    throw InputError(std::string(step_pointer), "expected a last frame at no more than " +
+                                                    number_text(kMaxOrbitDegrees) +
+                                                    " degrees of azimuth, got " + number_text(azimuth));
 }
 
 // How an orbit is shown to those who watch it.

@@ -120,14 +120,12 @@ RenderResult OrbitCast::render(std::int64_t number) {
 void OrbitCast::deliver(std::int64_t number, Frame&& picture) {
   const int frame = static_cast<int>(number % spec_.frames);
   const RenderRequest request = spec_.path.at(frame);
-  const RenderSettings& own = spec_.scene->scene().render;
-  const auto shared =
-      std::make_shared<const OrbitFrame>(OrbitFrame{.frame = frame,
-                                                    .orbit = request.orbit,
-                                                    .time = *request.time,
-                                                    .width = request.width.value_or(own.width),
-                                                    .height = request.height.value_or(own.height),
-                                                    .picture = std::move(picture)});
+  const auto shared = std::make_shared<const OrbitFrame>(OrbitFrame{.frame = frame,
+                                                                    .orbit = orbit_of(request),
+                                                                    .time = *request.time,
+                                                                    .width = *request.width,
+                                                                    .height = *request.height,
+                                                                    .picture = std::move(picture)});
   const std::lock_guard lock(mutex_);
   finished_.emplace_back(number, shared);
   post();

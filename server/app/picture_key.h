@@ -9,8 +9,11 @@
 namespace orrery {
 
 // One text for all requests that lead to the same picture of the scene, however they were written: what is
-// not given takes the scene's value; what changes no pixel (accelerator, slice) is left out.
+// not given takes the scene's value; options that change no pixel are left out.
 std::string canonical_request(const Scene& scene, const RenderRequest& request);
+
+// Likewise for all that lead to the same picture by the same work: with the options that change no pixel.
+std::string canonical_work(const Scene& scene, const RenderRequest& request);
 
 // Likewise for the frames of an orbit, the scene included.
 std::string canonical_orbit(const Scene& scene, const OrbitPath& path, int frames);

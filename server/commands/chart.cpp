@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
 
+#include "core/plan/plan.h"
 #include "core/study/study.h"
 #include "server/app/chart_forms.h"
-#include "server/app/render_options.h"
 #include "server/commands/commands.h"
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
@@ -29,6 +29,14 @@ struct Options {
   RenderFlags render;
 };
 
+Study study_of(const Scene& scene, const RenderRequest& view, const Study::Extent& extent) {
+  try {
+    return Study(scene, view, extent);
+  } catch (const InputError& error) {
+    throw with_flag_names(error);
+  }
+}
+
 int chart(const Options& options) {
   const ChartForm* form = chart_form_of(ending_of(options.output));
   if (!form)
@@ -39,12 +47,11 @@ int chart(const Options& options) {
   bar->say("reading " + options.render.scene);
   const PreparedScene scene(load_scene_file(options.render.scene));
   const SignalWatch signals;
-  Study study =
-      with_names_for(Naming::command_line, [&] { return Study(scene.scene(), request, options.extent); });
+  Study study = study_of(scene.scene(), request, options.extent);
   WorkerPool pool(options.threads);
   for (int number = 0; number < study.pictures(); ++number) {
     const SettledPlan plan =
-        settle(scene, plan_for(scene.scene(), study.request(number)), signals.interrupted());
+        settle(scene, make_plan(scene.scene(), study.request(number)), signals.interrupted());
     study.add(render_frame(scene, plan, FilmStorage::linear32, pool, {.stop = signals.interrupted()}));
     bar->update(number + 1, study.pictures());
   }

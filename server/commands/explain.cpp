@@ -1,9 +1,9 @@
-#include "server/app/explain.h"
-#include "core/tuning/settle.h"
-
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/plan/plan.h"
+#include "core/render/renderer.h"
+#include "server/app/explain.h"
 #include "server/commands/commands.h"
 #include "server/commands/render_flags.h"
 #include "server/commands/scene_file.h"
@@ -29,7 +29,7 @@ int explain(const Options& options) {
   const RenderRequest request = read_render_flags(options.render);
   const PreparedScene prepared(load_scene_file(options.render.scene));
   const Scene& scene = prepared.scene();
-  const SettledPlan plan = settle(prepared, plan_for(scene, request));
+  const SettledPlan plan = settle(prepared, make_plan(scene, request));
   std::cout << (options.json ? explain_json(scene, *plan).dump(2) + "\n" : explain_text(scene, *plan));
   return kDone;
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/plan/plan.h"
 #include "server/app/orbit.h"
 #include "server/app/pipeline.h"
 #include "server/commands/commands.h"
@@ -109,8 +110,7 @@ class Turn {
         pool_(options.threads) {
     if (options.step_given->count() > 0) path_.step_degrees = options.step;
     if (options.time_step_given->count() > 0) path_.step_seconds = options.time_step;
-    plan_for(scene_.scene(), first_);  // complains before any work
-    for (const int frame : {0, options.frames - 1}) plan(frame);
+    require_range(path_, options.frames, "--step");
     if (!options.discard) require_writable(names_.of(0));
   }
 
@@ -141,11 +141,10 @@ class Turn {
   }
 
  private:
-  Plan plan(std::int64_t frame) const { return plan_for(scene_.scene(), path_.at(frame)); }
   RenderResult render(std::int64_t frame) {
     const std::stop_token stop = signals_.interrupted();
-    return render_frame(scene_, settle(scene_, plan(frame), stop), storage_for(format_), pool_,
-                        {.stop = stop});
+    return render_frame(scene_, settle(scene_, make_plan(scene_.scene(), path_.at(frame)), stop),
+                        storage_for(format_), pool_, {.stop = stop});
   }
 
   const Options& options_;

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/plan/plan.h"
 #include "server/app/frame.h"
 #include "server/commands/commands.h"
 #include "server/commands/output_file.h"
@@ -47,7 +48,7 @@ int render(const Options& options) {
   const PreparedScene scene(load_scene_file(options.render.scene));
   stats.load_ms = milliseconds_since(start);
   const SignalWatch signals;  // after reading, which a signal ends as it would any program
-  const Plan plan = plan_for(scene.scene(), request);
+  const Plan plan = make_plan(scene.scene(), request);
   WorkerPool pool(options.threads);
   stats.threads = pool.threads();
 

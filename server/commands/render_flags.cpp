@@ -1,20 +1,43 @@
 #include "server/commands/render_flags.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "core/model/batch.h"
 #include "server/app/render_options.h"
 
 namespace orrery {
+namespace {
+
+std::string flag_of(std::string_view name) {
+  std::string flag = "--" + std::string(name);
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+// What errors call it.
+std::string short_flag_of(const RenderOption& option) {
+  return flag_of(option.short_name.empty() ? option.key : option.short_name);
+}
+
+std::string flags_of(const RenderOption& option) {
+  return option.short_name.empty() ? flag_of(option.key) : short_flag_of(option) + "," + flag_of(option.key);
+}
+
+// Help has no full stops.
+std::string help_of(const RenderOption& option) {
+  return std::string(option.help.substr(0, option.help.size() - option.help.ends_with('.')));
+}
+
+}  // namespace
 
 void add_render_flags(CLI::App& app, RenderFlags& flags) {
   app.add_option("SCENE", flags.scene, "The scene's JSON file, or - for standard input")->required();
   const auto options = render_options();
-  flags.values.resize(options.size());
+  flags.texts.resize(options.size());
   for (std::size_t i = 0; i < options.size(); ++i) {
-    CLI::Option* option =
-        app.add_option(std::string(options[i].flags), flags.values[i], std::string(options[i].help));
-    option->type_name(std::string(options[i].value))->group("Picture");
+    CLI::Option* option = app.add_option(flags_of(options[i]), flags.texts[i], help_of(options[i]));
+    option->type_name(options[i].value_name())->group("Picture");
     flags.options.push_back(option);
   }
   app.add_flag("--full-model", flags.full_model, "Leave no stage out, even where the scene does not need it")
@@ -33,17 +56,23 @@ void add_threads_flag(CLI::App& app, int& threads) {
 }
 
 RenderRequest read_render_flags(const RenderFlags& flags) {
-  OptionValues values;
-  for (std::size_t i = 0; i < flags.options.size(); ++i)
-    if (flags.options[i]->count() > 0) values.emplace_back(render_options()[i].name, flags.values[i]);
-  RenderRequest request = with_names_for(Naming::command_line, [&] { return read_render_options(values); });
+  std::vector<OptionText> texts;
+  for (std::size_t i = 0; i < flags.options.size(); ++i) {
+    const RenderOption& option = render_options()[i];
+    if (flags.options[i]->count() > 0) texts.push_back({&option, short_flag_of(option), flags.texts[i]});
+  }
+  RenderRequest request = read_option_texts(texts);
   request.full_model = flags.full_model;
   request.slice = flags.slice;
   return request;
 }
 
-Plan plan_for(const Scene& scene, const RenderRequest& request) {
-  return with_names_for(Naming::command_line, [&] { return make_plan(scene, request); });
+InputError with_flag_names(const InputError& error) {
+  std::vector<Problem> problems = error.problems();
+  for (Problem& problem : problems)
+    for (const RenderOption& option : render_options())
+      if (problem.pointer == option.pointer()) problem.pointer = short_flag_of(option);
+  return InputError(std::move(problems));
 }
 
 }  // namespace orrery

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/plan/plan.h"
+#include "core/base/error.h"
 #include "core/plan/request.h"
 
 namespace CLI {
@@ -16,7 +16,7 @@ namespace orrery {
 // The options of every command that renders or plans. Must stay where it is once added to a command line.
 struct RenderFlags {
   std::string scene;                  // a file's name, or "-"
-  std::vector<std::string> values;    // as render_options()
+  std::vector<std::string> texts;     // of values, as render_options()
   std::vector<CLI::Option*> options;  // likewise
   bool full_model = false;
   int slice = Plan{}.slice;
@@ -25,8 +25,9 @@ struct RenderFlags {
 void add_render_flags(CLI::App& app, RenderFlags& flags);
 void add_threads_flag(CLI::App& app, int& threads);
 
-// Both throw InputError with the names of the command line.
+// Throws InputError with the names of the flags.
 RenderRequest read_render_flags(const RenderFlags& flags);
-Plan plan_for(const Scene& scene, const RenderRequest& request);
+// The same problems, with the names of flags in place of pointers to options.
+InputError with_flag_names(const InputError& error);
 
 }  // namespace orrery

@@ -9,6 +9,8 @@
 #include "core/base/version.h"
 #include "core/math/instruction_level.h"
 #include "core/model/technique.h"
+#include "core/plan/plan.h"
+#include "server/app/option_json.h"
 
 namespace orrery {
 namespace {
@@ -61,41 +63,37 @@ void prediction_text(std::string& text, const Plan& plan, const TraceCounts& cou
 
 ordered_json stats_json(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
-  return {{"width", plan.width},
-          {"height", plan.height},
-          {"samples", plan.samples},
-          {"technique", plan.technique->name},
-          {"accelerator", stats.render.accelerator->name},
-          {"precision", precision_name(plan.double_precision)},
-          {"reorder", plan.reorder},
-          {"prediction", name_of(plan.prediction)},
-          {"instructions", instruction_level()},
-          {"threads", stats.threads},
-          {"rays",
-           {{"camera", counts.rays.camera},
-            {"reflected", by_depth(counts.rays.reflected)},
-            {"refracted", by_depth(counts.rays.refracted)},
-            {"shadow", by_depth(counts.rays.shadow)},
-            {"total", counts.rays.total()}}},
-          {"structure_bytes", stats.render.structure.bytes},
-          {"structure_depth", stats.render.structure.depth},
-          {"structure_references", stats.render.structure.references},
-          {"node_visits", counts.accelerator.node_visits},
-          {"box_tests", counts.accelerator.box_tests},
-          {"primitive_tests", counts.accelerator.primitive_tests},
-          {"proposals", counts.accelerator.proposals},
-          {"proofs", counts.accelerator.proofs},
-          {"cut_rays", counts.cut_rays},
-          {"mean_cut", stats.render.mean_cut},
-          {"max_cut", stats.render.max_cut},
-          {"non_finite_pixels", stats.render.non_finite_pixels},
-          {"load_ms", stats.load_ms},
-          {"build_ms", stats.render.build_ms},
-          {"trace_ms", stats.render.trace_ms},
-          {"encode_ms", stats.encode_ms},
-          {"mrays_per_s", mrays_per_s(stats.render)},
-          {"render_cpu_s", stats.render_cpu_s},
-          {"cpu_s", process_cpu_ms() / 1000}};
+  ordered_json json = options_json(settings_of(plan));
+  json["accelerator"] = stats.render.accelerator->name;  // which the render may have settled
+  const ordered_json measured = {{"instructions", instruction_level()},
+                                 {"threads", stats.threads},
+                                 {"rays",
+                                  {{"camera", counts.rays.camera},
+                                   {"reflected", by_depth(counts.rays.reflected)},
+                                   {"refracted", by_depth(counts.rays.refracted)},
+                                   {"shadow", by_depth(counts.rays.shadow)},
+                                   {"total", counts.rays.total()}}},
+                                 {"structure_bytes", stats.render.structure.bytes},
+                                 {"structure_depth", stats.render.structure.depth},
+                                 {"structure_references", stats.render.structure.references},
+                                 {"node_visits", counts.accelerator.node_visits},
+                                 {"box_tests", counts.accelerator.box_tests},
+                                 {"primitive_tests", counts.accelerator.primitive_tests},
+                                 {"proposals", counts.accelerator.proposals},
+                                 {"proofs", counts.accelerator.proofs},
+                                 {"cut_rays", counts.cut_rays},
+                                 {"mean_cut", stats.render.mean_cut},
+                                 {"max_cut", stats.render.max_cut},
+                                 {"non_finite_pixels", stats.render.non_finite_pixels},
+                                 {"load_ms", stats.load_ms},
+                                 {"build_ms", stats.render.build_ms},
+                                 {"trace_ms", stats.render.trace_ms},
+                                 {"encode_ms", stats.encode_ms},
+                                 {"mrays_per_s", mrays_per_s(stats.render)},
+                                 {"render_cpu_s", stats.render_cpu_s},
+                                 {"cpu_s", process_cpu_ms() / 1000}};
+  json.update(measured);
+  return json;
 }
 
 std::string stats_text(const Plan& plan, const RunStats& stats) {

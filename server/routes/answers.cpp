@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/params/suggest.h"
-#include "core/plan/plan.h"
+#include "server/app/render_options.h"
 
 namespace orrery {
 namespace {
@@ -92,22 +92,25 @@ void refuse_compressed(const Request& request) {
 }
 
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more) {
-  std::vector<std::string_view> names(more.begin(), more.end());
-  for (const RenderOption& option : render_options()) names.push_back(option.name);
-  OptionValues values;
+  std::vector<std::string_view> names = render_option_names();
+  names.insert(names.end(), more.begin(), more.end());
+  std::vector<OptionText> texts;
   std::vector<Problem> problems;
   for (const auto& [name, value] : request.query) {
-    if (std::find(names.begin(), names.end(), name) == names.end())
+    if (std::find(more.begin(), more.end(), name) != more.end()) continue;
+    const RenderOption* option = find_render_option(name);
+    const bool again =
+        std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.option == option; });
+    if (!option)
       problems.push_back({pointer_to(name), "unknown parameter" + did_you_mean(name, names)});
-    else if (std::find(more.begin(), more.end(), name) == more.end())
-      values.emplace_back(name, value);
+    else if (again)
+      problems.push_back({pointer_to(name), "given as " + std::string(option->key) + " and as " +
+                                                std::string(option->short_name)});
+    else
+      texts.push_back({option, pointer_to(name), value});
   }
   if (!problems.empty()) throw InputError(std::move(problems));
-  return with_names_for(Naming::query, [&] { return read_render_options(values); });
-}
-
-Plan plan_of_query(const Scene& scene, const RenderRequest& request) {
-  return with_names_for(Naming::query, [&] { return make_plan(scene, request); });
+  return read_option_texts(texts);
 }
 
 bool has_current(const Request& request, std::string_view etag) {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/plan/request.h"
 #include "server/app/app.h"
-#include "server/app/render_options.h"
 #include "server/routes/router.h"
 
 // What several routes need to read a request and to write an answer.
@@ -22,9 +22,6 @@ void refuse_compressed(const Request& request);
 // The options of a render in the query. `more` names what else the query may have; its values are left alone.
 // Throws InputError, with pointers such as "/azimuth".
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more = {});
-
-// As make_plan(), with the names of the query in its errors.
-Plan plan_of_query(const Scene& scene, const RenderRequest& request);
 
 // Whether the client has what the ETag stands for.
 bool has_current(const Request& request, std::string_view etag);

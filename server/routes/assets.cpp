@@ -25,13 +25,13 @@ FormatNames names_of(const AssetStore::Asset& asset) {
 std::string etag_of(const std::string& id) { return "\"" + id + "\""; }
 
 void require_asset(const Request& request) {
-  AssetStore::require_name(request.path_value("id"));
+  AssetStore::require_name(request.path_value("sha256"));
   refuse_compressed(request);
 }
 
 Response put_asset(App& app, Request& request) {
   app.require_open();
-  const std::string id = request.path_value("id");
+  const std::string id = request.path_value("sha256");
   const AssetStore::Added added = app.add_asset(id, std::move(request.body), caller_of(request));
   const AssetStore::Asset& asset = *added.asset;
   Response response = json_answer(added.known ? 200 : 201, {{"id", id},
@@ -46,7 +46,7 @@ Response put_asset(App& app, Request& request) {
 }
 
 Response get_asset(App& app, Request& request) {
-  const std::string id = request.path_value("id");
+  const std::string id = request.path_value("sha256");
   const AssetStore::AssetPtr asset = app.assets().find(id);
   Response response{.status = 304};
   if (!has_current(request, etag_of(id))) {
@@ -59,7 +59,7 @@ Response get_asset(App& app, Request& request) {
 }
 
 Response remove_asset(App& app, Request& request) {
-  app.assets().remove(request.path_value("id"));
+  app.assets().remove(request.path_value("sha256"));
   return {.status = 204};
 }
 
@@ -67,11 +67,11 @@ Response remove_asset(App& app, Request& request) {
 
 void add_assets_routes(Router& router, App& app) {
   const RouteBody body{.limit = {app.settings().asset_bytes, "asset_bytes"}, .require = require_asset};
-  router.add("PUT", "/v1/assets/{id}", Scope::write, LogLevel::info, body,
+  router.add("PUT", "/v1/assets/{sha256}", Scope::write, LogLevel::info, body,
              [&app](Request& request) { return put_asset(app, request); });
-  router.add("GET", "/v1/assets/{id}", Scope::read, LogLevel::info,
+  router.add("GET", "/v1/assets/{sha256}", Scope::read, LogLevel::info,
              [&app](Request& request) { return get_asset(app, request); });
-  router.add("DELETE", "/v1/assets/{id}", Scope::write, LogLevel::info,
+  router.add("DELETE", "/v1/assets/{sha256}", Scope::write, LogLevel::info,
              [&app](Request& request) { return remove_asset(app, request); });
 }
 

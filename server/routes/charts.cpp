@@ -32,11 +32,7 @@ ChartOrder read_render_order(App& app, Request& request, Timing& timing) {
 
 // All that a chart depends on: also what changes no picture, but its time.
 std::string canonical_chart(const Scene& scene, const ChartOrder& order) {
-  const RenderRequest& view = order.view;
-  return "chart " + scene.id + " " + canonical_request(scene, view) +
-         view.accelerator.value_or(scene.render.accelerator) + " " +
-         std::to_string(view.reorder.value_or(scene.render.reorder)) + " " +
-         std::string(name_of(view.prediction.value_or(scene.render.prediction))) + " " +
+  return "chart " + scene.id + " " + canonical_work(scene, order.view) + " " +
          std::to_string(order.extent.samples) + " " + std::to_string(order.extent.rounds);
 }
 

@@ -4,8 +4,7 @@
 #include "server/http/embedded.h"
 #include "server/routes/answers.h"
 
-// GET / and the files of the page, GET /scenes/{name}.json, GET /openapi.json: what was built into the
-// program.
+// GET / and the files of the page, GET /scenes/{name}.json: what was built into the program.
 namespace orrery {
 namespace {
 
@@ -45,7 +44,6 @@ void add_files_routes(Router& router, App&) {
   constexpr std::string_view kPage = "web/", kScenes = "scenes/", kSchemas = "scenes/schema/";
   for (const EmbeddedFile& file : embedded_files()) {
     if (file.path == "web/index.html") add_file(router, "/", file);
-    if (file.path == "server/routes/openapi.json") add_file(router, "/openapi.json", file);
     if (file.path.starts_with(kPage))
       add_file(router, "/" + std::string(file.path.substr(kPage.size())), file);
     else if (file.path.starts_with(kScenes) && !file.path.starts_with(kSchemas))

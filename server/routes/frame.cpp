@@ -1,3 +1,4 @@
+#include "core/plan/plan.h"
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
 #include "server/routes/answers.h"
@@ -11,7 +12,7 @@ Response frame(App& app, Request& request) {
   Timing timing;
   const auto start = Clock::now();
   const RenderRequest wanted = read_query(request);
-  const Plan plan = plan_of_query(scene->scene(), wanted);
+  const Plan plan = make_plan(scene->scene(), wanted);
   timing.plan = milliseconds_since(start);
 
   Response response;

@@ -39,7 +39,7 @@ JobSpec read_job(App& app, Request& request, Timing& timing) {
   spec.path.step_degrees = step_degrees;
   if (!orbits) spec.path.step_seconds = 0;
   if (time_step_s) spec.path.step_seconds = *time_step_s;
-  for (const int frame : {0, spec.frames - 1}) make_plan(scene, spec.path.at(frame));
+  require_range(spec.path, spec.frames, "/orbit/step_degrees");
   return spec;
 }
 

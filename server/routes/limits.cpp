@@ -3,6 +3,7 @@
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
 #include "core/study/study.h"
+#include "server/app/option_json.h"
 #include "server/http/head.h"
 #include "server/routes/answers.h"
 
@@ -10,7 +11,14 @@
 namespace orrery {
 namespace {
 
-nlohmann::ordered_json limits_json(const Settings& settings) {
+// Of each render option: what JSON Schema says beside the description, such as {"minimum": 1, "maximum": 32}.
+nlohmann::ordered_json option_limits() {
+  nlohmann::ordered_json limits = option_schemas();
+  for (auto& schema : limits) schema.erase("description");
+  return limits;
+}
+
+nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ordered_json& options) {
   nlohmann::ordered_json json = {{"head_bytes", kMaxHeadBytes},
                                  {"address_bytes", kMaxTargetBytes},
                                  {"json_depth", JsonLimits{}.depth},
@@ -30,14 +38,16 @@ nlohmann::ordered_json limits_json(const Settings& settings) {
                                  {"mesh_triangles", MeshLimits{}.triangles}};
   for (const Limit& limit : limits())
     json[std::string(limit.name)] = static_cast<std::int64_t>(limit.value(settings));
+  json["options"] = options;
   return json;
 }
 
 }  // namespace
 
 void add_limits_routes(Router& router, App& app) {
-  router.add("GET", "/v1/limits", Scope::read, LogLevel::info,
-             [&app](Request&) { return json_answer(200, limits_json(app.settings())); });
+  router.add("GET", "/v1/limits", Scope::read, LogLevel::info, [&app, options = option_limits()](Request&) {
+    return json_answer(200, limits_json(app.settings(), options));
+  });
 }
 
 }  // namespace orrery

@@ -46,8 +46,7 @@ OrbitSpec read_orbit(App& app, const Request& request) {
       number_of(request, "time_step", -kLongestStep_s, kLongestStep_s, spec.path.step_seconds, problems);
   spec.fps = number_of(request, "fps", 0, 240, 30, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
-  plan_of_query(scene, first);
-  for (const int frame : {0, spec.frames - 1}) plan_of_query(scene, spec.path.at(frame));
+  require_range(spec.path, spec.frames, "/step");
   spec.client = request.client;
   spec.key = canonical_orbit(scene, spec.path, spec.frames) + " " + std::to_string(spec.fps);
   return spec;

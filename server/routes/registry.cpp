@@ -18,6 +18,7 @@ namespace orrery {
   add(limits)              \
   add(health)              \
   add(schema)              \
+  add(openapi)             \
   add(files)
 // clang-format on
 

@@ -1,5 +1,6 @@
 #include "server/routes/router.h"
 
+#include <algorithm>
 #include <set>
 
 #include "server/http/target.h"
@@ -26,6 +27,16 @@ void Router::add(std::string_view method, std::string_view pattern, Scope scope,
                  const RouteBody& body, Route::Handler handler) {
   add(method, pattern, scope, log, std::move(handler));
   routes_.back().body = body;
+}
+
+std::string Router::named_below(const Request& request) const {
+  std::string list;
+  for (const Route& route : routes_) {
+    if (route.segments.size() != request.segments.size() + 1 || !is_place(route.segments.back())) continue;
+    if (!std::equal(request.segments.begin(), request.segments.end(), route.segments.begin())) continue;
+    list += (list.empty() ? "" : ", ") + route.method + " " + route.pattern;
+  }
+  return list;
 }
 
 bool Router::matches(const Route& route, Request& request) {
@@ -58,7 +69,11 @@ std::string Router::allowed_methods(Request& request) const {
     methods.insert(route.method);
     if (route.method == "GET") methods.insert("HEAD");
   }
-  if (methods.empty()) throw HttpError(404, "There is nothing at " + request.path.substr(0, 200));
+  if (methods.empty()) {
+    const std::string below = named_below(request);
+    throw HttpError(404, "There is nothing at " + request.path.substr(0, 200) +
+                             (below.empty() ? "" : ", but there is " + below));
+  }
   methods.insert("OPTIONS");
   std::string list;
   for (const std::string& name : methods) list += (list.empty() ? "" : ", ") + name;

@@ -50,6 +50,9 @@ class Router {
 
  private:
   static bool matches(const Route& route, Request& request);
+  // "PUT /v1/assets/{sha256}, GET ...": routes that name something right below the path; empty if there are
+  // none.
+  std::string named_below(const Request& request) const;
 
   std::deque<Route> routes_;  // requests refer to them
 };

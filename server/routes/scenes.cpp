@@ -23,8 +23,8 @@ ordered_json camera_json(const CameraPlacement& placement, const Camera& camera)
 ordered_json summary(const Scene& scene) {
   ordered_json summary = {{"id", scene.id},
                           {"title", scene.title},
-                          {"width", scene.render.width},
-                          {"height", scene.render.height},
+                          {"width", *scene.render.width},
+                          {"height", *scene.render.height},
                           {"camera", camera_json(scene.placement, *scene.camera)},
                           {"objects", scene.object_count},
                           {"lights", scene.lights.size()}};

@@ -82,6 +82,17 @@ TEST_F(CommandLine, StatsCountEveryRay) {
     EXPECT_TRUE(stats.at(name).is_number_unsigned() || stats.at(name).is_number_integer()) << name;
   for (const char* name : {"load_ms", "build_ms", "trace_ms", "mrays_per_s", "cpu_s"})
     EXPECT_GE(stats.at(name), 0.0) << name;
+  for (const char* option : {"max_depth", "azimuth_degrees", "pan", "technique"})
+    EXPECT_TRUE(stats.contains(option)) << option;
+}
+
+TEST_F(CommandLine, OptionsHaveTheNamesThatJsonHas) {
+  const std::string explain = "explain --json " + write("s.json", kScene);
+  const std::string by_name =
+      run(explain + " --azimuth-degrees 30 --elevation-degrees 5 --fov-degrees 40 --max-depth 2").out;
+  ASSERT_TRUE(nlohmann::json::accept(by_name));
+  EXPECT_EQ(run(explain + " --azimuth 30 --elevation 5 --fov 40 --depth 2").out, by_name);
+  EXPECT_EQ(nlohmann::json::parse(by_name).at("request").at("camera").at("azimuth_degrees"), 30);
 }
 
 TEST_F(CommandLine, SceneComesFromStandardInputToo) {
@@ -117,6 +128,13 @@ TEST_F(CommandLine, WrongOptionsAreNamedAsTheyWereGiven) {
   const Outcome command = run("redner " + scene);
   EXPECT_EQ(command.status, 2);
   EXPECT_NE(command.err.find("did you mean \"render\""), std::string::npos) << command.err;
+  const Outcome slip = run("render " + scene + " --widht 5 --samples=2");
+  EXPECT_EQ(slip.status, 2);
+  EXPECT_EQ(slip.err,
+            "orrery: not expected: --widht (did you mean \"--width\"?); see orrery render --help\n");
+  EXPECT_EQ(run("check " + scene + " --quiet=1").err,
+            "orrery: not expected: --quiet=1; see orrery check --help\n");
+  EXPECT_NE(run("schema more").err.find("not expected: more;"), std::string::npos);
   const Outcome flag = run("render " + scene + " --reorder maybe");
   EXPECT_NE(flag.err.find("--reorder: expected true or false"), std::string::npos) << flag.err;
   EXPECT_EQ(run("render " + scene + " --reorder true").status, 0);

@@ -15,6 +15,7 @@ import {pageFaults} from "./page.mjs";
 import {planFaults} from "./plan.mjs";
 import {serviceFaults} from "./service.mjs";
 import {stageFaults} from "./stages.mjs";
+import {optionFaults} from "./options.mjs";
 import {structureFaults} from "./structures.mjs";
 import {studyFaults} from "./study.mjs";
 
@@ -466,5 +467,5 @@ export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
   ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
-  ...planFaults, ...studyFaults, ...imageFaults, ...pageFaults,
+  ...planFaults, ...studyFaults, ...imageFaults, ...pageFaults, ...optionFaults,
 ];

@@ -27,7 +27,8 @@ void read_options(const Request& request) {
   constexpr std::array<std::string_view, 2> kMore{"frames", "fps"};
   try {
     const RenderRequest read = read_query(request, kMore);
-    require(std::isfinite(read.orbit.azimuth_degrees) && std::isfinite(read.orbit.distance));
+    require(!read.azimuth_degrees || std::isfinite(*read.azimuth_degrees));
+    require(!read.distance || *read.distance > 0);
     require(!read.samples || *read.samples >= 1);
   } catch (const InputError& error) {
     require(!error.problems().empty() && !error.problems().front().detail.empty());

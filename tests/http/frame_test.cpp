@@ -37,9 +37,10 @@ TEST_F(FramePng, ETagNamesThePictureHoweverItIsAskedFor) {
   EXPECT_EQ(etag("?azimuth=-0"), plain);
   EXPECT_EQ(etag("?technique=whitted&height=32"), plain);
   EXPECT_EQ(etag("?accelerator=octree&reorder=true&prediction=last"), plain);
-  for (const char* query : {"?azimuth=1", "?elevation=1", "?distance=2", "?pan=1,0,0", "?fov=46", "?width=49",
-                            "?height=33", "?samples=2", "?technique=raycast", "?max_depth=1",
-                            "?min_contribution=0.5", "?seed=1", "?precision=double"})
+  for (const char* query :
+       {"?azimuth=1", "?elevation=1", "?distance=2", "?pan=1,0,0", "?fov=46", "?width=49",
+        "?azimuth_degrees=1", "?depth=1", "?height=33", "?samples=2", "?technique=raycast", "?max_depth=1",
+        "?min_contribution=0.5", "?seed=1", "?precision=double"})
     EXPECT_NE(etag(query), plain) << query;
 }
 
@@ -101,8 +102,16 @@ TEST_F(FramePng, BadQueriesAreToldWhatIsWrong) {
   EXPECT_EQ(pointer_for("?azimuth=1&azimuth=2", 400), "");
   EXPECT_EQ(pointer_for("?azimuth=%zz", 400), "");
   EXPECT_EQ(pointer_for("?azimuth=%ff", 400), "");
-  const auto problem = expect_problem(client_.Get(path("?azimut=1")), 422);
-  EXPECT_NE(problem.at("detail").get<std::string>().find("did you mean \"azimuth\""), std::string::npos);
+  EXPECT_EQ(pointer_for("?fov_degrees=180"), "/fov_degrees");
+  EXPECT_EQ(pointer_for("?azimuth=1&azimuth_degrees=1"), "/azimuth_degrees");
+  const auto detail_for = [&](const std::string& query) {
+    return expect_problem(client_.Get(path(query)), 422).at("detail").get<std::string>();
+  };
+  EXPECT_NE(detail_for("?azimut=1").find("did you mean \"azimuth\""), std::string::npos);
+  EXPECT_NE(detail_for("?w=100").find("did you mean \"width\""), std::string::npos);
+  EXPECT_NE(detail_for("?azimuth_degree=1").find("did you mean \"azimuth_degrees\""), std::string::npos);
+  EXPECT_NE(detail_for("?azimuth=1&azimuth_degrees=1").find("as azimuth_degrees and as azimuth"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "server/app/render_options.h"
 #include "tests/http/daemon.h"
 
 // What the service says about itself, and the files it carries.
@@ -69,6 +70,59 @@ TEST_F(Info, DescribesItself) {
   EXPECT_EQ(get_known("/openapi.json", description->get_header_value("ETag"))->status, 304);
 }
 
+// What is said of an option: a range, choices, or else the type alone.
+bool says_what_is_allowed(const nlohmann::json& schema) {
+  const bool number = schema.contains("minimum") || schema.contains("exclusiveMinimum");
+  const bool both = number && (schema.contains("maximum") || schema.contains("exclusiveMaximum"));
+  return both || schema.contains("enum") || schema.contains("items") || schema.value("type", "") == "boolean";
+}
+
+TEST_F(Info, DescribesEveryRenderOption) {
+  const auto description = get_json("/openapi.json");
+  const auto& components = description.at("components");
+  for (const std::string_view name : render_option_names()) {
+    const std::string component = "query-" + std::string(name);
+    const auto& parameter = components.at("parameters").at(component);
+    EXPECT_EQ(parameter.at("name"), name);
+    EXPECT_FALSE(parameter.at("description").get<std::string>().empty()) << name;
+    EXPECT_TRUE(says_what_is_allowed(parameter.at("schema"))) << name;
+    const nlohmann::json reference = {{"$ref", "#/components/parameters/" + component}};
+    for (const char* path : {"frame.png", "orbit", "explain"}) {
+      const auto& asked = description.at("paths").at("/v1/scenes/{id}/" + std::string(path)).at("get");
+      EXPECT_EQ(std::count(asked.at("parameters").begin(), asked.at("parameters").end(), reference), 1)
+          << name;
+    }
+  }
+  for (const RenderOption& option : render_options()) {
+    const auto& section = components.at("schemas").at(name_of(option.section)).at("properties");
+    EXPECT_FALSE(section.at(option.key).at("description").get<std::string>().empty()) << option.key;
+    EXPECT_TRUE(says_what_is_allowed(section.at(option.key))) << option.key;
+  }
+}
+
+TEST_F(Info, LimitsAndDefaultsOfEveryRenderOptionArePublished) {
+  const auto limits = get_json("/v1/limits").at("options"), defaults = get_json("/v1/catalog").at("defaults");
+  for (const RenderOption& option : render_options()) {
+    EXPECT_TRUE(says_what_is_allowed(limits.at(option.key))) << option.key;
+    EXPECT_EQ(defaults.at(option.key), nlohmann::json::parse(option.text(default_settings())));
+  }
+  EXPECT_EQ(limits.at("samples"), nlohmann::json({{"type", "integer"}, {"minimum", 1}, {"maximum", 4096}}));
+}
+
+TEST_F(Info, ExplainGivesTheRequestThatRendersThePicture) {
+  const std::string scene = "/v1/scenes/" + post_scene(moving_scene().dump());
+  const std::string query = "?azimuth=30&pan=0.1,0,0&samples=3&time=0.5&fov=50&max_depth=2&seed=7";
+  const auto explained = get_json((scene + "/explain" + query).c_str());
+  const auto& request = explained.at("request");
+  for (const RenderOption& option : render_options())
+    EXPECT_TRUE(request.at(name_of(option.section)).contains(option.key)) << option.key;
+  const auto picture = client_.Get(scene + "/frame.png" + query);
+  const auto rendered = client_.Post("/v1/render", request.dump(), "application/json");
+  ASSERT_TRUE(picture && rendered);
+  ASSERT_EQ(rendered->status, 200) << rendered->body;
+  EXPECT_EQ(rendered->body, picture->body);
+}
+
 TEST_F(Info, PageIsServedWithTypesAndProtection) {
   const auto page = client_.Get("/");
   ASSERT_TRUE(page && page->status == 200);
@@ -105,6 +159,12 @@ TEST_F(Info, UnknownPathsAreNotFound) {
   for (const char* path : {"/nosuch", "/v1", "/v1/", "/v1/scenes/x/y", "/scenes/nosuch.json", "/../core",
                            "//", "/web/index.html", "/%2e%2e/etc/passwd"})
     expect_problem(client_.Get(path), 404);
+}
+
+TEST_F(Info, PathsThatLackANameSayWhereItGoes) {
+  const auto problem = expect_problem(client_.Post("/v1/assets", "v 0 0 0", "model/obj"), 404);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("PUT /v1/assets/{sha256}"), std::string::npos)
+      << problem;
 }
 
 TEST_F(Info, WrongMethodsAreToldWhichAreRight) {

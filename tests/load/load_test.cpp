@@ -142,49 +142,6 @@ TEST(Load, IdDependsOnMeaningAndNotOnLayout) {
   EXPECT_EQ(id(plain).size(), 64u);
 }
 
-TEST(Request, TakesOnlyWhatIsGiven) {
-  const auto read = [](const char* text) { return read_request(parse_document(json(text).dump())); };
-  const RenderRequest none = read("{}");
-  EXPECT_FALSE(none.width || none.samples || none.technique || none.precision || none.fov_degrees ||
-               none.seed || none.min_contribution || none.reorder || none.prediction);
-  EXPECT_EQ(none.orbit.distance, 1);
-  const RenderRequest all =
-      read(R"({'camera': {'azimuth_degrees': 30, 'elevation_degrees': -10, 'distance': 2, 'fov_degrees': 60},
-      'image': {'width': 320, 'height': 200}, 'scene_id': 'x',
-      'render': {'technique': 'raycast', 'max_depth': 3, 'min_contribution': 0.01, 'samples': 16, 'accelerator': 'list', 'precision': 'double', 'seed': 7, 'reorder': true, 'prediction': 'last'}})");
-  EXPECT_EQ(all.orbit.azimuth_degrees, 30);
-  EXPECT_EQ(all.orbit.elevation_degrees, -10);
-  EXPECT_EQ(all.orbit.distance, 2);
-  EXPECT_EQ(all.fov_degrees, 60);
-  EXPECT_EQ(all.width, 320);
-  EXPECT_EQ(all.height, 200);
-  EXPECT_EQ(all.technique, "raycast");
-  EXPECT_EQ(all.max_depth, 3);
-  EXPECT_EQ(all.min_contribution, 0.01);
-  EXPECT_EQ(all.samples, 16);
-  EXPECT_EQ(all.accelerator, "list");
-  EXPECT_EQ(all.precision, Precision::double_precision);
-  EXPECT_EQ(all.seed, 7u);
-  EXPECT_EQ(all.reorder, true);
-  EXPECT_EQ(all.prediction, Prediction::last);
-}
-
-TEST(Request, RefusesWhatNoSceneMayAskEither) {
-  const auto problem = [](const char* text) -> std::string {
-    try {
-      read_request(parse_document(json(text).dump()));
-    } catch (const InputError& error) {
-      return error.problems().front().pointer;
-    }
-    return "accepted";
-  };
-  EXPECT_EQ(problem("{'image': {'width': 5000}}"), "/image/width");
-  EXPECT_EQ(problem("{'camera': {'fov_degrees': 180}}"), "/camera/fov_degrees");
-  EXPECT_EQ(problem("{'camera': {'distance': 0}}"), "/camera/distance");
-  EXPECT_EQ(problem("{'render': {'technique': 'magic'}}"), "/render/technique");
-  EXPECT_EQ(problem("{'render': {'depth': 3}}"), "/render");
-}
-
 TEST(Load, RefusesInstancesThatCannotBe) {
   covers("A38");
   const auto problem = [](const char* instance) {

@@ -21,6 +21,9 @@ TEST(Describe, WritesRangesDefaultsAndDescriptions) {
     p.integer("version", "Format.", 1, 1);
     p.text("title", "Name.", 200, "");
     p.numbers3("attenuation", "c0, c1, c2.", {.min = 0}, Vec3d{1, 0, 0});
+    constexpr std::string_view kLayers[] = {"depth", "normal"};
+    p.choice("first", "One.", kLayers, derived<std::string_view>("normal"));
+    p.choices("layers", "Some.", kLayers);
   });
   EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
   EXPECT_EQ(schema["additionalProperties"], false);
@@ -35,6 +38,10 @@ TEST(Describe, WritesRangesDefaultsAndDescriptions) {
                                                    "default": "phong"})"));
   EXPECT_EQ(properties["version"], json::parse(R"({"description": "Format.", "const": 1})"));
   EXPECT_EQ(properties["title"]["maxLength"], 200);
+  EXPECT_EQ(properties["first"], json::parse(R"({"description": "One.", "enum": ["depth", "normal"]})"));
+  EXPECT_EQ(properties["layers"],
+            json::parse(R"({"description": "Some.", "type": "array", "uniqueItems": true, "maxItems": 2,
+                            "items": {"enum": ["depth", "normal"]}})"));
   EXPECT_EQ(properties["attenuation"]["default"], json::array({1, 0, 0}));
 }
 
@@ -125,6 +132,11 @@ TEST(Suggestion, FindsSlipsCaseAndAbbreviations) {
   EXPECT_EQ(nearest("centre", keys), "center");
   EXPECT_EQ(nearest("fov", keys), "fov_degrees");
   EXPECT_EQ(nearest("radius_metres", keys), "radius");
+  EXPECT_EQ(nearest("r", keys), "radius");
+  EXPECT_EQ(nearest("rad", keys), "radius");
+  EXPECT_EQ(nearest("", keys), std::nullopt);
+  EXPECT_EQ(nearest("", std::vector<std::string_view>{"one"}), std::nullopt);
+  EXPECT_EQ(nearest("e", std::vector<std::string_view>{"eye", "edge"}), std::nullopt) << "it may be either";
   EXPECT_EQ(nearest("to", keys), std::nullopt);
   EXPECT_EQ(nearest("colour", keys), std::nullopt);
   EXPECT_EQ(nearest(std::string(1 << 20, 'x'), keys), std::nullopt);

@@ -106,6 +106,26 @@ TEST(Reader, MinusZeroIsZeroAsInCanonicalText) {
   });
 }
 
+TEST(Reader, ReadsListsOfWords) {
+  constexpr std::string_view kColours[] = {"red", "green", "blue"};
+  const auto read = [&](Params& p) { return p.choices("c", "", kColours); };
+  std::vector<std::string> words;
+  const auto words_of = [&](const char* text) {
+    read_text(text, [&](Params& p) { words = read(p); });
+    return words;
+  };
+  EXPECT_EQ(words_of(R"({"c": ["blue", "red"]})"), (Lines{"blue", "red"}));
+  EXPECT_EQ(words_of(R"({"c": []})"), Lines());
+  EXPECT_EQ(words_of("{}"), Lines());
+  EXPECT_EQ(problems(R"({"c": ["red", "gren", 3, "red"]})", read),
+            (Lines{"/c: expected a list of 0 to 3 different words, got 4"}));
+  EXPECT_EQ(problems(R"({"c": ["red", "gren", "red"]})", read),
+            (Lines{R"(/c/1: expected "red", "green" or "blue", got "gren" (did you mean "green"?))",
+                   R"(/c/2: expected different words, got "red" again)"}));
+  EXPECT_EQ(problems(R"({"c": "red"})", read),
+            (Lines{R"(/c: expected a list of 0 to 3 different words, got "red")"}));
+}
+
 TEST(Reader, ScalarErrorsSayWhatWasExpected) {
   EXPECT_EQ(
       problems(R"({"n": 180, "i": 2.5, "j": 1e300, "v": 2, "f": 1, "c": "blin-phong", "d": 4, "t": "abc"})",

@@ -7,8 +7,9 @@
 #include <functional>
 
 #include "core/accelerators/registry.h"
-#include "core/base/error.h"
-#include "core/techniques/registry.h"
+#include "core/load/load.h"
+#include "core/model/technique.h"
+#include "core/plan/options.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
@@ -187,30 +188,6 @@ TEST(Plan, GivesAReasonForEveryDecision) {
     }
 }
 
-TEST(Plan, RefusesRequestsOutOfRange) {
-  const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"));
-  const auto problem = [&](const std::function<void(RenderRequest&)>& ask) -> std::string {
-    RenderRequest request;
-    ask(request);
-    try {
-      make_plan(*scene, request);
-    } catch (const InputError& error) {
-      return error.problems().front().pointer;
-    }
-    return "accepted";
-  };
-  EXPECT_EQ(problem([](auto& r) { r.width = 0; }), "/image/width");
-  EXPECT_EQ(problem([](auto& r) { r.height = 65536; }), "/image/height");
-  EXPECT_EQ(problem([](auto& r) { r.samples = 0; }), "/render/samples");
-  EXPECT_EQ(problem([](auto& r) { r.max_depth = -1; }), "/render/max_depth");
-  EXPECT_EQ(problem([](auto& r) { r.max_depth = 33; }), "/render/max_depth");
-  EXPECT_EQ(problem([](auto& r) { r.min_contribution = std::nan(""); }), "/render/min_contribution");
-  EXPECT_EQ(problem([](auto& r) { r.technique = "radiosity"; }), "/render/technique");
-  EXPECT_EQ(problem([](auto& r) { r.accelerator = ""; }), "/render/accelerator");
-  EXPECT_EQ(problem([](auto& r) { r.orbit.elevation_degrees = 181; }), "/camera/elevation_degrees");
-  EXPECT_EQ(problem([](auto& r) { r.width = r.height = 4096; }), "accepted");
-}
-
 TEST(Plan, TakesFromTheSceneWhatTheRequestLeavesOut) {
   Json scene = scene_of_materials({kRough, kGlass});
   scene["image"] = {{"width", 123}, {"height", 45}};
@@ -229,6 +206,55 @@ TEST(Plan, TakesFromTheSceneWhatTheRequestLeavesOut) {
   EXPECT_EQ(plan.width, 10);
   EXPECT_EQ(plan.max_depth, 2);
   EXPECT_EQ(plan.samples, 3);
+}
+
+// What decides the picture, beside the scene.
+void expect_same_picture(const Plan& a, const Plan& b) {
+  EXPECT_EQ(std::pair(a.width, a.height), std::pair(b.width, b.height));
+  EXPECT_EQ(a.samples, b.samples);
+  EXPECT_EQ(a.camera.eye, b.camera.eye);
+  EXPECT_EQ(a.camera.right, b.camera.right);
+  EXPECT_EQ(a.camera.up, b.camera.up);
+  EXPECT_EQ(a.camera.back, b.camera.back);
+  EXPECT_EQ(a.camera.half_extent, b.camera.half_extent);
+  EXPECT_EQ(a.technique, b.technique);
+  EXPECT_EQ(a.accelerator, b.accelerator);
+  EXPECT_EQ(a.double_precision, b.double_precision);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.max_depth, b.max_depth);
+  EXPECT_EQ(a.min_contribution, b.min_contribution);
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(std::pair(a.reorder, a.prediction), std::pair(b.reorder, b.prediction));
+  EXPECT_EQ(std::pair(a.direct_light, a.shadows), std::pair(b.direct_light, b.shadows));
+  EXPECT_EQ(std::pair(a.specular, a.filters), std::pair(b.specular, b.filters));
+  EXPECT_EQ(a.constant_half, b.constant_half);
+}
+
+TEST(Plan, WrittenAsARequestAndReadBackIsTheSamePlan) {
+  RenderRequest turned = size(97, 31);
+  turned.azimuth_degrees = 1.0 / 3;
+  turned.elevation_degrees = -12.5;
+  turned.pan = Vec3d(0.1, -1e-7, 3e5);
+  turned.fov_degrees = 33.3;
+  turned.time = 0.7;
+  turned.seed = std::uint64_t{1} << 53;
+  turned.min_contribution = 1e-3;
+  turned.prediction = Prediction::last;
+  RenderRequest cast;
+  cast.technique = "raycast";
+  for (const std::string& name : sample_names()) {
+    const auto scene = load(sample(name));
+    for (const RenderRequest& request : {RenderRequest(), turned, cast}) {
+      SCOPED_TRACE(name + " " + to_json(request));
+      const Plan plan = make_plan(*scene, request);
+      const std::string written = to_json(settings_of(plan));
+      for (const RenderOption& option : render_options())
+        EXPECT_TRUE(option.given(read_request(parse_document(written)))) << option.key;
+      const Plan again = make_plan(*scene, read_request(parse_document(written)));
+      expect_same_picture(plan, again);
+      EXPECT_EQ(to_json(settings_of(again)), written);
+    }
+  }
 }
 
 }  // namespace

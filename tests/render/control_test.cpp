@@ -148,7 +148,8 @@ TEST(Control, PreparationIsPaidOnce) {
 TEST(Orbit, FramesAreThoseOfAMovedCamera) {
   Json scene = sample("paper");
   RenderRequest orbit = in_double(size(96, 64));
-  orbit.orbit = {90, 0, 2};
+  orbit.azimuth_degrees = 90;
+  orbit.distance = 2;
   Json moved_camera = scene;
   moved_camera["camera"]["eye"] = {8, 0, 0};
   EXPECT_LE(differing_pixels(render(scene, orbit), render(moved_camera, in_double(size(96, 64))), 1e-6), 0);

@@ -101,7 +101,7 @@ TEST(Settle, KeepsToItsChoiceWhileTheCameraMoves) {
   std::set<std::string> chosen;
   for (const double azimuth : {0.0, 40.0, 90.0, 200.0}) {
     RenderRequest request = square(64);
-    request.orbit.azimuth_degrees = azimuth;
+    request.azimuth_degrees = azimuth;
     chosen.insert(settle(scene, make_plan(scene.scene(), request))->accelerator->name);
   }
   EXPECT_EQ(chosen.size(), 1u);

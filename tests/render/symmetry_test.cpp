@@ -154,8 +154,8 @@ TEST(Symmetry, PolesOfTheOrbitAreNoSpecialPlaces) {
                               "[1, 2, 3]}], 'ambient': [0.1, 0.1, 0.1]}");
   for (const double pole : {90.0, -90.0}) {
     RenderRequest at = in_double(small()), beside = at;
-    at.orbit.elevation_degrees = pole;
-    beside.orbit.elevation_degrees = pole * (1 - 1e-9 / 90);
+    at.elevation_degrees = pole;
+    beside.elevation_degrees = pole * (1 - 1e-9 / 90);
     EXPECT_LE(test::largest_difference(render(scene, at), render(scene, beside)), 1e-6);
   }
 }

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math/vec3.h"
+
+namespace orrery {
+
+// Number type of rays, and the names of the types.
+enum class Precision { automatic, single_precision, double_precision };
+inline constexpr std::array<std::string_view, 3> kPrecisions{"auto", "float", "double"};
+
+// Who proposes what may stand in a shadow ray's way, before the accelerator is asked; and their names.
+enum class Prediction { none, network, last, random };
+inline constexpr std::array<std::string_view, 4> kPredictions{"none", "network", "last", "random"};
+inline constexpr std::string_view name_of(Prediction prediction) {
+  return kPredictions[static_cast<std::size_t>(prediction)];
+}
+
+// Values of the render options, one member an option. The table in core/plan/options.h gives each its name,
+// range and default. A member without a value was not given.
+struct RenderSettings {
+  std::optional<double> azimuth_degrees, elevation_degrees, distance;  // the camera's place; see Orbit
+  std::optional<Vec3d> pan;                                            // metres
+  std::optional<double> fov_degrees;
+  std::optional<int> width, height;  // pixels
+  std::optional<std::string> technique;
+  std::optional<int> max_depth;
+  std::optional<double> min_contribution;
+  std::optional<int> samples;  // a pixel
+  std::optional<std::string> accelerator;
+  std::optional<Precision> precision;
+  std::optional<std::uint64_t> seed;
+  std::optional<bool> reorder;
+  std::optional<Prediction> prediction;
+  std::optional<double> time;                      // seconds
+  std::optional<std::vector<std::string>> layers;  // film channels beside radiance
+
+  bool operator==(const RenderSettings&) const = default;
+};
+
+}  // namespace orrery

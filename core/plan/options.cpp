@@ -1,0 +1,331 @@
+#include "core/plan/options.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "core/accelerators/registry.h"
+#include "core/channels/registry.h"
+#include "core/model/scene.h"
+#include "core/params/motion.h"
+#include "core/plan/limits.h"
+#include "core/techniques/registry.h"
+
+namespace orrery {
+namespace {
+
+using O = RenderOption;
+using S = RenderSettings;
+
+template <class Types>
+O::Names names_of(const Types& types) {
+  O::Names names;
+  for (const auto& type : types) names.push_back(type.name);
+  return names;
+}
+O::Names technique_names() { return names_of(technique_types()); }
+O::Names channel_names() { return names_of(channel_types()); }
+// "auto": the plan chooses.
+O::Names accelerator_names() {
+  O::Names names = names_of(accelerator_types());
+  names.insert(names.begin(), "auto");
+  return names;
+}
+
+static_assert(std::int64_t{kMaxImageSide} * kMaxImageSide <= kMaxImagePixels,
+              "sides within their range never make too many pixels");
+
+// In the order of the schema and of help.
+constexpr std::array kOptions{
+    O{.key = "azimuth_degrees",
+      .short_name = "azimuth",
+      .section = Section::camera,
+      .kind = O::Number{&S::azimuth_degrees, {.min = -kMaxOrbitDegrees, .max = kMaxOrbitDegrees}, 0},
+      .placeholder = "DEGREES",
+      .help = "Turn of the camera about the scene's up axis, anticlockwise from above.",
+      .in_scene = false},
+    O{.key = "elevation_degrees",
+      .short_name = "elevation",
+      .section = Section::camera,
+      .kind = O::Number{&S::elevation_degrees, {.min = -180, .max = 180}, 0},
+      .placeholder = "DEGREES",
+      .help = "Lift of the camera toward up; it ends straight above and below.",
+      .in_scene = false},
+    O{.key = "distance",
+      .section = Section::camera,
+      .kind = O::Number{&S::distance, {.min = kMinOrbitDistance, .max = kMaxOrbitDistance}, 1},
+      .placeholder = "FACTOR",
+      .help = "Distance of the camera as a factor of the scene's own.",
+      .in_scene = false},
+    O{.key = "pan",
+      .section = Section::camera,
+      .kind = O::Point{&S::pan},
+      .placeholder = "X,Y,Z",
+      .help = "Metres by which the camera and what it looks at are moved.",
+      .in_scene = false},
+    O{.key = "fov_degrees",
+      .short_name = "fov",
+      .section = Section::camera,
+      .kind =
+          O::Number{
+              &S::fov_degrees, {.min = 0, .max = 180, .exclusive_min = true, .exclusive_max = true}, 45},
+      .placeholder = "DEGREES",
+      .help = "Vertical angle of the picture, for any aspect."},
+    O{.key = "width",
+      .section = Section::image,
+      .kind = O::Integer<int>{&S::width, 1, kMaxImageSide, 600},
+      .placeholder = "PIXELS",
+      .help = "Width of the picture, in pixels."},
+    O{.key = "height",
+      .section = Section::image,
+      .kind = O::Integer<int>{&S::height, 1, kMaxImageSide, 600},
+      .placeholder = "PIXELS",
+      .help = "Height of the picture, in pixels."},
+    O{.key = "technique",
+      .section = Section::render,
+      .kind = O::Name{&S::technique, technique_names, "whitted"},
+      .placeholder = "NAME",
+      .help = "How light is followed."},
+    O{.key = "max_depth",
+      .short_name = "depth",
+      .section = Section::render,
+      .kind = O::Integer<int>{&S::max_depth, 0, kMaxDepth, 5},
+      .placeholder = "N",
+      .help = "Deepest ray that is traced; camera rays have depth 0."},
+    O{.key = "min_contribution",
+      .section = Section::render,
+      .kind = O::Number{&S::min_contribution, {.min = 0, .max = 1}, 0},
+      .placeholder = "WEIGHT",
+      .help = "Rays with less weight in every channel are not traced."},
+    O{.key = "samples",
+      .section = Section::render,
+      .kind = O::Integer<int>{&S::samples, 1, kMaxSamples, 1},
+      .placeholder = "N",
+      .help = "Rays a pixel: one through the centre, more are stratified."},
+    O{.key = "accelerator",
+      .section = Section::render,
+      .kind = O::Name{&S::accelerator, accelerator_names, "auto"},
+      .placeholder = "NAME",
+      .help = "How rays find what they meet.",
+      .changes_pixels = false},
+    O{.key = "precision",
+      .section = Section::render,
+      .kind = O::Enumeration<Precision>{&S::precision, kPrecisions},
+      .help = "Number type of rays."},
+    O{.key = "seed",
+      .section = Section::render,
+      .kind = O::Integer<std::uint64_t>{&S::seed, 0, kMaxSeed, 0},
+      .placeholder = "N",
+      .help = "Seed of all random choices."},
+    O{.key = "reorder",
+      .section = Section::render,
+      .kind = O::Flag{&S::reorder, false},
+      .help = "Rays that are alike are traced together.",
+      .changes_pixels = false},
+    O{.key = "prediction",
+      .section = Section::render,
+      .kind = O::Enumeration<Prediction>{&S::prediction, kPredictions},
+      .help = "Who proposes what may shadow a point, before the accelerator is asked.",
+      .changes_pixels = false},
+    O{.key = "time",
+      .section = Section::render,
+      .kind = O::Number{&S::time, {.min = -kMaxTime, .max = kMaxTime}, 0},
+      .placeholder = "SECONDS",
+      .help = "Moment of what moves, in seconds."},
+    O{.key = "layers",
+      .section = Section::render,
+      .kind = O::NameList{&S::layers, channel_names},
+      .placeholder = "NAMES",
+      .help = "What an EXR file holds beside the picture: channels of what camera rays meet first."},
+};
+
+// The default.
+template <class I>
+I fallback_of(const O::Integer<I>& kind) {
+  return static_cast<I>(kind.fallback);
+}
+double fallback_of(const O::Number& kind) { return kind.fallback; }
+bool fallback_of(const O::Flag& kind) { return kind.fallback; }
+Vec3d fallback_of(const O::Point&) { return Vec3d(0); }
+std::string fallback_of(const O::Name& kind) { return kind.fallback; }
+template <class E>
+E fallback_of(const O::Enumeration<E>&) {
+  return E{};
+}
+std::vector<std::string> fallback_of(const O::NameList&) { return {}; }
+
+template <class V>
+Fallback<V> missing(const V& fallback, bool in_schema) {
+  return in_schema ? Fallback<V>(fallback) : derived(fallback);
+}
+
+// The value of the option's key, checked; the default if it is missing, which the schema shows or not.
+template <class I>
+I read(Params& p, const O& o, const O::Integer<I>& kind, bool in_schema) {
+  return static_cast<I>(p.integer(o.key, o.help, kind.min, kind.max, missing(kind.fallback, in_schema)));
+}
+double read(Params& p, const O& o, const O::Number& kind, bool in_schema) {
+  return p.number(o.key, o.help, kind.range, missing(kind.fallback, in_schema));
+}
+bool read(Params& p, const O& o, const O::Flag& kind, bool in_schema) {
+  return p.flag(o.key, o.help, missing(kind.fallback, in_schema));
+}
+Vec3d read(Params& p, const O& o, const O::Point& kind, bool in_schema) {
+  return p.point(o.key, o.help, missing(fallback_of(kind), in_schema));
+}
+std::string read(Params& p, const O& o, const O::Name& kind, bool in_schema) {
+  return p.choice(o.key, o.help, kind.names(), missing<std::string_view>(kind.fallback, in_schema));
+}
+template <class E>
+E read(Params& p, const O& o, const O::Enumeration<E>& kind, bool in_schema) {
+  const std::string name = p.choice(o.key, o.help, kind.names, missing(kind.names.front(), in_schema));
+  return E(std::find(kind.names.begin(), kind.names.end(), name) - kind.names.begin());
+}
+std::vector<std::string> read(Params& p, const O& o, const O::NameList& kind, bool) {
+  return p.choices(o.key, o.help, kind.names());
+}
+
+// The value as JSON text. Names of registries need no escapes.
+std::string json_string(std::string_view name) { return "\"" + std::string(name) + "\""; }
+std::string list_of(std::span<const std::string> parts) {
+  std::string text = "[";
+  for (const std::string& part : parts) text += (text.size() > 1 ? "," : "") + part;
+  return text + "]";
+}
+template <class I>
+std::string text_of(const O::Integer<I>&, I value) {
+  return std::to_string(value);
+}
+std::string text_of(const O::Number&, double value) { return number_text(value + 0.0); }  // -0 is 0
+std::string text_of(const O::Flag&, bool value) { return value ? "true" : "false"; }
+std::string text_of(const O::Point&, const Vec3d& v) {
+  return list_of(std::array{number_text(v.x + 0.0), number_text(v.y + 0.0), number_text(v.z + 0.0)});
+}
+std::string text_of(const O::Name&, const std::string& value) { return json_string(value); }
+template <class E>
+std::string text_of(const O::Enumeration<E>& kind, E value) {
+  return json_string(kind.names[static_cast<std::size_t>(value)]);
+}
+std::string text_of(const O::NameList&, std::vector<std::string> values) {
+  for (std::string& value : values) value = json_string(value);
+  return list_of(values);
+}
+
+O::Names choices_of(const O::Name& kind) { return kind.names(); }
+O::Names choices_of(const O::NameList& kind) { return kind.names(); }
+template <class E>
+O::Names choices_of(const O::Enumeration<E>& kind) {
+  return {kind.names.begin(), kind.names.end()};
+}
+O::Names choices_of(const O::Flag&) { return {"true", "false"}; }
+O::Names choices_of(const auto&) { return {}; }
+
+template <class I>
+constexpr O::Form form_of(const O::Integer<I>&) {
+  return O::Form::number;
+}
+constexpr O::Form form_of(const O::Number&) { return O::Form::number; }
+constexpr O::Form form_of(const O::Flag&) { return O::Form::boolean; }
+constexpr O::Form form_of(const O::Point&) { return O::Form::numbers; }
+constexpr O::Form form_of(const O::NameList&) { return O::Form::strings; }
+constexpr O::Form form_of(const auto&) { return O::Form::string; }
+
+}  // namespace
+
+std::string_view name_of(Section section) {
+  constexpr std::array<std::string_view, kSections.size()> kNames{"camera", "image", "render"};
+  return kNames[static_cast<std::size_t>(section)];
+}
+
+std::string RenderOption::pointer() const {
+  return "/" + std::string(name_of(section)) + "/" + std::string(key);
+}
+
+std::string RenderOption::value_name() const {
+  if (!placeholder.empty()) return std::string(placeholder);
+  std::string text;
+  for (const std::string_view choice : choices()) text += (text.empty() ? "" : "|") + std::string(choice);
+  return text;
+}
+
+RenderOption::Names RenderOption::choices() const {
+  return std::visit([](const auto& of) { return choices_of(of); }, kind);
+}
+
+RenderOption::Form RenderOption::form() const {
+  return std::visit([](const auto& of) { return form_of(of); }, kind);
+}
+
+bool RenderOption::given(const RenderSettings& settings) const {
+  return std::visit([&](const auto& of) { return (settings.*of.member).has_value(); }, kind);
+}
+
+void RenderOption::copy(const RenderSettings& from, RenderSettings& to) const {
+  std::visit([&](const auto& of) { to.*of.member = from.*of.member; }, kind);
+}
+
+std::string RenderOption::text(const RenderSettings& settings) const {
+  return std::visit([&](const auto& of) { return text_of(of, *(settings.*of.member)); }, kind);
+}
+
+std::span<const RenderOption> render_options() { return kOptions; }
+
+const RenderSettings& default_settings() {
+  static const RenderSettings defaults = [] {
+    RenderSettings all;
+    for (const RenderOption& option : kOptions)
+      std::visit([&](const auto& of) { all.*of.member = fallback_of(of); }, option.kind);
+    return all;
+  }();
+  return defaults;
+}
+
+void RenderOption::read_scene(Params& p, RenderSettings& settings) const {
+  std::visit([&](const auto& of) { settings.*of.member = read(p, *this, of, true); }, kind);
+}
+
+void RenderOption::read_request(Params& p, RenderSettings& settings) const {
+  std::visit(
+      [&](const auto& of) {
+        auto value = read(p, *this, of, !in_scene);
+        if (p.has(key)) settings.*of.member = std::move(value);
+      },
+      kind);
+}
+
+void read_scene_options(Params& p, Section section, RenderSettings& settings) {
+  for (const RenderOption& option : kOptions)
+    if (option.section == section && option.in_scene) option.read_scene(p, settings);
+}
+
+void read_request_options(Params& p, Section section, RenderSettings& settings) {
+  for (const RenderOption& option : kOptions)
+    if (option.section == section) option.read_request(p, settings);
+}
+
+RenderSettings resolve(const Scene& scene, const RenderSettings& asked) {
+  RenderSettings all = asked;
+  for (const RenderSettings& otherwise : {std::cref(scene.render), std::cref(default_settings())})
+    for (const RenderOption& option : kOptions)
+      if (!option.given(all)) option.copy(otherwise, all);
+  all.time = scene.motion.moment(*all.time);
+  return all;
+}
+
+Orbit orbit_of(const RenderSettings& settings) {
+  return {*settings.azimuth_degrees, *settings.elevation_degrees, *settings.distance, *settings.pan};
+}
+
+std::string to_json(const RenderSettings& settings) {
+  std::string text;
+  for (const Section section : kSections) {
+    std::string members;
+    for (const RenderOption& option : kOptions)
+      if (option.section == section && option.given(settings))
+        members += (members.empty() ? "" : ",") + json_string(option.key) + ":" + option.text(settings);
+    if (members.empty()) continue;
+    text += (text.empty() ? "" : ",") + json_string(name_of(section)) + ":{" + members + "}";
+  }
+  return "{" + text + "}";
+}
+
+}  // namespace orrery

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/model/camera.h"
+#include "core/model/render_settings.h"
+#include "core/params/params.h"
+
+// The render options: one row of a table each. Reader and schema of scenes and requests, queries, flags,
+// limits, the key and ETag of a picture, explain, statistics and OpenAPI are made from the rows.
+namespace orrery {
+
+struct Scene;
+
+// The member of a request's JSON that an option stands in.
+enum class Section { camera, image, render };
+inline constexpr std::array kSections{Section::camera, Section::image, Section::render};
+std::string_view name_of(Section section);
+
+struct RenderOption {
+  template <class V>
+  using Member = std::optional<V> RenderSettings::*;
+  using Names = std::vector<std::string_view>;
+
+  // The kinds of values: where the value is kept, what it may be, and the default.
+  template <class I>
+  struct Integer {
+    Member<I> member;
+    std::int64_t min, max, fallback;
+  };
+  struct Number {
+    Member<double> member;
+    Range range;
+    double fallback;
+  };
+  struct Flag {
+    Member<bool> member;
+    bool fallback;
+  };
+  struct Point {  // coordinates in metres; default: the origin
+    Member<Vec3d> member;
+  };
+  struct Name {  // one of a registry's
+    Member<std::string> member;
+    Names (*names)();
+    const char* fallback;
+  };
+  template <class E>
+  struct Enumeration {  // names[i] is the name of E(i); default: the first
+    Member<E> member;
+    std::span<const std::string_view> names;
+  };
+  struct NameList {  // distinct names of a registry; default: none
+    Member<std::vector<std::string>> member;
+    Names (*names)();
+  };
+  using Kind = std::variant<Integer<int>, Integer<std::uint64_t>, Number, Flag, Point, Name,
+                            Enumeration<Precision>, Enumeration<Prediction>, NameList>;
+
+  std::string_view key;  // the name: in JSON, in queries and, with hyphens after --, on command lines
+  std::string_view short_name = {};  // also allowed in queries and on command lines; empty: none
+  Section section;
+  Kind kind;
+  std::string_view placeholder = {};  // what help calls the value; empty: its choices, see value_name()
+  std::string_view help;              // one sentence
+  bool in_scene = true;               // a scene may give it too, and is then the default of a request
+  bool changes_pixels = true;         // another value may give another picture
+
+  std::string pointer() const;     // JSON Pointer in a request: "/camera/azimuth_degrees"
+  std::string value_name() const;  // "DEGREES", "true|false"
+  Names choices() const;           // the words that it may be; empty for other values
+
+  // What a value is in JSON, for those who make JSON from text.
+  enum class Form { number, boolean, string, numbers, strings };
+  Form form() const;
+
+  bool given(const RenderSettings& settings) const;
+  void copy(const RenderSettings& from, RenderSettings& to) const;  // a missing value too
+  // The value as JSON text; equal texts for equal values only. REQUIRES: given(settings).
+  std::string text(const RenderSettings& settings) const;
+
+  // Both check the value of `key` in the section `p`. In a scene, a missing one becomes the default; in a
+  // request, it leaves the member alone.
+  void read_scene(Params& p, RenderSettings& settings) const;
+  void read_request(Params& p, RenderSettings& settings) const;
+};
+
+std::span<const RenderOption> render_options();
+
+// Every option's default.
+const RenderSettings& default_settings();
+
+// Read a section: of a scene, only what scenes may give. Ranges are checked here and nowhere else.
+void read_scene_options(Params& p, Section section, RenderSettings& settings);
+void read_request_options(Params& p, Section section, RenderSettings& settings);
+
+// Every option as asked or else as the scene says or else its default, the time held within the scene's
+// motion.
+RenderSettings resolve(const Scene& scene, const RenderSettings& asked);
+
+// REQUIRES: the options of the camera are given.
+Orbit orbit_of(const RenderSettings& settings);
+
+// The options that are given, as JSON text of a request: {"camera": {...}, "image": {...}, "render": {...}}
+// without empty members. Reading it gives the same settings.
+std::string to_json(const RenderSettings& settings);
+
+}  // namespace orrery

@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/hash.h"
+#include "server/app/option_json.h"
+#include "server/app/render_options.h"
+#include "server/http/embedded.h"
+#include "server/routes/router.h"
+#include "server/routes/answers.h"
+
+// GET /openapi.json: the service's description of itself. The file openapi.json has all but the render
+// options:
+//   "render options" in a list of parameters  stands for those of a query;
+//   components.schemas                        lacks camera, image and render, the parts of a request's body;
+//   components.schemas.Explanation            lacks the options of the section render.
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::string_view kPlaceholder = "render options";
+
+ordered_json file_part() {
+  const auto files = embedded_files();
+  const auto file = std::find_if(files.begin(), files.end(),
+                                 [](const auto& f) { return f.path == "server/routes/openapi.json"; });
+  return ordered_json::parse(file->bytes);
+}
+
+// As it is asked for under `name` in a query: lists with commas.
+ordered_json parameter_of(std::string_view name, const RenderOption& option, ordered_json schema) {
+  std::string description = schema["description"];
+  schema.erase("description");
+  if (name != option.key) description = "The same as " + std::string(option.key) + ".";
+  ordered_json parameter = {{"name", name}, {"in", "query"}, {"description", std::move(description)}};
+  const auto form = option.form();
+  if (form == RenderOption::Form::numbers || form == RenderOption::Form::strings)
+    parameter.update({{"style", "form"}, {"explode", false}});
+  parameter["schema"] = std::move(schema);
+  return parameter;
+}
+
+void add_schemas(ordered_json& schemas, const ordered_json& options) {
+  for (const Section section : kSections) {
+    ordered_json& schema = schemas[std::string(name_of(section))];
+    schema = {{"type", "object"}, {"properties", ordered_json::object()}, {"additionalProperties", false}};
+    for (const RenderOption& option : render_options())
+      if (option.section == section) schema["properties"][std::string(option.key)] = options.at(option.key);
+  }
+  schemas["Explanation"]["properties"].update(schemas["render"]["properties"]);
+}
+
+// Replaces the placeholder in all lists of parameters; returns the parameters that it stands for, by name.
+ordered_json expand_parameters(ordered_json& paths, const ordered_json& options) {
+  ordered_json components = ordered_json::object(), references = ordered_json::array();
+  for (const std::string_view name : render_option_names()) {
+    const RenderOption& option = *find_render_option(name);
+    const std::string component = "query-" + std::string(name);
+    components[component] = parameter_of(name, option, options.at(option.key));
+    references.push_back({{"$ref", "#/components/parameters/" + component}});
+  }
+  for (ordered_json& path : paths) {
+    if (!path.contains("get")) continue;
+    ordered_json expanded = ordered_json::array();
+    for (const ordered_json& parameter : path["get"].value("parameters", ordered_json::array())) {
+      if (parameter == kPlaceholder)
+        expanded.insert(expanded.end(), references.begin(), references.end());
+      else
+        expanded.push_back(parameter);
+    }
+    if (!expanded.empty()) path["get"]["parameters"] = std::move(expanded);
+  }
+  return components;
+}
+
+std::string description() {
+  ordered_json json = file_part();
+  const ordered_json options = option_schemas();
+  add_schemas(json["components"]["schemas"], options);
+  json["components"]["parameters"].update(expand_parameters(json["paths"], options));
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+void add_openapi_routes(Router& router, App&) {
+  const std::string text = description();
+  const std::string etag = "\"" + sha256_hex(text).substr(0, 32) + "\"";
+  router.add("GET", "/openapi.json", Scope::none, LogLevel::info, [text, etag](Request& request) {
+    Response response =
+        has_current(request, etag) ? Response{.status = 304} : text_response(200, "application/json", text);
+    response.set("ETag", etag).set("Cache-Control", "no-cache");
+    return response;
+  });
+}
+
+}  // namespace orrery

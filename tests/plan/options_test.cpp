@@ -1,0 +1,197 @@
+#include "core/plan/options.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/base/error.h"
+#include "core/load/load.h"
+#include "core/params/json.h"
+#include "tests/support/pictures.h"
+
+// The table of render options, row by row.
+namespace orrery::test {
+namespace {
+
+RenderSettings read(const Json& request) { return read_request(document_of(request)); }
+
+// What is wrong with the value, with the pointer: "/render/samples: expected ..."; empty if nothing is.
+std::string problem(const RenderOption& option, const Json& value) {
+  try {
+    read({{name_of(option.section), {{option.key, value}}}});
+  } catch (const InputError& error) {
+    return error.problems().front().pointer + ": " + error.problems().front().detail;
+  }
+  return "";
+}
+
+Json value_of(const RenderOption& option, const RenderSettings& settings) {
+  return Json::parse(option.text(settings));
+}
+
+struct Ends {
+  template <class I>
+  std::vector<Json> operator()(const RenderOption::Integer<I>& kind) const {
+    return {kind.min, kind.max};
+  }
+  std::vector<Json> operator()(const RenderOption::Number& kind) const {
+    const auto& [min, max, no_min, no_max] = kind.range;
+    return {no_min ? std::nextafter(min, max) : min, no_max ? std::nextafter(max, min) : max};
+  }
+  std::vector<Json> operator()(const RenderOption::Flag&) const { return {false, true}; }
+  std::vector<Json> operator()(const RenderOption::Point&) const {
+    return {Json{-kMaxCoordinate, 0.1, 1e-300}, Json{kMaxCoordinate, 1.0 / 3, -1e-7}};
+  }
+  std::vector<Json> operator()(const RenderOption::NameList& kind) const {
+    return {Json::array(), Json(kind.names())};
+  }
+  std::vector<Json> operator()(const auto&) const { return {}; }
+};
+// Values at both ends of what an option may be, or all its choices.
+std::vector<Json> values_at_the_ends(const RenderOption& option) {
+  std::vector<Json> values = std::visit(Ends(), option.kind);
+  if (option.form() == RenderOption::Form::string)
+    for (const std::string_view choice : option.choices()) values.push_back(choice);
+  return values;
+}
+
+struct Beyond {
+  template <class I>
+  std::vector<Json> operator()(const RenderOption::Integer<I>& kind) const {
+    return {kind.min - 1, kind.max + 1, 1.5, "1", true, 1e300};
+  }
+  std::vector<Json> operator()(const RenderOption::Number& kind) const {
+    const auto& [min, max, no_min, no_max] = kind.range;
+    return {no_min ? min : std::nextafter(min, -HUGE_VAL), no_max ? max : std::nextafter(max, HUGE_VAL), "1",
+            true};
+  }
+  std::vector<Json> operator()(const RenderOption::Point&) const {
+    return {Json{0, 0}, Json{0, 0, 0, 0}, Json{0, "x", 0}, Json{0, 0, 2 * kMaxCoordinate}, 0};
+  }
+  std::vector<Json> operator()(const RenderOption::Flag&) const { return {0, "true"}; }
+  std::vector<Json> operator()(const auto&) const { return {"nosuch", "", 0, true}; }
+};
+// Values that an option must refuse.
+std::vector<Json> values_beyond(const RenderOption& option) { return std::visit(Beyond(), option.kind); }
+
+TEST(RenderOptions, HaveDifferentNamesAndAWord) {
+  std::set<std::string_view> names;
+  for (const RenderOption& option : render_options()) {
+    EXPECT_TRUE(names.insert(option.key).second) << option.key;
+    EXPECT_TRUE(option.short_name.empty() || names.insert(option.short_name).second) << option.key;
+    EXPECT_TRUE(option.help.ends_with('.')) << option.key;
+    EXPECT_FALSE(option.value_name().empty()) << option.key;
+  }
+}
+
+TEST(RenderOptions, DefaultsAreAllowedAndAreWhatAnEmptySceneGets) {
+  Json bare = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
+  for (const char* member : {"image", "render"}) bare.erase(member);
+  bare["camera"].erase("fov_degrees");
+  const RenderSettings settings = resolve(*load(bare), {});
+  for (const RenderOption& option : render_options()) {
+    ASSERT_TRUE(option.given(default_settings())) << option.key;
+    EXPECT_EQ(problem(option, value_of(option, default_settings())), "");
+    EXPECT_EQ(option.text(settings), option.text(default_settings())) << option.key;
+    EXPECT_EQ(option.given(load(bare)->render), option.in_scene) << option.key;
+  }
+}
+
+TEST(RenderOptions, AreReadUpToTheirLimitsAndWrittenAsTheyWere) {
+  for (const RenderOption& option : render_options()) {
+    ASSERT_GE(values_at_the_ends(option).size(), 2U) << option.key;
+    for (const Json& value : values_at_the_ends(option)) {
+      SCOPED_TRACE(std::string(option.key) + " " + value.dump());
+      ASSERT_EQ(problem(option, value), "");
+      const RenderSettings settings = read({{name_of(option.section), {{option.key, value}}}});
+      EXPECT_EQ(value_of(option, settings), value);
+      EXPECT_EQ(read(Json::parse(to_json(settings))), settings);
+      for (const RenderOption& other : render_options())
+        EXPECT_EQ(other.given(settings), &other == &option) << other.key;
+    }
+  }
+}
+
+TEST(RenderOptions, AreRefusedBeyondTheirLimits) {
+  for (const RenderOption& option : render_options())
+    for (const Json& value : values_beyond(option))
+      EXPECT_TRUE(problem(option, value).starts_with(option.pointer())) << option.key << " " << value;
+}
+
+TEST(RenderOptions, ThatSceneAndRequestShareHaveOneRange) {
+  for (const RenderOption& option : render_options()) {
+    Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
+    const std::string section(name_of(option.section));
+    for (const Json& value : values_at_the_ends(option)) {
+      scene[section][option.key] = value;
+      EXPECT_EQ(first_problem(scene), option.in_scene ? "accepted" : "/" + section) << option.key;
+      EXPECT_TRUE(!option.in_scene || value_of(option, load(scene)->render) == value) << option.key;
+    }
+    for (const Json& value : values_beyond(option)) {
+      scene[section][option.key] = value;
+      EXPECT_TRUE(first_problem(scene).starts_with(option.in_scene ? option.pointer() : "/" + section))
+          << option.key << " " << value;
+    }
+  }
+}
+
+TEST(RenderOptions, OfARequestComeBeforeThoseOfItsScene) {
+  for (const RenderOption& option : render_options()) {
+    if (!option.in_scene) continue;
+    const std::vector<Json> values = values_at_the_ends(option);
+    Json json = sample("orrery");  // moves
+    json[std::string(name_of(option.section))][option.key] = values[0];
+    const auto scene = load(json);
+    const RenderSettings asked = read({{name_of(option.section), {{option.key, values[1]}}}});
+    if (option.key == "time") {  // is held within the motion
+      EXPECT_EQ(resolve(*scene, {}).time, scene->motion.first);
+      EXPECT_EQ(resolve(*scene, asked).time, scene->motion.last);
+    } else {
+      EXPECT_EQ(value_of(option, resolve(*scene, {})), values[0]);
+      EXPECT_EQ(value_of(option, resolve(*scene, asked)), values[1]);
+    }
+  }
+}
+
+TEST(RenderOptions, WithoutAValueAreNotWritten) {
+  EXPECT_EQ(to_json({}), "{}");
+  EXPECT_EQ(read(Json::object()), RenderSettings());
+  RenderSettings settings;
+  settings.samples = 4;
+  settings.pan = Vec3d(0.5, -0.0, 1e12);
+  EXPECT_EQ(to_json(settings), R"({"camera":{"pan":[0.5,0,1e12]},"render":{"samples":4}})");
+  EXPECT_EQ(to_json(default_settings()).find("null"), std::string::npos);
+  EXPECT_EQ(read(Json::parse(to_json(default_settings()))), default_settings());
+}
+
+// No row is a list of names yet; one that is works as the others do.
+TEST(RenderOptions, MayBeListsOfNames) {
+  struct MoreSettings : RenderSettings {
+    std::optional<std::vector<std::string>> layers;
+  };
+  const RenderOption option{
+      .key = "layers",
+      .section = Section::image,
+      .kind = RenderOption::NameList{static_cast<RenderOption::Member<std::vector<std::string>>>(
+                                         &MoreSettings::layers),
+                                     [] {
+                                       return RenderOption::Names{"depth", "normal", "albedo"};
+                                     }},
+      .help = "What is written beside the picture."};
+  EXPECT_EQ(option.value_name(), "depth|normal|albedo");
+  EXPECT_EQ(option.form(), RenderOption::Form::strings);
+  const auto read_layers = [&](const Json& json) {
+    MoreSettings settings;
+    read_document(document_of(json), [&](Params& p) { option.read_request(p, settings); });
+    return settings;
+  };
+  EXPECT_FALSE(option.given(read_layers(Json::object())));
+  const MoreSettings two = read_layers({{"layers", {"normal", "depth"}}});
+  EXPECT_EQ(option.text(two), R"(["normal","depth"])");
+  EXPECT_EQ(option.text(read_layers({{"layers", Json::array()}})), "[]");
+  EXPECT_THROW(read_layers({{"layers", {"normal", "normals"}}}), InputError);
+  EXPECT_THROW(read_layers({{"layers", "normal"}}), InputError);
+}
+
+}  // namespace
+}  // namespace orrery::test
