@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Every sample scene gives one and the same PNG for any number of threads, rays a slice and instruction level. The
-# levels of the release are forced through the loader's tunables; a build of one level compares the rest.
+# Every sample scene gives one and the same PNG for any number of threads, rays a slice and instruction level. Lower
+# levels than the machine's are forced through the loader's tunables; a build of one level compares the rest.
 set -euo pipefail
-orrery=${ORRERY_BIN:-build/orrery}
+orrery=${ORRERY_BIN:-build/levels/orrery}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -13,8 +13,13 @@ level_with() { # TUNABLES: the level that the loader then picks
 lower=("glibc.cpu.hwcaps=-AVX512F" "glibc.cpu.hwcaps=-AVX512F,-AVX2")
 levels="$(level_with '') $(level_with "${lower[0]}") $(level_with "${lower[1]}")"
 echo "levels: $levels"
-if [ -d "$(dirname "$orrery")/glibc-hwcaps" ] && [ "$levels" = "x86-64-v4 x86-64-v4 x86-64-v4" ]; then
-  echo "the loader did not take the lower levels"
+case ${levels%% *} in
+  x86-64-v4) expected="x86-64-v4 x86-64-v3 x86-64-v2" ;;
+  x86-64-v3) expected="x86-64-v3 x86-64-v3 x86-64-v2" ;;
+  *) expected=$levels ;;
+esac
+if [ -d "$(dirname "$orrery")/glibc-hwcaps" ] && [ "$levels" != "$expected" ]; then
+  echo "the loader did not take the lower levels: expected $expected"
   exit 1
 fi
 
