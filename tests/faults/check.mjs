@@ -1,23 +1,31 @@
 #!/usr/bin/env node
-// Puts each fault of faults.mjs into a copy of the source tree and checks that the tests named there fail:
-//   node tests/faults/check.mjs [FOLDER [FAULT...]]
-// With numbers of faults, those alone. The copy and its build lie in FOLDER (source/ and build/, kept for the
-// next run) or in a temporary folder.
+// Puts each fault of faults.mjs into a copy of the source tree and checks that the tests named there fail.
 // Exits with 1 if a fault is not caught, if it can no longer be put in, or if a test fails without any.
+//
+//   node tests/faults/check.mjs [OPTION...] [FAULT...]     with numbers of faults, those alone
+//     --folder FOLDER       where the copy and its build lie, kept for the next run; else a temporary folder
+//     --shard K/N           every Nth fault from the Kth on: shards 1/N to N/N together are all of them
+//     --changed [REVISION]  those whose file differs from REVISION (default: where the branch left main)
+//     --compile             only checks that each file compiles with its fault, by the flags of build/
 
 import {spawnSync} from "node:child_process";
-import {existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
+import {existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync} from "node:fs";
 import {availableParallelism, tmpdir} from "node:os";
 import {dirname, join, resolve} from "node:path";
-import {fileURLToPath} from "node:url";
+import {parseArgs} from "node:util";
 
+import {compileFaults} from "./compile.mjs";
 import {faults as all} from "./faults.mjs";
+import {kRoot, planted} from "./planted.mjs";
 
-const kRoot = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const kTestMinutes = 2;  // a fault may also keep a test from ending
 const kNamesShown = 4;
+// These start the program; the other executables hold all that they test.
+const kTargetsOfTheProgram = ["test_commands", "test_http"];
 
 class Stop extends Error {}
+
+const isScript = (target) => target.endsWith(".mjs");
 
 function run(command, args, options = {}) {
   const result = spawnSync(command, args, {encoding: "utf8", maxBuffer: 1 << 28, ...options});
@@ -26,12 +34,48 @@ function run(command, args, options = {}) {
   return {passed: result.status === 0, output: `${result.stdout ?? ""}${result.stderr ?? ""}`};
 }
 
+function git(...args) {
+  const done = run("git", ["-C", kRoot, ...args]);
+  if (!done.passed) throw new Stop(`git ${args.join(" ")}: ${done.output.trim()}`);
+  return done.output;
+}
+
+// ---- which faults ----
+
+function changedFiles(revision) {
+  const base = revision || git("merge-base", "main", "HEAD").trim();
+  const untracked = git("ls-files", "-z", "--others", "--exclude-standard");
+  return new Set(`${git("diff", "-z", "--name-only", base)}${untracked}`.split("\0").filter(Boolean));
+}
+
+// Neighbours in the list are alike and often of one file, which may cost a long build: shards take turns.
+function shardOf(faults, text) {
+  const [, k, n] = text.match(/^(\d+)\/(\d+)$/)?.map(Number) ?? [];
+  if (!(k >= 1 && k <= n)) throw new Stop(`--shard: expected K/N with 1 <= K <= N, got "${text}"`);
+  return faults.filter((_, index) => index % n === k - 1);
+}
+
+function chosen(options, numbers) {
+  let faults = numbers.length === 0 ? all : all.filter(({fault}) => numbers.includes(String(fault)));
+  if (options.changed !== undefined) {
+    const changed = changedFiles(options.changed);
+    faults = faults.filter(({file}) => changed.has(file));
+  }
+  return options.shard === undefined ? faults : shardOf(faults, options.shard);
+}
+
+// Whether a pattern of --gtest_filter matches.
+const matches = (pattern, name) =>
+  new RegExp(`^${pattern.replace(/[.+^${}()|[\]\\]/g, "\\$&").replace(/\*/g, ".*").replace(/\?/g, ".")}$`)
+    .test(name);
+
+// ---- the copy ----
+
 // Makes `to` hold what git sees in the working tree. Files that are the same already stay untouched, so that
 // a second run builds little.
 function copyTree(to) {
-  const listed = run("git", ["-C", kRoot, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]);
-  if (!listed.passed) throw new Stop(listed.output);
-  const files = new Set(listed.output.split("\0").filter((file) => file && existsSync(join(kRoot, file))));
+  const listed = git("ls-files", "-z", "--cached", "--others", "--exclude-standard");
+  const files = new Set(listed.split("\0").filter((file) => file && statSync(join(kRoot, file), {throwIfNoEntry: false})?.isFile()));
   for (const file of files) {
     const content = readFileSync(join(kRoot, file)), target = join(to, file);
     if (existsSync(target) && readFileSync(target).equals(content)) continue;
@@ -59,13 +103,29 @@ class Copy {
                      {env: this.environment});
     if (!done.passed) throw new Stop(`cannot configure the copy:\n${done.output}`);
   }
-  buildTargets(targets) {
+  buildTargets(wanted) {
+    const targets = wanted.filter((target) => !isScript(target));
+    if (targets.length === 0) return {passed: true};
     const parallel = ["--parallel", String(availableParallelism())];
-    return run("cmake", ["--build", this.build, ...parallel, "--target", "orrery", ...targets],
+    const program = targets.some((target) => kTargetsOfTheProgram.includes(target)) ? ["orrery"] : [];
+    return run("cmake", ["--build", this.build, ...parallel, "--target", ...program, ...targets],
                {env: this.environment});
   }
   // Runs the tests that match the patterns; returns what ran, what failed, and the output.
   test(target, patterns) {
+    return isScript(target) ? this.testScript(target, patterns) : this.testExecutable(target, patterns);
+  }
+  testScript(target, patterns) {
+    const {output} = run("node", ["--test-reporter=tap", target], {
+      cwd: this.source, timeout: kTestMinutes * 60_000, killSignal: "SIGKILL",
+    });
+    const results = [...output.matchAll(/^(not )?ok \d+ - (.*?)(?: #.*)?$/gm)]
+      .map(([, failed, name]) => ({name, failed: failed !== undefined}))
+      .filter(({name}) => patterns.some((pattern) => matches(pattern, name)));
+    const failed = results.filter((result) => result.failed).map(({name}) => name);
+    return {passed: failed.length === 0, output, ran: results.map(({name}) => name), failed};
+  }
+  testExecutable(target, patterns) {
     const environment = {...this.environment};
     for (const name of Object.keys(environment)) if (name.startsWith("GTEST_")) delete environment[name];
     const filter = `--gtest_filter=${patterns.join(":")}`;
@@ -78,24 +138,21 @@ class Copy {
     return {passed, output, ran, failed: ran.filter((name) => !succeeded.has(name))};  // or did not end
   }
   // Calls act() while `fault` is in the copy.
-  withFault({file, from, to}, act) {
-    const path = join(this.source, file);
-    const text = existsSync(path) ? readFileSync(path, "utf8") : "";
-    const count = text.split(from).length - 1;
-    if (count !== 1) return {caught: false, text: `its place stands ${count} times in ${file}, not once`};
-    writeFileSync(path, text.replace(from, () => to));
+  withFault(fault, act) {
+    const path = join(this.source, fault.file);
+    const {text, original, problem} = planted(fault, this.source);
+    if (problem) return {caught: false, text: problem};
+    writeFileSync(path, text);
     try {
       return act();
     } finally {
-      writeFileSync(path, text);
+      writeFileSync(path, original);
     }
   }
 }
 
-// Whether a pattern of --gtest_filter matches.
-const matches = (pattern, name) =>
-  new RegExp(`^${pattern.replace(/[.+^${}()|[\]\\]/g, "\\$&").replace(/\*/g, ".*").replace(/\?/g, ".")}$`)
-    .test(name);
+// ---- the checks ----
+
 const tail = (text) => text.trim().split("\n").slice(-30).join("\n");
 const shown = (names) =>
   names.slice(0, kNamesShown).join(", ") +
@@ -126,30 +183,57 @@ function check(copy, fault) {
   });
 }
 
-function main(given, numbers) {
-  const faults = numbers.length === 0 ? all : all.filter(({fault}) => numbers.includes(String(fault)));
-  const folder = given ? resolve(given) : mkdtempSync(join(tmpdir(), "orrery-faults-"));
+// Returns how many faults were caught.
+function checkAll(faults, folder) {
+  const copy = new Copy(folder);
+  copy.configure();
+  checkSound(copy, faults);
+  let caught = 0;
+  for (const fault of faults) {
+    const verdict = check(copy, fault);
+    caught += verdict.caught;
+    const word = verdict.caught ? "caught" : "NOT CAUGHT";
+    console.log(`${word} ${fault.fault}: ${fault.about}: ${verdict.text}`);
+  }
+  return caught;
+}
+
+// ---- the command line ----
+
+// `--changed` alone, or with a revision after it.
+function readArguments() {
+  const args = process.argv.slice(2);
+  const bare = args.indexOf("--changed");
+  if (bare >= 0 && (bare + 1 === args.length || args[bare + 1].startsWith("-"))) args[bare] = "--changed=";
+  const text = {type: "string"};
+  return parseArgs({
+    args, options: {folder: text, shard: text, changed: text, compile: {type: "boolean"}}, allowPositionals: true,
+  });
+}
+
+async function main() {
+  const {values: options, positionals} = readArguments();
+  const faults = chosen(options, positionals);
+  const faces = new Set(faults.map(({fault}) => fault)).size;
+  if (options.compile) {
+    const compiling = await compileFaults(faults);
+    console.log(`faults: ${compiling} of ${faults.length} compile, faces of ${faces}`);
+    return compiling === faults.length;
+  }
+  const folder = options.folder ? resolve(options.folder) : mkdtempSync(join(tmpdir(), "orrery-faults-"));
   try {
-    const copy = new Copy(folder);
-    copy.configure();
-    checkSound(copy, faults);
-    let caught = 0;
-    for (const fault of faults) {
-      const verdict = check(copy, fault);
-      caught += verdict.caught;
-      const word = verdict.caught ? "caught" : "NOT CAUGHT";
-      console.log(`${word} ${fault.fault}: ${fault.about}: ${verdict.text}`);
-    }
-    const faces = new Set(faults.map(({fault}) => fault)).size;
+    const caught = faults.length === 0 ? 0 : checkAll(faults, folder);
     console.log(`faults: ${caught} of ${faults.length} caught, faces of ${faces}`);
-    process.exitCode = caught === faults.length ? 0 : 1;
-  } catch (error) {
-    if (!(error instanceof Stop)) throw error;
-    console.error(`faults: ${error.message}`);
-    process.exitCode = 1;
+    return caught === faults.length;
   } finally {
-    if (!given) rmSync(folder, {recursive: true, force: true});
+    if (!options.folder) rmSync(folder, {recursive: true, force: true});
   }
 }
 
-main(process.argv[2], process.argv.slice(3));
+try {
+  process.exitCode = (await main()) ? 0 : 1;
+} catch (error) {
+  if (!(error instanceof Stop) && !error.code?.startsWith("ERR_PARSE_ARGS")) throw error;
+  console.error(`faults: ${error.message}`);
+  process.exitCode = 1;
+}

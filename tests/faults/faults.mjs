@@ -4,15 +4,19 @@
 //   fault    number of the mistake; several entries are faces of one
 //   about    what is wrong, in a few words
 //   file     where; `from` stands there exactly once and becomes `to`
-//   target   the GoogleTest executable
-//   tests    patterns for its --gtest_filter; a test of each pattern must fail
+//   target   the GoogleTest executable, or a test script that needs neither the program nor a browser
+//   tests    patterns for --gtest_filter, or names of the script's tests; a test of each must fail
 
 import {gateFaults} from "./gate.mjs";
-import {serviceFaults} from "./service.mjs";
+import {imageFaults} from "./image.mjs";
 import {meshFaults} from "./meshes.mjs";
 import {motionFaults} from "./motion.mjs";
-import {structureFaults} from "./structures.mjs";
+import {pageFaults} from "./page.mjs";
+import {planFaults} from "./plan.mjs";
+import {serviceFaults} from "./service.mjs";
 import {stageFaults} from "./stages.mjs";
+import {structureFaults} from "./structures.mjs";
+import {studyFaults} from "./study.mjs";
 
 const kShapes = "core/shapes";
 const kNear = "N(T(1e-4))";  // the fixed epsilon of fault 4
@@ -443,7 +447,7 @@ const growth = [
     about: "the count of rays grows with the objects",
     file: "core/techniques/wavefront.cpp",
     from: "+= static_cast<std::uint64_t>(reflected_->rays.count);",
-    to: "+= static_cast<std::uint64_t>(reflected_->rays.count) * world_.primitives.size();",
+    to: "+= static_cast<std::uint64_t>(reflected_->rays.count) * geometry_.material_of.size();",
     target: "test_techniques",
     tests: ["Growth.IsByBranchesAndNotByObjects"],
   },
@@ -462,4 +466,5 @@ export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
   ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
+  ...planFaults, ...studyFaults, ...imageFaults, ...pageFaults,
 ];

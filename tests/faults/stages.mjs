@@ -18,7 +18,7 @@ export const stageFaults = [
         "rays.t_max.put(i, others);", "if (before[0] != before[0]) rays.t_max.put(i, others);", "PredictionOfShadows.*"),
   entry(14, "every proposal counts as a proof", "prediction.cpp", "open - active_rays(rays_, one)", "open",
         "PredictionCounts.TellProposalsFromProofs"),
-  entry(14, "a hit that is known is forgotten by its number", "single_walk.h", "{hits.t[i], hits.primitive[i]}",
+  entry(14, "a hit that is known is forgotten by its number", "single_ray.h", "{hits.t[i], hits.primitive[i]}",
         "{hits.t[i], IndexOf<T>(kNoPrimitive)}", "All/KnownHits.*"),
   entry(15, "distances go back to the places of others", "reordered.cpp",
         "hits.t[place_of(order, from)] = found.t[from];", "hits.t[from] = found.t[from];", "All/Reordering.*"),

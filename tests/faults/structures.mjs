@@ -24,7 +24,7 @@ export const structureFaults = [
   {
     fault: 14,
     about: "the first hit found in a cell is taken for the nearest",
-    file: `${kRoom}/single_walk.h`,
+    file: `${kRoom}/single_ray.h`,
     from: "bool open(T from) const { return from <= hit.t * kFarther<T>; }",
     to: "bool open(T from) const { return from >= 0 && hit.t > 0 && hit.primitive == kNoPrimitive; }",
     target: "test_accelerators",

@@ -1,0 +1,84 @@
+// Whether the code compiles with a fault in it, without a build: the file with the fault lies in a folder of
+// its own, which the compiler looks into first, and -fsyntax-only reads a source that includes it, with the
+// flags of build/compile_commands.json.
+
+import {spawn} from "node:child_process";
+import {existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
+import {availableParallelism, tmpdir} from "node:os";
+import {dirname, join} from "node:path";
+
+import {kRoot, planted} from "./planted.mjs";
+
+// The sources that build/ compiles, by their path from the root: {command, directory}.
+function readCommands() {
+  const file = join(kRoot, "build/compile_commands.json");
+  if (!existsSync(file)) throw new Error(`${file} is missing: run script/setup`);
+  const commands = new Map();
+  for (const {file: source, command, directory} of JSON.parse(readFileSync(file, "utf8")))
+    if (source.startsWith(`${kRoot}/core/`) || source.startsWith(`${kRoot}/server/`))
+      commands.set(source.slice(kRoot.length + 1), {command, directory});
+  return commands;
+}
+
+const includesOf = (path) =>
+  [...readFileSync(join(kRoot, path), "utf8").matchAll(/^#include "([^"]+)"/gm)]
+    .map((match) => match[1])
+    .filter((target) => existsSync(join(kRoot, target)));
+
+function reaches(path, target, seen = new Set()) {
+  if (path === target) return true;
+  if (seen.has(path)) return false;
+  seen.add(path);
+  return includesOf(path).some((next) => reaches(next, target, seen));
+}
+
+// The source to read for a fault in `file`: itself, its namesake, or one that includes it, best in its room.
+function sourceFor(file, commands) {
+  const namesake = file.replace(/\.h$/, ".cpp");
+  if (commands.has(namesake)) return namesake;
+  const users = [...commands.keys()].filter((source) => reaches(source, file));
+  return users.find((source) => dirname(source) === dirname(file) && includesOf(source).includes(file)) ??
+    users.find((source) => dirname(source) === dirname(file)) ?? users[0];
+}
+
+// What the compiler complains about; nothing if it compiles.
+async function complaintsOf(fault, commands) {
+  const {text, problem} = planted(fault);
+  if (problem) return problem;
+  const source = sourceFor(fault.file, commands);
+  if (!source) return `no source includes ${fault.file}`;
+  const folder = mkdtempSync(join(tmpdir(), "orrery-fault-"));
+  try {
+    const changed = join(folder, fault.file);
+    mkdirSync(dirname(changed), {recursive: true});
+    writeFileSync(changed, text);
+    const {command, directory} = commands.get(source);
+    const [compiler, ...flags] = command.slice(0, command.indexOf(" -o ")).split(" ");
+    const read = source === fault.file ? changed : join(kRoot, source);
+    const shell = [compiler, `-I${folder}`, ...flags, "-w", "-fsyntax-only", read].join(" ");
+    return await new Promise((done) => {
+      const child = spawn("sh", ["-c", shell], {cwd: directory, stdio: ["ignore", "ignore", "pipe"]});
+      let output = "";
+      child.stderr.on("data", (data) => { output += data; });
+      child.on("close", (status) => done(status === 0 ? "" : output.split("\n").find((line) => /error/.test(line)) ?? `status ${status}`));
+    });
+  } finally {
+    rmSync(folder, {recursive: true});
+  }
+}
+
+// Names those that do not compile; returns how many do.
+export async function compileFaults(faults) {
+  const commands = readCommands();
+  const waiting = [...faults];
+  let compiling = 0;
+  const work = async () => {
+    for (let fault = waiting.shift(); fault; fault = waiting.shift()) {
+      const complaints = await complaintsOf(fault, commands);
+      if (complaints) console.log(`DOES NOT COMPILE ${fault.fault}: ${fault.about}: ${complaints}`);
+      else ++compiling;
+    }
+  };
+  await Promise.all(Array.from({length: availableParallelism()}, work));
+  return compiling;
+}

@@ -1,0 +1,20 @@
+// Mistakes of the plan, as faults.mjs has them: fault 23 leaves out what the picture needs, or keeps what it does not.
+
+const entry = (about, from, to, ...tests) => ({
+  fault: 23, about, file: "core/plan/plan.cpp", from, to, target: "test_plan", tests: tests.map((name) => `Plan.${name}`),
+});
+
+export const planFaults = [
+  entry("an eye inside the only body sees no shadows", "!contains(shapes->bounds(0), plan_.camera.eye)", "true",
+        "LeavesOutShadowsOfALonelyConvexBody"),
+  entry("two bodies are taken for one", "scene_.primitive_count() != 1", "scene_.primitive_count() > 2",
+        "LeavesOutShadowsOfALonelyConvexBody", "LonelyMirrorNeedsNoDepth"),
+  entry("light that enters a lonely glass ball does not leave it", "if (!used.transmits && lonely_convex()",
+        "if (lonely_convex()", "LonelyMirrorNeedsNoDepth"),
+  entry("float is taken to be enough for every scene", "!(rounding <= detail / 10)", "false",
+        "ChoosesDoubleWhereFloatWouldShow"),
+  entry("a light of intensity 0 is followed", "light->intensity() != Vec3d(0)", "light->intensity() != Vec3d(-1)",
+        "LeavesOutLightThatNothingAnswers"),
+  entry("coloured glass weakens nothing", "plan_.specular && used.filters", "false",
+        "LeavesOutMirroredAndRefractedRays"),
+];
