@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <span>
 
 #include "core/base/error.h"
@@ -9,7 +10,8 @@
 namespace orrery {
 
 // A block of packed primitives of one kernel: which pack (5 bits) and which block of it (26 bits). The
-// highest bit is free for a structure's own use.
+// highest bit is free for a structure's own use. A world has one kernel for each type of shape in it and one
+// for its instances, so that 5 bits are enough for 31 types of shape.
 using BlockName = std::uint32_t;
 
 // Primitives in the order that a structure chose, packed in blocks of kBlock<T>.
@@ -17,7 +19,7 @@ template <class T>
 class Blocks {
  public:
   static constexpr std::size_t kSize = static_cast<std::size_t>(kBlock<T>);
-  static std::size_t pack_number(BlockName name) { return name >> kBlockBits & 31u; }
+  static std::size_t pack_number(BlockName name) { return name >> kBlockBits & (kMaxPacks - 1); }
   static std::uint32_t block_of(BlockName name) { return name & kBlockMask; }
 
   // Adds a block of 1 to kSize primitives of one kernel, named by their places in `primitives`.
@@ -28,6 +30,7 @@ class Blocks {
                                [kernel](const Making& m) { return m.kernel == kernel; });
     const std::size_t index = static_cast<std::size_t>(primitives[places.front()].index);
     if (making == makings_.end()) making = makings_.insert(making, {kernel, places.front() - index, {}});
+    assert(makings_.size() <= kMaxPacks);
     std::vector<int>& indices = making->indices;
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
     if (block > kBlockMask)
@@ -87,7 +90,7 @@ class Blocks {
 
  private:
   static constexpr int kBlockBits = 26;
-  static constexpr std::uint32_t kBlockMask = 0x03ffffffu;
+  static constexpr std::uint32_t kBlockMask = (1u << kBlockBits) - 1, kMaxPacks = 1u << 5;
   // A pack that is being put together. The kernel's primitives follow each other in the list.
   struct Making {
     const ShapeKernel<T>* kernel;
