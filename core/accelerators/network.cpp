@@ -95,15 +95,6 @@ Network random_network(std::uint32_t seed) {
   return network;
 }
 
-double loss_of(const Network& network, std::span<const NetworkExample> examples) {
-  double loss = 0;
-  for (const NetworkExample& example : examples) {
-    const double share = static_cast<double>(Thought(network, example.in).share[example.answer]);
-    loss -= std::log(std::max(share, 1e-30));
-  }
-  return loss / static_cast<double>(examples.size());
-}
-
 Network train_network(std::span<const NetworkExample> examples, const TrainingOptions& options) {
   Network network = random_network(options.seed);
   Adam adam;

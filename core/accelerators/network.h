@@ -84,9 +84,6 @@ struct TrainingOptions {
 // Random weights, as large as keep the sums about 1.
 Network random_network(std::uint32_t seed);
 
-// Cross entropy of the scores, mean over the examples, in nats. REQUIRES: there are examples.
-double loss_of(const Network& network, std::span<const NetworkExample> examples);
-
 // A network that has seen `steps` random lots of the examples (Adam: Kingma and Ba, 2014). One thread, a
 // fixed order and IEEE operations alone: the same everywhere. REQUIRES: there are examples.
 Network train_network(std::span<const NetworkExample> examples, const TrainingOptions& options = {});

@@ -104,10 +104,6 @@ template <class T>
 [[gnu::always_inline]] inline Lanes<T> load(const T* from) {
   return Lanes<T>(from, stdx::vector_aligned);
 }
-template <class T, class V>
-[[gnu::always_inline]] inline void store(const V& v, T* to) {
-  v.copy_to(to, stdx::vector_aligned);
-}
 
 // Smaller and larger of two numbers; where one is NaN the other is returned if it stands first, so an
 // accumulator passed first wins over a NaN (and -0 and +0 count as equal: the first is kept).

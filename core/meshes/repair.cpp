@@ -1,7 +1,5 @@
 #include "core/meshes/repair.h"
 
-#include "core/meshes/vertex_list.h"
-
 namespace orrery {
 
 std::size_t drop_degenerate(TriangleMesh& mesh) {
@@ -9,20 +7,6 @@ std::size_t drop_degenerate(TriangleMesh& mesh) {
     const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
     return safe_normalize(cross(b - a, c - a)) == Vec3d();
   });
-}
-
-std::size_t weld(TriangleMesh& mesh) {
-  TriangleMesh old = std::move(mesh);
-  VertexList vertices(!old.normals.empty(), !old.uvs.empty());
-  std::vector<std::uint32_t> renumbered;
-  renumbered.reserve(old.positions.size());
-  for (std::size_t i = 0; i < old.positions.size(); ++i)
-    renumbered.push_back(vertices.add(vertex_of(old, i)));
-  mesh = vertices.take();
-  mesh.triangles = std::move(old.triangles);
-  for (auto& triangle : mesh.triangles)
-    for (std::uint32_t& corner : triangle) corner = renumbered[corner];
-  return old.positions.size() - mesh.positions.size();
 }
 
 void drop_unused(TriangleMesh& mesh) {

@@ -13,10 +13,6 @@ namespace orrery {
 // meet them. Returns how many. Vertices stay.
 std::size_t drop_degenerate(TriangleMesh& mesh);
 
-// Makes one vertex of those with equal positions (-0 equals 0), normals and uvs: neighbouring triangles then
-// share their edges. Returns how many vertices went.
-std::size_t weld(TriangleMesh& mesh);
-
 // The place of each vertex: vertices that stand together have the same number. Numbers begin at 0.
 using PositionIndices = std::vector<std::uint32_t>;
 PositionIndices position_indices_of(const std::vector<Vec3d>& positions);

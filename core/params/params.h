@@ -25,8 +25,7 @@
 //
 // read_document() runs it over a document: values are checked and returned. describe() runs the very same
 // function over nothing: what it asks for is written down as JSON Schema. So the two cannot disagree, as long
-// as a read function asks for the same keys whatever values come back (choices go through pick, dispatch,
-// form).
+// as a read function asks for the same keys whatever values come back (choices go through pick and form).
 //
 // On an error the problem is noted and a harmless stand-in inside the range is returned, so that reading goes
 // on and the user sees all problems at once. Do nothing irreversible with a value before the read has ended.
@@ -142,20 +141,6 @@ class Params {
   // error.
   std::optional<std::size_t> pick(std::string_view key, std::string_view doc,
                                   std::span<const Choice> choices);
-
-  // pick() over a registry: each entry has `type`, `summary` and `read`, a function of (Params&, args...).
-  // Returns what the chosen entry's read returns, or a default-constructed one (a null pointer, an empty
-  // optional).
-  template <class Entries, class... Args>
-  auto dispatch(std::string_view key, std::string_view doc, const Entries& entries, Args&&... args) {
-    using Result = decltype(std::begin(entries)->read(*this, args...));
-    std::vector<Choice> choices;
-    choices.reserve(std::size(entries));
-    for (const auto& entry : entries) choices.push_back({entry.type, entry.summary});
-    const std::optional<std::size_t> index = pick(key, doc, choices);
-    if (!index) return Result();
-    return (std::begin(entries) + static_cast<std::ptrdiff_t>(*index))->read(*this, args...);
-  }
 
   // Which of several sets of keys is there: form({{"base", "top"}, {"point", "axis"}}) is 0 or 1. Exactly one
   // set must be given, and no key is in two of them. The keys themselves are then read as usual.

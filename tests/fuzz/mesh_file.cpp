@@ -32,7 +32,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     orrery::TriangleMesh mesh =
         orrery::read_mesh(std::string_view(reinterpret_cast<const char*>(data), size), limits);
     check(mesh, limits);
-    orrery::weld(mesh);
     orrery::drop_degenerate(mesh);
     if (mesh.triangles.empty()) return 0;
     const orrery::PositionIndices places = orrery::position_indices_of(mesh.positions);

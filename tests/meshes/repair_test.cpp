@@ -120,17 +120,5 @@ TEST(DropDegenerate, TakesOutWhatHasNoArea) {
   EXPECT_EQ(mesh.positions.size(), 7u);
 }
 
-TEST(Weld, JoinsVerticesEqualInEverything) {
-  TriangleMesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
-  mesh.triangles = {{0, 1, 2}, {3, 5, 4}};
-  TriangleMesh with_uvs = mesh;
-  with_uvs.uvs = {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {0.5, 0}, {1, 1}};
-  EXPECT_EQ(weld(mesh), 2u);
-  EXPECT_EQ(mesh.triangles, (decltype(mesh.triangles){{0, 1, 2}, {0, 3, 1}}));
-  EXPECT_EQ(weld(with_uvs), 1u);
-  EXPECT_EQ(with_uvs.triangles, (decltype(mesh.triangles){{0, 1, 2}, {0, 4, 3}}));
-}
-
 }  // namespace
 }  // namespace orrery::test

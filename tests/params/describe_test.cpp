@@ -55,25 +55,17 @@ TEST(Describe, SharesPointsAndColours) {
   EXPECT_EQ(schema["required"], json::array({"eye"}));
 }
 
-struct Entry {
-  std::string_view type, summary;
-  int (*read)(Params&);
-};
-constexpr Entry kEntries[] = {
-    {"sphere", "A ball.", [](Params& p) { return p.positive("radius", ""), 1; }},
-    {"cylinder", "A column.",
-     [](Params& p) {
-       const bool infinite = p.form({{"base", "top"}, {"point", "axis"}}) == 1;
-       p.point(infinite ? "point" : "base", "");
-       infinite ? p.direction("axis", "") : p.point("top", "");
-       return 2;
-     }},
-};
-
 TEST(Describe, WalksEveryTypeAndForm) {
-  const json schema = schema_of([](Params& p) {
-    p.each("objects", "Things.", {.min = 1, .max = 9}, [](Params& object) {
-      object.dispatch("type", "Kind.", kEntries);
+  constexpr Choice kTypes[] = {{"sphere", "A ball."}, {"cylinder", "A column."}};
+  const json schema = schema_of([&](Params& p) {
+    p.each("objects", "Things.", {.min = 1, .max = 9}, [&](Params& object) {
+      if (object.pick("type", "Kind.", kTypes) == 0u) {
+        object.positive("radius", "");
+      } else {
+        const bool infinite = object.form({{"base", "top"}, {"point", "axis"}}) == 1;
+        object.point(infinite ? "point" : "base", "");
+        infinite ? object.direction("axis", "") : object.point("top", "");
+      }
       object.reference("material", "Name.", Names("material"));
     });
   });

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <memory>
 
 #include "core/base/error.h"
 #include "core/params/params.h"
@@ -188,29 +187,22 @@ TEST(Reader, OptionalObjectsReadTheirDefaults) {
             Lines{R"(: missing key "camera": expected an object)"});
 }
 
-struct Entry {
-  std::string_view type, summary;
-  std::unique_ptr<std::string> (*read)(Params&);
-};
-constexpr Entry kEntries[] = {
-    {"sphere", "A ball.", [](Params& p) { return std::make_unique<std::string>(p.text("name", "", 9)); }},
-    {"plane", "A floor.", [](Params&) { return std::make_unique<std::string>("plane"); }},
-};
-
-TEST(Reader, DispatchRunsTheTypeNamed) {
-  const auto read = [](Params& p) {
-    const std::unique_ptr<std::string> made = p.dispatch("type", "", kEntries);
-    if (p.has("name")) {
-      ASSERT_TRUE(made);
-      EXPECT_EQ(*made, "x");
-    }
+TEST(Reader, PickTellsTheTypeNamed) {
+  constexpr Choice kTypes[] = {{"sphere", "A ball."}, {"plane", "A floor."}};
+  std::optional<std::size_t> type;
+  const auto read = [&](Params& p) {
+    type = p.pick("type", "", kTypes);
+    if (type == 0u) p.text("name", "", 9);
   };
   EXPECT_EQ(problems(R"({"type": "sphere", "name": "x"})", read), Lines{});
+  EXPECT_EQ(type, 0u);
   EXPECT_EQ(problems(R"({"type": "shpere", "leftover": 1})", read),
             Lines{R"(/type: expected "sphere" or "plane", got "shpere" (did you mean "sphere"?))"});
+  EXPECT_EQ(type, std::nullopt);
   EXPECT_EQ(problems(R"({"leftover": 1})", read),
             Lines{R"(: missing key "type": expected "sphere" or "plane")"});
   EXPECT_EQ(problems(R"({"type": "plane", "nom": 1})", read), Lines{R"(: unknown key "nom")"});
+  EXPECT_EQ(type, 1u);
 }
 
 TEST(Reader, FormIsToldByTheKeysThatAreThere) {
