@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/covers.h"
@@ -104,22 +105,33 @@ TEST(Symmetry, SplittingTrianglesChangesNothing) {
   EXPECT_LE(largest_difference(trace_picture(whole, small()), trace_picture(split, small())), 1e-12);
 }
 
+// A ball inside the first opaque body of a scene, where no light gets; null if it has no such body.
+Json hidden_ball(const Json& scene) {
+  const auto ball = [&scene](const Vec3d& center, double radius) {
+    return Json{{"type", "sphere"},
+                {"center", numbers(center)},
+                {"radius", radius},
+                {"material", scene["materials"].begin().key()}};
+  };
+  for (const Json& object : scene["objects"]) {
+    if (scene["materials"][object["material"].get<std::string>()]["type"] != "rough") continue;
+    if (object["type"] == "sphere") return ball(vector(object["center"]), object["radius"].get<double>() / 2);
+    if (object["type"] == "cylinder" && object.contains("base")) {
+      const Vec3d base = vector(object["base"]), top = vector(object["top"]);
+      return ball((base + top) / 2, std::min(object["radius"].get<double>(), length(top - base) / 2) / 2);
+    }
+  }
+  return {};
+}
+
 TEST(Symmetry, WhatNobodySeesChangesNothing) {
   covers("R31");
   for (const std::string& name : kScenes) {
     Json scene = sample(name);
     const Picture expected = render(scene, small());
-    const std::string material = scene["materials"].begin().key();
-    // Inside an opaque body, where no light gets: a ball within the first rough ball or box.
-    for (const Json& object : scene["objects"])
-      if (object["type"] == "sphere" &&
-          scene["materials"][object["material"].get<std::string>()]["type"] == "rough") {
-        scene["objects"].push_back({{"type", "sphere"},
-                                    {"center", object["center"]},
-                                    {"radius", object["radius"].get<double>() / 2},
-                                    {"material", material}});
-        break;
-      }
+    const Json ball = hidden_ball(scene);
+    ASSERT_TRUE(ball.is_object()) << name << " has no opaque body to hide a ball in";
+    scene["objects"].push_back(ball);
     EXPECT_TRUE(identical(expected, render(scene, small()))) << name;
   }
 }

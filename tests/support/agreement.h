@@ -24,7 +24,8 @@ struct Findings {
   }
 };
 
-// The same primitives at the same distances, to the bit, and the same shadows.
+// The same primitives at the same distances, to the bit, and the same shadows. REQUIRES: some ray meets
+// something; to agree that all miss proves nothing.
 template <class T>
 void expect_agreement(const Findings<T>& found, const Findings<T>& expected) {
   int wrong = 0, met = 0;
@@ -33,6 +34,7 @@ void expect_agreement(const Findings<T>& found, const Findings<T>& expected) {
     wrong += a.primitive != b.primitive || a.t != b.t;
     met += b.met();
   }
+  EXPECT_GT(met, 0) << "no ray meets anything";
   EXPECT_EQ(wrong, 0) << "of " << expected.closest.size() << " rays, of which " << met << " meet something";
   EXPECT_EQ(found.occluded, expected.occluded);
 }

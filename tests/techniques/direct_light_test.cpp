@@ -32,7 +32,6 @@ TEST(Ambient, EvenSkyShowsTheAlbedo) {
 
 // A closed room whose walls send out Le and mirror nothing shows Le everywhere.
 TEST(Ambient, FillsAClosedRoom) {
-  covers("R2");
   const Json room = scene_of("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
                              "{'ambient': [2, 2, 2], 'materials': {'white': {'ka': 0.5, 'kd': 0}}}");
   Random random(2);

@@ -62,6 +62,30 @@ TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
   EXPECT_NEAR(Tracing(mirrors(.99, 0), limits(10)).trace(kUpright()).cut, .90, .005);
 }
 
+// A room with walls of glass that mirror `albedo` of the light meeting them upright, under a sky of
+// 1 / (1 - albedo): each wall sends 1 into the room and mirrors `albedo` of what meets it inside. After n
+// walls a ray has gathered (1 - albedo^n) / (1 - albedo), and 1 / (1 - albedo) in the end, which the ledger
+// completes.
+TEST(ClosedRoom, WallsThatShineAndMirrorSumTheGeometricSeries) {
+  covers("R2");
+  const auto seen = [](double albedo, int walls) {
+    const double sky = 1 / (1 - albedo);
+    const Json room = scene_with(
+        json("{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}"),
+        Json{{"materials",
+              {{"white",
+                {{"type", "refractive"}, {"kd", nullptr}, {"ior", index_of(albedo)}, {"fresnel", "exact"}}}}},
+             {"background", {sky, sky, sky}}});
+    const Answer answer = Tracing(room, limits(walls)).trace(kUpright());
+    EXPECT_NEAR(answer.radiance.x + answer.cut * sky, sky, 1e-12 * sky);
+    return answer.radiance.x;
+  };
+  EXPECT_NEAR(seen(0.5, 32), 2, 1e-9);
+  EXPECT_NEAR(seen(0.5, 4), 1.875, 1e-12);
+  EXPECT_NEAR(seen(0.9, 9), 6.126, 5e-4);
+  EXPECT_NEAR(seen(0.9, 32), (1 - std::pow(0.9, 32)) / 0.1, 1e-11);
+}
+
 TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
   covers("E4");
   const Picture picture = render(mirrors(1, 0), [] {
