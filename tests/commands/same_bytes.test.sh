@@ -2,7 +2,7 @@
 # Every sample scene gives one and the same PNG for any number of threads, rays a slice and instruction level. The
 # levels of the release are forced through the loader's tunables; a build of one level compares the rest.
 set -euo pipefail
-orrery=${ORRERY_BIN:-build/orrery}
+orrery=${TEST_ORRERY:-build/orrery}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
