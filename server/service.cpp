@@ -8,6 +8,7 @@
 
 #include "core/base/version.h"
 #include "server/http/cors.h"
+#include "server/readings.h"
 #include "server/routes/access.h"
 #include "server/routes/problem.h"
 #include "server/routes/routes.h"
@@ -112,19 +113,8 @@ void Service::stop() {
 }
 
 Response Service::metrics() {
-  const Readings readings{.ready = app_.readiness() == "ok",
-                          .renders_running = app_.admission().running(),
-                          .renders_waiting = app_.admission().waiting(),
-                          .orbits = app_.orbits().count(),
-                          .jobs = app_.jobs().under_way(),
-                          .connections = server_.connections(),
-                          .connections_refused = server_.refused(),
-                          .rays = app_.rays(),
-                          .scene_bytes = app_.scenes().bytes(),
-                          .asset_bytes = app_.assets().bytes(),
-                          .picture_bytes = app_.pictures().bytes(),
-                          .job_bytes = app_.jobs().bytes()};
-  return text_response(200, "text/plain; version=0.0.4; charset=utf-8", metrics_.text(readings))
+  return text_response(200, "text/plain; version=0.0.4; charset=utf-8",
+                       metrics_.text(read_metrics(app_, server_)))
       .set("Cache-Control", "no-store");
 }
 
@@ -164,6 +154,7 @@ void Service::note(const Request& request, const Response& response, std::uint64
   const double ms = milliseconds_since(request.start);
   metrics_.count_request(request.route ? request.route->pattern : "", request.method, response.status,
                          ms / 1000, gone);
+  if (response.refusal) metrics_.count_refusal(response.refusal);
   nlohmann::ordered_json fields = {{"id", request.id},
                                    {"method", request.method},
                                    {"path", request.path.substr(0, 200)},

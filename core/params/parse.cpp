@@ -33,13 +33,26 @@ std::string in_plain_words(std::string text) {
   return text;
 }
 
+// After a value nlohmann expects only the closing bracket, though a comma may follow as well, and is what
+// people forget.
+std::string comma_missing(const std::string& reason) {
+  constexpr std::string_view kUnexpected = "unexpected ", kExpected = "; expected ";
+  const std::size_t split = reason.find(kExpected);
+  if (!reason.starts_with(kUnexpected) || split == reason.npos) return reason;
+  const std::string expected = reason.substr(split + kExpected.size());
+  const std::string came = reason.substr(kUnexpected.size(), split - kUnexpected.size());
+  if (expected != "'}'" && expected != "']'") return reason;
+  return came == "end of the text" ? expected + " is missing at the end of the text"
+                                   : "a comma or " + expected + " is missing before " + came;
+}
+
 // `what` is nlohmann's message: "[json.exception...] parse error at line 1, column 2: syntax error while
 // parsing value - invalid literal; last read: '...'; expected ...". Keeps the reason, and what was expected
 // where no text of the document stands before it: that may be long and need not be valid UTF-8.
 std::string reason_of(std::string_view what) {
   const std::size_t dash = what.find(" - ");
   const std::string_view reason = dash == what.npos ? what : what.substr(dash + 3);
-  return in_plain_words(std::string(reason.substr(0, reason.find("; last read: "))));
+  return comma_missing(in_plain_words(std::string(reason.substr(0, reason.find("; last read: ")))));
 }
 
 class TreeBuilder {

@@ -31,6 +31,14 @@ std::string read_file(const std::string& path) {
 
 constexpr Scope scope_number(std::size_t i) { return static_cast<Scope>(1U << i); }  // of kScopes
 
+std::string read_key(const std::string& path) {
+  std::string key = read_file(path);
+  if (key.size() < kLeastKeyBytes)
+    throw InputError(path, "a key has at least " + std::to_string(kLeastKeyBytes) + " bytes, got " +
+                               std::to_string(key.size()));
+  return key;
+}
+
 Access::Holder read_holder(const std::string& line) {
   std::istringstream words(line);
   std::string name, scopes, hash, more;
@@ -60,25 +68,26 @@ void Access::reload() {
 
 Access::Known Access::read() const {
   Known known;
-  if (!share_key_file_.empty()) {
-    known.key = read_file(share_key_file_);
-    if (known.key.size() < kLeastKeyBytes)
-      throw InputError(share_key_file_, "a key has at least " + std::to_string(kLeastKeyBytes) +
-                                            " bytes, got " + std::to_string(known.key.size()));
-  }
-  if (tokens_file_.empty()) return known;
-  std::istringstream lines(read_file(tokens_file_));
+  std::vector<Problem> problems;
+  const auto note = [&](const std::string& place, const auto& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      problems.push_back({place, error.problems()[0].detail});
+    }
+  };
+  if (!share_key_file_.empty()) note(share_key_file_, [&] { known.key = read_key(share_key_file_); });
+  std::string tokens;
+  if (!tokens_file_.empty()) note(tokens_file_, [&] { tokens = read_file(tokens_file_); });
+  std::istringstream lines(tokens);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     line.resize(std::min(line.find('#'), line.size()));
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    try {
-      known.holders.push_back(read_holder(line));
-    } catch (const InputError& error) {
-      throw InputError(tokens_file_ + ":" + std::to_string(number), error.problems()[0].detail);
-    }
+    note(tokens_file_ + ":" + std::to_string(number), [&] { known.holders.push_back(read_holder(line)); });
   }
+  if (!problems.empty()) throw InputError(std::move(problems));
   return known;
 }
 

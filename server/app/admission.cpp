@@ -27,11 +27,12 @@ double cost_of(const Plan& plan) {
 double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
 
 void Quota::require_one_more(int all, int own) const {
-  if (all >= most) throw Busy(std::to_string(all) + " " + what + " already (" + limit + ")", retry_s);
+  if (all >= most)
+    throw OverLimit(std::to_string(all) + " " + what + " already (" + limit + ")", retry_s, limit);
   if (own >= std::max(1, most / 2))
     throw ClientBusy(std::to_string(own) + " " + what +
                          " already that you asked for, which is half of all (" + limit + ")",
-                     retry_s);
+                     retry_s, limit);
 }
 
 int Admission::running() const {
@@ -61,16 +62,21 @@ Admission::Ticket Admission::enter_again(const Demand& demand, const std::stop_t
 
 Admission::Ticket Admission::wait_for_turn(std::unique_lock<std::mutex>& lock, const Demand& demand,
                                            bool may_be_dropped, const std::stop_token& stop) {
+  const auto asked = timer_.now();
   const auto place = queue_.emplace(queue_.end(), demand, may_be_dropped, virtual_finish(demand));
   start_next();
   place->changed.wait(lock, stop, [&] { return place->state != Waiting::waits; });
   const auto state = place->state;
   queue_.erase(place);
-  if (state == Waiting::starts) return Ticket(*this, demand.lane, demand.cost);  // who gives up finds it soon
+  if (state == Waiting::starts) {  // who gives up finds it soon
+    waits_[static_cast<int>(demand.lane)].Observe(
+        std::chrono::duration<double>(timer_.now() - asked).count());
+    return Ticket(*this, demand.lane, demand.cost);
+  }
   start_next();
   if (state == Waiting::waits) throw Cancelled();
   throw ClientBusy("Others wait for their turn, and you had asked for more than they (queue_rays)",
-                   retry_after_s(demand.lane));
+                   retry_after_s(demand.lane), "queue_rays");
 }
 
 void Admission::start_next() {
@@ -155,8 +161,9 @@ void Admission::make_room(const Demand& demand) {
       const double all = waiting_cost(lane), mine = waiting_cost(lane, &demand.client);
       const std::string told = "Work of " + in_millions(all) + " rays waits already, at most " +
                                in_millions(limits_.queue_rays) + " may (queue_rays)";
-      if (mine > 0 && mine < all) throw ClientBusy(told + ", much of it yours", retry_after_s(lane));
-      throw Busy(told, retry_after_s(lane));
+      if (mine > 0 && mine < all)
+        throw ClientBusy(told + ", much of it yours", retry_after_s(lane), "queue_rays");
+      throw OverLimit(told, retry_after_s(lane), "queue_rays");
     }
     greediest->state = Waiting::dropped;
     greediest->changed.notify_one();

@@ -9,14 +9,16 @@
 
 #include "core/base/error.h"
 #include "core/model/plan.h"
+#include "server/app/meters.h"
 #include "server/app/timer.h"
+#include "server/http/over_limit.h"
 
 namespace orrery {
 
 // This client has so much work waiting that what it asks for now, or last, is turned away.
-class ClientBusy : public Busy {
+class ClientBusy : public OverLimit {
  public:
-  using Busy::Busy;
+  using OverLimit::OverLimit;
 };
 
 // Holds that there is a place for one more of `what`, of which there are `all` now, `own` of them this
@@ -82,6 +84,8 @@ class Admission {
   int waiting() const;
   // Whether small work would be turned away.
   bool full() const;
+  // From asking for a turn to having it.
+  const SecondsHistogram& waits(Lane lane) const { return waits_[static_cast<int>(lane)]; }
 
   // Waits for a place. Throws ClientBusy or Busy if too much waits already, with the time after which that
   // will be done at the rate measured; Cancelled once `stop` is requested.
@@ -118,7 +122,8 @@ class Admission {
 
   const Limits limits_;
   const Timer& timer_;
-  mutable std::mutex mutex_;  // guards all below
+  SecondsHistogram waits_[2];  // of a lane
+  mutable std::mutex mutex_;   // guards all below
   Queue queue_;
   int running_ = 0, running_batch_ = 0;
   Lane latest_ = Lane::interactive;  // that had a turn

@@ -26,7 +26,7 @@ App::App(const Settings& settings, Timer& timer)
       assets_(settings.asset_store_bytes),
       pictures_(settings.picture_bytes),
       admission_({settings_.renders, settings_.queue_rays}, timer),
-      services_{pool_, admission_, timer, drains_.get_token(), ends_.get_token(), rays_},
+      services_{pool_, admission_, timer, drains_.get_token(), ends_.get_token(), meters_},
       streams_(settings_.connections),
       orbits_(services_, settings.orbits, settings.request_seconds),
       jobs_(services_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
@@ -80,6 +80,7 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
         });
         return picture;
       });
+  ++(found.made_here ? meters_.pictures_made : meters_.pictures_found);
   if (!found.made_here) timing.queue += milliseconds_since(start);
   return {found.picture, found.made_here};
 }

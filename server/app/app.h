@@ -12,6 +12,7 @@
 #include "server/app/admission.h"
 #include "server/app/asset_store.h"
 #include "server/app/jobs.h"
+#include "server/app/meters.h"
 #include "server/app/orbit_hub.h"
 #include "server/app/pictures.h"
 #include "server/app/render_services.h"
@@ -55,7 +56,7 @@ class App {
   Jobs& jobs() { return jobs_; }
   const Pictures& pictures() const { return pictures_; }
   const Admission& admission() const { return admission_; }
-  std::uint64_t rays() const { return rays_; }  // traced so far
+  const Meters& meters() const { return meters_; }
 
   // Calls `work` to read a text of so many bytes that may name assets: in its turn if that takes long. Throws
   // what `work` does, ClientBusy, Busy, Cancelled, TimedOut.
@@ -91,7 +92,7 @@ class App {
 
   Timer& timer_;
   std::stop_source drains_, ends_;
-  std::atomic<std::uint64_t> rays_{0};
+  Meters meters_;
   Access access_;
   WorkerPool pool_;
   const Settings settings_;  // with what is left to the machine decided

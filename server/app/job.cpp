@@ -104,6 +104,10 @@ void Job::end(std::exception_ptr error) {
   error_ = error;
   state_ = !error ? JobState::done : cancelled_.stop_requested() ? JobState::cancelled : JobState::failed;
   ended_ = services_.timer.now();
+  Meters& meters = services_.meters;
+  ++(state_ == JobState::done        ? meters.jobs_done
+     : state_ == JobState::cancelled ? meters.jobs_cancelled
+                                     : meters.jobs_failed);
   spec_.scene.reset();
   changed_.notify_all();
 }

@@ -1,23 +1,15 @@
 #pragma once
 
-#include <cstdint>
+#include <prometheus/metric_family.h>
+
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace orrery {
 
-// What is true of the service at one moment.
-struct Readings {
-  bool ready = false;
-  int renders_running = 0, renders_waiting = 0;
-  std::size_t orbits = 0, jobs = 0, connections = 0;
-  std::uint64_t connections_refused = 0, rays = 0;  // since the start
-  std::size_t scene_bytes = 0, asset_bytes = 0, picture_bytes = 0, job_bytes = 0;
-};
-
-// Counts for Prometheus. Safe from any thread.
+// Counts of requests and answers, and the text that Prometheus reads. Safe from any thread.
 class Metrics {
  public:
   Metrics();
@@ -27,13 +19,16 @@ class Metrics {
   void count_request(std::string_view route, std::string_view method, int status, double seconds,
                      bool client_left);
 
-  // All in Prometheus' text format, version 0.0.4.
-  std::string text(const Readings& readings) const;
+  // A request that was understood but refused: by the limit of that name, or as the service ends
+  // ("draining").
+  void count_refusal(std::string_view reason);
+
+  // These counts and `more` in Prometheus' text format, version 0.0.4.
+  std::string text(std::vector<prometheus::MetricFamily> more) const;
 
  private:
   struct Families;
   std::unique_ptr<Families> families_;
-  mutable std::mutex reading_;  // one at a time brings gauges up to date
 };
 
 }  // namespace orrery

@@ -5,6 +5,7 @@
 
 #include "core/render/renderer.h"
 #include "server/app/admission.h"
+#include "server/app/meters.h"
 
 namespace orrery {
 
@@ -13,15 +14,16 @@ struct RenderServices {
   WorkerPool& pool;
   Admission& admission;
   Timer& timer;
-  std::stop_token draining;          // no new work; what goes on and on ends at its next frame
-  std::stop_token ends;              // all work ends at once
-  std::atomic<std::uint64_t>& rays;  // traced so far
+  std::stop_token draining;  // no new work; what goes on and on ends at its next frame
+  std::stop_token ends;      // all work ends at once
+  Meters& meters;
 
   // A frame; the caller has a ticket. Throws Cancelled.
   RenderResult render(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                       const RenderControl& control) const {
     RenderResult result = render_frame(scene, plan, storage, pool, control);
-    rays += result.stats.counts.rays.total();
+    meters.rays += result.stats.counts.rays.total();
+    meters.render.Observe((result.stats.build_ms + result.stats.trace_ms) / 1000);
     return result;
   }
 };

@@ -24,7 +24,7 @@ class SceneStore {
 
   struct Kept {
     Prepared scene;
-    bool known;  // it was kept before
+    bool known = false;  // it was kept before
   };
   // Keeps the scene that `document` says; loads it only if it is not here, also not as a cached one. Throws
   // what load_scene() does, and InputError if the scene alone is over the limit.

@@ -1,6 +1,11 @@
 #include "server/app/settings.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/number.h"
 
 namespace orrery {
 namespace {
@@ -8,56 +13,120 @@ namespace {
 using S = Settings;
 constexpr std::int64_t kMost = 1'000'000'000'000;
 
-constexpr std::array kLimits{
-    Limit{"body_bytes", &S::body_bytes, 1, 1'000'000'000, "Bytes of a request's body"},
-    Limit{"bodies_bytes", &S::bodies_bytes, 1, kMost, "Bytes of the bodies of all requests at one time"},
-    Limit{"store_bytes", &S::store_bytes, 1, kMost, "Bytes of scenes kept, by estimate"},
-    Limit{"asset_bytes", &S::asset_bytes, 1, 4'000'000'000, "Bytes of a mesh file"},
-    Limit{"asset_store_bytes", &S::asset_store_bytes, 1, kMost, "Bytes of mesh files kept"},
-    Limit{"picture_bytes", &S::picture_bytes, 0, kMost, "Bytes of pictures kept for who asks again"},
-    Limit{"connections", &S::connections, 1, 10'000,
-          "Connections at once; streams may have three quarters of them, one client half of these"},
-    Limit{"renders", &S::renders, 0, 1024, "Pieces of work at once; 0: two a thread"},
-    Limit{"queue_rays", &S::queue_rays, 1, kMost,
-          "Estimated rays (pixels x samples x levels of depth) of what waits for its turn, in each lane"},
-    Limit{"interactive_rays", &S::interactive_rays, 1, kMost,
-          "Estimated rays of one picture, beyond which it takes its turn among the long work"},
-    Limit{"orbits", &S::orbits, 1, 10'000, "Different orbits streamed at once; half of them for one client"},
-    Limit{"orbit_frames", &S::orbit_frames, 1, 1'000'000, "Frames of an orbit"},
-    Limit{"request_seconds", &S::request_seconds, 1, 1'000'000, "Seconds that one picture may take"},
-    Limit{"jobs", &S::jobs, 1, 1000, "Jobs under way at once; half of them for one client"},
-    Limit{"jobs_kept", &S::jobs_kept, 1, 1'000'000, "Jobs that are kept after their end"},
-    Limit{"job_bytes", &S::job_bytes, 1, kMost, "Bytes of the pictures of all jobs"},
-    Limit{"job_seconds", &S::job_seconds, 1, 1'000'000, "Seconds that one job may take"},
-    Limit{"job_kept_seconds", &S::job_kept_seconds, 1, 10'000'000,
-          "Seconds that a job is kept after its end"},
-    Limit{"grace_seconds", &S::grace_seconds, 1, 1'000'000,
-          "Seconds that running requests get when the service ends"},
+constexpr std::array kSettings{
+    Setting{"host", &S::host, "NAME", "Name or address to listen on"},
+    Setting{"port", &S::port, "N", "Port; 0: a free one", 0, 65535},
+    Setting{"health_port", &S::health_port, "N",
+            "Port of /healthz, /readyz and /metrics, which answer however busy the service is; 0: a free one",
+            0, 65535},
+    Setting{"threads", &S::threads, "N", "Threads that render; 0: one a core", 0, 1024},
+    Setting{"tokens_file", &S::tokens_file, "FILE",
+            "Who may use the service: lines of `orrery token`; read again on SIGHUP"},
+    Setting{"share_key_file", &S::share_key_file, "FILE",
+            "At least 32 secret bytes that links are signed with (POST /v1/shares); read again on SIGHUP"},
+    Setting{"cors_origins", &S::cors_origins, "ORIGIN,...",
+            "Origins whose pages may use the service, also its own if that is a domain and there are no "
+            "tokens; * for all"},
+    Setting{"insecure", &S::insecure, "", "Allow an address that other machines can reach without tokens"},
+    // The limits.
+    Setting{"body_bytes", &S::body_bytes, "N", "Bytes of a request's body", 1, 1'000'000'000},
+    Setting{"bodies_bytes", &S::bodies_bytes, "N", "Bytes of the bodies of all requests at one time", 1,
+            kMost},
+    Setting{"store_bytes", &S::store_bytes, "N", "Bytes of scenes kept, by estimate", 1, kMost},
+    Setting{"asset_bytes", &S::asset_bytes, "N", "Bytes of a mesh file", 1, 4'000'000'000},
+    Setting{"asset_store_bytes", &S::asset_store_bytes, "N", "Bytes of mesh files kept", 1, kMost},
+    Setting{"picture_bytes", &S::picture_bytes, "N", "Bytes of pictures kept for who asks again", 0, kMost},
+    Setting{"connections", &S::connections, "N",
+            "Connections at once; streams may have three quarters of them, one client half of these", 1,
+            10'000},
+    Setting{"renders", &S::renders, "N", "Pieces of work at once; 0: two a thread", 0, 1024},
+    Setting{"queue_rays", &S::queue_rays, "N",
+            "Estimated rays (pixels x samples x levels of depth) of what waits for its turn, in each lane", 1,
+            kMost},
+    Setting{"interactive_rays", &S::interactive_rays, "N",
+            "Estimated rays of one picture, beyond which it takes its turn among the long work", 1, kMost},
+    Setting{"orbits", &S::orbits, "N", "Different orbits streamed at once; half of them for one client", 1,
+            10'000},
+    Setting{"orbit_frames", &S::orbit_frames, "N", "Frames of an orbit", 1, 1'000'000},
+    Setting{"request_seconds", &S::request_seconds, "N", "Seconds that one picture may take", 1, 1'000'000},
+    Setting{"jobs", &S::jobs, "N", "Jobs under way at once; half of them for one client", 1, 1000},
+    Setting{"jobs_kept", &S::jobs_kept, "N", "Jobs that are kept after their end", 1, 1'000'000},
+    Setting{"job_bytes", &S::job_bytes, "N", "Bytes of the pictures of all jobs", 1, kMost},
+    Setting{"job_seconds", &S::job_seconds, "N", "Seconds that one job may take", 1, 1'000'000},
+    Setting{"job_kept_seconds", &S::job_kept_seconds, "N", "Seconds that a job is kept after its end", 1,
+            10'000'000},
+    Setting{"grace_seconds", &S::grace_seconds, "N",
+            "Seconds that running requests get when the service ends", 1, 1'000'000},
+};
+constexpr std::size_t kFirstLimit = 8;
+static_assert(kSettings[kFirstLimit].name == "body_bytes");
+
+std::int64_t whole_number(std::string_view text, std::int64_t min, std::int64_t max) {
+  constexpr double kMostExact = 1e15;  // 1e6 is a whole number, too
+  auto number = number_in<std::int64_t>(text);
+  if (const auto real = number_in<double>(text);
+      !number && real && std::trunc(*real) == *real && std::abs(*real) < kMostExact)
+    number = static_cast<std::int64_t>(*real);
+  if (number && *number >= min && *number <= max) return *number;
+  throw InputError("", "expected a whole number from " + std::to_string(min) + " to " + std::to_string(max) +
+                           ", got " + std::string(text.substr(0, 80)));
+}
+
+bool truth_value(std::string_view text) {
+  constexpr std::array<std::string_view, 4> kYes{"true", "1", "yes", "on"}, kNo{"false", "0", "no", "off"};
+  if (std::find(kYes.begin(), kYes.end(), text) != kYes.end()) return true;
+  if (std::find(kNo.begin(), kNo.end(), text) != kNo.end()) return false;
+  throw InputError("", "expected true or false, got " + std::string(text.substr(0, 80)));
+}
+
+std::vector<std::string> list_of(std::string_view text) {
+  std::vector<std::string> entries;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    entries.emplace_back(text.substr(0, comma));
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return entries;
+}
+
+struct TextOf {
+  std::string operator()(const std::string& value) const { return value; }
+  std::string operator()(bool value) const { return value ? "true" : "false"; }
+  std::string operator()(std::chrono::seconds value) const { return std::to_string(value.count()); }
+  std::string operator()(const std::vector<std::string>& list) const {
+    std::string all;
+    for (const std::string& entry : list) all += (all.empty() ? "" : ",") + entry;
+    return all;
+  }
+  std::string operator()(double value) const { return std::to_string(static_cast<std::int64_t>(value)); }
+  std::string operator()(int value) const { return std::to_string(value); }
+  std::string operator()(std::size_t value) const { return std::to_string(value); }
 };
 
 }  // namespace
 
-std::span<const Limit> limits() { return kLimits; }
+std::span<const Setting> all_settings() { return kSettings; }
+std::span<const Setting> limits() { return all_settings().subspan(kFirstLimit); }
 
-double Limit::value(const Settings& settings) const {
-  return std::visit(
-      [&](auto member) {
-        const auto& field = settings.*member;
-        if constexpr (std::is_same_v<std::decay_t<decltype(field)>, std::chrono::seconds>)
-          return static_cast<double>(field.count());
-        else
-          return static_cast<double>(field);
-      },
-      setting);
+std::string Setting::text(const Settings& settings) const {
+  return std::visit([&](auto field) { return TextOf()(settings.*field); }, member);
 }
 
-void Limit::set(Settings& settings, std::int64_t value) const {
+void Setting::read(Settings& settings, std::string_view text) const {
   std::visit(
-      [&](auto member) {
-        auto& field = settings.*member;
-        field = std::decay_t<decltype(field)>(value);
+      [&](auto field) {
+        auto& target = settings.*field;
+        using Value = std::decay_t<decltype(target)>;
+        if constexpr (std::is_same_v<Value, std::string>)
+          target = text;
+        else if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+          target = list_of(text);
+        else if constexpr (std::is_same_v<Value, bool>)
+          target = truth_value(text);
+        else
+          target = Value(whole_number(text, min, max));
       },
-      setting);
+      member);
 }
 
 }  // namespace orrery

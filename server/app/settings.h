@@ -45,20 +45,26 @@ struct Settings {
   std::vector<std::string> cors_origins;
 };
 
-// A limit that can be set, under the one name that flags (--body-bytes), environment (ORRERY_BODY_BYTES),
-// files, /v1/limits and errors use.
-struct Limit {
+// One setting, under the one name that flags (--body-bytes), environment (ORRERY_BODY_BYTES), files,
+// /v1/limits and errors use.
+struct Setting {
   using Member = std::variant<std::size_t Settings::*, int Settings::*, double Settings::*,
-                              std::chrono::seconds Settings::*>;
+                              std::chrono::seconds Settings::*, bool Settings::*, std::string Settings::*,
+                              std::vector<std::string> Settings::*>;
   std::string_view name;
-  Member setting;
-  std::int64_t min, max;
+  Member member;
+  std::string_view value;  // what the help calls its value
   std::string_view help;
+  std::int64_t min = 0, max = 0;  // of a number; numbers are whole
 
-  double value(const Settings& settings) const;
-  // REQUIRES: min <= value <= max.
-  void set(Settings& settings, std::int64_t value) const;
+  // The value as read() takes it; the entries of a list have commas between them.
+  std::string text(const Settings& settings) const;
+  // Throws InputError without a place for a text that is no value of it.
+  void read(Settings& settings, std::string_view text) const;
 };
-std::span<const Limit> limits();
+
+// All of them; and those that /v1/limits tells, which are numbers.
+std::span<const Setting> all_settings();
+std::span<const Setting> limits();
 
 }  // namespace orrery

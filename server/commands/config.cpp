@@ -1,12 +1,13 @@
 #include "server/commands/config.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
 #include "core/params/json.h"
 #include "core/params/suggest.h"
 #include "server/commands/scene_file.h"
@@ -14,7 +15,9 @@
 namespace orrery {
 namespace {
 
-constexpr const char *kService = "Service", *kLimits = "Limits";
+constexpr std::string_view kPrefix = "ORRERY_";
+// What the page's curl lines call their user's token. It is no setting, and yet no mistake.
+constexpr std::string_view kTokenOfClients = "ORRERY_TOKEN";
 
 std::string flag_of(std::string_view name) {
   std::string flag = "--" + std::string(name);
@@ -23,148 +26,170 @@ std::string flag_of(std::string_view name) {
 }
 
 std::string variable_of(std::string_view name) {
-  std::string variable = "ORRERY_" + std::string(name);
+  std::string variable = std::string(kPrefix) + std::string(name);
   std::transform(variable.begin(), variable.end(), variable.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return variable;
 }
 
-std::string name_of(const CLI::Option& option) {
-  std::string name = option.get_lnames().at(0);
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
+bool is_list(const Setting& setting) {
+  return std::holds_alternative<std::vector<std::string> Settings::*>(setting.member);
 }
 
-std::vector<CLI::Option*> settings_of(const CLI::App& app) {
-  std::vector<CLI::Option*> options;
-  for (const CLI::Option* option : app.get_options())
-    if (option->get_group() == kService || option->get_group() == kLimits)
-      options.push_back(const_cast<CLI::App&>(app).get_option("--" + option->get_lnames().at(0)));
-  return options;
+template <class Spell>
+std::vector<std::string> names_as(const Spell& spell) {
+  std::vector<std::string> names;
+  for (const Setting& setting : all_settings()) names.push_back(spell(setting.name));
+  return names;
 }
 
-template <class Value>
-CLI::Option* add(CLI::App& app, const char* name, Value& value, const char* type, const char* help) {
-  return app.add_option(flag_of(name), value, help)
-      ->type_name(type)
-      ->envname(variable_of(name))
-      ->group(kService);
+// Says that `name` does not exist, and which of `known` was probably meant.
+Problem unknown(const std::string& place, const std::string& what, const std::string& name,
+                const std::vector<std::string>& known) {
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  return {place, what + did_you_mean(name, views)};
 }
 
-void add_limit(CLI::App& app, const Limit& limit, Settings& settings) {
-  CLI::Option* option = app.add_option_function<std::int64_t>(
-      flag_of(limit.name), [&limit, &settings](std::int64_t value) { limit.set(settings, value); },
-      std::string(limit.help));
-  option->check(CLI::Range(limit.min, limit.max).description(""))
-      ->type_name("N")
-      ->envname(variable_of(limit.name))
-      ->default_str(std::to_string(static_cast<std::int64_t>(limit.value(settings))))
-      ->group(kLimits);
+void add_flag(CLI::App& app, const Setting& setting, const char* group) {
+  const std::string help(setting.help), flag = flag_of(setting.name);
+  const bool takes_value = !std::holds_alternative<bool Settings::*>(setting.member);
+  CLI::Option* option = takes_value ? app.add_option(flag, help) : app.add_flag(flag, help);
+  option->envname(variable_of(setting.name))->group(group);
+  if (takes_value) option->type_name(std::string(setting.value))->default_str(setting.text(Settings()));
+  if (is_list(setting)) option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-// A value in a file as the texts that its flag would have.
-std::vector<std::string> texts_of(const nlohmann::json& value, bool list) {
-  if (value.is_string()) return {value.get<std::string>()};
-  if (value.is_number_float() && std::trunc(value.get<double>()) == value.get<double>() &&
-      std::abs(value.get<double>()) < 1e15)
-    return {std::to_string(value.get<std::int64_t>())};  // 1e6 is a whole number
-  if (value.is_boolean() || value.is_number()) return {value.dump()};
+void take(Settings& settings, const Setting& setting, const std::string& text, const std::string& place,
+          const std::string& before, std::vector<Problem>& problems) {
+  try {
+    setting.read(settings, text);
+  } catch (const InputError& error) {
+    problems.push_back({place, before + error.problems()[0].detail});
+  }
+}
+
+// A value of a file as the text that its flag would have. Throws InputError.
+std::string text_of(const nlohmann::json& value, bool list) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean() || value.is_number()) return value.dump();
   if (!list || !value.is_array())
     throw InputError(
         "", list ? "expected a text or a list of texts" : "expected a number, a text, true or false");
-  std::vector<std::string> texts;
+  std::string texts;
   for (const auto& entry : value) {
     if (!entry.is_string()) throw InputError("", "expected a list of texts");
-    texts.push_back(entry.get<std::string>());
+    texts += (texts.empty() ? "" : ",") + entry.get<std::string>();
   }
   return texts;
 }
 
-void take(CLI::Option& option, const nlohmann::json& value) {
-  const std::vector<std::string> texts = texts_of(value, option.get_delimiter() != '\0');
-  if (option.count() > 0 || texts.empty()) return;
-  for (const std::string& text : texts) option.add_result(text);
-  try {
-    option.run_callback();
-  } catch (const CLI::ParseError& error) {
-    throw InputError("", error.what());
+void read_members(Settings& settings, const nlohmann::json& json, const std::string& path,
+                  std::vector<Problem>& problems) {
+  for (const auto& [name, value] : json.items()) {
+    const auto rows = all_settings();
+    const auto row = std::find_if(rows.begin(), rows.end(),
+                                  [&wanted = name](const Setting& s) { return s.name == wanted; });
+    const std::string before = "/" + name.substr(0, 80) + ": ";
+    if (row == rows.end()) {
+      problems.push_back(unknown(path, before + "unknown key", name,
+                                 names_as([](std::string_view known) { return std::string(known); })));
+      continue;
+    }
+    try {
+      take(settings, *row, text_of(value, is_list(*row)), path, before, problems);
+    } catch (const InputError& error) {
+      problems.push_back({path, before + error.problems()[0].detail});
+    }
   }
 }
 
-nlohmann::ordered_json json_of_text(const std::string& text) {
-  const auto value = nlohmann::json::parse(text, nullptr, false);
-  if (value.is_number() || value.is_boolean()) return value;
-  return text;
+void read_file_of_settings(Settings& settings, const std::string& path, std::vector<Problem>& problems) {
+  try {
+    const Document document = parse_document(read_file(path));
+    if (json_of(document).is_object())
+      read_members(settings, json_of(document), path, problems);
+    else
+      problems.push_back({path, "expected an object"});
+  } catch (const InputError& error) {
+    for (const Problem& p : error.problems())
+      problems.push_back({path, (p.pointer.empty() ? "" : p.pointer + ": ") + p.detail});
+  } catch (const FileError& error) {
+    problems.push_back({"--config", error.what()});
+  }
+}
+
+// From the command line or, as CLI11 asks for that, else from the environment.
+void read_flag(Settings& settings, const Setting& setting, const CLI::Option& option,
+               std::vector<Problem>& problems) {
+  if (option.count() == 0) return;
+  std::string text;
+  for (const std::string& part : option.results()) text += (text.empty() ? "" : ",") + part;
+  const char* variable = std::getenv(variable_of(setting.name).c_str());
+  const bool from_variable = variable && text == variable;
+  take(settings, setting, text, from_variable ? variable_of(setting.name) : flag_of(setting.name), "",
+       problems);
+}
+
+void refuse_unknown_variables(std::vector<Problem>& problems) {
+  const std::vector<std::string> known = names_as(variable_of);
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string_view text(*entry);
+    const std::string name(text.substr(0, text.find('=')));
+    const bool ours = name.starts_with(kPrefix) && name != kTokenOfClients;
+    if (ours && std::find(known.begin(), known.end(), name) == known.end())
+      problems.push_back(unknown(name, "there is no such setting", name, known));
+  }
+}
+
+void refuse_unknown_flags(const std::vector<std::string>& words, const CLI::App& app,
+                          std::vector<Problem>& problems) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) known.push_back("--" + option->get_lnames().at(0));
+  bool after_flag = false;  // what follows one that does not exist is its value
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    const bool flag = word.starts_with('-');
+    if (flag)
+      problems.push_back(unknown(name, "there is no such flag", name, known));
+    else if (!after_flag)
+      problems.push_back({word, "was not expected here"});
+    after_flag = flag && name == word;
+  }
 }
 
 }  // namespace
 
-void add_settings(CLI::App& app, Settings& settings) {
-  const auto port = CLI::Range(0, 65535).description("");
-  add(app, "host", settings.host, "NAME", "Name or address to listen on")->capture_default_str();
-  add(app, "port", settings.port, "N", "Port; 0: a free one")->check(port)->capture_default_str();
-  add(app, "health_port", settings.health_port, "N",
-      "Port of /healthz, /readyz and /metrics, which answer however busy the service is; 0: a free one")
-      ->check(port)
-      ->capture_default_str();
-  add(app, "threads", settings.threads, "N", "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->capture_default_str();
-  add(app, "tokens_file", settings.tokens_file, "FILE",
-      "Who may use the service: lines of `orrery token`; read again on SIGHUP");
-  add(app, "share_key_file", settings.share_key_file, "FILE",
-      "At least 32 secret bytes that links are signed with (POST /v1/shares); read again on SIGHUP");
-  add(app, "cors_origins", settings.cors_origins, "ORIGIN,...",
-      "Origins whose pages may use the service, also its own if that is a domain and there are no "
-      "tokens; * for all")
-      ->delimiter(',');
-  app.add_flag("--insecure", settings.insecure,
-               "Allow an address that other machines can reach without tokens")
-      ->envname(variable_of("insecure"))
-      ->group(kService);
-  for (const Limit& limit : limits()) add_limit(app, limit, settings);
+void add_setting_flags(CLI::App& app) {
+  app.allow_extras();
+  const auto service = all_settings().first(all_settings().size() - limits().size());
+  for (const Setting& setting : service) add_flag(app, setting, "Service");
+  for (const Setting& setting : limits()) add_flag(app, setting, "Limits");
 }
 
-void read_config_file(CLI::App& app, const std::string& path) {
-  const auto fail = [&](const std::string& place, const std::string& detail) {
-    throw InputError(path, (place.empty() ? "" : place + ": ") + detail);
-  };
-  const Document document = [&] {
-    try {
-      return parse_document(read_file(path));
-    } catch (const InputError& error) {
-      throw InputError(path, error.what());
-    }
-  }();
-  const nlohmann::json& json = json_of(document);
-  if (!json.is_object()) fail("", "expected an object");
-  const std::vector<CLI::Option*> options = settings_of(app);
-  std::vector<std::string> names;
-  for (const CLI::Option* option : options) names.push_back(name_of(*option));
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  for (const auto& [name, value] : json.items()) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) fail("/" + name.substr(0, 80), "unknown key" + did_you_mean(name, known));
-    try {
-      take(*options[static_cast<std::size_t>(found - names.begin())], value);
-    } catch (const InputError& error) {
-      fail("/" + name, error.problems()[0].detail);
-    }
-  }
+Settings read_settings(const CLI::App& app, const std::string& config_file, std::vector<Problem>& problems) {
+  Settings settings;
+  if (!config_file.empty()) read_file_of_settings(settings, config_file, problems);
+  for (const Setting& setting : all_settings())
+    read_flag(settings, setting, *app.get_option(flag_of(setting.name)), problems);
+  refuse_unknown_variables(problems);
+  refuse_unknown_flags(app.remaining(), app, problems);
+  return settings;
 }
 
-std::string config_text(const CLI::App& app) {
+std::string config_text(const Settings& settings) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const CLI::Option* option : settings_of(app)) {
-    auto& value = json[name_of(*option)];
-    if (option->get_delimiter() != '\0') {
-      value = option->reduced_results();
-    } else if (option->get_expected_max() == 0) {
-      value = option->count() > 0 && option->as<bool>();
-    } else {
-      value = json_of_text(option->count() > 0 ? option->results().back() : option->get_default_str());
-    }
-  }
+  const auto json_of_value = [](const auto& value) -> nlohmann::ordered_json {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::chrono::seconds>)
+      return value.count();
+    else if constexpr (std::is_same_v<Value, double>)
+      return static_cast<std::int64_t>(value);
+    else
+      return value;
+  };
+  for (const Setting& setting : all_settings())
+    json[std::string(setting.name)] =
+        std::visit([&](auto member) { return json_of_value(settings.*member); }, setting.member);
   return json.dump(2) + "\n";
 }
 

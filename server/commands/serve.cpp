@@ -23,25 +23,35 @@ Examples:
   orrery serve --config orrery.json                settings by their names: {"port": 80, "body_bytes": 1000000}
   curl --data-binary @scenes/paper.json http://127.0.0.1:8080/v1/render -o paper.png
 
-A setting comes from its flag, or else its variable (ORRERY_PORT), or else the file, or else is as shown.
+A setting comes from its flag, or else its variable (ORRERY_PORT), or else the file, or else is as shown. Names
+that do not exist are refused in all three; ORRERY_TOKEN alone is left to clients.
+All that is posted or put is kept in memory only and ends with the service.
 SIGTERM or Ctrl-C ends it: running requests are answered, streams stop after a frame. A second one ends it at once.
 SIGHUP reads the files of tokens and keys again.
 )";
 
 struct Options {
-  Settings settings;
   bool quiet = false, check_config = false, print_config = false;
   std::string config, log = isatty(STDERR_FILENO) ? "text" : "json";
 };
 
-void require_sense(const Settings& settings) {
+// Appends what is wrong with settings of which each is a value that it may have.
+void check(const Settings& settings, std::vector<Problem>& problems) {
   if (settings.port == settings.health_port && settings.port != 0)
-    throw InputError("--health-port", "is the same as --port, " + std::to_string(settings.port));
-  if (settings.insecure || !settings.tokens_file.empty() || is_loopback(settings.host)) return;
-  throw InputError("--host",
-                   settings.host +
-                       " can be reached from other machines, and everyone who reaches it may render; "
-                       "give --tokens-file, or --insecure if that is meant");
+    problems.push_back({"--health-port", "is the same as --port, " + std::to_string(settings.port)});
+  try {
+    if (!settings.insecure && settings.tokens_file.empty() && !is_loopback(settings.host))
+      problems.push_back({"--host", settings.host +
+                                        " can be reached from other machines, and everyone who reaches it "
+                                        "may render; give --tokens-file, or --insecure if that is meant"});
+  } catch (const Error& error) {  // there is no such address
+    problems.push_back({"--host", error.what()});
+  }
+  try {
+    const Access access(settings.tokens_file, settings.share_key_file);
+  } catch (const InputError& error) {
+    problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+  }
 }
 
 void announce(const Service& service, const Settings& settings) {
@@ -67,7 +77,10 @@ int run_service(const Settings& settings, const Log& log) {
   }
   announce(service, settings);
   log.write(LogLevel::info, "start",
-            {{"version", kVersion}, {"instructions", instruction_level()}, {"port", service.port()}});
+            {{"version", kVersion},
+             {"instructions", instruction_level()},
+             {"port", service.port()},
+             {"storage", "in memory only: what is posted is forgotten when the service ends"}});
   service.run();
   {
     const std::lock_guard lock(mutex);
@@ -77,12 +90,14 @@ int run_service(const Settings& settings, const Log& log) {
   return kDone;
 }
 
-int serve(CLI::App& app, const Options& options) {
-  if (!options.config.empty()) read_config_file(app, options.config);
-  const Settings& settings = options.settings;
-  require_sense(settings);
-  if (options.print_config) std::cout << config_text(app);
-  if (options.check_config) const Access access(settings.tokens_file, settings.share_key_file);
+int serve(const CLI::App& app, const Options& options) {
+  std::vector<Problem> problems;
+  const Settings settings = read_settings(app, options.config, problems);
+  check(settings, problems);
+  if (options.log != "json" && options.log != "text")
+    problems.push_back({"--log", "expected text or json, got " + options.log.substr(0, 80)});
+  if (!problems.empty()) throw InputError(std::move(problems));
+  if (options.print_config) std::cout << config_text(settings);
   if (options.print_config || options.check_config) return kDone;
   const Log log(options.log == "json" ? LogForm::json : LogForm::text,
                 options.quiet ? LogLevel::warning : LogLevel::info);
@@ -96,14 +111,13 @@ Command add_serve(CLI::App& root) {
   CLI::App* app = root.add_subcommand("serve", "Answer requests over HTTP, and show the page");
   app->footer(kExamples);
   app->add_option("--config", options->config, "JSON file of settings")->type_name("FILE");
-  app->add_flag("--check-config", options->check_config, "Say what is wrong with the settings, and end");
+  app->add_flag("--check-config", options->check_config, "Say all that is wrong with the settings, and end");
   app->add_flag("--print-config", options->print_config,
                 "Print all settings as a file for --config, and end");
   app->add_flag("--quiet", options->quiet, "Log warnings and errors only");
   app->add_option("--log", options->log, "Form of the log on standard error; text on a terminal, else json")
-      ->check(CLI::IsMember({"text", "json"}).description(""))
       ->type_name("text|json");
-  add_settings(*app, options->settings);
+  add_setting_flags(*app);
   return {app, [app, options] { return serve(*app, *options); }};
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Example:
-  orrery token alice --scopes read,render >> tokens      prints the token, and adds its line to the file
+  orrery token alice --scopes read,render,write >> tokens      prints the token, and adds its line to the file
   orrery serve --tokens-file tokens
   curl -H "Authorization: Bearer $TOKEN" http://127.0.0.1:8080/v1/limits
 )";

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "core/base/error.h"
+#include "server/http/over_limit.h"
 
 namespace orrery {
 
@@ -20,7 +20,7 @@ class Budget {
     explicit Share(Budget& from) : from_(from) {}
     ~Share() { from_.taken_ -= bytes_; }
     Share(const Share&) = delete;
-    // Takes what it has not yet of so many bytes. Throws Busy if there are not so many left.
+    // Takes what it has not yet of so many bytes. Throws OverLimit if there are not so many left.
     void grow(std::size_t bytes) {
       if (bytes <= bytes_) return;
       from_.take_more(bytes - bytes_);
@@ -38,9 +38,9 @@ class Budget {
     std::size_t taken = taken_;
     do {
       if (bytes > most_ - taken)
-        throw Busy("Bodies of " + std::to_string(taken) + " bytes are being read already, of at most " +
-                       std::to_string(most_) + " (" + name_ + ")",
-                   kRetry_s);
+        throw OverLimit("Bodies of " + std::to_string(taken) + " bytes are being read already, of at most " +
+                            std::to_string(most_) + " (" + name_ + ")",
+                        kRetry_s, name_);
     } while (!taken_.compare_exchange_weak(taken, taken + bytes));
   }
 

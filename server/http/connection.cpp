@@ -180,8 +180,10 @@ std::string Connection::read_body(const Head& head, const BodyLimit& limit,
   }
   const std::size_t length = *head.content_length;
   if (length > limit.bytes)
-    throw HttpError(413, "The body has " + std::to_string(length) + " bytes, at most " +
-                             std::to_string(limit.bytes) + " are allowed (" + limit.name + ")");
+    throw HttpError(413,
+                    "The body has " + std::to_string(length) + " bytes, at most " +
+                        std::to_string(limit.bytes) + " are allowed (" + limit.name + ")",
+                    {}, limit.name);
   if (const auto expect = head.header("Expect")) {
     if (!equal_ignoring_case(*expect, "100-continue"))
       throw HttpError(417, "Expected no Expect but 100-continue");

@@ -67,6 +67,7 @@ struct Response {
   // For the log: rays traced for this answer, and what went wrong inside.
   std::uint64_t rays = 0;
   std::string note = {};
+  const char* refusal = nullptr;  // the limit that refused the request, or "draining" if the service ends
 
   Response& set(std::string_view name, std::string value);  // replaces
 };
@@ -77,14 +78,17 @@ Response json_response(int status, std::string json);
 // A refusal that is about HTTP itself.
 class HttpError : public Error {
  public:
-  HttpError(int status, const std::string& detail, Fields headers = {})
-      : Error(detail), status_(status), headers_(std::move(headers)) {}
+  // limit: the name of the one that was hit, if one was, which lives as long as the program.
+  HttpError(int status, const std::string& detail, Fields headers = {}, const char* limit = nullptr)
+      : Error(detail), status_(status), headers_(std::move(headers)), limit_(limit) {}
   int status() const noexcept { return status_; }
   const Fields& headers() const noexcept { return headers_; }
+  const char* limit() const noexcept { return limit_; }
 
  private:
   int status_;
   Fields headers_;
+  const char* limit_;
 };
 
 // "Not Found"

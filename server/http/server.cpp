@@ -119,8 +119,9 @@ class HttpServer::Parts {
     Request request;
     request.start = Clock::now();
     request.id = make_request_id();
-    const Busy busy(std::to_string(options_.max_connections) + " connections are open already (connections)",
-                    1);
+    const OverLimit busy(
+        std::to_string(options_.max_connections) + " connections are open already (connections)", 1,
+        "connections");
     const Response response = handler_.refuse(request, std::make_exception_ptr(busy));
     return response_head(response, {.keep_alive = false}) + response.body;
   }

@@ -36,8 +36,8 @@ nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ord
                                  {"motion_keys", kMaxKeys},
                                  {"mesh_vertices", MeshLimits{}.vertices},
                                  {"mesh_triangles", MeshLimits{}.triangles}};
-  for (const Limit& limit : limits())
-    json[std::string(limit.name)] = static_cast<std::int64_t>(limit.value(settings));
+  for (const Setting& limit : limits()) json[std::string(limit.name)] = std::stoll(limit.text(settings));
+  json["storage"] = "memory";  // of scenes, assets, pictures and jobs: they end with the service
   json["options"] = options;
   return json;
 }

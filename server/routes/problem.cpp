@@ -33,9 +33,10 @@ ordered_json list_of(const std::vector<Problem>& problems) {
   return {{"errors", std::move(errors)}};
 }
 
-Response try_later(int status, const Busy& error, std::string_view request_id) {
+Response try_later(int status, const Busy& error, std::string_view request_id, const char* refusal) {
   Response response = respond(status, error.what(), request_id);
   response.set("Retry-After", std::to_string(static_cast<int>(std::ceil(error.retry_after_s()))));
+  response.refusal = refusal;
   return response;
 }
 
@@ -56,6 +57,7 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
   } catch (const HttpError& e) {
     Response response = respond(e.status(), e.what(), request_id);
     for (const auto& [name, value] : e.headers()) response.set(name, value);
+    response.refusal = e.limit();
     return response;
   } catch (const MalformedJson& e) {
     return malformed(e, request_id);
@@ -65,11 +67,15 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
   } catch (const NotFound& e) {
     return respond(404, e.what(), request_id);
   } catch (const ClientBusy& e) {
-    return try_later(429, e, request_id);
+    return try_later(429, e, request_id, e.limit());
+  } catch (const OverLimit& e) {
+    return try_later(503, e, request_id, e.limit());
   } catch (const Busy& e) {
-    return try_later(503, e, request_id);
+    return try_later(503, e, request_id, "draining");
   } catch (const TimedOut& e) {
-    return respond(504, e.what(), request_id);
+    Response response = respond(504, e.what(), request_id);
+    response.refusal = "request_seconds";
+    return response;
   } catch (const Cancelled& e) {
     return respond(499, e.what(), request_id);
   } catch (const std::exception& e) {

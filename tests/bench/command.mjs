@@ -2,7 +2,7 @@
 
 import { spawnSync } from "node:child_process";
 
-export const kOrrery = process.env.ORRERY_BIN ?? "build/orrery";
+export const kOrrery = process.env.TEST_ORRERY ?? "build/orrery";
 
 export function exists_program(name) {
   return spawnSync("bash", ["-c", 'command -v "$1"', "bash", name]).status === 0;

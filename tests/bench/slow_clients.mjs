@@ -7,7 +7,7 @@ import http from "node:http";
 import { setTimeout as sleep } from "node:timers/promises";
 import { start_service } from "./daemon.mjs";
 
-const kSeconds = Number(process.env.ORRERY_ATTACK_S ?? 60); // of each attack
+const kSeconds = Number(process.env.BENCH_ATTACK_S ?? 60); // of each attack
 const kConnections = 1000, kRate = 200; // a second
 const kEvery_ms = 50;
 const kSpare = 4; // descriptors that come and go with the samples themselves

@@ -127,8 +127,8 @@ const kSubjects = {
     return scene_of("A bumpy ball of 70,000 triangles", objects, [0.7, 0.9, 3]);
   },
   bunny: () => {
-    const from = `${process.env.ORRERY_MESHES}/stanford-bunny.obj`;
-    if (!process.env.ORRERY_MESHES || !existsSync(from)) return undefined;
+    const from = `${process.env.BENCH_MESHES}/stanford-bunny.obj`;
+    if (!process.env.BENCH_MESHES || !existsSync(from)) return undefined;
     copyFileSync(from, `${kFolder}/bunny.obj`);
     const objects = [
       { type: "mesh", file: "bunny.obj", material: "chalk" },
@@ -155,7 +155,7 @@ export function write_subjects() {
   for (const [name, make] of Object.entries(kSubjects)) {
     const path = `${kFolder}/${name}.json`, made = make();
     if (made === undefined) {
-      console.error(`${name} left out: its file is looked for in the folder that ORRERY_MESHES names`);
+      console.error(`${name} left out: its file is looked for in the folder that BENCH_MESHES names`);
       continue;
     }
     if (typeof made === "string") copyFileSync(made, path);

@@ -37,7 +37,7 @@ export function skip_without_browser() {
 
 // Starts `orrery serve` on a free port, or on `port`. Returns {url, stop()}; stop() ends it by its own pid.
 export async function start_daemon(port = 0) {
-  const program = process.env.ORRERY_BIN ?? join(kRoot, "build/orrery");
+  const program = process.env.TEST_ORRERY ?? join(kRoot, "build/orrery");
   const child = spawn(program, ["serve", "--port", String(port), "--health-port", "0"], { stdio: ["ignore", "pipe", "pipe"] });
   const gone = new Promise((resolve) => child.once("close", resolve));
   let output = "";

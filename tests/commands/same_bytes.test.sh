@@ -2,7 +2,7 @@
 # Every sample scene gives one and the same PNG for any number of threads, rays a slice and instruction level. Lower
 # levels than the machine's are forced through the loader's tunables; a build of one level compares the rest.
 set -euo pipefail
-orrery=${ORRERY_BIN:-build/levels/orrery}
+orrery=${TEST_ORRERY:-build/levels/orrery}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 

@@ -6,6 +6,7 @@ const entry = (fault, about, file, from, to, target, ...tests) => ({
 });
 const admission = (...rest) => entry(20, rest[0], "server/app/admission.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
 const pictures = (...rest) => entry(20, rest[0], "server/app/pictures.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
+const scenes = (...rest) => entry(20, rest[0], "server/app/scene_store.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
 
 export const serviceFaults = [
   admission("work starts in the order in which it came", "rank(*it) < rank(*best)", "false",
@@ -31,6 +32,12 @@ export const serviceFaults = [
         "test_http", "HangupMonitor.StopsTheWorkOfWhoSendsNoMore"),
   entry(20, "pictures of all formats are one", "server/app/app.cpp", "key + std::to_string(static_cast<int>(format))", "key",
         "test_http", "Render.AcceptChoosesTheFormat"),
+  scenes("a known scene is loaded again", "if (auto known = find_known(id)) {", "if (auto known = find_known(id); known && false) {",
+         "SceneStore.KnownScenes*"),
+  scenes("what is only rendered pushes out what is kept", "cached_.shrink(room - size);", "kept_.shrink(0);",
+         "SceneStore.CachedScenesPushOut*"),
+  scenes("what is kept pushes out what is kept before", "cached_.shrink(most - std::min(most, kept_.bytes() + size));", "kept_.shrink(0);",
+         "SceneStore.KeptScenesPushOut*"),
   entry(21, "events begin anew for who comes back", "server/routes/jobs.cpp",
         "events = Events{job, seen}", "events = Events{job, 0}", "test_http",
         "JobTest.WhoComesBack*"),
@@ -38,8 +45,10 @@ export const serviceFaults = [
         "test_http", "JobTest.TheSameKey*"),
   entry(21, "a deleted job goes on", "server/app/job.cpp", "void Job::cancel() { cancelled_.request_stop(); }", "void Job::cancel() {}",
         "test_http", "JobTest.DeletedIsCancelled*"),
-  entry(22, "every token may do everything", "server/routes/access.cpp", "if (!holder.may[index])", "if (false)", "test_http",
+  entry(22, "every token may do everything", "server/routes/access.cpp", "lacking(holder->scopes, needed)", "lacking(needed, needed)", "test_http",
         "Access.NeedsAToken*"),
+  entry(22, "a link may do what its address may", "server/routes/access.cpp", "if (needed == Scope::read && pass_by_link(", "if (pass_by_link(", "test_http",
+        "Access.SignedLinks*"),
   entry(22, "links do not end", "server/routes/access.cpp", "if (std::chrono::duration_cast<std::chrono::seconds>(now).count() > *expires)", "if (false)", "test_http",
         "Access.SignedLinks*"),
   entry(22, "a link holds for other parameters", "server/routes/access.cpp", "text += '\\n' + name + '=' + value;", "", "test_http",

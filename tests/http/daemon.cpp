@@ -36,11 +36,11 @@ int port_from(int output, const std::string& begin) {
   return line.rfind(begin, 0) == 0 ? std::stoi(line.substr(line.find_last_of(": ") + 1)) : 0;
 }
 
-// Exchanges go to the file that ORRERY_EXCHANGES names, a line of JSON each, to be held against the service's
+// Exchanges go to the file that TEST_EXCHANGES names, a line of JSON each, to be held against the service's
 // own description of itself (openapi.test.mjs).
 void record(const httplib::Request& request, const httplib::Response& response) {
   static std::ofstream* const file = [] {
-    const char* path = std::getenv("ORRERY_EXCHANGES");
+    const char* path = std::getenv("TEST_EXCHANGES");
     return path ? new std::ofstream(path) : nullptr;
   }();
   if (!file) return;
@@ -73,8 +73,8 @@ httplib::Client client_of(int port) {
 }  // namespace
 
 std::string program() {
-  const char* path = std::getenv("ORRERY_BIN");
-  if (!path) throw std::runtime_error("ORRERY_BIN names no program");
+  const char* path = std::getenv("TEST_ORRERY");
+  if (!path) throw std::runtime_error("TEST_ORRERY names no program");
   return path;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <sstream>
 #include <thread>
 
@@ -75,7 +76,12 @@ TEST(Health, AnswersWhileAllElseIsFull) {
 }
 
 TEST(Health, MetricsCountWhatWasAnswered) {
+  const auto now_s = [] {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  };
+  const double before = now_s();
   Daemon daemon;
+  const double after = now_s();
   auto client = daemon.client();
   const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string scene = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>();
@@ -95,6 +101,73 @@ TEST(Health, MetricsCountWhatWasAnswered) {
   EXPECT_EQ(value_of(text, "orrery_jobs"), 0);
   EXPECT_GT(value_of(text, "process_resident_memory_bytes"), 1e6);
   EXPECT_GT(value_of(text, "process_open_fds"), 3);
+  EXPECT_GE(value_of(text, "process_start_time_seconds"), before);
+  EXPECT_LE(value_of(text, "process_start_time_seconds"), after);
+  const double used = value_of(text, "process_cpu_seconds_total");
+  EXPECT_GT(used, 0);
+  EXPECT_GT(value_of(metrics(daemon), "process_cpu_seconds_total"), used) << "answering took some";
+}
+
+TEST(Health, MetricsTellWhatWasThereAndWhatHadToBeMade) {
+  Daemon daemon;
+  auto client = daemon.client();
+  const std::string text = small_scene().dump();
+  const auto scene =
+      "/v1/scenes/" + nlohmann::json::parse(client.Post("/v1/scenes", text, "application/json")->body)
+                          .at("id")
+                          .get<std::string>();
+  client.Post("/v1/scenes", small_scene().dump(4), "application/json");
+  for (int i = 0; i < 3; ++i) client.Get(scene + "/frame.png");
+  client.Post("/v1/render", text, "application/json");
+  const nlohmann::json other = {{"scene", small_scene({{"title", "other"}})}};
+  for (int i = 0; i < 2; ++i) client.Post("/v1/render", other.dump(), "application/json");
+  const std::string told = metrics(daemon);
+  EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"scenes\"}"), 2);  // loaded
+  EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"scenes\"}"), 3);
+  EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"pictures\"}"), 2);  // rendered
+  EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"pictures\"}"), 4);
+  EXPECT_EQ(value_of(told, "orrery_render_seconds_count"), 2);
+  EXPECT_GT(value_of(told, "orrery_render_seconds_sum"), 0);
+  EXPECT_EQ(value_of(told, "orrery_queue_wait_seconds_count{lane=\"interactive\"}"), 2);
+  EXPECT_EQ(value_of(told, "orrery_queue_wait_seconds_count{lane=\"batch\"}"), 0);
+}
+
+TEST(Health, MetricsTellWhyRequestsWereRefused) {
+  Daemon daemon({"--body-bytes", "10000", "--jobs", "1"});
+  auto client = daemon.client();
+  client.Post("/v1/scenes", std::string(10'001, ' '), "application/json");
+  const auto endless =
+      small_scene({{"render", {{"samples", 4096}}}, {"image", {{"width", 4096}, {"height", 4096}}}});
+  const auto job = client.Post("/v1/jobs", endless.dump(), "application/json");
+  ASSERT_EQ(job->status, 202) << job->body;
+  expect_problem(client.Post("/v1/jobs", endless.dump(), "application/json"), 503);
+  EXPECT_TRUE(comes_true(daemon, [](const auto& text) {
+    return value_of(text, "orrery_refusals_total{reason=\"body_bytes\"}") == 1 &&
+           value_of(text, "orrery_refusals_total{reason=\"jobs\"}") == 1;
+  })) << metrics(daemon);
+}
+
+TEST(Health, MetricsTellHowJobsEnded) {
+  Daemon daemon({"--job-bytes", "20000"});
+  auto client = daemon.client();
+  const auto start = [&](int width, int samples) {
+    const auto scene =
+        small_scene({{"render", {{"samples", samples}}}, {"image", {{"width", width}, {"height", width}}}});
+    const auto job = client.Post("/v1/jobs", scene.dump(), "application/json");
+    return job_path(nlohmann::json::parse(job->body));
+  };
+  start(32, 1);
+  start(1000, 1);  // its picture is too large
+  const std::string endless = start(4096, 4096);
+  EXPECT_EQ(client.Delete(endless)->status, 204);
+  for (const char* outcome : {"done", "failed", "cancelled"})
+    EXPECT_TRUE(comes_true(daemon,
+                           [&](const auto& text) {
+                             return value_of(text, "orrery_jobs_ended_total{outcome=\"" +
+                                                       std::string(outcome) + "\"}") == 1;
+                           }))
+        << outcome << metrics(daemon);
+  EXPECT_GT(value_of(metrics(daemon), "orrery_queue_wait_seconds_count{lane=\"batch\"}"), 1);
 }
 
 // Labels are those of routes: what clients make up does not fill the memory.

@@ -5,7 +5,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
 const require = createRequire(import.meta.url);
-const recorded = process.env.ORRERY_EXCHANGES;
+const recorded = process.env.TEST_EXCHANGES;
 let Ajv;
 try {
   Ajv = require("ajv/dist/2020.js").default;

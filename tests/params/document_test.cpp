@@ -127,7 +127,18 @@ TEST(Malformed, TheEndMayComeTooEarlyOrTooLate) {
   EXPECT_EQ(malformed(R"({"a": 1 "\\\"b" : 2})").offset(), 8u);
   EXPECT_EQ(malformed("[1 true]").offset(), 3u);
   malformed("\"open");
-  malformed("[1 2]");
+}
+
+TEST(Malformed, AForgottenCommaIsSaidToBeMissing) {
+  const auto detail_of = [](const char* text) { return malformed(text).problems().front().detail; };
+  EXPECT_EQ(detail_of("{\n  \"a\": 1\n  \"b\": 2\n}"),
+            "line 3, column 3: a comma or '}' is missing before text in double quotes");
+  EXPECT_EQ(detail_of("[1 2]"), "line 1, column 4: a comma or ']' is missing before number");
+  EXPECT_EQ(detail_of("[{} {}]"), "line 1, column 5: a comma or ']' is missing before '{'");
+  EXPECT_EQ(detail_of("{\"a\": [1, 2}"), "line 1, column 12: a comma or ']' is missing before '}'");
+  EXPECT_EQ(detail_of("{\"a\": [1, 2"), "line 1, column 12: ']' is missing at the end of the text");
+  EXPECT_EQ(detail_of("{\"a\": 1"), "line 1, column 8: '}' is missing at the end of the text");
+  EXPECT_EQ(detail_of("{\"a\" 1}"), "line 1, column 6: unexpected number; expected ':'");
 }
 
 TEST(Malformed, NeitherCommentsNorZeroBytesNorBrokenTextPass) {

@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 import { strict as assert } from "node:assert";
 
-const orrery = process.env.ORRERY_BIN;
+const orrery = process.env.TEST_ORRERY;
 const require = createRequire(import.meta.url);
 let Ajv;
 try {

@@ -1,0 +1,118 @@
+#include "server/readings.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/clock.h"
+#include "core/base/version.h"
+
+namespace orrery {
+namespace {
+
+using prometheus::ClientMetric;
+using prometheus::MetricFamily;
+using prometheus::MetricType;
+using Labels = std::vector<ClientMetric::Label>;
+
+template <class Number>
+ClientMetric value(const Number& number, Labels labels = {}) {
+  ClientMetric metric;
+  metric.label = std::move(labels);
+  metric.gauge.value = metric.counter.value = static_cast<double>(number);  // the family says which it is
+  return metric;
+}
+
+ClientMetric histogram(const SecondsHistogram& seconds, Labels labels = {}) {
+  ClientMetric metric = seconds.Collect();
+  metric.label = std::move(labels);
+  return metric;
+}
+
+double resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  double size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+std::ptrdiff_t open_files() {
+  std::error_code gone;
+  const std::filesystem::directory_iterator files("/proc/self/fd", gone);
+  return std::distance(begin(files), end(files));
+}
+
+// Under the names that client libraries of Prometheus agree on.
+void append_process_metrics(std::vector<MetricFamily>& families, const Meters& meters) {
+  constexpr MetricType kCounter = MetricType::Counter, kGauge = MetricType::Gauge;
+  const double started = std::chrono::duration<double>(meters.started.time_since_epoch()).count();
+  families.insert(
+      families.end(),
+      {{"process_cpu_seconds_total", "Processor time used", kCounter, {value(process_cpu_ms() / 1000)}},
+       {"process_start_time_seconds",
+        "Start of the service, in seconds since 1970",
+        kGauge,
+        {value(started)}},
+       {"process_resident_memory_bytes", "Memory in use", kGauge, {value(resident_bytes())}},
+       {"process_open_fds", "Open file descriptors", kGauge, {value(open_files())}}});
+}
+
+}  // namespace
+
+std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
+  constexpr MetricType kCounter = MetricType::Counter, kGauge = MetricType::Gauge;
+  const Admission& admission = app.admission();
+  const Meters& meters = app.meters();
+  SceneStore& scenes = app.scenes();
+  std::vector<MetricFamily> families{
+      {"orrery_build_info",
+       "1, with the version as a label",
+       kGauge,
+       {value(1, {{"version", std::string(kVersion)}})}},
+      {"orrery_ready", "1 while new work is taken", kGauge, {value(app.readiness() == "ok")}},
+      {"orrery_renders_running", "Renders that have their turn", kGauge, {value(admission.running())}},
+      {"orrery_renders_waiting", "Renders that wait for their turn", kGauge, {value(admission.waiting())}},
+      {"orrery_queue_wait_seconds",
+       "From asking for a turn to having it",
+       MetricType::Histogram,
+       {histogram(admission.waits(Lane::interactive), {{"lane", "interactive"}}),
+        histogram(admission.waits(Lane::batch), {{"lane", "batch"}})}},
+      {"orrery_render_seconds",
+       "Of a frame: building its structure and tracing it",
+       MetricType::Histogram,
+       {histogram(meters.render)}},
+      {"orrery_rays_total", "Rays traced", kCounter, {value(meters.rays)}},
+      {"orrery_cache_hits_total",
+       "Pictures and posted scenes that were there",
+       kCounter,
+       {value(meters.pictures_found, {{"cache", "pictures"}}), value(scenes.hits(), {{"cache", "scenes"}})}},
+      {"orrery_cache_misses_total",
+       "Pictures that were made, and scenes that were loaded",
+       kCounter,
+       {value(meters.pictures_made, {{"cache", "pictures"}}), value(scenes.loads(), {{"cache", "scenes"}})}},
+      {"orrery_stored_bytes",
+       "Bytes kept, of scenes by estimate",
+       kGauge,
+       {value(scenes.bytes(), {{"store", "scenes"}}), value(app.assets().bytes(), {{"store", "assets"}}),
+        value(app.pictures().bytes(), {{"store", "pictures"}}),
+        value(app.jobs().bytes(), {{"store", "jobs"}})}},
+      {"orrery_orbits", "Different orbits that are streamed", kGauge, {value(app.orbits().count())}},
+      {"orrery_jobs", "Jobs under way", kGauge, {value(app.jobs().under_way())}},
+      {"orrery_jobs_ended_total",
+       "Jobs by how they ended",
+       kCounter,
+       {value(meters.jobs_done, {{"outcome", "done"}}), value(meters.jobs_failed, {{"outcome", "failed"}}),
+        value(meters.jobs_cancelled, {{"outcome", "cancelled"}})}},
+      {"orrery_connections", "Connections that are open", kGauge, {value(server.connections())}},
+      {"orrery_connections_refused_total",
+       "Connections turned away because there were too many",
+       kCounter,
+       {value(server.refused())}},
+  };
+  append_process_metrics(families, meters);
+  return families;
+}
+
+}  // namespace orrery

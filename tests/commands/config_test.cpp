@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+// Where the settings of the service come from, and what is said about those that are wrong.
+namespace orrery {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Config : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("orrery-config-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  std::string read(const std::string& name) const {
+    std::ifstream in(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  struct Outcome {
+    int status;
+    std::string out, err;
+  };
+  // environment: "NAME=VALUE ..."
+  Outcome serve(const std::string& arguments, const std::string& environment = "") const {
+    const char* program = std::getenv("TEST_ORRERY");
+    const std::string command = environment + " " + (program ? program : "orrery") + " serve " + arguments +
+                                " >" + (folder_ / "out").string() + " 2>" + (folder_ / "err").string();
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), read("out"), read("err")};
+  }
+  nlohmann::json settings(const std::string& arguments, const std::string& environment = "") const {
+    const Outcome outcome = serve("--print-config " + arguments, environment);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out, nullptr, false);
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(Config, AllMistakesAreNamedAtOnce) {
+  const std::string file = write(
+      "config.json", R"({"port": 99999, "bodybytes": 1, "threads": "many", "insecure": 3, "jobs": [1]})");
+  const std::string tokens = write("tokens", "alice read\nbob paint " + std::string(64, 'a') + "\n");
+  const std::string key = write("key", "short");
+  const Outcome outcome =
+      serve("--check-config --config " + file + " --connections 0 --body-bites 5 --tokens-file " + tokens +
+                " --share-key-file " + key + " --log loud",
+            "ORRERY_PORTT=1 ORRERY_ORBITS=x ORRERY_COLOUR=red");
+  EXPECT_EQ(outcome.status, 2);
+  for (const std::string& line : {
+           file + ": /port: expected a whole number from 0 to 65535, got 99999",
+           file + ": /bodybytes: unknown key (did you mean \"body_bytes\"?)",
+           file + ": /threads: expected a whole number from 0 to 1024, got many",
+           file + ": /insecure: expected true or false, got 3",
+           file + ": /jobs: expected a number, a text, true or false",
+           std::string("--connections: expected a whole number from 1 to 10000, got 0"),
+           std::string("ORRERY_ORBITS: expected a whole number from 1 to 10000, got x"),
+           std::string("ORRERY_PORTT: there is no such setting (did you mean \"ORRERY_PORT\"?)"),
+           std::string("ORRERY_COLOUR: there is no such setting"),
+           std::string("--body-bites: there is no such flag (did you mean \"--body-bytes\"?)"),
+           tokens + ":1: expected a name, scopes and the SHA-256 of a token, with blanks between them",
+           tokens + ":2: there is no scope \"paint\"; there are read, render and write",
+           key + ": a key has at least 32 bytes, got 5",
+           std::string("--log: expected text or json, got loud"),
+       })
+    EXPECT_NE(("\n" + outcome.err).find("\norrery: " + line + "\n"), std::string::npos) << line << "\n"
+                                                                                        << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 14) << outcome.err;
+}
+
+TEST_F(Config, WhatIsWrongKeepsTheServiceFromStarting) {
+  for (const char* wrong : {"ORRERY_PORTT=1", "ORRERY_PORT=http", "ORRERY_CORS_ORIGIN=*"})
+    EXPECT_EQ(serve("--port 0 --health-port 0", wrong).status, 2) << wrong;
+  for (const char* wrong : {"--portt 0", "--port", "somewhere", "-x", "--port 8081",
+                            "--host no.such.host.invalid", "--config /nonexistent", "--insecure=maybe"})
+    EXPECT_EQ(serve(std::string("--health-port 8081 ") + wrong).status, 2) << wrong;
+  EXPECT_NE(serve("serve --check-config").err.find("orrery: serve: was not expected here\n"),
+            std::string::npos);
+}
+
+TEST_F(Config, FlagsComeBeforeTheEnvironmentAndThatBeforeTheFile) {
+  const std::string file =
+      write("config.json", R"({"jobs": 3, "orbits": 3, "renders": 3, "queue_rays": 1e6})");
+  const auto all = settings("--config " + file + " --jobs 5", "ORRERY_JOBS=4 ORRERY_ORBITS=4");
+  EXPECT_EQ(all.at("jobs"), 5);
+  EXPECT_EQ(all.at("orbits"), 4);
+  EXPECT_EQ(all.at("renders"), 3);
+  EXPECT_EQ(all.at("queue_rays"), 1'000'000);
+  EXPECT_EQ(all.at("jobs_kept"), 1000);
+}
+
+TEST_F(Config, ValuesOfEveryKindAreReadFromEverySource) {
+  const std::string file = write(
+      "config.json", R"({"host": "localhost", "insecure": true, "cors_origins": ["http://a", "http://b"]})");
+  const auto from_file = settings("--config " + file);
+  EXPECT_EQ(from_file.at("host"), "localhost");
+  EXPECT_EQ(from_file.at("insecure"), true);
+  EXPECT_EQ(from_file.at("cors_origins"), nlohmann::json({"http://a", "http://b"}));
+  const auto from_environment =
+      settings("", "ORRERY_INSECURE=yes ORRERY_CORS_ORIGINS=http://a,http://b ORRERY_HOST=::1");
+  EXPECT_EQ(from_environment.at("insecure"), true);
+  EXPECT_EQ(from_environment.at("cors_origins"), nlohmann::json({"http://a", "http://b"}));
+  EXPECT_EQ(from_environment.at("host"), "::1");
+  const auto from_flags = settings("--insecure --cors-origins http://a --cors-origins http://b,http://c");
+  EXPECT_EQ(from_flags.at("insecure"), true);
+  EXPECT_EQ(from_flags.at("cors_origins"), nlohmann::json({"http://a", "http://b", "http://c"}));
+  EXPECT_EQ(settings("--config " + file + " --insecure=false --host 127.0.0.1").at("insecure"), false);
+}
+
+TEST_F(Config, WhatIsPrintedIsAFileThatSaysTheSame) {
+  const std::string arguments = "--jobs 7 --cors-origins http://a,http://b --grace-seconds 9 --insecure";
+  const Outcome printed = serve("--print-config " + arguments);
+  EXPECT_EQ(serve("--print-config --config " + write("config.json", printed.out)).out, printed.out);
+  EXPECT_EQ(nlohmann::json::parse(printed.out).at("grace_seconds"), 9);
+}
+
+TEST_F(Config, TheTokenOfAClientIsNoSetting) {
+  EXPECT_EQ(serve("--check-config", "ORRERY_TOKEN=abc").status, 0);
+}
+
+}  // namespace
+}  // namespace orrery
