@@ -212,11 +212,11 @@ TEST(Plan, TakesFromTheSceneWhatTheRequestLeavesOut) {
 void expect_same_picture(const Plan& a, const Plan& b) {
   EXPECT_EQ(std::pair(a.width, a.height), std::pair(b.width, b.height));
   EXPECT_EQ(a.samples, b.samples);
-  EXPECT_EQ(a.camera.eye, b.camera.eye);
-  EXPECT_EQ(a.camera.right, b.camera.right);
-  EXPECT_EQ(a.camera.up, b.camera.up);
-  EXPECT_EQ(a.camera.back, b.camera.back);
-  EXPECT_EQ(a.camera.half_extent, b.camera.half_extent);
+  EXPECT_EQ(a.frame.eye, b.frame.eye);
+  EXPECT_EQ(a.frame.right, b.frame.right);
+  EXPECT_EQ(a.frame.up, b.frame.up);
+  EXPECT_EQ(a.frame.back, b.frame.back);
+  EXPECT_EQ(a.frame.half_extent, b.frame.half_extent);
   EXPECT_EQ(a.technique, b.technique);
   EXPECT_EQ(a.accelerator, b.accelerator);
   EXPECT_EQ(a.double_precision, b.double_precision);
