@@ -108,7 +108,8 @@ RenderRequest Study::request(int number) const {
 }
 
 void Study::add_reference(const RenderResult& rendered) {
-  const auto values = rendered.film.stored().values();
+  const Image image = rendered.film.image(PixelFormat::linear32);
+  const auto values = image.values();
   if (added_ == 0) {
     reference_.assign(values.begin(), values.end());
     return;
@@ -126,9 +127,10 @@ void Study::add(const RenderResult& rendered) {
   } else {
     Point& point = chart_.points[place_of(added_)];
     point.accelerator = rendered.stats.accelerator->name;
-    point.rounds.push_back({.difference = difference(rendered.film.stored().values(), reference_),
-                            .cpu_ms = std::max(rendered.stats.cpu_ms, kClockStep_ms),
-                            .rays = double(rendered.stats.counts.rays.total())});
+    point.rounds.push_back(
+        {.difference = difference(rendered.film.image(PixelFormat::linear32).values(), reference_),
+         .cpu_ms = std::max(rendered.stats.cpu_ms, kClockStep_ms),
+         .rays = double(rendered.stats.counts.rays.total())});
   }
   if (++added_ < pictures()) return;
   reference_ = {};

@@ -35,7 +35,7 @@ nlohmann::json value_of(const std::string& text, Form form) {
       if (text == "true" || text == "false") return text == "true";
       return text;
     case Form::string: return text;
-    case Form::strings: return split(text);
+    case Form::strings: return text.empty() ? nlohmann::json::array() : nlohmann::json(split(text));
     case Form::numbers: break;
   }
   nlohmann::json list = nlohmann::json::array();

@@ -5,8 +5,8 @@
 #include "server/app/option_json.h"
 #include "server/app/render_options.h"
 #include "server/http/embedded.h"
-#include "server/routes/router.h"
 #include "server/routes/answers.h"
+#include "server/routes/router.h"
 
 // GET /openapi.json: the service's description of itself. The file openapi.json has all but the render
 // options:

@@ -26,7 +26,7 @@ const cylinderRoots = [
   {
     fault: 1,
     about: "cylinder roots are multiplied by A instead of divided",
-    file: `${kShapes}/cylinder.cpp`,
+    file: `${kShapes}/cylinder.h`,
     from: "const N t0 = (from_axis - radius) * (from_axis + radius) / q, t1 = q / a;",
     to: "const N t0 = (b - root) * a, t1 = (b + root) * a;",
     target: "test_shapes",
@@ -35,7 +35,7 @@ const cylinderRoots = [
   {
     fault: 1,
     about: "cylinder rays along the axis (A = 0) have no case of their own",
-    file: `${kShapes}/cylinder.cpp`,
+    file: `${kShapes}/cylinder.h`,
     from: "const auto parallel = a == zero;",
     to: "const auto parallel = a < zero;",
     target: "test_shapes",
@@ -58,8 +58,8 @@ const lightDirections = [
     fault: 3,
     about: "the direction of a directional light keeps its length",
     file: "core/lights/directional.cpp",
-    from: 'from_(p.direction("from",',
-    to: 'from_(p.point("from",',
+    from: 'const Vec3d from = p.direction("from",',
+    to: 'const Vec3d from = p.point("from",',
     target: "test_lights",
     tests: ["Directional.DirectionIsOfUnitLengthHoweverItWasWritten", "AllLights.*"],
   },
@@ -67,26 +67,26 @@ const lightDirections = [
     fault: 3,
     about: "the beam of a spot keeps its length",
     file: "core/lights/spot.cpp",
-    from: 'direction_(p.direction("direction",',
-    to: 'direction_(p.point("direction",',
+    from: 'const Vec3d direction = p.direction("direction",',
+    to: 'const Vec3d direction = p.point("direction",',
     target: "test_lights",
     tests: ["Spot.BeamGoesWhereItPointsWhateverTheLengthOfThat"],
   },
   {
     fault: 3,
     about: "the way to a point light is as long as the distance",
-    file: "core/lights/point.cpp",
-    from: "put(i, toward / distance);",
-    to: "put(i, toward);",
+    file: "core/lights/point.h",
+    from: "return {toward / distance,",
+    to: "return {toward,",
     target: "test_lights",
     tests: ["AllLights.SendUnitDirectionsAndNoMoreThanTheirIntensity"],
   },
   {
     fault: 3,
     about: "the way to a spot is as long as the distance",
-    file: "core/lights/spot.cpp",
-    from: "const Vec3<N> direction = toward / distance;",
-    to: "const Vec3<N> direction = toward;",
+    file: "core/lights/spot.h",
+    from: "const Vec3<N> to_light = toward / distance;",
+    to: "const Vec3<N> to_light = toward;",
     target: "test_lights",
     tests: ["AllLights.SendUnitDirectionsAndNoMoreThanTheirIntensity"],
   },
@@ -129,7 +129,7 @@ const fixedEpsilons = [
   ].map(([shape, from, to]) => ({
     fault: 4,
     about: `a ${shape} nearer than a fixed epsilon is missed`,
-    file: `${kShapes}/${shape}.cpp`,
+    file: `${kShapes}/${shape}.h`,
     from,
     to,
     target: "test_shapes",
@@ -177,16 +177,16 @@ const insideOfGlass = [
   {
     fault: 5,
     about: "a ray inside glass keeps the outside ratio of indices",
-    file: "core/materials/refractive.cpp",
-    from: "const N eta = select(inside, glass.ior, N(one / glass.ior));",
-    to: "const N eta = N(one / glass.ior);",
+    file: "core/materials/refractive.h",
+    from: "const N eta = select(inside, ior, N(one / ior));",
+    to: "const N eta = N(one / ior);",
     target: "test_materials",
     tests: ["Refraction.LeavesGlassAtTheAngleOfSnell"],
   },
   {
     fault: 5,
     about: "Schlick's approximation keeps the inside angle",
-    file: "core/materials/refractive.cpp",
+    file: "core/materials/refractive.h",
     from: "const N thinner = select(eta > one, cos_transmitted, cos_incident);",
     to: "const N thinner = cos_incident;",
     target: "test_materials",
@@ -223,13 +223,9 @@ const insideOfGlass = [
 
 const kTotal = {
   fault: 6,
-  file: "core/materials/refractive.cpp",
-  from: `r = select(total, one, r);
-      out.reflectance.put(i, mine, Vec3<N>(r));
-      out.transmittance.put(i, mine, Vec3<N>(one - r));`,
-  to: `r = select(total, fresnel_schlick(glass.f0, cos_incident), r);
-      out.reflectance.put(i, mine, Vec3<N>(r));
-      out.transmittance.put(i, mine, Vec3<N>(select(total, zero, N(one - r))));`,
+  file: "core/materials/refractive.h",
+  from: "return {select(total, one, r),",
+  to: "return {select(total, fresnel_schlick(f0, cos_incident), r),",
 };
 const totalReflection = [
   {
@@ -259,7 +255,7 @@ const negativeCosines = [
   {
     fault: 7,
     about: "glass takes the fifth power of 1 - cos with a negative cosine",
-    file: "core/materials/refractive.cpp",
+    file: "core/materials/refractive.h",
     from: "const N cos_incident = min_first(one, max_first(zero, N(-dot(direction, normal))));",
     to: "const N cos_incident = N(-dot(direction, normal));",
     target: "test_materials",
@@ -268,7 +264,7 @@ const negativeCosines = [
   {
     fault: 7,
     about: "a highlight is an even power of a negative cosine",
-    file: "core/materials/rough.cpp",
+    file: "core/materials/rough.h",
     from: "return min_first(N(T(1)), max_first(N(T(0)), c));",
     to: "return min_first(N(T(1)), select(c < N(T(0)), N(-c), c));",
     target: "test_materials",
@@ -276,20 +272,20 @@ const negativeCosines = [
   },
 ];
 
-const kAcross = {fault: 8, file: "core/model/camera.cpp", from: "- T(width)) * scale;"};
+const kAcross = {fault: 8, file: "core/cameras/camera_of.h", from: "- T(width)) * scale;"};
 const aspect = [
   {
     ...kAcross,
     about: "both axes are centred by the height",
     to: "- T(height)) * scale;",
-    target: "test_model",
+    target: "test_cameras",
     tests: ["CameraRays.HeightScalesBothAxes", "CameraRays.MirrorAboutTheMiddleToTheBit"],
   },
   {
     ...kAcross,
     about: "both axes are stretched to the same extent",
     to: "- T(width)) * (scale * T(height) / T(width));",
-    target: "test_model",
+    target: "test_cameras",
     tests: ["CameraRays.HeightScalesBothAxes", "CameraRays.OrthographicRaysAreParallelAndSpacedByTheHeight"],
   },
   {
@@ -332,7 +328,7 @@ const slabs = [
   {
     fault: 9,
     about: "a NaN where a ray enters a box shape loses the hit",
-    file: `${kShapes}/box.cpp`,
+    file: `${kShapes}/box.h`,
     from: "enter = max_first(enter, N((select(negative, hi_i, lo_i) - o) / d));",
     to: "enter = max_first(N((select(negative, hi_i, lo_i) - o) / d), enter);",
     target: "test_shapes",
@@ -341,7 +337,7 @@ const slabs = [
   {
     fault: 9,
     about: "a NaN where a ray leaves a box shape loses the hit",
-    file: `${kShapes}/box.cpp`,
+    file: `${kShapes}/box.h`,
     from: "leave = min_first(leave, N((select(negative, lo_i, hi_i) - o) / d));",
     to: "leave = min_first(N((select(negative, lo_i, hi_i) - o) / d), leave);",
     target: "test_shapes",
@@ -350,7 +346,7 @@ const slabs = [
   {
     fault: 9,
     about: "a NaN at the near cap of a cylinder loses the hit",
-    file: `${kShapes}/cylinder.cpp`,
+    file: `${kShapes}/cylinder.h`,
     from: "max_first(select(parallel, -infinity, min_first(t0, t1)), near_cap);",
     to: "max_first(near_cap, select(parallel, -infinity, min_first(t0, t1)));",
     target: "test_shapes",
@@ -359,7 +355,7 @@ const slabs = [
   {
     fault: 9,
     about: "a NaN at the far cap of a cylinder loses the hit",
-    file: `${kShapes}/cylinder.cpp`,
+    file: `${kShapes}/cylinder.h`,
     from: "min_first(select(parallel, infinity, max_first(t0, t1)), far_cap);",
     to: "min_first(far_cap, select(parallel, infinity, max_first(t0, t1)));",
     target: "test_shapes",
@@ -399,8 +395,8 @@ const sharesOfLight = [
     fault: 10,
     about: "the share that glass mirrors is below 0",
     file: "core/materials/refractive.cpp",
-    from: "out.reflectance.put(i, mine, Vec3<N>(r));",
-    to: "out.reflectance.put(i, mine, Vec3<N>(-r));",
+    from: "out.reflectance.put(i, mine, Vec3<N>(split.reflectance));",
+    to: "out.reflectance.put(i, mine, Vec3<N>(-split.reflectance));",
     target: "test_materials",
     tests: ["Fresnel.GrazingMirrorsAllAndNothingLeavesTheUnitInterval"],
   },
@@ -408,8 +404,8 @@ const sharesOfLight = [
     fault: 10,
     about: "the share that glass lets through is below 0",
     file: "core/materials/refractive.cpp",
-    from: "out.transmittance.put(i, mine, Vec3<N>(one - r));",
-    to: "out.transmittance.put(i, mine, Vec3<N>(r - one));",
+    from: "out.transmittance.put(i, mine, Vec3<N>(one - split.reflectance));",
+    to: "out.transmittance.put(i, mine, Vec3<N>(split.reflectance - one));",
     target: "test_materials",
     tests: ["Fresnel.GrazingMirrorsAllAndNothingLeavesTheUnitInterval"],
   },
@@ -420,8 +416,8 @@ const growth = [
     fault: 10,
     about: "the tree of rays is one level deeper than asked",
     file: "core/techniques/wavefront.cpp",
-    from: "if (s.paths->depth >= plan_.max_depth)",
-    to: "if (s.paths->depth > plan_.max_depth)",
+    from: "if (v.paths->depth >= plan_.max_depth)",
+    to: "if (v.paths->depth > plan_.max_depth)",
     target: "test_techniques",
     tests: ["DepthLimit.LedgerIsWhatFacingMirrorsStillCarry"],
   },
@@ -438,7 +434,7 @@ const growth = [
     fault: 10,
     about: "the tree of rays does not branch",
     file: "core/techniques/whitted.cpp",
-    from: "this->spawn(Kind::refracted, i, mine, s.specular.refracted.at(i), s.specular.transmittance.at(i));",
+    from: "this->spawn(Kind::refracted, i, mine, v.specular.refracted.at(i), v.specular.transmittance.at(i));",
     to: "",
     target: "test_techniques",
     tests: ["Growth.DoublesWhereEverySurfaceSendsTwo"],

@@ -49,6 +49,6 @@ export const gateFaults = [
   entry(18, "the end waits for half a request", "connection.cpp",
         "wait(POLLIN, deadline, true);\n    if (ready != Ready::wake)", "wait(POLLIN, deadline, false);\n    if (ready != Ready::wake)",
         "Terminated.GivesHalfARequestOneLastCall"),
-  entry(18, "who leaves after the whole answer left early", "exchange.cpp", "const bool gone = connection.left() ||",
-        "const bool gone = exchange.gone.stop_requested() || connection.left() ||", "ClientThatLeaves.AfterTheWholeAnswerHasNotLeftEarly"),
+  entry(18, "who leaves after the whole answer left early", "exchange.cpp", "connection.left() || response.status == kClientGone",
+        "request.gone.stop_requested() || connection.left()", "ClientThatLeaves.AfterTheWholeAnswerHasNotLeftEarly"),
 ];

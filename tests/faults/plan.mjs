@@ -5,7 +5,7 @@ const entry = (about, from, to, ...tests) => ({
 });
 
 export const planFaults = [
-  entry("an eye inside the only body sees no shadows", "!contains(shapes->bounds(0), plan_.camera.eye)", "true",
+  entry("an eye inside the only body sees no shadows", "!contains(shapes->bounds(0), plan_.frame.eye)", "true",
         "LeavesOutShadowsOfALonelyConvexBody"),
   entry("two bodies are taken for one", "scene_.primitive_count() != 1", "scene_.primitive_count() > 2",
         "LeavesOutShadowsOfALonelyConvexBody", "LonelyMirrorNeedsNoDepth"),
@@ -13,7 +13,7 @@ export const planFaults = [
         "if (lonely_convex()", "LonelyMirrorNeedsNoDepth"),
   entry("float is taken to be enough for every scene", "!(rounding <= detail / 10)", "false",
         "ChoosesDoubleWhereFloatWouldShow"),
-  entry("a light of intensity 0 is followed", "light->intensity() != Vec3d(0)", "light->intensity() != Vec3d(-1)",
+  entry("a light of intensity 0 is followed", "intensity(light.index) != Vec3d(0)", "intensity(light.index) != Vec3d(-1)",
         "LeavesOutLightThatNothingAnswers"),
   entry("coloured glass weakens nothing", "plan_.specular && used.filters", "false",
         "LeavesOutMirroredAndRefractedRays"),

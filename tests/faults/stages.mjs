@@ -2,7 +2,7 @@
 // mixes up rays, 16 does not learn.
 
 const entry = (fault, about, file, from, to, ...tests) => ({
-  fault, about, file: `core/accelerators/${file}`, from, to, target: "test_accelerators", tests,
+  fault, about, file: file.includes("/") ? file : `core/stages/${file}`, from, to, target: "test_accelerators", tests,
 });
 
 export const stageFaults = [
@@ -18,7 +18,7 @@ export const stageFaults = [
         "rays.t_max.put(i, others);", "if (before[0] != before[0]) rays.t_max.put(i, others);", "PredictionOfShadows.*"),
   entry(14, "every proposal counts as a proof", "prediction.cpp", "open - active_rays(rays_, one)", "open",
         "PredictionCounts.TellProposalsFromProofs"),
-  entry(14, "a hit that is known is forgotten by its number", "single_ray.h", "{hits.t[i], hits.primitive[i]}",
+  entry(14, "a hit that is known is forgotten by its number", "core/accelerators/single_ray.h", "{hits.t[i], hits.primitive[i]}",
         "{hits.t[i], IndexOf<T>(kNoPrimitive)}", "All/KnownHits.*"),
   entry(15, "distances go back to the places of others", "reordered.cpp",
         "hits.t[place_of(order, from)] = found.t[from];", "hits.t[from] = found.t[from];", "All/Reordering.*"),

@@ -45,8 +45,8 @@ Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& r
       render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, own ? *own : shared_pool());
   Picture picture{plan.width, plan.height, {}, result.stats};
   picture.pixels.resize(static_cast<std::size_t>(plan.width * plan.height));
-  std::memcpy(static_cast<void*>(picture.pixels.data()), result.film.stored().bytes().data(),
-              result.film.stored().bytes().size());
+  const Image image = result.film.image(PixelFormat::linear32);
+  std::memcpy(static_cast<void*>(picture.pixels.data()), image.bytes().data(), image.bytes().size());
   return picture;
 }
 
