@@ -38,6 +38,22 @@ Rays<T> any_rays(const Vec3d& middle, double half, int count, std::uint64_t seed
   return rays;
 }
 
+// Sixteen rays at a time from one point to some of these targets.
+template <class T>
+Rays<T> aimed_rays(const std::vector<Vec3d>& targets, double from, int count) {
+  Random random(2);
+  Rays<T> rays;
+  while (static_cast<int>(rays.size()) < count) {
+    const Vec3d eye = targets[static_cast<std::size_t>(random.below(static_cast<int>(targets.size())))] +
+                      random.direction() * from;
+    for (int i = 0; i < 16; ++i) {
+      const Vec3d& target = targets[static_cast<std::size_t>(random.below(static_cast<int>(targets.size())))];
+      rays.push_back({Vec3<T>(eye), Vec3<T>(safe_normalize(target - eye))});
+    }
+  }
+  return rays;
+}
+
 class Adversaries : public StructureTest {
  protected:
   template <class T>
@@ -128,10 +144,15 @@ TEST_P(Adversaries, SpheresThatHalveAndHalve) {
 TEST_P(Adversaries, GapsThatGrow) {
   covers("F3");
   Json objects = Json::array();
-  for (int i = 0; i < 3000; ++i)
-    objects.push_back(
-        sphere(Vec3d(std::exp2(-28.0 * i / 3000), 0.001 * i, 0), 1e-3 * std::exp2(-28.0 * i / 3000)));
-  EXPECT_LE(agree(scene_with(objects), {0.5, 1, 0}, 1.5, 1'000).depth, 2 * std::log2(3000) + 32);
+  std::vector<Vec3d> centers;
+  for (int i = 0; i < 3000; ++i) {
+    const double size = std::exp2(-28.0 * i / 3000);
+    centers.emplace_back(size, 0.001 * i, 0);
+    objects.push_back(sphere(centers.back(), 1e-3 * size));
+  }
+  const Json scene = scene_with(objects);
+  EXPECT_LE(agree<float>(scene, aimed_rays<float>(centers, 1.5, 5'000)).depth, 2 * std::log2(3000) + 32);
+  agree<double>(scene, aimed_rays<double>(centers, 1.5, 5'000));
 }
 
 TEST_P(Adversaries, FarFromTheOrigin) {
