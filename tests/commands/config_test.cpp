@@ -85,7 +85,7 @@ TEST_F(Config, AllMistakesAreNamedAtOnce) {
 
 TEST_F(Config, WhatIsWrongKeepsTheServiceFromStarting) {
   for (const char* wrong : {"ORRERY_PORTT=1", "ORRERY_PORT=http", "ORRERY_CORS_ORIGIN=*"})
-    EXPECT_EQ(serve("--health-port 0", wrong).status, 2) << wrong;
+    EXPECT_EQ(serve("--port 0 --health-port 0", wrong).status, 2) << wrong;
   for (const char* wrong : {"--portt 0", "--port", "somewhere", "-x", "--port 8081",
                             "--host no.such.host.invalid", "--config /nonexistent", "--insecure=maybe"})
     EXPECT_EQ(serve(std::string("--health-port 8081 ") + wrong).status, 2) << wrong;
