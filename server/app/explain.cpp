@@ -7,6 +7,7 @@
 #include "core/model/technique.h"
 #include "core/plan/options.h"
 #include "core/plan/plan.h"
+#include "core/plan/warnings.h"
 #include "server/app/option_json.h"
 
 namespace orrery {
@@ -51,6 +52,9 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
                     {"filters", plan.filters}};
   json["camera_rays"] = camera_rays(plan);
   json["decisions"] = std::move(decisions);
+  json["warnings"] = ordered_json::array();
+  for (const Problem& p : find_warnings(scene, plan))
+    json["warnings"].push_back({{"pointer", p.pointer}, {"detail", p.detail}});
   json["request"] = {{"scene_id", scene.id}};
   json["request"].update(ordered_json::parse(to_json(settings)));
   return json;
@@ -71,6 +75,8 @@ std::string explain_text(const Scene& scene, const Plan& plan) {
   for (const Decision& d : plan.decisions)
     text += "  " + padded(d.subject, subject_width) + "  " + padded(d.choice, choice_width) + "  " +
             d.reason + "\n";
+  for (const Problem& p : find_warnings(scene, plan))
+    text += "  warning: " + p.pointer + ": " + p.detail + "\n";
   return text;
 }
 

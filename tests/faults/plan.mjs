@@ -3,6 +3,10 @@
 const entry = (about, from, to, ...tests) => ({
   fault: 23, about, file: "core/plan/plan.cpp", from, to, target: "test_plan", tests: tests.map((name) => `Plan.${name}`),
 });
+const warning = (about, from, to, ...tests) => ({
+  fault: 23, about, file: "core/plan/warnings.cpp", from, to, target: "test_plan",
+  tests: tests.map((name) => `Warnings.${name}`),
+});
 
 export const planFaults = [
   entry("an eye inside the only body sees no shadows", "!contains(shapes->bounds(0), plan_.frame.eye)", "true",
@@ -17,4 +21,10 @@ export const planFaults = [
         "LeavesOutLightThatNothingAnswers"),
   entry("coloured glass weakens nothing", "plan_.specular && used.filters", "false",
         "LeavesOutMirroredAndRefractedRays"),
+  warning("a camera in a room with a lamp is warned of", "return rays_.t_max[0] > 0;", "return false;", "KnowThatARoomHasALamp"),
+  warning("a camera in the corner of a ball's box is taken to be in the ball",
+          "return met.side[0] < 0;", "return true;",
+          "TellThatTheCameraIsInsideAnOpaqueShape"),
+  warning("what is below the view counts as seen", "y > half_height_ * scale, y < -half_height_ * scale",
+          "y > half_height_ * scale, false", "TellThatNothingIsInView"),
 ];

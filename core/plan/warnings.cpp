@@ -1,0 +1,208 @@
+#include "core/plan/warnings.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace orrery {
+namespace {
+
+bool contains(const Boundsd& b, const Vec3d& p) {
+  return p.x >= b.lo.x && p.x <= b.hi.x && p.y >= b.lo.y && p.y <= b.hi.y && p.z >= b.lo.z && p.z <= b.hi.z;
+}
+
+bool any_light_shines(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const LightPlace& light) {
+    return scene.light_sets[light.set]->intensity(light.index) != Vec3d(0);
+  });
+}
+
+// Whether every surface is black.
+bool is_unlit(const Scene& scene) {
+  const MaterialTraits& used = scene.facts.materials;
+  const bool mirrors_something = used.mirrors && scene.background != Vec3d(0);
+  return !any_light_shines(scene) && scene.ambient == Vec3d(0) && !used.emits && !mirrors_something;
+}
+
+// What the camera sees, as the space on one side of planes.
+class View {
+ public:
+  explicit View(const Plan& plan)
+      : frame_(plan.frame),
+        parallel_(plan.camera->parallel()),
+        half_height_(plan.frame.half_extent),
+        half_width_(half_height_ * plan.width / plan.height) {}
+
+  // Whether the box lies wholly beyond one of the planes. Never for an infinite box.
+  bool misses(const Affined& world_from_box, const Boundsd& box) const {
+    std::array<bool, 5> beyond;
+    beyond.fill(true);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3d p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                    corner & 4 ? box.hi.z : box.lo.z);
+      const Vec3d from_eye = world_from_box.point(p) - frame_.eye;
+      const double depth = -dot(from_eye, frame_.back), x = dot(from_eye, frame_.right),
+                   y = dot(from_eye, frame_.up);
+      const double scale = parallel_ ? 1.0 : depth;
+      const std::array<bool, 5> here{depth<0, x> half_width_ * scale,
+                                     x<-half_width_ * scale, y> half_height_ * scale,
+                                     y < -half_height_ * scale};
+      for (std::size_t i = 0; i < beyond.size(); ++i) beyond[i] = beyond[i] && here[i];
+    }
+    return std::find(beyond.begin(), beyond.end(), true) != beyond.end();
+  }
+
+ private:
+  const CameraFrame& frame_;
+  bool parallel_;
+  double half_height_, half_width_;
+};
+
+// The shapes of a set as they stand at a moment.
+class ShapesAt {
+ public:
+  ShapesAt(const ShapeSet& set, double time) : moved_(set.at(time)), shapes_(moved_ ? *moved_ : set) {}
+  const ShapeSet* operator->() const { return &shapes_; }
+
+ private:
+  std::unique_ptr<ShapeSet> moved_;
+  const ShapeSet& shapes_;
+};
+
+// Calls visit(shapes of one set, where they stand, number of their first primitive in `material_of`,
+// materials of these primitives) for the scene's own shapes and for those of each instance, until one
+// returns true; whether one did.
+template <class Visit>
+bool any_shapes(const Scene& scene, double time, const Visit& visit) {
+  int first = 0;
+  for (const auto& set : scene.shapes) {
+    if (set->size() > 0 && visit(ShapesAt(*set, time), Affined{}, scene.material_of.data() + first))
+      return true;
+    first += set->size();
+  }
+  for (const Instance& instance : scene.instances) {
+    const Model& model = scene.models[instance.model];
+    int first_of_model = 0;
+    for (const auto& set : model.shapes) {
+      if (set->size() > 0 && visit(ShapesAt(*set, time), instance.world_from_model(time),
+                                   model.material_of.data() + first_of_model))
+        return true;
+      first_of_model += set->size();
+    }
+  }
+  return false;
+}
+
+bool nothing_in_view(const Scene& scene, const Plan& plan) {
+  const View view(plan);
+  return !any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
+    for (int i = 0; i < shapes->size(); ++i)
+      if (!view.misses(world, shapes->bounds(i))) return true;
+    return false;
+  });
+}
+
+bool is_transparent(const Scene& scene, std::int32_t material) {
+  for (const auto& set : scene.materials) {
+    if (material < set->size()) return set->traits().transmits;
+    material -= set->size();
+  }
+  return false;
+}
+
+// Asks about the surroundings of one point by single rays.
+class Surroundings {
+ public:
+  Surroundings(const Scene& scene, const Vec3d& point) : scene_(scene), point_(point) {
+    surface_.position.set(0, point);
+    surface_.normal.set(0, {0, 0, 1});
+    surface_.geometric.set(0, {0, 0, 1});
+    slots_[0] = 0;
+  }
+
+  // Whether the point is inside of primitive `index`, which is closed.
+  bool inside(const ShapeKernel<double>& kernel, int index, const Affined& model_from_world) {
+    send({0, 0, 1}, std::numeric_limits<double>::infinity(), model_from_world);
+    hits_.t[0] = rays_.t_max[0];
+    hits_.primitive[0] = kNoPrimitive;
+    AcceleratorCounts uncounted;
+    kernel.closest(index, rays_, kOne, hits_, uncounted);
+    if (hits_.primitive[0] == kNoPrimitive) return false;
+    SurfaceBatch<double> met;
+    kernel.surface(rays_, hits_, kOne, met);
+    return met.side[0] < 0;
+  }
+
+  // Whether light arrives from some source that the primitive does not hide from the point.
+  bool lit_past(const ShapeKernel<double>& kernel, int index, const Affined& model_from_world) {
+    return std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const LightPlace& light) {
+      LightBatch<double> arriving;
+      scene_.light_sets[light.set]->kernel(double())->sample(
+          surface_, {light.index}, {Draws(0, TileView{}, 0), slots_, 0}, kOne, arriving);
+      if (arriving.shadow.t_max[0] < 0) return false;
+      send(arriving.shadow.direction[0], arriving.shadow.t_max[0], model_from_world);
+      AcceleratorCounts uncounted;
+      kernel.occlude(index, rays_, kOne, uncounted);
+      return rays_.t_max[0] > 0;
+    });
+  }
+
+ private:
+  void send(const Vec3d& direction, double end, const Affined& model_from_world) {
+    rays_.count = 1;
+    rays_.set(0, {model_from_world.point(point_), model_from_world.vector(direction)}, end);
+  }
+
+  static inline const Groups kOne = Groups::single(0);
+  const Scene& scene_;
+  const Vec3d point_;
+  RayBatch<double> rays_{};
+  HitBatch<double> hits_{};
+  SurfaceBatch<double> surface_{};
+  Array<IndexOf<double>> slots_{};
+};
+
+// Whether the eye is inside a closed opaque shape that hides all lights.
+bool is_enclosed(const Scene& scene, const Plan& plan) {
+  const Vec3d& eye = plan.frame.eye;
+  const auto surroundings = std::make_unique<Surroundings>(scene, eye);
+  return any_shapes(scene, plan.time,
+                    [&](const ShapesAt& shapes, const Affined& world, const std::int32_t* materials) {
+                      if (!shapes->traits().closed || scaled_determinant(world) == 0) return false;
+                      const Affined model_from_world = inverse(world);
+                      const Vec3d local_eye = model_from_world.point(eye);
+                      ShapeKernelPtr<double> kernel;
+                      for (int i = 0; i < shapes->size(); ++i) {
+                        if (!contains(shapes->bounds(i), local_eye) || is_transparent(scene, materials[i]))
+                          continue;
+                        if (!kernel) kernel = shapes->kernel(double(), 0);
+                        if (surroundings->inside(*kernel, i, model_from_world) &&
+                            !surroundings->lit_past(*kernel, i, model_from_world))
+                          return true;
+                      }
+                      return false;
+                    });
+}
+
+std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) {
+  std::vector<Problem> found;
+  if (is_unlit(scene)) found.push_back({"/lights", "no light source and no ambient light: all is black"});
+  if (!plan.camera->parallel() && is_enclosed(scene, plan))
+    found.push_back({"/camera/eye", "the camera is inside an opaque shape that holds no light"});
+  if (empty) found.push_back({"/camera", "nothing is in view: the picture shows the background alone"});
+  return found;
+}
+
+}  // namespace
+
+std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan) {
+  return warnings(scene, plan, nothing_in_view(scene, plan));
+}
+
+std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan, const TraceCounts& traced) {
+  return warnings(scene, plan, traced.camera_hits == 0);
+}
+
+}  // namespace orrery

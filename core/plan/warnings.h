@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/model/counts.h"
+#include "core/model/plan.h"
+#include "core/model/scene.h"
+
+// Why a picture shows nothing useful although nothing is wrong with its scene. Pointers are into the scene.
+namespace orrery {
+
+// What is known before the picture is rendered:
+//  - no light reaches any surface: no light source, no ambient light, no emission;
+//  - the camera is inside a closed opaque shape that holds no light;
+//  - nothing is in view, because the boxes of all primitives are outside of what the camera sees.
+// Time: a few operations a primitive.
+std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan);
+
+// Likewise of a picture for which so much was traced: whether anything is in view is then known exactly.
+std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan, const TraceCounts& traced);
+
+}  // namespace orrery

@@ -1,0 +1,120 @@
+#include "core/plan/warnings.h"
+
+#include <gtest/gtest.h>
+
+#include "core/load/load.h"
+#include "core/plan/plan.h"
+#include "tests/support/pictures.h"
+
+// Pictures that show nothing useful are told; those of people who know what they do are not.
+namespace orrery::test {
+namespace {
+
+constexpr const char* kSun = "[{'type': 'directional', 'from': [1, 1, 1]}]";
+constexpr const char* kBall = "{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}";
+
+Json lit(const char* objects, const Json& eye = {0, 0, 4}, const char* lights = kSun) {
+  Json scene = scene_of("[" + std::string(objects) + "]");
+  scene["lights"] = json(lights);
+  scene["camera"]["eye"] = eye;
+  scene["camera"]["look_at"] = {0, 0, 0};
+  scene["ambient"] = {0.1, 0.1, 0.1};
+  return scene;
+}
+
+std::string warned(const Json& scene, const RenderRequest& request = {}) {
+  const auto loaded = load(scene);
+  std::string places;
+  for (const Problem& p : find_warnings(*loaded, make_plan(*loaded, request))) {
+    places += p.pointer + " ";
+    EXPECT_FALSE(p.detail.empty());
+  }
+  return places;
+}
+
+TEST(Warnings, ThereAreNoneOfAnOrdinaryScene) { EXPECT_EQ(warned(lit(kBall)), ""); }
+
+TEST(Warnings, ThereAreNoneOfTheSampleScenes) {
+  for (const std::string& name : sample_names()) EXPECT_EQ(warned(sample(name)), "") << name;
+}
+
+TEST(Warnings, TellThatNothingIsLit) {
+  Json scene = lit(kBall, {0, 0, 4}, "[]");
+  EXPECT_EQ(warned(scene), "") << "ambient light shows the outline";
+  scene["ambient"] = {0, 0, 0};
+  EXPECT_EQ(warned(scene), "/lights ");
+  scene["lights"] = json("[{'type': 'directional', 'from': [1, 1, 1], 'intensity': [0, 0, 0]}]");
+  EXPECT_EQ(warned(scene), "/lights ");
+  scene["lights"] = json(kSun);
+  EXPECT_EQ(warned(scene), "");
+}
+
+TEST(Warnings, KnowThatAMirrorShowsTheBackground) {
+  Json scene = lit(kBall, {0, 0, 4}, "[]");
+  scene["ambient"] = {0, 0, 0};
+  scene["materials"]["white"] = json("{'type': 'reflective', 'n': [0.2, 0.2, 0.2], 'k': [3, 3, 3]}");
+  scene["background"] = {0, 0, 0};
+  EXPECT_EQ(warned(scene), "/lights ");
+  scene["background"] = {0, 0, 0.2};
+  EXPECT_EQ(warned(scene), "");
+}
+
+TEST(Warnings, TellThatTheCameraIsInsideAnOpaqueShape) {
+  EXPECT_EQ(warned(lit(kBall, {0, 0, 0.9})), "/camera/eye ");
+  EXPECT_EQ(warned(lit(kBall, {0, 0, 1.1})), "");
+  EXPECT_EQ(warned(lit("{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}", {0.9, 0.9, 0.9})),
+            "/camera/eye ");
+  EXPECT_EQ(warned(lit(kBall, {0.7, 0.7, -0.7})), "") << "in the corner of its box";
+  RenderRequest near;
+  near.distance = 0.1;
+  EXPECT_EQ(warned(lit(kBall), near), "/camera/eye ") << "an orbit leads there";
+}
+
+TEST(Warnings, KnowThatARoomHasALamp) {
+  const char* room = "{'type': 'box', 'min': [-5, -5, -5], 'max': [5, 5, 5]}";
+  EXPECT_EQ(warned(lit(room, {0, 0, 4}, "[{'type': 'point', 'position': [1, 1, 1]}]")), "");
+  EXPECT_EQ(warned(lit(room, {0, 0, 4}, "[{'type': 'point', 'position': [1, 9, 1]}]")), "/camera/eye ");
+}
+
+TEST(Warnings, KnowThatGlassIsSeenThrough) {
+  Json scene = lit(kBall, {0, 0, 0.5});
+  scene["materials"]["white"] = json("{'type': 'refractive', 'ior': 1.5}");
+  EXPECT_EQ(warned(scene), "");
+}
+
+TEST(Warnings, TellThatNothingIsInView) {
+  Json scene = lit(kBall);
+  scene["camera"]["look_at"] = {0, 0, 9};
+  EXPECT_EQ(warned(scene), "/camera ") << "it is behind";
+  scene["camera"]["look_at"] = {0, 9, -4};
+  EXPECT_EQ(warned(scene), "/camera ") << "it is below";
+  Json floor = lit("{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]}");
+  EXPECT_EQ(warned(floor), "") << "it has no end";
+}
+
+TEST(Warnings, FollowInstancesAndMotion) {
+  Json scene = lit("");
+  scene["models"]["ball"]["objects"] = Json::array({json(kBall)});
+  scene["models"]["ball"]["objects"][0]["material"] = "white";
+  const auto with = [&](const char* instance) {
+    Json placed = scene;
+    placed["instances"] = Json::array({json(instance)});
+    return warned(placed);
+  };
+  EXPECT_EQ(with("{'model': 'ball'}"), "");
+  EXPECT_EQ(with("{'model': 'ball', 'translate': [0, 0, 20]}"), "/camera ");
+  EXPECT_EQ(with("{'model': 'ball', 'translate': [0, 0, 3.5]}"), "/camera/eye ");
+}
+
+TEST(Warnings, KnowFromWhatWasTracedWhetherAnythingWasMet) {
+  const auto scene = load(lit(kBall));
+  const Plan plan = make_plan(*scene, {});
+  TraceCounts traced;
+  ASSERT_EQ(find_warnings(*scene, plan, traced).size(), 1u);
+  EXPECT_EQ(find_warnings(*scene, plan, traced)[0].pointer, "/camera");
+  traced.camera_hits = 1;
+  EXPECT_TRUE(find_warnings(*scene, plan, traced).empty());
+}
+
+}  // namespace
+}  // namespace orrery::test
