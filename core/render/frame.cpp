@@ -9,7 +9,9 @@ RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, F
   RenderStats stats;
   stats.build_ms = plan.settle_ms();
   const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
-  Film film(plan->width, plan->height, plan->channels.empty() ? storage : FilmStorage::sums, plan->channels);
+  std::span<const ChannelType* const> channels;
+  if (storage == FilmStorage::sums) channels = plan->channels;
+  Film film(plan->width, plan->height, storage, channels);
   const TileGrid grid(plan->width, plan->height);
   std::vector<TileView> tiles;
   tiles.reserve(static_cast<std::size_t>(grid.size()));

@@ -9,8 +9,8 @@ struct RenderResult {
   RenderStats stats;
 };
 
-// Renders one frame on the pool: every tile with all its samples. A plan with channels gets a film of sums,
-// whatever `storage` says. Throws Cancelled once control.stop is requested.
+// Renders one frame on the pool: every tile with all its samples. Channels of the plan are kept with
+// FilmStorage::sums alone. Throws Cancelled once control.stop is requested.
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control = {});
 

@@ -1,5 +1,7 @@
 #include "core/render/views.h"
 
+#include "core/base/error.h"
+
 namespace orrery {
 namespace {
 
@@ -22,8 +24,14 @@ std::vector<ExrLayer> layers_of(const Film& film) {
 
 }  // namespace
 
-FilmStorage storage_for(FileFormat format) {
-  return format == FileFormat::exr ? FilmStorage::linear32 : FilmStorage::srgb8;
+FilmStorage storage_for(FileFormat format, const Plan& plan) {
+  if (format != FileFormat::exr) return FilmStorage::srgb8;
+  return plan.channels.empty() ? FilmStorage::linear32 : FilmStorage::sums;
+}
+
+void require_layers_kept(const RenderRequest& request, FileFormat format) {
+  if (format != FileFormat::exr && request.layers && !request.layers->empty())
+    throw InputError("/render/layers", "expected none, as EXR is the only format that keeps layers");
 }
 
 std::string encode_film(const Film& film, FileFormat format, const PngOptions& png, std::stop_token stop) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/plan/warnings.h"
 #include "core/render/views.h"
 #include "server/app/reading.h"
 #include "server/app/watch.h"
@@ -15,6 +16,17 @@ Settings decided(Settings settings, const WorkerPool& pool) {
   return settings;
 }
 
+// Bytes of the film of sums that the plan's layers need. Throws InputError where they are more than
+// `most_bytes`.
+std::size_t layer_bytes_of(const Plan& plan, std::size_t most_bytes) {
+  const std::size_t bytes = Film::bytes(plan.width, plan.height, FilmStorage::sums, plan.channels);
+  if (bytes <= most_bytes) return bytes;
+  throw InputError("/render/layers", "expected layers that take at most " + std::to_string(most_bytes) +
+                                         " bytes while they are rendered (layer_bytes), these take " +
+                                         std::to_string(bytes) + " at " + std::to_string(plan.width) + " x " +
+                                         std::to_string(plan.height) + " pixels");
+}
+
 }  // namespace
 
 App::App(const Settings& settings, Timer& timer)
@@ -25,6 +37,8 @@ App::App(const Settings& settings, Timer& timer)
       scenes_(settings.store_bytes),
       assets_(settings.asset_store_bytes),
       pictures_(settings.picture_bytes),
+      films_(settings.film_bytes, settings.film_bytes / 4),
+      layer_bytes_(settings.layer_bytes, "layer_bytes", "Films with layers"),
       admission_({settings_.renders, settings_.queue_rays}, timer),
       services_{pool_, admission_, timer, drains_.get_token(), ends_.get_token(), meters_},
       streams_(settings_.connections),
@@ -76,27 +90,45 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
       key + std::to_string(static_cast<int>(format)), caller.gone, [&](const std::stop_token& nobody_waits) {
         Picture picture;
         watched({caller.client, nobody_waits}, since, [&](const std::stop_token& stop) {
-          picture = make(scene, plan, format, demand, stop, timing);
+          picture = make(scene, plan, key, format, demand, stop, timing);
         });
         return picture;
       });
   ++(found.made_here ? meters_.pictures_made : meters_.pictures_found);
   if (!found.made_here) timing.queue += milliseconds_since(start);
-  return {found.picture, found.made_here};
+  return {found.value, found.made_here && !found.value->of_kept_film};
 }
 
-Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-                  const std::stop_token& stop, Timing& timing) {
-  auto start = Clock::now();
-  const auto ticket = admission_.enter(demand, stop);
-  timing.queue += milliseconds_since(start);
-  const RenderResult rendered =
-      services_.render(scene, orrery::settle(scene, plan, stop), storage_for(format),
-                       {.stop = stop, .background = demand.lane == Lane::batch});
-  timing.build = rendered.stats.build_ms;
-  timing.render = rendered.stats.trace_ms;
-  start = Clock::now();
-  Picture picture{encode_film(rendered.film, format, {}, stop), rendered.stats};
+Picture App::make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
+                  const Demand& demand, const std::stop_token& stop, Timing& timing) {
+  std::optional<Admission::Ticket> ticket;
+  const auto enter = [&](const Demand& asked, const std::stop_token& ends) {
+    const auto start = Clock::now();
+    ticket.emplace(admission_.enter(asked, ends));
+    timing.queue += milliseconds_since(start);
+  };
+  const FilmStorage storage = shared_storage(format, plan, films_.largest());
+  Budget::Share layers(layer_bytes_);
+  if (storage == FilmStorage::sums) layers.grow(layer_bytes_of(plan, settings_.layer_bytes));
+  const Films::Found film = films_.get(
+      key + std::to_string(static_cast<int>(storage)), stop, [&](const std::stop_token& nobody_waits) {
+        enter(demand, nobody_waits);
+        return services_.render(scene, orrery::settle(scene, plan, nobody_waits), storage,
+                                {.stop = nobody_waits, .background = demand.lane == Lane::batch});
+      });
+  const RenderStats& stats = film.value->stats;
+  if (film.made_here) {
+    timing.build = stats.build_ms;
+    timing.render = stats.trace_ms;
+  } else {
+    ++meters_.films_found;
+    enter({Lane::interactive, demand.client, kLeastCost}, stop);
+  }
+  const auto start = Clock::now();
+  Picture picture{.bytes = encode_film(film.value->film, format, {}, stop),
+                  .stats = stats,
+                  .warnings = find_warnings(scene.scene(), plan, stats.counts),
+                  .of_kept_film = !film.made_here};
   picture.bytes.shrink_to_fit();  // it may be kept
   timing.encode = milliseconds_since(start);
   return picture;

@@ -19,6 +19,7 @@
 #include "server/app/scene_store.h"
 #include "server/app/settings.h"
 #include "server/app/streams.h"
+#include "server/http/budget.h"
 
 namespace orrery {
 
@@ -29,7 +30,7 @@ struct Timing {
 
 struct Rendered {
   std::shared_ptr<const Picture> picture;
-  bool made_now;  // for this request, and not for another one before
+  bool made_now;  // rendered for this request, and not for another one before
 };
 
 // Who asks for something.
@@ -55,6 +56,7 @@ class App {
   OrbitHub& orbits() { return orbits_; }
   Jobs& jobs() { return jobs_; }
   const Pictures& pictures() const { return pictures_; }
+  const Films& films() const { return films_; }
   const Admission& admission() const { return admission_; }
   const Meters& meters() const { return meters_; }
 
@@ -87,8 +89,9 @@ class App {
   // Calls work(stop), which is stopped when it should end early; its time counts from `since`.
   template <class Work>
   void watched(const Caller& caller, Clock::time_point since, const Work& work);
-  Picture make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
-               const std::stop_token& stop, Timing& timing);
+  // Renders it, unless a film of it is kept, and encodes it.
+  Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
+               const Demand& demand, const std::stop_token& stop, Timing& timing);
 
   Timer& timer_;
   std::stop_source drains_, ends_;
@@ -99,6 +102,8 @@ class App {
   SceneStore scenes_;
   AssetStore assets_;
   Pictures pictures_;
+  Films films_;
+  Budget layer_bytes_;  // of films of sums while they are made
   Admission admission_;
   const RenderServices services_;
   Streams streams_;

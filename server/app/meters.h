@@ -23,6 +23,7 @@ struct Meters {
   const std::chrono::system_clock::time_point started = std::chrono::system_clock::now();
   std::atomic<std::uint64_t> rays{0};
   std::atomic<std::uint64_t> pictures_found{0}, pictures_made{0};  // of those asked for
+  std::atomic<std::uint64_t> films_found{0};                       // of pictures made: encoded, not rendered
   std::atomic<std::uint64_t> jobs_done{0}, jobs_failed{0}, jobs_cancelled{0};
   SecondsHistogram render;  // of a frame: building its structure and tracing it
 };

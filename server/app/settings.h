@@ -25,6 +25,8 @@ struct Settings {
   std::size_t asset_bytes = 64 << 20;
   std::size_t asset_store_bytes = 256 << 20;
   std::size_t picture_bytes = 64 << 20;
+  std::size_t film_bytes = 128 << 20;
+  std::size_t layer_bytes = 512 << 20;
   std::size_t connections = 256;
   int renders = 0;
   double queue_rays = 100e6;

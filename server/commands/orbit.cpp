@@ -111,6 +111,7 @@ class Turn {
     if (options.step_given->count() > 0) path_.step_degrees = options.step;
     if (options.time_step_given->count() > 0) path_.step_seconds = options.time_step;
     require_range(path_, options.frames, "--step");
+    require_layers_kept(first_, format_);
     if (!options.discard) require_writable(names_.of(0));
   }
 
@@ -143,8 +144,9 @@ class Turn {
  private:
   RenderResult render(std::int64_t frame) {
     const std::stop_token stop = signals_.interrupted();
-    return render_frame(scene_, settle(scene_, make_plan(scene_.scene(), path_.at(frame)), stop),
-                        storage_for(format_), pool_, {.stop = stop});
+    const Plan plan = make_plan(scene_.scene(), path_.at(frame));
+    return render_frame(scene_, settle(scene_, plan, stop), storage_for(format_, plan), pool_,
+                        {.stop = stop});
   }
 
   const Options& options_;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/plan/plan.h"
+#include "core/plan/warnings.h"
 #include "server/app/frame.h"
 #include "server/commands/commands.h"
 #include "server/commands/output_file.h"
@@ -33,13 +34,14 @@ RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, 
                                   WorkerPool& pool, const SignalWatch& signals, ProgressBar& bar) {
   bar.say("making " + std::to_string(scene.scene().primitive_count()) + " primitives ready");
   return render_frame(
-      scene, settle(scene, plan, signals.interrupted()), storage_for(format), pool,
+      scene, settle(scene, plan, signals.interrupted()), storage_for(format, plan), pool,
       {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar.update(done, total); }});
 }
 
 int render(const Options& options) {
   const FileFormat format = options.output ? format_of(*options.output) : FileFormat::png;
   const RenderRequest request = read_render_flags(options.render);
+  if (options.output) require_layers_kept(request, format);
   if (options.output) require_writable(*options.output);
   RunStats stats;
   auto start = Clock::now();
@@ -57,6 +59,8 @@ int render(const Options& options) {
   bar.reset();
   stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   stats.render = result.stats;
+  for (const Problem& p : find_warnings(scene.scene(), plan, result.stats.counts))
+    std::cerr << "orrery: warning: " << p.pointer << ": " << p.detail << "\n";
   if (options.output) {
     start = Clock::now();
     const std::string bytes = encode_film(result.film, format);

@@ -11,8 +11,10 @@ namespace orrery {
 // Bytes that many may take from together. Safe from any thread.
 class Budget {
  public:
-  // `name`: of the limit, in /v1/limits.
-  Budget(std::size_t most, const char* name) : most_(most), name_(name) {}
+  // `name`: of the limit, in /v1/limits; `takers`: what errors call those who take, at the start of a
+  // sentence.
+  Budget(std::size_t most, const char* name, const char* takers)
+      : most_(most), name_(name), takers_(takers) {}
 
   // Bytes taken, given back with the object.
   class Share {
@@ -38,14 +40,15 @@ class Budget {
     std::size_t taken = taken_;
     do {
       if (bytes > most_ - taken)
-        throw OverLimit("Bodies of " + std::to_string(taken) + " bytes are being read already, of at most " +
-                            std::to_string(most_) + " (" + name_ + ")",
+        throw OverLimit(std::string(takers_) + " take " + std::to_string(taken) +
+                            " bytes already, of at most " + std::to_string(most_) + " (" + name_ + "), and " +
+                            std::to_string(bytes) + " more are needed",
                         kRetry_s, name_);
     } while (!taken_.compare_exchange_weak(taken, taken + bytes));
   }
 
   const std::size_t most_;
-  const char* const name_;
+  const char *const name_, *const takers_;
   std::atomic<std::size_t> taken_{0};
 };
 

@@ -16,7 +16,9 @@ class Exchanger {
  public:
   // `handler` and `monitor` must outlive it.
   Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler, HangupMonitor& monitor)
-      : handler_(handler), monitor_(monitor), bodies_(options.max_bodies, "bodies_bytes") {}
+      : handler_(handler),
+        monitor_(monitor),
+        bodies_(options.max_bodies, "bodies_bytes", "Bodies of requests") {}
 
   // Reads and answers the request that begins there. False if the connection ends with it. Throws nothing but
   // std::bad_alloc and its like.

@@ -184,6 +184,10 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
     told += "kept;desc=\"made for another request\"";
   }
   response.set("Server-Timing", std::move(told));
+  std::string warnings;
+  for (const Problem& p : rendered.picture->warnings)
+    warnings += (warnings.empty() ? "" : "; ") + p.pointer + ": " + p.detail;
+  if (!warnings.empty()) response.set("Orrery-Warning", std::move(warnings));
   return response;
 }
 

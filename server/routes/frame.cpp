@@ -12,6 +12,7 @@ Response frame(App& app, Request& request) {
   Timing timing;
   const auto start = Clock::now();
   const RenderRequest wanted = read_query(request);
+  require_layers_kept(wanted, FileFormat::png);
   const Plan plan = make_plan(scene->scene(), wanted);
   timing.plan = milliseconds_since(start);
 

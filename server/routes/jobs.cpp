@@ -33,6 +33,7 @@ JobSpec read_job(App& app, Request& request, Timing& timing) {
       if (o.has("time_step_s")) time_step_s = time;
     });
   });
+  require_layers_kept(order.request, FileFormat::png);
   const Scene& scene = order.scene->scene();
   spec.scene = order.scene;
   spec.path = full_turn(scene, order.request, spec.frames);

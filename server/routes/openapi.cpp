@@ -4,6 +4,7 @@
 #include "core/base/hash.h"
 #include "server/app/option_json.h"
 #include "server/app/render_options.h"
+#include "server/app/settings.h"
 #include "server/http/embedded.h"
 #include "server/routes/answers.h"
 #include "server/routes/router.h"
@@ -12,7 +13,8 @@
 // options:
 //   "render options" in a list of parameters  stands for those of a query;
 //   components.schemas                        lacks camera, image and render, the parts of a request's body;
-//   components.schemas.Explanation            lacks the options of the section render.
+//   components.schemas.Explanation            lacks the options of the section render;
+//   components.schemas.Limits                 lacks the limits that are settings.
 namespace orrery {
 namespace {
 
@@ -50,6 +52,14 @@ void add_schemas(ordered_json& schemas, const ordered_json& options) {
   schemas["Explanation"]["properties"].update(schemas["render"]["properties"]);
 }
 
+void add_limits(ordered_json& schema) {
+  for (const Setting& limit : limits()) {
+    schema["required"].push_back(limit.name);
+    schema["properties"][std::string(limit.name)] = {
+        {"type", "integer"}, {"minimum", limit.min}, {"description", std::string(limit.help) + "."}};
+  }
+}
+
 // Replaces the placeholder in all lists of parameters; returns the parameters that it stands for, by name.
 ordered_json expand_parameters(ordered_json& paths, const ordered_json& options) {
   ordered_json components = ordered_json::object(), references = ordered_json::array();
@@ -77,6 +87,7 @@ std::string description() {
   ordered_json json = file_part();
   const ordered_json options = option_schemas();
   add_schemas(json["components"]["schemas"], options);
+  add_limits(json["components"]["schemas"]["Limits"]);
   json["components"]["parameters"].update(expand_parameters(json["paths"], options));
   return json.dump(2) + "\n";
 }

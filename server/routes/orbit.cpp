@@ -36,6 +36,7 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   spec.scene = app.scenes().find(request.path_value("id"));
   const Scene& scene = spec.scene->scene();
   const RenderRequest first = read_query(request, kOwnParameters);
+  require_layers_kept(first, FileFormat::png);
   std::vector<Problem> problems;
   const double frames = number_of(request, "frames", 1, app.settings().orbit_frames, 120, problems);
   if (frames != std::floor(frames)) problems.push_back({"/frames", "expected a whole number"});

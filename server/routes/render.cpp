@@ -28,6 +28,7 @@ Response render(App& app, Request& request) {
   const std::string_view type = negotiate(request, kTypes);
   Timing timing;
   const RenderOrder order = read_render_order(app, request, timing);
+  require_layers_kept(order.request, format_of(type));
   const auto start = Clock::now();
   const Plan plan = make_plan(order.scene->scene(), order.request);
   timing.plan = milliseconds_since(start);

@@ -29,7 +29,7 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
   };
   EXPECT_TRUE(get("a").made_here);
   EXPECT_FALSE(get("a").made_here);
-  EXPECT_EQ(get("a").picture->bytes, std::string(3000, 'a'));
+  EXPECT_EQ(get("a").value->bytes, std::string(3000, 'a'));
   EXPECT_EQ(made, 1);
   get("b");
   get("c");  // three take more than 10,000 bytes with their figures
@@ -57,7 +57,7 @@ TEST(Pictures, ThatManyAskForAtOnceAreMadeOnce) {
         return picture("x");
       });
       here += found.made_here;
-      EXPECT_EQ(found.picture->bytes, "x");
+      EXPECT_EQ(found.value->bytes, "x");
     });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(made, 1);
@@ -105,7 +105,7 @@ TEST(Pictures, AreFinishedForTheOthersWhenTheFirstLeaves) {
       },
       [&](const auto& get) {
         const auto found = get([](const auto&) { return picture("y"); });
-        EXPECT_EQ(found.picture->bytes, "x");
+        EXPECT_EQ(found.value->bytes, "x");
       });
 }
 
@@ -133,7 +133,7 @@ TEST(Pictures, RefusedToOneAreMadeByTheNext) {
       [&](const auto& get) {
         const auto found = get([](const auto&) { return picture("y"); });
         EXPECT_TRUE(found.made_here);
-        EXPECT_EQ(found.picture->bytes, "y");
+        EXPECT_EQ(found.value->bytes, "y");
       });
 }
 

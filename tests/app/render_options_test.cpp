@@ -77,8 +77,8 @@ struct Others {
 std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
   const PreparedScene prepared(scene);
   const SettledPlan plan = settle(prepared, make_plan(*scene, request));
-  return encode_film(render_frame(prepared, plan, FilmStorage::linear32, shared_pool()).film,
-                     FileFormat::exr);
+  const FilmStorage storage = storage_for(FileFormat::exr, *plan);
+  return encode_film(render_frame(prepared, plan, storage, shared_pool()).film, FileFormat::exr);
 }
 
 // The key of a picture has an option exactly if its row says that it changes pixels, and the pixels agree.

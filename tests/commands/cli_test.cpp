@@ -115,6 +115,33 @@ TEST_F(CommandLine, CheckNamesFilePlaceAndProblem) {
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].at("file"), bad);
   EXPECT_EQ(problems[0].at("pointer"), "/objects/0/radius");
+  EXPECT_EQ(problems[0].at("severity"), "error");
+}
+
+TEST_F(CommandLine, UselessPicturesAreWarnedOf) {
+  std::string text = kScene;
+  text.replace(text.find("[0, 0, 4]"), 9, "[0, 0, 0.5]");
+  const std::string inside = write("inside.json", text), said = "the camera is inside an opaque shape";
+  const Outcome checked = run("check " + inside);
+  EXPECT_EQ(checked.status, 0);
+  EXPECT_EQ(checked.out.rfind(inside + ": /camera/eye: warning: " + said, 0), 0u) << checked.out;
+  const auto problems = nlohmann::json::parse(run("check --json " + inside).out);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].at("severity"), "warning");
+  const Outcome rendered = run("render " + inside + " -o " + file("a.png"));
+  EXPECT_EQ(rendered.status, 0);
+  EXPECT_NE(rendered.err.find("orrery: warning: /camera/eye: " + said), std::string::npos) << rendered.err;
+  EXPECT_NE(run("explain " + inside).out.find("warning: /camera/eye: " + said), std::string::npos);
+  EXPECT_EQ(run("render " + write("s.json", kScene) + " -o " + file("a.png")).err, "");
+}
+
+TEST_F(CommandLine, LayersAreRefusedByFormatsThatKeepNone) {
+  const std::string scene = write("s.json", kScene);
+  EXPECT_EQ(run("render " + scene + " --layers depth -o " + file("a.exr")).status, 0);
+  const Outcome png = run("render " + scene + " --layers depth -o " + file("a.png"));
+  EXPECT_EQ(png.status, 2);
+  EXPECT_NE(png.err.find("/render/layers: "), std::string::npos) << png.err;
+  EXPECT_EQ(run("orbit " + scene + " --frames 2 --layers depth -o " + file("a-%d.png")).status, 2);
 }
 
 TEST_F(CommandLine, WrongOptionsAreNamedAsTheyWereGiven) {

@@ -5,7 +5,7 @@ const entry = (fault, about, file, from, to, target, ...tests) => ({
   fault, about, file, from, to, target, tests,
 });
 const admission = (...rest) => entry(20, rest[0], "server/app/admission.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
-const pictures = (...rest) => entry(20, rest[0], "server/app/pictures.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
+const pictures = (...rest) => entry(20, rest[0], "server/app/single_flight.h", rest[1], rest[2], "test_app", ...rest.slice(3));
 const scenes = (...rest) => entry(20, rest[0], "server/app/scene_store.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
 
 export const serviceFaults = [
@@ -24,12 +24,16 @@ export const serviceFaults = [
            "Pictures.ThatManyAskForAtOnce*"),
   pictures("the first takes the picture along when it leaves", "if (--work.waiting > 0) return;", "",
            "Pictures.AreFinishedForTheOthers*"),
-  pictures("the others are refused with the first", "} catch (const Busy&) {\n    error = std::current_exception();",
-           "} catch (const Busy&) {\n    error = std::current_exception();\n    theirs = true;", "Pictures.RefusedToOne*"),
+  pictures("the others are refused with the first", "} catch (const Busy&) {\n      error = std::current_exception();",
+           "} catch (const Busy&) {\n      error = std::current_exception();\n      theirs = true;", "Pictures.RefusedToOne*"),
   entry(20, "work has all the time there is", "server/app/watch.cpp", "timer.at(since + limit.time,", "timer.at(Clock::time_point::max(),",
         "test_app", "Watch.StopsAtItsTime*", "Watch.OfALateRequest*"),
   entry(20, "who sends no more goes unnoticed", "server/http/hangup_monitor.cpp", "EPOLLRDHUP | EPOLLONESHOT", "EPOLLONESHOT",
         "test_http", "HangupMonitor.StopsTheWorkOfWhoSendsNoMore"),
+  entry(20, "each format is rendered anew", "server/app/app.cpp", "films_(settings.film_bytes, settings.film_bytes / 4)",
+        "films_(0)", "test_http", "Render.AllFormatsOfAPicture*"),
+  entry(20, "layers take what they like", "server/app/app.cpp", "if (bytes <= most_bytes) return bytes;", "return bytes;",
+        "test_http", "Render.LayersHaveALimit*"),
   entry(20, "pictures of all formats are one", "server/app/app.cpp", "key + std::to_string(static_cast<int>(format))", "key",
         "test_http", "Render.AcceptChoosesTheFormat"),
   scenes("a known scene is loaded again", "if (auto known = find_known(id)) {", "if (auto known = find_known(id); known && false) {",

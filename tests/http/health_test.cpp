@@ -126,6 +126,8 @@ TEST(Health, MetricsTellWhatWasThereAndWhatHadToBeMade) {
   EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"scenes\"}"), 3);
   EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"pictures\"}"), 2);  // rendered
   EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"pictures\"}"), 4);
+  EXPECT_EQ(value_of(told, "orrery_cache_misses_total{cache=\"films\"}"), 2);
+  EXPECT_EQ(value_of(told, "orrery_cache_hits_total{cache=\"films\"}"), 0);
   EXPECT_EQ(value_of(told, "orrery_render_seconds_count"), 2);
   EXPECT_GT(value_of(told, "orrery_render_seconds_sum"), 0);
   EXPECT_EQ(value_of(told, "orrery_queue_wait_seconds_count{lane=\"interactive\"}"), 2);

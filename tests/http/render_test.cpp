@@ -76,6 +76,79 @@ TEST_F(Render, AcceptChoosesTheFormat) {
   expect_problem(render(small_scene(), {{"Accept", "text/html"}}), 406);
 }
 
+// What is asked for in each format of a daemon with these settings, and the rays traced for each.
+struct Formats {
+  std::vector<std::string> bodies;
+  std::vector<double> rays;
+
+  explicit Formats(const std::vector<std::string>& settings) {
+    const Daemon daemon(settings);
+    auto client = daemon.client();
+    for (const char* type : {"image/png", "image/x-exr", "image/jpeg"}) {
+      const double before = daemon.metric("orrery_rays_total");
+      const auto result =
+          client.Post("/v1/render", {{"Accept", type}}, small_scene().dump(), "application/json");
+      EXPECT_EQ(result->status, 200) << result->body;
+      bodies.push_back(result->body);
+      rays.push_back(daemon.metric("orrery_rays_total") - before);
+      EXPECT_EQ(result->has_header("X-Rays"), rays.back() > 0);
+    }
+  }
+};
+
+TEST_F(Render, AllFormatsOfAPictureAreRenderedOnceWhileItsFilmIsKept) {
+  const Formats once({}), each({"--film-bytes", "0"});
+  EXPECT_GT(once.rays[0], 48 * 32);
+  EXPECT_EQ(once.rays, (std::vector{once.rays[0], 0.0, 0.0}));
+  EXPECT_EQ(each.rays, (std::vector{once.rays[0], once.rays[0], once.rays[0]}));
+  EXPECT_EQ(once.bodies, each.bodies);
+}
+
+TEST_F(Render, LayersHaveALimitOfBytes) {
+  // Radiance, depth and normal, each with a weight but the first: 9 planes of 8 bytes a pixel.
+  const std::size_t bytes = 72 * 48 * 32;
+  const auto status_with = [](std::size_t most, const char* type) {
+    const Daemon daemon({"--layer-bytes", std::to_string(most)});
+    const nlohmann::json body = {{"scene", small_scene()}, {"render", {{"layers", {"depth", "normal"}}}}};
+    return daemon.client().Post("/v1/render", {{"Accept", type}}, body.dump(), "application/json");
+  };
+  EXPECT_EQ(status_with(bytes, "image/x-exr")->status, 200);
+  const auto problem = expect_problem(status_with(bytes - 1, "image/x-exr"), 422);
+  EXPECT_EQ(problem.at("errors")[0].at("pointer"), "/render/layers");
+  const std::string detail = problem.at("errors")[0].at("detail");
+  for (const std::string& told :
+       {std::to_string(bytes), std::to_string(bytes - 1), std::string("layer_bytes")})
+    EXPECT_NE(detail.find(told), std::string::npos) << detail;
+  EXPECT_EQ(expect_problem(status_with(bytes, "image/png"), 422).at("errors")[0].at("pointer"),
+            "/render/layers");
+}
+
+TEST_F(Render, LayersThatASceneAsksForAreLeftOutOfWhatHasNone) {
+  nlohmann::json with_layers = small_scene();
+  with_layers["render"]["layers"] = {"depth"};
+  const auto result = render(with_layers);
+  EXPECT_EQ(result->status, 200) << result->body;
+  EXPECT_EQ(result->body, render(small_scene())->body);
+}
+
+TEST_F(Render, UselessPicturesAreWarnedOf) {
+  const auto warning = [&](const nlohmann::json& scene) {
+    for (int i = 0; i < 2; ++i) render(scene);  // also of what is kept
+    return render(scene)->get_header_value("Orrery-Warning");
+  };
+  EXPECT_EQ(warning(small_scene()), "");
+  auto scene = small_scene({{"lights", nlohmann::json::array()}, {"ambient", {0, 0, 0}}});
+  scene["objects"].erase(1);  // the mirror, which shows the background
+  scene["camera"]["look_at"] = {1000, 1, 4};
+  const std::string told = warning(scene);
+  EXPECT_NE(told.find("/lights: "), std::string::npos) << told;
+  EXPECT_NE(told.find("; /camera: nothing is in view"), std::string::npos) << told;
+  const auto explanation =
+      nlohmann::json::parse(client_.Get("/v1/scenes/" + post_scene(scene.dump()) + "/explain")->body);
+  ASSERT_EQ(explanation.at("warnings").size(), 2u) << explanation.at("warnings");
+  EXPECT_EQ(explanation.at("warnings")[0].at("pointer"), "/lights");
+}
+
 TEST_F(Render, StoredSceneIsNamedById) {
   const auto inline_scene = render(small_scene());
   const auto stored = render({{"scene_id", post_scene(small_scene().dump())}});
