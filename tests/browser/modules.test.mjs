@@ -2,7 +2,7 @@
 // The page's modules that need no browser, one by one.
 
 import assert from "node:assert/strict";
-import { cpSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { cpSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
@@ -353,10 +353,4 @@ test("canonical JSON is laid out for reading and stays the same value", () => {
   };
   assert.deepEqual(JSON.parse(pretty(value)), value);
   assert.match(pretty(value), /"eye": \[0, -1\.5, 2e-7\]/);
-});
-
-test("the page stays under 100 KB", () => {
-  const files = readdirSync(join(kRoot, "web"));
-  const total = files.reduce((sum, file) => sum + statSync(join(kRoot, "web", file)).size, 0);
-  assert.ok(total < 100 * 1024, `${total} bytes`);
 });
