@@ -271,31 +271,6 @@ page_test("technique and size can be chosen", "playing=0", async (page) => {
   assert.equal((await hash_of(page)).technique, "raycast");
 });
 
-page_test("the download is a PNG of the view at full size", "playing=0&az=30", async (page) => {
-  const digest = await rest(page);
-  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#download").click()]);
-  assert.equal(download.suggestedFilename(), "paper-30-0.png");
-  const bytes = readFileSync(await download.path());
-  assert.deepEqual([...bytes.subarray(0, 8)], [137, 80, 78, 71, 13, 10, 26, 10]);
-  assert.equal(`${bytes.readUInt32BE(16)}x${bytes.readUInt32BE(20)}`, digest.split(" ")[0]);
-});
-
-page_test(
-  "the copied command fetches the picture",
-  "playing=0",
-  async (page, context) => {
-    await rest(page);
-    await page.locator("#curl").click();
-    await page.getByText("Copied").waitFor();
-    const command = await page.evaluate(() => navigator.clipboard.readText());
-    const [, url] = /^curl -fo \S+\.png '([^']+)'$/.exec(command) ?? assert.fail(command);
-    assert.ok(url.startsWith(daemon.url));
-    const response = await fetch(url);
-    assert.equal(response.headers.get("content-type"), "image/png");
-  },
-  { permissions: ["clipboard-read", "clipboard-write"] },
-);
-
 page_test(
   "who asks for less motion gets a still",
   "scene=paper&playing=1&samples=1",
