@@ -177,7 +177,8 @@ TEST_F(CommandLine, EveryCommandExplainsItself) {
   }
 }
 
-// Without the format ffmpeg keeps every pixel's colour (4:4:4), which browsers do not play; with it, sides are even.
+// Without the format ffmpeg keeps every pixel's colour (4:4:4), which browsers do not play; with it, sides
+// have to be even.
 TEST_F(CommandLine, HelpOfOrbitMakesAFilmThatBrowsersPlay) {
   const std::string help = run("orbit --help").out;
   EXPECT_NE(help.find("-pix_fmt yuv420p orbit.mp4"), std::string::npos) << help;
