@@ -12,7 +12,7 @@ import { Player } from "./player.js";
 import { hide_problem, show_problem } from "./problem.js";
 import { show_progress } from "./progress.js";
 import { ladder, quality } from "./quality.js";
-import { own_samples, SceneLibrary } from "./scenes.js";
+import { facts_of, SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
 import { picture_size } from "./size.js";
 import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
@@ -40,7 +40,7 @@ let pans = false;
 
 const player = new Player(camera, view, {
   picture: (purpose, level) => scene && picture(purpose, level, camera.view),
-  ladder: () => ({ pictures: scene ? pictures_at_rest() : [], asked: state.samples > 0 }),
+  ladder: (at) => ({ pictures: scene ? pictures_at_rest(at) : [], asked: state.samples > 0 }),
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
@@ -54,7 +54,10 @@ const player = new Player(camera, view, {
   progress: (figures) => show_progress($("busy"), $("progress"), figures),
   stale: () => delete stage.dataset.shows,
   settled: () => save_now(),
-  rested: () => (stage.dataset.shows = "still"),
+  rested: () => {
+    stage.dataset.shows = "still";
+    refresh_download();
+  },
 });
 
 const editor = new Editor(
@@ -79,7 +82,7 @@ const editor = new Editor(
 );
 
 function picture(purpose, level, at) {
-  const { part, samples } = quality(purpose, level, state);
+  const { part, samples } = quality(purpose, level, { ...state, own: scene.samples });
   const size = picture_size({
     mode: state.size,
     purpose,
@@ -93,16 +96,15 @@ function picture(purpose, level, at) {
   return { id: scene.id, moves, ...at, ...size, technique: state.technique, samples };
 }
 
-function pictures_at_rest() {
-  const still = picture("still", 0, camera.view);
-  const counts = ladder(state.samples, own_samples(scene), limits.samples);
+function pictures_at_rest(at) {
+  const still = picture("still", 0, at);
+  const counts = ladder(state.samples, scene.samples, limits.samples);
   return counts.map((samples) => ({ ...still, samples }));
 }
 
-// What a download or a copied command shows: the view where it is or will come to rest.
 function current_picture() {
   if (!scene) return null;
-  return { picture: picture("still", 0, camera.goal), name: library.sample(scene.ref)?.name ?? "scene" };
+  return { picture: player.picture, name: library.sample(scene.ref)?.name ?? "scene" };
 }
 
 // Opens the scene that the state names, as soon as the service answers.
@@ -123,9 +125,9 @@ async function open_scene(at) {
 
 function show_scene(opened, at) {
   opening += 1;
-  scene = opened;
+  scene = { ...opened, ...facts_of(opened) };
   state.scene = opened.ref;
-  camera.use_scene_camera(opened.camera);
+  camera.use_scene_camera(opened.camera, scene.floor);
   camera.jump(view_of(at));
   hide_fail();
   editor.load(opened.text);

@@ -4,30 +4,33 @@
 
 const kElevationLimit = 89.9; // at 90 the view direction would be parallel to up
 const kDamping = 0.05; // part of the way to the goal covered in a sixtieth of a second
+const kLeastPixels = 1; // covered in a sixtieth of a second beside that part: so the glide ends
 const kNearest = 0.02;
 const kFarthest = 50;
-const kSettledDegrees = 0.1;
-const kSettledFactor = 0.001; // of the distance
+const kFloorClearance = 0.01; // of the scene's own distance
 
 const own_view = () => ({ azimuth: 0, elevation: 0, distance: 1, pan: [0, 0, 0], time: 0 });
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 const turn = (degrees) => ((degrees % 360) + 360) % 360;
 const radians = (degrees) => (degrees * Math.PI) / 180;
+const degrees = (angle) => (angle * 180) / Math.PI;
 const dot = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
 const mix = (a, p, b, q) => a.map((value, axis) => p * value + q * b[axis]);
 const unit = (a) => a.map((value) => value / Math.hypot(...a));
 const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 
-// Of the scene's own camera: {pole, elevation, out, side, metres}: degrees of its eye over the plane that `pole`
-// stands on; `out` and `side` lie in this plane, towards the eye and to its right; metres from eye to target.
+// Of the scene's own camera: {pole, elevation, out, side, metres, level}: degrees of its eye over the plane that
+// `pole` stands on; `out` and `side` lie in this plane, towards the eye and to its right; metres from eye to target;
+// the target's height along `pole`.
 function frame_of({ eye = [0, 0, 4], look_at = [0, 0, 0], up = [0, 1, 0] } = {}) {
   const offset = mix(eye, 1, look_at, -1);
   const pole = unit(up);
   const direction = unit(offset);
   const sine = clamp(dot(direction, pole), -1, 1);
   const out = unit(mix(direction, 1, pole, -sine));
-  const elevation = (Math.asin(sine) * 180) / Math.PI;
-  return { pole, elevation, out, side: cross(pole, out), metres: Math.hypot(...offset) };
+  const elevation = degrees(Math.asin(sine));
+  const level = dot(look_at, pole);
+  return { pole, elevation, out, side: cross(pole, out), metres: Math.hypot(...offset), level };
 }
 
 // Degrees of the scene's own eye above the plane that `up` stands on.
@@ -39,11 +42,14 @@ export class OrbitCamera {
   #goal = own_view();
   #scene = undefined;
   #own = frame_of();
+  #floor = -Infinity;
 
-  // The scene's own elevation limits how far the view may rise and sink.
-  use_scene_camera(camera) {
+  // The scene's own elevation limits how far the view may rise and sink, and so does its floor, a height along up
+  // that the scene's own eye is above.
+  use_scene_camera(camera, floor = -Infinity) {
     this.#scene = camera;
     this.#own = frame_of(camera);
+    this.#floor = floor;
   }
 
   get view() {
@@ -56,27 +62,28 @@ export class OrbitCamera {
 
   rotate(azimuth, elevation) {
     this.#goal.azimuth += azimuth;
-    this.#goal.elevation = this.#allowed_elevation(this.#goal.elevation + elevation);
+    this.#goal.elevation += elevation;
+    this.#keep_allowed();
   }
 
   dolly(factor) {
-    this.#goal.distance = clamp(this.#goal.distance * factor, kNearest, kFarthest);
+    this.#goal.distance *= factor;
+    this.#keep_allowed();
   }
 
   // Moves eye and target in the picture's plane, by parts of the height that the picture shows at the target's
   // distance. `fov` is the picture's angle where it is not the scene's own.
   pan(right, up, fov) {
-    const { distance, azimuth, elevation } = this.#now;
-    const { pole, out, side, metres } = this.#own;
+    const { azimuth, elevation } = this.#now;
+    const { pole, out, side } = this.#own;
     const turned = radians(azimuth);
     const lifted = radians(this.#own.elevation + elevation);
     const camera_right = mix(side, Math.cos(turned), out, -Math.sin(turned));
     const camera_up = mix(pole, Math.cos(lifted), cross(camera_right, pole), -Math.sin(lifted));
-    const half = radians((fov ?? this.#scene?.fov_degrees ?? 45) / 2);
-    const flat = this.#scene?.type === "orthographic";
-    const height = distance * (flat ? (this.#scene.height ?? 2) : 2 * metres * Math.tan(half));
+    const height = this.#shown_metres(fov);
     const move = mix(camera_right, right * height, camera_up, up * height);
     this.#goal.pan = mix(this.#goal.pan, 1, move, 1);
+    this.#keep_allowed();
   }
 
   // Glides back to the scene's own view, the short way round.
@@ -85,15 +92,10 @@ export class OrbitCamera {
     this.#goal = { ...own_view(), azimuth: 360 * Math.round(azimuth / 360), time };
   }
 
-  jump(view) {
-    this.#now = {
-      azimuth: turn(view.azimuth),
-      elevation: this.#allowed_elevation(view.elevation),
-      distance: clamp(view.distance, kNearest, kFarthest),
-      pan: view.pan ?? [0, 0, 0],
-      time: view.time ?? 0,
-    };
-    this.#goal = { ...this.#now };
+  jump({ azimuth, elevation, distance, pan = [0, 0, 0], time = 0 }) {
+    this.#goal = { azimuth: turn(azimuth), elevation, distance, pan, time };
+    this.#keep_allowed();
+    this.#now = { ...this.#goal };
   }
 
   // Takes over where a streamed frame was.
@@ -102,26 +104,55 @@ export class OrbitCamera {
     this.#now.time = this.#goal.time = time;
   }
 
-  // Moves on by `seconds`. Returns whether the view still moves.
-  step(seconds) {
+  // Moves on by `seconds`, in a picture `pixels` high. Returns whether the view still moves.
+  step(seconds, pixels) {
     const now = this.#now;
     const goal = this.#goal;
-    const part = this.damped ? 1 - (1 - kDamping) ** (60 * seconds) : 1;
+    const left = pixels * this.#heights_left();
+    const least = left > 0 ? (kLeastPixels * 60 * seconds) / left : 1;
+    const part = this.damped ? Math.min(1, 1 - (1 - kDamping) ** (60 * seconds) + least) : 1;
+    if (part === 1) {
+      this.#now = { ...goal };
+      return false;
+    }
     now.azimuth += (goal.azimuth - now.azimuth) * part;
     now.elevation += (goal.elevation - now.elevation) * part;
     now.distance *= (goal.distance / now.distance) ** part;
     now.pan = mix(now.pan, 1 - part, goal.pan, part);
-    const moving =
-      Math.abs(goal.azimuth - now.azimuth) > kSettledDegrees ||
-      Math.abs(goal.elevation - now.elevation) > kSettledDegrees ||
-      Math.abs(goal.distance / now.distance - 1) > kSettledFactor ||
-      Math.hypot(...mix(goal.pan, 1, now.pan, -1)) > kSettledFactor * this.#own.metres * now.distance;
-    if (!moving) this.#now = { ...goal };
-    return moving;
+    return true;
   }
 
-  #allowed_elevation(elevation) {
-    const own = this.#own.elevation;
-    return clamp(elevation, Math.min(0, -kElevationLimit - own), Math.max(0, kElevationLimit - own));
+  // How far what lies at the edge of the picture, at the target's distance, moves on the way to the goal: in heights
+  // of the picture.
+  #heights_left() {
+    const now = this.#now;
+    const goal = this.#goal;
+    const turned = Math.hypot(radians(goal.azimuth - now.azimuth), radians(goal.elevation - now.elevation)) / 2;
+    const zoomed = Math.abs(Math.log(goal.distance / now.distance)) / 2;
+    return Math.max(turned, zoomed, Math.hypot(...mix(goal.pan, 1, now.pan, -1)) / this.#shown_metres());
+  }
+
+  // Height of what the picture shows at the target's distance. `fov` is the picture's angle where it is not the
+  // scene's own.
+  #shown_metres(fov = this.#scene?.fov_degrees ?? 45) {
+    const { distance } = this.#now;
+    if (this.#scene?.type === "orthographic") return distance * (this.#scene.height ?? 2);
+    return distance * 2 * this.#own.metres * Math.tan(radians(fov / 2));
+  }
+
+  // The goal's eye comes neither too near nor too far, stays off the pole, and above the floor.
+  #keep_allowed() {
+    const { elevation: own, metres, pole, level } = this.#own;
+    const goal = this.#goal;
+    goal.distance = clamp(goal.distance, kNearest, kFarthest);
+    const highest = Math.max(0, kElevationLimit - own);
+    let lowest = Math.min(0, -kElevationLimit - own);
+    if (this.#floor > -Infinity) {
+      const own_height = level + metres * Math.sin(radians(own));
+      const least_height = Math.min(this.#floor + kFloorClearance * metres, own_height);
+      const sine = (least_height - level - dot(goal.pan, pole)) / (metres * goal.distance);
+      lowest = clamp(degrees(Math.asin(clamp(sine, -1, 1))) - own, lowest, highest);
+    }
+    goal.elevation = clamp(goal.elevation, lowest, highest);
   }
 }

@@ -5,7 +5,8 @@ import { get_frame, is_abort } from "./api.js";
 import { Backoff } from "./backoff.js";
 import { play_stream } from "./orbit_stream.js";
 import { Pace } from "./pace.js";
-import { Refiner } from "./refine.js";
+import { kStreams } from "./quality.js";
+import { amount, Refiner } from "./refine.js";
 import { frame_url, orbit_url } from "./urls.js";
 import { decode } from "./view.js";
 
@@ -13,8 +14,8 @@ const kRestMs = 100; // without input for this long, the view counts as at rest
 const kRestartMs = 150; // changes of size or speed are gathered this long
 const kQuickMs = 60; // previews slower than this get a quarter of each side instead of a half
 
-// `on` has: picture(purpose, level) -> picture or null, ladder() -> pictures of the view at rest, missing() ->
-// promise (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error),
+// `on` has: picture(purpose, level) -> picture or null, ladder(view) -> {pictures, asked} of a view at rest, missing()
+// -> promise (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error),
 // progress(figures or null), stale() when another picture is due, settled() when the view no longer moves,
 // rested() when the picture is final.
 export class Player {
@@ -36,7 +37,6 @@ export class Player {
   #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
   #preview_slow = 0; // level of previews
   #pace = new Pace();
-  #paced = ""; // what the pace was found for
   #backoff = new Backoff();
   #timer = 0;
   #reposts = 0; // scenes posted again since the last picture
@@ -99,13 +99,20 @@ export class Player {
     this.#epoch += 1;
   }
 
+  // What to take along: the picture that is seen where the view rests, else the one that it will come to rest with.
+  get picture() {
+    const { pictures, asked } = this.#on.ladder(this.#camera.goal);
+    return pictures.find((picture) => frame_url(picture) === this.#shown) ?? this.#refiner.last(pictures, asked);
+  }
+
   #show_tab(visible) {
     this.#visible = visible;
     this.refresh();
   }
 
   #tick(now) {
-    const gliding = this.#camera.step(Math.max(0, Math.min(0.1, (now - this.#last_tick) / 1000)));
+    const seconds = Math.max(0, Math.min(0.1, (now - this.#last_tick) / 1000));
+    const gliding = this.#camera.step(seconds, this.#view.box.height);
     this.#last_tick = now;
     if (gliding || now - this.#last_input < kRestMs) {
       this.#preview();
@@ -140,7 +147,7 @@ export class Player {
   }
 
   #start_still() {
-    const { pictures, asked } = this.#on.ladder();
+    const { pictures, asked } = this.#on.ladder(this.#camera.view);
     if (this.#playing) pictures.splice(1); // the orbit is only held for a moment
     if (pictures.length === 0) return;
     const key = frame_url(pictures.at(-1));
@@ -164,10 +171,7 @@ export class Player {
     const key = JSON.stringify({ ...picture, azimuth: 0, time: 0, speed: this.speed });
     if (this.#work?.kind === "stream" && this.#work.key === key) return;
     this.#stop();
-    const { id, width, height, technique, samples } = picture;
-    const paced = [id, width, height, technique, samples].join();
-    if (this.#paced !== paced) this.#pace.reset();
-    this.#paced = paced;
+    this.#pace.play(picture);
     this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
@@ -175,8 +179,10 @@ export class Player {
   async #stream(signal) {
     const pace = this.#pace;
     for (;;) {
-      const picture = this.#on.picture("stream", pace.level);
-      const coarser = this.#differs(picture, pace.level + 1);
+      const pictures = this.#stream_pictures();
+      const costs = pictures.map(amount);
+      pace.level = Math.min(pace.level, pictures.length - 1);
+      const picture = pictures[pace.level];
       const rate = {
         frames: this.stream_frames,
         fps: pace.fps,
@@ -186,16 +192,18 @@ export class Player {
       pace.restart();
       await play_stream(orbit_url(picture, rate), signal, (bitmap, header) => {
         this.#camera.follow(header.azimuth_degrees, header.time);
+        this.#refiner.note(picture, header.render_ms);
         this.#draw("", bitmap, picture, "stream", header);
         const work_ms = Math.max(header.render_ms, header.encode_ms);
-        return !pace.note(performance.now(), work_ms, this.speed, coarser);
+        return !pace.note(performance.now(), work_ms, this.speed, costs);
       });
     }
   }
 
-  #differs(picture, level) {
-    const other = this.#on.picture("stream", level);
-    return other.width !== picture.width || other.samples !== picture.samples;
+  // Those of an orbit, each coarser than the one before.
+  #stream_pictures() {
+    const all = kStreams.map((_, level) => this.#on.picture("stream", level));
+    return all.filter((picture, level) => level === 0 || amount(picture) < amount(all[level - 1]));
   }
 
   #draw(url, bitmap, picture, kind, figures) {

@@ -3,7 +3,7 @@
 // For the picture of a moving view; the second where the first takes too long.
 const kPreviews = [{ part: 1 / 2 }, { part: 1 / 4 }];
 // For the frames of an orbit, each level coarser than the one before.
-const kStreams = [{}, { samples: 1 }, { samples: 1, part: 1 / 2 }, { samples: 1, part: 1 / 4 }];
+export const kStreams = [{}, { samples: 1 }, { samples: 1, part: 1 / 2 }, { samples: 1, part: 1 / 4 }];
 
 const kLadder = [1, 4, 16, 64];
 
@@ -14,13 +14,14 @@ export function ladder(chosen, own, most) {
   return [...kLadder.filter((samples) => samples < end), end];
 }
 
-// {part, samples} for `purpose` "still", "preview" or "stream" at `level`. `part` is a factor of each side,
-// `samples` 0 means the scene's own. An orbit keeps what the user has chosen: a number of samples, or a size.
-export function quality(purpose, level, { samples, size }) {
+// {part, samples} for `purpose` "still", "preview" or "stream" at `level`. `part` is a factor of each side, `own` the
+// samples that the scene asks for, 0 where that is not known. An orbit keeps what the user has chosen: a number of
+// samples, or a size.
+export function quality(purpose, level, { samples, size, own }) {
   if (purpose === "preview")
     return { part: kPreviews[Math.min(level, kPreviews.length - 1)].part, samples: 1 };
   if (purpose === "still") return { part: 1, samples };
-  const stream = kStreams[Math.min(level, kStreams.length - 1)];
+  const stream = kStreams[level];
   const free_size = size === "fit" || size === "half";
-  return { part: (free_size && stream.part) || 1, samples: samples || (stream.samples ?? 0) };
+  return { part: (free_size && stream.part) || 1, samples: samples || (stream.samples ?? own) };
 }

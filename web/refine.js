@@ -25,6 +25,13 @@ export class Refiner {
     return kind_of(picture) === this.#kind ? this.#cost * amount(picture) : NaN;
   }
 
+  // The picture that climb() ends with.
+  last(pictures, asked) {
+    const too_slow = (picture, at) => at > 0 && !asked && this.expected_ms(picture) > kLongestMs;
+    const end = pictures.findIndex(too_slow);
+    return pictures.at(end < 0 ? -1 : end - 1);
+  }
+
   // Renders `pictures` in turn. `shown`: samples on the canvas, 0 where it shows another view; `asked`: the last one
   // is wanted however long it takes. draw(picture, bitmap, stats) shows one; progress({shown, end, part,
   // seconds_left}) hears how far the next is: without `part` the seconds are a guess.
@@ -64,4 +71,6 @@ export class Refiner {
 }
 
 const kind_of = ({ id, technique }) => `${id} ${technique}`;
-const amount = ({ width, height, samples }) => width * height * samples;
+
+// Samples of a picture, a measure of its cost.
+export const amount = ({ width, height, samples }) => width * height * Math.max(1, samples);

@@ -2,6 +2,7 @@
 // as its text is here it is posted again.
 
 import { get_json, get_text, post_scene } from "./api.js";
+import { floor_height } from "./floor.js";
 import { recall, remember } from "./storage.js";
 
 const kStorageKey = "orrery.scenes";
@@ -65,12 +66,13 @@ export class SceneLibrary {
   }
 }
 
-// Samples that a scene asks for.
-export function own_samples({ text }) {
+// What the page reads in a scene's text itself: {samples, floor}, the samples that it asks for and its floor's height.
+export function facts_of({ text, camera }) {
   try {
-    return JSON.parse(text).render?.samples ?? 1;
+    const scene = JSON.parse(text);
+    return { samples: scene.render?.samples ?? 1, floor: floor_height(scene, camera) };
   } catch {
-    return 1; // the service may read what JSON.parse does not, such as a byte order mark
+    return { samples: 0, floor: -Infinity }; // the service may read what JSON.parse does not, such as a byte order mark
   }
 }
 

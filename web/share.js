@@ -6,20 +6,22 @@ import { curl_command, file_name, frame_url } from "./urls.js";
 
 const kThanksMs = 2000;
 
-// `current()` is {picture, name} of the view as it is now, or null. A link cannot carry a token: with one the picture
-// is fetched first; `failed(error)` hears if that fails.
+// `current()` is {picture, name} of what is seen, or null where nothing is. A link cannot carry a token: with one the
+// picture is fetched first; `failed(error)` hears if that fails.
 export function attach_download(link, current, failed) {
   const refresh = () => {
     const now = current();
-    if (!now) return;
+    if (!now) return link.removeAttribute("href");
+    const { width, height, samples } = now.picture;
     link.href = frame_url(now.picture);
     link.download = file_name(now.name, now.picture);
+    link.title = `Download this view as PNG: ${width} × ${height}, ${samples} ${samples === 1 ? "sample" : "samples"}`;
   };
   for (const event of ["pointerdown", "pointerenter", "focus", "click", "contextmenu"]) {
     link.addEventListener(event, refresh);
   }
   link.addEventListener("click", (event) => {
-    if (!access_token()) return;
+    if (!link.href || !access_token()) return;
     event.preventDefault();
     save(link.href, link.download).catch(failed);
   });

@@ -24,8 +24,8 @@ Examples:
   orrery orbit scenes/paper.json --frames 240 --discard       how fast? renders and encodes, keeps nothing
 
 Turns the camera once about the scene, or by --step from frame to frame, while what moves in it moves. A film of
-the frames:
-  ffmpeg -framerate 30 -i frame-%04d.png orbit.mp4
+the frames that every browser plays, its sides made even:
+  ffmpeg -framerate 30 -i frame-%04d.png -vf "pad=ceil(iw/2)*2:ceil(ih/2)*2" -pix_fmt yuv420p orbit.mp4
 )";
 
 // CLI::Range lets NaN pass.

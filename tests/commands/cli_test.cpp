@@ -204,6 +204,14 @@ TEST_F(CommandLine, EveryCommandExplainsItself) {
   }
 }
 
+// Without the format ffmpeg keeps every pixel's colour (4:4:4), which browsers do not play; with it, sides
+// have to be even.
+TEST_F(CommandLine, HelpOfOrbitMakesAFilmThatBrowsersPlay) {
+  const std::string help = run("orbit --help").out;
+  EXPECT_NE(help.find("-pix_fmt yuv420p orbit.mp4"), std::string::npos) << help;
+  EXPECT_NE(help.find("pad=ceil(iw/2)*2:ceil(ih/2)*2"), std::string::npos) << help;
+}
+
 TEST_F(CommandLine, SchemaCatalogAndExplainPrintJson) {
   EXPECT_TRUE(nlohmann::json::accept(run("schema").out));
   EXPECT_TRUE(nlohmann::json::parse(run("catalog").out).contains("shapes"));

@@ -1,0 +1,13 @@
+# cmake -DINPUT=<file> -DOUTPUT=<file> -P strip_text.cmake: copies a script or style sheet without comments that
+# stand on lines of their own and without indentation. Line numbers stay, for who reads an error in the browser. No
+# text of the page may span lines: its indentation would be lost.
+file(READ ${INPUT} text)
+set(text "\n${text}")
+if(INPUT MATCHES "\\.css$")
+  string(REGEX REPLACE "\n[ \t]*/\\*[^*]*\\*/" "\n" text "${text}")
+else()
+  string(REGEX REPLACE "\n[ \t]*//[^\n]*" "\n" text "${text}")
+endif()
+string(REGEX REPLACE "\n[ \t]+" "\n" text "${text}")
+string(SUBSTRING "${text}" 1 -1 text)
+file(WRITE ${OUTPUT} "${text}")
