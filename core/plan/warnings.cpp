@@ -46,7 +46,7 @@ class View {
       const double depth = -dot(from_eye, frame_.back), x = dot(from_eye, frame_.right),
                    y = dot(from_eye, frame_.up);
       const double scale = parallel_ ? 1.0 : depth, right = half_width_ * scale, top = half_height_ * scale;
-      const std::array<bool, 5> here{x > right, x < -right, y > top, y < -top, depth < 0};
+      const std::array<bool, 5> here{x > right, -x > right, y > top, -y > top, -depth > 0};
       for (std::size_t i = 0; i < beyond.size(); ++i) beyond[i] = beyond[i] && here[i];
     }
     return std::find(beyond.begin(), beyond.end(), true) != beyond.end();

@@ -25,5 +25,5 @@ export const planFaults = [
   warning("a camera in the corner of a ball's box is taken to be in the ball",
           "return met.side[0] < 0;", "return true;",
           "TellThatTheCameraIsInsideAnOpaqueShape"),
-  warning("what is below the view counts as seen", "y < -top", "false", "TellThatNothingIsInView"),
+  warning("what is below the view counts as seen", "-y > top", "false", "TellThatNothingIsInView"),
 ];
