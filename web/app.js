@@ -44,6 +44,7 @@ const player = new Player(camera, view, {
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
+    show_warning(figures.warning);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
     hide_fail();
@@ -218,6 +219,12 @@ const hide_fail = () => hide_problem($("stage-problem"));
 
 function fail(error) {
   show_problem($("stage-problem"), error);
+}
+
+function show_warning(text) {
+  if (text === undefined || $("warning").title === text) return;
+  $("warning").title = text;
+  $("warning").textContent = text && `Warning: ${text}`;
 }
 
 function show_waiting(error, seconds) {
