@@ -34,7 +34,7 @@ page_test("the paper's scene turns as soon as the page is open", "", async (page
   assert.equal(state.scene, "paper");
   assert.equal(state.playing, "1");
   assert.match(await page.title(), /orrery$/);
-  assert.equal(await page.locator('#gallery [aria-current="true"]').getAttribute("data-name"), "paper");
+  assert.equal(await page.locator('#gallery [aria-selected="true"]').getAttribute("data-name"), "paper");
   assert.match(await page.locator("#hud-fps").textContent(), /^\d+\.\d$/);
   for (const field of ["render", "encode"])
     assert.match(await page.locator(`#hud-${field}`).textContent(), / ms$/);
