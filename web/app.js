@@ -6,6 +6,7 @@ import { OrbitCamera } from "./camera.js";
 import { attach_controls, kZoomStep, step } from "./controls.js";
 import { Editor } from "./editor.js";
 import { Gallery } from "./gallery.js";
+import { attach_hint } from "./hint.js";
 import { Hud } from "./hud.js";
 import { Options } from "./options.js";
 import { Player } from "./player.js";
@@ -303,11 +304,11 @@ function set_panning(on) {
   $("pan").setAttribute("aria-pressed", String(on));
   for (const name of ["left", "right", "up", "down"]) {
     const button = document.querySelector(`[data-do="${name}"]`);
-    button.title = `${on ? "Move" : "Turn"} ${name} (arrow key)`;
+    button.title = `${on ? "Move" : "Turn"} ${name} (arrow key; with shift finely)`;
   }
 }
 
-const by = (x, y) => () => step(stage, moves, x, y, pans);
+const by = (x, y) => (event) => step(stage, moves, x, y, { pans, fine: event.shiftKey });
 const actions = {
   left: by(-1, 0),
   right: by(1, 0),
@@ -322,6 +323,7 @@ const actions = {
 };
 
 attach_controls(stage, moves);
+attach_hint($("hint"));
 const select_tab = attach_tabs($("tabs"));
 for (const button of document.querySelectorAll("[data-do]")) {
   button.addEventListener("click", actions[button.dataset.do]);

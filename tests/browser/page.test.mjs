@@ -187,6 +187,12 @@ page_test(
     await page.locator("#stage").focus();
     near((await state_after(() => page.keyboard.press("ArrowRight"))).az, 22.5, 0.11, "arrow right");
     near((await state_after(() => page.keyboard.press("ArrowUp"))).el, 22.5, 0.11, "arrow up");
+    near((await state_after(() => page.keyboard.press("Shift+ArrowDown"))).el, 21.5, 0.11, "a fine step down");
+    near((await state_after(() => page.keyboard.press("Shift+ArrowUp"))).el, 22.5, 0.11, "and up");
+    const shifted = { modifiers: ["Shift"] };
+    near((await state_after(() => page.locator('[data-do="right"]').click(shifted))).az, 23.5, 0.11, "by a button");
+    near((await state_after(() => page.locator('[data-do="left"]').click(shifted))).az, 22.5, 0.11, "and back");
+    await page.locator("#stage").focus();
     assert.ok((await state_after(() => page.keyboard.press("PageUp"))).dist < 0.9, "PageUp comes closer");
     near((await state_after(() => page.locator('[data-do="left"]').click())).az, 0, 0.11, "button left");
     assert.ok(
