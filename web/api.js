@@ -87,13 +87,17 @@ export function server_timing(header) {
   return timing;
 }
 
+// What the service says about a picture that it rendered but that shows little; "" where all is well.
+export const warning_of = (response) => response.headers.get("Orrery-Warning") ?? "";
+
 // One picture: {png, stats}. A picture from the browser's cache carries the figures of its first rendering.
 export async function get_frame(url, signal) {
   const response = await request(url, { signal });
   const { render: render_ms, encode: encode_ms } = server_timing(response.headers.get("Server-Timing"));
   const rays = Number(response.headers.get("X-Rays") ?? NaN);
+  const warning = warning_of(response);
   try {
-    return { png: await response.blob(), stats: { render_ms, encode_ms, rays } };
+    return { png: await response.blob(), stats: { render_ms, encode_ms, rays, warning } };
   } catch (error) {
     throw broken(error);
   }

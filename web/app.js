@@ -6,10 +6,11 @@ import { OrbitCamera } from "./camera.js";
 import { attach_controls, kZoomStep, step } from "./controls.js";
 import { Editor } from "./editor.js";
 import { Gallery } from "./gallery.js";
+import { attach_hint } from "./hint.js";
 import { Hud } from "./hud.js";
 import { Options } from "./options.js";
 import { Player } from "./player.js";
-import { hide_problem, show_problem } from "./problem.js";
+import { hide_problem, places_of, show_problem } from "./problem.js";
 import { show_progress } from "./progress.js";
 import { ladder, quality } from "./quality.js";
 import { facts_of, SceneLibrary } from "./scenes.js";
@@ -44,13 +45,14 @@ const player = new Player(camera, view, {
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
+    show_warning(figures.warning);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
     hide_fail();
     if (kind === "stream") save_soon();
   },
   waiting: show_waiting,
-  problem: fail,
+  problem: fail_to_render,
   progress: (figures) => show_progress($("busy"), $("progress"), figures),
   stale: () => delete stage.dataset.shows,
   settled: () => save_now(),
@@ -119,8 +121,23 @@ async function open_scene(at) {
     show_scene(opened, at);
     save_now();
   } catch (error) {
-    if (wanted()) fail(error);
+    if (!wanted()) return;
+    show_nothing();
+    fail(error.status === 404 ? unknown_scene(error) : error, others);
   }
+}
+
+function show_nothing() {
+  view.clear();
+  show_warning("");
+  document.title = "orrery";
+  stage.setAttribute("aria-label", "Orbit view");
+}
+
+function unknown_scene({ request_id }) {
+  const name = state.scene.length > 40 ? `${state.scene.slice(0, 12)}…` : state.scene;
+  const detail = "The service never had it, or has forgotten it: it keeps posted scenes for a time only.";
+  return { title: `There is no scene “${name}”`, detail, request_id };
 }
 
 function show_scene(opened, at) {
@@ -216,8 +233,39 @@ function set_option(key, value) {
 
 const hide_fail = () => hide_problem($("stage-problem"));
 
-function fail(error) {
-  show_problem($("stage-problem"), error);
+function fail(error, actions = []) {
+  show_problem($("stage-problem"), error, undefined, actions);
+}
+
+// What to do where nothing can be shown: [label, function] each.
+const others = [
+  ["Choose a sample", () => (select_tab("tab-scenes"), gallery?.focus())],
+  ["Paste a scene", () => (select_tab("tab-json"), $("text").focus())],
+];
+
+// A refusal may name a setting that came with the link: then every way out drops that.
+function fail_to_render(error) {
+  const names = { technique: "technique", samples: "samples", width: "size", height: "size" };
+  const refused = places_of(error).map(({ pointer }) => names[pointer?.split("/").at(-1)]);
+  const wrong = refused.filter((name) => name && state[name] !== kDefaults[name]);
+  if (wrong.length === 0) return fail(error);
+  const drop = () => {
+    for (const name of wrong) state[name] = kDefaults[name];
+    show_settings();
+  };
+  const usual = {
+    technique: "Use the scene’s own technique",
+    samples: "Choose samples automatically",
+    size: "Fit the window",
+  };
+  const again = [usual[wrong[0]], () => (drop(), hide_fail(), save_now(), player.refresh())];
+  fail(error, [again, ...others.map(([label, act]) => [label, () => (drop(), act())])]);
+}
+
+function show_warning(text) {
+  if (text === undefined || $("warning").title === text) return;
+  $("warning").title = text;
+  $("warning").textContent = text && `Warning: ${text}`;
 }
 
 function show_waiting(error, seconds) {
@@ -256,11 +304,11 @@ function set_panning(on) {
   $("pan").setAttribute("aria-pressed", String(on));
   for (const name of ["left", "right", "up", "down"]) {
     const button = document.querySelector(`[data-do="${name}"]`);
-    button.title = `${on ? "Move" : "Turn"} ${name} (arrow key)`;
+    button.title = `${on ? "Move" : "Turn"} ${name} (arrow key; with shift finely)`;
   }
 }
 
-const by = (x, y) => () => step(stage, moves, x, y, pans);
+const by = (x, y) => (event) => step(stage, moves, x, y, { pans, fine: event.shiftKey });
 const actions = {
   left: by(-1, 0),
   right: by(1, 0),
@@ -275,7 +323,8 @@ const actions = {
 };
 
 attach_controls(stage, moves);
-attach_tabs($("tabs"));
+attach_hint($("hint"));
+const select_tab = attach_tabs($("tabs"));
 for (const button of document.querySelectorAll("[data-do]")) {
   button.addEventListener("click", actions[button.dataset.do]);
 }

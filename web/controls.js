@@ -6,6 +6,7 @@ const kDollyStep = 0.95; // factor of the distance for one wheel notch
 export const kZoomStep = kDollyStep ** 3; // for a key or a button
 export const kTurnStep = 180 / 8; // degrees for an arrow key or a button
 export const kPanStep = 1 / 8; // of the stage's height, likewise
+const kFine = 1 / 22.5; // of such a step, with shift: a degree
 const kDragThreshold = 3; // pixels; less is a click
 const kWheelNotch = 100; // pixels of wheel movement that count as one step
 const kPinchGain = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
@@ -18,10 +19,10 @@ export function attach_controls(stage, on) {
 }
 
 // One step of an arrow key or button: `right` and `up` are -1, 0 or 1.
-export function step(stage, on, right, up, pans) {
-  const pixels = kPanStep * stage.clientHeight;
-  if (pans) on.pan(right * pixels, up * pixels);
-  else on.rotate(right * kTurnStep, up * kTurnStep);
+export function step(stage, on, right, up, { pans, fine }) {
+  const size = (pans ? kPanStep * stage.clientHeight : kTurnStep) * (fine ? kFine : 1);
+  if (pans) on.pan(right * size, up * size);
+  else on.rotate(right * size, up * size);
 }
 
 function attach_pointers(stage, on) {
@@ -48,6 +49,7 @@ function attach_pointers(stage, on) {
     const dx = event.clientX - last.x;
     const dy = event.clientY - last.y;
     if (!dragging && Math.hypot(dx, dy) < kDragThreshold) return;
+    if (!dragging && Math.abs(dy) > Math.abs(dx) && scrolls_page(stage, event)) return;
     if (!dragging) {
       dragging = true;
       on.hold(true);
@@ -76,6 +78,11 @@ function attach_pointers(stage, on) {
   stage.addEventListener("lostpointercapture", release);
 }
 
+// Whether a finger that goes up or down scrolls the page: the browser then takes it from here soon.
+function scrolls_page(stage, { pointerType }) {
+  return pointerType === "touch" && getComputedStyle(stage).touchAction === "pan-y";
+}
+
 function attach_wheel(stage, on) {
   const pixels_per_unit = [1, 16, 400]; // by deltaMode: pixels, lines, pages
   stage.addEventListener(
@@ -93,7 +100,8 @@ function attach_wheel(stage, on) {
 // Keys work on the stage, and where nothing has the focus and nothing scrolls: no form field loses a key, and a
 // long page still scrolls. Space plays and pauses in any case.
 function attach_keys(stage, on) {
-  const arrow = (right, up) => (event) => step(stage, on, right, up, event.shiftKey !== on.panning());
+  const arrow = (right, up) => (event) =>
+    step(stage, on, right, up, { pans: event.ctrlKey !== on.panning(), fine: event.shiftKey });
   const actions = {
     ArrowLeft: arrow(-1, 0),
     ArrowRight: arrow(1, 0),
@@ -110,7 +118,7 @@ function attach_keys(stage, on) {
   document.addEventListener("keydown", (event) => {
     if (event.target !== stage && event.target !== document.body) return;
     if (event.target !== stage && event.key !== " " && page_scrolls()) return;
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.altKey || event.metaKey || (event.ctrlKey && !event.key.startsWith("Arrow"))) return;
     const action = actions[event.key];
     if (!action || (event.key === " " && event.repeat)) return;
     event.preventDefault();

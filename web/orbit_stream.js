@@ -1,19 +1,20 @@
 // Plays one orbit from the service, always the newest frame that is here.
 
-import { ApiError, request } from "./api.js";
+import { ApiError, request, warning_of } from "./api.js";
 import { kFrameType, read_frames } from "./stream.js";
 import { decode } from "./view.js";
 
 // Calls `show(bitmap, header)` for the frames of `url` until the stream ends or `show` returns false.
-// header.skipped counts also those that gave way to a newer one here. Throws ApiError, or AbortError once `signal`
+// header.skipped counts also those that gave way to a newer one here; header.warning is the answer's. Throws ApiError, or AbortError once `signal`
 // fires.
 export async function play_stream(url, signal, show) {
   const response = await request(url, { headers: { Accept: kFrameType }, signal });
+  const warning = warning_of(response);
   const playing = { newest: null, busy: false, over: false, failure: null, late: 0 };
   let seen = 0;
   for await (const frame of read_frames(response.body)) {
     if (playing.newest) playing.late += 1;
-    playing.newest = frame;
+    playing.newest = { ...frame, header: { ...frame.header, warning } };
     seen += 1;
     if (!playing.busy) show_newest(playing, signal, show);
     if (playing.failure) throw playing.failure;

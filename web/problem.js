@@ -1,4 +1,4 @@
-// An error card: what went wrong, where (one entry a place), and the request id to quote in a report.
+// An error card: what went wrong, where (one entry a place), what can be done, and the request id to quote in a report.
 
 export function element(name, text, class_name) {
   const made = document.createElement(name);
@@ -24,8 +24,9 @@ export function places_of(error) {
   return places;
 }
 
-// Fills and shows `card`. `on_place` gets the place that the user picks; without it places are plain text.
-export function show_problem(card, error, on_place) {
+// Fills and shows `card`. `on_place` gets the place that the user picks; without it places are plain text. `actions`
+// are buttons, [label, function] each.
+export function show_problem(card, error, on_place, actions = []) {
   const title = element("h2", error.title ?? error.message);
   const close = element("button", "", "close");
   close.ariaLabel = "Dismiss";
@@ -34,6 +35,7 @@ export function show_problem(card, error, on_place) {
   const places = places_of(error);
   const repeated = places[0]?.detail && error.detail?.includes(places[0].detail);
   if (error.detail && !repeated) parts.push(element("p", error.detail));
+  if (places.length > 1) parts.push(element("p", `${places.length} places are wrong:`));
   if (places.length > 0) {
     const list = element("ul");
     for (const place of places) {
@@ -46,6 +48,7 @@ export function show_problem(card, error, on_place) {
     }
     parts.push(list);
   }
+  if (actions.length > 0) parts.push(buttons(actions));
   if (error.request_id) {
     const request = element("p", "Request ", "request");
     request.append(element("code", error.request_id));
@@ -53,6 +56,16 @@ export function show_problem(card, error, on_place) {
   }
   card.replaceChildren(...parts);
   card.hidden = false;
+}
+
+function buttons(actions) {
+  const row = element("p", "", "actions");
+  for (const [label, act] of actions) {
+    const button = element("button", label);
+    button.addEventListener("click", act);
+    row.append(button);
+  }
+  return row;
 }
 
 export function hide_problem(card) {

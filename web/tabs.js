@@ -1,4 +1,4 @@
-// A tab list: click or arrow keys choose which panel shows.
+// A tab list: click or arrow keys choose which panel shows. Returns a function that chooses the tab with an id.
 
 export function attach_tabs(list) {
   const tabs = [...list.querySelectorAll('[role="tab"]')];
@@ -19,4 +19,5 @@ export function attach_tabs(list) {
     next.focus();
     event.preventDefault();
   });
+  return (id) => select(tabs.find((tab) => tab.id === id));
 }

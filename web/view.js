@@ -40,6 +40,11 @@ export class View {
     this.#blend(bitmap, 0, performance.now(), fades ? kFadeMs : 0);
   }
 
+  clear() {
+    this.#canvas.hidden = true;
+    this.#newest = null;
+  }
+
   // `shown`: the bitmap's part in what the canvas shows; the rest is what was there before.
   #blend(bitmap, shown, start, duration) {
     if (this.#newest !== bitmap) return bitmap.close();

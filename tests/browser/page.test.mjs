@@ -34,7 +34,7 @@ page_test("the paper's scene turns as soon as the page is open", "", async (page
   assert.equal(state.scene, "paper");
   assert.equal(state.playing, "1");
   assert.match(await page.title(), /orrery$/);
-  assert.equal(await page.locator('#gallery [aria-current="true"]').getAttribute("data-name"), "paper");
+  assert.equal(await page.locator('#gallery [aria-selected="true"]').getAttribute("data-name"), "paper");
   assert.match(await page.locator("#hud-fps").textContent(), /^\d+\.\d$/);
   for (const field of ["render", "encode"])
     assert.match(await page.locator(`#hud-${field}`).textContent(), / ms$/);
@@ -187,6 +187,12 @@ page_test(
     await page.locator("#stage").focus();
     near((await state_after(() => page.keyboard.press("ArrowRight"))).az, 22.5, 0.11, "arrow right");
     near((await state_after(() => page.keyboard.press("ArrowUp"))).el, 22.5, 0.11, "arrow up");
+    near((await state_after(() => page.keyboard.press("Shift+ArrowDown"))).el, 21.5, 0.11, "a fine step down");
+    near((await state_after(() => page.keyboard.press("Shift+ArrowUp"))).el, 22.5, 0.11, "and up");
+    const shifted = { modifiers: ["Shift"] };
+    near((await state_after(() => page.locator('[data-do="right"]').click(shifted))).az, 23.5, 0.11, "by a button");
+    near((await state_after(() => page.locator('[data-do="left"]').click(shifted))).az, 22.5, 0.11, "and back");
+    await page.locator("#stage").focus();
     assert.ok((await state_after(() => page.keyboard.press("PageUp"))).dist < 0.9, "PageUp comes closer");
     near((await state_after(() => page.locator('[data-do="left"]').click())).az, 0, 0.11, "button left");
     assert.ok(
@@ -332,3 +338,45 @@ for (const colorScheme of ["light", "dark"]) {
     );
   }
 }
+
+const kWarning = "Nothing is hit; The camera is inside an object";
+
+// The service's word on the pictures that `ask` is true for.
+async function warn(page, ask) {
+  await page.route(/(frame\.png|orbit)\?/, async (route) => {
+    if (!ask(new URL(route.request().url()))) return route.continue();
+    const response = await route.fetch();
+    return route.fulfill({ response, headers: { ...response.headers(), "orrery-warning": kWarning } });
+  });
+}
+
+page_test("the warning of a picture stands under the stage, and goes with it", "playing=0", async (page) => {
+  await rest(page);
+  const line = page.locator("#warning");
+  assert.equal(await line.getAttribute("role"), "status");
+  assert.equal(await line.textContent(), "");
+  const stage = await page.locator("#stage").boundingBox();
+  await warn(page, (url) => Number(url.searchParams.get("azimuth")) > 10);
+  await page.locator('[data-do="right"]').click();
+  await rest(page);
+  await eventually("the warning", async () => (await line.textContent()) === `Warning: ${kWarning}`);
+  const box = await line.boundingBox();
+  assert.ok(box.y >= stage.y + stage.height && box.height > 10, "beneath the stage");
+  assert.deepEqual(await page.locator("#stage").boundingBox(), stage, "the stage keeps its size");
+  assert.deepEqual(await axe_violations(page), []);
+  await page.locator('[data-do="reset"]').click();
+  await rest(page);
+  assert.equal(await line.textContent(), "");
+});
+
+page_test("the warning of an orbit stands under the stage", "playing=0", async (page) => {
+  await rest(page);
+  await page.route(/orbit\?/, async (route) => {
+    const url = new URL(route.request().url());
+    url.searchParams.set("frames", "2"); // the answer is passed on once it is whole
+    const response = await route.fetch({ url: url.href });
+    return route.fulfill({ response, headers: { ...response.headers(), "orrery-warning": kWarning } });
+  });
+  await page.locator("#play").click();
+  await eventually("the warning", async () => (await page.locator("#warning").textContent()) === `Warning: ${kWarning}`);
+});

@@ -128,15 +128,17 @@ page_test(
 );
 
 page_test(
-  "shift and arrows pan, the button makes plain drags and arrows pan",
+  "ctrl and arrows pan, the button makes plain drags and arrows pan",
   "playing=0",
   async (page) => {
     await rest(page);
     await open_ball(page, {}, "");
     const { height } = await middle(page);
     await page.locator("#stage").focus();
-    await page.keyboard.press("Shift+ArrowRight");
-    await at(page, -height / 8, 0, "shift and arrow");
+    await page.keyboard.press("Control+ArrowRight");
+    await at(page, -height / 8, 0, "ctrl and arrow");
+    await page.keyboard.press("Control+Shift+ArrowLeft");
+    await at(page, -height / 8 + height / 8 / 22.5, 0, "a fine step back");
     await page.locator('[data-do="reset"]').click();
     await rest(page);
     await page.locator("#pan").click();

@@ -251,7 +251,7 @@ daemon_test("back from a scene that never came marks the one that is shown", "sc
   assert.equal(await card.isVisible(), true);
   await page.goBack();
   await rest(page);
-  assert.equal(await page.locator("#gallery [aria-current]").getAttribute("data-name"), "paper");
+  assert.equal(await page.locator('#gallery [aria-selected="true"]').getAttribute("data-name"), "paper");
   assert.equal(await card.isVisible(), false);
 });
 

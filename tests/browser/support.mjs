@@ -91,8 +91,8 @@ export function start_browser() {
 }
 
 // A page at `url` that notes what should not happen: {page, faults, close()}. Faults are console errors,
-// uncaught exceptions and requests to another origin.
-export async function open_page(browser, url, options = {}) {
+// uncaught exceptions and requests to another origin. `ready` is what the page shows once it is open.
+export async function open_page(browser, url, { ready = "#canvas", ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
   const faults = [];
@@ -107,7 +107,7 @@ export async function open_page(browser, url, options = {}) {
     await context.close();
   };
   await page.goto(url);
-  await page.locator("#canvas").waitFor({ state: "visible" });
+  await page.locator(ready).waitFor({ state: "visible" });
   return { page, faults, close };
 }
 

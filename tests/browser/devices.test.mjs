@@ -1,0 +1,191 @@
+#!/usr/bin/env node
+// The page on other devices than a desk's: phones, tablets, forced colours, the keyboard alone.
+
+import assert from "node:assert/strict";
+import { after } from "node:test";
+import { axe_violations, eventually, hash_of, middle, page_tests, rest, start_both } from "./support.mjs";
+
+const { daemon, browser } = await start_both(after);
+const page_test = page_tests(browser, daemon);
+
+const touch = (width, height) => ({ viewport: { width, height }, isMobile: true, hasTouch: true, reducedMotion: "reduce" });
+
+page_test(
+  "the figures stay beneath a phone's stage, however long they are",
+  "playing=0",
+  async (page) => {
+    await rest(page);
+    const outside = await page.evaluate(() => {
+      const long = { fps: "30.0", render: "12345 ms", encode: "1234 ms", rays: "999M", size: "1312 × 1312, draft", skipped: "999" };
+      for (const [name, text] of Object.entries(long)) document.getElementById(`hud-${name}`).textContent = text;
+      const { left, right } = document.querySelector(".frame").getBoundingClientRect();
+      const boxes = [...document.querySelectorAll("#hud dt, #hud dd")].map((each) => each.getBoundingClientRect());
+      return boxes.filter((box) => box.left < left || box.right > right).length;
+    });
+    assert.equal(outside, 0);
+  },
+  touch(360, 740),
+);
+
+// A finger's way over the stage, from its middle.
+async function swipe(page, dx, dy) {
+  const device = await page.context().newCDPSession(page);
+  const { x, y } = await middle(page);
+  const at = (part) => [{ x: x + part * dx, y: y + part * dy }];
+  await device.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+  for (let part = 0.1; part < 1.05; part += 0.1)
+    await device.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(part) });
+  await device.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+}
+
+page_test(
+  "where the stage fills a phone on its side, a finger up scrolls and a finger sideways turns",
+  "playing=0",
+  async (page) => {
+    await rest(page);
+    await swipe(page, 0, -100);
+    await eventually("the page scrolls", () => page.evaluate(() => scrollY > 50));
+    await page.waitForTimeout(500); // what was flung comes to rest
+    await rest(page);
+    const scrolled = await hash_of(page);
+    assert.deepEqual([scrolled.az, scrolled.el], ["0", "0"]);
+    await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
+    await swipe(page, -80, 0);
+    await eventually("the view turns", async () => Number((await hash_of(page)).az) > 20);
+    assert.equal(await page.evaluate(() => scrollY), 0);
+  },
+  touch(740, 360),
+);
+
+page_test(
+  "on an upright phone a finger up turns",
+  "playing=0",
+  async (page) => {
+    await rest(page);
+    await swipe(page, 0, 60);
+    await eventually("the view rises", async () => Number((await hash_of(page)).el) > 20);
+    assert.equal(await page.evaluate(() => scrollY), 0);
+  },
+  touch(360, 740),
+);
+
+for (const [device, options, said, unsaid] of [
+  ["a mouse", {}, /right button.*wheel.*shift/, /finger|pinch/],
+  ["a phone", touch(360, 740), /Drag to turn.*two fingers.*pinch/, /shift|ctrl|wheel|button|arrow/],
+  ["a phone on its side", touch(740, 360), /Drag sideways.*two fingers.*pinch/, /shift|ctrl|wheel|button|arrow/],
+]) {
+  page_test(
+    `the hint speaks of what ${device} can do`,
+    "playing=0",
+    async (page) => {
+      const hint = await page.locator("#hint").textContent();
+      assert.match(hint, said);
+      assert.doesNotMatch(hint, unsaid);
+    },
+    options,
+  );
+}
+
+// Controls that are smaller than a finger.
+const small = (page) =>
+  page.evaluate(() =>
+    [...document.querySelectorAll("button, a.button, select, input")]
+      .map((control) => ({ control, box: control.getBoundingClientRect() }))
+      .filter(({ control, box }) => control.checkVisibility() && (box.width < 44 || box.height < 44))
+      .map(({ control, box }) => `${control.id || control.dataset.do || control.textContent}: ${box.width} x ${box.height}`),
+  );
+
+for (const [width, height] of [[360, 740], [740, 360], [1024, 768]]) {
+  page_test(
+    `every control has room for a finger on ${width} x ${height}`,
+    "playing=0",
+    async (page) => {
+      await rest(page);
+      assert.deepEqual(await small(page), []);
+      await page.locator("#tab-json").click();
+      await page.locator("#text").fill('{"version": 1, "camera": 3, "lights": 4}');
+      await page.locator("#text-problem button.place").nth(1).waitFor();
+      await page.evaluate(() => (location.hash = "scene=nosuch"));
+      await page.locator("#stage-problem .actions button").first().waitFor();
+      await page.evaluate(() => (document.getElementById("notice").hidden = false));
+      assert.deepEqual(await small(page), []);
+    },
+    { ...touch(width, height), expected: /status of (404|422)/ },
+  );
+}
+
+page_test(
+  "forced colours show what is chosen",
+  "playing=0",
+  async (page) => {
+    await rest(page);
+    await page.locator("#pan").click();
+    const border = (selector) =>
+      page.locator(selector).first().evaluate((element) => {
+        const { borderTopWidth, borderTopColor } = getComputedStyle(element);
+        return { borderTopWidth, borderTopColor };
+      });
+    for (const [chosen, other] of [
+      ['#gallery [aria-selected="true"]', '#gallery [aria-selected="false"]'],
+      ['.tabs [aria-selected="true"]', '.tabs [aria-selected="false"]'],
+      ["#pan", '[data-do="up"]'],
+    ]) {
+      const [there, elsewhere] = [await border(chosen), await border(other)];
+      assert.equal(there.borderTopWidth, "3px", chosen);
+      assert.notEqual(there.borderTopColor, elsewhere.borderTopColor, chosen);
+    }
+  },
+  { forcedColors: "active" },
+);
+
+page_test("the samples are one stop of the tab key, in which arrows move", "playing=0", async (page) => {
+  await rest(page);
+  const options = page.locator('#gallery [role="option"]');
+  const count = await options.count();
+  assert.ok(count > 20);
+  const focused = () =>
+    page.evaluate(() => {
+      const all = [...document.querySelectorAll('#gallery [role="option"]')];
+      return all.indexOf(document.activeElement);
+    });
+  await page.locator("#tab-scenes").focus();
+  const press = async (key) => (await page.keyboard.press(key), focused());
+  assert.equal(await press("Tab"), 0);
+  assert.equal(await press("ArrowDown"), 1);
+  assert.equal(await press("ArrowRight"), 2);
+  assert.equal(await press("ArrowUp"), 1);
+  assert.equal(await press("End"), count - 1);
+  assert.equal(await press("ArrowDown"), count - 1);
+  assert.equal(await press("Home"), 0);
+  const found = await press("h");
+  assert.equal(await options.nth(found).getAttribute("data-name"), "mirrors", "Hall of mirrors");
+  assert.equal(await press("Shift+Tab"), -1, "the stop before is elsewhere");
+  assert.equal(await press("Tab"), found);
+  assert.equal((await hash_of(page)).scene, "paper", "moving chooses nothing");
+  await page.keyboard.press("Enter");
+  await eventually("the scene", async () => (await hash_of(page)).scene === "mirrors");
+  assert.equal(await page.locator('#gallery [aria-selected="true"]').getAttribute("data-name"), "mirrors");
+  assert.deepEqual(await axe_violations(page), []);
+});
+
+page_test(
+  "all places that are wrong are shown, and counted",
+  "playing=0",
+  async (page) => {
+    await rest(page);
+    await page.locator("#tab-json").click();
+    const card = page.locator("#text-problem");
+    const wrong = Array.from({ length: 6 }, () => '{ "type": "sphere", "center": [0, 0, 0], "radius": -1, "material": "m" }');
+    const scene = `{ "version": 1, "camera": { "eye": [0, 0, 4], "look_at": [0, 0, 0] },
+      "image": { "width": 60, "height": 40 }, "materials": { "m": { "type": "rough" } }, "objects": [${wrong}] }`;
+    await page.locator("#text").fill(scene);
+    await card.locator("button.place").nth(5).waitFor();
+    const places = await card.locator("button.place").count();
+    assert.match(await card.textContent(), new RegExp(`${places} places are wrong`));
+    const hidden = await card.evaluate((box) =>
+      [box, ...box.querySelectorAll("*")].filter((part) => part.scrollHeight > part.clientHeight + 1 && getComputedStyle(part).overflowY !== "visible").length,
+    );
+    assert.equal(hidden, 0, "nothing to be scrolled to inside the card");
+  },
+  { expected: /status of 422/ },
+);
