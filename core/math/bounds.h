@@ -28,6 +28,9 @@ struct Bounds {
     return std::isfinite(lo.x) && std::isfinite(lo.y) && std::isfinite(lo.z) && std::isfinite(hi.x) &&
            std::isfinite(hi.y) && std::isfinite(hi.z);
   }
+  bool contains(const Vec3<T>& p) const {
+    return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z && p.z <= hi.z;
+  }
   T diagonal() const { return length(hi - lo); }
   // Largest absolute coordinate.
   T magnitude() const { return std::max(max_component(abs(lo)), max_component(abs(hi))); }

@@ -20,10 +20,6 @@ auto find_type(const Types& types, const std::string& name) {
   return &*found;
 }
 
-bool contains(const Boundsd& b, const Vec3d& p) {
-  return p.x >= b.lo.x && p.x <= b.hi.x && p.y >= b.lo.y && p.y <= b.hi.y && p.z >= b.lo.z && p.z <= b.hi.z;
-}
-
 constexpr int kFewPrimitives = 8, kMostToTry = 1024;
 
 class Planner {
@@ -190,7 +186,7 @@ class Planner {
       if (shapes->size() == 0) continue;
       const ShapeTraits traits = shapes->traits();
       if (!traits.convex) return false;
-      const bool outside = !plan_.camera->parallel() && !contains(shapes->bounds(0), plan_.frame.eye);
+      const bool outside = !plan_.camera->parallel() && !shapes->bounds(0).contains(plan_.frame.eye);
       return !traits.closed || outside;
     }
     return false;

@@ -9,10 +9,6 @@
 namespace orrery {
 namespace {
 
-bool contains(const Boundsd& b, const Vec3d& p) {
-  return p.x >= b.lo.x && p.x <= b.hi.x && p.y >= b.lo.y && p.y <= b.hi.y && p.z >= b.lo.z && p.z <= b.hi.z;
-}
-
 bool any_light_shines(const Scene& scene) {
   return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const LightPlace& light) {
     return scene.light_sets[light.set]->intensity(light.index) != Vec3d(0);
@@ -39,10 +35,8 @@ class View {
   bool misses(const Affined& world_from_box, const Boundsd& box) const {
     std::array<bool, 5> beyond;
     beyond.fill(true);
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3d p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                    corner & 4 ? box.hi.z : box.lo.z);
-      const Vec3d from_eye = world_from_box.point(p) - frame_.eye;
+    for (const Vec3d& corner : corners_of(box)) {
+      const Vec3d from_eye = world_from_box.point(corner) - frame_.eye;
       const double depth = -dot(from_eye, frame_.back), x = dot(from_eye, frame_.right),
                    y = dot(from_eye, frame_.up);
       const double scale = parallel_ ? 1.0 : depth, right = half_width_ * scale, top = half_height_ * scale;
@@ -173,7 +167,7 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
                       const Vec3d local_eye = model_from_world.point(eye);
                       ShapeKernelPtr<double> kernel;
                       for (int i = 0; i < shapes->size(); ++i) {
-                        if (!contains(shapes->bounds(i), local_eye) || is_transparent(scene, materials[i]))
+                        if (!shapes->bounds(i).contains(local_eye) || is_transparent(scene, materials[i]))
                           continue;
                         if (!kernel) kernel = shapes->kernel(double(), 0);
                         if (surroundings->inside(*kernel, i, model_from_world) &&

@@ -8,7 +8,7 @@
 namespace orrery {
 namespace {
 
-constexpr double kWidth = 860, kHeight = 520, kLeft = 84, kRight = 620, kTop = 76, kBottom = 452,
+constexpr double kChartWidth = 860, kChartHeight = 520, kLeft = 84, kRight = 620, kTop = 76, kBottom = 452,
                  kZeroLane = 30;
 constexpr const char* kInk = "#222222";
 constexpr const char* kFaint = "#dddddd";
@@ -101,7 +101,7 @@ class Drawing {
     text_ = print(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" width=\"%g\" height=\"%g\" "
         "font-family=\"sans-serif\" font-size=\"13\" fill=\"%s\" role=\"img\">\n",
-        kWidth, kHeight, kWidth, kHeight, kInk);
+        kChartWidth, kChartHeight, kChartWidth, kChartHeight, kInk);
     text_ += "<title>" + escaped("Speed against accuracy of " + name()) + "</title>\n";
     text_ += "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
     text_ += words(kLeft, 30, shortened(name()), "font-size=\"18\" font-weight=\"bold\"");

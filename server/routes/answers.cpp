@@ -19,7 +19,7 @@ std::string_view trimmed(std::string_view text) {
 
 // Calls `part` with each piece of a list, without the blanks around it.
 template <class Part>
-void split(std::string_view list, char separator, const Part& part) {
+void for_each_entry(std::string_view list, char separator, const Part& part) {
   while (!list.empty()) {
     const std::size_t end = list.find(separator);
     part(trimmed(list.substr(0, end)));
@@ -71,7 +71,7 @@ Fit fit_of(std::string_view entry, std::string_view type) {
     fit.exactness = 1;
   if (fit.exactness < 0) return fit;
   fit.weight = 1;
-  split(entry, ';', [&](std::string_view parameter) {
+  for_each_entry(entry, ';', [&](std::string_view parameter) {
     if (parameter.starts_with("q="))
       fit.weight = std::strtod(std::string(parameter.substr(2)).c_str(), nullptr);
   });
@@ -117,7 +117,7 @@ bool has_current(const Request& request, std::string_view etag) {
   const auto header = request.header("If-None-Match");
   if (!header) return false;
   bool found = false;
-  split(*header, ',', [&](std::string_view known) {
+  for_each_entry(*header, ',', [&](std::string_view known) {
     if (known.starts_with("W/")) known.remove_prefix(2);
     found = found || known == etag || known == "*";
   });
@@ -131,7 +131,7 @@ std::string_view negotiate(const Request& request, std::span<const std::string_v
   double best_weight = 0;
   for (const std::string_view type : offered) {
     Fit closest;
-    split(*header, ',', [&](std::string_view entry) {
+    for_each_entry(*header, ',', [&](std::string_view entry) {
       const Fit fit = fit_of(entry, type);
       if (fit.exactness > closest.exactness) closest = fit;
     });

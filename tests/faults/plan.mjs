@@ -9,7 +9,7 @@ const warning = (about, from, to, ...tests) => ({
 });
 
 export const planFaults = [
-  entry("an eye inside the only body sees no shadows", "!contains(shapes->bounds(0), plan_.frame.eye)", "true",
+  entry("an eye inside the only body sees no shadows", "!shapes->bounds(0).contains(plan_.frame.eye)", "true",
         "LeavesOutShadowsOfALonelyConvexBody"),
   entry("two bodies are taken for one", "scene_.primitive_count() != 1", "scene_.primitive_count() > 2",
         "LeavesOutShadowsOfALonelyConvexBody", "LonelyMirrorNeedsNoDepth"),
