@@ -20,10 +20,6 @@ std::string in_millions(double rays) {
 
 }  // namespace
 
-double cost_of(const Plan& plan) {
-  return kLeastCost + double(plan.width) * plan.height * plan.samples * (plan.max_depth + 1);
-}
-
 double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
 
 void Quota::require_one_more(int all, int own) const {
@@ -175,12 +171,12 @@ void Admission::measure(double cost) {
   const double seconds = std::chrono::duration<double>(now - std::exchange(measured_, now)).count();
   if (cost == 0) return;  // it was broken off: nobody knows how much of it was done
   const double faded = std::exp(-seconds / kMemory_s);
-  done_cost_ = done_cost_ * faded + cost;
+  done_rays_ = done_rays_ * faded + cost;
   busy_s_ = busy_s_ * faded + seconds;
 }
 
 double Admission::retry_after_s(Lane lane) const {
-  const double rate = busy_s_ > 0 ? done_cost_ / busy_s_ : kExpectedRate;
+  const double rate = busy_s_ > 0 ? done_rays_ / busy_s_ : kExpectedRate;
   return std::clamp(waiting_cost(lane) / rate, 1.0, 30.0);
 }
 

@@ -26,7 +26,7 @@ App::App(const Settings& settings, Timer& timer)
       assets_(settings.asset_store_bytes),
       pictures_(settings.picture_bytes),
       admission_({settings_.renders, settings_.queue_rays}, timer),
-      services_{pool_, admission_, timer, drains_.get_token(), ends_.get_token(), meters_},
+      services_{pool_, admission_, timer, drains_.get_token(), ends_.get_token(), meters_, estimator_},
       streams_(settings_.connections),
       orbits_(services_, settings.orbits, settings.request_seconds),
       jobs_(services_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
@@ -67,7 +67,7 @@ AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, c
 
 Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                      const Caller& caller, Timing& timing) {
-  const double cost = cost_of(plan);
+  const double cost = services_.cost_of(scene.scene(), plan);
   const Demand demand{cost > settings_.interactive_rays ? Lane::batch : Lane::interactive, caller.client,
                       cost};
   const auto start = Clock::now();
@@ -88,10 +88,10 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
 Picture App::make(const PreparedScene& scene, const Plan& plan, FileFormat format, const Demand& demand,
                   const std::stop_token& stop, Timing& timing) {
   auto start = Clock::now();
-  const auto ticket = admission_.enter(demand, stop);
+  auto ticket = admission_.enter(demand, stop);
   timing.queue += milliseconds_since(start);
   const RenderResult rendered =
-      services_.render(scene, orrery::settle(scene, plan, stop), storage_for(format),
+      services_.render(ticket, scene, orrery::settle(scene, plan, stop), storage_for(format),
                        {.stop = stop, .background = demand.lane == Lane::batch});
   timing.build = rendered.stats.build_ms;
   timing.render = rendered.stats.trace_ms;

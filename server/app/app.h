@@ -100,6 +100,7 @@ class App {
   AssetStore assets_;
   Pictures pictures_;
   Admission admission_;
+  RayEstimator estimator_;
   const RenderServices services_;
   Streams streams_;
   OrbitHub orbits_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/plan/cost.h"
 #include "core/plan/plan.h"
 #include "server/app/pipeline.h"
 
@@ -62,32 +63,34 @@ void Job::run() {
 
 Plan Job::plan(int step) const { return make_plan(spec_.scene->scene(), work().request(step)); }
 
-double Job::whole_cost() const {
+double Job::rays_of_all() const {
   const int steps = work().steps(), planned = std::min(steps, kMostPlanned);
   double sum = 0;
-  for (std::int64_t i = 0; i < planned; ++i) sum += cost_of(plan(static_cast<int>(i * steps / planned)));
+  for (std::int64_t i = 0; i < planned; ++i)
+    sum += expected_rays(spec_.scene->scene(), plan(static_cast<int>(i * steps / planned)));
   return sum * steps / planned;
 }
 
 RenderResult Job::render(int step, const Watch& watch) {
+  const Scene& scene = spec_.scene->scene();
   const Plan asked = plan(step);
-  const double cost = cost_of(asked);
-  const auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, cost}, watch.stop());
+  auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, services_.cost_of(scene, asked)},
+                                                watch.stop());
   {
     const std::lock_guard lock(mutex_);
     if (!started_) started_ = services_.timer.now();
-    if (cost_ == 0) cost_ = whole_cost();
+    if (rays_ == 0) rays_ = rays_of_all();
     state_ = JobState::running;
   }
-  const auto progress = [this, cost](int, int total) {
+  const auto progress = [this, rays = expected_rays(scene, asked)](int, int total) {
     const std::lock_guard lock(mutex_);
     tiles_a_step_ = total;
     ++tiles_done_;
-    cost_done_ += cost / total;
+    rays_done_ += rays / total;
     changed_.notify_all();
   };
   RenderResult rendered =
-      services_.render(*spec_.scene, settle(*spec_.scene, asked, watch.stop()), work().storage(),
+      services_.render(ticket, *spec_.scene, settle(*spec_.scene, asked, watch.stop()), work().storage(),
                        {.stop = watch.stop(), .progress = progress, .background = true});
   spec_.work->add(rendered);
   return rendered;
@@ -151,8 +154,8 @@ JobStatus Job::status_locked() const {
   if (!started_) return status;
   const auto until = ended_.value_or(services_.timer.now());
   status.elapsed_s = std::chrono::duration<double>(until - *started_).count();
-  if (state_ == JobState::running && cost_done_ > 0)
-    status.remaining_s = status.elapsed_s * std::max(0.0, cost_ / cost_done_ - 1);
+  if (state_ == JobState::running && rays_done_ > 0)
+    status.remaining_s = status.elapsed_s * std::max(0.0, rays_ / rays_done_ - 1);
   return status;
 }
 

@@ -73,7 +73,7 @@ class Job {
  private:
   void run();
   Plan plan(int step) const;
-  double whole_cost() const;  // of all steps, in rays by estimate
+  double rays_of_all() const;  // expected of all steps, by their plans alone: their proportions stay
   RenderResult render(int step, const Watch& watch);
   void keep(int step, Frame&& frame);
   void end(std::exception_ptr error);
@@ -92,7 +92,7 @@ class Job {
   JobState state_ = JobState::waiting;
   std::exception_ptr error_;
   std::int64_t tiles_a_step_ = 0, tiles_done_ = 0;
-  double cost_done_ = 0, cost_ = 0;
+  double rays_done_ = 0, rays_ = 0;  // see rays_of_all()
   std::optional<Clock::time_point> started_, ended_;
   std::thread thread_;  // last: it uses the others
 };

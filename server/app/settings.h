@@ -27,7 +27,7 @@ struct Settings {
   std::size_t picture_bytes = 64 << 20;
   std::size_t connections = 256;
   int renders = 0;
-  double queue_rays = 100e6;
+  double queue_rays = 300e6;
   double interactive_rays = 50e6;
   int orbits = 64;
   int orbit_frames = 3600;
