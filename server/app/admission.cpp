@@ -12,6 +12,8 @@ constexpr double kRaysAByte = 1;        // of JSON or of a mesh: measured betwee
 constexpr double kExpectedRate = 10e6;  // rays a second, before anything was measured
 constexpr double kMemory_s = 10;        // seconds of work after which a measurement has faded to 1/e
 
+std::string whole(double rays) { return std::to_string(std::llround(rays)); }
+
 std::string in_millions(double rays) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g million", rays / 1e6);
@@ -19,6 +21,11 @@ std::string in_millions(double rays) {
 }
 
 }  // namespace
+
+TooManyRays::TooManyRays(double expected, double most)
+    : InputError("", "the picture is expected to take " + whole(expected) +
+                         " rays, and one request may ask for " + whole(most) +
+                         " (request_rays); a job takes longer work: POST /v1/jobs") {}
 
 double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
 

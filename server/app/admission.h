@@ -21,6 +21,14 @@ class ClientBusy : public OverLimit {
   using OverLimit::OverLimit;
 };
 
+// A picture is expected to cost more than one request may ask for.
+class TooManyRays : public InputError {
+ public:
+  // Of a picture that is expected to take so many rays, where so many are the limit.
+  TooManyRays(double expected, double most);
+  const char* limit() const noexcept { return "request_rays"; }  // its name in /v1/limits
+};
+
 // Holds that there is a place for one more of `what`, of which there are `all` now, `own` of them this
 // client's: at most `most` (the limit called `limit`), and half of them for one client. Throws Busy or
 // ClientBusy.

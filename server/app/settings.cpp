@@ -44,6 +44,10 @@ constexpr std::array kSettings{
             kMost},
     Setting{"interactive_rays", &S::interactive_rays, "N",
             "Expected rays of one picture, beyond which it takes its turn among the long work", 1, kMost},
+    Setting{"request_rays", &S::request_rays, "N",
+            "Expected rays of one picture, beyond which a request for it is refused at once; 0: 50 million a "
+            "thread and second of request_seconds",
+            0, kMost},
     Setting{"orbits", &S::orbits, "N", "Different orbits streamed at once; half of them for one client", 1,
             10'000},
     Setting{"orbit_frames", &S::orbit_frames, "N", "Frames of an orbit", 1, 1'000'000},

@@ -29,6 +29,7 @@ struct Settings {
   int renders = 0;
   double queue_rays = 300e6;
   double interactive_rays = 50e6;
+  double request_rays = 0;
   int orbits = 64;
   int orbit_frames = 3600;
   std::chrono::seconds request_seconds{60};
