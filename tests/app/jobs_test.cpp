@@ -88,7 +88,9 @@ class JobsTest : public testing::Test {
   Jobs::Limits limits_{.under_way = 4, .ended = 100, .bytes = 1 << 20, .run_time = kRunTime, .kept = kKept};
   std::size_t bytes_a_step_ = 10;
   const std::shared_ptr<const PreparedScene> scene_ = std::make_shared<const PreparedScene>(
-      test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}")));
+      test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}",
+                                R"({'materials': {'mirror': {
+                                  'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 3, 2]}}})")));
   std::optional<Jobs> jobs_;  // last: it uses the others
 };
 
@@ -172,7 +174,9 @@ TEST_F(JobsTest, ThatEndedMakeRoomForBytesAndNoOthers) {
 
 TEST_F(JobsTest, LearnWhatTheirScenesTake) {
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
+  const double expected = estimator_.estimate(scene_->scene(), plan);
   EXPECT_EQ(end_of(start(1)).state, JobState::done);
+  EXPECT_NE(expected, static_cast<double>(meters_.rays));
   EXPECT_DOUBLE_EQ(estimator_.estimate(scene_->scene(), plan), static_cast<double>(meters_.rays));
 }
 

@@ -82,6 +82,10 @@ TEST(RayEstimator, LearnsForTheSceneAndTheModelAlone) {
   EXPECT_TRUE(is_unknown(scene, shallow));
   EXPECT_TRUE(is_unknown(scene, simple));
   EXPECT_TRUE(is_unknown(scene, coarse));
+  estimator.learn(*scene, make_plan(*scene, simple), 1);
+  RenderRequest flat = large();  // as deep as the simple one
+  flat.max_depth = 0;
+  EXPECT_TRUE(is_unknown(scene, flat));
 }
 
 }  // namespace

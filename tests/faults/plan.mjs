@@ -10,8 +10,8 @@ const cost = (about, from, to, ...tests) => ({
 });
 
 export const planFaults = [
-  cost("cost ignores branching", "descendants * children", "descendants", "OfGlassGrows*", "OfGlassIsCut*"),
-  cost("cost ignores the least contribution", "std::min(descendants * children, most)", "descendants * children", "OfGlassIsCut*"),
+  cost("cost ignores branching", "descendants * children", "descendants * std::min(children, 1.0)", "OfGlassGrows*", "OfGlassIsCut*"),
+  cost("cost ignores the least contribution", "std::min(descendants * children, most)", "std::min(descendants * children, 1e9 * most)", "OfGlassIsCut*"),
   cost("cost ignores lights", "static_cast<double>(scene.lights.size())", "1", "OfRoughThings*"),
   entry("an eye inside the only body sees no shadows", "!contains(shapes->bounds(0), plan_.frame.eye)", "true",
         "LeavesOutShadowsOfALonelyConvexBody"),
