@@ -12,6 +12,8 @@ constexpr double kRaysAByte = 1;        // of JSON or of a mesh: measured betwee
 constexpr double kExpectedRate = 10e6;  // rays a second, before anything was measured
 constexpr double kMemory_s = 10;        // seconds of work after which a measurement has faded to 1/e
 
+std::string whole(double rays) { return std::to_string(std::llround(rays)); }
+
 std::string in_millions(double rays) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g million", rays / 1e6);
@@ -20,9 +22,10 @@ std::string in_millions(double rays) {
 
 }  // namespace
 
-double cost_of(const Plan& plan) {
-  return kLeastCost + double(plan.width) * plan.height * plan.samples * (plan.max_depth + 1);
-}
+TooManyRays::TooManyRays(double expected, double most)
+    : InputError("", "the picture is expected to take " + whole(expected) +
+                         " rays, and one request may ask for " + whole(most) +
+                         " (request_rays); a job takes longer work: POST /v1/jobs") {}
 
 double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
 
@@ -175,12 +178,12 @@ void Admission::measure(double cost) {
   const double seconds = std::chrono::duration<double>(now - std::exchange(measured_, now)).count();
   if (cost == 0) return;  // it was broken off: nobody knows how much of it was done
   const double faded = std::exp(-seconds / kMemory_s);
-  done_cost_ = done_cost_ * faded + cost;
+  done_rays_ = done_rays_ * faded + cost;
   busy_s_ = busy_s_ * faded + seconds;
 }
 
 double Admission::retry_after_s(Lane lane) const {
-  const double rate = busy_s_ > 0 ? done_cost_ / busy_s_ : kExpectedRate;
+  const double rate = busy_s_ > 0 ? done_rays_ / busy_s_ : kExpectedRate;
   return std::clamp(waiting_cost(lane) / rate, 1.0, 30.0);
 }
 

@@ -6,9 +6,9 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
-#include "core/model/plan.h"
 #include "server/app/meters.h"
 #include "server/app/timer.h"
 #include "server/http/over_limit.h"
@@ -19,6 +19,14 @@ namespace orrery {
 class ClientBusy : public OverLimit {
  public:
   using OverLimit::OverLimit;
+};
+
+// A picture is expected to cost more than one request may ask for.
+class TooManyRays : public InputError {
+ public:
+  // Of a picture that is expected to take so many rays, where so many are the limit.
+  TooManyRays(double expected, double most);
+  const char* limit() const noexcept { return "request_rays"; }  // its name in /v1/limits
 };
 
 // Holds that there is a place for one more of `what`, of which there are `all` now, `own` of them this
@@ -37,13 +45,11 @@ enum class Lane { interactive, batch };  // somebody waits for it; or it is long
 struct Demand {
   Lane lane = Lane::interactive;
   std::string client;  // who asked for it
-  double cost = 0;     // rays, by estimate
+  double cost = 0;     // rays, as expected
 };
 
-inline constexpr double kLeastCost = 20'000;  // what the fixed work of a render amounts to
-// What rendering is expected to cost, in rays: pixels x samples x levels of depth, and a little for each.
-double cost_of(const Plan& plan);
-// What reading so many bytes of JSON or of a mesh is expected to cost, in the same unit.
+inline constexpr double kLeastCost = 20'000;  // rays that the fixed work of a render amounts to
+// What reading so many bytes of JSON or of a mesh is expected to cost, in rays.
 double cost_of_reading(std::size_t bytes);
 
 // Lets a few pieces of work run at once; what waits in a lane is bounded by its cost.
@@ -58,17 +64,19 @@ class Admission {
  public:
   struct Limits {
     int running;        // pieces of work at once
-    double queue_rays;  // cost of what waits in a lane; one may wait whatever it costs
+    double queue_rays;  // expected cost of what waits in a lane; one may wait whatever it costs
   };
   // `timer` must outlive it.
   Admission(const Limits& limits, const Timer& timer) : limits_(limits), timer_(timer) {}
 
-  // The right to work. Ends with the object.
+  // The right to work. Ends with the object, and unless that is by an exception, the work was done: at the
+  // cost that was expected, or that set_cost() has told.
   class Ticket {
    public:
     Ticket(Admission& from, Lane lane, double cost) : from_(&from), lane_(lane), cost_(cost) {}
     Ticket(Ticket&& other) noexcept
         : from_(std::exchange(other.from_, nullptr)), lane_(other.lane_), cost_(other.cost_) {}
+    void set_cost(double rays) { cost_ = rays; }
     ~Ticket() {
       if (from_) from_->leave(lane_, std::uncaught_exceptions() > exceptions_ ? 0 : cost_);
     }
@@ -128,8 +136,8 @@ class Admission {
   int running_ = 0, running_batch_ = 0;
   Lane latest_ = Lane::interactive;  // that had a turn
   double virtual_time_[2] = {0, 0};  // of a lane: finish of the piece that started last
-  // The measured rate: cost done and seconds in which something ran, recent ones counting more.
-  double done_cost_ = 0, busy_s_ = 0;
+  // The measured rate: rays of work done and seconds in which something ran, recent ones counting more.
+  double done_rays_ = 0, busy_s_ = 0;
   Clock::time_point measured_;
 };
 

@@ -67,9 +67,12 @@ class App {
   AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Caller& caller);
 
   // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded
-  // in its turn, once for all who ask. Throws as read().
+  // in its turn, once for all who ask. Throws as read(), and TooManyRays instead of rendering it.
   Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Caller& caller, Timing& timing);
+
+  // Throws TooManyRays for a picture that is expected to take more than one request may ask for.
+  void require_request_rays(const Scene& scene, const Plan& plan);
 
   // Settles the plan in its turn, as render() would. Throws likewise.
   SettledPlan settle(const PreparedScene& scene, const Plan& plan, const Caller& caller);
@@ -105,6 +108,7 @@ class App {
   Films films_;
   Budget layer_bytes_;  // of films of sums while they are made
   Admission admission_;
+  RayEstimator estimator_;
   const RenderServices services_;
   Streams streams_;
   OrbitHub orbits_;

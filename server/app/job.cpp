@@ -2,10 +2,16 @@
 
 #include <algorithm>
 
+#include "core/plan/cost.h"
 #include "core/plan/plan.h"
 #include "server/app/pipeline.h"
 
 namespace orrery {
+namespace {
+
+constexpr int kMostPlanned = 1000;  // steps whose cost is looked at before the first; others cost as much
+
+}  // namespace
 
 Job::Job(std::string id, JobSpec spec, const RenderServices& services, std::chrono::seconds limit, Room room)
     : id_(std::move(id)),
@@ -35,12 +41,13 @@ void Job::run() {
       .background = true,
       .next = [&]() -> std::optional<std::int64_t> {
         if (watch.stop().stop_requested()) throw Cancelled();
-        if (next == spec_.frames) return std::nullopt;
+        if (next == work().steps()) return std::nullopt;
         return next++;
       },
       .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
-      .encode = [this](const Film& film) { return spec_.study ? "" : encode_film(film, FileFormat::png); },
-      .deliver = [this](std::int64_t, Frame&& frame) { keep(std::move(frame)); }};
+      .encode = [this](const Film& film) { return work().encode(film); },
+      .deliver = [this](std::int64_t number,
+                        Frame&& frame) { keep(static_cast<int>(number), std::move(frame)); }};
   std::exception_ptr error;
   try {
     try {
@@ -54,48 +61,48 @@ void Job::run() {
   end(error);
 }
 
-RenderRequest Job::request(int number) const {
-  return spec_.study ? spec_.study->request(number) : spec_.path.at(number);
-}
+Plan Job::plan(int step) const { return make_plan(spec_.scene->scene(), work().request(step)); }
 
-double Job::whole_cost() const {
-  const auto cost = [&](int number) { return cost_of(make_plan(spec_.scene->scene(), request(number))); };
-  if (!spec_.study) return spec_.frames * cost(0);
+double Job::rays_of_all() const {
+  const int steps = work().steps(), planned = std::min(steps, kMostPlanned);
   double sum = 0;
-  for (int number = 0; number < spec_.frames; ++number) sum += cost(number);
-  return sum;
+  for (std::int64_t i = 0; i < planned; ++i)
+    sum += expected_rays(spec_.scene->scene(), plan(static_cast<int>(i * steps / planned)));
+  return sum * steps / planned;
 }
 
-RenderResult Job::render(int number, const Watch& watch) {
-  const Plan plan = make_plan(spec_.scene->scene(), request(number));
-  const double cost = cost_of(plan);
-  const auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, cost}, watch.stop());
+RenderResult Job::render(int step, const Watch& watch) {
+  const Scene& scene = spec_.scene->scene();
+  const Plan asked = plan(step);
+  auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, services_.cost_of(scene, asked)},
+                                                watch.stop());
   {
     const std::lock_guard lock(mutex_);
     if (!started_) started_ = services_.timer.now();
-    if (cost_ == 0) cost_ = whole_cost();
+    if (rays_ == 0) rays_ = rays_of_all();
     state_ = JobState::running;
   }
-  const auto progress = [this, cost](int, int total) {
+  const auto progress = [this, rays = expected_rays(scene, asked)](int, int total) {
     const std::lock_guard lock(mutex_);
-    tiles_a_frame_ = total;
+    tiles_a_step_ = total;
     ++tiles_done_;
-    cost_done_ += cost / total;
+    rays_done_ += rays / total;
     changed_.notify_all();
   };
-  Study* study = spec_.study.get();
-  RenderResult rendered = services_.render(*spec_.scene, settle(*spec_.scene, plan, watch.stop()),
-                                           study ? FilmStorage::linear32 : FilmStorage::srgb8,
-                                           {.stop = watch.stop(), .progress = progress, .background = true});
-  if (study) study->add(rendered);
+  RenderResult rendered =
+      services_.render(ticket, *spec_.scene, settle(*spec_.scene, asked, watch.stop()), work().storage(),
+                       {.stop = watch.stop(), .progress = progress, .background = true});
+  spec_.work->add(rendered);
   return rendered;
 }
 
-void Job::keep(Frame&& frame) {
-  if (!spec_.study) room_(frame.bytes.size());
+void Job::keep(int step, Frame&& frame) {
+  const std::size_t bytes = frame.bytes.size();
+  if (bytes > 0) room_(bytes);
+  spec_.work->keep(step, std::move(frame.bytes));
   const std::lock_guard lock(mutex_);
-  bytes_ += frame.bytes.size();
-  pictures_.push_back(std::make_shared<const std::string>(std::move(frame.bytes)));
+  bytes_ += bytes;
+  ++steps_done_;
   changed_.notify_all();
 }
 
@@ -127,27 +134,19 @@ std::size_t Job::bytes() const {
   return bytes_;
 }
 
-Job::Picture Job::frame(int number) const {
-  const std::lock_guard lock(mutex_);
-  const auto index = static_cast<std::size_t>(number);
-  return index < pictures_.size() ? pictures_[index] : nullptr;
-}
-
-JobStatus Job::wait(int frames, std::optional<std::int64_t> tiles, Clock::time_point until,
+JobStatus Job::wait(int steps, std::optional<std::int64_t> tiles, Clock::time_point until,
                     const std::stop_token& stop) const {
   std::unique_lock lock(mutex_);
-  wait_until(services_.timer, changed_, lock, stop, until, [&] {
-    return has_ended(state_) || pictures_.size() > static_cast<std::size_t>(frames) ||
-           (tiles && tiles_done_ != *tiles);
-  });
+  wait_until(services_.timer, changed_, lock, stop, until,
+             [&] { return has_ended(state_) || steps_done_ > steps || (tiles && tiles_done_ != *tiles); });
   return status_locked();
 }
 
 JobStatus Job::status_locked() const {
   JobStatus status{.state = state_,
-                   .frames = spec_.frames,
-                   .frames_done = static_cast<int>(pictures_.size()),
-                   .tiles = spec_.frames * tiles_a_frame_,
+                   .steps = work().steps(),
+                   .steps_done = steps_done_,
+                   .tiles = work().steps() * tiles_a_step_,
                    .tiles_done = tiles_done_,
                    .elapsed_s = 0,
                    .remaining_s = {},
@@ -155,8 +154,8 @@ JobStatus Job::status_locked() const {
   if (!started_) return status;
   const auto until = ended_.value_or(services_.timer.now());
   status.elapsed_s = std::chrono::duration<double>(until - *started_).count();
-  if (state_ == JobState::running && cost_done_ > 0)
-    status.remaining_s = status.elapsed_s * std::max(0.0, cost_ / cost_done_ - 1);
+  if (state_ == JobState::running && rays_done_ > 0)
+    status.remaining_s = status.elapsed_s * std::max(0.0, rays_ / rays_done_ - 1);
   return status;
 }
 

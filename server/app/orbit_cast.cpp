@@ -107,11 +107,12 @@ RenderResult OrbitCast::render(std::int64_t number) {
   const Watch watch(nobody_watches_.get_token(), services_.ends, services_.timer, services_.timer.now(),
                     {frame_time_, "request_seconds"});
   try {
-    const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
-    const auto ticket =
-        services_.admission.enter_again({Lane::interactive, spec_.client, cost_of(plan)}, watch.stop());
-    return services_.render(*spec_.scene, settle(*spec_.scene, plan, watch.stop()), FilmStorage::srgb8,
-                            {.stop = watch.stop()});
+    const Scene& scene = spec_.scene->scene();
+    const Plan plan = make_plan(scene, spec_.path.at(number % spec_.frames));
+    auto ticket = services_.admission.enter_again(
+        {Lane::interactive, spec_.client, services_.cost_of(scene, plan)}, watch.stop());
+    return services_.render(ticket, *spec_.scene, settle(*spec_.scene, plan, watch.stop()),
+                            FilmStorage::srgb8, {.stop = watch.stop()});
   } catch (const Cancelled&) {
     watch.explain();
   }

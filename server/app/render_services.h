@@ -6,10 +6,11 @@
 #include "core/render/renderer.h"
 #include "server/app/admission.h"
 #include "server/app/meters.h"
+#include "server/app/ray_estimator.h"
 
 namespace orrery {
 
-// What all renders share. It must outlive every render that uses it.
+// Services that all renders share. They must outlive every render that uses them.
 struct RenderServices {
   WorkerPool& pool;
   Admission& admission;
@@ -17,12 +18,21 @@ struct RenderServices {
   std::stop_token draining;  // no new work; what goes on and on ends at its next frame
   std::stop_token ends;      // all work ends at once
   Meters& meters;
+  RayEstimator& estimator;
 
-  // A frame; the caller has a ticket. Throws Cancelled.
-  RenderResult render(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
-                      const RenderControl& control) const {
+  // What a frame is expected to cost, in rays: those that it traces, and a little for its fixed work.
+  double cost_of(const Scene& scene, const Plan& plan) const {
+    return kLeastCost + estimator.estimate(scene, plan);
+  }
+
+  // A frame, in the turn that `ticket` gives; tells it what the frame has cost. Throws Cancelled.
+  RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const SettledPlan& plan,
+                      FilmStorage storage, const RenderControl& control) const {
     RenderResult result = render_frame(scene, plan, storage, pool, control);
-    meters.rays += result.stats.counts.rays.total();
+    const std::uint64_t rays = result.stats.counts.rays.total();
+    ticket.set_cost(kLeastCost + static_cast<double>(rays));
+    estimator.learn(scene.scene(), *plan, rays);
+    meters.rays += rays;
     meters.render.Observe((result.stats.build_ms + result.stats.trace_ms) / 1000);
     return result;
   }

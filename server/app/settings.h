@@ -29,8 +29,9 @@ struct Settings {
   std::size_t layer_bytes = 512 << 20;
   std::size_t connections = 256;
   int renders = 0;
-  double queue_rays = 100e6;
+  double queue_rays = 300e6;
   double interactive_rays = 50e6;
+  double request_rays = 0;
   int orbits = 64;
   int orbit_frames = 3600;
   std::chrono::seconds request_seconds{60};

@@ -2,7 +2,6 @@
 
 #include "core/load/load.h"
 #include "core/params/params.h"
-#include "core/plan/plan.h"
 #include "server/app/chart_forms.h"
 #include "server/app/picture_key.h"
 #include "server/routes/job_answers.h"
@@ -11,12 +10,44 @@
 namespace orrery {
 namespace {
 
+using nlohmann::ordered_json;
+
+// The pictures that make a chart, which are not kept.
+class ChartWork final : public JobWork {
+ public:
+  ChartWork(const Scene& scene, const RenderRequest& view, const Study::Extent& extent)
+      : study_(scene, view, extent) {}
+
+  int steps() const override { return study_.pictures(); }
+  RenderRequest request(int step) const override { return study_.request(step); }
+  FilmStorage storage() const override { return FilmStorage::linear32; }
+  void add(const RenderResult& rendered) override { study_.add(rendered); }
+  std::string encode(const Film&) const override { return {}; }
+  void keep(int, std::string&&) override {}
+
+  ordered_json links(const std::string& job_id) const override {
+    return {{"chart", folder() + job_id + ".svg"}};
+  }
+  ordered_json links_of_step(const std::string&, int) const override { return ordered_json::object(); }
+  JobResult result(const std::string& job_id, std::string_view path) const override {
+    const ChartForm* form = chart_form_of(path);
+    if (!form || path != folder() + job_id + std::string(form->ending))
+      throw NotFound("The job makes the chart " + folder() + job_id + ".svg, .csv and .json");
+    return {"The chart", form->type, steps(), [this, form] { return form->write(study_.chart()); }};
+  }
+
+ private:
+  std::string folder() const { return "/v1/scenes/" + study_.scene_id() + "/charts/"; }
+
+  Study study_;
+};
+
 struct ChartOrder {
   RenderRequest view;
   Study::Extent extent;
 };
 
-ChartOrder read_render_order(App& app, Request& request, Timing& timing) {
+ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
   const std::string body = std::move(request.body);
   ChartOrder order;
   app.read(body.size(), caller_of(request), timing, [&](const MeshSource&) {
@@ -38,14 +69,11 @@ std::string canonical_chart(const Scene& scene, const ChartOrder& order) {
 
 Response start_chart(App& app, Request& request) {
   app.require_open();
-  JobSpec spec;
-  spec.scene = app.scenes().find(request.path_value("id"));
-  spec.client = request.client;
+  const auto prepared = app.scenes().find(request.path_value("id"));
   Timing timing;
-  const ChartOrder order = read_render_order(app, request, timing);
-  const Scene& scene = spec.scene->scene();
-  spec.study = std::make_shared<Study>(scene, order.view, order.extent);
-  spec.frames = spec.study->pictures();
+  const ChartOrder order = read_chart_order(app, request, timing);
+  const Scene& scene = prepared->scene();
+  JobSpec spec{prepared, std::make_unique<ChartWork>(scene, order.view, order.extent), request.client};
   return start_job(app, request, std::move(spec), canonical_chart(scene, order), timing);
 }
 
@@ -53,14 +81,7 @@ Response get_chart(App& app, Request& request) {
   const std::string name = request.path_value("chart");
   const ChartForm* form = chart_form_of(name);
   if (!form) throw HttpError(404, "A chart can be had as .svg, .csv and .json");
-  const auto job = app.jobs().find(name.substr(0, name.size() - form->ending.size()));
-  const auto study = job->study();
-  if (!study || study->scene_id() != request.path_value("id"))
-    throw HttpError(404, "The job makes no chart of this scene");
-  const JobStatus status = job->status();
-  if (status.state != JobState::done) refuse_result("The chart", status);
-  return result_response(request, "\"" + name + "\"", form->type,
-                         [&] { return form->write(study->chart()); });
+  return job_result(app, request, name.substr(0, name.size() - form->ending.size()));
 }
 
 }  // namespace

@@ -9,22 +9,19 @@ namespace orrery {
 
 using nlohmann::ordered_json;
 
-std::string job_path(const Job& job) { return "/v1/jobs/" + job.id(); }
+std::string job_path(const std::string& job_id) { return "/v1/jobs/" + job_id; }
 
 ordered_json job_json(const Job& job, const JobStatus& status) {
   const auto milli = [](double seconds) { return std::round(seconds * 1000) / 1000; };
   ordered_json json = {{"id", job.id()},
                        {"state", name_of(status.state)},
-                       {"frames", status.frames},
-                       {"frames_done", status.frames_done},
+                       {"frames", status.steps},
+                       {"frames_done", status.steps_done},
                        {"tiles", status.tiles},
                        {"tiles_done", status.tiles_done},
                        {"elapsed_s", milli(status.elapsed_s)},
-                       {"events", job_path(job) + "/events"}};
-  if (const auto study = job.study())
-    json["chart"] = "/v1/scenes/" + study->scene_id() + "/charts/" + job.id() + ".svg";
-  else
-    json["first_frame"] = job_path(job) + "/frames/0.png";
+                       {"events", job_path(job.id()) + "/events"}};
+  json.update(job.work().links(job.id()));
   if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
   if (status.error) json["error"] = ordered_json::parse(problem_response(status.error, job.id()).body);
   return json;
@@ -38,22 +35,23 @@ Response start_job(App& app, Request& request, JobSpec spec, const std::string& 
     throw HttpError(400, "Idempotency-Key has more than " + std::to_string(kLongestKey) + " characters");
   const Jobs::Started started = app.jobs().start(std::move(spec), key, content);
   Response response = json_answer(202, job_json(*started.job, started.job->status()));
-  response.set("Location", job_path(*started.job));
+  response.set("Location", job_path(started.job->id()));
   response.set("Server-Timing", server_timing(timing));
   response.set("Cache-Control", "no-store");
   return response;
 }
 
-void refuse_result(const std::string& what, const JobStatus& status) {
-  throw HttpError(409, what + " is not made: " + std::to_string(status.frames_done) + " of " +
-                           std::to_string(status.frames) + " pictures are, and the job is " +
-                           std::string(name_of(status.state)));
-}
-
-Response result_response(const Request& request, const std::string& etag, std::string_view type,
-                         const std::function<std::string()>& write) {
+Response job_result(App& app, const Request& request, const std::string& job_id) {
+  const auto job = app.jobs().find(job_id);
+  const JobResult result = job->work().result(job_id, request.path);
+  const JobStatus status = job->status();
+  if (status.steps_done < result.after)
+    throw HttpError(409, result.name + " is not made: " + std::to_string(status.steps_done) + " of " +
+                             std::to_string(status.steps) + " pictures are, and the job is " +
+                             std::string(name_of(status.state)));
+  const std::string etag = "\"" + job_id + request.path.substr(request.path.rfind('/')) + "\"";
   Response response{.status = 304};
-  if (!has_current(request, etag)) response = text_response(200, type, write());
+  if (!has_current(request, etag)) response = text_response(200, result.type, result.write());
   response.set("ETag", etag);
   response.set("Cache-Control", "private, max-age=31536000, immutable");
   return response;

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <functional>
-
 #include "server/routes/answers.h"
 
 // What routes that start and follow jobs share.
 namespace orrery {
 
-std::string job_path(const Job& job);
+std::string job_path(const std::string& job_id);
 // How far it is, and where its results are.
 nlohmann::ordered_json job_json(const Job& job, const JobStatus& status);
 
@@ -16,11 +14,8 @@ nlohmann::ordered_json job_json(const Job& job, const JobStatus& status);
 Response start_job(App& app, Request& request, JobSpec spec, const std::string& content,
                    const Timing& timing);
 
-// Throws HttpError 409: `what` is not made yet, or will not be.
-[[noreturn]] void refuse_result(const std::string& what, const JobStatus& status);
-
-// What a job has made, which never changes; 304 for who knows it, and then `write` is not called.
-Response result_response(const Request& request, const std::string& etag, std::string_view type,
-                         const std::function<std::string()>& write);
+// The file of the job that has the request's path; 304 for who knows it, and then it is not written. Throws
+// NotFound, and HttpError 409 for a file that is not made yet, or will not be.
+Response job_result(App& app, const Request& request, const std::string& job_id);
 
 }  // namespace orrery

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
+#include "core/plan/plan.h"
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
 #include "server/routes/answers.h"
@@ -121,6 +122,8 @@ Response orbit(App& app, Request& request) {
                                          : std::string(kFrames));
   response.set("Cache-Control", "no-store").set("Vary", "Accept").set("X-Accel-Buffering", "no");
   if (request.method == "HEAD") return response;
+  const Scene& scene = spec.scene->scene();
+  app.require_request_rays(scene, make_plan(scene, spec.path.at(0)));
   OrbitRequest orbit{.place = app.streams().open(request.client),
                      .viewer = app.orbits().watch(spec),
                      .first = {},

@@ -49,6 +49,11 @@ Response malformed(const MalformedJson& error, std::string_view request_id) {
                  more);
 }
 
+Response invalid(const InputError& error, std::string_view request_id) {
+  return respond(422, "The input cannot be used", error.what(), request_id,
+                 "urn:orrery:problem:invalid-input", list_of(error.problems()));
+}
+
 }  // namespace
 
 Response problem_response(std::exception_ptr error, std::string_view request_id) {
@@ -61,9 +66,12 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
     return response;
   } catch (const MalformedJson& e) {
     return malformed(e, request_id);
+  } catch (const TooManyRays& e) {
+    Response response = invalid(e, request_id);
+    response.refusal = e.limit();
+    return response;
   } catch (const InputError& e) {
-    return respond(422, "The input cannot be used", e.what(), request_id, "urn:orrery:problem:invalid-input",
-                   list_of(e.problems()));
+    return invalid(e, request_id);
   } catch (const NotFound& e) {
     return respond(404, e.what(), request_id);
   } catch (const ClientBusy& e) {

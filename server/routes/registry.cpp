@@ -11,6 +11,7 @@ namespace orrery {
   add(frame)               \
   add(orbit)               \
   add(jobs)                \
+  add(frame_jobs)          \
   add(charts)              \
   add(shares)              \
   add(explain)             \

@@ -6,7 +6,12 @@
 #include <thread>
 #include <vector>
 
+#include "core/plan/cost.h"
+#include "core/plan/plan.h"
+#include "server/app/settings.h"
 #include "tests/app/manual_timer.h"
+#include "tests/support/eventually.h"
+#include "tests/support/pictures.h"
 
 // Who gets a turn, and who is turned away.
 namespace orrery {
@@ -27,7 +32,7 @@ class Waiters {
     const auto settled = [&] { return admission_.waiting() + order().size(); };
     const auto before = settled();
     threads_.emplace_back([this, name, demand] { wait(name, demand); });
-    while (settled() == before) std::this_thread::yield();
+    EXPECT_TRUE(test::eventually([&] { return settled() != before; }));
   }
   void join() {
     for (std::thread& thread : threads_) thread.join();
@@ -90,7 +95,7 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
       waiters.add("i1", demand("a"));
       waiters.add("i2", demand("a"));
     }
-    while (waiters.order().size() < 2) std::this_thread::yield();
+    EXPECT_TRUE(test::eventually([&] { return waiters.order().size() == 2; }));
     EXPECT_EQ(admission.waiting(), 1);  // half of the places are batch work's, and that is one
     EXPECT_EQ(waiters.order(), (RenderOrder{"i1", "i2"}));
   }
@@ -168,7 +173,7 @@ TEST(Admission, WhoHasMostWaitingMakesRoom) {
     const auto ticket = admission.enter(demand("z"), kNever);
     for (const char* name : {"a1", "a2", "a3"}) waiters.add(name, demand("a", 30));
     waiters.add("b1", demand("b", 30));
-    while (waiters.order().empty()) std::this_thread::yield();
+    EXPECT_TRUE(test::eventually([&] { return !waiters.order().empty(); }));
     EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429"}));
     waiters.add("a4", demand("a", 30));  // now a has 60 and b 30
     EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429", "a4 429"}));
@@ -190,7 +195,7 @@ TEST(Admission, WorkThatBeganIsNotTurnedAway) {
       const auto later = admission.enter_again(demand("a", 1000), kNever);
       done = true;
     });
-    while (admission.waiting() == 0) std::this_thread::yield();
+    EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
     EXPECT_FALSE(admission.full());  // nor does it keep others from waiting
   }
   again.join();
@@ -203,34 +208,98 @@ TEST(Admission, WhoGivesUpLeavesTheQueue) {
   const auto ticket = admission.enter(demand("z"), kNever);
   std::stop_source stop;
   std::thread waits([&] { EXPECT_THROW(admission.enter(demand("a"), stop.get_token()), Cancelled); });
-  while (admission.waiting() == 0) std::this_thread::yield();
+  EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
   stop.request_stop();
   waits.join();
   EXPECT_EQ(admission.waiting(), 0);
   EXPECT_EQ(admission.running(), 1);
 }
 
-// The time after which to come again is the cost that waits over the rate at which work was done.
-TEST(Admission, RetryAfterFollowsTheRateMeasured) {
-  const auto told = [](double cost_done) {
+// What an admission with one place tells who comes while so many rays wait.
+double retry_after(Admission& admission, double waiting) {
+  Waiters waiters(admission);
+  const auto ticket = admission.enter(demand("z"), kNever);
+  waiters.add("a", demand("a", waiting));
+  try {
+    admission.enter(demand("b", waiting), kNever);
+  } catch (const Busy& busy) {
+    return busy.retry_after_s();
+  }
+  return 0;
+}
+
+struct Work {
+  double expected, traced;  // rays
+  double seconds;
+};
+// What is told after such work, one piece after the other, while so many rays wait.
+double retry_after(const std::vector<Work>& done, double waiting) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1}, timer);
+  for (const Work& work : done) {
+    auto ticket = admission.enter(demand("z", work.expected), kNever);
+    timer.advance(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(work.seconds)));
+    ticket.set_cost(work.traced);
+  }
+  return retry_after(admission, waiting);
+}
+
+// The time after which to come again: the rays that wait over the rate at which rays were traced.
+TEST(RetryAfter, IsWhatWaitsOverTheRateMeasured) {
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 10e6), 5);
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 40e6), 20);
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 0.5}}, 40e6), 5);
+}
+
+TEST(RetryAfter, HasBounds) {
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 2.5e6), 1.25);
+  EXPECT_EQ(retry_after({{4e6, 4e6, 2}}, 1.5e6), 1);
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 58e6), 29);
+  EXPECT_EQ(retry_after({{4e6, 4e6, 2}}, 62e6), 30);
+}
+
+TEST(RetryAfter, IsByTheRaysTracedNotThoseExpected) {
+  EXPECT_DOUBLE_EQ(retry_after({{40e6, 4e6, 2}}, 10e6), 5);
+}
+
+TEST(RetryAfter, IsAGuessBeforeAnythingWasMeasured) { EXPECT_DOUBLE_EQ(retry_after({}, 50e6), 5); }
+
+// After 10 s of work a measurement counts for 1/e.
+TEST(RetryAfter, FollowsARateThatChanges) {
+  const double faded = std::exp(-1), rate = (1e6 * faded + 9e6) / (10 * faded + 10);
+  EXPECT_DOUBLE_EQ(retry_after({{1e6, 1e6, 10}, {9e6, 9e6, 10}}, 5e6), 5e6 / rate);
+}
+
+TEST(RetryAfter, CountsWorkAtOneTimeTogetherAndIdleTimeNot) {
+  ManualTimer timer;
+  Admission two({.running = 2, .queue_rays = 1}, timer);
+  {
+    const auto a = two.enter(demand("a", 3e6), kNever), b = two.enter(demand("b", 1e6), kNever);
+    timer.advance(std::chrono::seconds(1));
+  }
+  timer.advance(std::chrono::hours(1));
+  const auto other = two.enter(demand("y"), kNever);
+  EXPECT_DOUBLE_EQ(retry_after(two, 20e6), 5);
+}
+
+// The default queue takes 20 pictures of most samples at once, of which one is rendered and nothing was
+// before.
+TEST(Admission, RefusesNoSecondOfWorkByDefault) {
+  for (const char* name :
+       {"paper", "orrery", "sphereflake-3", "mirrors", "material-reflective", "light-spot"}) {
     ManualTimer timer;
-    Admission admission({.running = 1, .queue_rays = 1000}, timer);
-    {
-      const auto ticket = admission.enter(demand("z", cost_done), kNever);
-      timer.advance(std::chrono::milliseconds(50));
-    }
+    Admission admission({.running = 1, .queue_rays = Settings{}.queue_rays}, timer);
+    const auto scene = test::load(test::sample(name));
+    RenderRequest request = test::size(800, 600);
+    request.samples = 4;
+    const double cost = kLeastCost + expected_rays(*scene, make_plan(*scene, request));
     Waiters waiters(admission);
-    const auto ticket = admission.enter(demand("z"), kNever);
-    waiters.add("a", demand("a", 1e7));
-    try {
-      admission.enter(demand("b", 1e7), kNever);
-    } catch (const Busy& busy) {
-      return busy.retry_after_s();
+    {
+      const auto ticket = admission.enter(demand("z", cost), kNever);
+      for (int i = 1; i < 20; ++i) waiters.add(name, demand("z", cost));
+      EXPECT_EQ(waiters.order(), RenderOrder{}) << name;
     }
-    return 0.0;
-  };
-  EXPECT_EQ(told(100), 30);
-  EXPECT_EQ(told(1e9), 1);
+  }
 }
 
 }  // namespace

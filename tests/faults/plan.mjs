@@ -1,4 +1,5 @@
-// Mistakes of the plan, as faults.mjs has them: fault 23 leaves out what the picture needs, or keeps what it does not.
+// Mistakes of the plan, as faults.mjs has them: fault 23 leaves out what the picture needs, or keeps what it does not;
+// fault 20 (see service.mjs) expects another cost than the picture's.
 
 const entry = (about, from, to, ...tests) => ({
   fault: 23, about, file: "core/plan/plan.cpp", from, to, target: "test_plan", tests: tests.map((name) => `Plan.${name}`),
@@ -8,7 +9,14 @@ const warning = (about, from, to, ...tests) => ({
   tests: tests.map((name) => `Warnings.${name}`),
 });
 
+const cost = (about, from, to, ...tests) => ({
+  fault: 20, about, file: "core/plan/cost.cpp", from, to, target: "test_plan", tests: tests.map((name) => `Cost.${name}`),
+});
+
 export const planFaults = [
+  cost("cost ignores branching", "descendants * children", "descendants * std::min(children, 1.0)", "OfGlassGrows*", "OfGlassIsCut*"),
+  cost("cost ignores the least contribution", "std::min(descendants * children, most)", "std::min(descendants * children, 1e9 * most)", "OfGlassIsCut*"),
+  cost("cost ignores lights", "static_cast<double>(scene.lights.size())", "1", "OfRoughThings*"),
   entry("an eye inside the only body sees no shadows", "!shapes->bounds(0).contains(plan_.frame.eye)", "true",
         "LeavesOutShadowsOfALonelyConvexBody"),
   entry("two bodies are taken for one", "scene_.primitive_count() != 1", "scene_.primitive_count() > 2",

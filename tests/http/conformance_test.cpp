@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "tests/http/daemon.h"
+#include "tests/support/eventually.h"
 
 // What RFC 9110 and 9112 demand beyond everyday requests.
 namespace orrery {
@@ -77,7 +78,7 @@ TEST(Terminated, GivesHalfARequestOneLastCall) {
   head.send("GET /healthz HTTP/1.1\r\nHo");
   ends.send("GET /healthz HTTP/1.1\r\nHo");
   body.send(post);
-  while (daemon.metric("orrery_connections") < 3) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") >= 3; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   daemon.signal(SIGTERM);
   ends.send("st: x\r\n\r\n");
@@ -97,7 +98,7 @@ TEST(ClientThatLeaves, AfterTheWholeAnswerHasNotLeftEarly) {
     raw.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
     EXPECT_NE(raw.receive_some().find("200"), std::string::npos);
   }
-  while (daemon.metric("orrery_connections") > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
   EXPECT_EQ(daemon.metric("orrery_clients_left_total"), 0);
 }
 

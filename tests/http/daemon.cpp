@@ -72,6 +72,11 @@ httplib::Client client_of(int port) {
 
 }  // namespace
 
+std::vector<std::string> with_endless_pictures(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--request-rays", "1000000000000"});
+  return arguments;
+}
+
 std::string program() {
   const char* path = std::getenv("TEST_ORRERY");
   if (!path) throw std::runtime_error("TEST_ORRERY names no program");

@@ -44,6 +44,9 @@ class Daemon {
   int output_ = -1;
 };
 
+// These arguments of a daemon, and one more: pictures that take hours are not refused.
+std::vector<std::string> with_endless_pictures(std::vector<std::string> arguments = {});
+
 // The program under test.
 std::string program();
 

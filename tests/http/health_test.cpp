@@ -46,8 +46,8 @@ TEST(Health, HasAPortOfItsOwn) {
 }
 
 TEST(Health, AnswersWhileAllElseIsFull) {
-  Daemon daemon(
-      {"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000", "--connections", "3"});
+  Daemon daemon(with_endless_pictures(
+      {"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000", "--connections", "3"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string path = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>() +
                            "/frame.png?width=4096&height=4096&samples=4096&precision=double";

@@ -3,6 +3,7 @@
 #include <future>
 
 #include "tests/http/daemon.h"
+#include "tests/support/eventually.h"
 
 // Work that nobody waits for any more, and the end of the daemon.
 namespace orrery {
@@ -18,7 +19,7 @@ std::string post(Daemon& daemon, const nlohmann::json& scene) {
 std::string get(const std::string& path) { return "GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n"; }
 
 TEST(ClientThatLeaves, EndsItsRender) {
-  Daemon daemon;
+  Daemon daemon(with_endless_pictures());
   const std::string scene = post(daemon, small_scene());
   RawClient raw(daemon.port());
   raw.send(get(scene + "/frame.png" + kEndless));
@@ -29,7 +30,7 @@ TEST(ClientThatLeaves, EndsItsRender) {
 }
 
 TEST(ClientThatLeaves, EndsItsPostedRender) {
-  Daemon daemon;
+  Daemon daemon(with_endless_pictures());
   const std::string body =
       small_scene({{"image", {{"width", 4096}, {"height", 4096}}}, {"render", {{"samples", 4096}}}}).dump();
   RawClient raw(daemon.port());
@@ -41,7 +42,7 @@ TEST(ClientThatLeaves, EndsItsPostedRender) {
 }
 
 TEST(ClientThatLeaves, EndsItsOrbit) {
-  Daemon daemon;
+  Daemon daemon(with_endless_pictures());
   RawClient raw(daemon.port());
   raw.send(get(post(daemon, small_scene()) + "/orbit?frames=3600&fps=0&width=4096&height=4096&samples=4096"));
   ASSERT_TRUE(daemon.wait_until_working());
@@ -82,7 +83,8 @@ TEST(ClientsThatDawdle, ShareALimitOfBytes) {
 }
 
 TEST(ClientThatLeaves, LeavesTheQueueToo) {
-  Daemon daemon({"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000"});
+  Daemon daemon(
+      with_endless_pictures({"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000"}));
   const std::string path = post(daemon, small_scene()) + "/frame.png";
   std::vector<std::unique_ptr<RawClient>> clients;
   for (int i = 0; i < 3; ++i) {  // two render, one waits
@@ -99,7 +101,7 @@ TEST(ClientThatLeaves, LeavesTheQueueToo) {
 }
 
 TEST(Deadline, EndsARenderThatTakesTooLong) {
-  Daemon daemon({"--request-seconds", "1"});
+  Daemon daemon(with_endless_pictures({"--request-seconds", "1"}));
   const auto result = daemon.client().Get(post(daemon, small_scene()) + "/frame.png" + kEndless);
   const auto problem = expect_problem(result, 504);
   EXPECT_NE(problem.value("detail", "").find("request_seconds"), std::string::npos);
@@ -150,7 +152,7 @@ TEST(Terminated, EndsStreamsAtAFrame) {
                                  return true;
                                });
   });
-  while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(test::eventually([&] { return begun.load(); }));
   daemon.signal(SIGTERM);
   const auto answer = watching.get();
   EXPECT_TRUE(answer) << httplib::to_string(answer.error());
@@ -170,7 +172,7 @@ TEST(Terminated, DoesNotWaitForIdleConnections) {
 }
 
 TEST(Terminated, GivesUpWhatOutlastsTheGrace) {
-  Daemon daemon({"--grace-seconds", "1"});
+  Daemon daemon(with_endless_pictures({"--grace-seconds", "1"}));
   const std::string path = post(daemon, small_scene()) + "/frame.png" + kEndless;
   auto running = std::async(std::launch::async, [&] { return daemon.client().Get(path); });
   ASSERT_TRUE(daemon.wait_until_working());
@@ -180,7 +182,7 @@ TEST(Terminated, GivesUpWhatOutlastsTheGrace) {
 }
 
 TEST(Terminated, TwiceEndsAtOnce) {
-  Daemon daemon;
+  Daemon daemon(with_endless_pictures());
   RawClient raw(daemon.port());
   raw.send(get(post(daemon, small_scene()) + "/frame.png" + kEndless));
   ASSERT_TRUE(daemon.wait_until_working());

@@ -155,7 +155,7 @@ TEST_F(OrbitStream, WhoComesLateSeesAtOnceWhatIsShown) {
 }
 
 TEST(OrbitFailure, FrameThatTakesTooLongIsSaidNotHidden) {
-  Daemon daemon({"--request-seconds", "1"});
+  Daemon daemon(with_endless_pictures({"--request-seconds", "1"}));
   httplib::Client client = daemon.client();
   const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");

@@ -1,6 +1,7 @@
 #include <thread>
 
 #include "tests/http/daemon.h"
+#include "tests/support/eventually.h"
 
 // Requests that no HTTP library would send.
 namespace orrery {
@@ -106,16 +107,17 @@ TEST_F(Protocol, OldClientsGetStreamsThatEndWithTheConnection) {
 }
 
 TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
-  Daemon daemon({"--connections", "2"});
+  Daemon daemon(with_endless_pictures({"--connections", "2"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
-  while (daemon.metric("orrery_connections") > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
   const RawClient first(daemon.port()), second(daemon.port());  // at work: they make no room
   const std::string path = "/v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096";
   first.send("GET " + path + "&seed=1 HTTP/1.1\r\nHost: x\r\n\r\n");
   second.send("GET " + path + "&seed=2 HTTP/1.1\r\nHost: x\r\n\r\n");
-  while (daemon.metric("orrery_renders_running") + daemon.metric("orrery_renders_waiting") < 2)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(test::eventually([&] {
+    return daemon.metric("orrery_renders_running") + daemon.metric("orrery_renders_waiting") == 2;
+  }));
   const RawClient third(daemon.port());
   const std::string answer = third.receive_all();
   EXPECT_EQ(answer.substr(0, 34), "HTTP/1.1 503 Service Unavailable\r\n");

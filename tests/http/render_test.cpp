@@ -1,6 +1,8 @@
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "tests/http/daemon.h"
 
@@ -197,6 +199,68 @@ TEST_F(Render, OptionsOfARequestAreChecked) {
   EXPECT_EQ(pointer_of({{"camera", {{"fov_degrees", 180}}}}), "/camera/fov_degrees");
   EXPECT_EQ(pointer_of({{"scene_id", "x"}}), "/scene_id");
   EXPECT_EQ(pointer_of({{"colour", "x"}}), "");
+}
+
+constexpr const char* kJson = "application/json";
+
+// 2 threads x 10 s x 50 million rays, and what two balls of which one is a mirror take: half of the rays go
+// on at each of 5 levels, the other half ask one light.
+TEST(RenderThatTakesTooLong, IsRefusedAtOnceAndToldWhereToGo) {
+  Daemon daemon({"--threads", "2", "--request-seconds", "10"});
+  httplib::Client client = daemon.client();
+  const std::string rays = std::to_string(4096LL * 4096 * 256 * (32 + 16 + 8 + 4 + 2 + 1) / 32 * 3 / 2);
+  const nlohmann::json large = {{"image", {{"width", 4096}, {"height", 4096}}},
+                                {"render", {{"samples", 256}}}};
+  nlohmann::json body = large;
+  body["scene"] = small_scene();
+  const auto expect_refused = [&](const httplib::Result& result) {
+    const std::string detail = expect_problem(result, 422).value("detail", "");
+    for (const std::string& told : {rays, std::string("1000000000 (request_rays)"), std::string("/v1/jobs")})
+      EXPECT_NE(detail.find(told), std::string::npos) << detail;
+  };
+  expect_refused(client.Post("/v1/render", body.dump(), kJson));
+  const auto posted = client.Post("/v1/scenes", small_scene().dump(), kJson);
+  const std::string scene = posted->get_header_value("Location");
+  for (const char* address : {"/frame.png?", "/orbit?frames=2&"})
+    expect_refused(client.Get(scene + address + "width=4096&height=4096&samples=256"));
+  EXPECT_EQ(daemon.metric("orrery_refusals_total{reason=\"request_rays\"}"), 3);
+  EXPECT_EQ(daemon.metric("orrery_rays_total"), 0);
+  EXPECT_EQ(nlohmann::json::parse(client.Get("/v1/limits")->body).at("request_rays"), 1'000'000'000);
+  EXPECT_EQ(client.Post("/v1/jobs", body.dump(), kJson)->status, 202);
+}
+
+// 48 x 32 pixels are expected to take 4,536 rays and take fewer, which the next estimate knows.
+TEST(RenderThatTakesTooLong, IsJudgedByWhatTheSceneTookBefore) {
+  Daemon daemon({"--request-rays", "4536"});
+  httplib::Client client = daemon.client();
+  const auto render = [&](int width) {
+    const nlohmann::json body = {{"scene", small_scene()}, {"image", {{"width", width}}}};
+    return client.Post("/v1/render", body.dump(), kJson);
+  };
+  expect_problem(render(49), 422);
+  const auto rendered = render(48);
+  ASSERT_EQ(rendered->status, 200) << rendered->body;
+  EXPECT_LT(std::stoi(rendered->get_header_value("X-Rays")), 4536 * 48 / 49);
+  EXPECT_EQ(render(49)->status, 200);
+}
+
+// A second or so of work, all at once, and nothing known of the scene yet.
+TEST(RendersAtOnce, OfASampleAreAllAnswered) {
+  Daemon daemon;
+  const auto scene = nlohmann::json::parse(daemon.client().Get("/scenes/paper.json")->body);
+  std::atomic<int> answered{0};
+  std::vector<std::thread> clients;
+  for (int i = 0; i < 20; ++i)
+    clients.emplace_back([&, i] {
+      const nlohmann::json body = {{"scene", scene},
+                                   {"camera", {{"azimuth_degrees", i}}},
+                                   {"image", {{"width", 800}, {"height", 600}}},
+                                   {"render", {{"samples", 4}}}};
+      const auto result = daemon.client().Post("/v1/render", body.dump(), kJson);
+      answered += result && result->status == 200;
+    });
+  for (std::thread& client : clients) client.join();
+  EXPECT_EQ(answered, 20);
 }
 
 }  // namespace

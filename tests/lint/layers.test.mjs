@@ -27,7 +27,7 @@ const kMaxLines = 500;
 const kTextFolders = [".ci", "core", "docker", "docs", "packaging", "scenes", "script", "server", "tests", "web"];
 const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", ".cmake"]);
 const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ".service", ""]);
-const kUnread = new Set(["package-lock.json", "LICENSE"]);
+const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]);  // the last is a file in a worktree
 const kLibraries = [
   {name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
   {name: "httplib", header: /^httplib\.h$/, rooms: /^tests\// },  // 20,000 lines of header

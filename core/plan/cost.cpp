@@ -1,0 +1,36 @@
+#include "core/plan/cost.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/model/technique.h"
+
+namespace orrery {
+namespace {
+
+constexpr double kSpecularShare = 0.5;  // of the rays, where some material is specular
+
+}  // namespace
+
+double expected_rays(const Scene& scene, const Plan& plan) {
+  const MaterialTraits& materials = scene.facts.materials;
+  const bool branches = plan.specular && materials.mirrors && plan.technique->secondary_rays;
+  const double children = materials.transmits ? 2 : 1;
+  const double most =
+      plan.min_contribution > 0 ? 1 / plan.min_contribution : std::numeric_limits<double>::infinity();
+  double tree = 1;         // rays that follow from one camera ray, with it
+  double descendants = 1;  // of it in a generation, if every ray met a specular surface
+  double share = 1;        // of those that there are
+  const int depth = branches ? plan.max_depth : 0;
+  for (int generation = 1; generation <= depth; ++generation) {
+    descendants = std::min(descendants * children, most);
+    share *= kSpecularShare;
+    tree += descendants * share;
+  }
+  const bool shadows = plan.direct_light && plan.shadows;
+  const double lit = shadows ? (branches ? 1 - kSpecularShare : 1) : 0;
+  const double camera_rays = double(plan.width) * plan.height * plan.samples;
+  return camera_rays * tree * (1 + lit * static_cast<double>(scene.lights.size()));
+}
+
+}  // namespace orrery

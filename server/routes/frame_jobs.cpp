@@ -1,0 +1,105 @@
+#include <nlohmann/json.hpp>
+
+#include "core/base/number.h"
+#include "core/params/params.h"
+#include "server/app/orbit.h"
+#include "server/app/picture_key.h"
+#include "server/routes/job_answers.h"
+#include "server/routes/render_order.h"
+
+// POST /v1/jobs: pictures and orbits that take longer than anybody holds a connection open for.
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+
+// The frames of an orbit, or one picture, each a PNG file.
+class FrameWork final : public JobWork {
+ public:
+  FrameWork(const OrbitPath& path, int frames) : path_(path), files_(static_cast<std::size_t>(frames)) {}
+
+  int steps() const override { return static_cast<int>(files_.size()); }
+  RenderRequest request(int step) const override { return path_.at(step); }
+  FilmStorage storage() const override { return FilmStorage::srgb8; }
+  std::string encode(const Film& film) const override { return encode_film(film, FileFormat::png); }
+  void keep(int step, std::string&& encoded) override { file(step) = std::move(encoded); }
+
+  ordered_json links(const std::string& job_id) const override {
+    return {{"first_frame", folder(job_id) + "0.png"}};
+  }
+  ordered_json links_of_step(const std::string& job_id, int step) const override {
+    return {{"href", folder(job_id) + std::to_string(step) + ".png"}};
+  }
+  JobResult result(const std::string& job_id, std::string_view path) const override {
+    const std::string begin = folder(job_id);
+    if (path.starts_with(begin)) {
+      const std::string_view name = path.substr(begin.size());
+      const auto number = number_in<int>(name.substr(0, name.find('.')));
+      if (number && name == std::to_string(*number) + ".png" && *number >= 0 && *number < steps())
+        return {"Frame " + std::to_string(*number), "image/png", *number + 1,
+                [this, step = *number] { return files_[static_cast<std::size_t>(step)]; }};
+    }
+    throw NotFound("The job has " + begin + "0.png to " + std::to_string(steps() - 1) + ".png");
+  }
+
+ private:
+  static std::string folder(const std::string& job_id) { return job_path(job_id) + "/frames/"; }
+  std::string& file(int step) { return files_[static_cast<std::size_t>(step)]; }
+
+  const OrbitPath path_;
+  std::vector<std::string> files_;  // by step; empty before it is done
+};
+
+struct FrameOrder {
+  std::shared_ptr<const PreparedScene> scene;
+  OrbitPath path;
+  int frames = 1;
+};
+
+FrameOrder read_frame_order(App& app, Request& request, Timing& timing) {
+  FrameOrder frames;
+  double step_degrees = 0;
+  std::optional<double> time_step_s;
+  bool orbits = false;
+  const RenderOrder order = read_render_order(app, request, timing, [&](Params& p) {
+    orbits = p.has("orbit");
+    p.optional_object("orbit", "A turn of the camera; missing: one picture.", [&](Params& o) {
+      const std::int64_t most = app.settings().orbit_frames;
+      frames.frames = static_cast<int>(
+          o.integer("frames", "Pictures of it.", 1, most, std::min<std::int64_t>(most, orbits ? 120 : 1)));
+      step_degrees = o.number("step_degrees", "Turn from picture to picture.", {.min = -360, .max = 360},
+                              derived(360.0 / frames.frames));
+      const double time = o.number("time_step_s", "Motion from picture to picture.",
+                                   {.min = -kLongestStep_s, .max = kLongestStep_s}, derived(0.0));
+      if (o.has("time_step_s")) time_step_s = time;
+    });
+  });
+  require_layers_kept(order.request, FileFormat::png);
+  frames.scene = order.scene;
+  frames.path = full_turn(order.scene->scene(), order.request, frames.frames);
+  frames.path.step_degrees = step_degrees;
+  if (!orbits) frames.path.step_seconds = 0;
+  if (time_step_s) frames.path.step_seconds = *time_step_s;
+  require_range(frames.path, frames.frames, "/orbit/step_degrees");
+  return frames;
+}
+
+Response start_frames(App& app, Request& request) {
+  app.require_open();
+  Timing timing;
+  const FrameOrder order = read_frame_order(app, request, timing);
+  JobSpec spec{order.scene, std::make_unique<FrameWork>(order.path, order.frames), request.client};
+  return start_job(app, request, std::move(spec),
+                   canonical_orbit(order.scene->scene(), order.path, order.frames), timing);
+}
+
+}  // namespace
+
+void add_frame_jobs_routes(Router& router, App& app) {
+  router.add("POST", "/v1/jobs", Scope::render, LogLevel::info, json_body(app),
+             [&app](Request& request) { return start_frames(app, request); });
+  router.add("GET", "/v1/jobs/{id}/frames/{frame}", Scope::read, LogLevel::info,
+             [&app](Request& request) { return job_result(app, request, request.path_value("id")); });
+}
+
+}  // namespace orrery

@@ -1,0 +1,212 @@
+#include "server/app/jobs.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/manual_timer.h"
+#include "tests/support/eventually.h"
+#include "tests/support/pictures.h"
+
+// Jobs by a clock that tests drive: how long they may take and are kept, and what is told of them.
+namespace orrery {
+namespace {
+
+using nlohmann::ordered_json;
+using std::chrono::milliseconds, std::chrono::seconds;
+
+constexpr seconds kRunTime{100}, kKept{50};
+
+// Tiny pictures of a ball. `then` is called on the job's thread after each of them.
+class FakeWork final : public JobWork {
+ public:
+  FakeWork(int steps, std::size_t bytes, std::function<void(int)> then)
+      : steps_(steps), bytes_(bytes), then_(std::move(then)) {}
+
+  int steps() const override { return steps_; }
+  RenderRequest request(int) const override { return test::size(8, 8); }
+  FilmStorage storage() const override { return FilmStorage::srgb8; }
+  void add(const RenderResult&) override { then_(added_++); }
+  std::string encode(const Film&) const override { return std::string(bytes_, 'x'); }
+  void keep(int step, std::string&&) override { EXPECT_EQ(step, kept_++); }
+  ordered_json links(const std::string&) const override { return {}; }
+  ordered_json links_of_step(const std::string&, int) const override { return {}; }
+  JobResult result(const std::string&, std::string_view) const override { throw NotFound("none"); }
+
+ private:
+  const int steps_;
+  const std::size_t bytes_;
+  const std::function<void(int)> then_;
+  int added_ = 0, kept_ = 0;
+};
+
+class JobsTest : public testing::Test {
+ protected:
+  using JobPtr = Jobs::JobPtr;
+
+  Jobs& jobs() {
+    if (!jobs_) jobs_.emplace(services_, limits_);
+    return *jobs_;
+  }
+  JobPtr start(
+      int steps, std::function<void(int)> then = [](int) {}, const std::string& client = "a") {
+    auto work = std::make_unique<FakeWork>(steps, bytes_a_step_, std::move(then));
+    return jobs().start({scene_, std::move(work), client}, "", "").job;
+  }
+  // Waits for the end.
+  static JobStatus end_of(const JobPtr& job) {
+    EXPECT_TRUE(test::eventually([&] { return job->ended().has_value(); }));
+    return job->status();
+  }
+  static std::string error_of(const JobStatus& status) {
+    try {
+      if (status.error) std::rethrow_exception(status.error);
+    } catch (const TimedOut& error) {
+      return std::string("timed out: ") + error.what();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+  bool is_kept(const JobPtr& job) {
+    try {
+      return jobs().find(job->id()) == job;
+    } catch (const NotFound&) {
+      return false;
+    }
+  }
+
+  ManualTimer timer_;
+  WorkerPool pool_{1};
+  Admission admission_{{.running = 2, .queue_rays = 1e6}, timer_};
+  std::stop_source drains_, ends_;
+  Meters meters_;
+  RayEstimator estimator_;
+  const RenderServices services_{pool_,   admission_, timer_, drains_.get_token(), ends_.get_token(),
+                                 meters_, estimator_};
+  Jobs::Limits limits_{.under_way = 4, .ended = 100, .bytes = 1 << 20, .run_time = kRunTime, .kept = kKept};
+  std::size_t bytes_a_step_ = 10;
+  const std::shared_ptr<const PreparedScene> scene_ = std::make_shared<const PreparedScene>(
+      test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}",
+                                R"({'materials': {'mirror': {
+                                  'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 3, 2]}}})")));
+  std::optional<Jobs> jobs_;  // last: it uses the others
+};
+
+TEST_F(JobsTest, EndBeforeTheirTimeIsUp) {
+  const auto job =
+      start(3, [&](int step) { timer_.advance(step < 2 ? kRunTime / 2 - milliseconds(1) : seconds(0)); });
+  const JobStatus status = end_of(job);
+  EXPECT_EQ(status.state, JobState::done) << error_of(status);
+  EXPECT_EQ(status.steps_done, 3);
+  EXPECT_EQ(status.tiles_done, status.tiles);
+  EXPECT_DOUBLE_EQ(status.elapsed_s, 99.998);
+}
+
+TEST_F(JobsTest, FailWhenTheirTimeIsUp) {
+  const auto job = start(3, [&](int step) {
+    if (step == 1) timer_.advance(kRunTime);
+  });
+  const JobStatus status = end_of(job);
+  EXPECT_EQ(status.state, JobState::failed);
+  EXPECT_EQ(status.steps_done, 2);
+  const std::string error = error_of(status);
+  EXPECT_TRUE(error.starts_with("timed out: ")) << error;
+  EXPECT_NE(error.find("(job_seconds)"), std::string::npos) << error;
+}
+
+TEST_F(JobsTest, AreKeptForTheTimeStatedAfterTheirEnd) {
+  const auto job = start(1, [&](int) { timer_.advance(kRunTime / 2); });
+  end_of(job);
+  timer_.advance(kKept);
+  EXPECT_TRUE(is_kept(job));
+  timer_.advance(milliseconds(1));
+  EXPECT_FALSE(is_kept(job));
+}
+
+TEST_F(JobsTest, TellHowLongTheRestWillTake) {
+  std::promise<JobPtr> started;
+  std::promise<JobStatus> told;
+  const auto job = start(4, [&](int step) {
+    if (step > 0) return;
+    timer_.advance(seconds(10));
+    told.set_value(started.get_future().get()->status());
+  });
+  started.set_value(job);
+  const JobStatus status = told.get_future().get();
+  EXPECT_EQ(status.state, JobState::running);
+  EXPECT_DOUBLE_EQ(status.elapsed_s, 10);
+  EXPECT_DOUBLE_EQ(status.remaining_s.value_or(-1), 30);
+  EXPECT_FALSE(end_of(job).remaining_s);
+}
+
+TEST_F(JobsTest, AreAtMostSoManyAtOnceAndHalfOfThemOneClients) {
+  std::promise<void> go;
+  const auto goes = go.get_future().share();
+  const auto wait = [&](int) { goes.wait(); };
+  const auto one = start(1, wait), two = start(1, wait);
+  EXPECT_THROW(start(1, wait), ClientBusy);
+  const auto three = start(1, wait, "b"), four = start(1, wait, "c");
+  EXPECT_THROW(start(1, wait, "d"), OverLimit);
+  go.set_value();
+  for (const auto& job : {one, two, three, four}) EXPECT_EQ(end_of(job).state, JobState::done);
+  EXPECT_EQ(end_of(start(1)).state, JobState::done);
+  EXPECT_EQ(meters_.jobs_done, 5U);
+}
+
+TEST_F(JobsTest, ThatEndedMakeRoomForBytesAndNoOthers) {
+  limits_.bytes = 35;
+  const auto first = start(2), second = start(1);
+  end_of(first);
+  end_of(second);
+  EXPECT_EQ(jobs().bytes(), 30U);
+  const auto third = start(1);
+  EXPECT_EQ(end_of(third).state, JobState::done);
+  EXPECT_FALSE(is_kept(first));
+  EXPECT_TRUE(is_kept(second));
+  EXPECT_EQ(jobs().bytes(), 20U);
+  const JobStatus large = end_of(start(4));
+  EXPECT_EQ(large.state, JobState::failed);
+  EXPECT_EQ(large.steps_done, 3);
+  EXPECT_NE(error_of(large).find("(job_bytes)"), std::string::npos) << error_of(large);
+}
+
+TEST_F(JobsTest, LearnWhatTheirScenesTake) {
+  const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
+  const double expected = estimator_.estimate(scene_->scene(), plan);
+  EXPECT_EQ(end_of(start(1)).state, JobState::done);
+  EXPECT_NE(expected, static_cast<double>(meters_.rays));
+  EXPECT_DOUBLE_EQ(estimator_.estimate(scene_->scene(), plan), static_cast<double>(meters_.rays));
+}
+
+// The rate is that of the rays that were traced: what a picture was expected to take does not count.
+TEST_F(JobsTest, TellTheAdmissionWhatTheyTook) {
+  Admission admission({.running = 1, .queue_rays = 1}, timer_);
+  const RenderServices services{pool_,   admission, timer_, drains_.get_token(), ends_.get_token(),
+                                meters_, estimator_};
+  const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
+  {
+    auto ticket = admission.enter({Lane::interactive, "a", 1e12}, {});
+    services.render(ticket, *scene_, settle(*scene_, plan), FilmStorage::srgb8, {});
+    timer_.advance(seconds(1));
+  }
+  const double rate = kLeastCost + static_cast<double>(meters_.rays);
+  const auto ticket = admission.enter({Lane::interactive, "a", 1}, {});
+  std::stop_source stop;
+  std::thread waits([&] {
+    EXPECT_THROW(admission.enter({Lane::interactive, "a", 7 * rate}, stop.get_token()), Cancelled);
+  });
+  EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
+  try {
+    admission.enter({Lane::interactive, "a", 7 * rate}, {});
+    ADD_FAILURE() << "it has a turn";
+  } catch (const Busy& busy) {
+    EXPECT_DOUBLE_EQ(busy.retry_after_s(), 7);
+  }
+  stop.request_stop();
+  waits.join();
+}
+
+}  // namespace
+}  // namespace orrery

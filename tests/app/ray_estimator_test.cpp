@@ -1,0 +1,92 @@
+#include "server/app/ray_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include "core/plan/cost.h"
+#include "core/plan/plan.h"
+#include "tests/support/pictures.h"
+
+// What is expected of renders after others of the same scene.
+namespace orrery {
+namespace {
+
+using test::load, test::render, test::sample, test::size;
+
+std::uint64_t traced(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
+  return render(scene, request).stats.counts.rays.total();
+}
+
+RenderRequest large() {
+  RenderRequest request = size(320, 240);
+  request.samples = 4;
+  return request;
+}
+
+TEST(RayEstimator, BeginsWithWhatThePlanSays) {
+  RayEstimator estimator;
+  const auto scene = load(sample("glass"));
+  const Plan plan = make_plan(*scene, large());
+  EXPECT_EQ(estimator.estimate(*scene, plan), expected_rays(*scene, plan));
+}
+
+class RaysOfSample : public testing::TestWithParam<const char*> {};
+
+// A small preview is enough to know what the picture takes, within 30 %.
+TEST_P(RaysOfSample, AreKnownAfterOneRenderOfTheScene) {
+  RayEstimator estimator;
+  const auto scene = load(sample(GetParam()));
+  RenderRequest preview = size(80, 60);
+  preview.samples = 1;
+  preview.azimuth_degrees = 10;
+  estimator.learn(*scene, make_plan(*scene, preview), traced(scene, preview));
+  const double truth = static_cast<double>(traced(scene, large()));
+  const double learned = estimator.estimate(*scene, make_plan(*scene, large())) / truth;
+  RecordProperty("learned_over_traced", std::to_string(learned));
+  EXPECT_GT(learned, 0.7);
+  EXPECT_LT(learned, 1.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, RaysOfSample,
+                         testing::Values("glass", "light-many", "material-refractive", "mirrors", "orrery",
+                                         "paper", "shape-mesh", "sphereflake-2"));
+
+// Halfway to what was seen, each time.
+TEST(RayEstimator, FollowsWhatChanges) {
+  RayEstimator estimator;
+  const auto scene = load(sample("paper"));
+  const Plan plan = make_plan(*scene, size(10, 10));
+  const auto after = [&](std::uint64_t rays) {
+    estimator.learn(*scene, plan, rays);
+    return estimator.estimate(*scene, plan);
+  };
+  EXPECT_DOUBLE_EQ(after(1000), 1000);
+  EXPECT_DOUBLE_EQ(after(2000), 1500);
+  EXPECT_DOUBLE_EQ(after(500), 1000);
+}
+
+TEST(RayEstimator, LearnsForTheSceneAndTheModelAlone) {
+  RayEstimator estimator;
+  const auto scene = load(sample("glass")), other = load(sample("paper"));
+  const Plan plan = make_plan(*scene, large());
+  estimator.learn(*scene, plan, 1);
+  EXPECT_DOUBLE_EQ(estimator.estimate(*scene, plan), 1);
+  const auto is_unknown = [&](const std::shared_ptr<const Scene>& s, const RenderRequest& request) {
+    const Plan asked = make_plan(*s, request);
+    return estimator.estimate(*s, asked) == expected_rays(*s, asked);
+  };
+  EXPECT_TRUE(is_unknown(other, large()));
+  RenderRequest shallow = large(), simple = large(), coarse = large();
+  shallow.max_depth = 3;
+  simple.technique = "raycast";
+  coarse.min_contribution = 0.1;
+  EXPECT_TRUE(is_unknown(scene, shallow));
+  EXPECT_TRUE(is_unknown(scene, simple));
+  EXPECT_TRUE(is_unknown(scene, coarse));
+  estimator.learn(*scene, make_plan(*scene, simple), 1);
+  RenderRequest flat = large();  // as deep as the simple one
+  flat.max_depth = 0;
+  EXPECT_TRUE(is_unknown(scene, flat));
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,99 @@
+#include "core/plan/cost.h"
+
+#include <gtest/gtest.h>
+
+#include "core/plan/plan.h"
+#include "tests/support/pictures.h"
+
+// What pictures are expected to cost, against the sums of the branching process by hand and against what is
+// traced.
+namespace orrery::test {
+namespace {
+
+constexpr const char* kMaterials = R"('materials': {
+  'mirror': {'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 3, 2]},
+  'glass': {'type': 'refractive', 'ior': 1.5}, 'plaster': {'type': 'rough', 'kd': [0.5, 0.5, 0.5]}})";
+
+// Two balls of the material before `lights` lights.
+std::shared_ptr<const Scene> balls(const std::string& material, int lights) {
+  const std::string of = ", 'material': '" + material + "'}";
+  Json scene = scene_of("[{'type': 'sphere', 'center': [1, 0, 0], 'radius': 0.5" + of +
+                            ", {'type': 'sphere', 'center': [-1, 0, 0], 'radius': 0.5" + of + "]",
+                        "{" + std::string(kMaterials) + "}");
+  scene["lights"] = Json::array();
+  for (int i = 0; i < lights; ++i) scene["lights"].push_back({{"type", "directional"}, {"from", {1, 2, i}}});
+  return load(scene);
+}
+
+RenderRequest deep(int max_depth) {
+  RenderRequest request = size(8, 4);
+  request.samples = 2;
+  request.max_depth = max_depth;
+  return request;
+}
+
+// For each camera ray.
+double expected(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
+  return expected_rays(*scene, make_plan(*scene, request)) / (8 * 4 * 2);
+}
+
+TEST(Cost, OfRoughThingsIsCameraRaysAndAShadowRayToEachLight) {
+  EXPECT_EQ(expected(balls("plaster", 0), deep(5)), 1);
+  EXPECT_EQ(expected(balls("plaster", 1), deep(5)), 2);
+  EXPECT_EQ(expected(balls("plaster", 3), deep(5)), 4);
+}
+
+TEST(Cost, GrowsWithPixelsAndSamples) {
+  const auto scene = balls("glass", 1);
+  RenderRequest large = deep(5);
+  large.width = 80;
+  large.samples = 6;
+  EXPECT_EQ(expected(scene, large), 30 * expected(scene, deep(5)));
+}
+
+TEST(Cost, OfMirrorsGrowsByOneRayALevel) {
+  EXPECT_EQ(expected(balls("mirror", 0), deep(0)), 1);
+  EXPECT_EQ(expected(balls("mirror", 0), deep(3)), 1 + 0.5 + 0.25 + 0.125);
+}
+
+TEST(Cost, OfGlassGrowsByTwoRaysALevel) {
+  EXPECT_EQ(expected(balls("glass", 0), deep(3)), 1 + 2 * 0.5 + 4 * 0.25 + 8 * 0.125);
+  EXPECT_EQ(expected(balls("glass", 0), deep(12)), 13);
+}
+
+TEST(Cost, OfGlassIsCutByTheLeastContribution) {
+  RenderRequest request = deep(4);
+  request.min_contribution = 0.25;  // four rays of a generation may weigh that much
+  EXPECT_EQ(expected(balls("glass", 0), request), 1 + 2 * 0.5 + 4 * 0.25 + 4 * 0.125 + 4 * 0.0625);
+}
+
+TEST(Cost, OfATechniqueWithoutSecondaryRaysHasNoLevels) {
+  RenderRequest request = deep(5);
+  request.technique = "raycast";
+  EXPECT_EQ(expected(balls("glass", 0), request), 1);
+}
+
+TEST(Cost, OfShadowsIsThatOfTheLitHalfWhereSomeThingsAreSpecular) {
+  Json scene = scene_of(
+      "[{'type': 'sphere', 'center': [1, 0, 0], 'radius': 0.5, 'material': 'mirror'},"
+      " {'type': 'sphere', 'center': [-1, 0, 0], 'radius': 0.5, 'material': 'plaster'}]",
+      "{" + std::string(kMaterials) + ", 'lights': [{'type': 'directional', 'from': [0, 1, 0]}]}");
+  EXPECT_EQ(expected(load(scene), deep(2)), 1.75 * 1.5);
+}
+
+class CostOfSamples : public testing::TestWithParam<std::string> {};
+
+TEST_P(CostOfSamples, IsOfTheOrderOfWhatIsTraced) {
+  const auto scene = load(sample(GetParam()));
+  const RenderRequest request = size(160, 120);
+  const double traced = static_cast<double>(render(scene, request).stats.counts.rays.total());
+  const double share = expected_rays(*scene, make_plan(*scene, request)) / traced;
+  RecordProperty("expected_over_traced", std::to_string(share));
+  EXPECT_GT(share, 0.4);
+  EXPECT_LT(share, 6.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, CostOfSamples, testing::ValuesIn(sample_names()));
+
+}  // namespace
+}  // namespace orrery::test

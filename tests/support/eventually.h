@@ -1,0 +1,20 @@
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace orrery::test {
+
+// Waits for what other threads or processes do: asks ready() until it is true. False if that takes longer
+// than half a minute, which nothing should.
+template <class Ready>
+bool eventually(const Ready& ready) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (!ready()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+}  // namespace orrery::test
