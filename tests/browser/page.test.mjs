@@ -132,7 +132,10 @@ page_test(
         }
       };
     }, box.width / 2 + 1);
-    await drag(page, 120, 0);
+    await page.evaluate(() => {
+      const button = document.querySelector('[data-do="right"]');
+      for (let n = 0; n < 4; n += 1) button.click(); // at once: a slow hand may let the view rest on the way
+    });
     await rest(page);
     const previews = asked.slice(0, -2);
     assert.ok(previews.length >= 2, `${previews.length} previews`);
