@@ -163,6 +163,12 @@ std::string server_timing(const Timing& timing) {
   return text;
 }
 
+void set_warnings(Response& response, std::span<const Problem> warnings) {
+  std::string text;
+  for (const Problem& p : warnings) text += (text.empty() ? "" : "; ") + p.pointer + ": " + p.detail;
+  if (!text.empty()) response.set("Orrery-Warning", std::move(text));
+}
+
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing) {
   Response response = text_response(200, type, rendered.picture->bytes);
   std::string told = server_timing(timing);
@@ -184,10 +190,7 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
     told += "kept;desc=\"made for another request\"";
   }
   response.set("Server-Timing", std::move(told));
-  std::string warnings;
-  for (const Problem& p : rendered.picture->warnings)
-    warnings += (warnings.empty() ? "" : "; ") + p.pointer + ": " + p.detail;
-  if (!warnings.empty()) response.set("Orrery-Warning", std::move(warnings));
+  set_warnings(response, rendered.picture->warnings);
   return response;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,9 @@ std::string_view negotiate(const Request& request, std::span<const std::string_v
 
 // "load;dur=1.25, render;dur=40.1": the steps that took any time.
 std::string server_timing(const Timing& timing);
+
+// Sets Orrery-Warning, unless there are none.
+void set_warnings(Response& response, std::span<const Problem> warnings);
 
 // A picture, and what it took: Server-Timing with the steps, the structure and its counted work, and X-Rays.
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);

@@ -4,6 +4,7 @@
 
 #include "core/base/number.h"
 #include "core/plan/plan.h"
+#include "core/plan/warnings.h"
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
 #include "server/routes/answers.h"
@@ -121,9 +122,11 @@ Response orbit(App& app, Request& request) {
   response.set("Content-Type", multipart ? std::string(kMultipart) + "; boundary=" + std::string(kBoundary)
                                          : std::string(kFrames));
   response.set("Cache-Control", "no-store").set("Vary", "Accept").set("X-Accel-Buffering", "no");
-  if (request.method == "HEAD") return response;
   const Scene& scene = spec.scene->scene();
-  app.require_request_rays(scene, make_plan(scene, spec.path.at(0)));
+  const Plan first = make_plan(scene, spec.path.at(0));
+  set_warnings(response, find_warnings(scene, first));
+  if (request.method == "HEAD") return response;
+  app.require_request_rays(scene, first);
   OrbitRequest orbit{.place = app.streams().open(request.client),
                      .viewer = app.orbits().watch(spec),
                      .first = {},

@@ -127,7 +127,7 @@ export async function hash_of(page) {
 }
 
 // Waits until `probe()` returns something true, and returns that.
-export async function eventually(what, probe, timeout_ms = 15_000) {
+export async function eventually(what, probe, timeout_ms = 60_000) {
   for (const start = Date.now(); Date.now() - start < timeout_ms;) {
     const result = await probe();
     if (result) return result;

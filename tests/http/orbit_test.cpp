@@ -98,6 +98,13 @@ TEST_F(OrbitStream, FramesAreThePicturesOfTheirAngles) {
   EXPECT_EQ(again[0].png, frames[1].png);
 }
 
+TEST_F(OrbitStream, UselessPicturesAreWarnedOf) {
+  EXPECT_FALSE(client_.Get(path("frames=1"), kFrames)->has_header("Orrery-Warning"));
+  const std::string inside =
+      client_.Get(path("frames=1&distance=0.05"), kFrames)->get_header_value("Orrery-Warning");
+  EXPECT_EQ(inside.rfind("/camera/eye: the camera is inside", 0), 0u) << inside;
+}
+
 TEST_F(OrbitStream, BadParametersAreRefusedBeforeTheStream) {
   for (const char* query :
        {"frames=0", "frames=3601", "frames=1.5", "frames=abc", "fps=-1", "fps=241", "step=361", "step=nan",
