@@ -90,7 +90,7 @@ class NetworkPredictor final : public Predictor<T> {
     network_ = train_network(examples);
   }
 
-  // The candidate with the best score, if it is good enough beside kNobody's. Scores that are no numbers
+  // The candidate with the best score, if it is good enough beside kNobody's. Scores that are NaN
   // propose nothing.
   void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const override {
     for (const int i : groups) {

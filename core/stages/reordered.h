@@ -14,7 +14,7 @@ struct RayOrder {
 
 // The active rays of `groups` such that those that are alike follow each other: by the cell of the origin
 // within the box of all origins along a Morton curve, then by the direction likewise, whose first three bits
-// are the octant. Keys are integers, equal ones keep their order, and what is no number counts as the lowest
+// are the octant. Keys are integers, equal ones keep their order, and NaN counts as the lowest
 // cell (Garanzha, Loop, "Fast Ray Sorting and Breadth-First Packet Traversal for GPU Ray Tracing", 2010).
 template <class T>
 RayOrder order_of(const RayBatch<T>& rays, const Groups& groups);

@@ -134,7 +134,7 @@ TYPED_TEST(RayOrders, SortADotOfOriginsByOctant) {
       std::is_sorted(order.begin(), order.end(), [&](int a, int b) { return octant_of(a) < octant_of(b); }));
 }
 
-TYPED_TEST(RayOrders, PutWhatIsNoNumberInTheLowestCell) {
+TYPED_TEST(RayOrders, PutNaNInTheLowestCell) {
   covers("F17");
   using T = TypeParam;
   const T nan = std::numeric_limits<T>::quiet_NaN();
