@@ -33,7 +33,7 @@ export const serviceFaults = [
   entry(20, "pictures that cannot end in time are begun", "server/app/app.cpp",
         "require_request_rays(scene.scene(), plan);", "", "test_http", "RenderThatTakesTooLong.*"),
   entry(20, "orbits that cannot end in time are begun", "server/routes/orbit.cpp",
-        "app.require_request_rays(scene, make_plan(scene, spec.path.at(0)));", "static_cast<void>(scene);", "test_http", "RenderThatTakesTooLong.IsRefused*"),
+        "app.require_request_rays(scene, first);", "", "test_http", "RenderThatTakesTooLong.IsRefused*"),
   pictures("each makes its own", "if (first) return make_for_all", "if (true) return make_for_all",
            "Pictures.ThatManyAskForAtOnce*"),
   pictures("the first takes the picture along when it leaves", "if (--work.waiting > 0) return;", "",
