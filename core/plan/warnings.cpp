@@ -9,6 +9,9 @@
 namespace orrery {
 namespace {
 
+// What is looked at at most, so that a warning takes milliseconds whatever the scene.
+constexpr int kMostPrimitives = 20'000, kMostAround = 8;
+
 bool any_light_shines(const Scene& scene) {
   return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const LightPlace& light) {
     return scene.light_sets[light.set]->intensity(light.index) != Vec3d(0);
@@ -16,9 +19,9 @@ bool any_light_shines(const Scene& scene) {
 }
 
 // Whether every surface is black.
-bool is_unlit(const Scene& scene) {
+bool is_unlit(const Scene& scene, const Plan& plan) {
   const MaterialTraits& used = scene.facts.materials;
-  const bool mirrors_something = used.mirrors && scene.background != Vec3d(0);
+  const bool mirrors_something = plan.specular && plan.max_depth > 0 && scene.background != Vec3d(0);
   return !any_light_shines(scene) && scene.ambient == Vec3d(0) && !used.emits && !mirrors_something;
 }
 
@@ -87,11 +90,13 @@ bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   return false;
 }
 
+// False where more than kMostPrimitives would have to be looked at.
 bool nothing_in_view(const Scene& scene, const Plan& plan) {
   const View view(plan);
+  int seen = 0;
   return !any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
     for (int i = 0; i < shapes->size(); ++i)
-      if (!view.misses(world, shapes->bounds(i))) return true;
+      if (++seen > kMostPrimitives || !view.misses(world, shapes->bounds(i))) return true;
     return false;
   });
 }
@@ -107,34 +112,24 @@ bool is_transparent(const Scene& scene, std::int32_t material) {
 // Asks about the surroundings of one point by single rays.
 class Surroundings {
  public:
-  Surroundings(const Scene& scene, const Vec3d& point) : scene_(scene), point_(point) {
-    surface_.position.set(0, point);
-    surface_.normal.set(0, {0, 0, 1});
-    surface_.geometric.set(0, {0, 0, 1});
-    slots_[0] = 0;
-  }
+  Surroundings(const Scene& scene, const Vec3d& point) : point_(point) { find_lights(scene); }
 
   // Whether the point is inside of primitive `index`, which is closed.
   bool inside(const ShapeKernel<double>& kernel, int index, const Affined& model_from_world) {
-    send({0, 0, 1}, std::numeric_limits<double>::infinity(), model_from_world);
+    send({{0, 0, 1}, std::numeric_limits<double>::infinity()}, model_from_world);
     hits_.t[0] = rays_.t_max[0];
     hits_.primitive[0] = kNoPrimitive;
     AcceleratorCounts uncounted;
     kernel.closest(index, rays_, kOne, hits_, uncounted);
     if (hits_.primitive[0] == kNoPrimitive) return false;
-    SurfaceBatch<double> met;
-    kernel.surface(rays_, hits_, kOne, met);
-    return met.side[0] < 0;
+    kernel.surface(rays_, hits_, kOne, met_);
+    return met_.side[0] < 0;
   }
 
   // Whether light arrives from some source that the primitive does not hide from the point.
   bool lit_past(const ShapeKernel<double>& kernel, int index, const Affined& model_from_world) {
-    return std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const LightPlace& light) {
-      LightBatch<double> arriving;
-      scene_.light_sets[light.set]->kernel(double())->sample(
-          surface_, {light.index}, {Draws(0, TileView{}, 0), slots_, 0}, kOne, arriving);
-      if (arriving.shadow.t_max[0] < 0) return false;
-      send(arriving.shadow.direction[0], arriving.shadow.t_max[0], model_from_world);
+    return std::any_of(lights_.begin(), lights_.end(), [&](const ToLight& light) {
+      send(light, model_from_world);
       AcceleratorCounts uncounted;
       kernel.occlude(index, rays_, kOne, uncounted);
       return rays_.t_max[0] > 0;
@@ -142,45 +137,100 @@ class Surroundings {
   }
 
  private:
-  void send(const Vec3d& direction, double end, const Affined& model_from_world) {
+  struct ToLight {
+    Vec3d direction;
+    double distance;  // metres
+  };
+
+  void find_lights(const Scene& scene) {
+    met_.position.set(0, point_);
+    met_.normal.set(0, {0, 0, 1});
+    met_.geometric.set(0, {0, 0, 1});
+    Array<IndexOf<double>> slots{};
+    const Draws draws(0, TileView{}, 0);
+    for (const auto& set : scene.light_sets) {
+      if (set->size() == 0) continue;
+      const auto kernel = set->kernel(double());
+      const auto arriving = std::make_unique<LightBatch<double>>();
+      for (int i = 0; i < set->size(); ++i) {
+        if (set->intensity(i) == Vec3d(0)) continue;
+        kernel->sample(met_, {i}, {draws, slots, 0}, kOne, *arriving);
+        const double distance = arriving->shadow.t_max[0];
+        if (distance > 0) lights_.push_back({arriving->shadow.direction[0], distance});
+      }
+    }
+  }
+  void send(const ToLight& ray, const Affined& model_from_world) {
     rays_.count = 1;
-    rays_.set(0, {model_from_world.point(point_), model_from_world.vector(direction)}, end);
+    rays_.set(0, {model_from_world.point(point_), model_from_world.vector(ray.direction)}, ray.distance);
   }
 
   static inline const Groups kOne = Groups::single(0);
-  const Scene& scene_;
   const Vec3d point_;
+  std::vector<ToLight> lights_;
   RayBatch<double> rays_{};
   HitBatch<double> hits_{};
-  SurfaceBatch<double> surface_{};
-  Array<IndexOf<double>> slots_{};
+  SurfaceBatch<double> met_{};
 };
 
-// Whether the eye is inside a closed opaque shape that hides all lights.
+Boundsd transformed(const Affined& world, const Boundsd& box) {
+  Boundsd moved;
+  for (const Vec3d& corner : corners_of(box)) moved.include(world.point(corner));
+  return moved;
+}
+
+bool overlap(const Boundsd& a, const Boundsd& b) {
+  return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
+         b.lo.z <= a.hi.z;
+}
+
+// Whether some primitive but the one with these bounds reaches into them; true after kMostPrimitives.
+bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
+  int overlapping = 0, seen = 0;
+  return any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
+    for (int i = 0; i < shapes->size(); ++i) {
+      const Boundsd box = shapes->bounds(i);
+      overlapping += !box.bounded() || overlap(transformed(world, box), bounds);
+      if (overlapping > 1 || ++seen > kMostPrimitives) return true;
+    }
+    return false;
+  });
+}
+
+// Whether the eye is inside a closed opaque shape that hides all lights, and nothing else shows in there.
+// Gives up after kMostPrimitives, and after kMostAround that may be around the eye.
 bool is_enclosed(const Scene& scene, const Plan& plan) {
-  const Vec3d& eye = plan.frame.eye;
-  const auto surroundings = std::make_unique<Surroundings>(scene, eye);
-  return any_shapes(scene, plan.time,
-                    [&](const ShapesAt& shapes, const Affined& world, const std::int32_t* materials) {
-                      if (!shapes->traits().closed || scaled_determinant(world) == 0) return false;
-                      const Affined model_from_world = inverse(world);
-                      const Vec3d local_eye = model_from_world.point(eye);
-                      ShapeKernelPtr<double> kernel;
-                      for (int i = 0; i < shapes->size(); ++i) {
-                        if (!shapes->bounds(i).contains(local_eye) || is_transparent(scene, materials[i]))
-                          continue;
-                        if (!kernel) kernel = shapes->kernel(double(), 0);
-                        if (surroundings->inside(*kernel, i, model_from_world) &&
-                            !surroundings->lit_past(*kernel, i, model_from_world))
-                          return true;
-                      }
-                      return false;
-                    });
+  const bool glows = scene.ambient != Vec3d(0) || scene.facts.materials.emits;
+  int seen = 0, around = 0;
+  bool enclosed = false;
+  std::unique_ptr<Surroundings> surroundings;
+  any_shapes(scene, plan.time,
+             [&](const ShapesAt& shapes, const Affined& world, const std::int32_t* materials) {
+               if (!shapes->traits().closed || scaled_determinant(world) == 0) return false;
+               const Affined model_from_world = inverse(world);
+               const Vec3d eye = model_from_world.point(plan.frame.eye);
+               ShapeKernelPtr<double> kernel;
+               for (int i = 0; i < shapes->size(); ++i) {
+                 if (++seen > kMostPrimitives) return true;
+                 if (!shapes->bounds(i).contains(eye) || is_transparent(scene, materials[i])) continue;
+                 if (++around > kMostAround) return true;
+                 if (!kernel) kernel = shapes->kernel(double(), 0);
+                 if (!surroundings) surroundings = std::make_unique<Surroundings>(scene, plan.frame.eye);
+                 if (!surroundings->inside(*kernel, i, model_from_world) ||
+                     surroundings->lit_past(*kernel, i, model_from_world))
+                   continue;
+                 enclosed = !glows || !holds_others(scene, plan, transformed(world, shapes->bounds(i)));
+                 return true;
+               }
+               return false;
+             });
+  return enclosed;
 }
 
 std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) {
   std::vector<Problem> found;
-  if (is_unlit(scene)) found.push_back({"/lights", "no light source and no ambient light: all is black"});
+  if (is_unlit(scene, plan))
+    found.push_back({"/lights", "no light source and no ambient light: every surface is black"});
   if (!plan.camera->parallel() && is_enclosed(scene, plan))
     found.push_back({"/camera/eye", "the camera is inside an opaque shape that holds no light"});
   if (empty) found.push_back({"/camera", "nothing is in view: the picture shows the background alone"});

@@ -12,9 +12,11 @@ namespace orrery {
 
 // What is known before the picture is rendered:
 //  - no light reaches any surface: no light source, no ambient light, no emission;
-//  - the camera is inside a closed opaque shape that holds no light;
+//  - the camera is inside a closed opaque shape that holds no light and, where there is ambient light or
+//    emission, nothing else;
 //  - nothing is in view, because the boxes of all primitives are outside of what the camera sees.
-// Time: a few operations a primitive.
+// Time: bounded, whatever the scene; of more than 20,000 primitives, or 8 shapes around the camera, it may
+// miss one.
 std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan);
 
 // Likewise of a picture for which so much was traced: whether anything is in view is then known exactly.

@@ -23,6 +23,7 @@ void require_chartable(const RenderRequest& view, const Plan& plan) {
   std::vector<Problem> problems;
   if (view.samples) problems.push_back({"/render/samples", "a chart varies this itself"});
   if (view.precision) problems.push_back({"/render/precision", "a chart varies this itself"});
+  if (view.layers && !view.layers->empty()) problems.push_back({"/render/layers", "a chart keeps no layers"});
   const std::int64_t pixels = std::int64_t{plan.width} * plan.height;
   if (pixels > kMostChartPixels)
     problems.push_back({"/image", "expected at most " + std::to_string(kMostChartPixels) +

@@ -12,7 +12,11 @@ constexpr double kRaysAByte = 1;        // of JSON or of a mesh: measured betwee
 constexpr double kExpectedRate = 10e6;  // rays a second, before anything was measured
 constexpr double kMemory_s = 10;        // seconds of work after which a measurement has faded to 1/e
 
-std::string whole(double rays) { return std::to_string(std::llround(rays)); }
+std::string whole(double rays) {
+  char text[32];
+  std::snprintf(text, sizeof text, rays < 1e15 ? "%.0f" : "%.3g", rays);
+  return text;
+}
 
 std::string in_millions(double rays) {
   char text[32];

@@ -1,7 +1,9 @@
 #include "server/app/app.h"
 
+#include <algorithm>
 #include <optional>
 
+#include "core/plan/cost.h"
 #include "core/plan/warnings.h"
 #include "core/render/views.h"
 #include "server/app/reading.h"
@@ -46,7 +48,14 @@ App::App(const Settings& settings, Timer& timer)
       films_(settings.film_bytes, settings.film_bytes / 4),
       layer_bytes_(settings.layer_bytes, "layer_bytes", "Films with layers"),
       admission_({settings_.renders, settings_.queue_rays}, timer),
-      services_{pool_, admission_, timer, drains_.get_token(), ends_.get_token(), meters_, estimator_},
+      services_{pool_,
+                admission_,
+                timer,
+                drains_.get_token(),
+                ends_.get_token(),
+                meters_,
+                estimator_,
+                settings_.interactive_rays},
       streams_(settings_.connections),
       orbits_(services_, settings.orbits, settings.request_seconds),
       jobs_(services_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
@@ -87,9 +96,7 @@ AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, c
 
 Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                      const Caller& caller, Timing& timing) {
-  const double cost = services_.cost_of(scene.scene(), plan);
-  const Demand demand{cost > settings_.interactive_rays ? Lane::batch : Lane::interactive, caller.client,
-                      cost};
+  const Demand demand = services_.demand_of(scene.scene(), plan, caller.client);
   const auto start = Clock::now();
   const auto since = timer_.now();
   const Pictures::Found found = pictures_.get(
@@ -142,7 +149,8 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
 }
 
 void App::require_request_rays(const Scene& scene, const Plan& plan) {
-  const double rays = estimator_.estimate(scene, plan);
+  // The less of the two: what others rendered of the scene refuses nothing.
+  const double rays = std::min(estimator_.estimate(scene, plan), expected_rays(scene, plan));
   if (rays > settings_.request_rays) throw TooManyRays(rays, settings_.request_rays);
 }
 

@@ -74,8 +74,9 @@ double Job::rays_of_all() const {
 RenderResult Job::render(int step, const Watch& watch) {
   const Scene& scene = spec_.scene->scene();
   const Plan asked = plan(step);
-  auto ticket = services_.admission.enter_again({Lane::batch, spec_.client, services_.cost_of(scene, asked)},
-                                                watch.stop());
+  Demand demand = services_.demand_of(scene, asked, spec_.client);
+  demand.lane = Lane::batch;
+  auto ticket = services_.admission.enter_again(demand, watch.stop());
   {
     const std::lock_guard lock(mutex_);
     if (!started_) started_ = services_.timer.now();

@@ -109,8 +109,8 @@ RenderResult OrbitCast::render(std::int64_t number) {
   try {
     const Scene& scene = spec_.scene->scene();
     const Plan plan = make_plan(scene, spec_.path.at(number % spec_.frames));
-    auto ticket = services_.admission.enter_again(
-        {Lane::interactive, spec_.client, services_.cost_of(scene, plan)}, watch.stop());
+    auto ticket =
+        services_.admission.enter_again(services_.demand_of(scene, plan, spec_.client), watch.stop());
     return services_.render(ticket, *spec_.scene, settle(*spec_.scene, plan, watch.stop()),
                             FilmStorage::srgb8, {.stop = watch.stop()});
   } catch (const Cancelled&) {

@@ -1,5 +1,7 @@
 #include "server/app/ray_estimator.h"
 
+#include <algorithm>
+
 #include "core/model/technique.h"
 #include "core/params/params.h"
 #include "core/plan/cost.h"
@@ -23,12 +25,16 @@ double RayEstimator::estimate(const Scene& scene, const Plan& plan) {
 }
 
 void RayEstimator::learn(const Scene& scene, const Plan& plan, std::uint64_t rays) {
-  const double seen = static_cast<double>(rays) / expected_rays(scene, plan);
+  constexpr double kEnoughCameraRays = 4096, kMostFactor = 8;
+  const double camera_rays = double(plan.width) * plan.height * plan.samples;
+  const double weight = std::min(1.0, camera_rays / kEnoughCameraRays);
+  const double seen =
+      std::clamp(static_cast<double>(rays) / expected_rays(scene, plan), 1 / kMostFactor, kMostFactor);
   const auto [factor, known] =
-      factors_.add(key_of(scene, plan), 1, [&] { return std::make_shared<double>(seen); });
+      factors_.add(key_of(scene, plan), 1, [&] { return std::make_shared<double>(1 + weight * (seen - 1)); });
   if (!known) return;
   const std::lock_guard lock(mutex_);
-  *factor += (seen - *factor) / 2;
+  *factor += weight / 2 * (seen - *factor);
 }
 
 }  // namespace orrery

@@ -15,10 +15,11 @@ class RayEstimator {
  public:
   // Rays, of all kinds: expected_rays() of the plan, times the factor learned from renders of that scene by
   // the same technique, depth and least contribution, whatever their size, samples and camera; 1 before the
-  // first.
+  // first, and never beyond 1/8 and 8: a client chooses what others learn from.
   double estimate(const Scene& scene, const Plan& plan);
-  // A whole picture was rendered by the plan and traced so many rays. The factor moves half the way to the
-  // one seen: orbits change what is seen, and so the truth.
+  // A whole picture was rendered by the plan and traced so many rays. The factor moves to the one seen, later
+  // half the way: orbits change what is seen, and so the truth. Of a picture of fewer than 4,096 camera rays
+  // it moves their share of that.
   void learn(const Scene& scene, const Plan& plan, std::uint64_t rays);
 
  private:

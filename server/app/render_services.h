@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <stop_token>
 
+#include "core/plan/cost.h"
 #include "core/render/renderer.h"
 #include "server/app/admission.h"
 #include "server/app/meters.h"
@@ -19,10 +21,14 @@ struct RenderServices {
   std::stop_token ends;      // all work ends at once
   Meters& meters;
   RayEstimator& estimator;
+  double interactive_rays;  // of one frame, beyond which it is batch work
 
-  // What a frame is expected to cost, in rays: those that it traces, and a little for its fixed work.
-  double cost_of(const Scene& scene, const Plan& plan) const {
-    return kLeastCost + estimator.estimate(scene, plan);
+  // What a frame is expected to cost, in rays: those that it traces, and a little for its fixed work. It is
+  // batch work if either the plan alone or what was learned says so.
+  Demand demand_of(const Scene& scene, const Plan& plan, const std::string& client) const {
+    const double rays = estimator.estimate(scene, plan);
+    const bool small = std::max(rays, expected_rays(scene, plan)) <= interactive_rays;
+    return {small ? Lane::interactive : Lane::batch, client, kLeastCost + rays};
   }
 
   // A frame, in the turn that `ticket` gives; tells it what the frame has cost. Throws Cancelled.

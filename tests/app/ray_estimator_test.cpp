@@ -54,14 +54,29 @@ INSTANTIATE_TEST_SUITE_P(Samples, RaysOfSample,
 TEST(RayEstimator, FollowsWhatChanges) {
   RayEstimator estimator;
   const auto scene = load(sample("paper"));
-  const Plan plan = make_plan(*scene, size(10, 10));
-  const auto after = [&](std::uint64_t rays) {
-    estimator.learn(*scene, plan, rays);
-    return estimator.estimate(*scene, plan);
+  const Plan plan = make_plan(*scene, size(64, 64));
+  const double expected = expected_rays(*scene, plan);
+  const auto after = [&](double factor) {
+    estimator.learn(*scene, plan, static_cast<std::uint64_t>(factor * expected));
+    return estimator.estimate(*scene, plan) / expected;
   };
-  EXPECT_DOUBLE_EQ(after(1000), 1000);
-  EXPECT_DOUBLE_EQ(after(2000), 1500);
-  EXPECT_DOUBLE_EQ(after(500), 1000);
+  EXPECT_NEAR(after(1), 1, 1e-3);
+  EXPECT_NEAR(after(2), 1.5, 1e-3);
+  EXPECT_NEAR(after(0.5), 1, 1e-3);
+}
+
+// A client chooses what is learned: tiny pictures teach little, and none teaches more than a factor of 8.
+TEST(RayEstimator, IsNotTalkedIntoAnything) {
+  const auto scene = load(sample("paper"));
+  const Plan plan = make_plan(*scene, size(64, 64)), tiny = make_plan(*scene, size(1, 1));
+  const double expected = expected_rays(*scene, plan);
+  for (const std::uint64_t rays : {std::uint64_t{0}, std::uint64_t{1} << 60}) {
+    RayEstimator once, often;
+    once.learn(*scene, tiny, rays);
+    EXPECT_NEAR(once.estimate(*scene, plan) / expected, 1, 7.0 / 4096);
+    for (int i = 0; i < 100; ++i) often.learn(*scene, plan, rays);
+    EXPECT_NEAR(often.estimate(*scene, plan) / expected, rays == 0 ? 1.0 / 8 : 8, 1e-9);
+  }
 }
 
 TEST(RayEstimator, LearnsForTheSceneAndTheModelAlone) {
@@ -69,7 +84,7 @@ TEST(RayEstimator, LearnsForTheSceneAndTheModelAlone) {
   const auto scene = load(sample("glass")), other = load(sample("paper"));
   const Plan plan = make_plan(*scene, large());
   estimator.learn(*scene, plan, 1);
-  EXPECT_DOUBLE_EQ(estimator.estimate(*scene, plan), 1);
+  EXPECT_DOUBLE_EQ(estimator.estimate(*scene, plan), expected_rays(*scene, plan) / 8);
   const auto is_unknown = [&](const std::shared_ptr<const Scene>& s, const RenderRequest& request) {
     const Plan asked = make_plan(*s, request);
     return estimator.estimate(*s, asked) == expected_rays(*s, asked);

@@ -31,7 +31,7 @@ export const planFaults = [
         "LeavesOutMirroredAndRefractedRays"),
   warning("a camera in a room with a lamp is warned of", "return rays_.t_max[0] > 0;", "return false;", "KnowThatARoomHasALamp"),
   warning("a camera in the corner of a ball's box is taken to be in the ball",
-          "return met.side[0] < 0;", "return true;",
+          "return met_.side[0] < 0;", "return true;",
           "TellThatTheCameraIsInsideAnOpaqueShape"),
   warning("what is below the view counts as seen", "-y > top", "false", "TellThatNothingIsInView"),
 ];

@@ -74,6 +74,35 @@ TEST(Warnings, KnowThatARoomHasALamp) {
   const char* room = "{'type': 'box', 'min': [-5, -5, -5], 'max': [5, 5, 5]}";
   EXPECT_EQ(warned(lit(room, {0, 0, 4}, "[{'type': 'point', 'position': [1, 1, 1]}]")), "");
   EXPECT_EQ(warned(lit(room, {0, 0, 4}, "[{'type': 'point', 'position': [1, 9, 1]}]")), "/camera/eye ");
+  const char* dark = "[{'type': 'point', 'position': [1, 1, 1], 'intensity': [0, 0, 0]}]";
+  EXPECT_EQ(warned(lit(room, {0, 0, 4}, dark)), "/camera/eye ");
+}
+
+TEST(Warnings, KnowThatAmbientLightShowsWhatIsInARoom) {
+  const std::string room = "{'type': 'box', 'min': [-5, -5, -5], 'max': [5, 5, 5]}";
+  Json furnished = lit((room + ", " + kBall).c_str());
+  EXPECT_EQ(warned(furnished), "");
+  furnished["ambient"] = {0, 0, 0};
+  EXPECT_EQ(warned(furnished), "/camera/eye ") << "the sun is outside";
+  EXPECT_EQ(warned(lit((room + ", {'type': 'sphere', 'center': [0, 0, 9], 'radius': 1}").c_str())),
+            "/camera/eye ");
+}
+
+// Each of many shapes around the camera might have to be held against each of many lights.
+TEST(Warnings, GiveUpAfterEightShapesAroundTheCamera) {
+  const auto warned_after = [](int lit_shapes) {
+    Json scene = lit("", {0, 0, 4}, "[{'type': 'point', 'position': [0, 0, 5]}]");
+    const auto add = [&](double radius) {
+      scene["objects"].push_back(
+          {{"type", "sphere"}, {"center", {0, 0, 4}}, {"radius", radius}, {"material", "white"}});
+    };
+    for (int i = 0; i < lit_shapes; ++i) add(5 + i);
+    add(0.5);
+    scene["ambient"] = {0, 0, 0};
+    return warned(scene);
+  };
+  EXPECT_EQ(warned_after(7), "/camera/eye ");
+  EXPECT_EQ(warned_after(8), "");
 }
 
 TEST(Warnings, KnowThatGlassIsSeenThrough) {
