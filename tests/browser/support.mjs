@@ -94,6 +94,7 @@ export function start_browser() {
 // uncaught exceptions and requests to another origin. `ready` is what the page shows once it is open.
 export async function open_page(browser, url, { ready = "#canvas", ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
+  context.setDefaultTimeout(120_000); // tests share the machine with others: only what hangs is to fail
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
