@@ -166,10 +166,15 @@ class PackedInstances final : public PackedPrimitives<T> {
 
 }  // namespace
 
-Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model) {
-  if (!model.bounded()) return Boundsd::everything();
+Boundsd box_around(const Boundsd& model, const Affined& world_from_model) {
   Boundsd box;
   for (const Vec3d& corner : corners_of(model)) box.include(world_from_model.point(corner));
+  return box;
+}
+
+Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model) {
+  if (!model.bounded()) return Boundsd::everything();
+  Boundsd box = box_around(model, world_from_model);
   const double condition = stretch(world_from_model) * stretch(inverse(world_from_model));
   const double pad = 16 * double{std::numeric_limits<float>::epsilon()} * condition * box.magnitude();
   box.lo = box.lo - Vec3d(pad);

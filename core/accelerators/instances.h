@@ -34,6 +34,9 @@ struct Placed {
 template <class T>
 using PlacedList = std::vector<Placed<T>>;
 
+// Box of a placed box. REQUIRES: it is bounded.
+Boundsd box_around(const Boundsd& model, const Affined& world_from_model);
+
 // Box of a placed model in the world, grown for the rounding of rays that are taken to it in float.
 Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model);
 

@@ -133,9 +133,7 @@ class Planner {
   }
 
   void choose_lights() {
-    const bool glows = std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const LightPlace& light) {
-      return scene_.light_sets[light.set]->intensity(light.index) != Vec3d(0);
-    });
+    const bool glows = any_light_shines(scene_);
     plan_.direct_light = glows && scene_.facts.materials.lit;
     if (!plan_.direct_light) {
       plan_.shadows = false;
@@ -198,6 +196,12 @@ class Planner {
 };
 
 }  // namespace
+
+bool any_light_shines(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const LightPlace& light) {
+    return scene.light_sets[light.set]->intensity(light.index) != Vec3d(0);
+  });
+}
 
 Plan make_plan(const Scene& scene, const RenderRequest& request) { return Planner(scene, request).make(); }
 

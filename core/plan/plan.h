@@ -11,6 +11,9 @@ namespace orrery {
 // bit. REQUIRES: the settings of the request, where given, are ones that read_request() could have returned.
 Plan make_plan(const Scene& scene, const RenderRequest& request);
 
+// Whether some light source has an intensity other than 0.
+bool any_light_shines(const Scene& scene);
+
 // Every option, with what the plan decided in place of what was left to it: make_plan() of these settings
 // renders the same picture, by the same structure.
 RenderSettings settings_of(const Plan& plan);

@@ -3,20 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <optional>
-#include <string>
+
+#include "core/accelerators/instances.h"
+#include "core/plan/plan.h"
 
 namespace orrery {
 namespace {
 
 // What is looked at at most, so that a warning takes milliseconds whatever the scene.
 constexpr int kMostPrimitives = 20'000, kMostAround = 8;
-
-bool any_light_shines(const Scene& scene) {
-  return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const LightPlace& light) {
-    return scene.light_sets[light.set]->intensity(light.index) != Vec3d(0);
-  });
-}
 
 // Whether every surface is black.
 bool is_unlit(const Scene& scene, const Plan& plan) {
@@ -66,9 +61,8 @@ class ShapesAt {
   const ShapeSet& shapes_;
 };
 
-// Calls visit(shapes of one set, where they stand, number of their first primitive in `material_of`,
-// materials of these primitives) for the scene's own shapes and for those of each instance, until one
-// returns true; whether one did.
+// Calls visit(shapes of one set, where they stand, materials of these primitives) for the scene's own shapes
+// and for those of each instance, until one returns true; whether one did.
 template <class Visit>
 bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   int first = 0;
@@ -173,12 +167,6 @@ class Surroundings {
   SurfaceBatch<double> met_{};
 };
 
-Boundsd transformed(const Affined& world, const Boundsd& box) {
-  Boundsd moved;
-  for (const Vec3d& corner : corners_of(box)) moved.include(world.point(corner));
-  return moved;
-}
-
 bool overlap(const Boundsd& a, const Boundsd& b) {
   return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y && a.lo.z <= b.hi.z &&
          b.lo.z <= a.hi.z;
@@ -190,7 +178,7 @@ bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   return any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
     for (int i = 0; i < shapes->size(); ++i) {
       const Boundsd box = shapes->bounds(i);
-      overlapping += !box.bounded() || overlap(transformed(world, box), bounds);
+      overlapping += !box.bounded() || overlap(box_around(box, world), bounds);
       if (overlapping > 1 || ++seen > kMostPrimitives) return true;
     }
     return false;
@@ -219,7 +207,7 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
                  if (!surroundings->inside(*kernel, i, model_from_world) ||
                      surroundings->lit_past(*kernel, i, model_from_world))
                    continue;
-                 enclosed = !glows || !holds_others(scene, plan, transformed(world, shapes->bounds(i)));
+                 enclosed = !glows || !holds_others(scene, plan, box_around(shapes->bounds(i), world));
                  return true;
                }
                return false;

@@ -138,11 +138,12 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
     ++meters_.films_found;
     enter({Lane::interactive, demand.client, kLeastCost}, stop);
   }
-  const auto start = Clock::now();
-  Picture picture{.bytes = encode_film(film.value->film, format, {}, stop),
+  Picture picture{.bytes = {},
                   .stats = stats,
                   .warnings = find_warnings(scene.scene(), plan, stats.counts),
                   .of_kept_film = !film.made_here};
+  const auto start = Clock::now();
+  picture.bytes = encode_film(film.value->film, format, {}, stop);
   picture.bytes.shrink_to_fit();  // it may be kept
   timing.encode = milliseconds_since(start);
   return picture;

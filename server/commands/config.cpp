@@ -128,9 +128,9 @@ void read_flag(Settings& settings, const Setting& setting, const CLI::Option& op
   const bool from_variable = variable && text == variable;
   take(settings, setting, text, from_variable ? variable_of(setting.name) : flag_of(setting.name), "",
        problems);
+  if (!variable || from_variable) return;
   Settings overridden;
-  if (variable && !from_variable)
-    take(overridden, setting, variable, variable_of(setting.name), "", problems);
+  take(overridden, setting, variable, variable_of(setting.name), "", problems);
 }
 
 void refuse_unknown_variables(std::vector<Problem>& problems) {

@@ -22,7 +22,9 @@ class FrameWork final : public JobWork {
   RenderRequest request(int step) const override { return path_.at(step); }
   FilmStorage storage() const override { return FilmStorage::srgb8; }
   std::string encode(const Film& film) const override { return encode_film(film, FileFormat::png); }
-  void keep(int step, std::string&& encoded) override { file(step) = std::move(encoded); }
+  void keep(int step, std::string&& encoded) override {
+    files_[static_cast<std::size_t>(step)] = std::move(encoded);
+  }
 
   ordered_json links(const std::string& job_id) const override {
     return {{"first_frame", folder(job_id) + "0.png"}};
@@ -44,7 +46,6 @@ class FrameWork final : public JobWork {
 
  private:
   static std::string folder(const std::string& job_id) { return job_path(job_id) + "/frames/"; }
-  std::string& file(int step) { return files_[static_cast<std::size_t>(step)]; }
 
   const OrbitPath path_;
   std::vector<std::string> files_;  // by step; empty before it is done

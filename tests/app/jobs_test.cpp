@@ -60,6 +60,16 @@ class JobsTest : public testing::Test {
     EXPECT_TRUE(test::eventually([&] { return job->ended().has_value(); }));
     return job->status();
   }
+  RenderServices services_with(Admission& admission) {
+    return {pool_,
+            admission,
+            timer_,
+            drains_.get_token(),
+            ends_.get_token(),
+            meters_,
+            estimator_,
+            Settings().interactive_rays};
+  }
   static std::string error_of(const JobStatus& status) {
     try {
       if (status.error) std::rethrow_exception(status.error);
@@ -84,14 +94,7 @@ class JobsTest : public testing::Test {
   std::stop_source drains_, ends_;
   Meters meters_;
   RayEstimator estimator_;
-  const RenderServices services_{pool_,
-                                 admission_,
-                                 timer_,
-                                 drains_.get_token(),
-                                 ends_.get_token(),
-                                 meters_,
-                                 estimator_,
-                                 Settings().interactive_rays};
+  const RenderServices services_ = services_with(admission_);
   Jobs::Limits limits_{.under_way = 4, .ended = 100, .bytes = 1 << 20, .run_time = kRunTime, .kept = kKept};
   std::size_t bytes_a_step_ = 10;
   const std::shared_ptr<const PreparedScene> scene_ = std::make_shared<const PreparedScene>(
@@ -191,14 +194,7 @@ TEST_F(JobsTest, LearnWhatTheirScenesTake) {
 // The rate is that of the rays that were traced: what a picture was expected to take does not count.
 TEST_F(JobsTest, TellTheAdmissionWhatTheyTook) {
   Admission admission({.running = 1, .queue_rays = 1}, timer_);
-  const RenderServices services{pool_,
-                                admission,
-                                timer_,
-                                drains_.get_token(),
-                                ends_.get_token(),
-                                meters_,
-                                estimator_,
-                                Settings().interactive_rays};
+  const RenderServices services = services_with(admission);
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
   {
     auto ticket = admission.enter({Lane::interactive, "a", 1e12}, {});
