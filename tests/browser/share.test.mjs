@@ -77,7 +77,8 @@ page_test("what is shown is downloaded while finer pictures are on their way", "
   await page.route(/samples=16/, () => {}); // never answers
   await page.locator("#samples").selectOption("64");
   await eventually("4 samples", async () => samples_of(await link_of(page)) === "4");
-  assert.ok(await shows(page, (await download(page)).bytes));
+  const { bytes } = await download(page);
+  assert.ok(await eventually("its pixels, once it has faded in", () => shows(page, bytes)));
 });
 
 page_test("of a view that moves the picture is downloaded that it will rest with", "samples=16&speed=1", async (page) => {
