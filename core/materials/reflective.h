@@ -16,7 +16,7 @@ struct Reflective {
   static Reflective<double> read(Params& p);
   MaterialTraits traits() const { return {.mirrors = true}; }
 
-  Vec3<N> reflectance(const N& cosine) const {
+  [[gnu::always_inline]] Vec3<N> reflectance(const N& cosine) const {
     const auto equations = exact > N(ScalarOf<N>(0));
     Vec3<N> r(fresnel_schlick(f0.x, cosine), fresnel_schlick(f0.y, cosine), fresnel_schlick(f0.z, cosine));
     if (any(equations))

@@ -18,8 +18,8 @@ struct Rough {
 
   // Cosine that the highlight is a power of, 0 where there is none. Unit vectors: normal, toward the light,
   // toward the viewer, and half way between the two. The mirrored direction is R = 2 (N.L) N - L.
-  N highlight(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer, const Vec3<N>& half,
-              const N& cosine) const {
+  [[gnu::always_inline]] N highlight(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer,
+                                     const Vec3<N>& half, const N& cosine) const {
     using T = ScalarOf<N>;
     const N mirrored = T(2) * cosine * dot(normal, viewer) - dot(light, viewer);
     const N c = select(phong > N(T(0)), mirrored, dot(normal, half));
@@ -27,8 +27,8 @@ struct Rough {
   }
 
   // Share of light from `light` that leaves toward `viewer`, cosine included. REQUIRES: cosine = N.L > 0.
-  Vec3<N> reflected(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer, const Vec3<N>& half,
-                    const N& cosine) const {
+  [[gnu::always_inline]] Vec3<N> reflected(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer,
+                                           const Vec3<N>& half, const N& cosine) const {
     const N zero(ScalarOf<N>(0));
     const N base = highlight(normal, light, viewer, half, cosine);
     const N lobe = select(dot(normal, viewer) > zero, pow_unit(base, shininess), zero);

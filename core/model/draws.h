@@ -19,28 +19,36 @@ class Draws {
         first_pixel_(static_cast<std::uint32_t>(tile.y0 * kRow + tile.x0)),
         sample_(static_cast<std::uint32_t>(sample)) {}
 
+  template <class T>
+  using Bits = stdx::rebind_simd_t<std::uint32_t, Lanes<T>>;
+
   // Two numbers in [0, 1) for each of these slots of the tile, of paths of this depth (camera rays: 0).
   template <class T>
   [[gnu::always_inline]] SamplePoint<Lanes<T>> two(SampleSet set, int depth,
                                                    const IndexLanes<T>& slot) const {
+    const auto point = stratified_point(sample_, stream<T>(set, depth, slot));
+    return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
+  }
+
+  // The sequences, for stratified_point(), that two() takes its numbers from: the same for every sample.
+  template <class T>
+  [[gnu::always_inline]] Bits<T> stream(SampleSet set, int depth, const IndexLanes<T>& slot) const {
     const std::uint32_t number =
         static_cast<std::uint32_t>(set) + kSampleSets * static_cast<std::uint32_t>(depth);
-    using Bits = stdx::rebind_simd_t<std::uint32_t, Lanes<T>>;
-    Bits stream = combine_bits(seed_, pixel_of(stdx::static_simd_cast<Bits>(slot)));
-    if (number != 0 || frame_ != 0) stream = combine_bits(combine_bits(frame_, number), stream);
-    const auto point = stratified_point(sample_, stream);
-    return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
+    const Bits<T> stream = combine_bits(seed_, pixel_of(stdx::static_simd_cast<Bits<T>>(slot)));
+    if (number == 0 && frame_ == 0) return stream;
+    return combine_bits(combine_bits(frame_, number), stream);
   }
 
  private:
   static constexpr int kRow = 65536;  // pixels are numbered row by row as if rows were this long
 
   // Number of the pixel of a slot: see tile_pixel().
-  template <class Bits>
-  [[gnu::always_inline]] Bits pixel_of(const Bits& slot) const {
-    const Bits block = slot >> 4, within = slot & 15u;
+  template <class N>
+  [[gnu::always_inline]] N pixel_of(const N& slot) const {
+    const N block = slot >> 4, within = slot & 15u;
     constexpr std::uint32_t kBlocks = kTileSide / 4;
-    const Bits x = ((block & (kBlocks - 1)) << 2) + (within & 3u), y = ((block >> 3) << 2) + (within >> 2);
+    const N x = ((block & (kBlocks - 1)) << 2) + (within & 3u), y = ((block >> 3) << 2) + (within >> 2);
     static_assert(kBlocks == 8);
     return first_pixel_ + (y << 16) + x;
   }

@@ -35,7 +35,8 @@ Record<Lanes<T>> broadcast_record(const Record<T>& one) {
 // Rays of one register mostly meet the same thing, so that case is a broadcast.
 // `table` is a span or anything else that gives a Record<T> for an index.
 template <template <class> class Record, class T, class Table>
-Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index, const MaskOf<Lanes<T>>& mask) {
+[[gnu::always_inline]] inline Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index,
+                                                             const MaskOf<Lanes<T>>& mask) {
   const int leader = stdx::find_first_set(mask);
   const IndexOf<T> first = index[static_cast<std::size_t>(leader)];
   if (all(!mask || mask_cast<Lanes<T>>(index == first)))

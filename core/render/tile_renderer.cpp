@@ -39,6 +39,7 @@ bool TileRenderer<T>::render(const TileView& tile, std::stop_token stop, Film& f
   } else {
     sums_.samples = 0;
     if (tile.first_sample > 0) film.take(tile, sums_);
+    if (plan_.samples > 1) find_pixel_streams(tile);
     for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
       if (stop.stop_requested() || !trace(tile, sample, stop)) return false;
       add_sample();
@@ -52,7 +53,7 @@ bool TileRenderer<T>::render(const TileView& tile, std::stop_token stop, Film& f
 template <class T>
 bool TileRenderer<T>::trace(const TileView& tile, int sample, std::stop_token stop) {
   const Draws draws(plan_.seed, tile, sample);
-  if (plan_.samples > 1) place_samples(draws);
+  if (plan_.samples > 1) place_samples(static_cast<std::uint32_t>(sample));
   plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   if (!tracer_->trace(rays_, draws, result_, stats_.counts, stop)) return false;
@@ -72,10 +73,19 @@ void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
 }
 
 template <class T>
-void TileRenderer<T>::place_samples(const Draws& draws) {
+void TileRenderer<T>::find_pixel_streams(const TileView& tile) {
+  const Draws draws(plan_.seed, tile, 0);
   const IndexLanes<float> lane([](int i) { return i; });
+  for (int slot = 0; slot < kBatch; slot += kWidth<float>)
+    draws.stream<float>(SampleSet::pixel, 0, lane + slot)
+        .copy_to(&pixel_streams_[slot], stdx::vector_aligned);
+}
+
+template <class T>
+void TileRenderer<T>::place_samples(std::uint32_t sample) {
   for (int slot = 0; slot < kBatch; slot += kWidth<float>) {
-    const auto point = draws.two<float>(SampleSet::pixel, 0, lane + slot);
+    const auto point =
+        stratified_point(sample, Draws::Bits<float>(&pixel_streams_[slot], stdx::vector_aligned));
     samples_.u.put(slot, point.u);
     samples_.v.put(slot, point.v);
   }

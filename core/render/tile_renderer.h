@@ -21,13 +21,16 @@ class TileRenderer {
  private:
   // Traces one sample of every pixel. False once a stop was requested.
   bool trace(const TileView& tile, int sample, std::stop_token stop);
-  void place_samples(const Draws& draws);
+  void find_pixel_streams(const TileView& tile);
+  void place_samples(std::uint32_t sample);
   void add_sample();
   void add_cut(const TileView& tile);
   void put_single(const TileView& tile, Film& film);
 
   const Plan& plan_;
   TracerPtr<T> tracer_;
+  Array<std::uint32_t>
+      pixel_streams_;  // by slot: where the samples' places within this tile's pixels come from
   TileSamples samples_ = TileSamples::centres();
   RayBatch<T> rays_;
   TraceResult<T> result_;
