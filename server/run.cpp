@@ -17,7 +17,7 @@ namespace {
 constexpr auto kCommands = {add_serve, add_render,  add_orbit,  add_check, add_explain,
                             add_chart, add_catalog, add_schema, add_token};
 
-constexpr const char* kExamples = R"(
+constexpr const char* kProgramExamples = R"(
 Examples:
   orrery serve                                  then open http://127.0.0.1:8080
   orrery render scenes/paper.json -o paper.png
@@ -84,7 +84,7 @@ int run_chosen(const std::vector<Command>& commands) {
 int run(int argc, char** argv) {
   try {
     CLI::App app("A render service: post a scene, get a picture, watch it turn.", "orrery");
-    app.footer(kExamples);
+    app.footer(kProgramExamples);
     app.set_version_flag("--version", std::string(kVersion) + " (" + std::string(instruction_level()) + ")");
     app.require_subcommand(1);
     std::vector<Command> commands;

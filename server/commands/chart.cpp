@@ -13,7 +13,7 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kChartExamples = R"(
 Examples:
   orrery chart scenes/glass.json -o glass.svg
   orrery chart scenes/paper.json -o paper.csv --width 300 --height 300 --chart-samples 256
@@ -22,7 +22,7 @@ Renders the scene in many ways, some rounds of each, and charts what they cost a
 picture in double precision with four times the samples. On a busy machine times mean little; errors do.
 )";
 
-struct Options {
+struct ChartOptions {
   std::string output;
   int threads = 0;
   Study::Extent extent;
@@ -37,7 +37,7 @@ Study study_of(const Scene& scene, const RenderRequest& view, const Study::Exten
   }
 }
 
-int chart(const Options& options) {
+int chart(const ChartOptions& options) {
   const ChartForm* form = chart_form_of(ending_of(options.output));
   if (!form)
     throw InputError("--output", "expected a name that ends in .svg, .csv or .json, got " + options.output);
@@ -63,9 +63,9 @@ int chart(const Options& options) {
 }  // namespace
 
 Command add_chart(CLI::App& root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ChartOptions>();
   CLI::App* app = root.add_subcommand("chart", "Chart speed against accuracy of a picture");
-  app->footer(kExamples);
+  app->footer(kChartExamples);
   app->add_option("-o,--output", options->output, "The chart; its ending chooses a drawing, a table or JSON")
       ->type_name("FILE.{svg,csv,json}")
       ->required();

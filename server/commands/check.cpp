@@ -9,7 +9,7 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kCheckExamples = R"(
 Examples:
   orrery check my-scene.json
   orrery check --json scenes/*.json
@@ -19,7 +19,7 @@ warning: why a picture by the scene's own camera would show nothing useful. The 
 good, with or without warnings, and 2 if not.
 )";
 
-struct Options {
+struct CheckOptions {
   std::vector<std::string> scenes;
   bool json = false;
 };
@@ -32,7 +32,7 @@ std::string line_of(const std::string& file, const Problem& warning) {
   return file + ": " + warning.pointer + ": warning: " + warning.detail;
 }
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
   nlohmann::ordered_json found = nlohmann::ordered_json::array();
   bool good = true;
   for (const std::string& file : options.scenes) {
@@ -56,9 +56,9 @@ int check(const Options& options) {
 }  // namespace
 
 Command add_check(CLI::App& root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   CLI::App* app = root.add_subcommand("check", "Say what is wrong with scenes");
-  app->footer(kExamples);
+  app->footer(kCheckExamples);
   app->add_option("SCENE", options->scenes, "JSON files of scenes, or - for standard input")->required();
   app->add_flag("--json", options->json, "Print problems and warnings as a JSON array");
   return {app, [options] { return check(*options); }};

@@ -10,6 +10,7 @@
 
 #include "core/params/json.h"
 #include "core/params/suggest.h"
+#include "server/commands/flag_name.h"
 #include "server/commands/scene_file.h"
 
 namespace orrery {
@@ -18,12 +19,6 @@ namespace {
 constexpr std::string_view kPrefix = "ORRERY_";
 // What the page's curl lines call their user's token. It is no setting, and yet no mistake.
 constexpr std::string_view kTokenOfClients = "ORRERY_TOKEN";
-
-std::string flag_of(std::string_view name) {
-  std::string flag = "--" + std::string(name);
-  std::replace(flag.begin(), flag.end(), '_', '-');
-  return flag;
-}
 
 std::string variable_of(std::string_view name) {
   std::string variable = std::string(kPrefix) + std::string(name);

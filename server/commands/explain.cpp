@@ -11,7 +11,7 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kExplainExamples = R"(
 Examples:
   orrery explain scenes/paper.json
   orrery explain scenes/paper.json --technique raycast --json
@@ -20,12 +20,12 @@ Renders nothing. Says what a render of the scene would model, and for each thing
 is not needed.
 )";
 
-struct Options {
+struct ExplainOptions {
   bool json = false;
   RenderFlags render;
 };
 
-int explain(const Options& options) {
+int explain(const ExplainOptions& options) {
   const RenderRequest request = read_render_flags(options.render);
   const PreparedScene prepared(load_scene_file(options.render.scene));
   const Scene& scene = prepared.scene();
@@ -37,9 +37,9 @@ int explain(const Options& options) {
 }  // namespace
 
 Command add_explain(CLI::App& root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExplainOptions>();
   CLI::App* app = root.add_subcommand("explain", "Say what a render would model, and why no more");
-  app->footer(kExamples);
+  app->footer(kExplainExamples);
   app->add_flag("--json", options->json, "Print JSON");
   add_render_flags(*app, options->render);
   return {app, [options] { return explain(*options); }};

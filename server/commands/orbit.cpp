@@ -17,7 +17,7 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kOrbitExamples = R"(
 Examples:
   orrery orbit scenes/paper.json --frames 120 -o frame-%04d.png
   orrery orbit scenes/paper.json --frames 45 --step 2 --elevation 20 -o turn-%d.jpg
@@ -39,7 +39,7 @@ CLI::Validator within(double min, double max) {
       "");
 }
 
-struct Options {
+struct OrbitOptions {
   std::string output, stats;
   int frames = 120, threads = 0;
   double step = 0, time_step = 0;
@@ -100,7 +100,7 @@ void print(const Totals& t, int threads) {
 // One turn of the camera: what is rendered, and where it goes.
 class Turn {
  public:
-  explicit Turn(const Options& options)
+  explicit Turn(const OrbitOptions& options)
       : options_(options),
         names_(options.discard ? "frame-%d.png" : options.output),
         format_(format_of(names_.of(0))),
@@ -149,7 +149,7 @@ class Turn {
                         {.stop = stop});
   }
 
-  const Options& options_;
+  const OrbitOptions& options_;
   FrameNames names_;
   FileFormat format_;
   RenderRequest first_;
@@ -159,7 +159,7 @@ class Turn {
   WorkerPool pool_;
 };
 
-int orbit(const Options& options) {
+int orbit(const OrbitOptions& options) {
   if (options.output.empty() && !options.discard)
     throw InputError("--output", "expected a name for the frames such as frame-%04d.png, or --discard");
   Turn turn(options);
@@ -174,9 +174,9 @@ int orbit(const Options& options) {
 }  // namespace
 
 Command add_orbit(CLI::App& root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<OrbitOptions>();
   CLI::App* app = root.add_subcommand("orbit", "Render the frames of a turn about the scene");
-  app->footer(kExamples);
+  app->footer(kOrbitExamples);
   app->add_option("--frames", options->frames, "How many")
       ->check(CLI::Range(1, 1'000'000).description(""))
       ->type_name("N")

@@ -15,7 +15,7 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kRenderExamples = R"(
 Examples:
   orrery render scenes/paper.json -o paper.png
   orrery render scenes/glass.json -o glass.png --width 1920 --height 1080 --samples 16
@@ -23,7 +23,7 @@ Examples:
   orrery render scenes/paper.json --stats            renders, writes no picture
 )";
 
-struct Options {
+struct RenderOptions {
   std::string stats;
   std::optional<std::string> output;
   int threads = 0;
@@ -38,7 +38,7 @@ RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, 
       {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar.update(done, total); }});
 }
 
-int render(const Options& options) {
+int render(const RenderOptions& options) {
   const FileFormat format = options.output ? format_of(*options.output) : FileFormat::png;
   const RenderRequest request = read_render_flags(options.render);
   if (options.output) require_layers_kept(request, format);
@@ -77,9 +77,9 @@ int render(const Options& options) {
 }  // namespace
 
 Command add_render(CLI::App& root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RenderOptions>();
   CLI::App* app = root.add_subcommand("render", "Render a scene to a picture");
-  app->footer(kExamples);
+  app->footer(kRenderExamples);
   app->add_option("-o,--output", options->output, "The picture; its ending chooses PNG, JPEG or EXR")
       ->type_name("FILE.{png,jpg,exr}");
   app->add_flag("--stats{text}", options->stats,

@@ -1,19 +1,13 @@
 #include "server/commands/render_flags.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "core/model/batch.h"
 #include "server/app/render_options.h"
+#include "server/commands/flag_name.h"
 
 namespace orrery {
 namespace {
-
-std::string flag_of(std::string_view name) {
-  std::string flag = "--" + std::string(name);
-  std::replace(flag.begin(), flag.end(), '_', '-');
-  return flag;
-}
 
 // What errors call it.
 std::string short_flag_of(const RenderOption& option) {

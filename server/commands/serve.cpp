@@ -16,7 +16,7 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kServeExamples = R"(
 Examples:
   orrery serve                                     then open http://127.0.0.1:8080
   orrery serve --port 0                            any free port; the first line printed says which
@@ -30,7 +30,7 @@ SIGTERM or Ctrl-C ends it: running requests are answered, streams stop after a f
 SIGHUP reads the files of tokens and keys again.
 )";
 
-struct Options {
+struct ServeOptions {
   bool quiet = false, check_config = false, print_config = false;
   std::string config, log = isatty(STDERR_FILENO) ? "text" : "json";
 };
@@ -90,7 +90,7 @@ int run_service(const Settings& settings, const Log& log) {
   return kDone;
 }
 
-int serve(const CLI::App& app, const Options& options) {
+int serve(const CLI::App& app, const ServeOptions& options) {
   std::vector<Problem> problems;
   const Settings settings = read_settings(app, options.config, problems);
   check(settings, problems);
@@ -107,9 +107,9 @@ int serve(const CLI::App& app, const Options& options) {
 }  // namespace
 
 Command add_serve(CLI::App& root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ServeOptions>();
   CLI::App* app = root.add_subcommand("serve", "Answer requests over HTTP, and show the page");
-  app->footer(kExamples);
+  app->footer(kServeExamples);
   app->add_option("--config", options->config, "JSON file of settings")->type_name("FILE");
   app->add_flag("--check-config", options->check_config, "Say all that is wrong with the settings, and end");
   app->add_flag("--print-config", options->print_config,

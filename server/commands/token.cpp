@@ -8,18 +8,18 @@
 namespace orrery {
 namespace {
 
-constexpr const char* kExamples = R"(
+constexpr const char* kTokenExamples = R"(
 Example:
   orrery token alice --scopes read,render,write >> tokens      prints the token, and adds its line to the file
   orrery serve --tokens-file tokens
   curl -H "Authorization: Bearer $TOKEN" http://127.0.0.1:8080/v1/limits
 )";
 
-struct Options {
+struct TokenOptions {
   std::string name, scopes = "read,render,write";
 };
 
-int make_token(const Options& options) {
+int make_token(const TokenOptions& options) {
   const bool word =
       !options.name.empty() && std::all_of(options.name.begin(), options.name.end(),
                                            [](char c) { return c > ' ' && c != 0x7F && c != '#'; });
@@ -35,9 +35,9 @@ int make_token(const Options& options) {
 }  // namespace
 
 Command add_token(CLI::App& root) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TokenOptions>();
   CLI::App* app = root.add_subcommand("token", "Make a token, and its line for a tokens file");
-  app->footer(kExamples);
+  app->footer(kTokenExamples);
   app->add_option("NAME", options->name, "Who will hold it")->required();
   app->add_option("--scopes", options->scopes, "What the holder may do: read, render, write")
       ->type_name("SCOPE,...")
