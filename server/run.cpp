@@ -69,8 +69,7 @@ int run_chosen(const std::vector<Command>& commands) {
     for (const std::string& line : error.lines()) std::cerr << line << "\n";
     return kBadInput;
   } catch (const InputError& error) {
-    for (const Problem& p : error.problems())
-      std::cerr << "orrery: " << (p.pointer.empty() ? "" : p.pointer + ": ") << p.detail << "\n";
+    for (const Problem& p : error.problems()) std::cerr << "orrery: " << p.text() << "\n";
     return kBadInput;
   } catch (const Cancelled&) {
     return fail(kInterrupted, "interrupted");

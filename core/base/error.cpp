@@ -9,7 +9,7 @@ namespace {
 std::string summary(const std::vector<Problem>& problems) {
   assert(!problems.empty());
   const Problem& first = problems.front();
-  std::string text = first.pointer.empty() ? first.detail : first.pointer + ": " + first.detail;
+  std::string text = first.text();
   if (problems.size() > 1) {
     const std::size_t more = problems.size() - 1;
     text += " (and " + std::to_string(more) + (more == 1 ? " more problem)" : " more problems)");

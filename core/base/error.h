@@ -15,6 +15,9 @@ namespace orrery {
 struct Problem {
   std::string pointer;  // JSON Pointer (RFC 6901) of the value; "" is the whole document
   std::string detail;   // one sentence without the place: what was expected and what came
+
+  // The place, if there is one, before the sentence.
+  std::string text() const { return pointer.empty() ? detail : pointer + ": " + detail; }
 };
 
 class Error : public std::runtime_error {

@@ -75,8 +75,7 @@ std::string explain_text(const Scene& scene, const Plan& plan) {
   for (const Decision& d : plan.decisions)
     text += "  " + padded(d.subject, subject_width) + "  " + padded(d.choice, choice_width) + "  " +
             d.reason + "\n";
-  for (const Problem& p : find_warnings(scene, plan))
-    text += "  warning: " + p.pointer + ": " + p.detail + "\n";
+  for (const Problem& p : find_warnings(scene, plan)) text += "  warning: " + p.text() + "\n";
   return text;
 }
 

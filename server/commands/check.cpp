@@ -28,29 +28,48 @@ nlohmann::ordered_json json_of(const std::string& file, const Problem& problem, 
   return {{"file", file}, {"severity", severity}, {"pointer", problem.pointer}, {"detail", problem.detail}};
 }
 
-std::string line_of(const std::string& file, const Problem& warning) {
-  return file + ": " + warning.pointer + ": warning: " + warning.detail;
-}
+// Checks files one by one and prints what it finds: at once, or with `json` all together at the end.
+class Checker {
+ public:
+  explicit Checker(bool json) : json_(json) {}
 
-int check(const CheckOptions& options) {
-  nlohmann::ordered_json found = nlohmann::ordered_json::array();
-  bool good = true;
-  for (const std::string& file : options.scenes) {
+  void check(const std::string& file) {
     try {
       const auto scene = load_scene_file(file);
-      for (const Problem& p : find_warnings(*scene, make_plan(*scene, {}))) {
-        found.push_back(json_of(file, p, "warning"));
-        if (!options.json) std::cout << line_of(file, p) << "\n";
-      }
+      for (const Problem& p : find_warnings(*scene, make_plan(*scene, {})))
+        add(json_of(file, p, "warning"), file + ": " + p.pointer + ": warning: " + p.detail);
     } catch (const BadScene& error) {
-      good = false;
-      for (const Problem& p : error.problems()) found.push_back(json_of(file, p, "error"));
-      if (!options.json)
-        for (const std::string& line : error.lines()) std::cout << line << "\n";
+      if (status_ == kDone) status_ = kBadInput;
+      for (std::size_t i = 0; i < error.problems().size(); ++i)
+        add(json_of(file, error.problems()[i], "error"), error.lines()[i]);
+    } catch (const FileError& error) {
+      status_ = kFailed;
+      std::cerr << "orrery: " << error.what() << "\n";
+      found_.push_back(json_of(file, {"", error.what()}, "error"));
     }
   }
-  if (options.json) std::cout << found.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
-  return good ? kDone : kBadInput;
+
+  // Returns the status of the program: that of a file that cannot be read before that of a bad scene.
+  int finish() const {
+    if (json_) std::cout << found_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    return status_;
+  }
+
+ private:
+  void add(nlohmann::ordered_json finding, const std::string& line) {
+    if (!json_) std::cout << line << "\n";
+    found_.push_back(std::move(finding));
+  }
+
+  const bool json_;
+  int status_ = kDone;
+  nlohmann::ordered_json found_ = nlohmann::ordered_json::array();
+};
+
+int check(const CheckOptions& options) {
+  Checker checker(options.json);
+  for (const std::string& file : options.scenes) checker.check(file);
+  return checker.finish();
 }
 
 }  // namespace

@@ -106,8 +106,7 @@ void read_file_of_settings(Settings& settings, const std::string& path, std::vec
     else
       problems.push_back({path, "expected an object"});
   } catch (const InputError& error) {
-    for (const Problem& p : error.problems())
-      problems.push_back({path, (p.pointer.empty() ? "" : p.pointer + ": ") + p.detail});
+    for (const Problem& p : error.problems()) problems.push_back({path, p.text()});
   } catch (const FileError& error) {
     problems.push_back({"--config", error.what()});
   }

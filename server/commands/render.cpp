@@ -60,7 +60,7 @@ int render(const RenderOptions& options) {
   stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   stats.render = result.stats;
   for (const Problem& p : find_warnings(scene.scene(), plan, result.stats.counts))
-    std::cerr << "orrery: warning: " << p.pointer << ": " << p.detail << "\n";
+    std::cerr << "orrery: warning: " << p.text() << "\n";
   if (options.output) {
     start = Clock::now();
     const std::string bytes = encode_film(result.film, format);
@@ -83,7 +83,8 @@ Command add_render(CLI::App& root) {
   app->add_option("-o,--output", options->output, "The picture; its ending chooses PNG, JPEG or EXR")
       ->type_name("FILE.{png,jpg,exr}");
   app->add_flag("--stats{text}", options->stats,
-                "Print what was traced and what it took; --stats=json for programs");
+                "Print what was traced and what it took; --stats=json for programs")
+      ->check(CLI::IsMember({"text", "json"}));
   add_threads_flag(*app, options->threads);
   add_render_flags(*app, options->render);
   return {app, [options] { return render(*options); }};

@@ -46,8 +46,7 @@ std::string printable(const std::string& text) {
 BadScene::BadScene(const std::string& file, const InputError& error) : InputError(error.problems()) {
   const bool malformed = dynamic_cast<const MalformedJson*>(&error);  // its text says the line and column
   for (const Problem& p : problems())
-    lines_.push_back(
-        printable(file + ": " + (p.pointer.empty() || malformed ? "" : p.pointer + ": ") + p.detail));
+    lines_.push_back(printable(file + ": " + (malformed ? p.detail : p.text())));
 }
 
 std::string read_file(const std::string& path) {

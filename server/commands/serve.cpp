@@ -10,6 +10,7 @@
 #include "server/commands/commands.h"
 #include "server/commands/config.h"
 #include "server/commands/signals.h"
+#include "server/http/authority.h"
 #include "server/http/listener.h"
 #include "server/service.h"
 
@@ -47,6 +48,11 @@ void check(const Settings& settings, std::vector<Problem>& problems) {
   } catch (const Error& error) {  // there is no such address
     problems.push_back({"--host", error.what()});
   }
+  for (const std::string& origin : settings.cors_origins)
+    if (origin != "*" && origin != "null" && !is_origin(origin))
+      problems.push_back(
+          {"--cors-origins",
+           "expected *, null or origins such as https://app.example:8443, got " + origin.substr(0, 80)});
   try {
     const Access access(settings.tokens_file, settings.share_key_file);
   } catch (const InputError& error) {

@@ -49,6 +49,17 @@ bool names_no_domain(std::string_view text) {
   return equal_ignoring_case(host, "localhost") || inet_pton(AF_INET, host.c_str(), &address) == 1;
 }
 
+bool is_origin(std::string_view text) {
+  const std::size_t colon = text.find("://");
+  const std::string_view scheme = text.substr(0, std::min(colon, text.size()));
+  const bool lower = std::none_of(text.begin(), text.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+  const bool letters = std::all_of(scheme.begin(), scheme.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || is_digit(c) || c == '+' || c == '-' || c == '.';
+  });
+  return colon != std::string_view::npos && colon > 0 && lower && letters &&
+         is_authority(text.substr(colon + 3));
+}
+
 bool is_authority(std::string_view text) {
   std::string_view host = text.substr(0, text.find(':'));
   if (text.starts_with('[')) {

@@ -9,6 +9,10 @@ namespace orrery {
 // is not empty (RFC 9110, 4.2.1); the port may be.
 bool is_authority(std::string_view text);
 
+// Whether this is what browsers send as an Origin (RFC 6454, 6.1): scheme://host or scheme://host:port, in
+// lower case and without a path.
+bool is_origin(std::string_view text);
+
 // Whether its host is an address or localhost: what no owner of a domain can let stand for this machine.
 // REQUIRES: is_authority(text).
 bool names_no_domain(std::string_view text);

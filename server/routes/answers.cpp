@@ -165,7 +165,7 @@ std::string server_timing(const Timing& timing) {
 
 void set_warnings(Response& response, std::span<const Problem> warnings) {
   std::string text;
-  for (const Problem& p : warnings) text += (text.empty() ? "" : "; ") + p.pointer + ": " + p.detail;
+  for (const Problem& p : warnings) text += (text.empty() ? "" : "; ") + p.text();
   if (!text.empty()) response.set("Orrery-Warning", std::move(text));
 }
 

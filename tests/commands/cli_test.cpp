@@ -78,6 +78,7 @@ TEST_F(CommandLine, StatsCountEveryRay) {
   const auto stats = nlohmann::json::parse(result.out);
   EXPECT_EQ(stats.at("rays").at("camera"), 20 * 30 * 4);
   EXPECT_EQ(stats.at("samples"), 4);
+  EXPECT_EQ(run("render " + file("s.json") + " --stats=xml").status, 2);
   for (const char* name : {"structure_bytes", "structure_depth", "node_visits", "box_tests"})
     EXPECT_TRUE(stats.at(name).is_number_unsigned() || stats.at(name).is_number_integer()) << name;
   for (const char* name : {"load_ms", "build_ms", "trace_ms", "mrays_per_s", "cpu_s"})
@@ -111,6 +112,11 @@ TEST_F(CommandLine, CheckNamesFilePlaceAndProblem) {
   const Outcome result = run("check " + good + " " + bad);
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.out.rfind(bad + ": /objects/0/radius: expected", 0), 0u) << result.out;
+  const std::string none = file("none.json");
+  const Outcome with_none = run("check " + none + " " + bad);
+  EXPECT_EQ(with_none.status, 1);
+  EXPECT_EQ(with_none.err, "orrery: cannot read " + none + ": No such file or directory\n");
+  EXPECT_EQ(with_none.out, result.out);
   const auto problems = nlohmann::json::parse(run("check --json " + good + " " + bad).out);
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].at("file"), bad);

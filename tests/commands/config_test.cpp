@@ -59,7 +59,8 @@ TEST_F(Config, AllMistakesAreNamedAtOnce) {
   const std::string key = write("key", "short");
   const Outcome outcome =
       serve("--check-config --config " + file + " --connections 0 --body-bites 5 --tokens-file " + tokens +
-                " --share-key-file " + key + " --log loud",
+                " --share-key-file " + key +
+                " --log loud --cors-origins '*,https://a.example:8443,HTTP://b,c,http://d/'",
             "ORRERY_PORTT=1 ORRERY_ORBITS=x ORRERY_COLOUR=red");
   EXPECT_EQ(outcome.status, 2);
   for (const std::string& line : {
@@ -77,10 +78,15 @@ TEST_F(Config, AllMistakesAreNamedAtOnce) {
            tokens + ":2: there is no scope \"paint\"; there are read, render and write",
            key + ": a key has at least 32 bytes, got 5",
            std::string("--log: expected text or json, got loud"),
+           std::string(
+               "--cors-origins: expected *, null or origins such as https://app.example:8443, got HTTP://b"),
+           std::string("--cors-origins: expected *, null or origins such as https://app.example:8443, got c"),
+           std::string(
+               "--cors-origins: expected *, null or origins such as https://app.example:8443, got http://d/"),
        })
     EXPECT_NE(("\n" + outcome.err).find("\norrery: " + line + "\n"), std::string::npos) << line << "\n"
                                                                                         << outcome.err;
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 14) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 17) << outcome.err;
 }
 
 TEST_F(Config, WhatIsWrongKeepsTheServiceFromStarting) {
