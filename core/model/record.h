@@ -31,21 +31,15 @@ Record<Lanes<T>> broadcast_record(const Record<T>& one) {
   return convert_record<Record, Lanes<T>, T>(one);
 }
 
-// Lane i holds table[index[i]] where `mask` is set, and some valid record elsewhere. REQUIRES: any(mask).
-// Rays of one register mostly meet the same thing, so that case is a broadcast.
-// `table` is a span or anything else that gives a Record<T> for an index.
+// Lane i holds table[index[i]] where `mask` is set, and table[other] elsewhere.
 template <template <class> class Record, class T, class Table>
-[[gnu::always_inline]] inline Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index,
-                                                             const MaskOf<Lanes<T>>& mask) {
-  const int leader = stdx::find_first_set(mask);
-  const IndexOf<T> first = index[static_cast<std::size_t>(leader)];
-  if (all(!mask || mask_cast<Lanes<T>>(index == first)))
-    return broadcast_record<Record, T>(table[static_cast<std::size_t>(first)]);
+Record<Lanes<T>> gather_records(const Table& table, const IndexLanes<T>& index, const MaskOf<Lanes<T>>& mask,
+                                IndexOf<T> other) {
   constexpr std::size_t kCount = kFields<Record, T>;
   alignas(64) std::array<std::array<T, static_cast<std::size_t>(kWidth<T>)>, kCount> columns;
   for (std::size_t lane = 0; lane < static_cast<std::size_t>(kWidth<T>); ++lane) {
     std::array<T, kCount> row;
-    const Record<T>& one = table[static_cast<std::size_t>(mask[lane] ? index[lane] : first)];
+    const Record<T>& one = table[static_cast<std::size_t>(mask[lane] ? index[lane] : other)];
     std::memcpy(row.data(), &one, sizeof row);
     for (std::size_t field = 0; field < kCount; ++field) columns[field][lane] = row[field];
   }
@@ -55,6 +49,18 @@ template <template <class> class Record, class T, class Table>
   Record<Lanes<T>> result;
   std::memcpy(static_cast<void*>(&result), lanes.data(), sizeof result);
   return result;
+}
+
+// Lane i holds table[index[i]] where `mask` is set, and some valid record elsewhere. REQUIRES: any(mask).
+// Rays of one register mostly meet the same thing, so that case is a broadcast.
+// `table` is a span or anything else that gives a Record<T> for an index.
+template <template <class> class Record, class T, class Table>
+[[gnu::always_inline]] inline Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index,
+                                                             const MaskOf<Lanes<T>>& mask) {
+  const IndexOf<T> first = index[static_cast<std::size_t>(stdx::find_first_set(mask))];
+  if (all(!mask || mask_cast<Lanes<T>>(index == first)))
+    return broadcast_record<Record, T>(table[static_cast<std::size_t>(first)]);
+  return gather_records<Record, T>(table, index, mask, first);
 }
 
 }  // namespace orrery
