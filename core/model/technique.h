@@ -1,8 +1,8 @@
 #pragma once
 
-#include <stop_token>
 #include <vector>
 
+#include "core/base/checkpoint.h"
 #include "core/model/channel.h"
 #include "core/model/counts.h"
 #include "core/model/draws.h"
@@ -25,10 +25,10 @@ class Tracer {
  public:
   virtual ~Tracer() = default;
   // Follows the camera rays to the end. Slots of inactive rays get the background. `draws` has the random
-  // numbers of the batch's slots. `stop` is asked now and then; once a stop is requested the rest is left,
-  // the result means nothing and false is returned.
+  // numbers of the batch's slots. `checkpoint` is asked now and then; once the work is to end the rest is
+  // left, the result means nothing and false is returned.
   virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
-                     TraceCounts& counts, std::stop_token stop = {}) = 0;
+                     TraceCounts& counts, const Checkpoint& checkpoint = {}) = 0;
 };
 
 template <class T>

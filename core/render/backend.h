@@ -17,6 +17,7 @@ struct RenderControl {
   std::stop_token stop = {};                               // a stop request ends it with Cancelled
   std::function<void(int done, int total)> progress = {};  // tiles; called from several threads at once
   bool background = false;                                 // others come first
+  Pass* pass = nullptr;                                    // as for_each() takes it
 };
 
 struct RenderStats {

@@ -25,17 +25,21 @@ class OnThreads final : public Prepared {
     std::atomic<int> done = 0;
     const int total = static_cast<int>(tiles.size());
     const auto start = Clock::now();
-    pool_.for_each(total, control.background, [&](int step, int thread) {
-      if (control.stop.stop_requested()) return false;
-      const double cpu_before = thread_cpu_ms();
-      auto& renderer = renderers[static_cast<std::size_t>(thread)];
-      if (!renderer) renderer = std::make_unique<TileRenderer<T>>(world_, *plan_);
-      if (!renderer->render(tiles[static_cast<std::size_t>(step)], control.stop, film)) return false;
-      cpu_ms[static_cast<std::size_t>(thread)] += thread_cpu_ms() - cpu_before;
-      ++done;
-      if (control.progress) control.progress(done, total);
-      return true;
-    });
+    pool_.for_each(
+        total, control.background,
+        [&](int step, int worker, Turn& turn) {
+          if (control.stop.stop_requested()) return false;
+          const double cpu_before = thread_cpu_ms();
+          auto& renderer = renderers[static_cast<std::size_t>(worker)];
+          if (!renderer) renderer = std::make_unique<TileRenderer<T>>(world_, *plan_);
+          if (!renderer->render(tiles[static_cast<std::size_t>(step)], Checkpoint(control.stop, &turn), film))
+            return false;
+          cpu_ms[static_cast<std::size_t>(worker)] += thread_cpu_ms() - cpu_before;
+          ++done;
+          if (control.progress) control.progress(done, total);
+          return true;
+        },
+        control.pass);
     if (done != total) throw Cancelled();
     for (const auto& renderer : renderers)
       if (renderer) renderer->add_to(stats);

@@ -31,17 +31,17 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
 }
 
 template <class T>
-bool TileRenderer<T>::render(const TileView& tile, std::stop_token stop, Film& film) {
+bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint, Film& film) {
   cut_.clear();
   if (plan_.samples == 1 && film.storage() != FilmStorage::sums) {
-    if (!trace(tile, 0, stop)) return false;
+    if (!trace(tile, 0, checkpoint)) return false;
     put_single(tile, film);
   } else {
     sums_.samples = 0;
     if (tile.first_sample > 0) film.take(tile, sums_);
     if (plan_.samples > 1) find_pixel_streams(tile);
     for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
-      if (stop.stop_requested() || !trace(tile, sample, stop)) return false;
+      if (!checkpoint.go_on() || !trace(tile, sample, checkpoint)) return false;
       add_sample();
     }
     stats_.non_finite_pixels += film.put(tile, sums_);
@@ -51,12 +51,12 @@ bool TileRenderer<T>::render(const TileView& tile, std::stop_token stop, Film& f
 }
 
 template <class T>
-bool TileRenderer<T>::trace(const TileView& tile, int sample, std::stop_token stop) {
+bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& checkpoint) {
   const Draws draws(plan_.seed, tile, sample);
   if (plan_.samples > 1) place_samples(static_cast<std::uint32_t>(sample));
   plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
   const std::uint64_t cut_before = stats_.counts.cut_rays;
-  if (!tracer_->trace(rays_, draws, result_, stats_.counts, stop)) return false;
+  if (!tracer_->trace(rays_, draws, result_, stats_.counts, checkpoint)) return false;
   if (stats_.counts.cut_rays == cut_before) return true;
   cut_.resize(kBatch);
   for (std::size_t i = 0; i < kBatch; ++i) cut_[i] += static_cast<double>(result_.cut.values[i]);

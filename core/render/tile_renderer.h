@@ -12,15 +12,15 @@ class TileRenderer {
   // World and plan outlive it.
   TileRenderer(const World<T>& world, const Plan& plan);
 
-  // Adds the tile's samples to the film. False once a stop was requested: the tile is then left as it was.
-  bool render(const TileView& tile, std::stop_token stop, Film& film);
+  // Adds the tile's samples to the film. False once the work is to end: the tile is then left as it was.
+  bool render(const TileView& tile, const Checkpoint& checkpoint, Film& film);
 
   // Adds what the tiles so far took; mean_cut is a sum over them, by pixels of the picture.
   void add_to(RenderStats& stats) const;
 
  private:
-  // Traces one sample of every pixel. False once a stop was requested.
-  bool trace(const TileView& tile, int sample, std::stop_token stop);
+  // Traces one sample of every pixel. False once the work is to end.
+  bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
   void find_pixel_streams(const TileView& tile);
   void place_samples(std::uint32_t sample);
   void add_sample();

@@ -9,7 +9,9 @@
 #include <exception>
 #include <list>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/base/clock.h"
@@ -19,18 +21,22 @@ namespace orrery {
 
 namespace {
 
+// When others wait: that a turn lasts, and after which a step or task that has not asked loses its place.
+constexpr std::chrono::milliseconds kSlice{20}, kOverdue{50};
+
 // Threads that work on several loops at once, on each for as long as on the others.
+//
+// At most `count` steps and tasks have a place at a time. A step that gives way keeps its thread, which
+// waits; another takes its place, so there are at most `count` threads more for each loop. What does not ask
+// in time goes on without a place: the system shares the cores between it and who has its place then.
 //
 // They are our own rather than a task arena's: there, a caller that waits for its last tile may be handed the
 // whole of another's frame to do first, and a small picture waits for a large one.
 class WorkerThreads {
  public:
-  WorkerThreads(int count, int niceness) {
-    for (int i = 0; i < count; ++i)
-      threads_.emplace_back([this, i, niceness] {
-        if (niceness > 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
-        serve(i);
-      });
+  WorkerThreads(int count, int niceness) : count_(count), niceness_(niceness), idle_(count) {
+    for (int i = 0; i < count; ++i) threads_.emplace_back([this] { serve(); });
+    watch_ = std::thread([this] { watch(); });
   }
   ~WorkerThreads() {
     {
@@ -38,52 +44,224 @@ class WorkerThreads {
       ends_ = true;
     }
     changed_.notify_all();
+    contended_.notify_one();
+    watch_.join();
     for (std::thread& thread : threads_) thread.join();
   }
 
-  int threads() const { return static_cast<int>(threads_.size()); }
+  int count() const { return count_; }
 
   void enqueue(std::function<void()> task) {
     {
       const std::lock_guard lock(mutex_);
       tasks_.push_back(std::move(task));
+      if (contended()) contended_.notify_one();
     }
     changed_.notify_one();
   }
 
-  void for_each(int count, const WorkerPool::Step& work) {
+  void for_each(int count, const WorkerPool::Step& work, Pass* pass) {
     if (count == 0) return;
-    Loop loop{.work = work, .count = count};
+    Loop loop{.work = work, .count = count, .pass = pass, .free_workers = {}};
+    for (int worker = count_; worker-- > 0;) loop.free_workers.push_back(worker);
     std::unique_lock lock(mutex_);
-    if (!loops_.empty()) loop.used = (*next_loop())->used;
-    loops_.push_back(&loop);
-    changed_.notify_all();
-    loop.finished.wait(lock, [&] { return loop.over(); });
+    add(loop);
+    for (;;) {
+      loop.changed.wait(lock, [&] { return loop.over() || loop.pass_expired; });
+      loops_.remove(&loop);
+      if (loop.over()) break;
+      lock.unlock();
+      std::exception_ptr error;
+      try {
+        pass->renew();
+      } catch (...) {
+        error = std::current_exception();
+      }
+      lock.lock();
+      if (error) loop.end(error);
+      loop.pass_expired = false;
+      add(loop);
+    }
     if (loop.error) std::rethrow_exception(loop.error);
   }
 
  private:
-  // A call of for_each(): lives on its caller's stack.
+  class StepTurn;
+  // A call of for_each(): lives on its caller's stack. The fields may change with mutex_ held.
   struct Loop {
     const WorkerPool::Step& work;
     const int count;
-    int next = 0, running = 0;
-    Clock::duration used{};  // time spent on it, beside that of loops which were there when it came
+    Pass* const pass;
+    std::vector<int> free_workers;
+    int next = 0, running = 0;         // steps: the next to begin; begun and not done
+    std::list<StepTurn*> paused = {};  // of those, the ones that gave way
+    Clock::duration used{};            // time spent on it, beside that of loops which were there when it came
     std::exception_ptr error = {};
-    std::condition_variable finished = {};
+    bool pass_expired = false;
+    std::condition_variable changed = {};
+    void end(std::exception_ptr why) {
+      if (!error) error = why;
+      next = count;
+    }
     bool over() const { return next == count && running == 0; }
+    bool waits() const {
+      return !pass_expired && (!paused.empty() || (next < count && !free_workers.empty()));
+    }
   };
 
-  void serve(int thread) {
+  // Of a thread that runs a step or a task, while it may: lives on its stack.
+  struct Place {
+    const Loop* loop;  // none: a task
+    Clock::time_point since = Clock::now();
+  };
+
+  // A step's turn: lives on the stack of the thread that runs it.
+  class StepTurn final : public Turn {
+   public:
+    StepTurn(WorkerThreads& threads, Loop& loop, Place& place)
+        : threads_(threads), loop_(loop), place_(place) {}
+    void give_way() override {
+      if (Clock::now() - place_.since >= kSlice) threads_.give_way(*this);
+    }
+    // With the lock held: adds the time since the last call to the loop's.
+    void charge() {
+      const auto now = Clock::now();
+      loop_.used += now - std::exchange(place_.since, now);
+    }
+
+   private:
+    friend class WorkerThreads;
+    WorkerThreads& threads_;
+    Loop& loop_;
+    Place& place_;
+    bool resumed_ = false;
+    std::condition_variable changed_;
+  };
+
+  // Below: with mutex_ held.
+
+  // Has it worked on, from now on as long as on the others.
+  void add(Loop& loop) {
+    const auto least = std::min_element(loops_.begin(), loops_.end(),
+                                        [](const Loop* a, const Loop* b) { return a->used < b->used; });
+    if (least != loops_.end()) loop.used = std::max(loop.used, (*least)->used);
+    loops_.push_back(&loop);
+    if (may_begin()) changed_.notify_all();
+    if (contended()) contended_.notify_one();
+  }
+
+  bool contended() const {
+    const auto tasks =
+        std::count_if(places_.begin(), places_.end(), [](const Place* place) { return !place->loop; });
+    return loops_.size() + tasks_.size() + static_cast<std::size_t>(tasks) > 1;
+  }
+  bool place_free() const { return static_cast<int>(places_.size()) < count_; }
+  bool has(const Place& place) const {
+    return std::find(places_.begin(), places_.end(), &place) != places_.end();
+  }
+
+  // The loop that has had least of those with something to do; none: nullptr.
+  Loop* next_loop() {
+    Loop* best = nullptr;
+    for (Loop* loop : loops_)
+      if (loop->waits() && (!best || loop->used < best->used)) best = loop;
+    return best;
+  }
+
+  // Whether a thread may begin a task or a step; steps that gave way and are next go on before.
+  bool may_begin() {
+    while (place_free()) {
+      if (!tasks_.empty()) return true;
+      Loop* const loop = next_loop();
+      if (!loop) return false;
+      if (loop->paused.empty()) return true;
+      StepTurn& turn = *loop->paused.front();
+      loop->paused.pop_front();
+      places_.push_back(&turn.place_);
+      turn.resumed_ = true;
+      turn.changed_.notify_one();
+    }
+    return false;
+  }
+
+  bool others_wait(const Loop* loop) const {
+    return !tasks_.empty() ||
+           std::any_of(loops_.begin(), loops_.end(), [&](const Loop* l) { return l != loop && l->waits(); });
+  }
+  // Whether others come before this loop.
+  bool is_over(const Loop& loop) {
+    if (loop.pass_expired || !tasks_.empty()) return true;
+    const Loop* const other = next_loop();
+    return other && other != &loop && other->used <= loop.used;
+  }
+
+  void ask_pass(Loop& loop) {
+    if (!loop.pass || loop.pass_expired || !loop.pass->expired()) return;
+    loop.pass_expired = true;
+    loop.changed.notify_one();
+  }
+
+  void give_way(StepTurn& turn) {
+    Loop& loop = turn.loop_;
+    std::unique_lock lock(mutex_);
+    turn.charge();
+    ask_pass(loop);
+    if (has(turn.place_)) {
+      if (!is_over(loop) || !thread_for_another()) return;
+      places_.remove(&turn.place_);
+    }
+    loop.paused.push_back(&turn);
+    turn.resumed_ = false;
+    if (may_begin()) changed_.notify_one();
+    turn.changed_.wait(lock, [&] { return turn.resumed_; });
+    turn.place_.since = Clock::now();
+  }
+
+  void watch() {
+    std::unique_lock lock(mutex_);
+    while (!ends_) {
+      contended_.wait(lock, [&] { return ends_ || contended(); });
+      contended_.wait_for(lock, kOverdue, [&] { return ends_; });
+      take_overdue_places();
+    }
+  }
+
+  void take_overdue_places() {
+    const auto until = Clock::now() - kOverdue;
+    places_.remove_if([&](const Place* place) {
+      return place->since <= until && others_wait(place->loop) && thread_for_another();
+    });
+    if (may_begin()) changed_.notify_all();
+  }
+
+  // Whether there is a thread for each place that is free, and for one more. False: the machine has none.
+  bool thread_for_another() {
+    if (idle_ > count_ - static_cast<int>(places_.size())) return true;
+    try {
+      threads_.emplace_back([this] { serve(); });
+    } catch (const std::system_error&) {
+      return false;
+    }
+    ++idle_;
+    return true;
+  }
+
+  void serve() {
+    if (niceness_ > 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness_);
     std::unique_lock lock(mutex_);
     for (;;) {
-      changed_.wait(lock, [&] { return ends_ || !tasks_.empty() || !loops_.empty(); });
-      if (!tasks_.empty())
-        run_task(lock);
-      else if (!loops_.empty())
-        run_step(lock, thread);
+      changed_.wait(lock, [&] { return may_begin() || ends_; });
+      if (ends_ && tasks_.empty() && loops_.empty()) return;
+      Loop* const loop = tasks_.empty() ? next_loop() : nullptr;
+      Place place{loop};
+      places_.push_back(&place);
+      --idle_;
+      if (loop)
+        run_step(lock, *loop, place);
       else
-        return;
+        run_task(lock);
+      ++idle_;
+      places_.remove(&place);
     }
   }
 
@@ -95,43 +273,39 @@ class WorkerThreads {
     lock.lock();
   }
 
-  std::list<Loop*>::iterator next_loop() {
-    return std::min_element(loops_.begin(), loops_.end(),
-                            [](const Loop* a, const Loop* b) { return a->used < b->used; });
-  }
-
-  void run_step(std::unique_lock<std::mutex>& lock, int thread) {
-    const auto place = next_loop();
-    Loop& loop = **place;
-    const int step = loop.next++;
+  void run_step(std::unique_lock<std::mutex>& lock, Loop& loop, Place& place) {
+    const int step = loop.next++, worker = loop.free_workers.back();
+    loop.free_workers.pop_back();
     ++loop.running;
-    if (loop.next == loop.count) loops_.erase(place);
     lock.unlock();
-    const auto start = Clock::now();
+    StepTurn turn(*this, loop, place);
     std::exception_ptr error;
     bool go_on = false;
     try {
-      go_on = loop.work(step, thread);
+      go_on = loop.work(step, worker, turn);
     } catch (...) {
       error = std::current_exception();
     }
     lock.lock();
+    turn.charge();
     --loop.running;
-    loop.used += Clock::now() - start;
-    if (!loop.error) loop.error = error;
-    if (!go_on && loop.next < loop.count) {
-      loop.next = loop.count;
-      loops_.remove(&loop);
-    }
-    if (loop.over()) loop.finished.notify_one();
+    loop.free_workers.push_back(worker);
+    if (!go_on) loop.end(error);
+    ask_pass(loop);
+    if (loop.over()) loop.changed.notify_one();
   }
 
-  std::mutex mutex_;  // guards all but the threads
+  const int count_, niceness_;
+  std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
   std::deque<std::function<void()>> tasks_;
-  std::list<Loop*> loops_;  // with steps left
+  std::list<Loop*> loops_;    // to work on
+  std::list<Place*> places_;  // taken
+  int idle_;                  // threads without a step or task
   bool ends_ = false;
   std::vector<std::thread> threads_;
+  std::condition_variable contended_;
+  std::thread watch_;
 };
 
 }  // namespace
@@ -151,14 +325,14 @@ WorkerPool::WorkerPool(int threads)
     : parts_(std::make_unique<Parts>(threads > 0 ? threads : tbb::info::default_concurrency())) {}
 WorkerPool::~WorkerPool() = default;
 
-int WorkerPool::threads() const { return parts_->foreground.threads(); }
+int WorkerPool::threads() const { return parts_->foreground.count(); }
 
 void WorkerPool::enqueue(bool background, std::function<void()> task) {
   (background ? parts_->background : parts_->foreground).enqueue(std::move(task));
 }
 
-void WorkerPool::for_each(int count, bool background, const Step& work) {
-  (background ? parts_->background : parts_->foreground).for_each(count, work);
+void WorkerPool::for_each(int count, bool background, const Step& work, Pass* pass) {
+  (background ? parts_->background : parts_->foreground).for_each(count, work, pass);
 }
 
 }  // namespace orrery

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/checkpoint.h"
 #include "core/model/counts.h"
 #include "core/model/path.h"
 #include "core/model/plan.h"
@@ -17,9 +18,10 @@ class DirectLight {
       : geometry_(geometry), accelerator_(accelerator), plan_(plan), lights_(geometry) {}
 
   // Sets `radiance` of the lanes whose material is lit to what ambient light makes leave them, and adds what
-  // each light does. `groups`: registers with such a lane.
+  // each light does. `groups`: registers with such a lane. `checkpoint` is asked before each light; once the
+  // work is to end the other lights are left.
   void add(const PathBatch<T>& paths, const Draws& draws, const SurfaceBatch<T>& surface,
-           const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts);
+           const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts, const Checkpoint& checkpoint);
 
  private:
   using N = Lanes<T>;

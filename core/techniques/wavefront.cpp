@@ -16,18 +16,18 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
 
 template <class T>
 bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
-                         TraceCounts& counts, std::stop_token stop) {
+                         TraceCounts& counts, const Checkpoint& checkpoint) {
   draws_ = &draws;
   out_ = &out;
   counts_ = &counts;
   start(camera_rays);
-  constexpr int kAskEvery = 16;  // batches: a tree of glass in glass can grow to billions of rays
-  for (int batches = 1; !waiting_.empty(); ++batches) {
+  checkpoint_ = &checkpoint;
+  while (!waiting_.empty()) {  // a tree of glass in glass can grow to billions of rays
     auto batch = std::move(waiting_.back());
     waiting_.pop_back();
     run(*batch);
     spare_.push_back(std::move(batch));
-    if (batches % kAskEvery == 0 && stop.stop_requested()) {
+    if (!checkpoint.go_on()) {
       waiting_.clear();
       return false;
     }
@@ -89,7 +89,7 @@ void Wavefront<T>::run_slice(const Groups& groups) {
   const Groups met = find_surfaces(geometry_, plan_.fields, paths, groups, v.hits, v.surface, v.radiance);
   if (paths.depth == 0) record_channels(groups, met);
   direct_light_->add(paths, *draws_, v.surface, groups_with(geometry_, v.surface, met, &MaterialTraits::lit),
-                     v.radiance, *counts_);
+                     v.radiance, *counts_, *checkpoint_);
   if (plan_.specular) {
     const Groups specular = groups_with(geometry_, v.surface, met, &MaterialTraits::mirrors);
     evaluate_specular(geometry_, plan_.filters, v.hits, v.surface, specular, paths, v.specular);

@@ -21,7 +21,7 @@ class Wavefront : public Tracer<T> {
 
   Wavefront(const World<T>& world, const Plan& plan);
   bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out, TraceCounts& counts,
-             std::stop_token stop) final;
+             const Checkpoint& checkpoint) final;
 
  protected:
   // What the current batch met, for scatter(). Groups name the registers with a specular surface.
@@ -66,6 +66,7 @@ class Wavefront : public Tracer<T> {
   const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;
+  const Checkpoint* checkpoint_ = nullptr;
 };
 
 extern template class Wavefront<float>;

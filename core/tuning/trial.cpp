@@ -5,6 +5,24 @@
 #include "core/base/error.h"
 
 namespace orrery {
+namespace {
+
+constexpr std::uint64_t kMostRays = 1'000'000;
+
+// Requests a stop once so many rays were counted.
+class RayLimit final : public Turn {
+ public:
+  RayLimit(const TraceCounts& counts, std::stop_source& enough) : counts_(counts), enough_(enough) {}
+  void give_way() override {
+    if (counts_.rays.total() >= kMostRays) enough_.request_stop();
+  }
+
+ private:
+  const TraceCounts& counts_;
+  std::stop_source& enough_;
+};
+
+}  // namespace
 
 template <class T>
 TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, std::stop_token stop) {
@@ -15,13 +33,17 @@ TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, std::st
   const auto result = std::make_unique<TraceResult<T>>();
   const TileSamples centres = TileSamples::centres();
   TraceCounts counts;
-  for (int i = 0; i < count; ++i) {
+  std::stop_source ends;
+  const std::stop_callback cancelled(stop, [&] { ends.request_stop(); });
+  RayLimit limit(counts, ends);
+  const Checkpoint checkpoint(ends.get_token(), &limit);
+  for (int i = 0; i < count && checkpoint.go_on(); ++i) {
     const TileView tile =
         tiles.at(static_cast<int>((std::int64_t{2} * i + 1) * tiles.size() / (2 * count)), 1);
     plan.camera->generate(plan.frame, plan.width, plan.height, tile, centres, *rays);
-    if (stop.stop_requested() || !tracer->trace(*rays, Draws(plan.seed, tile, 0), *result, counts, stop))
-      throw Cancelled();
+    tracer->trace(*rays, Draws(plan.seed, tile, 0), *result, counts, checkpoint);
   }
+  if (stop.stop_requested()) throw Cancelled();
   return counts;
 }
 

@@ -1,0 +1,212 @@
+#include "core/render/worker_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <semaphore>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "tests/support/eventually.h"
+
+namespace orrery {
+namespace {
+
+constexpr bool kForeground = false;
+
+// Asks the turn to give way until `done`, but not for ever. Returns whether it was.
+bool give_way_until(const std::atomic<bool>& done, Turn& turn) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!done && std::chrono::steady_clock::now() < end) turn.give_way();
+  return done;
+}
+
+TEST(WorkerPool, DoesEveryStepOnceWithAWorkerOfItsOwn) {
+  WorkerPool pool(3);
+  std::mutex mutex;
+  std::multiset<int> steps, busy;
+  pool.for_each(200, kForeground, [&](int step, int worker, Turn&) {
+    {
+      const std::lock_guard lock(mutex);
+      steps.insert(step);
+      busy.insert(worker);
+      EXPECT_EQ(busy.count(worker), 1u);
+      EXPECT_LE(busy.size(), 3u);
+      EXPECT_LT(worker, 3);
+    }
+    const std::lock_guard lock(mutex);
+    busy.erase(worker);
+    return true;
+  });
+  for (int step = 0; step < 200; ++step) EXPECT_EQ(steps.count(step), 1u);
+  EXPECT_EQ(steps.size(), 200u);
+}
+
+TEST(WorkerPool, ALongStepLetsOthersGoFirst) {
+  for (const int threads : {1, 2}) {
+    WorkerPool pool(threads);
+    std::atomic<int> begun = 0;
+    std::atomic<bool> small_done = false, seen = true;
+    std::thread large([&] {
+      pool.for_each(threads, kForeground, [&](int, int, Turn& turn) {
+        ++begun;
+        if (!give_way_until(small_done, turn)) seen = false;
+        return true;
+      });
+    });
+    while (begun < threads) std::this_thread::yield();  // all threads are taken
+    pool.for_each(4, kForeground, [](int, int, Turn&) { return true; });
+    small_done = true;
+    large.join();
+    EXPECT_TRUE(seen) << threads;
+  }
+}
+
+// Though it does not ask.
+TEST(WorkerPool, AStepThatNeverGivesWayStopsNobody) {
+  for (const int threads : {1, 2}) {
+    WorkerPool pool(threads);
+    std::atomic<int> begun = 0;
+    std::atomic<bool> done = false;
+    std::thread stubborn([&] {
+      pool.for_each(2 * threads, kForeground, [&](int, int, Turn& turn) {
+        ++begun;
+        EXPECT_TRUE(test::eventually([&] { return done.load(); }));
+        turn.give_way();  // which goes on, though it lost its place
+        return true;
+      });
+    });
+    while (begun < threads) std::this_thread::yield();  // all threads are taken
+    std::atomic<bool> task_done = false;
+    pool.enqueue(kForeground, [&] { task_done = true; });
+    pool.for_each(4, kForeground, [](int, int, Turn&) { return true; });
+    EXPECT_TRUE(test::eventually([&] { return task_done.load(); }));
+    EXPECT_EQ(begun, threads);
+    done = true;
+    stubborn.join();
+    EXPECT_EQ(begun, 2 * threads);
+  }
+}
+
+TEST(WorkerPool, ATaskThatTakesLongStopsNobody) {
+  WorkerPool pool(1);
+  std::atomic<bool> begun = false, done = false, seen = false;
+  pool.enqueue(kForeground, [&] {
+    begun = true;
+    seen = test::eventually([&] { return done.load(); });
+  });
+  while (!begun) std::this_thread::yield();
+  pool.for_each(3, kForeground, [](int, int, Turn&) { return true; });
+  done = true;
+  EXPECT_TRUE(test::eventually([&] { return seen.load(); }));
+}
+
+TEST(WorkerPool, StepsThatGaveWayGoOnInTurn) {
+  constexpr int kLoops = 6;
+  WorkerPool pool(2);
+  std::atomic<int> present = 0, running = 0;
+  std::atomic<bool> all_present = false, seen = true;
+  std::vector<std::thread> callers;
+  for (int i = 0; i < kLoops; ++i)
+    callers.emplace_back([&] {
+      pool.for_each(2, kForeground, [&](int, int, Turn& turn) {
+        if (++present == 2 * kLoops) all_present = true;
+        if (!give_way_until(all_present, turn)) seen = false;
+        EXPECT_LE(++running, 2);  // as many as there are threads, however many gave way
+        --running;
+        return true;
+      });
+    });
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_TRUE(seen) << present;
+}
+
+// Expires once, and is renewed when told so.
+struct OnePass final : Pass {
+  bool expired() const override { return !asked.exchange(true); }
+  void renew() override {
+    paused = true;
+    give_back.acquire();
+    if (fails) throw std::runtime_error("not renewed");
+  }
+  mutable std::atomic<bool> asked = false;
+  std::atomic<bool> paused = false;
+  std::binary_semaphore give_back{0};
+  bool fails = false;
+};
+
+TEST(WorkerPool, NoStepRunsWhileAPassIsRenewed) {
+  WorkerPool pool(2);
+  OnePass pass;
+  std::atomic<std::uint64_t> progress = 0;
+  std::atomic<bool> ends = false;
+  std::thread caller([&] {
+    pool.for_each(
+        3, kForeground,
+        [&](int, int, Turn& turn) {
+          while (!ends) ++progress, turn.give_way();
+          return true;
+        },
+        &pass);
+  });
+  EXPECT_TRUE(test::eventually([&] { return pass.paused.load(); }));
+  // Steps that run give way at the end of their slices; then nothing goes on, though the pool is free.
+  EXPECT_TRUE(test::eventually([&] {
+    const std::uint64_t before = progress;
+    pool.for_each(20, kForeground, [](int, int, Turn&) { return true; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return progress == before;
+  }));
+  const std::uint64_t before = progress;
+  pass.give_back.release();
+  EXPECT_TRUE(test::eventually([&] { return progress > before; }));
+  ends = true;
+  caller.join();
+}
+
+TEST(WorkerPool, APassThatIsNotRenewedEndsTheLoop) {
+  WorkerPool pool(1);
+  OnePass pass;
+  pass.fails = true;
+  pass.give_back.release();
+  std::atomic<int> begun = 0;
+  const auto work = [&](int, int, Turn& turn) {
+    ++begun;
+    return give_way_until(pass.paused, turn);
+  };
+  EXPECT_THROW(pool.for_each(100, kForeground, work, &pass), std::runtime_error);
+  EXPECT_EQ(begun, 1);
+}
+
+TEST(WorkerPool, TasksAreDoneWhileALongStepRuns) {
+  WorkerPool pool(1);
+  std::atomic<bool> done = false;
+  bool seen = false;
+  pool.for_each(1, kForeground, [&](int, int, Turn& turn) {
+    pool.enqueue(kForeground, [&] { done = true; });
+    seen = give_way_until(done, turn);
+    return true;
+  });
+  EXPECT_TRUE(seen);
+}
+
+TEST(WorkerPool, AFailureEndsTheLoopAndIsThrown) {
+  WorkerPool pool(2);
+  std::atomic<int> begun = 0;
+  const auto fail = [&](int, int, Turn&) -> bool {
+    ++begun;
+    throw std::runtime_error("a step failed");
+  };
+  EXPECT_THROW(pool.for_each(1000, kForeground, fail), std::runtime_error);
+  EXPECT_LE(begun, 2);
+  begun = 0;
+  pool.for_each(1000, kForeground, [&](int, int, Turn&) { return ++begun < 5; });
+  EXPECT_LE(begun, 6);
+}
+
+}  // namespace
+}  // namespace orrery
