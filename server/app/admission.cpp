@@ -8,9 +8,10 @@
 namespace orrery {
 namespace {
 
-constexpr double kRaysAByte = 1;        // of JSON or of a mesh: measured between 0.5 and 2
-constexpr double kExpectedRate = 10e6;  // rays a second, before anything was measured
-constexpr double kMemory_s = 10;        // seconds of work after which a measurement has faded to 1/e
+constexpr double kRaysAByte = 1;                      // of JSON or of a mesh: measured between 0.5 and 2
+constexpr double kExpectedRate = 10e6;                // rays a second, before anything was measured
+constexpr std::chrono::milliseconds kLeastPlace{50};  // that work keeps a place, whoever waits
+constexpr double kMemory_s = 10;  // seconds of work after which a measurement has faded to 1/e
 
 std::string whole(double rays) {
   char text[32];
@@ -48,61 +49,143 @@ int Admission::running() const {
 }
 int Admission::waiting() const {
   const std::lock_guard lock(mutex_);
-  return static_cast<int>(std::count_if(queue_.begin(), queue_.end(),
-                                        [](const Waiting& w) { return w.state == Waiting::waits; }));
+  return static_cast<int>(
+      std::count_if(works_.begin(), works_.end(), [](const Work& w) { return w.state == State::waits; }));
 }
 bool Admission::full() const {
   const std::lock_guard lock(mutex_);
   return running_ >= limits_.running && !fits(Lane::interactive, kLeastCost);
 }
 
+Clock::duration Admission::longest_wait() const {
+  const std::lock_guard lock(mutex_);
+  const auto first = std::find_if(works_.begin(), works_.end(), [](const Work& w) {
+    return w.state == State::waits && w.entry == Entry::first && w.demand.lane == Lane::interactive;
+  });
+  return first == works_.end() ? Clock::duration{} : timer_.now() - first->since;
+}
+
 Admission::Ticket Admission::enter(const Demand& demand, const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  if (!place_free(demand.lane)) make_room(demand);
-  return wait_for_turn(lock, demand, true, stop);
+  return enter(demand, Entry::first, stop);
 }
-
 Admission::Ticket Admission::enter_again(const Demand& demand, const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  return wait_for_turn(lock, demand, false, stop);
+  return enter(demand, Entry::next, stop);
 }
 
-Admission::Ticket Admission::wait_for_turn(std::unique_lock<std::mutex>& lock, const Demand& demand,
-                                           bool may_be_dropped, const std::stop_token& stop) {
-  const auto asked = timer_.now();
-  const auto place = queue_.emplace(queue_.end(), demand, may_be_dropped, virtual_finish(demand));
-  start_next();
-  place->changed.wait(lock, stop, [&] { return place->state != Waiting::waits; });
-  const auto state = place->state;
-  queue_.erase(place);
-  if (state == Waiting::starts) {  // who gives up finds it soon
-    waits_[static_cast<int>(demand.lane)].Observe(
-        std::chrono::duration<double>(timer_.now() - asked).count());
-    return Ticket(*this, demand.lane, demand.cost);
+Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  if (entry == Entry::first && !may_begin(demand, entry)) make_room(demand);
+  const auto work = works_.emplace(works_.end(), demand, entry);
+  try {
+    wait_for_place(lock, *work, stop);
+  } catch (...) {
+    works_.erase(work);
+    throw;
   }
+  lock.unlock();
+  return Ticket(*this, *work, stop);
+}
+
+Admission::Ticket::Ticket(Admission& from, Work& work, std::stop_token stop)
+    : from_(&from), work_(&work), stop_(std::move(stop)) {
+  set_alarm();
+}
+
+Admission::Ticket::Ticket(Ticket&& other) noexcept
+    : from_(other.from_),
+      work_(std::exchange(other.work_, nullptr)),
+      stop_(std::move(other.stop_)),
+      others_may_have_it_(std::move(other.others_may_have_it_)) {}
+
+Admission::Ticket::~Ticket() {
+  others_may_have_it_.reset();
+  if (work_) from_->leave(*work_, std::uncaught_exceptions() <= exceptions_);
+}
+
+void Admission::Ticket::set_alarm() {
+  const auto start_next = [from = from_] {
+    const std::lock_guard lock(from->mutex_);
+    from->start_next();
+  };
+  others_may_have_it_.reset(new Timer::Alarm(from_->timer_.at(work_->since + kLeastPlace, start_next)));
+}
+
+void Admission::Ticket::set_cost(double rays) { work_->demand.cost = rays; }
+
+bool Admission::Ticket::expired() const { return work_->state == State::lost; }
+
+void Admission::Ticket::renew() {
+  std::unique_lock lock(from_->mutex_);
+  if (!expired()) return;
+  const auto place = std::find_if(from_->works_.begin(), from_->works_.end(),
+                                  [&](const Work& work) { return &work == work_; });
+  from_->works_.splice(from_->works_.end(), from_->works_, place);
+  work_->entry = Entry::again;
+  from_->charge(*work_);
+  from_->wait_for_place(lock, *work_, stop_);
+  lock.unlock();
+  set_alarm();
+}
+
+void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop) {
+  const Lane lane = work.demand.lane;
+  const auto asked = work.since = timer_.now();
+  work.finish = virtual_finish(work);
+  work.state = State::waits;
   start_next();
-  if (state == Waiting::waits) throw Cancelled();
+  work.changed.wait(lock, stop, [&] { return work.state != State::waits; });
+  if (work.state == State::runs) {  // who gives up finds it soon
+    waits_[static_cast<int>(lane)].Observe(std::chrono::duration<double>(timer_.now() - asked).count());
+    return;
+  }
+  const State state = work.state.exchange(State::lost);
+  start_next();
+  if (state == State::waits) throw Cancelled();
   throw ClientBusy("Others wait for their turn, and you had asked for more than they (queue_rays)",
-                   retry_after_s(demand.lane), "queue_rays");
+                   retry_after_s(lane), "queue_rays");
 }
 
 void Admission::start_next() {
-  for (auto it = next(); it != queue_.end(); it = next()) {
-    it->state = Waiting::starts;
-    virtual_time_[static_cast<int>(it->demand.lane)] = it->finish;
-    if (running_++ == 0) measured_ = timer_.now();
-    if (it->demand.lane == Lane::batch) ++running_batch_;
-    latest_ = it->demand.lane;
-    it->changed.notify_one();
+  for (Work* work = next(); work; work = next()) {
+    if (!place_free(work->demand.lane)) {
+      Work& other = *loser(work->demand.lane);
+      other.state = State::lost;
+      give_up_place(other);
+    }
+    begin(*work);
   }
 }
 
-void Admission::leave(Lane lane, double cost) {
+void Admission::begin(Work& work) {
+  if (running_++ == 0) measured_ = timer_.now();
+  if (work.demand.lane == Lane::batch) ++running_batch_;
+  latest_ = work.demand.lane;
+  virtual_time_[static_cast<int>(latest_)] = work.finish;
+  work.since = timer_.now();
+  work.state = State::runs;
+  work.changed.notify_one();
+}
+
+void Admission::leave(Work& work, bool done) {
   const std::lock_guard lock(mutex_);
-  measure(cost);
-  --running_;
-  if (lane == Lane::batch) --running_batch_;
+  if (done)
+    measure(work.demand.cost);
+  else if (running_ > 0)
+    measured_ = timer_.now();  // it was broken off: nobody knows how much of it was done
+  if (work.state == State::runs) give_up_place(work);
+  works_.remove_if([&](const Work& other) { return &other == &work; });
   start_next();
+}
+
+void Admission::charge(Work& work) {
+  const std::chrono::duration<double> held = timer_.now() - work.since;
+  work.charge = kLeastCost + held.count() * rays_a_second() / limits_.running;
+  work.used += work.charge;
+}
+
+void Admission::give_up_place(const Work& work) {
+  --running_;
+  if (work.demand.lane == Lane::batch) --running_batch_;
 }
 
 bool Admission::place_free(Lane lane) const {
@@ -110,33 +193,64 @@ bool Admission::place_free(Lane lane) const {
   return lane == Lane::interactive || running_batch_ < std::max(1, limits_.running / 2);
 }
 
-Admission::Queue::iterator Admission::next() {
-  auto best = queue_.end();
-  const bool batch_starves = running_batch_ == 0 && latest_ != Lane::batch;
-  const auto rank = [&](const Waiting& w) {
-    const bool first = batch_starves == (w.demand.lane == Lane::batch);
-    return std::pair(first ? 0 : 1, w.finish);
-  };
-  for (auto it = queue_.begin(); it != queue_.end(); ++it) {
-    if (it->state != Waiting::waits || !place_free(it->demand.lane)) continue;
-    if (best == queue_.end() || rank(*it) < rank(*best)) best = it;
+Admission::Work* Admission::loser(Lane lane) {
+  const auto until = timer_.now() - kLeastPlace;
+  Work* best = nullptr;
+  for (Work& work : works_) {
+    if (work.state != State::runs || work.since > until) continue;
+    const bool gives = lane == Lane::interactive || work.demand.lane == lane || running_batch_ == 0;
+    if (gives && (!best || work.since < best->since)) best = &work;
   }
   return best;
 }
 
-double Admission::virtual_finish(const Demand& demand) const {
-  double start = virtual_time_[static_cast<int>(demand.lane)];
-  for (const Waiting& w : queue_)
-    if (w.demand.lane == demand.lane && w.demand.client == demand.client) start = std::max(start, w.finish);
-  return start + demand.cost;
+bool Admission::may_begin(const Demand& demand, Entry entry) {
+  if (entry == Entry::first && has_lost_many(demand)) return false;
+  return place_free(demand.lane) || loser(demand.lane);
+}
+
+Admission::Work* Admission::next() {
+  Work* best = nullptr;
+  const bool batch_starves = running_batch_ == 0 && latest_ != Lane::batch;
+  const auto rank = [&](const Work& w) {
+    const bool first = batch_starves == (w.demand.lane == Lane::batch);
+    return std::pair(first ? 0 : 1, w.finish);
+  };
+  for (Work& work : works_) {
+    if (work.state != State::waits) continue;
+    if (best && !(rank(work) < rank(*best))) continue;
+    if (may_begin(work.demand, work.entry)) best = &work;
+  }
+  return best;
+}
+
+// What has lost its place does not wait for what its client asked for later.
+double Admission::virtual_finish(const Work& work) const {
+  const bool again = work.entry == Entry::again;
+  double start = virtual_time_[static_cast<int>(work.demand.lane)];
+  for (const Work& w : works_)
+    if (w.state == State::waits && w.demand.lane == work.demand.lane &&
+        w.demand.client == work.demand.client && (!again || w.entry == Entry::again))
+      start = std::max(start, w.finish);
+  return start + work.charge;
+}
+
+// Whether so much work of that client and lane has lost its place, twice as much as there are places, that it
+// begins no more: what is begun stays bounded, with the memory that it holds.
+bool Admission::has_lost_many(const Demand& demand) const {
+  const auto lost = std::count_if(works_.begin(), works_.end(), [&](const Work& w) {
+    const bool has_lost = w.state == State::lost || (w.state == State::waits && w.entry == Entry::again);
+    return has_lost && w.demand.lane == demand.lane && w.demand.client == demand.client;
+  });
+  return lost >= 2 * limits_.running;
 }
 
 double Admission::waiting_cost(Lane lane, const std::string* client) const {
   double sum = 0;
-  for (const Waiting& w : queue_)
-    if (w.state == Waiting::waits && w.may_be_dropped && w.demand.lane == lane &&
+  for (const Work& w : works_)
+    if (w.state == State::waits && w.entry != Entry::next && w.demand.lane == lane &&
         (!client || w.demand.client == *client))
-      sum += w.demand.cost;
+      sum += std::max(std::min(kLeastCost, w.demand.cost), w.demand.cost - w.used);
   return sum;
 }
 
@@ -145,26 +259,26 @@ bool Admission::fits(Lane lane, double cost) const {
   return waiting == 0 || waiting + cost <= limits_.queue_rays;
 }
 
-Admission::Queue::iterator Admission::newest_of_greediest(Lane lane) {
-  const auto counts = [&](const Waiting& w) {
-    return w.may_be_dropped && w.state == Waiting::waits && w.demand.lane == lane;
+Admission::Work* Admission::newest_of_greediest(Lane lane) {
+  const auto counts = [&](const Work& w) {
+    return w.entry == Entry::first && w.state == State::waits && w.demand.lane == lane;
   };
   std::map<std::string, double> costs;
-  for (const Waiting& w : queue_)
+  for (const Work& w : works_)
     if (counts(w)) costs[w.demand.client] += w.demand.cost;
-  auto newest = queue_.end();
-  for (auto it = queue_.begin(); it != queue_.end(); ++it)
-    if (counts(*it) && (newest == queue_.end() || costs[it->demand.client] >= costs[newest->demand.client]))
-      newest = it;
+  Work* newest = nullptr;
+  for (Work& w : works_)
+    if (counts(w) && (!newest || costs[w.demand.client] >= costs[newest->demand.client])) newest = &w;
   return newest;
 }
 
 void Admission::make_room(const Demand& demand) {
   const Lane lane = demand.lane;
   while (!fits(lane, demand.cost)) {
-    const auto greediest = newest_of_greediest(lane);
+    Work* const greediest = newest_of_greediest(lane);
     const double own = waiting_cost(lane, &demand.client) + demand.cost;
-    if (greediest->demand.client == demand.client || own >= waiting_cost(lane, &greediest->demand.client)) {
+    if (!greediest || greediest->demand.client == demand.client ||
+        own >= waiting_cost(lane, &greediest->demand.client)) {
       const double all = waiting_cost(lane), mine = waiting_cost(lane, &demand.client);
       const std::string told = "Work of " + in_millions(all) + " rays waits already, at most " +
                                in_millions(limits_.queue_rays) + " may (queue_rays)";
@@ -172,7 +286,7 @@ void Admission::make_room(const Demand& demand) {
         throw ClientBusy(told + ", much of it yours", retry_after_s(lane), "queue_rays");
       throw OverLimit(told, retry_after_s(lane), "queue_rays");
     }
-    greediest->state = Waiting::dropped;
+    greediest->state = State::dropped;
     greediest->changed.notify_one();
   }
 }
@@ -180,15 +294,15 @@ void Admission::make_room(const Demand& demand) {
 void Admission::measure(double cost) {
   const auto now = timer_.now();
   const double seconds = std::chrono::duration<double>(now - std::exchange(measured_, now)).count();
-  if (cost == 0) return;  // it was broken off: nobody knows how much of it was done
   const double faded = std::exp(-seconds / kMemory_s);
   done_rays_ = done_rays_ * faded + cost;
   busy_s_ = busy_s_ * faded + seconds;
 }
 
 double Admission::retry_after_s(Lane lane) const {
-  const double rate = busy_s_ > 0 ? done_rays_ / busy_s_ : kExpectedRate;
-  return std::clamp(waiting_cost(lane) / rate, 1.0, 30.0);
+  return std::clamp(waiting_cost(lane) / rays_a_second(), 1.0, 30.0);
 }
+
+double Admission::rays_a_second() const { return busy_s_ > 0 ? done_rays_ / busy_s_ : kExpectedRate; }
 
 }  // namespace orrery

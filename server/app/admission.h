@@ -1,25 +1,23 @@
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <list>
+#include <memory>
 #include <mutex>
 #include <stop_token>
 #include <string>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/render/worker_pool.h"
 #include "server/app/meters.h"
 #include "server/app/timer.h"
 #include "server/http/over_limit.h"
 
 namespace orrery {
-
-// This client has so much work waiting that what it asks for now, or last, is turned away.
-class ClientBusy : public OverLimit {
- public:
-  using OverLimit::OverLimit;
-};
 
 // A picture is expected to cost more than one request may ask for.
 class TooManyRays : public InputError {
@@ -57,34 +55,45 @@ double cost_of_reading(std::size_t bytes);
 //    come free as long as it has none.
 //  - Within a lane, clients share by cost: each piece starts in the order of its client's virtual finish
 //    time (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for.
+//  - Work that has had its place for a while loses it to who waits: interactive work to interactive work,
+//    batch work to both, and interactive work to batch work while none of that has a place. It goes on with
+//    what it does until it renews its ticket, which waits in the queue. A client that has lost many places
+//    begins no more.
 //  - When a lane is full, who has most waiting in it makes room for who has less (longest queue drop:
 //    McKenney, "Stochastic Fairness Queueing", 1990).
 // Safe from any thread.
 class Admission {
+  struct Work;
+
  public:
   struct Limits {
     int running;        // pieces of work at once
     double queue_rays;  // expected cost of what waits in a lane; one may wait whatever it costs
   };
   // `timer` must outlive it.
-  Admission(const Limits& limits, const Timer& timer) : limits_(limits), timer_(timer) {}
+  Admission(const Limits& limits, Timer& timer) : limits_(limits), timer_(timer) {}
 
   // The right to work. Ends with the object, and unless that is by an exception, the work was done: at the
-  // cost that was expected, or that set_cost() has told.
-  class Ticket {
+  // cost that was expected, or that set_cost() has told. As a Pass it is expired once it has lost its place;
+  // to be renewed it waits for another, and what was used counts as work of its client.
+  class Ticket final : public Pass {
    public:
-    Ticket(Admission& from, Lane lane, double cost) : from_(&from), lane_(lane), cost_(cost) {}
-    Ticket(Ticket&& other) noexcept
-        : from_(std::exchange(other.from_, nullptr)), lane_(other.lane_), cost_(other.cost_) {}
-    void set_cost(double rays) { cost_ = rays; }
-    ~Ticket() {
-      if (from_) from_->leave(lane_, std::uncaught_exceptions() > exceptions_ ? 0 : cost_);
-    }
+    Ticket(Ticket&& other) noexcept;
+    ~Ticket();
+    void set_cost(double rays);
+
+    bool expired() const override;
+    void renew() override;  // throws Cancelled
 
    private:
+    friend class Admission;
+    Ticket(Admission& from, Work& work, std::stop_token stop);
+    void set_alarm();
+
     Admission* from_;
-    Lane lane_;
-    double cost_;
+    Work* work_;
+    std::stop_token stop_;
+    std::unique_ptr<Timer::Alarm> others_may_have_it_;  // its place
     int exceptions_ = std::uncaught_exceptions();
   };
 
@@ -92,6 +101,8 @@ class Admission {
   int waiting() const;
   // Whether small work would be turned away.
   bool full() const;
+  // How long the interactive work has waited that came first of what waits to begin; none does: 0.
+  Clock::duration longest_wait() const;
   // From asking for a turn to having it.
   const SecondsHistogram& waits(Lane lane) const { return waits_[static_cast<int>(lane)]; }
 
@@ -102,37 +113,50 @@ class Admission {
   Ticket enter_again(const Demand& demand, const std::stop_token& stop);
 
  private:
-  struct Waiting {
-    Waiting(const Demand& d, bool droppable, double f) : demand(d), may_be_dropped(droppable), finish(f) {}
+  enum class Entry { first, next, again };  // work that begins; that goes on; that has lost its place
+  enum class State { waits, runs, lost, dropped };
+  struct Work {
+    Work(const Demand& d, Entry e) : demand(d), entry(e), charge(d.cost) {}
     Demand demand;
-    bool may_be_dropped;
-    double finish;  // virtual time
-    enum { waits, starts, dropped } state = waits;
+    Entry entry;
+    std::atomic<State> state{State::waits};
+    double charge;              // rays that the next place is expected to take, or the last one did
+    double used = 0;            // rays, about, in the places that it has lost
+    double finish = 0;          // virtual time
+    Clock::time_point since{};  // it got its place, or asked for one
     std::condition_variable_any changed;
   };
-  using Queue = std::list<Waiting>;  // in order of arrival; who starts leaves it
+  using Works = std::list<Work>;
 
-  Ticket wait_for_turn(std::unique_lock<std::mutex>& lock, const Demand& demand, bool may_be_dropped,
-                       const std::stop_token& stop);
-  void leave(Lane lane, double cost);
-  // Below: with mutex_ held.
+  Ticket enter(const Demand& demand, Entry entry, const std::stop_token& stop);
+  void leave(Work& work, bool done);
+  // Below: with mutex_ held, but for `lock` while waiting.
+  // Throws ClientBusy, but only at a first entry, or Cancelled.
+  void wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop);
+  void begin(Work& work);
+  void charge(Work& work);  // what it has used since it got its place
+  void give_up_place(const Work& work);
   void start_next();
   void make_room(const Demand& demand);
   bool fits(Lane lane, double cost) const;
   bool place_free(Lane lane) const;
-  double virtual_finish(const Demand& demand) const;
-  Queue::iterator next();  // who may start now; end: none
-  // Of a lane, without work that began: all, or one client's.
+  Work* loser(Lane lane);  // whose place such work may have; none: nullptr
+  double virtual_finish(const Work& work) const;
+  bool has_lost_many(const Demand& demand) const;
+  bool may_begin(const Demand& demand, Entry entry);  // as far as places go
+  Work* next();                                       // who may start now; none: nullptr
+  // Of a lane: all, or one client's; without what enters again.
   double waiting_cost(Lane lane, const std::string* client = nullptr) const;
-  Queue::iterator newest_of_greediest(Lane lane);
+  Work* newest_of_greediest(Lane lane);
   double retry_after_s(Lane lane) const;
+  double rays_a_second() const;
   void measure(double cost);
 
   const Limits limits_;
-  const Timer& timer_;
+  Timer& timer_;
   SecondsHistogram waits_[2];  // of a lane
   mutable std::mutex mutex_;   // guards all below
-  Queue queue_;
+  Works works_;                // those that wait in order of arrival
   int running_ = 0, running_batch_ = 0;
   Lane latest_ = Lane::interactive;  // that had a turn
   double virtual_time_[2] = {0, 0};  // of a lane: finish of the piece that started last

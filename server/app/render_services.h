@@ -34,7 +34,9 @@ struct RenderServices {
   // A frame, in the turn that `ticket` gives; tells it what the frame has cost. Throws Cancelled.
   RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const SettledPlan& plan,
                       FilmStorage storage, const RenderControl& control) const {
-    RenderResult result = render_frame(scene, plan, storage, pool, control);
+    RenderControl shared = control;
+    shared.pass = &ticket;
+    RenderResult result = render_frame(scene, plan, storage, pool, shared);
     const std::uint64_t rays = result.stats.counts.rays.total();
     ticket.set_cost(kLeastCost + static_cast<double>(rays));
     estimator.learn(scene.scene(), *plan, rays);

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <list>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -111,6 +114,138 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
   }
   others.join();
   EXPECT_EQ(others.order(), (RenderOrder{"batch", "i"}));  // none of it ran
+}
+
+using std::chrono_literals::operator""ms;
+
+TEST(Admission, WorkLosesItsPlaceAfterAWhileToWhoWaits) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Waiters waiters(admission);
+  std::optional ticket(admission.enter(demand("z"), kNever));
+  waiters.add("a1", demand("a"));
+  timer.advance(49ms);
+  EXPECT_FALSE(ticket->expired());
+  ticket->renew();  // changes nothing
+  EXPECT_EQ(waiters.order(), RenderOrder{});
+  timer.advance(1ms);
+  EXPECT_TRUE(ticket->expired());
+  EXPECT_TRUE(test::eventually([&] { return waiters.order() == RenderOrder{"a1"}; }));
+  waiters.join();
+  EXPECT_EQ(admission.running(), 0);
+  ticket->renew();
+  EXPECT_FALSE(ticket->expired());
+  EXPECT_EQ(admission.running(), 1);
+  ticket.reset();
+  EXPECT_EQ(admission.running(), 0);
+}
+
+TEST(Admission, WhoComesTakesAPlaceThatWasHeldForAWhile) {
+  ManualTimer timer;
+  Admission admission({.running = 2, .queue_rays = 1000}, timer);
+  std::optional older(admission.enter(demand("z"), kNever));
+  timer.advance(1ms);
+  std::optional newer(admission.enter(demand("z"), kNever));
+  timer.advance(std::chrono::hours(1));
+  EXPECT_FALSE(older->expired());  // nobody waits
+  {
+    const auto brief = admission.enter(demand("a"), kNever);  // at once
+    EXPECT_TRUE(older->expired());
+    EXPECT_FALSE(newer->expired());
+    EXPECT_EQ(admission.running(), 2);
+  }
+  EXPECT_EQ(admission.running(), 1);
+  older.reset();
+  EXPECT_EQ(admission.running(), 1);
+}
+
+// 10 million rays a second are expected before anything was measured.
+TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  std::optional first(admission.enter(demand("z"), kNever));
+  timer.advance(1000ms);
+  std::optional second(admission.enter(demand("y"), kNever));
+  std::atomic<bool> goes_on{false};
+  std::thread renewal([&] {
+    first->renew();
+    goes_on = true;
+  });
+  EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
+  Waiters waiters(admission);
+  waiters.add("more", demand("a", 10.1e6));
+  waiters.add("less", demand("b", 9.9e6));
+  second.reset();
+  renewal.join();
+  EXPECT_EQ(waiters.order(), RenderOrder{"less"});
+  first.reset();
+  waiters.join();
+  EXPECT_EQ(waiters.order(), (RenderOrder{"less", "more"}));
+}
+
+TEST(Admission, InteractiveWorkTakesThePlaceOfBatchWork) {
+  ManualTimer timer;
+  Admission admission({.running = 2, .queue_rays = 1000}, timer);
+  const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever);
+  const auto interactive = admission.enter(demand("z"), kNever);
+  Waiters waiters(admission);
+  waiters.add("batch", demand("b", 10, Lane::batch));
+  timer.advance(50ms);
+  EXPECT_TRUE(batch.expired());
+  EXPECT_FALSE(interactive.expired());  // half of the places are batch work's, and that is one
+  waiters.join();
+  timer.advance(50ms);
+  const auto other = admission.enter(demand("c"), kNever);
+  EXPECT_FALSE(interactive.expired());  // a place came free
+}
+
+TEST(Admission, BatchWorkTakesThePlaceOfInteractiveWorkWhileNoneOfItRuns) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  const auto interactive = admission.enter(demand("z"), kNever);
+  timer.advance(50ms);
+  const auto batch = admission.enter(demand("b", 10, Lane::batch), kNever);
+  EXPECT_TRUE(interactive.expired());
+  timer.advance(50ms);
+  const auto other = admission.enter(demand("c"), kNever);
+  EXPECT_TRUE(batch.expired());
+}
+
+TEST(Admission, WhoHasLostManyPlacesBeginsNoMore) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  std::list<Admission::Ticket> own;
+  for (int i = 0; i < 2; ++i) {  // two for each place
+    own.push_back(admission.enter(demand("z"), kNever));
+    timer.advance(50ms);
+    const auto other = admission.enter(demand("a"), kNever);
+    EXPECT_TRUE(own.back().expired());
+  }
+  Waiters waiters(admission);
+  waiters.add("z", demand("z"));
+  EXPECT_EQ(admission.running(), 0);  // though the place is free
+  { const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever); }
+  EXPECT_EQ(waiters.order(), RenderOrder{});
+  own.pop_front();
+  waiters.join();
+  EXPECT_EQ(waiters.order(), RenderOrder{"z"});
+}
+
+TEST(Admission, WorkThatIsCalledOffWhileItWaitsToGoOnHasNoPlace) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  std::stop_source stop;
+  std::optional first(admission.enter(demand("z"), stop.get_token()));
+  timer.advance(50ms);
+  std::optional second(admission.enter(demand("a"), kNever));
+  std::thread renewal([&] { EXPECT_THROW(first->renew(), Cancelled); });
+  EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
+  stop.request_stop();
+  renewal.join();
+  first.reset();
+  EXPECT_EQ(admission.running(), 1);
+  second.reset();
+  EXPECT_EQ(admission.running(), 0);
 }
 
 TEST(Admission, WhatWaitsIsBoundedByItsCost) {

@@ -9,7 +9,7 @@ const pictures = (...rest) => entry(20, rest[0], "server/app/single_flight.h", r
 const scenes = (...rest) => entry(20, rest[0], "server/app/scene_store.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
 
 export const serviceFaults = [
-  admission("work starts in the order in which it came", "rank(*it) < rank(*best)", "false",
+  admission("work starts in the order in which it came", "!(rank(work) < rank(*best))", "true",
             "Admission.ClientsShareByCost*", "Admission.InteractiveWorkGoesFirst*"),
   admission("batch work starves", "const bool batch_starves = running_batch_ == 0 && latest_ != Lane::batch;", "const bool batch_starves = false;",
             "Admission.InteractiveWorkGoesFirst*"),
@@ -22,6 +22,18 @@ export const serviceFaults = [
             "RetryAfter.IsWhatWaits*", "RetryAfter.FollowsARate*"),
   admission("idle time counts as work", "if (running_++ == 0) measured_ = timer_.now();", "++running_;",
             "RetryAfter.CountsWorkAtOneTime*"),
+  admission("work keeps its place however long others wait", "work.state != State::runs || work.since > until",
+            "work.state != State::runs || work.since <= until", "Admission.WorkLosesItsPlace*", "Admission.WhoComesTakes*"),
+  admission("what was used is free", "return start + work.charge;", "return start + work.demand.cost;",
+            "Admission.WhatWasUsedIsCharged*"),
+  admission("who has lost many places begins more", "return lost >= 2 * limits_.running;", "return lost < 0;",
+            "Admission.WhoHasLostMany*"),
+  entry(20, "a long tile does not give way", "core/render/worker_pool.cpp", "!is_over(loop) || !thread_for_another()", "true",
+        "test_render", "WorkerPool.ALongStepLets*"),
+  entry(20, "a step that does not ask stops others", "core/render/worker_pool.cpp", "place->since <= until && others_wait",
+        "place->since > until && others_wait", "test_render", "WorkerPool.AStepThatNever*", "WorkerPool.ATaskThat*"),
+  entry(20, "a client takes all bytes", "server/http/budget.h", "if (by_client > own &&", "if (by_client > most_ &&",
+        "test_http", "Budget.AClientHasHalf*"),
   entry(20, "the rate is that of what was expected", "server/app/render_services.h",
         "ticket.set_cost(kLeastCost + static_cast<double>(rays));", "ticket.set_cost(1e12);", "test_app", "JobsTest.TellTheAdmission*"),
   entry(20, "a scene's factor is not applied", "server/app/ray_estimator.cpp", "return **factor * expected;", "return expected;",
