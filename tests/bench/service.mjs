@@ -4,6 +4,7 @@
 import { writeFileSync } from "node:fs";
 import { availableParallelism, loadavg } from "node:os";
 import { exists_program, kOrrery } from "./command.mjs";
+import { kBlockade } from "./service/blockade.mjs";
 import { kCached } from "./service/cached.mjs";
 import { kHealth } from "./service/health.mjs";
 import { kLeaves } from "./service/leaves.mjs";
@@ -15,7 +16,7 @@ import { kViewers } from "./service/viewers.mjs";
 
 // Each has: name; what, in one line; seconds or times, how long it takes or how often it is done; and
 // run({seconds, times}), which resolves to {rows, remark}. A row: {what, target, measured, met}.
-const kProperties = [kHealth, kOverload, kLeaves, kSigterm, kViewers, kCached, kStart, kSoak];
+const kProperties = [kBlockade, kHealth, kOverload, kLeaves, kSigterm, kViewers, kCached, kStart, kSoak];
 
 const kUsage =
   "usage: tests/bench/run service [PROPERTY...] [--seconds N] [--times N] [--json FILE] [--list]\n" +

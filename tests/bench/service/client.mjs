@@ -28,13 +28,16 @@ export const header_of = ({ head }, name) => new RegExp(`\\r\\n${name}: *([^\\r]
 // "unanswered" (the connection ended before the answer did), "silent" (nothing for long) or "left" (by leave()).
 export class Client {
   #port;
+  #address;
   #socket = null;
   #parts = [];
   #size = 0;
   #waiting = null; // {resolve, sent, answer}
 
-  constructor(port) {
+  // `address`: of this end, none: any.
+  constructor(port, address = undefined) {
     this.#port = port;
+    this.#address = address;
   }
 
   ask(path, { method = "GET", headers = {}, body = "" } = {}) {
@@ -64,7 +67,7 @@ export class Client {
   }
 
   #connect(bytes) {
-    const socket = net.connect({ port: this.#port, host: "127.0.0.1", noDelay: true });
+    const socket = net.connect({ port: this.#port, host: "127.0.0.1", localAddress: this.#address, noDelay: true });
     this.#socket = socket;
     let connected = false;
     const end = () => socket === this.#socket && this.#end(connected ? "unanswered" : "refused");

@@ -1,0 +1,152 @@
+// Whatever one client sends, another client's small picture is answered soon.
+
+import { Client } from "./client.mjs";
+import { kAttacks } from "./attacks.mjs";
+import { FrameReader } from "../daemon.mjs";
+import {
+  mib, outcome, most, ms, new_picture, p99, pause, percent, process_state, row, tally, with_service,
+} from "./support.mjs";
+import http from "node:http";
+
+const kPeriod_ms = 100; // between two small pictures, and two frames of the orbit
+const kPicture_ms = 1000;
+const kHealth_ms = 50;
+const kVictim = "127.0.0.200";
+
+// How many attack, and from how many addresses.
+const kForces = [
+  { count: 1, addresses: 1 },
+  { count: 16, addresses: 1 },
+  { count: 16, addresses: 8 },
+];
+
+// Asks every kPeriod_ms, whatever the last answer does, until stop(), which resolves to all answers.
+function open_loop(port, path_of, address) {
+  const answers = [];
+  const timer = setInterval(async () => {
+    const client = new Client(port, address);
+    answers.push(client.ask(path_of()).finally(() => client.leave()));
+  }, kPeriod_ms);
+  return async () => {
+    clearInterval(timer);
+    return Promise.all(answers);
+  };
+}
+
+// Watches an orbit of ten frames a second until stop(), which tells how many came.
+function watch(port, path) {
+  let frames = 0;
+  const reader = new FrameReader(() => ++frames);
+  const headers = { Accept: "application/x-orrery-frames" };
+  const request = http.get({ host: "127.0.0.1", port, path, headers, localAddress: kVictim, agent: false });
+  request.on("response", (response) => response.on("data", (chunk) => reader.add(chunk)).on("error", () => {}));
+  request.on("error", () => {});
+  return () => {
+    request.destroy();
+    return frames;
+  };
+}
+
+let number = 0;
+
+const kJson = { "Content-Type": "application/json" };
+
+// One client's part: it asks for something new whenever it has an answer, but reads no stream.
+async function attack_once(client, [, ask, scene], statuses) {
+  let id = null;
+  if (scene) {
+    const body = JSON.stringify(scene(++number));
+    const answer = await client.ask("/v1/scenes", { method: "POST", headers: kJson, body });
+    id = answer.status < 300 ? JSON.parse(answer.text()).id : "nosuch";
+  }
+  for (;;) {
+    const { path, ...request } = ask(++number, id);
+    if ((request.body?.length ?? 0) > 65536) throw new Error(`the attack has ${request.body.length} bytes`);
+    const answer = await client.ask(path, request);
+    statuses.push(outcome(answer));
+    if (answer.failure || path.includes("/orbit")) return;
+    if (answer.status !== 200) await pause(20);
+  }
+}
+
+// Attacks until stop(), which tells what the attackers were answered.
+function attack({ port }, one, { count, addresses }) {
+  const statuses = [];
+  const clients = Array.from({ length: count }, (_, i) => new Client(port, `127.0.0.${2 + (i % addresses)}`));
+  const all = Promise.all(clients.map((client) => attack_once(client, one, statuses)));
+  return async () => {
+    clients.forEach((client) => client.leave());
+    await all;
+    return statuses;
+  };
+}
+
+async function try_attack(service, paper, one, force, seconds) {
+  const stop_watching = watch(service.port, `${paper}/orbit?fps=10&frames=3600&width=200&height=200&seed=${++number}`);
+  await pause(300);
+  const small = open_loop(service.port, () => new_picture(paper, 64, 1), kVictim);
+  const health = open_loop(service.health_port, () => "/healthz", kVictim);
+  const stop_attack = attack(service, one, force);
+  let resident = 0;
+  for (const end = performance.now() + 1000 * seconds; performance.now() < end; await pause(50))
+    resident = Math.max(resident, process_state(service.pid).resident);
+  const [pictures, pings] = await Promise.all([small(), health()]);
+  const frames = stop_watching();
+  const attackers = tally(await stop_attack());
+  const bad = pictures.filter(({ status }) => status !== 200);
+  const times = (answers) => answers.map((answer) => answer.ms ?? Infinity);
+  return {
+    name: `${one[0]}, ${force.count} from ${force.addresses}`,
+    picture: p99(times(pictures)),
+    bad,
+    health: p99(times(pings)),
+    frames: frames / (10 * seconds),
+    resident,
+    attackers,
+  };
+}
+
+const worst_of = (tries, value) => tries.reduce((a, b) => (value(b) > value(a) ? b : a));
+const told = (one, text) => `${text} (${one.name})`;
+
+function rows_of(tries) {
+  const picture = worst_of(tries, (t) => t.picture);
+  const health = worst_of(tries, (t) => t.health);
+  const frames = worst_of(tries, (t) => -t.frames);
+  const bad = tries.flatMap((t) => t.bad);
+  const resident = worst_of(tries, (t) => t.resident);
+  return [
+    row("small picture p99, worst attack", `<= ${kPicture_ms} ms`, told(picture, ms(picture.picture)), picture.picture <= kPicture_ms),
+    row("small pictures refused", "0", bad.length ? tally(bad.map(outcome)) : "0", bad.length === 0),
+    row("frames of a viewer, worst attack", ">= 50 %", told(frames, percent(frames.frames)), frames.frames >= 0.5),
+    row("/healthz p99, worst attack", `<= ${kHealth_ms} ms`, told(health, ms(health.health)), health.health <= kHealth_ms),
+    row("memory, most", "", told(resident, mib(resident.resident)), null),
+  ];
+}
+
+function tell(one) {
+  const bad = one.bad.length > 0 ? `, not 200: ${tally(one.bad.map(outcome))}` : "";
+  console.log(
+    `  ${one.name}: ${ms(one.picture)}${bad}, frames ${percent(one.frames)}, health ${ms(one.health)}, ` +
+      `${mib(one.resident)}, attackers got ${one.attackers}`,
+  );
+}
+
+// Each attack has a service of its own: jobs would outlive it.
+async function run({ seconds }) {
+  const wanted = process.env.BENCH_ATTACK ?? "";
+  const tries = [];
+  for (const one of kAttacks.filter(([name]) => name.includes(wanted)))
+    for (const force of kForces) {
+      tries.push(await with_service((service, { paper }) => try_attack(service, paper, one, force, seconds)));
+      tell(tries.at(-1));
+    }
+  return { rows: rows_of(tries), remark: `${kAttacks.length} attacks, alone, 16 at once from one address and from 8` };
+}
+
+export const kBlockade = {
+  name: "blockade",
+  what: "small pictures, an orbit and /healthz while others ask for all they can",
+  seconds: 3,
+  run,
+};
