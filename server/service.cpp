@@ -53,6 +53,7 @@ HttpServer::Options options_of(const Settings& settings) {
   return {.host = settings.host,
           .port = settings.port,
           .max_bodies = std::max({settings.bodies_bytes, settings.body_bytes, settings.asset_bytes}),
+          .max_answers = settings.answers_bytes,
           .max_connections = settings.connections,
           .grace = settings.grace_seconds};
 }
@@ -107,9 +108,13 @@ void Service::reload() {
 }
 
 void Service::stop() {
-  log_.write(LogLevel::info, "draining", nlohmann::ordered_json::object());
-  app_.drain();
-  server_.drain();
+  const auto delay = app_.settings().drain_delay_seconds;
+  log_.write(LogLevel::info, "draining", {{"delay_s", delay.count()}});
+  app_.retire();
+  drain_.reset(new Timer::Alarm(timer_.at(timer_.now() + delay, [this] {
+    app_.drain();
+    server_.drain();
+  })));
 }
 
 Response Service::metrics() {

@@ -20,7 +20,7 @@ class Service {
   // Serves until stop() was called and what ran then is done.
   void run();
   // Both from any thread.
-  void stop();
+  void stop();    // after drain_delay_seconds
   void reload();  // reads the files of tokens and keys again; the log says if that failed
 
  private:
@@ -36,7 +36,8 @@ class Service {
   App app_;
   Metrics metrics_;
   Router router_, health_router_;
-  HttpServer server_, health_;  // last: their threads use the others
+  HttpServer server_, health_;  // their threads use the others
+  std::unique_ptr<Timer::Alarm> drain_;
 };
 
 }  // namespace orrery

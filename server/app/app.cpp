@@ -122,7 +122,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
     timing.queue += milliseconds_since(start);
   };
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
-  Budget::Share layers(layer_bytes_);
+  Budget::Share layers(layer_bytes_, demand.client);
   if (storage == FilmStorage::sums) layers.grow(layer_bytes_of(plan, settings_.layer_bytes));
   const Films::Found film = films_.get(
       key + std::to_string(static_cast<int>(storage)), stop, [&](const std::stop_token& nobody_waits) {
@@ -168,8 +168,10 @@ SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Call
 void App::drain() { drains_.request_stop(); }
 
 std::string_view App::readiness() const {
-  if (draining()) return "draining";
-  return admission_.full() ? "full" : "ok";
+  constexpr std::chrono::seconds kLongWait{5};
+  if (retires_ || draining()) return "draining";
+  if (admission_.full()) return "full";
+  return admission_.longest_wait() >= kLongWait ? "slow" : "ok";
 }
 
 void App::require_open() const {

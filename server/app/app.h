@@ -79,8 +79,9 @@ class App {
 
   // The service is about to end: no new work; what runs goes on.
   bool draining() const { return drains_.stop_requested(); }
-  // Whether new work is taken: "ok", or why not: "draining" or "full".
+  // Whether new work should be sent here: "ok", or why not: "draining", "full" or "slow".
   std::string_view readiness() const;
+  void retire() { retires_ = true; }  // new work is still taken, but should go elsewhere
   void drain();
   // What still runs ends now.
   void end() { ends_.request_stop(); }
@@ -97,6 +98,7 @@ class App {
                const Demand& demand, const std::stop_token& stop, Timing& timing);
 
   Timer& timer_;
+  std::atomic<bool> retires_{false};
   std::stop_source drains_, ends_;
   Meters meters_;
   Access access_;

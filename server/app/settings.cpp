@@ -30,8 +30,10 @@ constexpr std::array kSettings{
     Setting{"insecure", &S::insecure, "", "Allow an address that other machines can reach without tokens"},
     // The limits.
     Setting{"body_bytes", &S::body_bytes, "N", "Bytes of a request's body", 1, 1'000'000'000},
-    Setting{"bodies_bytes", &S::bodies_bytes, "N", "Bytes of the bodies of all requests at one time", 1,
-            kMost},
+    Setting{"bodies_bytes", &S::bodies_bytes, "N",
+            "Bytes of the bodies of all requests at one time; half of them for one client", 1, kMost},
+    Setting{"answers_bytes", &S::answers_bytes, "N",
+            "Bytes of all answers that are sent at one time; half of them for one client", 1, kMost},
     Setting{"store_bytes", &S::store_bytes, "N", "Bytes of scenes kept, by estimate", 1, kMost},
     Setting{"asset_bytes", &S::asset_bytes, "N", "Bytes of a mesh file", 1, 4'000'000'000},
     Setting{"asset_store_bytes", &S::asset_store_bytes, "N", "Bytes of mesh files kept", 1, kMost},
@@ -62,6 +64,11 @@ constexpr std::array kSettings{
     Setting{"job_seconds", &S::job_seconds, "N", "Seconds that one job may take", 1, 1'000'000},
     Setting{"job_kept_seconds", &S::job_kept_seconds, "N", "Seconds that a job is kept after its end", 1,
             10'000'000},
+    Setting{
+        "drain_delay_seconds", &S::drain_delay_seconds, "N",
+        "Seconds that the service goes on taking work after it was told to end, while /readyz says that it "
+        "does not: for a balancer to notice",
+        0, 1'000'000},
     Setting{"grace_seconds", &S::grace_seconds, "N",
             "Seconds that running requests get when the service ends", 1, 1'000'000},
 };

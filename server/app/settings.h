@@ -21,6 +21,7 @@ struct Settings {
   // Limits; see limits().
   std::size_t body_bytes = 8 << 20;
   std::size_t bodies_bytes = 256 << 20;
+  std::size_t answers_bytes = 256 << 20;
   std::size_t store_bytes = 256 << 20;
   std::size_t asset_bytes = 64 << 20;
   std::size_t asset_store_bytes = 256 << 20;
@@ -40,6 +41,7 @@ struct Settings {
   std::size_t job_bytes = 512 << 20;
   std::chrono::seconds job_seconds{3600};
   std::chrono::seconds job_kept_seconds{3600};
+  std::chrono::seconds drain_delay_seconds{0};
   std::chrono::seconds grace_seconds{30};
 
   // Who may ask; empty: everyone who can.

@@ -11,6 +11,7 @@
 #include "server/commands/config.h"
 #include "server/commands/signals.h"
 #include "server/http/authority.h"
+#include "server/http/descriptors.h"
 #include "server/http/listener.h"
 #include "server/service.h"
 
@@ -27,7 +28,7 @@ Examples:
 A setting comes from its flag, or else its variable (ORRERY_PORT), or else the file, or else is as shown. Names
 that do not exist are refused in all three; ORRERY_TOKEN alone is left to clients.
 All that is posted or put is kept in memory only and ends with the service.
-SIGTERM or Ctrl-C ends it: running requests are answered, streams stop after a frame. A second one ends it at once.
+SIGTERM or Ctrl-C ends it, after --drain-delay-seconds: running requests are answered, streams stop after a frame. A second one ends it at once.
 SIGHUP reads the files of tokens and keys again.
 )";
 
@@ -53,6 +54,11 @@ void check(const Settings& settings, std::vector<Problem>& problems) {
       problems.push_back(
           {"--cors-origins",
            "expected *, null or origins such as https://app.example:8443, got " + origin.substr(0, 80)});
+  const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
+  if (allowed < needed)
+    problems.push_back({"--connections", std::to_string(settings.connections) + " may take " +
+                                             std::to_string(needed) + " open files, the process may have " +
+                                             std::to_string(allowed) + " (ulimit -n)"});
   try {
     const Access access(settings.tokens_file, settings.share_key_file);
   } catch (const InputError& error) {

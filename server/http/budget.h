@@ -1,14 +1,18 @@
 #pragma once
 
-#include <atomic>
+#include <algorithm>
 #include <cstddef>
+#include <map>
+#include <mutex>
 #include <string>
+#include <utility>
 
 #include "server/http/over_limit.h"
 
 namespace orrery {
 
-// Bytes that many may take from together. Safe from any thread.
+// Bytes that many may take from together. A client may have half of them, or one share of any size. Safe from
+// any thread.
 class Budget {
  public:
   // `name`: of the limit, in /v1/limits; `takers`: what errors call those who take, at the start of a
@@ -19,37 +23,54 @@ class Budget {
   // Bytes taken, given back with the object.
   class Share {
    public:
-    explicit Share(Budget& from) : from_(from) {}
-    ~Share() { from_.taken_ -= bytes_; }
+    Share(Budget& from, std::string client) : from_(from), client_(std::move(client)) {}
+    ~Share() { from_.give_back(client_, bytes_); }
     Share(const Share&) = delete;
-    // Takes what it has not yet of so many bytes. Throws OverLimit if there are not so many left.
+    // Takes what it has not yet of so many bytes. Throws OverLimit if there are not so many left, ClientBusy
+    // if the client has too many.
     void grow(std::size_t bytes) {
       if (bytes <= bytes_) return;
-      from_.take_more(bytes - bytes_);
+      from_.take(client_, bytes_, bytes - bytes_);
       bytes_ = bytes;
     }
 
    private:
     Budget& from_;
+    const std::string client_;
     std::size_t bytes_ = 0;
   };
 
  private:
-  void take_more(std::size_t bytes) {
+  // `own`: what the share has already.
+  void take(const std::string& client, std::size_t own, std::size_t bytes) {
     constexpr double kRetry_s = 2;
-    std::size_t taken = taken_;
-    do {
-      if (bytes > most_ - taken)
-        throw OverLimit(std::string(takers_) + " take " + std::to_string(taken) +
-                            " bytes already, of at most " + std::to_string(most_) + " (" + name_ + "), and " +
-                            std::to_string(bytes) + " more are needed",
-                        kRetry_s, name_);
-    } while (!taken_.compare_exchange_weak(taken, taken + bytes));
+    const std::lock_guard lock(mutex_);
+    const auto known = taken_by_.find(client);
+    const std::size_t by_client = known == taken_by_.end() ? 0 : known->second;
+    const auto told = [&](const std::string& whose, std::size_t taken, std::size_t most) {
+      return takers_ + whose + " take " + std::to_string(taken) + " bytes already, of at most " +
+             std::to_string(most) + " (" + name_ + "), and " + std::to_string(bytes) + " more are needed";
+    };
+    if (by_client > own && bytes > most_ / 2 - std::min(by_client, most_ / 2))
+      throw ClientBusy(told(" of yours", by_client, most_ / 2), kRetry_s, name_);
+    if (bytes > most_ - taken_) throw OverLimit(told("", taken_, most_), kRetry_s, name_);
+    taken_by_[client] = by_client + bytes;
+    taken_ += bytes;
+  }
+  void give_back(const std::string& client, std::size_t bytes) {
+    if (bytes == 0) return;
+    const std::lock_guard lock(mutex_);
+    taken_ -= bytes;
+    const auto known = taken_by_.find(client);
+    if ((known->second -= bytes) == 0) taken_by_.erase(known);
   }
 
   const std::size_t most_;
-  const char *const name_, *const takers_;
-  std::atomic<std::size_t> taken_{0};
+  const char* const name_;
+  const std::string takers_;
+  std::mutex mutex_;  // guards all below
+  std::size_t taken_ = 0;
+  std::map<std::string, std::size_t> taken_by_;  // clients that have taken some
 };
 
 }  // namespace orrery

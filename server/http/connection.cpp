@@ -13,6 +13,8 @@
 #include <limits>
 #include <utility>
 
+#include "server/http/chunk_decoder.h"
+
 namespace orrery {
 namespace {
 
@@ -33,6 +35,32 @@ void take_from(msghdr& left, std::size_t bytes) {
 }
 
 }  // namespace
+
+// By when the next bytes must have crossed.
+class Connection::Pace {
+ public:
+  // Of so many bytes; 0: nobody knows.
+  Pace(std::size_t bytes, const Patience& patience)
+      : window_(patience.window),
+        end_(Clock::now() + patience.whole + patience.window),
+        bytes_a_window_(
+            static_cast<std::size_t>(window_.count()) *
+            std::max(patience.bytes_per_s, bytes / static_cast<std::size_t>(patience.whole.count()))) {}
+  Clock::time_point deadline() const { return std::min(deadline_, end_); }
+  void count(std::size_t bytes) {
+    crossed_ += bytes;
+    if (crossed_ < bytes_a_window_) return;
+    crossed_ = 0;
+    deadline_ = Clock::now() + window_;
+  }
+
+ private:
+  const std::chrono::seconds window_;
+  const Clock::time_point end_;
+  const std::size_t bytes_a_window_;
+  std::size_t crossed_ = 0;  // in this window
+  Clock::time_point deadline_ = Clock::now() + window_;
+};
 
 Connection::Connection(int fd, int wake, const Patience& patience)
     : fd_(fd), wake_(wake), patience_(patience), reading_since_(Clock::now()) {}
@@ -138,7 +166,7 @@ HttpError Connection::too_late(const std::string& part) const {
 }
 
 void Connection::count_progress(Clock::time_point& since, std::size_t bytes) const {
-  const auto earned = std::chrono::microseconds(bytes * 1'000'000 / patience_.body_bytes_per_s);
+  const auto earned = std::chrono::microseconds(bytes * 1'000'000 / patience_.bytes_per_s);
   since = std::min(Clock::now(), since + earned);
 }
 
@@ -163,7 +191,6 @@ Head Connection::read_head() {
       received_.erase(0, size);
       empty_lines_ = 0;
       Head head = parse_head(bytes);
-      // A chunked body is refused unread, so all that follows is lost.
       body_left_ = head.chunked ? std::numeric_limits<std::size_t>::max() : head.content_length.value_or(0);
       return head;
     }
@@ -172,18 +199,13 @@ Head Connection::read_head() {
   }
 }
 
-std::string Connection::read_body(const Head& head, const BodyLimit& limit,
-                                  const std::function<void(std::size_t)>& received) {
-  if (head.chunked || !head.content_length) {
+std::string Connection::read_body(const Head& head, const BodyLimit& limit, const Received& received) {
+  if (!head.chunked && !head.content_length) {
     body_left_ = std::numeric_limits<std::size_t>::max();  // whatever comes is no request, but a body
-    throw HttpError(411, "A body must come with its Content-Length");
+    throw HttpError(411, "A body must come with its Content-Length, or in chunks");
   }
-  const std::size_t length = *head.content_length;
-  if (length > limit.bytes)
-    throw HttpError(413,
-                    "The body has " + std::to_string(length) + " bytes, at most " +
-                        std::to_string(limit.bytes) + " are allowed (" + limit.name + ")",
-                    {}, limit.name);
+  const std::size_t length = head.content_length.value_or(limit.bytes);  // at most
+  if (length > limit.bytes) throw body_too_long(limit, std::to_string(length));
   if (const auto expect = head.header("Expect")) {
     if (!equal_ignoring_case(*expect, "100-continue"))
       throw HttpError(417, "Expected no Expect but 100-continue");
@@ -191,19 +213,38 @@ std::string Connection::read_body(const Head& head, const BodyLimit& limit,
     if (waits) write({"HTTP/1.1 100 Continue\r\n\r\n"});
   }
   reading_since_ = Clock::now();
-  const auto deadline =
-      reading_since_ + patience_.body_stall + std::chrono::seconds(length / patience_.body_bytes_per_s);
+  std::string body = head.chunked ? read_chunks(limit, received) : read_counted(length, received);
+  body_left_ = 0;
+  return body;
+}
+
+std::string Connection::read_counted(std::size_t length, const Received& received) {
+  Pace pace(length, patience_);
   received_.reserve(std::min<std::size_t>(length, 1 << 20));
   while (received_.size() < length) {
-    const std::size_t before = received_.size();
-    if (!receive(std::min(deadline, Clock::now() + patience_.body_stall))) throw too_late("The body");
-    count_progress(reading_since_, received_.size() - before);
+    receive_part(pace);
     received(std::min(received_.size(), length));
   }
   std::string body = received_.substr(0, length);
   received_.erase(0, length);
-  body_left_ = 0;
   return body;
+}
+
+std::string Connection::read_chunks(const BodyLimit& limit, const Received& received) {
+  Pace pace(0, patience_);
+  ChunkDecoder decoder(limit);
+  while (!decoder.take(received_)) {
+    received(decoder.body().size() + received_.size());
+    receive_part(pace);
+  }
+  return std::move(decoder.body());
+}
+
+void Connection::receive_part(Pace& pace) {
+  const std::size_t before = received_.size();
+  if (!receive(pace.deadline())) throw too_late("The body");
+  pace.count(received_.size() - before);
+  count_progress(reading_since_, received_.size() - before);
 }
 
 void Connection::abandon() const {
@@ -216,20 +257,24 @@ bool Connection::write(std::initializer_list<std::string_view> pieces) {
   std::array<iovec, kMostPieces> vectors;
   msghdr left{};  // what is not sent yet
   left.msg_iov = vectors.data();
-  for (const std::string_view piece : pieces)
+  std::size_t size = 0;
+  for (const std::string_view piece : pieces) {
     if (!piece.empty()) vectors[left.msg_iovlen++] = {const_cast<char*>(piece.data()), piece.size()};
-  auto deadline = Clock::now() + patience_.write_stall;
+    size += piece.size();
+  }
+  Pace pace(size, patience_);
   while (left.msg_iovlen > 0 && !broken_) {
     const ssize_t count = sendmsg(fd_, &left, MSG_NOSIGNAL);
     if (count >= 0) {
       take_from(left, static_cast<std::size_t>(count));
       written_ += static_cast<std::uint64_t>(count);
       if (writing_since_) count_progress(*writing_since_, static_cast<std::size_t>(count));
-      deadline = Clock::now() + patience_.write_stall;
+      pace.count(static_cast<std::size_t>(count));
       continue;
     }
     if (errno == EAGAIN && !writing_since_) writing_since_ = Clock::now();
-    if (errno == EINTR || (errno == EAGAIN && wait(POLLOUT, deadline, false) == Ready::socket)) continue;
+    if (errno == EINTR || (errno == EAGAIN && wait(POLLOUT, pace.deadline(), false) == Ready::socket))
+      continue;
     broken_ = true;
   }
   return !broken_;

@@ -18,9 +18,10 @@ namespace orrery {
 struct Patience {
   std::chrono::milliseconds idle{15'000};  // between two requests
   std::chrono::milliseconds head{5'000};   // for request line and headers
-  std::chrono::milliseconds body_stall{10'000};
-  std::size_t body_bytes_per_s = 1024;  // or better
-  std::chrono::milliseconds write_stall{10'000};
+  // Of bodies and answers, in each window: this rate or better, so that all of it crosses in `whole`.
+  std::size_t bytes_per_s = 1024;
+  std::chrono::seconds whole{600};
+  std::chrono::seconds window{10};
   std::chrono::milliseconds last_call{1'000};  // for the rest of a request once the service ends
 };
 
@@ -43,14 +44,14 @@ class Connection final {
   // Reads the body of the request with this head. Throws HttpError.
   // `received` is told how many bytes there are, each time that some have come; what it throws ends the
   // reading.
-  std::string read_body(const Head& head, const BodyLimit& limit,
-                        const std::function<void(std::size_t)>& received);
+  using Received = std::function<void(std::size_t)>;
+  std::string read_body(const Head& head, const BodyLimit& limit, const Received& received);
   // Whether bytes of this request may still be under way; then nothing after it can be understood.
   bool body_unread() const { return body_left_ > 0; }
 
   // Sends these bytes, one piece after the other, and waits until the kernel has taken them all. False: the
   // client has left, or takes nothing any more. REQUIRES: at most kMostPieces.
-  static constexpr std::size_t kMostPieces = 4;
+  static constexpr std::size_t kMostPieces = 6;
   bool write(std::initializer_list<std::string_view> pieces);
 
   // Before the end of a connection: waits a little for what the client still sends, which would otherwise see
@@ -74,6 +75,7 @@ class Connection final {
 
  private:
   using Clock = Waiting::Clock;
+  class Pace;
   enum class Ready { socket, wake, none };
 
   // Until the socket is ready for `events` or broken, with `heed_wake` also until the service ends. None:
@@ -82,6 +84,9 @@ class Connection final {
   // Appends what has come to `received_`, after waiting for it. False: the client has closed, or time is up.
   bool receive(Clock::time_point deadline);
   bool wait_to_receive(Clock::time_point deadline);
+  std::string read_counted(std::size_t length, const Received& received);
+  std::string read_chunks(const BodyLimit& limit, const Received& received);
+  void receive_part(Pace& pace);
   // Whether something begins that is no empty line.
   bool skip_empty_lines();
   // Why `part` of a request did not come.

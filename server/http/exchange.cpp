@@ -49,7 +49,7 @@ bool Exchanger::exchange(Connection& connection) {
   std::stop_source gone;
   request.gone = gone.get_token();
   const HangupMonitor::Watching watching = monitor_.watch(connection.fd(), gone);
-  Budget::Share body(bodies_);  // as long as it is used
+  Budget::Share body(bodies_, request.client);  // as long as it is used
   return send(connection, request, response_to(request, head, connection, body), framing);
 }
 
@@ -68,8 +68,15 @@ Response Exchanger::response_to(Request& request, const Head& head, Connection& 
 bool Exchanger::send(Connection& connection, const Request& request, Response response, Framing framing) {
   const bool ends_with_it = response.stream && framing.minor_version == 0;  // which knows no chunks
   if (ends_with_it || draining_ || connection.body_unread()) framing.keep_alive = false;
+  const Sender sender{answers_, request.client, request.gone};
+  AnswerBudget::Share share;
+  try {
+    if (has_body(response, framing)) share = answers_.take(response.body, request.client);
+  } catch (const Busy&) {
+    response = handler_.refuse(request, std::current_exception());
+  }
   const std::uint64_t before = connection.bytes_written();
-  const bool written = write_response(connection, response, framing, request.gone);
+  const bool written = write_response(connection, response, framing, sender);
   // Who leaves after the last byte has got its answer.
   const bool gone =
       connection.left() || response.status == kClientGone || (!written && response.note.empty());

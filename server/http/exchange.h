@@ -18,7 +18,8 @@ class Exchanger {
   Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler, HangupMonitor& monitor)
       : handler_(handler),
         monitor_(monitor),
-        bodies_(options.max_bodies, "bodies_bytes", "Bodies of requests") {}
+        bodies_(options.max_bodies, "bodies_bytes", "Bodies of requests"),
+        answers_(options.max_answers) {}
 
   // Reads and answers the request that begins there. False if the connection ends with it. Throws nothing but
   // std::bad_alloc and its like.
@@ -34,6 +35,7 @@ class Exchanger {
   const HttpServer::Handler& handler_;
   HangupMonitor& monitor_;
   Budget bodies_;
+  AnswerBudget answers_;
   std::atomic<bool> draining_{false};
 };
 

@@ -13,22 +13,6 @@ namespace {
 constexpr std::array<std::string_view, 8> kMethods{"GET",    "HEAD",    "POST",  "PUT",
                                                    "DELETE", "OPTIONS", "TRACE", "PATCH"};
 
-bool is_token(std::string_view text) {  // RFC 9110, 5.6.2
-  constexpr std::string_view kMarks = "!#$%&'*+-.^_`|~";
-  return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           kMarks.find(c) != std::string_view::npos;
-  });
-}
-
-// Visible characters, blanks and bytes above ASCII: what a header's value may have.
-bool is_field_text(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte == '\t' || (byte >= 0x20 && byte != 0x7F);
-  });
-}
-
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
@@ -73,6 +57,15 @@ void parse_header(std::string_view line, Head& head) {
   head.headers.emplace_back(name, value);
 }
 
+void judge_coding(std::string_view coding, Head& head) {
+  if (head.minor_version == 0) throw HttpError(400, "HTTP/1.0 has no Transfer-Encoding");
+  if (head.chunked) throw HttpError(400, "Transfer-Encoding is given twice");
+  if (!equal_ignoring_case(coding, "chunked"))
+    throw HttpError(
+        501, "Of transfer codings chunked alone is known here, got " + std::string(coding.substr(0, 40)));
+  head.chunked = true;
+}
+
 // Headers that say where the request ends: who reads them differently than a neighbour reads another request.
 void judge_framing(Head& head) {
   int hosts = 0;
@@ -81,7 +74,7 @@ void judge_framing(Head& head) {
       ++hosts;
       if (!value.empty() && !is_authority(value)) throw HttpError(400, "Host is not a host and a port");
     }
-    if (equal_ignoring_case(name, "Transfer-Encoding")) head.chunked = true;
+    if (equal_ignoring_case(name, "Transfer-Encoding")) judge_coding(value, head);
     if (!equal_ignoring_case(name, "Content-Length")) continue;
     std::size_t length = 0;
     const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), length);
@@ -110,6 +103,21 @@ bool connection_says(const Head& head, std::string_view word) {
 }
 
 }  // namespace
+
+bool is_token(std::string_view text) {
+  constexpr std::string_view kMarks = "!#$%&'*+-.^_`|~";
+  return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           kMarks.find(c) != std::string_view::npos;
+  });
+}
+
+bool is_field_text(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == '\t' || (byte >= 0x20 && byte != 0x7F);
+  });
+}
 
 Head parse_head(std::string_view bytes) {
   Head head;

@@ -20,15 +20,19 @@ struct Head {
   int minor_version = 1;  // HTTP/1.0 or 1.1
   Fields headers;         // values without blanks around them
   std::optional<std::size_t> content_length;
-  bool chunked = false;    // has a Transfer-Encoding
+  bool chunked = false;    // Transfer-Encoding: chunked
   bool keep_alive = true;  // the client does not want the connection closed
 
   std::optional<std::string> header(std::string_view name) const { return find_field(headers, name); }
 };
 
+bool is_token(std::string_view text);  // RFC 9110, 5.6.2
+// Visible characters, blanks and bytes above ASCII: what a header's value may have.
+bool is_field_text(std::string_view text);
+
 // Parses the bytes up to and with the empty line (RFC 9112), strictly: lines end with CR LF, names are
-// tokens, nothing is folded; one Host, which may be empty; at most one Content-Length, digits only, and not
-// beside a Transfer-Encoding. Throws HttpError 400, 414, 431, 501 or 505.
+// tokens, nothing is folded; one Host, which may be empty; at most one Content-Length, digits only, or one
+// Transfer-Encoding, which is chunked. Throws HttpError 400, 414, 431, 501 or 505.
 Head parse_head(std::string_view bytes);
 
 // Throws what parse_head() would throw as soon as it is sure, so that nobody waits for the end of what is no

@@ -60,8 +60,9 @@ Listener::Listener(const std::string& host, int port) {
 
 Listener::~Listener() { close(fd_); }
 
-int Listener::accept() const {
+int Listener::accept() {
   const int fd = accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+  out_of_room_ = fd < 0 && (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM);
   if (fd < 0) return -1;
   const int on = 1;
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);

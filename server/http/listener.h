@@ -15,11 +15,14 @@ class Listener {
   int fd() const { return fd_; }
   int port() const { return port_; }
 
-  // The next connection, or -1 if there is none right now.
-  int accept() const;
+  // The next connection, or -1 if there is none right now, or no room for one.
+  int accept();
+  // Whether the last accept() found that the process, or the system, has no room for another socket.
+  bool out_of_room() const { return out_of_room_; }
 
  private:
   int fd_ = -1, port_ = 0;
+  bool out_of_room_ = false;
 };
 
 // Whether only this machine reaches what listens there. REQUIRES: `host` is a name or an address.

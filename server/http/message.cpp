@@ -27,7 +27,7 @@ Response& Response::set(std::string_view name, std::string value) {
   return *this;
 }
 
-Response text_response(int status, std::string_view type, std::string body) {
+Response text_response(int status, std::string_view type, SharedBytes body) {
   Response response{.status = status, .body = std::move(body)};
   response.set("Content-Type", std::string(type));
   return response;

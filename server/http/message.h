@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "server/http/shared_bytes.h"
 
 // What routes see of HTTP. No library shows through.
 namespace orrery {
@@ -53,13 +54,15 @@ struct Request {
 class Sink {
  public:
   virtual ~Sink() = default;
-  virtual bool write(std::string_view bytes) = 0;  // waits; false: the client has gone
+  // Writes all three, one after the other, and waits. False: the client has gone. Throws OverLimit if too
+  // much is being sent already.
+  virtual bool write(std::string_view bytes, const SharedBytes& more = {}, std::string_view end = {}) = 0;
 };
 
 struct Response {
   int status = 200;
   Fields headers = {};
-  std::string body = {};
+  SharedBytes body = {};
   // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws if it
   // cannot go on: the answer is then broken off, so that nobody takes it for a whole one, and the log says
   // why.
@@ -72,7 +75,7 @@ struct Response {
   Response& set(std::string_view name, std::string value);  // replaces
 };
 
-Response text_response(int status, std::string_view type, std::string body);
+Response text_response(int status, std::string_view type, SharedBytes body);
 Response json_response(int status, std::string json);
 
 // A refusal that is about HTTP itself.

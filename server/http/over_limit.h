@@ -18,4 +18,10 @@ class OverLimit : public Busy {
   const char* limit_;
 };
 
+// This client has so much under way that what it asks for now, or last, is turned away.
+class ClientBusy : public OverLimit {
+ public:
+  using OverLimit::OverLimit;
+};
+
 }  // namespace orrery

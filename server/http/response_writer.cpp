@@ -11,8 +11,16 @@ namespace {
 // Whether an answer of this status may have a body at all (RFC 9110, 6.4.1).
 bool may_have_body(int status) { return status >= 200 && status != 204 && status != 304; }
 
+}  // namespace
+
+bool has_body(const Response& response, const Framing& framing) {
+  return !framing.head_only && may_have_body(response.status);
+}
+
+namespace {
+
 bool is_streamed(const Response& response, const Framing& framing) {
-  return response.stream && !framing.head_only && may_have_body(response.status);
+  return response.stream && has_body(response, framing);
 }
 
 void append_header(std::string& text, std::string_view name, std::string_view value) {
@@ -27,26 +35,29 @@ void append_header(std::string& text, std::string_view name, std::string_view va
 // The parts of an answer as chunks, or as they are, to the end of the connection (RFC 9112, 7.1 and 6.3).
 class BodySink final : public Sink {
  public:
-  BodySink(Connection& connection, bool chunked, const std::stop_token& gone)
-      : connection_(connection), chunked_(chunked), gone_(gone) {}
+  BodySink(Connection& connection, bool chunked, const Sender& sender)
+      : connection_(connection), chunked_(chunked), sender_(sender) {}
 
-  bool write(std::string_view bytes) override {
-    if (gone_.stop_requested()) return whole_ = false;
-    if (bytes.empty()) return whole_;  // an empty chunk would be the last
-    if (!chunked_) return whole_ = whole_ && connection_.write({bytes});
-    std::array<char, 20> size;
-    const auto end = std::to_chars(size.data(), size.data() + size.size(), bytes.size(), 16).ptr;
-    return whole_ = whole_ && connection_.write({std::string_view(size.data(), end), "\r\n", bytes, "\r\n"});
+  bool write(std::string_view bytes, const SharedBytes& more, std::string_view end) override {
+    if (sender_.gone.stop_requested()) return whole_ = false;
+    const std::size_t count = bytes.size() + more.size() + end.size();
+    if (count == 0) return whole_;  // an empty chunk would be the last
+    const auto share = sender_.answers.take(more, sender_.client);
+    if (!chunked_) return whole_ = whole_ && connection_.write({bytes, more, end});
+    std::array<char, 20> text;
+    const std::string_view size(text.data(),
+                                std::to_chars(text.data(), text.data() + text.size(), count, 16).ptr);
+    return whole_ = whole_ && connection_.write({size, "\r\n", bytes, more, end, "\r\n"});
   }
   // Ends the body. Returns whether all of it was written.
   bool finish() {
-    return whole_ && !gone_.stop_requested() && (!chunked_ || connection_.write({"0\r\n\r\n"}));
+    return whole_ && !sender_.gone.stop_requested() && (!chunked_ || connection_.write({"0\r\n\r\n"}));
   }
 
  private:
   Connection& connection_;
   const bool chunked_;
-  const std::stop_token gone_;
+  const Sender& sender_;
   bool whole_ = true;  // so far
 };
 
@@ -71,14 +82,14 @@ std::string response_head(const Response& response, const Framing& framing) {
 }
 
 bool write_response(Connection& connection, Response& response, const Framing& framing,
-                    const std::stop_token& gone) {
+                    const Sender& sender) {
   const std::string head = response_head(response, framing);
   if (!is_streamed(response, framing)) {
-    const bool without_body = framing.head_only || !may_have_body(response.status);
-    return connection.write({head, without_body ? std::string_view() : response.body});
+    if (!has_body(response, framing)) return connection.write({head});
+    return connection.write({head, response.body});
   }
   if (!connection.write({head})) return false;
-  BodySink sink(connection, framing.minor_version == 1, gone);
+  BodySink sink(connection, framing.minor_version == 1, sender);
   try {
     response.stream(sink);
   } catch (const std::exception& error) {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "server/http/answer_budget.h"
 #include "server/http/connection.h"
 #include "server/http/message.h"
 
@@ -19,10 +20,19 @@ struct Framing {
 // can begin a header of its own.
 std::string response_head(const Response& response, const Framing& framing);
 
+// Whether a body follows the head of the answer, or would if it were not empty.
+bool has_body(const Response& response, const Framing& framing);
+
+// For whom an answer is sent.
+struct Sender {
+  AnswerBudget& answers;
+  std::string client;
+  std::stop_token gone = {};  // requested once the client has gone
+};
+
 // Writes all of the answer and returns true; false: the client has left, or `response.stream` threw, which
-// `response.note` then tells. A stream ends once `gone` is requested. REQUIRES: keep_alive is false if a
-// stream answers HTTP/1.0.
-bool write_response(Connection& connection, Response& response, const Framing& framing,
-                    const std::stop_token& gone = {});
+// `response.note` then tells. A stream ends once the client has gone; what it writes counts among the
+// answers. REQUIRES: keep_alive is false if a stream answers HTTP/1.0.
+bool write_response(Connection& connection, Response& response, const Framing& framing, const Sender& sender);
 
 }  // namespace orrery

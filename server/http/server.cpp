@@ -39,6 +39,9 @@ class Alarm {
   const int fd_;
 };
 
+constexpr int kNothing = -1;                     // to wait for
+constexpr std::chrono::milliseconds kRetry{50};  // to accept a connection that there was no room for
+
 // Waits until one of both can be read, or the deadline; none: for ever.
 void wait_for_either(int a, int b, std::optional<Clock::time_point> deadline) {
   pollfd ready[] = {{a, POLLIN, 0}, {b, POLLIN, 0}};
@@ -71,7 +74,10 @@ class HttpServer::Parts {
 
   void run() {
     while (!draining_) {
-      wait_for_either(listener_->fd(), wake_.fd(), shed_.next_close());
+      if (listener_->out_of_room())  // a connection stays to be accepted: waiting for one would not wait
+        wait_for_either(kNothing, wake_.fd(), Clock::now() + kRetry);
+      else
+        wait_for_either(listener_->fd(), wake_.fd(), shed_.next_close());
       accept_all();
     }
     if (!answer_all(Clock::now() + options_.grace)) end_now();
@@ -123,7 +129,7 @@ class HttpServer::Parts {
         std::to_string(options_.max_connections) + " connections are open already (connections)", 1,
         "connections");
     const Response response = handler_.refuse(request, std::make_exception_ptr(busy));
-    return response_head(response, {.keep_alive = false}) + response.body;
+    return response_head(response, {.keep_alive = false}).append(response.body);
   }
 
   // Waits until no request is being answered. False if one still is at the deadline.

@@ -19,8 +19,9 @@ class HttpServer {
  public:
   struct Options {
     std::string host = "127.0.0.1";
-    int port = 0;                        // 0: a free one
-    std::size_t max_bodies = 256 << 20;  // of all that are read or used at one time (bodies_bytes)
+    int port = 0;                         // 0: a free one
+    std::size_t max_bodies = 256 << 20;   // of all that are read or used at one time (bodies_bytes)
+    std::size_t max_answers = 256 << 20;  // of all that are sent at one time (answers_bytes)
     std::size_t max_connections = 256;
     std::chrono::seconds grace{30};  // for running requests once drain() was called
   };

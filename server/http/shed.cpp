@@ -10,7 +10,6 @@ Shed::~Shed() {
 }
 
 void Shed::refuse(int fd, std::string_view bytes) {
-  constexpr std::size_t kMost = 256;  // sockets kept open for clients that still send
   constexpr std::chrono::seconds kTimeToRead{1};
   [[maybe_unused]] const ssize_t sent = send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   shutdown(fd, SHUT_WR);

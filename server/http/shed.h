@@ -10,6 +10,8 @@ namespace orrery {
 // Turns connections away that no thread is free for: answers without reading what they ask. For one thread.
 class Shed {
  public:
+  static constexpr std::size_t kMost = 128;  // sockets kept open for clients that still send
+
   ~Shed();
   // Takes the socket. `bytes`: the whole answer.
   void refuse(int fd, std::string_view bytes);

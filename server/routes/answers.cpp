@@ -170,7 +170,7 @@ void set_warnings(Response& response, std::span<const Problem> warnings) {
 }
 
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing) {
-  Response response = text_response(200, type, rendered.picture->bytes);
+  Response response = text_response(200, type, {rendered.picture, rendered.picture->bytes});
   std::string told = server_timing(timing);
   if (!told.empty()) told += ", ";
   if (rendered.made_now) {

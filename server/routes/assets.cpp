@@ -50,7 +50,7 @@ Response get_asset(App& app, Request& request) {
   const AssetStore::AssetPtr asset = app.assets().find(id);
   Response response{.status = 304};
   if (!has_current(request, etag_of(id))) {
-    response = {.status = 200, .body = asset->bytes};
+    response = {.status = 200, .body = {asset, asset->bytes}};
     response.set("Content-Type", names_of(*asset).media_type);
   }
   response.set("ETag", etag_of(id));

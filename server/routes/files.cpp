@@ -32,7 +32,7 @@ void add_file(Router& router, std::string_view address, const EmbeddedFile& file
   router.add("GET", address, Scope::none, LogLevel::info, [file, etag](Request& request) {
     Response response = has_current(request, etag)
                             ? Response{.status = 304}
-                            : text_response(200, type_of(file.path), std::string(file.bytes));
+                            : text_response(200, type_of(file.path), {nullptr, file.bytes});
     response.set("ETag", etag).set("Cache-Control", "no-cache");  // kept, but asked about each time
     return response;
   });

@@ -23,7 +23,8 @@ ordered_json job_json(const Job& job, const JobStatus& status) {
                        {"events", job_path(job.id()) + "/events"}};
   json.update(job.work().links(job.id()));
   if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
-  if (status.error) json["error"] = ordered_json::parse(problem_response(status.error, job.id()).body);
+  if (status.error)
+    json["error"] = ordered_json::parse(std::string_view(problem_response(status.error, job.id()).body));
   return json;
 }
 

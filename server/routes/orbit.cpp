@@ -55,8 +55,8 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   return spec;
 }
 
-// [length of the header, 4 bytes, big-endian][header, JSON][PNG]
-std::string framed(const OrbitFrame& frame, std::int64_t skipped) {
+// What comes before the PNG: [length of the header, 4 bytes, big-endian][header, JSON].
+std::string frame_head(const OrbitFrame& frame, std::int64_t skipped) {
   const Frame& picture = frame.picture;
   const std::string header = nlohmann::ordered_json{
       {"frame", frame.frame},
@@ -73,22 +73,12 @@ std::string framed(const OrbitFrame& frame, std::int64_t skipped) {
       {"bytes",
        picture.bytes.size()}}.dump();
   std::string bytes;
-  bytes.reserve(4 + header.size() + picture.bytes.size());
   for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(header.size() >> shift & 0xFF);
-  bytes += header;
-  bytes += picture.bytes;
-  return bytes;
+  return bytes + header;
 }
 
-// A part of a multipart body, with the boundary that ends it: a browser shows a picture when it sees the next
-// one.
-std::string part(const OrbitFrame& frame, bool last) {
-  std::string bytes =
-      "Content-Type: image/png\r\nContent-Length: " + std::to_string(frame.picture.bytes.size()) + "\r\n\r\n";
-  bytes.reserve(bytes.size() + frame.picture.bytes.size() + 32);
-  bytes += frame.picture.bytes;
-  bytes += "\r\n--" + std::string(kBoundary) + (last ? "--\r\n" : "\r\n");
-  return bytes;
+SharedBytes picture_of(const std::shared_ptr<const OrbitFrame>& frame) {
+  return {frame, frame->picture.bytes};
 }
 
 // What is sent of an orbit whose first frame is there.
@@ -101,17 +91,22 @@ struct OrbitRequest {
 
 void send_frames(const OrbitRequest& orbit, Sink& sink) {
   for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone))
-    if (!sink.write(framed(*frame, orbit.viewer->skipped()))) return;
+    if (!sink.write(frame_head(*frame, orbit.viewer->skipped()), picture_of(frame))) return;
 }
 
+// The boundary that ends a part goes with it: a browser shows a picture when it sees the next one.
 void send_parts(const OrbitRequest& orbit, Sink& sink) {
-  if (!sink.write("--" + std::string(kBoundary) + "\r\n")) return;
+  const std::string boundary = "\r\n--" + std::string(kBoundary);
+  if (!sink.write(boundary.substr(2) + "\r\n")) return;
   bool ended = false;
   for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone)) {
     ended = orbit.viewer->at_end();
-    if (!sink.write(part(*frame, ended))) return;
+    const std::string head =
+        "Content-Type: image/png\r\nContent-Length: " + std::to_string(frame->picture.bytes.size()) +
+        "\r\n\r\n";
+    if (!sink.write(head, picture_of(frame), boundary + (ended ? "--\r\n" : "\r\n"))) return;
   }
-  if (!ended) sink.write("\r\n--" + std::string(kBoundary) + "--\r\n");
+  if (!ended) sink.write(boundary + "--\r\n");
 }
 
 Response orbit(App& app, Request& request) {

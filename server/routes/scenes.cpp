@@ -55,8 +55,9 @@ Response get_scene(App& app, Request& request) {
   const auto prepared = app.scenes().find(request.path_value("id"));
   const Scene& scene = prepared->scene();
   const std::string etag = etag_of_scene(scene);
-  const bool known = has_current(request, etag);
-  Response response = known ? Response{.status = 304} : json_response(200, scene.canonical);
+  Response response{.status = 304};
+  if (!has_current(request, etag))
+    response = text_response(200, "application/json", {prepared, scene.canonical});
   response.set("ETag", etag);
   response.set("Cache-Control", "no-cache");  // it may be gone: ask each time
   return response;

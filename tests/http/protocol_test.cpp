@@ -21,13 +21,16 @@ class Protocol : public HttpTest {
   }
 };
 
-TEST_F(Protocol, ChunkedBodiesAreRefused) {
-  EXPECT_EQ(
-      status_of(
-          "POST /v1/render HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n"),
-      411);
-  EXPECT_EQ(status_of("POST /v1/render HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n-2\r\n"),
-            411);
+// However the bytes are cut.
+TEST_F(Protocol, BodiesMayComeInChunks) {
+  const std::string scene = small_scene().dump();
+  char size[20];
+  std::snprintf(size, sizeof size, "%zx", scene.size());
+  const RawClient raw(daemon().port());
+  raw.send("POST /v1/scenes HTTP/1.1\r\nHost: x\r\nConnection: close\r\nTransfer-Encoding: chunked\r\n\r\n");
+  for (const char c : size + ("\r\n" + scene) + "\r\n0\r\nA: b\r\n\r\n") raw.send(std::string(1, c));
+  const std::string answer = raw.receive_all();
+  EXPECT_EQ(answer.substr(9, 2), "20") << answer;
 }
 
 TEST_F(Protocol, BodiesWithoutALengthAreRefused) {

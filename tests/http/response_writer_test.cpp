@@ -33,6 +33,7 @@ class Wire {
   Wire(const Wire&) = delete;
 
   Connection& connection() { return *connection_; }
+  Sender sender() { return {answers_, "client"}; }
   void hang_up() {
     if (reader_ >= 0) close(reader_);
     reader_ = -1;
@@ -52,13 +53,14 @@ class Wire {
 
  private:
   const int wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  AnswerBudget answers_{8 << 20};
   int reader_ = -1;
   std::optional<Connection> connection_;
 };
 
 std::string written(Response response, const Framing& framing = {}) {
   Wire wire;
-  EXPECT_TRUE(write_response(wire.connection(), response, framing));
+  EXPECT_TRUE(write_response(wire.connection(), response, framing, wire.sender()));
   wire.end();
   return wire.receive_all();
 }
@@ -116,7 +118,7 @@ TEST(ResponseWriter, LongAnswersArriveWholeThroughASmallBuffer) {
     Response response = streamed ? stream_of({body, body}) : Response{.body = body};
     bool whole = false;
     std::thread writer([&] {
-      whole = write_response(wire.connection(), response, {});
+      whole = write_response(wire.connection(), response, {}, wire.sender());
       wire.end();
     });
     const std::string all = wire.receive_all();
@@ -135,7 +137,7 @@ TEST(ResponseWriter, AStreamThatFailsIsBrokenOff) {
     sink.write("part");
     throw std::runtime_error("no more");
   };
-  EXPECT_FALSE(write_response(wire.connection(), response, {}));
+  EXPECT_FALSE(write_response(wire.connection(), response, {}, wire.sender()));
   EXPECT_EQ(response.note, "no more");
   wire.end();
   EXPECT_TRUE(wire.receive_all().ends_with("\r\n\r\n4\r\npart\r\n"));  // without the last chunk
@@ -147,7 +149,7 @@ TEST(ResponseWriter, TellsTheStreamThatItsClientHasLeft) {
   Response response;
   int taken = 0;
   response.stream = [&](Sink& sink) { taken = sink.write("a") + sink.write("b"); };
-  EXPECT_FALSE(write_response(wire.connection(), response, {}));
+  EXPECT_FALSE(write_response(wire.connection(), response, {}, wire.sender()));
   EXPECT_EQ(taken, 0);
   EXPECT_TRUE(response.note.empty());
 }

@@ -1,0 +1,101 @@
+#include "server/http/chunk_decoder.h"
+
+#include <charconv>
+#include <optional>
+
+#include "server/http/head.h"
+
+namespace orrery {
+namespace {
+
+constexpr std::size_t kLongestLine = 256, kMostOverhead = 16 * 1024;
+
+[[noreturn]] void refuse(const char* why) {
+  throw HttpError(400, std::string("The body is not in chunks: ") + why);
+}
+
+// The line at the front, without its CR LF; none: its end has not come.
+std::optional<std::string_view> line_of(std::string_view bytes) {
+  const std::size_t end = bytes.find("\r\n");
+  const std::string_view line = bytes.substr(0, end);
+  if (line.size() > kLongestLine) refuse("a line is too long");
+  if (!is_field_text(line.substr(0, line.size() - line.ends_with('\r'))))
+    refuse("a line has control characters");
+  return end == std::string_view::npos ? std::nullopt : std::optional(line);
+}
+
+}  // namespace
+
+HttpError body_too_long(const BodyLimit& limit, const std::string& bytes) {
+  return {413,
+          "The body has " + bytes + " bytes, at most " + std::to_string(limit.bytes) + " are allowed (" +
+              limit.name + ")",
+          {},
+          limit.name};
+}
+
+bool ChunkDecoder::take(std::string& bytes) {
+  std::size_t taken = 0;
+  while (expects_ != Expects::nothing) {
+    const std::size_t count = step(std::string_view(bytes).substr(taken));
+    if (count == 0) break;
+    taken += count;
+  }
+  bytes.erase(0, taken);
+  return expects_ == Expects::nothing;
+}
+
+std::size_t ChunkDecoder::step(std::string_view bytes) {
+  switch (expects_) {
+    case Expects::size: return take_size(bytes);
+    case Expects::data: return take_data(bytes);
+    case Expects::end_of_data: return take_end_of_data(bytes);
+    case Expects::trailer: return take_trailer(bytes);
+    case Expects::nothing: break;
+  }
+  return 0;
+}
+
+std::size_t ChunkDecoder::take_size(std::string_view bytes) {
+  const auto line = line_of(bytes);
+  if (!line) return 0;
+  const auto [end, problem] = std::from_chars(line->data(), line->data() + line->size(), left_, 16);
+  const std::string_view extension(end, static_cast<std::size_t>(line->data() + line->size() - end));
+  if (problem != std::errc() || !(extension.empty() || extension.front() == ';'))
+    refuse("a size is not in hexadecimal digits");
+  if ((overhead_ += extension.size()) > kMostOverhead) refuse("its extensions are too long");
+  if (left_ > limit_.bytes - body_.size())
+    throw body_too_long(limit_, "more than " + std::to_string(limit_.bytes));
+  expects_ = left_ > 0 ? Expects::data : Expects::trailer;
+  return line->size() + 2;
+}
+
+std::size_t ChunkDecoder::take_data(std::string_view bytes) {
+  const std::string_view data = bytes.substr(0, left_);
+  body_ += data;
+  left_ -= data.size();
+  if (left_ == 0) expects_ = Expects::end_of_data;
+  return data.size();
+}
+
+std::size_t ChunkDecoder::take_end_of_data(std::string_view bytes) {
+  if (!std::string_view("\r\n").starts_with(bytes.substr(0, 2))) refuse("a chunk is longer than its size");
+  if (bytes.size() < 2) return 0;
+  expects_ = Expects::size;
+  return 2;
+}
+
+std::size_t ChunkDecoder::take_trailer(std::string_view bytes) {
+  const auto line = line_of(bytes);
+  if (!line) return 0;
+  if (line->empty()) {
+    expects_ = Expects::nothing;
+    return 2;
+  }
+  if (!is_token(line->substr(0, line->find(':'))) || line->find(':') == std::string_view::npos)
+    refuse("a trailer is not NAME: VALUE");
+  if ((overhead_ += line->size()) > kMostOverhead) refuse("its trailers are too long");
+  return line->size() + 2;
+}
+
+}  // namespace orrery

@@ -1,0 +1,25 @@
+#include "server/http/descriptors.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "server/http/shed.h"
+
+namespace orrery {
+
+std::size_t descriptors_for(std::size_t connections) {
+  constexpr std::size_t kHealth = 16, kOthers = 64;
+  return connections + kHealth + 2 * Shed::kMost + kOthers;
+}
+
+std::size_t allow_descriptors(std::size_t count) {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  if (limit.rlim_cur >= count) return limit.rlim_cur;
+  limit.rlim_cur = std::min<rlim_t>(count, limit.rlim_max);
+  setrlimit(RLIMIT_NOFILE, &limit);
+  return limit.rlim_cur;
+}
+
+}  // namespace orrery

@@ -1,0 +1,67 @@
+#include "server/http/budget.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "server/http/answer_budget.h"
+
+// Bytes that requests and answers take together.
+namespace orrery {
+namespace {
+
+TEST(Budget, SharesTakeNoMoreThanThereIs) {
+  Budget budget(100, "some_bytes", "Some");
+  std::optional<Budget::Share> a(std::in_place, budget, "a");
+  Budget::Share b(budget, "b");
+  a->grow(60);
+  a->grow(50);  // has them
+  b.grow(40);
+  try {
+    b.grow(41);
+    FAIL() << "41 bytes of 40";
+  } catch (const OverLimit& error) {
+    EXPECT_STREQ(error.what(),
+                 "Some take 100 bytes already, of at most 100 (some_bytes), and 1 more are needed");
+    EXPECT_STREQ(error.limit(), "some_bytes");
+  }
+  a.reset();
+  b.grow(100);
+}
+
+TEST(Budget, AClientHasHalfOrOneShare) {
+  Budget budget(100, "some_bytes", "Some");
+  {
+    Budget::Share large(budget, "a"), more(budget, "a"), other(budget, "b");
+    large.grow(70);
+    EXPECT_THROW(more.grow(1), ClientBusy);
+    other.grow(30);
+  }
+  Budget::Share first(budget, "a"), second(budget, "a"), third(budget, "a");
+  first.grow(20);
+  second.grow(30);
+  EXPECT_THROW(third.grow(1), ClientBusy);
+  EXPECT_THROW(second.grow(31), ClientBusy);
+}
+
+TEST(AnswerBudget, BytesThatManyShareCountOnce) {
+  AnswerBudget budget(200'000);
+  const SharedBytes picture(std::string(100'000, 'p')), other(std::string(100'001, 'o'));
+  std::vector<AnswerBudget::Share> shares;
+  for (const char* client : {"a", "b", "a"}) shares.push_back(budget.take(picture, client));
+  EXPECT_THROW(budget.take(other, "c"), OverLimit);
+  shares.pop_back();
+  shares.pop_back();
+  EXPECT_THROW(budget.take(other, "c"), OverLimit);
+  shares.pop_back();
+  shares.push_back(budget.take(other, "c"));
+}
+
+TEST(AnswerBudget, SmallAnswersAreFree) {
+  AnswerBudget budget(0);
+  EXPECT_EQ(budget.take(SharedBytes(std::string(64 * 1024, 's')), "a"), nullptr);
+  EXPECT_THROW(budget.take(SharedBytes(std::string(64 * 1024 + 1, 's')), "a"), OverLimit);
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,75 @@
+#include "server/http/connection.h"
+
+#include <gtest/gtest.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <stdexcept>
+#include <thread>
+
+// Clients that trickle: a byte now and then keeps nothing open for long.
+namespace orrery {
+namespace {
+
+constexpr Patience kBrief{.bytes_per_s = 1000, .window = std::chrono::seconds(1)};
+
+// A connection whose client crosses a byte in 5 ms, in both directions.
+class Trickle {
+ public:
+  explicit Trickle(const std::string& head) {
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
+      throw std::runtime_error("socketpair");
+    client_ = ends[1];
+    EXPECT_EQ(send(client_, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
+    connection_.emplace(ends[0], wake_, kBrief);
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+      for (char byte = ' '; !stop.stop_requested();
+           std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+        [[maybe_unused]] const ssize_t sent = send(client_, &byte, 1, MSG_NOSIGNAL);
+        [[maybe_unused]] const ssize_t received = recv(client_, &byte, 1, 0);
+      }
+    });
+  }
+  ~Trickle() {
+    thread_ = {};
+    connection_.reset();
+    close(client_);
+    close(wake_);
+  }
+  Trickle(const Trickle&) = delete;
+  Connection& connection() { return *connection_; }
+
+ private:
+  const int wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  int client_ = -1;
+  std::optional<Connection> connection_;
+  std::jthread thread_;
+};
+
+void expect_too_slow(const std::string& framing, const std::string& begin) {
+  Trickle trickle("POST / HTTP/1.1\r\nHost: x\r\n" + framing + "\r\n\r\n" + begin);
+  Connection& connection = trickle.connection();
+  ASSERT_TRUE(connection.wait_for_request());
+  const Head head = connection.read_head();
+  try {
+    connection.read_body(head, {1'000'000, "body_bytes"}, [](std::size_t) {});
+    FAIL() << framing;
+  } catch (const HttpError& error) {
+    EXPECT_EQ(error.status(), 408) << error.what();
+  }
+}
+
+TEST(Trickle, BodiesEnd) {
+  expect_too_slow("Content-Length: 1000000", "");
+  expect_too_slow("Transfer-Encoding: chunked", "10000\r\n");
+}
+
+TEST(Trickle, AnswersEnd) {
+  Trickle trickle("");
+  EXPECT_FALSE(trickle.connection().write({std::string(10'000'000, 'a')}));
+}
+
+}  // namespace
+}  // namespace orrery
