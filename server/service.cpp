@@ -60,7 +60,7 @@ HttpServer::Options options_of(const Settings& settings) {
 
 HttpServer::Options health_options_of(const Settings& settings) {
   constexpr std::size_t kConnections = 16;
-  return {.host = settings.host,
+  return {.host = settings.health_host,
           .port = settings.health_port,
           .max_bodies = 0,
           .max_connections = kConnections,

@@ -177,6 +177,7 @@ class WorkerThreads {
       if (loop->paused.empty()) return true;
       StepTurn& turn = *loop->paused.front();
       loop->paused.pop_front();
+      turn.place_.since = Clock::now();
       places_.push_back(&turn.place_);
       turn.resumed_ = true;
       turn.changed_.notify_one();
@@ -214,7 +215,6 @@ class WorkerThreads {
     turn.resumed_ = false;
     if (may_begin()) changed_.notify_one();
     turn.changed_.wait(lock, [&] { return turn.resumed_; });
-    turn.place_.since = Clock::now();
   }
 
   void watch() {

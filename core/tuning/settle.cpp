@@ -10,9 +10,9 @@
 namespace orrery {
 namespace {
 
-constexpr int kTiles = 3, kDeepest = 3;  // of the rays that are tried
-constexpr int kListMayPay = 64;          // primitives
-constexpr double kGain = 0.85;           // of its cost, at most, must another take to replace the usual one
+constexpr int kTiles = 3, kDeepest = 3;                 // of the rays that are tried
+constexpr int kListMayPay = 64, kBoxesMayPay = 10'000;  // primitives
+constexpr double kGain = 0.85;  // of its cost, at most, must another take to replace the usual one
 
 struct TrialResult {
   const AcceleratorType* type;
@@ -34,10 +34,11 @@ Decision choose(PreparedScene::Parts& parts, const Plan& plan, std::stop_token s
   Plan shallow = plan;
   shallow.max_depth = std::min(plan.max_depth, kDeepest);
   std::vector<TrialResult> tried{try_one<T>(parts, *plan.accelerator, shallow, stop)};
-  const bool few = parts.scene->primitive_count() <= kListMayPay;
+  const auto primitives = parts.scene->primitive_count();
   for (const auto& type : accelerator_types()) {
     const std::string_view name = type.name;
-    if (name == "boxes" || (name == "list" && few)) tried.push_back(try_one<T>(parts, type, shallow, stop));
+    if ((name == "boxes" && primitives <= kBoxesMayPay) || (name == "list" && primitives <= kListMayPay))
+      tried.push_back(try_one<T>(parts, type, shallow, stop));
   }
   const auto cheapest = std::min_element(
       tried.begin(), tried.end(), [](const TrialResult& a, const TrialResult& b) { return a.cost < b.cost; });

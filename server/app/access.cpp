@@ -87,6 +87,8 @@ Access::Known Access::read() const {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     note(tokens_file_ + ":" + std::to_string(number), [&] { known.holders.push_back(read_holder(line)); });
   }
+  if (needs_token() && known.holders.empty() && problems.empty())
+    problems.push_back({tokens_file_, "names no token: nobody could use the service"});
   if (!problems.empty()) throw InputError(std::move(problems));
   return known;
 }

@@ -25,13 +25,15 @@ class Access {
  public:
   // tokens_file: a line each, "NAME SCOPE[,SCOPE...] SHA256-OF-TOKEN"; # begins a comment. Empty: everyone
   // may do everything. share_key_file: bytes, at least 32, that links are signed with. Empty: there are no
-  // links. Throws InputError that names the file and the line.
+  // links. Throws InputError that names the file and the line; a
+  // file without tokens is an error.
   Access(std::string tokens_file, std::string share_key_file);
 
   // Reads the files again. Throws as the constructor does, and then all stays as it is.
   void reload();
 
   bool needs_token() const { return !tokens_file_.empty(); }
+  std::size_t tokens() const { return known()->holders.size(); }
 
   struct Holder {
     std::string name, token_sha256;

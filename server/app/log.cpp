@@ -23,6 +23,22 @@ std::string dumped(const ordered_json& value) {
   return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+// The same text with its control characters of Latin-1 escaped: a terminal may obey them.
+std::string without_c1(const std::string& utf8) {
+  std::string text;
+  for (std::size_t i = 0; i < utf8.size(); ++i) {
+    const auto next = static_cast<unsigned char>(i + 1 < utf8.size() ? utf8[i + 1] : '\0');
+    if (utf8[i] != '\xC2' || next < 0x80 || next > 0x9F) {
+      text += utf8[i];
+      continue;
+    }
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    text += std::string("\\u00") + kDigits[next >> 4] + kDigits[next & 15];
+    ++i;
+  }
+  return text;
+}
+
 // "request  method=GET path=/v1/limits": what is plain stays plain, the rest is quoted.
 std::string text_of(std::string_view event, const ordered_json& fields) {
   std::string text(event);
@@ -51,7 +67,7 @@ Log::~Log() = default;
 
 void Log::write(LogLevel level, std::string_view event, const ordered_json& fields) const {
   if (!logger_->should_log(level_of(level))) return;
-  if (form_ == LogForm::text) return logger_->log(level_of(level), "{}", text_of(event, fields));
+  if (form_ == LogForm::text) return logger_->log(level_of(level), "{}", without_c1(text_of(event, fields)));
   ordered_json line = {{"event", event}};
   line.update(fields);
   const std::string object = dumped(line);

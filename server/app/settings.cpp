@@ -16,6 +16,7 @@ constexpr std::int64_t kMost = 1'000'000'000'000;
 constexpr std::array kSettings{
     Setting{"host", &S::host, "NAME", "Name or address to listen on"},
     Setting{"port", &S::port, "N", "Port; 0: a free one", 0, 65535},
+    Setting{"health_host", &S::health_host, "NAME", "Name or address that health_port is on"},
     Setting{"health_port", &S::health_port, "N",
             "Port of /healthz, /readyz and /metrics, which answer however busy the service is; 0: a free one",
             0, 65535},
@@ -72,7 +73,7 @@ constexpr std::array kSettings{
     Setting{"grace_seconds", &S::grace_seconds, "N",
             "Seconds that running requests get when the service ends", 1, 1'000'000},
 };
-constexpr std::size_t kFirstLimit = 8;
+constexpr std::size_t kFirstLimit = 9;
 static_assert(kSettings[kFirstLimit].name == "body_bytes");
 
 std::int64_t whole_number(std::string_view text, std::int64_t min, std::int64_t max) {

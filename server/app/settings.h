@@ -15,6 +15,7 @@ namespace orrery {
 struct Settings {
   std::string host = "127.0.0.1";
   int port = 8080;
+  std::string health_host = "127.0.0.1";
   int health_port = 8081;  // of /healthz, /readyz and /metrics, for supervisors
   int threads = 0;         // that render; 0: one a core
 

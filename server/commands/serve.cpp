@@ -110,6 +110,9 @@ int serve(const CLI::App& app, const ServeOptions& options) {
     problems.push_back({"--log", "expected text or json, got " + options.log.substr(0, 80)});
   if (!problems.empty()) throw InputError(std::move(problems));
   if (options.print_config) std::cout << config_text(settings);
+  if (options.check_config && !settings.tokens_file.empty())
+    std::cout << settings.tokens_file << ": "
+              << Access(settings.tokens_file, settings.share_key_file).tokens() << " tokens\n";
   if (options.print_config || options.check_config) return kDone;
   const Log log(options.log == "json" ? LogForm::json : LogForm::text,
                 options.quiet ? LogLevel::warning : LogLevel::info);

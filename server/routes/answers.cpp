@@ -27,6 +27,29 @@ void for_each_entry(std::string_view list, char separator, const Part& part) {
   }
 }
 
+// A header that may have several lines is one list (RFC 9110, 5.3).
+std::string joined(const Request& request, std::string_view name) {
+  std::string all;
+  for (const auto& [key, value] : request.headers)
+    if (equal_ignoring_case(key, name)) all += (all.empty() ? "" : ", ") + value;
+  return all;
+}
+
+// "utf-8" of "application/json; charset=utf-8"; "" if none is told.
+std::string_view charset_of(std::string_view content_type) {
+  std::string_view charset;
+  for_each_entry(content_type, ';', [&](std::string_view parameter) {
+    constexpr std::string_view kCharset = "charset=";
+    if (parameter.size() < kCharset.size() ||
+        !equal_ignoring_case(parameter.substr(0, kCharset.size()), kCharset))
+      return;
+    charset = parameter.substr(kCharset.size());
+    if (charset.size() > 1 && charset.front() == '"' && charset.back() == '"')
+      charset = charset.substr(1, charset.size() - 2);
+  });
+  return charset;
+}
+
 void require_json(const Request& request) {
   refuse_compressed(request);
   const std::string header = request.header("Content-Type").value_or("");
@@ -38,6 +61,9 @@ void require_json(const Request& request) {
       std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
   if (!known && !(type.starts_with("application/") && type.ends_with("+json")))
     throw HttpError(415, "Expected a body of application/json, got " + std::string(type.substr(0, 100)));
+  const std::string_view charset = charset_of(header);
+  if (!charset.empty() && !equal_ignoring_case(charset, "utf-8") && !equal_ignoring_case(charset, "us-ascii"))
+    throw HttpError(415, "Expected JSON in UTF-8 (RFC 8259), got " + std::string(charset.substr(0, 40)));
 }
 
 // The query as an object: "/azimuth" (RFC 6901).
@@ -72,7 +98,7 @@ Fit fit_of(std::string_view entry, std::string_view type) {
   if (fit.exactness < 0) return fit;
   fit.weight = 1;
   for_each_entry(entry, ';', [&](std::string_view parameter) {
-    if (parameter.starts_with("q="))
+    if (parameter.starts_with("q=") || parameter.starts_with("Q="))
       fit.weight = std::strtod(std::string(parameter.substr(2)).c_str(), nullptr);
   });
   return fit;
@@ -114,10 +140,8 @@ RenderRequest read_query(const Request& request, std::span<const std::string_vie
 }
 
 bool has_current(const Request& request, std::string_view etag) {
-  const auto header = request.header("If-None-Match");
-  if (!header) return false;
   bool found = false;
-  for_each_entry(*header, ',', [&](std::string_view known) {
+  for_each_entry(joined(request, "If-None-Match"), ',', [&](std::string_view known) {
     if (known.starts_with("W/")) known.remove_prefix(2);
     found = found || known == etag || known == "*";
   });
@@ -125,13 +149,13 @@ bool has_current(const Request& request, std::string_view etag) {
 }
 
 std::string_view negotiate(const Request& request, std::span<const std::string_view> offered) {
-  const auto header = request.header("Accept");
-  if (!header || trimmed(*header).empty()) return offered[0];
+  const std::string header = joined(request, "Accept");
+  if (trimmed(header).empty()) return offered[0];
   std::string_view best;
   double best_weight = 0;
   for (const std::string_view type : offered) {
     Fit closest;
-    for_each_entry(*header, ',', [&](std::string_view entry) {
+    for_each_entry(header, ',', [&](std::string_view entry) {
       const Fit fit = fit_of(entry, type);
       if (fit.exactness > closest.exactness) closest = fit;
     });

@@ -159,6 +159,7 @@ TEST(Access, FilesThatCannotBeUsedKeepTheServiceFromStarting) {
   EXPECT_EQ(status_with("--tokens-file", line("alice", "read", "a")), 0);
   EXPECT_EQ(status_with("--tokens-file", "alice read\n"), 2);
   EXPECT_EQ(status_with("--tokens-file", line("alice", "paint", "a")), 2);
+  EXPECT_EQ(status_with("--tokens-file", "# nobody\n"), 2);
   EXPECT_EQ(status_with("--tokens-file", "alice read " + sha256_hex("a").substr(1) + "\n"), 2);
   EXPECT_EQ(status_with("--share-key-file", std::string(32, 'k')), 0);
   EXPECT_EQ(status_with("--share-key-file", std::string(31, 'k')), 2);

@@ -101,8 +101,11 @@ TEST_F(Bodies, JustUnderTheLimitAreRead) {
 }
 
 TEST_F(Bodies, OfOtherTypesAreRefused) {
-  for (const char* type : {"image/png", "multipart/form-data; boundary=x", "application/xml"})
+  for (const char* type : {"image/png", "multipart/form-data; boundary=x", "application/xml",
+                           "application/json; charset=utf-16", "text/plain;CHARSET=\"latin1\""})
     expect_problem(client_.Post("/v1/render", small_scene().dump(), type), 415);
+  for (const char* type : {"application/json; charset=UTF-8", "application/json;charset=\"utf-8\""})
+    EXPECT_EQ(client_.Post("/v1/render", small_scene().dump(), type)->status, 200) << type;
   const httplib::Headers compressed{{"Content-Encoding", "gzip"}};
   expect_problem(client_.Post("/v1/render", compressed, small_scene().dump(), "application/json"), 415);
 }

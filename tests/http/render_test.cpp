@@ -75,7 +75,10 @@ TEST_F(Render, AcceptChoosesTheFormat) {
   EXPECT_EQ(type_for("image/png;q=0.1, image/jpeg;q=0.9"), "image/jpeg");
   EXPECT_EQ(type_for("text/html, */*;q=0.5"), "image/png");
   EXPECT_EQ(type_for("image/png;q=0, image/*"), "image/jpeg");
+  EXPECT_EQ(type_for("image/png;Q=0, image/*"), "image/jpeg");
   expect_problem(render(small_scene(), {{"Accept", "text/html"}}), 406);
+  const auto two_lines = render(small_scene(), {{"Accept", "text/html"}, {"Accept", "image/jpeg"}});
+  EXPECT_EQ(two_lines->get_header_value("Content-Type"), "image/jpeg");
 }
 
 // What is asked for in each format of a daemon with these settings, and the rays traced for each.

@@ -52,14 +52,14 @@ let number = 0;
 const kJson = { "Content-Type": "application/json" };
 
 // One client's part: it asks for something new whenever it has an answer, but reads no stream.
-async function attack_once(client, [, ask, scene], statuses) {
+async function attack_once(client, [, ask, scene], statuses, goes_on) {
   let id = null;
   if (scene) {
     const body = JSON.stringify(scene(++number));
     const answer = await client.ask("/v1/scenes", { method: "POST", headers: kJson, body });
     id = answer.status < 300 ? JSON.parse(answer.text()).id : "nosuch";
   }
-  for (;;) {
+  while (goes_on()) {
     const { path, ...request } = ask(++number, id);
     if ((request.body?.length ?? 0) > 65536) throw new Error(`the attack has ${request.body.length} bytes`);
     const answer = await client.ask(path, request);
@@ -72,9 +72,11 @@ async function attack_once(client, [, ask, scene], statuses) {
 // Attacks until stop(), which tells what the attackers were answered.
 function attack({ port }, one, { count, addresses }) {
   const statuses = [];
+  let going = true;
   const clients = Array.from({ length: count }, (_, i) => new Client(port, `127.0.0.${2 + (i % addresses)}`));
-  const all = Promise.all(clients.map((client) => attack_once(client, one, statuses)));
+  const all = Promise.all(clients.map((client) => attack_once(client, one, statuses, () => going)));
   return async () => {
+    going = false;
     clients.forEach((client) => client.leave());
     await all;
     return statuses;
