@@ -59,6 +59,13 @@ void append_process_metrics(std::vector<MetricFamily>& families, const Meters& m
        {"process_open_fds", "Open file descriptors", kGauge, {value(open_files())}}});
 }
 
+MetricFamily limits_family(const Settings& settings) {
+  MetricFamily family{"orrery_limit", "Limits, as /v1/limits tells them", MetricType::Gauge, {}};
+  for (const Setting& limit : limits())
+    family.metric.push_back(value(std::stod(limit.text(settings)), {{"limit", std::string(limit.name)}}));
+  return family;
+}
+
 }  // namespace
 
 std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
@@ -74,6 +81,10 @@ std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
       {"orrery_ready", "1 while new work is taken", kGauge, {value(app.readiness() == "ok")}},
       {"orrery_renders_running", "Renders that have their turn", kGauge, {value(admission.running())}},
       {"orrery_renders_waiting", "Renders that wait for their turn", kGauge, {value(admission.waiting())}},
+      {"orrery_places_lost_total",
+       "Times that work lost its turn to other work",
+       kCounter,
+       {value(admission.places_lost())}},
       {"orrery_queue_wait_seconds",
        "From asking for a turn to having it",
        MetricType::Histogram,
@@ -114,6 +125,7 @@ std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
        kCounter,
        {value(server.refused())}},
   };
+  families.push_back(limits_family(app.settings()));
   append_process_metrics(families, meters);
   return families;
 }

@@ -30,6 +30,14 @@ std::string http_date() {
   return text;
 }
 
+// The query for the log, without what a link proves itself by.
+std::string query_of(const Request& request) {
+  std::string text;
+  for (const auto& [name, value] : request.query)
+    if (name != "signature") text += (text.empty() ? "" : "&") + name + "=" + value;
+  return text.substr(0, 200);
+}
+
 // What every answer carries.
 void add_common_headers(const Request& request, Response& response) {
   response.set("X-Request-ID", request.id)
@@ -158,15 +166,18 @@ Response Service::finished(const Request& request, Response response) const {
 void Service::note(const Request& request, const Response& response, std::uint64_t bytes, bool gone) {
   const double ms = milliseconds_since(request.start);
   metrics_.count_request(request.route ? request.route->pattern : "", request.method, response.status,
-                         ms / 1000, gone);
+                         ms / 1000, bytes, gone);
   if (response.refusal) metrics_.count_refusal(response.refusal);
   nlohmann::ordered_json fields = {{"id", request.id},
+                                   {"client", request.client},
                                    {"method", request.method},
                                    {"path", request.path.substr(0, 200)},
                                    {"status", response.status},
                                    {"ms", std::round(ms * 1000) / 1000},
                                    {"bytes", bytes}};
+  if (const std::string query = query_of(request); !query.empty()) fields["query"] = query;
   if (response.rays > 0) fields["rays"] = response.rays;
+  if (response.refusal) fields["refused_by"] = response.refusal;
   if (gone) fields["client_left"] = true;
   if (!response.note.empty()) fields["error"] = response.note;
   const bool failed = response.status == 500 || !response.note.empty();

@@ -150,6 +150,7 @@ void Admission::start_next() {
     if (!place_free(work->demand.lane)) {
       Work& other = *loser(work->demand.lane);
       other.state = State::lost;
+      ++places_lost_;
       give_up_place(other);
     }
     begin(*work);

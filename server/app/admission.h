@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <list>
 #include <memory>
@@ -101,6 +102,7 @@ class Admission {
   int waiting() const;
   // Whether small work would be turned away.
   bool full() const;
+  std::uint64_t places_lost() const { return places_lost_; }  // since the start
   // How long the interactive work has waited that came first of what waits to begin; none does: 0.
   Clock::duration longest_wait() const;
   // From asking for a turn to having it.
@@ -155,8 +157,9 @@ class Admission {
   const Limits limits_;
   Timer& timer_;
   SecondsHistogram waits_[2];  // of a lane
-  mutable std::mutex mutex_;   // guards all below
-  Works works_;                // those that wait in order of arrival
+  std::atomic<std::uint64_t> places_lost_{0};
+  mutable std::mutex mutex_;  // guards all below
+  Works works_;               // those that wait in order of arrival
   int running_ = 0, running_batch_ = 0;
   Lane latest_ = Lane::interactive;  // that had a turn
   double virtual_time_[2] = {0, 0};  // of a lane: finish of the piece that started last

@@ -34,6 +34,11 @@ struct Metrics::Families {
           .Name("orrery_refusals_total")
           .Help("Requests refused by the limit that they hit, or because the service ends (draining)")
           .Register(registry);
+  Counter& sent_bytes = prometheus::BuildCounter()
+                            .Name("orrery_sent_bytes_total")
+                            .Help("Bytes of answers, heads among them")
+                            .Register(registry)
+                            .Add({});
   Counter& clients_left = prometheus::BuildCounter()
                               .Name("orrery_clients_left_total")
                               .Help("Requests whose client left before the end of the answer")
@@ -45,12 +50,13 @@ Metrics::Metrics() : families_(std::make_unique<Families>()) {}
 Metrics::~Metrics() = default;
 
 void Metrics::count_request(std::string_view route, std::string_view method, int status, double seconds,
-                            bool client_left) {
+                            std::uint64_t bytes, bool client_left) {
   constexpr std::array<std::string_view, 6> kMethods{"GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS"};
   const bool known = std::find(kMethods.begin(), kMethods.end(), method) != kMethods.end();
   const std::string name(route.empty() ? "none" : route), verb(known ? method : "other");
   families_->requests.Add({{"route", name}, {"method", verb}, {"code", std::to_string(status)}}).Increment();
   families_->seconds.Add({{"route", name}}, SecondsHistogram::boundaries()).Observe(seconds);
+  families_->sent_bytes.Increment(static_cast<double>(bytes));
   if (client_left) families_->clients_left.Increment();
 }
 

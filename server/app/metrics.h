@@ -2,6 +2,7 @@
 
 #include <prometheus/metric_family.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,9 +16,9 @@ class Metrics {
   Metrics();
   ~Metrics();
 
-  // An answered request. `route`: the pattern that it matched, so that there are few.
+  // An answered request. `route`: the pattern that it matched, so that there are few. `bytes`: sent.
   void count_request(std::string_view route, std::string_view method, int status, double seconds,
-                     bool client_left);
+                     std::uint64_t bytes, bool client_left);
 
   // A request that was understood but refused: by the limit of that name, or as the service ends
   // ("draining").

@@ -35,7 +35,10 @@ ordered_json list_of(const std::vector<Problem>& problems) {
 
 Response try_later(int status, const Busy& error, std::string_view request_id, const char* refusal) {
   Response response = respond(status, error.what(), request_id);
-  response.set("Retry-After", std::to_string(static_cast<int>(std::ceil(error.retry_after_s()))));
+  // Those who are refused at one time are not all to come back at one time.
+  const auto seconds = static_cast<std::size_t>(std::ceil(error.retry_after_s()));
+  const std::size_t spread = std::hash<std::string_view>()(request_id) % (1 + seconds / 4);
+  response.set("Retry-After", std::to_string(seconds + spread));
   response.refusal = refusal;
   return response;
 }

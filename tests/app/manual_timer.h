@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 #include "server/app/timer.h"
 
 namespace orrery {
@@ -8,14 +10,11 @@ namespace orrery {
 // order.
 class ManualTimer final : public Timer {
  public:
-  Clock::time_point now() const override {
-    const std::lock_guard lock(mutex());
-    return now_;
-  }
+  Clock::time_point now() const override { return now_; }
 
   void advance(Clock::duration by) {
     std::unique_lock lock(mutex());
-    const auto until = now_ + by;
+    const auto until = now() + by;
     while (next_due() <= until) {
       now_ = next_due();
       do_first(lock, now_);
@@ -38,7 +37,7 @@ class ManualTimer final : public Timer {
  private:
   void next_changed() override { changed_.notify_all(); }
 
-  Clock::time_point now_{std::chrono::hours(1)};  // guarded by mutex()
+  std::atomic<Clock::time_point> now_{Clock::time_point(std::chrono::hours(1))};  // written with mutex() held
   std::condition_variable changed_;
 };
 

@@ -99,6 +99,9 @@ TEST(Health, MetricsCountWhatWasAnswered) {
   for (const char* store : {"scenes", "pictures"})
     EXPECT_GT(value_of(text, "orrery_stored_bytes{store=\"" + std::string(store) + "\"}"), 0);
   EXPECT_EQ(value_of(text, "orrery_jobs"), 0);
+  EXPECT_EQ(value_of(text, "orrery_places_lost_total"), 0);
+  EXPECT_GT(value_of(text, "orrery_sent_bytes_total"), 3000);
+  EXPECT_EQ(value_of(text, "orrery_limit{limit=\"answers_bytes\"}"), 256 << 20);
   EXPECT_GT(value_of(text, "process_resident_memory_bytes"), 1e6);
   EXPECT_GT(value_of(text, "process_open_fds"), 3);
   EXPECT_GE(value_of(text, "process_start_time_seconds"), before);

@@ -99,7 +99,8 @@ TEST(Streams, LeaveConnectionsToOthers) {
 
   const auto refused = client.Get(events);
   EXPECT_EQ(refused->status, 429) << refused->body;
-  EXPECT_EQ(refused->get_header_value("Retry-After"), "5");
+  const int retry_s = std::stoi(refused->get_header_value("Retry-After"));
+  EXPECT_TRUE(retry_s == 5 || retry_s == 6) << retry_s;  // not everybody at one time
   EXPECT_EQ(json::parse(refused->body).at("detail"),
             "3 streams are open already that you asked for, which is half of all (connections)");
   third.close();
