@@ -9,7 +9,6 @@
 #include <exception>
 #include <list>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -67,7 +66,7 @@ class WorkerThreads {
     std::unique_lock lock(mutex_);
     add(loop);
     for (;;) {
-      loop.changed.wait(lock, [&] { return loop.over() || loop.pass_expired; });
+      loop.changed.wait(lock, [&] { return loop.over() || loop.pauses(); });
       loops_.remove(&loop);
       if (loop.over()) break;
       lock.unlock();
@@ -103,6 +102,7 @@ class WorkerThreads {
       if (!error) error = why;
       next = count;
     }
+    bool pauses() const { return pass_expired && running == static_cast<int>(paused.size()); }
     bool over() const { return next == count && running == 0; }
     bool waits() const {
       return !pass_expired && (!paused.empty() || (next < count && !free_workers.empty()));
@@ -150,10 +150,12 @@ class WorkerThreads {
     if (contended()) contended_.notify_one();
   }
 
+  // Whether there may be work for more than one; loops whose pass is renewed are not among loops_.
   bool contended() const {
-    const auto tasks =
-        std::count_if(places_.begin(), places_.end(), [](const Place* place) { return !place->loop; });
-    return loops_.size() + tasks_.size() + static_cast<std::size_t>(tasks) > 1;
+    const auto others = std::count_if(places_.begin(), places_.end(), [&](const Place* place) {
+      return std::find(loops_.begin(), loops_.end(), place->loop) == loops_.end();
+    });
+    return loops_.size() + tasks_.size() + static_cast<std::size_t>(others) > 1;
   }
   bool place_free() const { return static_cast<int>(places_.size()) < count_; }
   bool has(const Place& place) const {
@@ -199,7 +201,6 @@ class WorkerThreads {
   void ask_pass(Loop& loop) {
     if (!loop.pass || loop.pass_expired || !loop.pass->expired()) return;
     loop.pass_expired = true;
-    loop.changed.notify_one();
   }
 
   void give_way(StepTurn& turn) {
@@ -213,6 +214,7 @@ class WorkerThreads {
     }
     loop.paused.push_back(&turn);
     turn.resumed_ = false;
+    if (loop.pauses()) loop.changed.notify_one();
     if (may_begin()) changed_.notify_one();
     turn.changed_.wait(lock, [&] { return turn.resumed_; });
   }
@@ -239,7 +241,7 @@ class WorkerThreads {
     if (idle_ > count_ - static_cast<int>(places_.size())) return true;
     try {
       threads_.emplace_back([this] { serve(); });
-    } catch (const std::system_error&) {
+    } catch (const std::exception&) {
       return false;
     }
     ++idle_;
@@ -292,7 +294,7 @@ class WorkerThreads {
     loop.free_workers.push_back(worker);
     if (!go_on) loop.end(error);
     ask_pass(loop);
-    if (loop.over()) loop.changed.notify_one();
+    if (loop.over() || loop.pauses()) loop.changed.notify_one();
   }
 
   const int count_, niceness_;

@@ -35,8 +35,8 @@ class WorkerPool {
   // a long step asks its turn now and then to give way to those that have had less; one that does not for 50
   // ms shares its core with them. Callers in the background
   // have what the others leave. Once a step returns false or throws, no more are begun; what was thrown first
-  // is thrown here. Steps ask `pass`, if there is one, now and then; while it is renewed, by the caller's
-  // thread, none of them runs.
+  // is thrown here. Steps ask `pass`, if there is one, now and then: once it has expired none is begun, those
+  // that run pause when they ask, and then the caller's thread renews it.
   using Step = std::function<bool(int step, int worker, Turn& turn)>;
   void for_each(int count, bool background, const Step& work, Pass* pass = nullptr);
 

@@ -59,10 +59,14 @@ bool Admission::full() const {
 
 Clock::duration Admission::longest_wait() const {
   const std::lock_guard lock(mutex_);
-  const auto first = std::find_if(works_.begin(), works_.end(), [](const Work& w) {
-    return w.state == State::waits && w.entry == Entry::first && w.demand.lane == Lane::interactive;
-  });
-  return first == works_.end() ? Clock::duration{} : timer_.now() - first->since;
+  std::map<std::string, Clock::time_point> first;  // of a client
+  for (const Work& w : works_)
+    if (w.state == State::waits && w.entry == Entry::first && w.demand.lane == Lane::interactive &&
+        !has_lost_many(w.demand))
+      first.emplace(w.demand.client, w.since);
+  Clock::duration least = Clock::duration::max();
+  for (const auto& [client, since] : first) least = std::min(least, timer_.now() - since);
+  return first.empty() ? Clock::duration{} : least;
 }
 
 Admission::Ticket Admission::enter(const Demand& demand, const std::stop_token& stop) {
@@ -83,7 +87,12 @@ Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std:
     throw;
   }
   lock.unlock();
-  return Ticket(*this, *work, stop);
+  try {
+    return Ticket(*this, *work, stop);
+  } catch (...) {
+    leave(*work, false);
+    throw;
+  }
 }
 
 Admission::Ticket::Ticket(Admission& from, Work& work, std::stop_token stop)
@@ -246,12 +255,17 @@ bool Admission::has_lost_many(const Demand& demand) const {
   return lost >= 2 * limits_.running;
 }
 
-double Admission::waiting_cost(Lane lane, const std::string* client) const {
-  double sum = 0;
+std::map<std::string, double> Admission::waiting_costs(Lane lane) const {
+  std::map<std::string, double> costs;
   for (const Work& w : works_)
-    if (w.state == State::waits && w.entry != Entry::next && w.demand.lane == lane &&
-        (!client || w.demand.client == *client))
-      sum += std::max(std::min(kLeastCost, w.demand.cost), w.demand.cost - w.used);
+    if (w.counts && w.state == State::waits && w.demand.lane == lane)
+      costs[w.demand.client] += std::max(std::min(kLeastCost, w.demand.cost), w.demand.cost - w.used);
+  return costs;
+}
+
+double Admission::waiting_cost(Lane lane) const {
+  double sum = 0;
+  for (const auto& [client, cost] : waiting_costs(lane)) sum += cost;
   return sum;
 }
 
@@ -260,36 +274,38 @@ bool Admission::fits(Lane lane, double cost) const {
   return waiting == 0 || waiting + cost <= limits_.queue_rays;
 }
 
-Admission::Work* Admission::newest_of_greediest(Lane lane) {
-  const auto counts = [&](const Work& w) {
-    return w.entry == Entry::first && w.state == State::waits && w.demand.lane == lane;
-  };
-  std::map<std::string, double> costs;
-  for (const Work& w : works_)
-    if (counts(w)) costs[w.demand.client] += w.demand.cost;
-  Work* newest = nullptr;
-  for (Work& w : works_)
-    if (counts(w) && (!newest || costs[w.demand.client] >= costs[newest->demand.client])) newest = &w;
-  return newest;
+Admission::Work* Admission::newest_to_begin(Lane lane, const std::string& client) {
+  const auto newest = std::find_if(works_.rbegin(), works_.rend(), [&](const Work& w) {
+    return w.entry == Entry::first && w.state == State::waits && w.demand.lane == lane &&
+           w.demand.client == client;
+  });
+  return newest == works_.rend() ? nullptr : &*newest;
 }
 
+// What has begun cannot be dropped, and what it has left must not shut others out: who has less waiting than
+// the greediest is let in all the same.
 void Admission::make_room(const Demand& demand) {
   const Lane lane = demand.lane;
   while (!fits(lane, demand.cost)) {
-    Work* const greediest = newest_of_greediest(lane);
-    const double own = waiting_cost(lane, &demand.client) + demand.cost;
-    if (!greediest || greediest->demand.client == demand.client ||
-        own >= waiting_cost(lane, &greediest->demand.client)) {
-      const double all = waiting_cost(lane), mine = waiting_cost(lane, &demand.client);
-      const std::string told = "Work of " + in_millions(all) + " rays waits already, at most " +
-                               in_millions(limits_.queue_rays) + " may (queue_rays)";
-      if (mine > 0 && mine < all)
-        throw ClientBusy(told + ", much of it yours", retry_after_s(lane), "queue_rays");
-      throw OverLimit(told, retry_after_s(lane), "queue_rays");
-    }
-    greediest->state = State::dropped;
-    greediest->changed.notify_one();
+    const auto costs = waiting_costs(lane);
+    const auto greediest = std::max_element(costs.begin(), costs.end(),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto known = costs.find(demand.client);
+    const double own = known == costs.end() ? 0 : known->second;
+    if (greediest->first == demand.client || own + demand.cost >= greediest->second) refuse(lane, own);
+    Work* const dropped = newest_to_begin(lane, greediest->first);
+    if (!dropped) return;
+    dropped->state = State::dropped;
+    dropped->changed.notify_one();
   }
+}
+
+void Admission::refuse(Lane lane, double own) const {
+  const double all = waiting_cost(lane);
+  const std::string told = "Work of " + in_millions(all) + " rays waits already, at most " +
+                           in_millions(limits_.queue_rays) + " may (queue_rays)";
+  if (own > 0 && own < all) throw ClientBusy(told + ", much of it yours", retry_after_s(lane), "queue_rays");
+  throw OverLimit(told, retry_after_s(lane), "queue_rays");
 }
 
 void Admission::measure(double cost) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <exception>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <stop_token>
@@ -103,7 +104,8 @@ class Admission {
   // Whether small work would be turned away.
   bool full() const;
   std::uint64_t places_lost() const { return places_lost_; }  // since the start
-  // How long the interactive work has waited that came first of what waits to begin; none does: 0.
+  // How long the client that waits least for its interactive work to begin has waited; none does: 0. Those
+  // who have lost many places wait for their own work.
   Clock::duration longest_wait() const;
   // From asking for a turn to having it.
   const SecondsHistogram& waits(Lane lane) const { return waits_[static_cast<int>(lane)]; }
@@ -118,9 +120,10 @@ class Admission {
   enum class Entry { first, next, again };  // work that begins; that goes on; that has lost its place
   enum class State { waits, runs, lost, dropped };
   struct Work {
-    Work(const Demand& d, Entry e) : demand(d), entry(e), charge(d.cost) {}
+    Work(const Demand& d, Entry e) : demand(d), entry(e), counts(e == Entry::first), charge(d.cost) {}
     Demand demand;
     Entry entry;
+    const bool counts;  // among what may wait
     std::atomic<State> state{State::waits};
     double charge;              // rays that the next place is expected to take, or the last one did
     double used = 0;            // rays, about, in the places that it has lost
@@ -147,9 +150,11 @@ class Admission {
   bool has_lost_many(const Demand& demand) const;
   bool may_begin(const Demand& demand, Entry entry);  // as far as places go
   Work* next();                                       // who may start now; none: nullptr
-  // Of a lane: all, or one client's; without what enters again.
-  double waiting_cost(Lane lane, const std::string* client = nullptr) const;
-  Work* newest_of_greediest(Lane lane);
+  // Of a lane, by client, and all; without what enters again.
+  std::map<std::string, double> waiting_costs(Lane lane) const;
+  double waiting_cost(Lane lane) const;
+  Work* newest_to_begin(Lane lane, const std::string& client);  // none: nullptr
+  [[noreturn]] void refuse(Lane lane, double own) const;        // `own`: what the client has waiting
   double retry_after_s(Lane lane) const;
   double rays_a_second() const;
   void measure(double cost);

@@ -10,45 +10,67 @@
 
 namespace orrery {
 
-// Bytes of answers that are being sent: those that several connections share count once. Safe from any
+// Bytes of answers that are being sent; those that several connections share count once. A client may be sent
+// half of them, or one answer; and one answer of any size is sent while there is no other. Safe from any
 // thread.
 class AnswerBudget {
  public:
-  explicit AnswerBudget(std::size_t most) : budget_(most, "answers_bytes", "Answers that are being sent") {}
+  explicit AnswerBudget(std::size_t most) : most_(most) {}
 
   using Share = std::shared_ptr<const void>;
-  // Takes these bytes for as long as the share lives; a few are free. Throws as Budget::Share::grow().
+  // Takes these bytes for as long as the share lives; a few are free. Throws OverLimit or ClientBusy.
   Share take(const SharedBytes& bytes, const std::string& client) {
     constexpr std::size_t kFree = 64 * 1024;
     if (bytes.size() <= kFree) return nullptr;
-    const std::lock_guard lock(mutex_);
-    const auto [sent, is_new] = sent_.try_emplace(bytes.data(), budget_, client);
-    try {
-      sent->second.bytes.grow(bytes.size());
-    } catch (...) {
-      if (is_new) sent_.erase(sent);
-      throw;
-    }
-    ++sent->second.connections;
-    return {bytes.data(), [this](const char* data) { release(data); }};
+    charge(bytes, client);
+    return {bytes.data(), [this, client, bytes](const char*) { release(bytes, client); }};
   }
 
  private:
+  static constexpr const char* kName = "answers_bytes";
+  static constexpr double kRetry_s = 2;
+
   struct Sent {
-    Sent(Budget& budget, const std::string& client) : bytes(budget, client) {}
-    Budget::Share bytes;  // of the client that asked first
-    int connections = 0;
+    std::map<const char*, int> connections;  // that are sent the bytes which begin there
+    std::size_t bytes = 0;
+
+    bool has_room(const SharedBytes& more, std::size_t most) const {
+      return bytes == 0 || bytes + more.size() <= most || connections.count(more.data()) > 0;
+    }
+    void add(const SharedBytes& more) {
+      if (++connections[more.data()] == 1) bytes += more.size();
+    }
+    void remove(const SharedBytes& less) {
+      if (--connections[less.data()] > 0) return;
+      connections.erase(less.data());
+      bytes -= less.size();
+    }
   };
 
-  void release(const char* data) {
+  void charge(const SharedBytes& bytes, const std::string& client) {
     const std::lock_guard lock(mutex_);
-    const auto sent = sent_.find(data);
-    if (--sent->second.connections == 0) sent_.erase(sent);
+    const auto known = clients_.find(client);
+    if (known != clients_.end() && !known->second.has_room(bytes, most_ / 2))
+      throw ClientBusy(
+          over_limit_text("Answers of yours", known->second.bytes, most_ / 2, kName, bytes.size()), kRetry_s,
+          kName);
+    if (!all_.has_room(bytes, most_))
+      throw OverLimit(over_limit_text("Answers", all_.bytes, most_, kName, bytes.size()), kRetry_s, kName);
+    all_.add(bytes);
+    clients_[client].add(bytes);
+  }
+  void release(const SharedBytes& bytes, const std::string& client) {
+    const std::lock_guard lock(mutex_);
+    all_.remove(bytes);
+    const auto own = clients_.find(client);
+    own->second.remove(bytes);
+    if (own->second.bytes == 0) clients_.erase(own);
   }
 
-  Budget budget_;
-  std::mutex mutex_;  // guards sent_
-  std::map<const char*, Sent> sent_;
+  const std::size_t most_;
+  std::mutex mutex_;  // guards all below
+  Sent all_;
+  std::map<std::string, Sent> clients_;
 };
 
 }  // namespace orrery

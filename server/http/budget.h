@@ -11,6 +11,13 @@
 
 namespace orrery {
 
+// What is told where `takers` have `taken` bytes and need more than the limit leaves.
+inline std::string over_limit_text(const std::string& takers, std::size_t taken, std::size_t most,
+                                   const char* limit, std::size_t needed) {
+  return takers + " take " + std::to_string(taken) + " bytes already, of at most " + std::to_string(most) +
+         " (" + limit + "), and " + std::to_string(needed) + " more are needed";
+}
+
 // Bytes that many may take from together. A client may have half of them, or one share of any size. Safe from
 // any thread.
 class Budget {
@@ -47,13 +54,11 @@ class Budget {
     const std::lock_guard lock(mutex_);
     const auto known = taken_by_.find(client);
     const std::size_t by_client = known == taken_by_.end() ? 0 : known->second;
-    const auto told = [&](const std::string& whose, std::size_t taken, std::size_t most) {
-      return takers_ + whose + " take " + std::to_string(taken) + " bytes already, of at most " +
-             std::to_string(most) + " (" + name_ + "), and " + std::to_string(bytes) + " more are needed";
-    };
     if (by_client > own && bytes > most_ / 2 - std::min(by_client, most_ / 2))
-      throw ClientBusy(told(" of yours", by_client, most_ / 2), kRetry_s, name_);
-    if (bytes > most_ - taken_) throw OverLimit(told("", taken_, most_), kRetry_s, name_);
+      throw ClientBusy(over_limit_text(takers_ + " of yours", by_client, most_ / 2, name_, bytes), kRetry_s,
+                       name_);
+    if (bytes > most_ - taken_)
+      throw OverLimit(over_limit_text(takers_, taken_, most_, name_, bytes), kRetry_s, name_);
     taken_by_[client] = by_client + bytes;
     taken_ += bytes;
   }

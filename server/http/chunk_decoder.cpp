@@ -19,9 +19,10 @@ std::optional<std::string_view> line_of(std::string_view bytes) {
   const std::size_t end = bytes.find("\r\n");
   const std::string_view line = bytes.substr(0, end);
   if (line.size() > kLongestLine) refuse("a line is too long");
-  if (!is_field_text(line.substr(0, line.size() - line.ends_with('\r'))))
+  const bool whole = end != std::string_view::npos;
+  if (!is_field_text(line.substr(0, line.size() - (!whole && line.ends_with('\r')))))
     refuse("a line has control characters");
-  return end == std::string_view::npos ? std::nullopt : std::optional(line);
+  return whole ? std::optional(line) : std::nullopt;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ std::size_t allow_descriptors(std::size_t count) {
   if (limit.rlim_cur >= count) return limit.rlim_cur;
   limit.rlim_cur = std::min<rlim_t>(count, limit.rlim_max);
   setrlimit(RLIMIT_NOFILE, &limit);
+  getrlimit(RLIMIT_NOFILE, &limit);  // it may have been refused
   return limit.rlim_cur;
 }
 

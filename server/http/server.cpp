@@ -42,12 +42,12 @@ class Alarm {
 constexpr int kNothing = -1;                     // to wait for
 constexpr std::chrono::milliseconds kRetry{50};  // to accept a connection that there was no room for
 
-// Waits until one of both can be read, or the deadline; none: for ever.
-void wait_for_either(int a, int b, std::optional<Clock::time_point> deadline) {
+// Waits until one of both can be read, or the deadline.
+void wait_for_either(int a, int b, Clock::time_point deadline) {
   pollfd ready[] = {{a, POLLIN, 0}, {b, POLLIN, 0}};
   int limit_ms = -1;
-  if (deadline) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - Clock::now()).count();
+  if (deadline != Clock::time_point::max()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
     limit_ms = static_cast<int>(std::clamp<std::int64_t>(left, 0, std::numeric_limits<int>::max()));
   }
   poll(ready, 2, limit_ms);
@@ -74,10 +74,7 @@ class HttpServer::Parts {
 
   void run() {
     while (!draining_) {
-      if (listener_->out_of_room())  // a connection stays to be accepted: waiting for one would not wait
-        wait_for_either(kNothing, wake_.fd(), Clock::now() + kRetry);
-      else
-        wait_for_either(listener_->fd(), wake_.fd(), shed_.next_close());
+      wait_for_connection_or(wake_, Clock::time_point::max());
       accept_all();
     }
     if (!answer_all(Clock::now() + options_.grace)) end_now();
@@ -92,6 +89,13 @@ class HttpServer::Parts {
   }
 
  private:
+  void wait_for_connection_or(const Alarm& alarm, Clock::time_point deadline) {
+    if (listener_->out_of_room())  // a connection stays to be accepted: waiting for one would not wait
+      wait_for_either(kNothing, alarm.fd(), std::min(deadline, Clock::now() + kRetry));
+    else
+      wait_for_either(listener_->fd(), alarm.fd(), std::min(deadline, shed_.next_close()));
+  }
+
   void accept_all() {
     shed_.close_old();
     for (int fd; (fd = listener_->accept()) >= 0;) {
@@ -135,7 +139,7 @@ class HttpServer::Parts {
   // Waits until no request is being answered. False if one still is at the deadline.
   bool answer_all(Clock::time_point deadline) {
     while (busy_ > 0 && Clock::now() < deadline) {
-      wait_for_either(listener_->fd(), idle_.fd(), deadline);
+      wait_for_connection_or(idle_, deadline);
       idle_.silence();
       accept_all();
     }

@@ -27,8 +27,8 @@ void Shed::close_old() {
   }
 }
 
-std::optional<std::chrono::steady_clock::time_point> Shed::next_close() const {
-  return refused_.empty() ? std::nullopt : std::optional(refused_.front().close_at);
+std::chrono::steady_clock::time_point Shed::next_close() const {
+  return refused_.empty() ? std::chrono::steady_clock::time_point::max() : refused_.front().close_at;
 }
 
 }  // namespace orrery

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <deque>
-#include <optional>
 #include <string_view>
 
 namespace orrery {
@@ -17,8 +16,8 @@ class Shed {
   void refuse(int fd, std::string_view bytes);
   // Closes the sockets whose clients had the time to read the answer.
   void close_old();
-  // When the next of them is to be closed; none: there is none.
-  std::optional<std::chrono::steady_clock::time_point> next_close() const;
+  // When the next of them is to be closed; never, if there is none.
+  std::chrono::steady_clock::time_point next_close() const;
 
  private:
   struct Refused {

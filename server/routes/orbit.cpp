@@ -89,9 +89,20 @@ struct OrbitRequest {
   std::stop_token gone;
 };
 
+enum class Sent { whole, skipped, gone };
+
+// A frame for which there is no room among the answers is skipped, as if its viewer were slow.
+Sent send(Sink& sink, std::string_view head, const SharedBytes& picture, std::string_view end = {}) {
+  try {
+    return sink.write(head, picture, end) ? Sent::whole : Sent::gone;
+  } catch (const OverLimit&) {
+    return Sent::skipped;
+  }
+}
+
 void send_frames(const OrbitRequest& orbit, Sink& sink) {
   for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone))
-    if (!sink.write(frame_head(*frame, orbit.viewer->skipped()), picture_of(frame))) return;
+    if (send(sink, frame_head(*frame, orbit.viewer->skipped()), picture_of(frame)) == Sent::gone) return;
 }
 
 // The boundary that ends a part goes with it: a browser shows a picture when it sees the next one.
@@ -104,7 +115,9 @@ void send_parts(const OrbitRequest& orbit, Sink& sink) {
     const std::string head =
         "Content-Type: image/png\r\nContent-Length: " + std::to_string(frame->picture.bytes.size()) +
         "\r\n\r\n";
-    if (!sink.write(head, picture_of(frame), boundary + (ended ? "--\r\n" : "\r\n"))) return;
+    const Sent sent = send(sink, head, picture_of(frame), boundary + (ended ? "--\r\n" : "\r\n"));
+    if (sent == Sent::gone) return;
+    ended = ended && sent == Sent::whole;
   }
   if (!ended) sink.write(boundary + "--\r\n");
 }

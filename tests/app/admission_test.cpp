@@ -231,6 +231,43 @@ TEST(Admission, WhoHasLostManyPlacesBeginsNoMore) {
   EXPECT_EQ(waiters.order(), RenderOrder{"z"});
 }
 
+// What has begun cannot be turned away, however much is left of it.
+TEST(Admission, WorkThatLostItsPlaceShutsNobodyElseOut) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  std::optional large(admission.enter(demand("z", 1e12), kNever));
+  timer.advance(50ms);
+  std::optional other(admission.enter(demand("a"), kNever));
+  std::thread renewal([&] { large->renew(); });
+  EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
+  Waiters waiters(admission);
+  waiters.add("b", demand("b", 5000));
+  EXPECT_EQ(waiters.order(), RenderOrder{});
+  EXPECT_THROW(admission.enter(demand("z", 1), kNever), OverLimit);
+  other.reset();
+  waiters.join();
+  EXPECT_EQ(waiters.order(), RenderOrder{"b"});
+  renewal.join();
+}
+
+TEST(Admission, TheLongestWaitIsThatOfWhoWaitsLeast) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  EXPECT_EQ(admission.longest_wait(), Clock::duration{});
+  Waiters waiters(admission);
+  {
+    const auto ticket = admission.enter(demand("z"), kNever);
+    waiters.add("a", demand("a"));
+    timer.advance(10ms);
+    waiters.add("b1", demand("b"));
+    waiters.add("batch", demand("c", 10, Lane::batch));
+    timer.advance(20ms);
+    waiters.add("b2", demand("b"));
+    EXPECT_EQ(admission.longest_wait(), 20ms);
+  }
+  waiters.join();
+}
+
 TEST(Admission, WorkThatIsCalledOffWhileItWaitsToGoOnHasNoPlace) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);

@@ -57,10 +57,24 @@ TEST(AnswerBudget, BytesThatManyShareCountOnce) {
   shares.push_back(budget.take(other, "c"));
 }
 
-TEST(AnswerBudget, SmallAnswersAreFree) {
-  AnswerBudget budget(0);
-  EXPECT_EQ(budget.take(SharedBytes(std::string(64 * 1024, 's')), "a"), nullptr);
-  EXPECT_THROW(budget.take(SharedBytes(std::string(64 * 1024 + 1, 's')), "a"), OverLimit);
+TEST(AnswerBudget, SmallAnswersAreFreeAndOneMayHaveAnySize) {
+  AnswerBudget budget(1);
+  const SharedBytes small(std::string(64 * 1024, 's')), large(std::string(64 * 1024 + 1, 'l')),
+      other(std::string(64 * 1024 + 1, 'o'));
+  EXPECT_EQ(budget.take(small, "a"), nullptr);
+  const auto share = budget.take(large, "a");
+  EXPECT_EQ(budget.take(small, "b"), nullptr);
+  EXPECT_THROW(budget.take(other, "b"), OverLimit);
+}
+
+TEST(AnswerBudget, AClientIsSentHalfAndPaysForWhatItIsSentAlone) {
+  AnswerBudget budget(400'000);
+  const SharedBytes shared(std::string(150'000, 's')), other(std::string(100'000, 'o'));
+  auto first = budget.take(shared, "a"), second = budget.take(shared, "b");
+  EXPECT_THROW(budget.take(other, "a"), ClientBusy);
+  first.reset();  // a is sent nothing any more, though b is
+  first = budget.take(other, "a");
+  EXPECT_THROW(budget.take(other, "b"), ClientBusy);
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ std::vector<RawCase> framing_cases() {
       {"ChunkSizeMissing", post(chunked, "\r\n{}\r\n0\r\n\r\n"), {400}},
       {"ChunkSizeEndsWithLineFeed", post(chunked, "2\n{}\r\n0\r\n\r\n"), {400}},
       {"ChunkSizeWithCarriageReturn", post(chunked, "2\r\r\n{}\r\n0\r\n\r\n"), {400}},
+      {"ChunkExtensionWithCarriageReturn", post(chunked, "2;a\r\r\n{}\r\n0\r\n\r\n"), {400}},
+      {"ChunkTrailerWithCarriageReturn", post(chunked, "0\r\nA: b\r\r\n\r\n"), {400}},
       {"ChunkExtensionWithLineFeed", post(chunked, "2;\n{}\r\n0\r\n\r\n"), {400}},  // CVE-2025-46728
       {"ChunkExtensionTooLong", post(chunked, "2;" + std::string(5000, 'a') + "\r\n{}\r\n0\r\n\r\n"), {400}},
       {"ChunkLongerThanItsSize", post(chunked, "1\r\n{}\r\n0\r\n\r\n"), {400}},
