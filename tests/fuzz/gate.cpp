@@ -72,6 +72,7 @@ void check_answers(std::string_view bytes) {
     require(head.find("\r\nX-Request-ID: ") != std::string::npos);
     require(head.find("\r\nInjected") == std::string::npos);
     if (head.find("\r\nTransfer-Encoding: chunked\r\n") != std::string::npos) {
+      if (bytes == "4\r\npart\r\n") return;  // cut off, as the client sends no more and seems to have left
       if (!bytes.starts_with("4\r\npart\r\n0\r\n\r\n")) continue;  // HEAD
       bytes.remove_prefix(14);
       continue;
@@ -106,7 +107,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static Exchanger exchanger({.max_bodies = 2000}, handler, monitor);
   static const int wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   constexpr std::size_t kMost = 20'000;
-  constexpr int kRequests = 100;  // whose answers have room in the socket
   int ends[2];
   require(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) == 0);
   size = std::min(size, kMost);

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { kPaper } from "./support.mjs";
 
 const kGlass = { type: "refractive", ior: 1.5, fresnel: "exact" };
-const kMirror = { type: "reflective", eta: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
+const kMirror = { type: "reflective", n: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
 const kSun = { type: "directional", from: [0.4, 1, 0.6], intensity: [1, 1, 1] };
 
 // A scene of one material, seen from the front; `number` makes it one that nobody asked for before.
@@ -40,7 +40,7 @@ const hall = [
 
 const many_lights = Array.from({ length: 700 }, (_, i) => ({
   type: "point",
-  position: [Math.cos(i) * 9, 5 + (i % 7), Math.sin(i) * 9],
+  position: [Math.round(9 * Math.cos(i)), 5 + (i % 7), Math.round(9 * Math.sin(i))],
   intensity: [0.01, 0.01, 0.01],
 }));
 
@@ -49,9 +49,11 @@ const tiny_model = { ball: { objects: [sphere(1)] } };
 const coincident_instances = Array.from({ length: 2000 }, () => ({ model: "ball" }));
 const needles = Array.from({ length: 500 }, (_, i) => ({
   type: "triangle",
-  a: [-2, i * 1e-6, 0],
-  b: [2, i * 1e-6, 0],
-  c: [2, i * 1e-6 + 1e-5, 1e-5],
+  vertices: [
+    [-2, i / 1e6, 0],
+    [2, i / 1e6, 0],
+    [2, (i + 10) / 1e6, 1e-5],
+  ],
   material: "m",
 }));
 
@@ -102,12 +104,12 @@ const of_scene = (name, scene, ask) => [name, ask, scene];
 export const kAttacks = [
   ...[4, 8, 12, 16, 24, 32].map((depth) => glass_of(depth, 2)),
   ...[16, 32].map((depth) => glass_of(depth, 12)),
-  many_of("glass of many samples", kGlass, shells(2), { depth: 32, samples: 4096 }),
-  many_of("glass of many pixels", kGlass, shells(2), { depth: 32, side: 4096 }),
+  many_of("glass of many samples", kGlass, shells(2), { depth: 32, samples: 1400 }),
+  many_of("glass of many pixels", kGlass, shells(2), { depth: 32, side: 2400 }),
   many_of("glass of EXR layers", kGlass, shells(2), { depth: 32, side: 2000 }, "?layers=depth,normal,position"),
   many_of("mirrors that face each other", kMirror, hall, { depth: 32, side: 2000 }),
   many_of("mirrors, many samples", kMirror, hall, { depth: 32, samples: 4096 }),
-  many_of("many lights", kRough, hall, { lights: many_lights, side: 4096 }),
+  many_of("many lights", kRough, hall, { lights: many_lights, side: 500 }),
   many_of("many lights in glass", kGlass, shells(4), { lights: many_lights, depth: 32 }),
   many_of("coincident spheres", kRough, Array.from({ length: 900 }, () => sphere(1)), { side: 1000 }),
   many_of("coincident glass spheres", kGlass, Array.from({ length: 900 }, () => sphere(1)), { depth: 32 }),
