@@ -15,7 +15,7 @@ export const gateFaults = [
   entry(17, "of two Transfer-Encodings one counts", "head.cpp",
         'if (head.chunked) throw HttpError(400, "Transfer-Encoding is given twice");', "", ...table("ChunkedInTwoHeaders")),
   entry(17, "anything may follow the size of a chunk", "chunk_decoder.cpp", "!(extension.empty() || extension.front() == ';')",
-        "false", ...table("ChunkSizeWithPrefix", "ChunkSizeWithBlank")),
+        "false", ...table("ChunkSizeWithBlank")),
   entry(17, "what follows a chunk is skipped", "chunk_decoder.cpp", 'refuse("a chunk is longer than its size");', "return 2;",
         ...table("ChunkLongerThanItsSize")),
   entry(17, "what follows a number is no part of Content-Length", "head.cpp",

@@ -191,6 +191,8 @@ RawClient::RawClient(int port, int receive_buffer) : fd_(socket(AF_INET, SOCK_ST
 
 RawClient::~RawClient() { close(); }
 
+void RawClient::send_no_more() const { shutdown(fd_, SHUT_WR); }
+
 void RawClient::close() {
   if (fd_ >= 0) ::close(fd_);
   fd_ = -1;

@@ -62,6 +62,7 @@ class RawClient {
   // All that comes until the daemon closes, or until nothing came for 5 s.
   std::string receive_all() const;
   std::string receive_some() const;
+  void send_no_more() const;
   void close();
 
  private:
