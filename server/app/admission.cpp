@@ -258,7 +258,7 @@ bool Admission::has_lost_many(const Demand& demand) const {
 std::map<std::string, double> Admission::waiting_costs(Lane lane) const {
   std::map<std::string, double> costs;
   for (const Work& w : works_)
-    if (w.counts && w.state == State::waits && w.demand.lane == lane)
+    if (w.counts && (w.state == State::waits || w.state == State::lost) && w.demand.lane == lane)
       costs[w.demand.client] += std::max(std::min(kLeastCost, w.demand.cost), w.demand.cost - w.used);
   return costs;
 }

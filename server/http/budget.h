@@ -18,8 +18,8 @@ inline std::string over_limit_text(const std::string& takers, std::size_t taken,
          " (" + limit + "), and " + std::to_string(needed) + " more are needed";
 }
 
-// Bytes that many may take from together. A client may have half of them, or one share of any size. Safe from
-// any thread.
+// Bytes that many may take from together. A client may have half of them, or one share of any size, and small
+// ones beside. Safe from any thread.
 class Budget {
  public:
   // `name`: of the limit, in /v1/limits; `takers`: what errors call those who take, at the start of a
@@ -54,7 +54,9 @@ class Budget {
     const std::lock_guard lock(mutex_);
     const auto known = taken_by_.find(client);
     const std::size_t by_client = known == taken_by_.end() ? 0 : known->second;
-    if (by_client > own && bytes > most_ / 2 - std::min(by_client, most_ / 2))
+    constexpr std::size_t kSmall = 64 * 1024;  // bytes that a client may have beside a large share
+    const bool has_others = by_client > own && own + bytes > kSmall;
+    if (has_others && bytes > most_ / 2 - std::min(by_client, most_ / 2))
       throw ClientBusy(over_limit_text(takers_ + " of yours", by_client, most_ / 2, name_, bytes), kRetry_s,
                        name_);
     if (bytes > most_ - taken_)

@@ -17,7 +17,7 @@ export const gateFaults = [
   entry(17, "anything may follow the size of a chunk", "chunk_decoder.cpp", "!(extension.empty() || extension.front() == ';')",
         "false", ...table("ChunkSizeWithBlank")),
   entry(17, "what follows a chunk is skipped", "chunk_decoder.cpp", 'refuse("a chunk is longer than its size");', "return 2;",
-        ...table("ChunkLongerThanItsSize")),
+        ...table("ChunkFollowedByBytes")),
   entry(17, "what follows a number is no part of Content-Length", "head.cpp",
         "if (problem != std::errc() || end != value.data() + value.size())", "if (problem != std::errc())",
         ...table("ListOfEqualLengths", "LengthHexadecimal", "LengthFraction")),

@@ -34,7 +34,7 @@ export const serviceFaults = [
         "test_render", "WorkerPool.ALongStepLets*"),
   entry(20, "a step that does not ask stops others", "core/render/worker_pool.cpp", "place->since <= until && others_wait",
         "place->since > until && others_wait", "test_render", "WorkerPool.AStepThatNever*", "WorkerPool.ATaskThat*"),
-  entry(20, "a client takes all bytes", "server/http/budget.h", "if (by_client > own &&", "if (by_client > most_ &&",
+  entry(20, "a client takes all bytes", "server/http/budget.h", "const bool has_others = by_client > own &&", "const bool has_others = by_client > most_ &&",
         "test_http", "Budget.AClientHasHalf*"),
   entry(20, "the rate is that of what was expected", "server/app/render_services.h",
         "ticket.set_cost(kLeastCost + static_cast<double>(rays));", "ticket.set_cost(1e12);", "test_app", "JobsTest.TellTheAdmission*"),

@@ -30,18 +30,21 @@ TEST(Budget, SharesTakeNoMoreThanThereIs) {
 }
 
 TEST(Budget, AClientHasHalfOrOneShare) {
-  Budget budget(100, "some_bytes", "Some");
+  Budget budget(1'000'000, "some_bytes", "Some");
   {
     Budget::Share large(budget, "a"), more(budget, "a"), other(budget, "b");
-    large.grow(70);
-    EXPECT_THROW(more.grow(1), ClientBusy);
-    other.grow(30);
+    large.grow(700'000);
+    EXPECT_THROW(more.grow(65'537), ClientBusy);
+    more.grow(65'536);
+    EXPECT_THROW(more.grow(65'537), ClientBusy);
+    other.grow(234'464);
+    EXPECT_THROW(other.grow(234'465), OverLimit);
   }
   Budget::Share first(budget, "a"), second(budget, "a"), third(budget, "a");
-  first.grow(20);
-  second.grow(30);
-  EXPECT_THROW(third.grow(1), ClientBusy);
-  EXPECT_THROW(second.grow(31), ClientBusy);
+  first.grow(200'000);
+  second.grow(300'000);
+  EXPECT_THROW(third.grow(65'537), ClientBusy);
+  EXPECT_THROW(second.grow(300'001), ClientBusy);
 }
 
 TEST(AnswerBudget, BytesThatManyShareCountOnce) {

@@ -55,6 +55,7 @@ std::vector<RawCase> framing_cases() {
       {"ChunkExtensionWithLineFeed", post(chunked, "2;\n{}\r\n0\r\n\r\n"), {400}},  // CVE-2025-46728
       {"ChunkExtensionTooLong", post(chunked, "2;" + std::string(5000, 'a') + "\r\n{}\r\n0\r\n\r\n"), {400}},
       {"ChunkLongerThanItsSize", post(chunked, "1\r\n{}\r\n0\r\n\r\n"), {400}},
+      {"ChunkFollowedByBytes", post(chunked, "2\r\n{}xx0\r\n\r\n"), {400}},
       {"ChunkEndsWithLineFeed", post(chunked, "2\r\n{}\n0\r\n\r\n"), {400}},
       {"ChunkTrailerWithoutColon", post(chunked, "0\r\nHost\r\n\r\n"), {400}},
       {"ChunkTrailersTooLong",

@@ -64,7 +64,7 @@ TEST(Warnings, TellThatTheCameraIsInsideAnOpaqueShape) {
   EXPECT_EQ(warned(lit(kBall, {0, 0, 1.1})), "");
   EXPECT_EQ(warned(lit("{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}", {0.9, 0.9, 0.9})),
             "/camera/eye ");
-  EXPECT_EQ(warned(lit(kBall, {0.7, 0.7, -0.7})), "") << "in the corner of its box";
+  EXPECT_EQ(warned(lit(kBall, {-0.7, -0.7, -0.7})), "") << "in the corner of its box, and in its shadow";
   RenderRequest near;
   near.distance = 0.1;
   EXPECT_EQ(warned(lit(kBall), near), "/camera/eye ") << "an orbit leads there";
