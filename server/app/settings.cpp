@@ -41,8 +41,10 @@ constexpr std::array kSettings{
     Setting{"picture_bytes", &S::picture_bytes, "N", "Bytes of pictures kept for who asks again", 0, kMost},
     Setting{"film_bytes", &S::film_bytes, "N",
             "Bytes of films kept for who asks for another format; one may take a quarter", 0, kMost},
-    Setting{"layer_bytes", &S::layer_bytes, "N", "Bytes of films with layers that are rendered at one time",
-            0, kMost},
+    Setting{
+        "layer_bytes", &S::layer_bytes, "N",
+        "Bytes of films with layers that are rendered at one time; half of them, or one film, for one client",
+        0, kMost},
     Setting{"connections", &S::connections, "N",
             "Connections at once; streams may have three quarters of them, one client half of these", 1,
             10'000},

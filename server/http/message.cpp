@@ -10,6 +10,10 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
                     [&](char x, char y) { return lower(x) == lower(y); });
 }
 
+bool starts_with_ignoring_case(std::string_view text, std::string_view beginning) {
+  return equal_ignoring_case(text.substr(0, beginning.size()), beginning);
+}
+
 std::optional<std::string> find_field(const Fields& fields, std::string_view name) {
   for (const auto& [key, value] : fields)
     if (equal_ignoring_case(key, name)) return value;

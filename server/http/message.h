@@ -98,5 +98,6 @@ class HttpError : public Error {
 std::string_view reason_phrase(int status);
 
 bool equal_ignoring_case(std::string_view a, std::string_view b);
+bool starts_with_ignoring_case(std::string_view text, std::string_view beginning);
 
 }  // namespace orrery

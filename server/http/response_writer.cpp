@@ -11,14 +11,6 @@ namespace {
 // Whether an answer of this status may have a body at all (RFC 9110, 6.4.1).
 bool may_have_body(int status) { return status >= 200 && status != 204 && status != 304; }
 
-}  // namespace
-
-bool has_body(const Response& response, const Framing& framing) {
-  return !framing.head_only && may_have_body(response.status);
-}
-
-namespace {
-
 bool is_streamed(const Response& response, const Framing& framing) {
   return response.stream && has_body(response, framing);
 }
@@ -62,6 +54,10 @@ class BodySink final : public Sink {
 };
 
 }  // namespace
+
+bool has_body(const Response& response, const Framing& framing) {
+  return !framing.head_only && may_have_body(response.status);
+}
 
 std::string response_head(const Response& response, const Framing& framing) {
   std::string text = "HTTP/1.1 " + std::to_string(response.status) + " ";

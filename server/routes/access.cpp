@@ -37,8 +37,7 @@ bool pass_by_link(const Access& access, Request& request) {
 
 std::string_view bearer_of(std::string_view header) {
   constexpr std::string_view kBearer = "Bearer ";
-  if (header.size() < kBearer.size() || !equal_ignoring_case(header.substr(0, kBearer.size()), kBearer))
-    return {};
+  if (!starts_with_ignoring_case(header, kBearer)) return {};
   return header.substr(kBearer.size());
 }
 

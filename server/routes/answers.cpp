@@ -40,9 +40,7 @@ std::string_view charset_of(std::string_view content_type) {
   std::string_view charset;
   for_each_entry(content_type, ';', [&](std::string_view parameter) {
     constexpr std::string_view kCharset = "charset=";
-    if (parameter.size() < kCharset.size() ||
-        !equal_ignoring_case(parameter.substr(0, kCharset.size()), kCharset))
-      return;
+    if (!starts_with_ignoring_case(parameter, kCharset)) return;
     charset = parameter.substr(kCharset.size());
     if (charset.size() > 1 && charset.front() == '"' && charset.back() == '"')
       charset = charset.substr(1, charset.size() - 2);
@@ -98,7 +96,7 @@ Fit fit_of(std::string_view entry, std::string_view type) {
   if (fit.exactness < 0) return fit;
   fit.weight = 1;
   for_each_entry(entry, ';', [&](std::string_view parameter) {
-    if (parameter.starts_with("q=") || parameter.starts_with("Q="))
+    if (starts_with_ignoring_case(parameter, "q="))
       fit.weight = std::strtod(std::string(parameter.substr(2)).c_str(), nullptr);
   });
   return fit;

@@ -69,7 +69,10 @@ TEST(Health, AnswersWhileAllElseIsFull) {
   EXPECT_NE(refused.receive_all().find(" 503 "), std::string::npos);
   const std::string text = metrics(daemon);
   EXPECT_EQ(value_of(text, "orrery_ready"), 0);
-  EXPECT_EQ(value_of(text, "orrery_renders_running"), 2);  // in turn with the one that waits
+  EXPECT_EQ(value_of(text, "orrery_renders_running"), 2);
+  // Who loses its turn goes on until it notices.
+  EXPECT_TRUE(
+      comes_true(daemon, [](const auto& now) { return value_of(now, "orrery_renders_waiting") == 1; }));
   EXPECT_EQ(value_of(text, "orrery_connections"), 3);
   EXPECT_EQ(value_of(text, "orrery_connections_refused_total"), 1);
 }

@@ -94,6 +94,7 @@ TEST(ClientThatLeaves, LeavesTheQueueToo) {
   clients.clear();
   EXPECT_TRUE(daemon.wait_until_idle());
   EXPECT_EQ(daemon.metric("orrery_renders_waiting"), 0);
+  EXPECT_EQ(daemon.client().Get(path)->status, 200);
 }
 
 TEST(Deadline, EndsARenderThatTakesTooLong) {
