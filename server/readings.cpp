@@ -63,6 +63,7 @@ MetricFamily limits_family(const Settings& settings) {
   MetricFamily family{"orrery_limit", "Limits, as /v1/limits tells them", MetricType::Gauge, {}};
   for (const Setting& limit : limits())
     family.metric.push_back(value(std::stod(limit.text(settings)), {{"limit", std::string(limit.name)}}));
+  family.metric.push_back(value(work_bytes(settings), {{"limit", "work_bytes"}}));
   return family;
 }
 
@@ -106,8 +107,12 @@ std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
        {value(meters.pictures_made, {{"cache", "pictures"}}),
         value(meters.pictures_made - meters.films_found, {{"cache", "films"}}),
         value(scenes.loads(), {{"cache", "scenes"}})}},
+      {"orrery_work_bytes",
+       "Bytes that scenes which are not kept and pictures under way take",
+       kGauge,
+       {value(app.memory().bytes())}},
       {"orrery_stored_bytes",
-       "Bytes kept, of scenes by estimate",
+       "Bytes kept",
        kGauge,
        {value(scenes.bytes(), {{"store", "scenes"}}), value(app.assets().bytes(), {{"store", "assets"}}),
         value(app.pictures().bytes(), {{"store", "pictures"}}),

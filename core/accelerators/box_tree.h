@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/base/work_scope.h"
 #include "core/model/accelerator.h"
 
 namespace orrery {
@@ -22,6 +23,7 @@ std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   const ShapeKernel<T>* last = nullptr;
   std::uint32_t kernel = 0;  // primitives of one kernel follow each other
   for (std::size_t i = 0; i < primitives.size(); ++i) {
+    interruption_point(i);
     if (primitives[i].kernel != last) ++kernel;
     last = primitives[i].kernel;
     if (!primitives[i].bounds.bounded()) continue;

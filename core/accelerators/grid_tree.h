@@ -5,6 +5,7 @@
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/grid_layout.h"
 #include "core/accelerators/single_ray.h"
+#include "core/base/work_scope.h"
 
 namespace orrery {
 
@@ -70,6 +71,7 @@ class GridTree {
   static Bounds<T> around(const PendingCell& cell, const std::vector<TreeItem<T>>& items) {
     Bounds<T> box;
     for (const std::uint32_t item : cell.items) {
+      interruption_point(item);
       Bounds<T> part = items[item].box;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         part.lo[axis] = std::max(part.lo[axis], cell.box.lo[axis]);
@@ -89,8 +91,10 @@ class GridTree {
     for (double cells = kOptions.cells * static_cast<double>(count); cells >= 2; cells /= 8) {
       const GridLayout<T> layout(box, cells);
       std::size_t made = 0;
-      for (const std::uint32_t item : cell.items)
+      for (const std::uint32_t item : cell.items) {
+        interruption_point();
         layout.for_each_touching(items[item].box, [&](const CellIndex&) { ++made; });
+      }
       const bool shared = cell.level > 0 && made > 4 * count;
       if (made > left + count || shared) continue;
       left = left + count - made;
@@ -108,9 +112,11 @@ class GridTree {
     cells_.resize(first + layout.cells());
     grids_.push_back({layout, first});
     std::vector<PrimitiveIndices> members(layout.cells());
-    for (const std::uint32_t item : cell.items)
+    for (const std::uint32_t item : cell.items) {
+      interruption_point();
       layout.for_each_touching(items[item].box,
                                [&](const CellIndex& i) { members[layout.number(i)].push_back(item); });
+    }
     cell.items = {};
     layout.for_each_touching(layout.box(), [&](const CellIndex& i) {
       PrimitiveIndices& here = members[layout.number(i)];
@@ -121,6 +127,7 @@ class GridTree {
 
   void add_cell(const PendingCell& cell, const std::vector<TreeItem<T>>& items,
                 const PrimitiveList<T>& primitives) {
+    interruption_point();
     PrimitiveIndices places;
     for (const std::uint32_t item : cell.items) places.push_back(items[item].primitive);
     const std::size_t first = names_.size();

@@ -74,6 +74,7 @@ class OrientedTree {
   // Node `me` becomes node `at` of the tree; what is in it is added to `hull`.
   SurfaceMoments fill(std::size_t me, const BoxTree<T>& tree, std::uint32_t at,
                       const PrimitiveList<T>& primitives, int level, std::vector<HullTriangle>& hull) {
+    interruption_point();
     depth_ = std::max(depth_, level);
     const auto& node = tree.nodes[at];
     const std::size_t first = hull.size();

@@ -1,4 +1,5 @@
 #include "core/accelerators/oriented_box.h"
+#include "core/base/work_scope.h"
 
 namespace orrery {
 namespace {
@@ -45,6 +46,7 @@ class OneEach {
   };
 
   void add(const PrimitiveList<T>& primitives, std::uint32_t place) {
+    interruption_point();
     const auto hull = hull_of(primitives[place]);
     SurfaceMoments moments;
     for (const auto& triangle : hull) moments.add(triangle);

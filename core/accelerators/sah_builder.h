@@ -53,6 +53,7 @@ class SahBuilder {
     Bounds<T> centers;
     bool mixed = false;
     for (std::uint32_t i = from; i < to; ++i) {
+      interruption_point(i);
       const TreeItem<T>& item = tree_.items[i];
       node.box.include(item.box);
       centers.include(item.box.lo + item.box.hi);
@@ -102,6 +103,7 @@ class SahBuilder {
     scale = {centers.lo, {factor(extent.x), factor(extent.y), factor(extent.z)}};
     std::array<std::array<Bin, kBins>, 3> bins;
     for (std::uint32_t i = from; i < to; ++i) {
+      interruption_point(i);
       const Bounds<T>& b = tree_.items[i].box;
       for (int axis = 0; axis < 3; ++axis) {
         Bin& bin = bins[static_cast<std::size_t>(axis)][static_cast<std::size_t>(scale.bin(b, axis))];

@@ -5,6 +5,7 @@
 
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/single_ray.h"
+#include "core/base/work_scope.h"
 
 namespace orrery {
 
@@ -43,6 +44,7 @@ class SpaceTree {
     std::size_t left = (Splitter::kReferences - 1) * items.size();  // references that may still be added
     std::deque<SpaceCell<T>> open{std::move(all)};
     for (; !open.empty(); open.pop_front()) {
+      interruption_point();
       SpaceCell<T>& cell = open.front();
       depth_ = std::max(depth_, cell.depth + 1);
       if (const auto plane = splitter.split(cell); plane && divide(cell, *plane, items, left, open)) continue;
@@ -121,6 +123,7 @@ class SpaceTree {
     below.box.hi[plane.axis] = at;
     above.box.lo[plane.axis] = at;
     for (const std::uint32_t item : cell.items) {
+      interruption_point(item);
       if (items[item].box.lo[plane.axis] <= at) below.items.push_back(item);
       if (items[item].box.hi[plane.axis] >= at) above.items.push_back(item);
     }

@@ -6,6 +6,7 @@
 #include "core/accelerators/blocks.h"
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/probes.h"
+#include "core/base/work_scope.h"
 
 namespace orrery {
 
@@ -83,6 +84,7 @@ class WideTree {
   static constexpr T kInfinite = std::numeric_limits<T>::infinity();
 
   Child convert(const BoxTree<T>& tree, std::uint32_t at, const PrimitiveList<T>& primitives, int level) {
+    interruption_point();
     depth_ = std::max(depth_, level);
     if (tree.nodes[at].leaf) return add_leaf(tree, tree.nodes[at], primitives);
     const std::vector<std::uint32_t> children = children_of(tree, at);
@@ -138,6 +140,7 @@ class WideTree {
     for (const Node& node : nodes_)
       for (std::size_t i = 0; i < kPlaces; ++i)
         if (node.has(i)) add(node.child[i], node.box_of(i));
+    interruption_point();
     for (const auto& primitive : primitives)
       if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
     relative_surface_area_ = area / held;

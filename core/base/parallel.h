@@ -4,6 +4,8 @@
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/parallel_sort.h>
 
+#include "core/base/work_scope.h"
+
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 
@@ -29,12 +31,16 @@ class Handover {
 #endif
 };
 
-// Calls act(0), ..., act(count - 1), in any order, at least `grain` of them on one thread.
+// Calls act(0), ..., act(count - 1), in any order, at least `grain` of them on one thread; between those it
+// is an interruption point.
 template <class Act>
 void in_parallel(std::size_t count, std::size_t grain, const Act& act) {
   using Range = tbb::blocked_range<std::size_t>;
   Handover to_workers, from_workers;
+  const Work work = WorkScope::current();
   const auto some_of = [&](const Range& some) {
+    const WorkScope scope(work);
+    interruption_point();
     for (std::size_t i = some.begin(); i != some.end(); ++i) act(i);
   };
   to_workers.give();
@@ -50,9 +56,11 @@ void in_parallel(std::size_t count, std::size_t grain, const Act& act) {
 template <class First, class Second>
 void both_in_parallel(const First& first, const Second& second) {
   Handover to_workers, from_workers;
-  const auto done = [&](const auto& work) ORRERY_UNSEEN {
+  const Work work = WorkScope::current();
+  const auto done = [&](const auto& act) ORRERY_UNSEEN {
     to_workers.take();
-    work();
+    const WorkScope scope(work);
+    act();
     from_workers.give();
   };
   to_workers.give();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/base/error.h"
+#include "core/base/work_scope.h"
 #include "core/image/files.h"
 
 // What the codecs of this room share. Sizes are checked against the header before anything is decoded.

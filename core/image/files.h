@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,8 +17,8 @@ struct PngOptions {
 
 // Bytes of a file that holds the picture. PNG and JPEG take srgb8, EXR takes linear32 (half floats would lose
 // what comparisons need, so it stores floats). The same picture gives the same bytes.
-// A stop request ends what takes long with Cancelled.
-std::string encode_png(const Image& image, const PngOptions& options = {}, std::stop_token stop = {});
+// PNG and EXR have interruption points.
+std::string encode_png(const Image& image, const PngOptions& options = {});
 std::string encode_jpeg(const Image& image, int quality = 92);
 // One more channel of an EXR file: as many values as the picture has pixels, row by row.
 struct ExrLayer {

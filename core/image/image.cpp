@@ -42,6 +42,7 @@ Image::Image(int width, int height, PixelFormat format) : width_(width), height_
   const std::size_t size = row_bytes() * static_cast<std::size_t>(height);
   const std::size_t alignment = size >= kHugePage ? kHugePage : 64;
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  charge_ = MemoryCharge(rounded);
   data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, rounded)));
   if (!data_) throw std::bad_alloc();
   if (alignment == kHugePage)

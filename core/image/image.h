@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "core/base/work_scope.h"
 #include "core/math/vec3.h"
 
 namespace orrery {
@@ -49,6 +50,7 @@ class Image {
   };
   int width_, height_;
   PixelFormat format_;
+  MemoryCharge charge_;  // of data_
   std::unique_ptr<std::byte[], Free> data_;
 };
 

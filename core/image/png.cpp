@@ -25,8 +25,7 @@ struct Writer {
 
 }  // namespace
 
-std::string encode_png(const Image& image, const PngOptions& options, std::stop_token stop) {
-  constexpr int kLookEvery = 64;  // rows
+std::string encode_png(const Image& image, const PngOptions& options) {
   assert(image.format() == PixelFormat::srgb8);
   std::string out;
   Writer writer;
@@ -42,7 +41,7 @@ std::string encode_png(const Image& image, const PngOptions& options, std::stop_
   png_write_info(writer.png, writer.info);
   const auto bytes = image.bytes();
   for (int y = 0; y < image.height(); ++y) {
-    if (y % kLookEvery == 0 && stop.stop_requested()) throw Cancelled();
+    interruption_point();
     png_write_row(writer.png, reinterpret_cast<png_const_bytep>(bytes.data()) +
                                   image.row_bytes() * static_cast<std::size_t>(y));
   }

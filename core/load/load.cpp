@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/base/hash.h"
+#include "core/base/work_scope.h"
 #include "core/cameras/registry.h"
 #include "core/lights/registry.h"
 #include "core/materials/registry.h"
@@ -72,6 +73,7 @@ class ObjectReader {
   }
 
   void read(Params& p, const Names& materials, const MeshSource& meshes) {
+    interruption_point();
     const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
     if (!type) return;
     const std::size_t material = p.reference("material", "Name of its material.", materials);
@@ -124,6 +126,7 @@ Placement read_key(Params& p, const Placement& rest) {
 }
 
 Instance read_placement(Params& p, std::size_t model) {
+  interruption_point();
   Instance instance{model, Vec3d(0, 1, 0), {}};
   Placement rest;
   rest.scale = read_scale(p, Vec3d(1));
@@ -295,6 +298,7 @@ class SceneReader {
     for (const auto& shapes : sets) {
       scene_->facts.left_out += shapes->left_out();
       for (int i = 0; i < shapes->size(); ++i) {
+        interruption_point(static_cast<std::size_t>(i));
         const ShapeSet::Reach reach = shapes->reach(i);
         extents.all.include(reach.box);
         if (!reach.box.bounded()) continue;

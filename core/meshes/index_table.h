@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/work_scope.h"
+
 namespace orrery {
 
 // Finds entries 0, 1, 2, ... of a list kept elsewhere by their content: a hash table of entry numbers alone
@@ -25,6 +27,7 @@ class IndexTable {
   // the caller adds to the list. REQUIRES: size is the number of entries so far, below 2^31.
   template <class Same>
   std::uint32_t find_or_add(std::uint32_t hash, std::size_t size, const Same& same) {
+    interruption_point();
     if (2 * (size + 1) > slots_.size()) grow();
     std::size_t at = first_slot(hash);
     for (; slots_[at].entry != kNone; at = (at + 1) & (slots_.size() - 1))

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/base/work_scope.h"
 #include "core/meshes/ply_body.h"
 
 namespace orrery {
@@ -120,6 +121,7 @@ class PlyReader {
   }
 
   void add_vertex(const std::array<double, kSlots>& values) {
+    interruption_point(mesh_.positions.size());
     const Vec3d position(values[kX], values[kY], values[kZ]), normal(values[kNx], values[kNy], values[kNz]);
     const auto number = [&] { return std::to_string(mesh_.positions.size()); };
     if (!is_position(position)) body_.fail(expected_position(position) + " for vertex " + number());
@@ -154,6 +156,7 @@ class PlyReader {
     const auto value = body_.describe(property.type);
     std::array<std::uint32_t, 3> fan{};
     for (std::uint64_t i = 0; i < count; ++i) {
+      interruption_point(face + i);
       const double index = body_.read(value);
       if (!(index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)))
         body_.fail("expected a vertex from 0 to below " + std::to_string(vertices_) + " of face " +
@@ -174,7 +177,10 @@ class PlyReader {
   }
   void skip_list(const PlyProperty& property) {
     const auto value = body_.describe(property.type);
-    for (std::uint64_t left = list_length(property); left > 0; --left) body_.skip(value);
+    for (std::uint64_t left = list_length(property); left > 0; --left) {
+      interruption_point(left);
+      body_.skip(value);
+    }
   }
   void skip_property(const PlyProperty& property) {
     if (property.count_type)
@@ -183,6 +189,7 @@ class PlyReader {
       body_.skip(body_.describe(property.type));
   }
   void skip_row(const PlyElement& element) {
+    interruption_point();
     for (const PlyProperty& property : element.properties) skip_property(property);
   }
 

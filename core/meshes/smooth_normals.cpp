@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/work_scope.h"
 #include "core/math/angles.h"
 #include "core/meshes/repair.h"
 #include "core/meshes/vertex_list.h"
@@ -53,6 +54,7 @@ struct Facets {
     normals.reserve(mesh.triangles.size());
     weighted.reserve(3 * mesh.triangles.size());
     for (const auto& t : mesh.triangles) {
+      interruption_point();
       const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
       const Vec3d normal = safe_normalize(cross(b - a, c - a));
       const Vec3d ab = safe_normalize(b - a), bc = safe_normalize(c - b), ca = safe_normalize(a - c);
@@ -71,6 +73,7 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
   const std::uint32_t position = corners.position[corner];
   Vec3d sum;
   for (std::uint32_t i = corners.first[position]; i < corners.first[position + 1]; ++i) {
+    interruption_point(i);
     const std::uint32_t other = corners.list[i];
     if (flat || other == corner || dot(own, facets.normals[other / 3]) > min_cosine)
       sum = sum + facets.weighted[other];

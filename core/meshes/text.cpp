@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/base/work_scope.h"
 #include "core/meshes/formats.h"
 
 namespace orrery {
@@ -29,6 +30,7 @@ bool TextReader::joins_at(std::size_t i) const {
 }
 
 std::string_view TextReader::word_of_line() {
+  interruption_point();
   std::size_t from = 0;
   while (from < rest_.size()) {
     if (is_blank(rest_[from])) {
@@ -49,6 +51,7 @@ std::string_view TextReader::word_of_line() {
 }
 
 std::string_view TextReader::word() {
+  interruption_point();
   std::size_t from = 0;
   while (from < rest_.size() && static_cast<unsigned char>(rest_[from]) <= ' ') {
     if (is_line_end(rest_[from])) {
@@ -67,6 +70,7 @@ std::string_view TextReader::word() {
 }
 
 bool TextReader::next_line() {
+  interruption_point();
   while (!rest_.empty()) {
     const std::size_t end = rest_.find_first_of("\r\n");
     if (end == std::string_view::npos) {

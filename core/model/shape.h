@@ -119,8 +119,6 @@ class ShapeSet {
   virtual std::vector<double> key_times() const { return {}; }
   // The same primitives in the same order as they stand at `time`; null if they rest.
   virtual std::unique_ptr<ShapeSet> at(double /*time*/) const { return nullptr; }
-  // Bytes held beside what each primitive takes.
-  virtual std::size_t bytes() const { return 0; }
   // Infinite sides where the primitive is unbounded.
   virtual Boundsd bounds(int index) const = 0;
   // Where the primitive gets while it moves, and how small its box is at the least of its keys.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/work_scope.h"
 #include "core/params/document.h"
 #include "core/params/json.h"
 #include "core/params/words.h"
@@ -134,6 +135,7 @@ class TreeBuilder {
   }
 
   json* put(json value) {
+    interruption_point(nodes_);
     if (++nodes_ > limits_.nodes) {
       throw InputError(next_pointer(), "the document has more than " + std::to_string(limits_.nodes) +
                                            " values (limit: JSON nodes)");

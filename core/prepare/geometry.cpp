@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/accelerators/instances.h"
+#include "core/base/work_scope.h"
 
 namespace orrery {
 namespace {
@@ -20,7 +21,10 @@ void add_shapes(const ShapeSets& sets, double time, const std::vector<ShapeKerne
     const ShapeSet& now = posed ? *posed : *shapes;
     const bool known = before && !posed;
     kernels.push_back(known ? (*before)[kernels.size()] : now.kernel(T(), number));
-    for (int i = 0; i < now.size(); ++i) primitives.push_back({kernels.back().get(), i, now.bounds(i)});
+    for (int i = 0; i < now.size(); ++i) {
+      interruption_point(static_cast<std::size_t>(i));
+      primitives.push_back({kernels.back().get(), i, now.bounds(i)});
+    }
     number += now.size();
   }
 }
@@ -75,6 +79,7 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, double time
   PlacedList<T> placed;
   std::vector<Boundsd> boxes;
   for (const Instance& instance : scene.instances) {
+    interruption_point();
     const auto& model = geometry.models[instance.model];
     const Affined world_from_model = instance.world_from_model(time);
     placed.push_back(place<T>(model, world_from_model, number));

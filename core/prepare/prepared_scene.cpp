@@ -42,14 +42,21 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, dou
   bring_forward(moments, time);
   auto& moment = moments.front();
   World<T>& world = moment.worlds[&type];
-  if (!world.accelerator) {
-    const auto start = Clock::now();
+  if (world.accelerator) return world;
+  const auto start = Clock::now();
+  const auto make = [&] {
     const World<T> before = world_before(moments, type);
     auto& geometry = moment.geometries[parts.scene->models.empty() ? nullptr : &type];
     if (!geometry) geometry = make_geometry<T>(parts.scene, type, time, before.geometry.get());
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
-    build_ms += milliseconds_since(start);
+  };
+  if (parts.memory) {
+    parts.memory->run(stop, make);
+  } else {
+    const WorkScope scope({WorkScope::current().memory, &stop});
+    make();
   }
+  build_ms += milliseconds_since(start);
   return world;
 }
 
@@ -65,8 +72,22 @@ std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::s
 
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
   parts_->scene = std::move(scene);
+  if (MemoryAccount* const memory = WorkScope::current().memory) {
+    parts_->memory = memory->shared_from_this();
+    parts_->loaded_bytes = memory->bytes();
+  }
 }
 PreparedScene::~PreparedScene() = default;
+
+std::shared_ptr<const PreparedScene> PreparedScene::without_built() const {
+  const auto fresh = std::make_shared<PreparedScene>(parts_->scene);
+  fresh->parts_->memory = parts_->memory;
+  fresh->parts_->loaded_bytes = parts_->loaded_bytes;
+  return fresh;
+}
+
+const std::shared_ptr<MemoryAccount>& PreparedScene::memory() const { return parts_->memory; }
+std::size_t PreparedScene::loaded_bytes() const { return parts_->loaded_bytes; }
 const Scene& PreparedScene::scene() const { return *parts_->scene; }
 std::shared_ptr<const Scene> PreparedScene::shared_scene() const { return parts_->scene; }
 

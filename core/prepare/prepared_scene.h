@@ -7,6 +7,7 @@
 #include <stop_token>
 
 #include "core/base/stoppable_mutex.h"
+#include "core/base/work_scope.h"
 #include "core/model/plan.h"
 #include "core/model/world.h"
 #include "core/stages/prediction.h"
@@ -14,14 +15,21 @@
 namespace orrery {
 
 // A scene with what rendering it has built so far (its shapes in the render's precision, its accelerators),
-// kept for the next frame. Safe to use from any number of threads; each part is built once.
+// kept for the next frame. Safe to use from any number of threads; each part is built once. What is built is
+// charged to the memory account of the scope that it was made in, if there was one.
 class PreparedScene {
  public:
   explicit PreparedScene(std::shared_ptr<const Scene> scene);
   ~PreparedScene();
+  // The same scene and account, with nothing built yet.
+  std::shared_ptr<const PreparedScene> without_built() const;
 
   const Scene& scene() const;
   std::shared_ptr<const Scene> shared_scene() const;
+
+  const std::shared_ptr<MemoryAccount>& memory() const;  // null: none
+  // Those of the account when it was made, before anything was built; 0 without one.
+  std::size_t loaded_bytes() const;
 
   // Of a scene that moves: for so many moments, those asked for last, what was built is kept.
   static constexpr std::size_t kMoments = 2;
@@ -50,6 +58,8 @@ struct PreparedScene::Parts {
     PredictorPtr<T> network;         // trained on the first plan that wanted one
   };
   std::shared_ptr<const Scene> scene;
+  std::shared_ptr<MemoryAccount> memory;
+  std::size_t loaded_bytes = 0;
   StoppableMutex trying;  // held while structures are tried or a network trained, so that it is done once
   StoppableMutex mutex;   // guards the rest; all is built under it, so that it is built once
   Made<float> made_float;

@@ -34,10 +34,10 @@ void require_layers_kept(const RenderRequest& request, FileFormat format) {
     throw InputError("/render/layers", "expected none, as EXR is the only format that keeps layers");
 }
 
-std::string encode_film(const Film& film, FileFormat format, const PngOptions& png, std::stop_token stop) {
+std::string encode_film(const Film& film, FileFormat format, const PngOptions& png) {
   switch (format) {
     case FileFormat::png:
-      return with_image(film, PixelFormat::srgb8, [&](const Image& i) { return encode_png(i, png, stop); });
+      return with_image(film, PixelFormat::srgb8, [&](const Image& i) { return encode_png(i, png); });
     case FileFormat::jpeg:
       return with_image(film, PixelFormat::srgb8, [](const Image& i) { return encode_jpeg(i); });
     case FileFormat::exr:

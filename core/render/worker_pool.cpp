@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
+#include "core/base/work_scope.h"
 #include "core/render/worker_pool.h"
 
 namespace orrery {
@@ -91,6 +92,7 @@ class WorkerThreads {
     const WorkerPool::Step& work;
     const int count;
     Pass* const pass;
+    const Work scope = WorkScope::current();  // of the caller
     std::vector<int> free_workers;
     int next = 0, running = 0;         // steps: the next to begin; begun and not done
     std::list<StepTurn*> paused = {};  // of those, the ones that gave way
@@ -284,6 +286,7 @@ class WorkerThreads {
     std::exception_ptr error;
     bool go_on = false;
     try {
+      const WorkScope scope(loop.scope);
       go_on = loop.work(step, worker, turn);
     } catch (...) {
       error = std::current_exception();

@@ -1,5 +1,4 @@
 #include <map>
-#include <set>
 
 #include "core/meshes/repair.h"
 #include "core/params/params.h"
@@ -37,15 +36,6 @@ class MeshSet final : public ShapeSet {
   }
   int size() const override { return static_cast<int>(table_.triangles.size()); }
   std::size_t left_out() const override { return left_out_; }
-  std::size_t bytes() const override {
-    std::size_t vectors = table_.positions.size() + table_.normals.size();
-    std::set<const void*> counted;  // keys share what they have in common
-    for (const auto& [part, moving] : moving_)
-      for (const VertexKey& key : moving.keys.values)
-        for (const SharedVectors& some : {key.positions, key.normals})
-          if (counted.insert(some.get()).second) vectors += some->size();
-    return vectors * sizeof(Vec3d) + table_.uvs.size() * sizeof(table_.uvs[0]);
-  }
   Boundsd bounds(int index) const override {
     return table_.corners(static_cast<std::size_t>(index)).bounds();
   }

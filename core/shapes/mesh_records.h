@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/work_scope.h"
 #include "core/meshes/mesh_file.h"
 #include "core/shapes/primitive_set.h"
 #include "core/shapes/triangle_hit.h"
@@ -96,6 +97,7 @@ class MeshRecords {
                               part.mapped, static_cast<T>(part.magnitude)});
     flat_.reserve(table.triangles.size());
     for (std::size_t i = 0; i < table.triangles.size(); ++i) {
+      interruption_point(i);
       const Corners<double> at = table.corners(i);
       flat_.push_back(Vec3<T>(safe_normalize(cross(at.b - at.a, at.c - at.a))));
     }

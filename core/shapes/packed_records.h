@@ -3,6 +3,7 @@
 #include <bit>
 #include <vector>
 
+#include "core/base/work_scope.h"
 #include "core/math/compress.h"
 #include "core/model/record.h"
 #include "core/model/shape.h"
@@ -31,8 +32,10 @@ class PackedRecords final : public PackedPrimitives<T> {
   template <class Records>
   PackedRecords(const Records& records, int first, std::span<const int> indices) : first_(first) {
     blocks_.resize(indices.size() / kB);
-    for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      interruption_point(b);
       fill(blocks_[b], records, first, indices.subspan(b * kB, kB));
+    }
   }
 
   using RayBlockPairs = typename PackedPrimitives<T>::RayBlockPairs;

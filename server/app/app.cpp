@@ -24,13 +24,13 @@ Settings decided(Settings settings, const WorkerPool& pool) {
   return settings;
 }
 
-// Bytes of the film of sums that the plan's layers need. Throws InputError where they are more than
-// `most_bytes`.
-std::size_t layer_bytes_of(const Plan& plan, std::size_t most_bytes) {
+// Throws InputError where the film of sums that the plan's layers need takes more than half of what all work
+// may.
+void require_layers_fit(const Plan& plan, std::size_t work_bytes) {
   const std::size_t bytes = Film::bytes(plan.width, plan.height, FilmStorage::sums, plan.channels);
-  if (bytes <= most_bytes) return bytes;
-  throw InputError("/render/layers", "expected layers that take at most " + std::to_string(most_bytes) +
-                                         " bytes while they are rendered (layer_bytes), these take " +
+  if (bytes <= work_bytes / 2) return;
+  throw InputError("/render/layers", "expected layers that take at most " + std::to_string(work_bytes / 2) +
+                                         " bytes while they are rendered (half of work_bytes), these take " +
                                          std::to_string(bytes) + " at " + std::to_string(plan.width) + " x " +
                                          std::to_string(plan.height) + " pixels");
 }
@@ -42,20 +42,14 @@ App::App(const Settings& settings, Timer& timer)
       access_(settings.tokens_file, settings.share_key_file),
       pool_(settings.threads),
       settings_(decided(settings, pool_)),
-      scenes_(settings.store_bytes),
+      memory_(work_bytes(settings)),
+      scenes_(settings.store_bytes, memory_),
       assets_(settings.asset_store_bytes),
       pictures_(settings.picture_bytes),
       films_(settings.film_bytes, settings.film_bytes / 4),
-      layer_bytes_(settings.layer_bytes, "layer_bytes", "Films with layers"),
       admission_({settings_.renders, settings_.queue_rays}, timer),
-      services_{pool_,
-                admission_,
-                timer,
-                drains_.get_token(),
-                ends_.get_token(),
-                meters_,
-                estimator_,
-                settings_.interactive_rays},
+      services_{pool_,      admission_, timer,   drains_.get_token(),       ends_.get_token(), meters_,
+                estimator_, memory_,    scenes_, settings_.interactive_rays},
       streams_(settings_.connections),
       orbits_(services_, settings.orbits, settings.request_seconds),
       jobs_(services_, {settings.jobs, settings.jobs_kept, settings.job_bytes, settings.job_seconds,
@@ -66,8 +60,10 @@ void App::watched(const Caller& caller, Clock::time_point since, const Work& wor
   require_open();
   const Watch watch(caller.gone, ends_.get_token(), timer_, since,
                     {settings_.request_seconds, "request_seconds"});
+  const auto memory = memory_.open(caller.client);
+  const std::stop_token stop = watch.stop();
   try {
-    work(watch.stop());
+    memory->run(stop, [&] { work(stop); });
   } catch (const Cancelled&) {
     watch.explain();
   }
@@ -122,12 +118,11 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
     timing.queue += milliseconds_since(start);
   };
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
-  Budget::Share layers(layer_bytes_, demand.client);
-  if (storage == FilmStorage::sums) layers.grow(layer_bytes_of(plan, settings_.layer_bytes));
+  if (storage == FilmStorage::sums) require_layers_fit(plan, memory_.most());
   const Films::Found film = films_.get(
       key + std::to_string(static_cast<int>(storage)), stop, [&](const std::stop_token& nobody_waits) {
         enter(demand, nobody_waits);
-        return services_.render(*ticket, scene, orrery::settle(scene, plan, nobody_waits), storage,
+        return services_.render(*ticket, scene, plan, storage,
                                 {.stop = nobody_waits, .background = demand.lane == Lane::batch});
       });
   const RenderStats& stats = film.value->stats;
@@ -143,7 +138,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
                   .warnings = find_warnings(scene.scene(), plan, stats.counts),
                   .of_kept_film = !film.made_here};
   const auto start = Clock::now();
-  picture.bytes = encode_film(film.value->film, format, {}, stop);
+  picture.bytes = encode_film(film.value->film, format);
   picture.bytes.shrink_to_fit();  // it may be kept
   timing.encode = milliseconds_since(start);
   return picture;
@@ -160,6 +155,7 @@ SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Call
   std::optional<SettledPlan> settled;
   watched(caller, timer_.now(), [&](const std::stop_token& stop) {
     const auto ticket = admission_.enter({Lane::interactive, caller.client, kLeastCost}, stop);
+    const SceneStore::Measured measured(scenes_, scene);
     settled = orrery::settle(scene, plan, stop);
   });
   return *settled;

@@ -19,7 +19,7 @@
 #include "server/app/scene_store.h"
 #include "server/app/settings.h"
 #include "server/app/streams.h"
-#include "server/http/budget.h"
+#include "server/app/work_memory.h"
 
 namespace orrery {
 
@@ -58,6 +58,7 @@ class App {
   const Pictures& pictures() const { return pictures_; }
   const Films& films() const { return films_; }
   const Admission& admission() const { return admission_; }
+  const WorkMemory& memory() const { return memory_; }
   const Meters& meters() const { return meters_; }
 
   // Calls `work` to read a text of so many bytes that may name assets: in its turn if that takes long. Throws
@@ -90,7 +91,8 @@ class App {
   void require_open() const;
 
  private:
-  // Calls work(stop), which is stopped when it should end early; its time counts from `since`.
+  // Calls work(stop), which is stopped when it should end early; its time counts from `since`. It takes
+  // memory of the caller's share.
   template <class Work>
   void watched(const Caller& caller, Clock::time_point since, const Work& work);
   // Renders it, unless a film of it is kept, and encodes it.
@@ -104,11 +106,11 @@ class App {
   Access access_;
   WorkerPool pool_;
   const Settings settings_;  // with what is left to the machine decided
+  WorkMemory memory_;
   SceneStore scenes_;
   AssetStore assets_;
   Pictures pictures_;
   Films films_;
-  Budget layer_bytes_;  // of films of sums while they are made
   Admission admission_;
   RayEstimator estimator_;
   const RenderServices services_;

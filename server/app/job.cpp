@@ -19,6 +19,7 @@ Job::Job(std::string id, JobSpec spec, const RenderServices& services, std::chro
       services_(services),
       limit_(limit),
       room_(std::move(room)),
+      memory_(services.memory.open(spec_.client)),
       thread_([this] { run(); }) {}
 
 Job::~Job() {
@@ -45,7 +46,8 @@ void Job::run() {
         return next++;
       },
       .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
-      .encode = [this](const Film& film) { return work().encode(film); },
+      .encode =
+          [&](const Film& film) { return memory_->run(watch.stop(), [&] { return work().encode(film); }); },
       .deliver = [this](std::int64_t number,
                         Frame&& frame) { keep(static_cast<int>(number), std::move(frame)); }};
   std::exception_ptr error;
@@ -90,17 +92,19 @@ RenderResult Job::render(int step, const Watch& watch) {
     rays_done_ += rays / total;
     changed_.notify_all();
   };
-  RenderResult rendered =
-      services_.render(ticket, *spec_.scene, settle(*spec_.scene, asked, watch.stop()), work().storage(),
-                       {.stop = watch.stop(), .progress = progress, .background = true});
-  spec_.work->add(rendered);
-  return rendered;
+  return memory_->run(watch.stop(), [&] {
+    RenderResult rendered =
+        services_.render(ticket, *spec_.scene, asked, work().storage(),
+                         {.stop = watch.stop(), .progress = progress, .background = true});
+    spec_.work->add(rendered);
+    return rendered;
+  });
 }
 
 void Job::keep(int step, Frame&& frame) {
   const std::size_t bytes = frame.bytes.size();
   if (bytes > 0) room_(bytes);
-  spec_.work->keep(step, std::move(frame.bytes));
+  spec_.work->keep(step, std::string(frame.bytes));  // not of the memory for work any more
   const std::lock_guard lock(mutex_);
   bytes_ += bytes;
   ++steps_done_;

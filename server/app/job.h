@@ -84,6 +84,7 @@ class Job {
   const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
+  const std::shared_ptr<MemoryAccount> memory_;  // of films
   std::stop_source cancelled_;
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable_any changed_;

@@ -15,7 +15,10 @@ constexpr double kLongestPeriod_s = 1e6;  // a clock counts no more than 292 yea
 }  // namespace
 
 OrbitCast::OrbitCast(OrbitSpec spec, const RenderServices& services, std::chrono::seconds frame_time)
-    : spec_(std::move(spec)), services_(services), frame_time_(frame_time) {}
+    : spec_(std::move(spec)),
+      services_(services),
+      memory_(services.memory.open(spec_.client)),
+      frame_time_(frame_time) {}
 
 OrbitCast::~OrbitCast() {
   if (thread_.joinable()) thread_.join();
@@ -111,8 +114,9 @@ RenderResult OrbitCast::render(std::int64_t number) {
     const Plan plan = make_plan(scene, spec_.path.at(number % spec_.frames));
     auto ticket =
         services_.admission.enter_again(services_.demand_of(scene, plan, spec_.client), watch.stop());
-    return services_.render(ticket, *spec_.scene, settle(*spec_.scene, plan, watch.stop()),
-                            FilmStorage::srgb8, {.stop = watch.stop()});
+    return memory_->run(watch.stop(), [&] {
+      return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = watch.stop()});
+    });
   } catch (const Cancelled&) {
     watch.explain();
   }

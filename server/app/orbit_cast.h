@@ -50,6 +50,7 @@ class OrbitCast {
 
   const OrbitSpec spec_;
   const RenderServices services_;
+  const std::shared_ptr<MemoryAccount> memory_;  // of films
   const std::chrono::seconds frame_time_;
   std::stop_source nobody_watches_;  // then nobody can join either
   mutable std::mutex mutex_;         // guards all below

@@ -1,14 +1,8 @@
 #include "server/app/pictures.h"
 
-#include <malloc.h>
-
 namespace orrery {
 
-std::size_t held_bytes(const Picture& picture) {
-  const std::string& held = picture.bytes;
-  const bool has_block = held.capacity() > std::string().capacity();
-  return has_block ? malloc_usable_size(const_cast<char*>(held.data())) : 0;
-}
+std::size_t held_bytes(const Picture& picture) { return picture.bytes.capacity(); }
 
 std::size_t held_bytes(const RenderResult& rendered) {
   const Film& film = rendered.film;

@@ -9,6 +9,7 @@
 #include "server/app/admission.h"
 #include "server/app/meters.h"
 #include "server/app/ray_estimator.h"
+#include "server/app/scene_store.h"
 
 namespace orrery {
 
@@ -21,6 +22,8 @@ struct RenderServices {
   std::stop_token ends;      // all work ends at once
   Meters& meters;
   RayEstimator& estimator;
+  WorkMemory& memory;
+  SceneStore& scenes;
   double interactive_rays;  // of one frame, beyond which it is batch work
 
   // What a frame is expected to cost, in rays: those that it traces, and a little for its fixed work. It is
@@ -31,15 +34,18 @@ struct RenderServices {
     return {small ? Lane::interactive : Lane::batch, client, kLeastCost + rays};
   }
 
-  // A frame, in the turn that `ticket` gives; tells it what the frame has cost. Throws Cancelled.
-  RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const SettledPlan& plan,
+  // A frame, in the turn that `ticket` gives; tells it what the frame has cost, and the store what the scene
+  // takes. Throws Cancelled.
+  RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const Plan& plan,
                       FilmStorage storage, const RenderControl& control) const {
     RenderControl shared = control;
     shared.pass = &ticket;
-    RenderResult result = render_frame(scene, plan, storage, pool, shared);
+    const SceneStore::Measured measured(scenes, scene);
+    const SettledPlan settled = settle(scene, plan, control.stop);
+    RenderResult result = render_frame(scene, settled, storage, pool, shared);
     const std::uint64_t rays = result.stats.counts.rays.total();
     ticket.set_cost(kLeastCost + static_cast<double>(rays));
-    estimator.learn(scene.scene(), *plan, rays);
+    estimator.learn(scene.scene(), *settled, rays);
     meters.rays += rays;
     meters.render.Observe((result.stats.build_ms + result.stats.trace_ms) / 1000);
     return result;

@@ -1,87 +1,144 @@
 #include "server/app/scene_store.h"
 
-#include <algorithm>
+#include <iterator>
 
 #include "core/base/error.h"
 #include "core/load/load.h"
 
 namespace orrery {
-namespace {
 
-// What a scene and all that rendering builds for it are expected to take.
-std::size_t estimated_bytes(const Scene& scene) {
-  constexpr std::size_t kBytesAPrimitive = 1024;  // record, boxes and tree, in both precisions
-  std::size_t primitives = scene.instances.size(), others = 0;
-  const auto count = [&](const std::vector<std::unique_ptr<ShapeSet>>& sets) {
-    primitives += count_primitives(sets);
-    for (const auto& shapes : sets) others += shapes->bytes();
-  };
-  count(scene.shapes);
-  for (const Model& model : scene.models) count(model.shapes);
-  std::size_t keys = 0;
-  for (const Instance& instance : scene.instances) keys += instance.motion.times.size();
-  const std::size_t moments = scene.motion.empty() ? 1 : PreparedScene::kMoments;
-  return 4096 + 2 * scene.canonical.size() + moments * kBytesAPrimitive * primitives + 2 * others +
-         keys * (sizeof(Placement) + sizeof(double)) + 3 * sizeof(std::int64_t) * scene.material_of.size();
+SceneStore::~SceneStore() {
+  while (!entries_.empty()) erase(entries_.begin());
 }
 
-}  // namespace
-
-SceneStore::Kept SceneStore::keep(const Document& document, const MeshSource& meshes) {
+SceneStore::Kept SceneStore::keep(const Document& document, const MeshSource& meshes,
+                                  const std::string& client) {
   const std::string id = document.id();
-  const Prepared scene = find_or_load(id, document, meshes);
-  const std::size_t size = estimated_bytes(scene->scene()), most = kept_.most_bytes();
-  if (size > most)
-    throw InputError("", "the scene takes about " + std::to_string(size) + " bytes of memory, at most " +
-                             std::to_string(most) + " are kept (store_bytes)");
+  const Prepared scene = find_or_load(id, document, meshes, client);
+  if (scene->loaded_bytes() > most_)
+    throw InputError("", "the scene takes " + std::to_string(scene->loaded_bytes()) +
+                             " bytes of memory, at most " + std::to_string(most_) +
+                             " are kept (store_bytes)");
   const std::lock_guard lock(mutex_);
-  cached_.remove(id);
-  if (const auto known = kept_.find(id)) return {*known, true};
-  cached_.shrink(most - std::min(most, kept_.bytes() + size));
-  return {kept_.add(id, size, [&scene] { return scene; }).value, false};
+  if (Entry* const known = find_locked(id)) return {known->scene, std::exchange(known->kept, true)};
+  return {add(scene, true), false};
 }
 
-SceneStore::Prepared SceneStore::get(const Document& document, const MeshSource& meshes) {
+SceneStore::Prepared SceneStore::get(const Document& document, const MeshSource& meshes,
+                                     const std::string& client) {
   const std::string id = document.id();
-  const Prepared scene = find_or_load(id, document, meshes);
-  const std::size_t size = estimated_bytes(scene->scene());
+  const Prepared scene = find_or_load(id, document, meshes, client);
   const std::lock_guard lock(mutex_);
-  if (const auto known = find_locked(id)) return known;
-  const std::size_t room = kept_.most_bytes() - kept_.bytes();
-  if (size > room) return scene;
-  cached_.shrink(room - size);
-  return cached_.add(id, size, [&scene] { return scene; }).value;
+  if (const Entry* const known = find_locked(id)) return known->scene;
+  return scene->loaded_bytes() <= most_ - kept_bytes() ? add(scene, false) : scene;
 }
 
 SceneStore::Prepared SceneStore::find_or_load(const std::string& id, const Document& document,
-                                              const MeshSource& meshes) {
-  if (auto known = find_known(id)) {
-    ++hits_;
-    return known;
+                                              const MeshSource& meshes, const std::string& client) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const Entry* const known = find_locked(id)) {
+      ++hits_;
+      return known->scene;
+    }
   }
-  auto loaded = std::make_shared<const PreparedScene>(load_scene(document, meshes));
+  const Prepared loaded = load(document, meshes, client);
   ++loads_;
   return loaded;
 }
 
-SceneStore::Prepared SceneStore::find_known(const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  return find_locked(id);
-}
-
-SceneStore::Prepared SceneStore::find_locked(const std::string& id) {
-  if (const auto kept = kept_.find(id)) return *kept;
-  return cached_.find(id).value_or(nullptr);
+SceneStore::Prepared SceneStore::load(const Document& document, const MeshSource& meshes,
+                                      const std::string& client) const {
+  const std::stop_token* const stop = WorkScope::current().stop;
+  return work_.open(client)->run(stop ? *stop : std::stop_token(), [&] {
+    return std::make_shared<const PreparedScene>(load_scene(document, meshes));
+  });
 }
 
 SceneStore::Prepared SceneStore::find(const std::string& id) {
-  if (auto known = find_known(id)) return known;
+  const std::lock_guard lock(mutex_);
+  if (const Entry* const known = find_locked(id)) return known->scene;
   throw NotFound("There is no scene " + id.substr(0, 64) + " (any more): post it again");
 }
 
 void SceneStore::remove(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  if (!kept_.remove(id) && !cached_.remove(id)) throw NotFound("There is no scene " + id.substr(0, 64));
+  const auto known = by_id_.find(id);
+  if (known == by_id_.end()) throw NotFound("There is no scene " + id.substr(0, 64));
+  erase(known->second);
+}
+
+void SceneStore::measure(const PreparedScene& scene) {
+  const std::lock_guard lock(mutex_);
+  const auto known = by_id_.find(scene.scene().id);
+  if (known == by_id_.end() || known->second->scene.get() != &scene) {
+    if (scene.memory()) scene.memory()->settle(0);
+    return;
+  }
+  set_bytes(*known->second, scene.memory()->bytes());
+  drop_cached(most_);
+  drop_built(most_);
+}
+
+std::size_t SceneStore::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_;
+}
+
+SceneStore::Entry* SceneStore::find_locked(const std::string& id) {
+  const auto known = by_id_.find(id);
+  if (known == by_id_.end()) return nullptr;
+  entries_.splice(entries_.begin(), entries_, known->second);
+  return &*known->second;
+}
+
+std::size_t SceneStore::kept_bytes() const {
+  std::size_t bytes = 0;
+  for (const Entry& entry : entries_)
+    if (entry.kept) bytes += entry.bytes;
+  return bytes;
+}
+
+SceneStore::Prepared SceneStore::add(const Prepared& scene, bool kept) {
+  const std::size_t room = most_ - scene->loaded_bytes();
+  drop_cached(room);
+  if (kept) {
+    drop_built(room);
+    drop_kept(room);
+  }
+  entries_.push_front({scene, kept});
+  by_id_.emplace(scene->scene().id, entries_.begin());
+  set_bytes(entries_.front(), scene->loaded_bytes());
+  return scene;
+}
+
+void SceneStore::set_bytes(Entry& entry, std::size_t bytes) {
+  bytes_ += bytes - entry.bytes;
+  entry.bytes = bytes;
+  entry.scene->memory()->settle(bytes);
+}
+
+void SceneStore::erase(Entries::iterator entry) {
+  set_bytes(*entry, 0);
+  by_id_.erase(entry->scene->scene().id);
+  entries_.erase(entry);
+}
+
+void SceneStore::drop_cached(std::size_t most_bytes) {
+  for (auto entry = entries_.end(); bytes_ > most_bytes && entry != entries_.begin();)
+    if (!(--entry)->kept) erase(entry++);
+}
+
+void SceneStore::drop_built(std::size_t most_bytes) {
+  for (auto entry = entries_.end(); bytes_ > most_bytes && entry != entries_.begin();) {
+    --entry;
+    entry->scene = entry->scene->without_built();
+    set_bytes(*entry, entry->scene->loaded_bytes());
+  }
+}
+
+void SceneStore::drop_kept(std::size_t most_bytes) {
+  while (bytes_ > most_bytes && !entries_.empty()) erase(std::prev(entries_.end()));
 }
 
 }  // namespace orrery

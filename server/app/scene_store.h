@@ -2,53 +2,93 @@
 
 #include <atomic>
 #include <cstdint>
+#include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
 #include "core/model/mesh_source.h"
 #include "core/params/document.h"
-#include "core/render/renderer.h"
-#include "server/app/lru.h"
+#include "core/prepare/prepared_scene.h"
+#include "server/app/work_memory.h"
 
 namespace orrery {
 
 // Scenes by id, the hash of what they say, with what rendering has built for them. Some are kept on purpose;
-// others were only rendered and are cached: these go first when room is needed, and never push out a kept
-// one, so that who may render only cannot remove what others keep. Safe from any thread.
+// others were only rendered and are cached. Where room is needed, those not used for longest go: first cached
+// ones, then what was built for kept ones, and kept ones only for others that are kept, so that who may
+// render only cannot remove what others keep. While a scene is here the store answers for its memory, before
+// and after that the client's work. Safe from any thread.
 class SceneStore {
  public:
   using Prepared = std::shared_ptr<const PreparedScene>;
 
-  explicit SceneStore(std::size_t most_bytes) : kept_(most_bytes), cached_(most_bytes) {}
+  SceneStore(std::size_t most_bytes, WorkMemory& work) : most_(most_bytes), work_(work) {}
+  ~SceneStore();
+  SceneStore(const SceneStore&) = delete;
 
   struct Kept {
     Prepared scene;
     bool known = false;  // it was kept before
   };
   // Keeps the scene that `document` says; loads it only if it is not here, also not as a cached one. Throws
-  // what load_scene() does, and InputError if the scene alone is over the limit.
-  Kept keep(const Document& document, const MeshSource& meshes);
+  // what load_scene() does, InputError if the scene alone is over the limit, and as WorkMemory::open() says.
+  Kept keep(const Document& document, const MeshSource& meshes, const std::string& client);
   // The scene that `document` says, loaded only if it is not here, and then cached if there is room. Throws
-  // what load_scene() does.
-  Prepared get(const Document& document, const MeshSource& meshes);
+  // likewise.
+  Prepared get(const Document& document, const MeshSource& meshes, const std::string& client);
 
   // Kept or cached. Throws NotFound.
   Prepared find(const std::string& id);
   void remove(const std::string& id);
 
-  std::size_t bytes() const { return kept_.bytes() + cached_.bytes(); }
+  // Until its end something may be built for the scene, which is measured then.
+  class Measured {
+   public:
+    Measured(SceneStore& store, const PreparedScene& scene) : store_(store), scene_(scene) {}
+    ~Measured() { store_.measure(scene_); }
+    Measured(const Measured&) = delete;
+
+   private:
+    SceneStore& store_;
+    const PreparedScene& scene_;
+  };
+
+  std::size_t bytes() const;
   // Since the start, of scenes asked for by what they say: found here, and loaded.
   std::uint64_t hits() const { return hits_; }
   std::uint64_t loads() const { return loads_; }
 
  private:
-  Prepared find_known(const std::string& id);   // null: it is not here
-  Prepared find_locked(const std::string& id);  // likewise, with mutex_ held
-  Prepared find_or_load(const std::string& id, const Document& document, const MeshSource& meshes);
+  struct Entry {
+    Prepared scene;
+    bool kept;
+    std::size_t bytes = 0;
+  };
+  using Entries = std::list<Entry>;
 
-  std::mutex mutex_;  // held where both change together
-  Lru<Prepared> kept_, cached_;
+  Prepared find_or_load(const std::string& id, const Document& document, const MeshSource& meshes,
+                        const std::string& client);
+  Prepared load(const Document& document, const MeshSource& meshes, const std::string& client) const;
+  void measure(const PreparedScene& scene);
+  // Below: with mutex_ held.
+  Entry* find_locked(const std::string& id);  // makes it the one used last; null: it is not here
+  std::size_t kept_bytes() const;
+  Prepared add(const Prepared& scene, bool kept);
+  void set_bytes(Entry& entry, std::size_t bytes);
+  void erase(Entries::iterator entry);
+  // Removes entries until all take at most so many bytes, or none is left that gives way.
+  void drop_cached(std::size_t most_bytes);
+  void drop_built(std::size_t most_bytes);
+  void drop_kept(std::size_t most_bytes);
+
+  const std::size_t most_;
+  WorkMemory& work_;
+  mutable std::mutex mutex_;  // guards all below
+  Entries entries_;           // the latest use first
+  std::map<std::string, Entries::iterator> by_id_;
+  std::size_t bytes_ = 0;
   std::atomic<std::uint64_t> hits_{0}, loads_{0};
 };
 

@@ -30,21 +30,23 @@ constexpr std::array kSettings{
             "tokens; * for all"},
     Setting{"insecure", &S::insecure, "", "Allow an address that other machines can reach without tokens"},
     // The limits.
+    Setting{
+        "memory_bytes", &S::memory_bytes, "N",
+        "Bytes of memory that the service takes; the other budgets are parts of it, and what they leave is "
+        "for scenes and pictures under way (work_bytes)",
+        64'000'000, kMost},
     Setting{"body_bytes", &S::body_bytes, "N", "Bytes of a request's body", 1, 1'000'000'000},
     Setting{"bodies_bytes", &S::bodies_bytes, "N",
             "Bytes of the bodies of all requests at one time; half of them for one client", 1, kMost},
     Setting{"answers_bytes", &S::answers_bytes, "N",
             "Bytes of all answers that are sent at one time; half of them for one client", 1, kMost},
-    Setting{"store_bytes", &S::store_bytes, "N", "Bytes of scenes kept, by estimate", 1, kMost},
+    Setting{"store_bytes", &S::store_bytes, "N", "Bytes of scenes kept, with what was built for them", 1,
+            kMost},
     Setting{"asset_bytes", &S::asset_bytes, "N", "Bytes of a mesh file", 1, 4'000'000'000},
     Setting{"asset_store_bytes", &S::asset_store_bytes, "N", "Bytes of mesh files kept", 1, kMost},
     Setting{"picture_bytes", &S::picture_bytes, "N", "Bytes of pictures kept for who asks again", 0, kMost},
     Setting{"film_bytes", &S::film_bytes, "N",
             "Bytes of films kept for who asks for another format; one may take a quarter", 0, kMost},
-    Setting{
-        "layer_bytes", &S::layer_bytes, "N",
-        "Bytes of films with layers that are rendered at one time; half of them, or one film, for one client",
-        0, kMost},
     Setting{"connections", &S::connections, "N",
             "Connections at once; streams may have three quarters of them, one client half of these", 1,
             10'000},
@@ -76,7 +78,11 @@ constexpr std::array kSettings{
             "Seconds that running requests get when the service ends", 1, 1'000'000},
 };
 constexpr std::size_t kFirstLimit = 9;
-static_assert(kSettings[kFirstLimit].name == "body_bytes");
+static_assert(kSettings[kFirstLimit].name == "memory_bytes");
+
+// Parts of memory_bytes.
+constexpr std::array kBudgets{&S::bodies_bytes,  &S::answers_bytes, &S::store_bytes, &S::asset_store_bytes,
+                              &S::picture_bytes, &S::film_bytes,    &S::job_bytes};
 
 std::int64_t whole_number(std::string_view text, std::int64_t min, std::int64_t max) {
   constexpr double kMostExact = 1e15;  // 1e6 is a whole number, too
@@ -121,6 +127,26 @@ struct TextOf {
 };
 
 }  // namespace
+
+Settings settings_within(std::size_t memory_bytes) {
+  Settings settings;
+  const double part = static_cast<double>(memory_bytes) / static_cast<double>(settings.memory_bytes);
+  settings.memory_bytes = memory_bytes;
+  for (const auto budget : kBudgets)
+    settings.*budget = static_cast<std::size_t>(static_cast<double>(settings.*budget) * part);
+  return settings;
+}
+
+std::size_t work_bytes(const Settings& settings) {
+  constexpr std::size_t kProgram = 32 << 20, kConnection = 64 << 10, kLeast = 16 << 20;
+  std::size_t others = kProgram + settings.connections * kConnection;
+  for (const auto budget : kBudgets) others += settings.*budget;
+  if (settings.memory_bytes >= others + kLeast) return settings.memory_bytes - others;
+  throw InputError("", "memory_bytes is " + std::to_string(settings.memory_bytes) +
+                           ", but the other budgets, " + std::to_string(settings.connections) +
+                           " connections and the program take " + std::to_string(others) + ", and at least " +
+                           std::to_string(kLeast) + " more are needed for work");
+}
 
 std::span<const Setting> all_settings() { return kSettings; }
 std::span<const Setting> limits() { return all_settings().subspan(kFirstLimit); }

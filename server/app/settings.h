@@ -20,6 +20,7 @@ struct Settings {
   int threads = 0;         // that render; 0: one a core
 
   // Limits; see limits().
+  std::size_t memory_bytes = std::size_t{3} << 30;
   std::size_t body_bytes = 8 << 20;
   std::size_t bodies_bytes = 256 << 20;
   std::size_t answers_bytes = 256 << 20;
@@ -28,7 +29,6 @@ struct Settings {
   std::size_t asset_store_bytes = 256 << 20;
   std::size_t picture_bytes = 64 << 20;
   std::size_t film_bytes = 128 << 20;
-  std::size_t layer_bytes = 512 << 20;
   std::size_t connections = 256;
   int renders = 0;
   double queue_rays = 300e6;
@@ -68,6 +68,14 @@ struct Setting {
   // Throws InputError without a place for a text that is no value of it.
   void read(Settings& settings, std::string_view text) const;
 };
+
+// The settings as they are if only memory_bytes is given: the other budgets are as large a part of it as by
+// default.
+Settings settings_within(std::size_t memory_bytes);
+
+// Bytes that work may hold: what memory_bytes leaves beside the other budgets and what the service itself
+// takes. Throws InputError without a place if that is too little for a picture.
+std::size_t work_bytes(const Settings& settings);
 
 // All of them; and those that /v1/limits tells, which are numbers.
 std::span<const Setting> all_settings();

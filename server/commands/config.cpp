@@ -164,10 +164,17 @@ void add_setting_flags(CLI::App& app) {
 }
 
 Settings read_settings(const CLI::App& app, const std::string& config_file, std::vector<Problem>& problems) {
-  Settings settings;
-  if (!config_file.empty()) read_file_of_settings(settings, config_file, problems);
-  for (const Setting& setting : all_settings())
-    read_flag(settings, setting, *app.get_option(flag_of(setting.name)), problems);
+  const auto read_over = [&](Settings settings, std::vector<Problem>& found) {
+    if (!config_file.empty()) read_file_of_settings(settings, config_file, found);
+    for (const Setting& setting : all_settings())
+      read_flag(settings, setting, *app.get_option(flag_of(setting.name)), found);
+    return settings;
+  };
+  Settings settings = read_over(Settings(), problems);
+  if (settings.memory_bytes != Settings().memory_bytes) {  // what is not given depends on it
+    std::vector<Problem> told_already;
+    settings = read_over(settings_within(settings.memory_bytes), told_already);
+  }
   refuse_unknown_variables(problems);
   refuse_unknown_flags(app.remaining(), app, problems);
   return settings;

@@ -54,6 +54,11 @@ void check(const Settings& settings, std::vector<Problem>& problems) {
       problems.push_back(
           {"--cors-origins",
            "expected *, null or origins such as https://app.example:8443, got " + origin.substr(0, 80)});
+  try {
+    work_bytes(settings);
+  } catch (const InputError& error) {
+    problems.push_back({"--memory-bytes", error.what()});
+  }
   const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
   if (allowed < needed)
     problems.push_back({"--connections", std::to_string(settings.connections) + " may take " +

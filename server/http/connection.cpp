@@ -1,6 +1,5 @@
 #include "server/http/connection.h"
 
-#include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
@@ -62,8 +61,13 @@ class Connection::Pace {
   Clock::time_point deadline_ = Clock::now() + window_;
 };
 
-Connection::Connection(int fd, int wake, const Patience& patience)
-    : fd_(fd), wake_(wake), patience_(patience), reading_since_(Clock::now()) {}
+Connection::Connection(int fd, std::string network, int wake, const Patience& patience)
+    : fd_(fd),
+      wake_(wake),
+      network_(std::move(network)),
+      patience_(patience),
+      reading_since_(Clock::now()),
+      waiting_(POLLIN) {}
 
 Connection::~Connection() {
   shutdown(fd_, SHUT_RDWR);
@@ -278,21 +282,6 @@ bool Connection::write(std::initializer_list<std::string_view> pieces) {
     broken_ = true;
   }
   return !broken_;
-}
-
-std::string Connection::network() const {
-  sockaddr_storage address{};
-  socklen_t size = sizeof address;
-  if (getpeername(fd_, reinterpret_cast<sockaddr*>(&address), &size) != 0) return "";
-  std::array<char, INET6_ADDRSTRLEN> text{};
-  const void* bytes = &reinterpret_cast<sockaddr_in&>(address).sin_addr;
-  if (address.ss_family == AF_INET6) {
-    in6_addr& v6 = reinterpret_cast<sockaddr_in6&>(address).sin6_addr;
-    if (!IN6_IS_ADDR_V4MAPPED(&v6)) std::fill(v6.s6_addr + 8, v6.s6_addr + 16, std::uint8_t{0});
-    bytes = &v6;
-  }
-  inet_ntop(address.ss_family, bytes, text.data(), text.size());
-  return text.data();
 }
 
 }  // namespace orrery

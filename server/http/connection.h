@@ -31,7 +31,8 @@ class Connection final {
  public:
   // Takes the socket, which must not block. `wake` becomes readable when the service ends: idle connections
   // end then, and half a request has a last call.
-  Connection(int fd, int wake, const Patience& patience);
+  // `network`: of the client.
+  Connection(int fd, std::string network, int wake, const Patience& patience);
   ~Connection();
   Connection(const Connection&) = delete;
 
@@ -70,8 +71,7 @@ class Connection final {
   bool made_room() const { return waiting_.gave_up(); }
 
   std::uint64_t bytes_written() const { return written_; }
-  // The client's network: its IPv4 address, or the half of its IPv6 address that it does not choose itself.
-  std::string network() const;
+  const std::string& network() const { return network_; }
 
  private:
   using Clock = Waiting::Clock;
@@ -95,6 +95,7 @@ class Connection final {
   void count_progress(Clock::time_point& since, std::size_t bytes) const;
 
   const int fd_, wake_;
+  const std::string network_;
   const Patience patience_;
   std::string received_;  // read from the socket, not used yet
   std::size_t body_left_ = 0;

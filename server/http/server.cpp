@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <limits>
 #include <list>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <tuple>
 
 #include "server/http/connection.h"
 #include "server/http/exchange.h"
@@ -99,40 +101,70 @@ class HttpServer::Parts {
   void accept_all() {
     shed_.close_old();
     for (int fd; (fd = listener_->accept()) >= 0;) {
-      const auto work = [this, fd] { serve(fd); };
-      if (threads_.start(work)) continue;
-      if (make_room()) {
-        threads_.start_next(work);
+      const std::string network = network_of_peer(fd);
+      const bool over_share = count(network) > share_of_one() && share_of_one() < options_.max_connections;
+      if ((!over_share && threads_.has_room()) || make_room(network, over_share)) {
+        const auto connection = std::make_shared<Connection>(fd, network, wake_.fd(), Patience{});
+        threads_.start([this, connection, entry = remember(*connection)] { serve(*connection, entry); });
       } else {
+        forget(network);
         ++refused_;
-        shed_.refuse(fd, refusal());
+        shed_.refuse(fd, refusal(over_share));
       }
     }
   }
 
-  // Ends the connection whose client has kept its thread waiting longest, if any has for a while. Slow
-  // clients, however many, then take no place from those who know what they want.
-  bool make_room() {
+  // Connections that one network may have: the others keep a quarter.
+  std::size_t share_of_one() const { return options_.max_connections - options_.max_connections / 4; }
+  // Counts one more of that network, and returns how many it has then.
+  std::size_t count(const std::string& network) {
+    const std::lock_guard lock(mutex_);
+    return ++of_network_[network];
+  }
+  void forget(const std::string& network) {
+    const std::lock_guard lock(mutex_);
+    const auto known = of_network_.find(network);
+    if (--known->second == 0) of_network_.erase(known);
+  }
+
+  // Ends a connection for a newcomer of that network, if there is one that waits for its client: with `own`,
+  // of the same network. Slow clients, however many, then take no place from those who know what they want.
+  bool make_room(const std::string& network, bool own) {
     constexpr std::chrono::milliseconds kWhile{100};  // what is sent at once has come by then
     const std::lock_guard lock(mutex_);
-    std::vector<std::pair<Clock::time_point, Connection*>> candidates;
-    for (Connection* connection : open_)
-      if (const auto since = connection->waiting(); since && Clock::now() - *since >= kWhile)
-        candidates.emplace_back(*since, connection);
+    const std::size_t of_newcomer = of_network_[network];
+    // The network's connections, the most first; those that have waited a while, the oldest first; the
+    // others, the newest first.
+    using Rank = std::tuple<std::ptrdiff_t, bool, Clock::duration>;
+    std::vector<std::pair<Rank, Connection*>> candidates;
+    for (Connection* connection : open_) {
+      const auto since = connection->waiting();
+      if (!since || (own && connection->network() != network)) continue;
+      const bool fresh = Clock::now() - *since < kWhile;
+      const std::size_t others = of_network_[connection->network()];
+      if (fresh && others <= of_newcomer) continue;
+      const auto age = since->time_since_epoch();
+      candidates.emplace_back(Rank{-static_cast<std::ptrdiff_t>(others), fresh, fresh ? -age : age},
+                              connection);
+    }
     std::sort(candidates.begin(), candidates.end());
     return std::any_of(candidates.begin(), candidates.end(),
                        [](const auto& candidate) { return candidate.second->make_room(); });
   }
 
   // What those get who cannot be heard.
-  std::string refusal() const {
+  std::string refusal(bool over_share) const {
     Request request;
     request.start = Clock::now();
     request.id = make_request_id();
-    const OverLimit busy(
-        std::to_string(options_.max_connections) + " connections are open already (connections)", 1,
-        "connections");
-    const Response response = handler_.refuse(request, std::make_exception_ptr(busy));
+    const auto told = [](std::size_t count, const char* whose) {
+      return std::to_string(count) + " connections are open already" + whose + " (connections)";
+    };
+    const auto error =
+        over_share ? std::make_exception_ptr(ClientBusy(
+                         told(share_of_one(), " from your address, three quarters of all"), 1, "connections"))
+                   : std::make_exception_ptr(OverLimit(told(options_.max_connections, ""), 1, "connections"));
+    const Response response = handler_.refuse(request, error);
     return response_head(response, {.keep_alive = false}).append(response.body);
   }
 
@@ -154,9 +186,9 @@ class HttpServer::Parts {
     for (const Connection* connection : open_) connection->abandon();
   }
 
-  void serve(int fd) {
-    Connection connection(fd, wake_.fd(), Patience{});
-    const auto entry = remember(connection);
+  using Open = std::list<Connection*>;
+
+  void serve(Connection& connection, Open::iterator entry) {
     while (connection.wait_for_request()) {
       ++busy_;
       bool go_on = false;
@@ -168,11 +200,14 @@ class HttpServer::Parts {
       if (!go_on) break;
     }
     connection.linger();
-    const std::lock_guard lock(mutex_);
-    open_.erase(entry);
+    {
+      const std::lock_guard lock(mutex_);
+      open_.erase(entry);
+    }
+    forget(connection.network());
   }
 
-  std::list<Connection*>::iterator remember(Connection& connection) {
+  Open::iterator remember(Connection& connection) {
     const std::lock_guard lock(mutex_);
     return open_.insert(open_.end(), &connection);
   }
@@ -189,8 +224,9 @@ class HttpServer::Parts {
   std::atomic<int> busy_{0};  // requests being read or answered
   std::atomic<std::uint64_t> refused_{0};
   mutable std::mutex mutex_;
-  std::list<Connection*> open_;  // guarded by mutex_
-  ConnectionThreads threads_;    // last: its threads use the others
+  Open open_;                                      // guarded by mutex_, the newest last
+  std::map<std::string, std::size_t> of_network_;  // connections accepted; likewise
+  ConnectionThreads threads_;                      // last: its threads use the others
 };
 
 HttpServer::HttpServer(const Options& options, Handler handler)

@@ -12,9 +12,10 @@
 
 namespace orrery {
 
-// An HTTP/1.1 server: sockets, threads and bytes. What requests mean is the handler's matter. When all
-// connections are taken, a new one gets the place of the one whose client has kept it waiting longest; if all
-// are at work, it is told to come back.
+// An HTTP/1.1 server: sockets, threads and bytes. What requests mean is the handler's matter. The connections
+// of one network take at most three quarters of all. When all are taken, a new one gets the place of one that
+// waits for its client, of the network with most connections: the one that has kept it waiting longest or, if
+// the newcomer's network has fewer, the newest. If all are at work, it is told to come back.
 class HttpServer {
  public:
   struct Options {

@@ -13,23 +13,20 @@ ConnectionThreads::~ConnectionThreads() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-bool ConnectionThreads::start(std::function<void()> work) {
+bool ConnectionThreads::has_room() {
   const std::lock_guard lock(mutex_);
-  if (idle_ <= waiting_.size()) {
-    if (threads_.size() == most_) return false;
-    try {
-      threads_.emplace_back([this] { serve(); });
-    } catch (const std::system_error&) {
-      return false;  // the machine has no more threads
-    }
-    ++idle_;  // it will take this work
+  if (idle_ > waiting_.size()) return true;
+  if (threads_.size() == most_) return false;
+  try {
+    threads_.emplace_back([this] { serve(); });
+  } catch (const std::system_error&) {
+    return false;  // the machine has no more threads
   }
-  waiting_.push_back(std::move(work));
-  changed_.notify_one();
+  ++idle_;
   return true;
 }
 
-void ConnectionThreads::start_next(std::function<void()> work) {
+void ConnectionThreads::start(std::function<void()> work) {
   const std::lock_guard lock(mutex_);
   waiting_.push_back(std::move(work));
   changed_.notify_one();

@@ -15,10 +15,10 @@ class ConnectionThreads {
   explicit ConnectionThreads(std::size_t most) : most_(most) {}
   ~ConnectionThreads();  // waits for all work to end
 
-  // Starts the work, or returns false if all threads are busy. `work` throws nothing.
-  bool start(std::function<void()> work);
-  // Has the work done by the first thread that is free. REQUIRES: one will be soon.
-  void start_next(std::function<void()> work);
+  // Whether a thread is free for one more piece of work.
+  bool has_room();
+  // Has the work done by the first thread that is free; it throws nothing. REQUIRES: one is, or will be soon.
+  void start(std::function<void()> work);
 
  private:
   void serve();

@@ -12,11 +12,14 @@ class Waiting {
  public:
   using Clock = std::chrono::steady_clock;
 
+  // It waits from the start, for what `events` say.
+  explicit Waiting(short events) : events_(events) {}
+
   // Both are false once it was told to give up.
   bool begin(Clock::time_point since, short events) {
     since_ = since.time_since_epoch().count();
     events_ = events;
-    return change(State::working, State::waiting);
+    return change(State::working, State::waiting) || state_ == State::waiting;
   }
   bool end() { return change(State::waiting, State::working); }
   bool gave_up() const { return state_ == State::given_up; }
@@ -34,9 +37,9 @@ class Waiting {
   enum class State { working, waiting, given_up };
   bool change(State from, State to) { return state_.compare_exchange_strong(from, to); }
 
-  std::atomic<Clock::rep> since_{0};
-  std::atomic<short> events_{0};
-  std::atomic<State> state_{State::working};
+  std::atomic<Clock::rep> since_{Clock::now().time_since_epoch().count()};
+  std::atomic<short> events_;
+  std::atomic<State> state_{State::waiting};
 };
 
 }  // namespace orrery

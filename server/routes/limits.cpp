@@ -37,6 +37,7 @@ nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ord
                                  {"mesh_vertices", MeshLimits{}.vertices},
                                  {"mesh_triangles", MeshLimits{}.triangles}};
   for (const Setting& limit : limits()) json[std::string(limit.name)] = std::stoll(limit.text(settings));
+  json["work_bytes"] = work_bytes(settings);
   json["storage"] = "memory";  // of scenes, assets, pictures and jobs: they end with the service
   json["options"] = options;
   return json;

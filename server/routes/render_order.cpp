@@ -24,7 +24,8 @@ RenderOrder read_render_order(App& app, Request& request, Timing& timing,
     const auto scene = document.member("scene"), id = document.member("scene_id");
     if (scene && id) throw InputError("/scene_id", "expected either scene or scene_id, got both");
     if (scene || id) order.request = read_request(document, more);
-    order.scene = id ? find(app, *id) : app.scenes().get(scene ? *scene : document, meshes);
+    order.scene =
+        id ? find(app, *id) : app.scenes().get(scene ? *scene : document, meshes, caller_of(request).client);
   });
   return order;
 }

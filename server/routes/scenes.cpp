@@ -40,8 +40,9 @@ Response add_scene(App& app, Request& request) {
   Timing timing;
   const std::string body = std::move(request.body);
   SceneStore::Kept kept;
-  app.read(body.size(), caller_of(request), timing,
-           [&](const MeshSource& meshes) { kept = app.scenes().keep(parse_document(body), meshes); });
+  app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
+    kept = app.scenes().keep(parse_document(body), meshes, caller_of(request).client);
+  });
   const Scene& scene = kept.scene->scene();
   Response response = json_answer(kept.known ? 200 : 201, summary(scene));
   response.set("Location", "/v1/scenes/" + scene.id);

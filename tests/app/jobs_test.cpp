@@ -61,14 +61,8 @@ class JobsTest : public testing::Test {
     return job->status();
   }
   RenderServices services_with(Admission& admission) {
-    return {pool_,
-            admission,
-            timer_,
-            drains_.get_token(),
-            ends_.get_token(),
-            meters_,
-            estimator_,
-            Settings().interactive_rays};
+    return {pool_,      admission,    timer_,  drains_.get_token(),        ends_.get_token(), meters_,
+            estimator_, work_memory_, scenes_, Settings().interactive_rays};
   }
   static std::string error_of(const JobStatus& status) {
     try {
@@ -94,6 +88,8 @@ class JobsTest : public testing::Test {
   std::stop_source drains_, ends_;
   Meters meters_;
   RayEstimator estimator_;
+  WorkMemory work_memory_{std::size_t{1} << 30};
+  SceneStore scenes_{std::size_t{1} << 30, work_memory_};
   const RenderServices services_ = services_with(admission_);
   Jobs::Limits limits_{.under_way = 4, .ended = 100, .bytes = 1 << 20, .run_time = kRunTime, .kept = kKept};
   std::size_t bytes_a_step_ = 10;
@@ -198,7 +194,7 @@ TEST_F(JobsTest, TellTheAdmissionWhatTheyTook) {
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
   {
     auto ticket = admission.enter({Lane::interactive, "a", 1e12}, {});
-    services.render(ticket, *scene_, settle(*scene_, plan), FilmStorage::srgb8, {});
+    services.render(ticket, *scene_, plan, FilmStorage::srgb8, {});
     timer_.advance(seconds(1));
   }
   const double rate = kLeastCost + static_cast<double>(meters_.rays);

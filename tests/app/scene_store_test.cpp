@@ -41,28 +41,42 @@ class CountedMeshes final : public MeshSource {
 };
 
 const MeshSource kNoMeshes;
+const std::string kClient = "someone";
+
+// A store with memory for work.
+struct Store {
+  explicit Store(std::size_t most_bytes) : scenes(most_bytes, work) {}
+  SceneStore* operator->() { return &scenes; }
+  SceneStore::Prepared get(const Document& document, const MeshSource& meshes = kNoMeshes) {
+    return scenes.get(document, meshes, kClient);
+  }
+  SceneStore::Kept keep(const Document& document, const MeshSource& meshes = kNoMeshes) {
+    return scenes.keep(document, meshes, kClient);
+  }
+  bool has(const Document& document) {
+    try {
+      return scenes.find(document.id())->scene().id == document.id();
+    } catch (const NotFound&) {
+      return false;
+    }
+  }
+  WorkMemory work{std::size_t{1} << 30};
+  SceneStore scenes;
+};
 
 std::size_t size_of(const Document& document) {
-  SceneStore store(1 << 30);
-  store.keep(document, kNoMeshes);
-  return store.bytes();
-}
-
-bool has(SceneStore& store, const Document& document) {
-  try {
-    return store.find(document.id())->scene().id == document.id();
-  } catch (const NotFound&) {
-    return false;
-  }
+  Store store(1 << 30);
+  store.keep(document);
+  return store->bytes();
 }
 
 TEST(SceneStore, KnownScenesAreNotLoadedAndTheirMeshesNotRead) {
   const std::string mesh = R"({"type": "mesh", "asset": ")" + std::string(64, 'a') + R"(", "material": "m"})";
   const CountedMeshes meshes;
-  SceneStore store(1 << 30);
+  Store store(1 << 30);
   const auto rendered = store.get(parse_document(text_of("mesh", mesh)), meshes);
-  EXPECT_EQ(store.loads(), 1u);
-  EXPECT_EQ(store.hits(), 0u);
+  EXPECT_EQ(store->loads(), 1u);
+  EXPECT_EQ(store->hits(), 0u);
   EXPECT_EQ(meshes.reads, 1);
   const auto again = store.get(parse_document("\n " + text_of("mesh", " " + mesh)), meshes);
   EXPECT_EQ(again, rendered) << "what was built for it is used again";
@@ -71,69 +85,69 @@ TEST(SceneStore, KnownScenesAreNotLoadedAndTheirMeshesNotRead) {
   EXPECT_FALSE(kept.known) << "it was rendered, not kept";
   EXPECT_TRUE(store.keep(parse_document(text_of("mesh", mesh)), meshes).known);
   EXPECT_EQ(store.get(parse_document(text_of("mesh", mesh)), meshes), rendered);
-  EXPECT_EQ(store.loads(), 1u);
-  EXPECT_EQ(store.hits(), 4u);
+  EXPECT_EQ(store->loads(), 1u);
+  EXPECT_EQ(store->hits(), 4u);
   EXPECT_EQ(meshes.reads, 1);
   store.get(parse_document(text_of("other", mesh)), meshes);
-  EXPECT_EQ(store.loads(), 2u);
+  EXPECT_EQ(store->loads(), 2u);
   EXPECT_EQ(meshes.reads, 2);
 }
 
 TEST(SceneStore, CachedScenesPushOutOneAnotherButNoneThatIsKept) {
-  SceneStore store(3 * size_of(ball("kept")) + 100);
-  store.keep(ball("kept"), kNoMeshes);
-  for (const char* title : {"aaaa", "bbbb", "cccc"}) store.get(ball(title), kNoMeshes);
-  EXPECT_FALSE(has(store, ball("aaaa")));
-  EXPECT_TRUE(has(store, ball("bbbb")) && has(store, ball("cccc")));
-  for (int i = 0; i < 10; ++i) store.get(ball(std::to_string(1000 + i)), kNoMeshes);
-  EXPECT_TRUE(has(store, ball("kept"))) << "although it was not used for longest";
-  EXPECT_LE(store.bytes(), 3 * size_of(ball("kept")) + 100);
+  Store store(3 * size_of(ball("kept")) + 100);
+  store.keep(ball("kept"));
+  for (const char* title : {"aaaa", "bbbb", "cccc"}) store.get(ball(title));
+  EXPECT_FALSE(store.has(ball("aaaa")));
+  EXPECT_TRUE(store.has(ball("bbbb")) && store.has(ball("cccc")));
+  for (int i = 0; i < 10; ++i) store.get(ball(std::to_string(1000 + i)));
+  EXPECT_TRUE(store.has(ball("kept"))) << "although it was not used for longest";
+  EXPECT_LE(store->bytes(), 3 * size_of(ball("kept")) + 100);
 }
 
 TEST(SceneStore, WhereKeptScenesLeaveNoRoomNothingIsCached) {
-  SceneStore store(2 * size_of(ball("kept")) - 1);
-  store.keep(ball("kept"), kNoMeshes);
-  EXPECT_EQ(store.get(ball("more"), kNoMeshes)->scene().title, "more");
-  EXPECT_FALSE(has(store, ball("more")));
-  EXPECT_TRUE(has(store, ball("kept")));
-  EXPECT_EQ(store.bytes(), size_of(ball("kept")));
+  Store store(2 * size_of(ball("kept")) - 1);
+  store.keep(ball("kept"));
+  EXPECT_EQ(store.get(ball("more"))->scene().title, "more");
+  EXPECT_FALSE(store.has(ball("more")));
+  EXPECT_TRUE(store.has(ball("kept")));
+  EXPECT_EQ(store->bytes(), size_of(ball("kept")));
 }
 
 TEST(SceneStore, KeptScenesPushOutCachedOnesFirst) {
-  SceneStore store(3 * size_of(ball("kept")) + 100);
-  store.keep(ball("old1"), kNoMeshes);
-  store.get(ball("cach"), kNoMeshes);
-  store.keep(ball("old2"), kNoMeshes);
-  store.get(ball("cach"), kNoMeshes);  // used last, and goes first
-  store.keep(ball("new1"), kNoMeshes);
-  EXPECT_FALSE(has(store, ball("cach")));
-  EXPECT_TRUE(has(store, ball("old2")) && has(store, ball("new1")) && has(store, ball("old1")));
-  store.keep(ball("new2"), kNoMeshes);  // now the one used longest ago
-  EXPECT_FALSE(has(store, ball("old2")));
-  EXPECT_TRUE(has(store, ball("new1")) && has(store, ball("new2")) && has(store, ball("old1")));
+  Store store(3 * size_of(ball("kept")) + 100);
+  store.keep(ball("old1"));
+  store.get(ball("cach"));
+  store.keep(ball("old2"));
+  store.get(ball("cach"));  // used last, and goes first
+  store.keep(ball("new1"));
+  EXPECT_FALSE(store.has(ball("cach")));
+  EXPECT_TRUE(store.has(ball("old2")) && store.has(ball("new1")) && store.has(ball("old1")));
+  store.keep(ball("new2"));  // now the one used longest ago
+  EXPECT_FALSE(store.has(ball("old2")));
+  EXPECT_TRUE(store.has(ball("new1")) && store.has(ball("new2")) && store.has(ball("old1")));
 }
 
 TEST(SceneStore, WhatIsTooLargeToKeepIsSaidToBe) {
   const Document large = balls("large", 100);
-  SceneStore store(size_of(large) - 1);
+  Store store(size_of(large) - 1);
   try {
-    store.keep(large, kNoMeshes);
+    store.keep(large);
     ADD_FAILURE() << "kept";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("store_bytes"), std::string::npos) << error.what();
   }
-  EXPECT_EQ(store.get(large, kNoMeshes)->scene().object_count, 100);
-  EXPECT_EQ(store.bytes(), 0u);
+  EXPECT_EQ(store.get(large)->scene().object_count, 100);
+  EXPECT_EQ(store->bytes(), 0u);
 }
 
 TEST(SceneStore, CachedScenesCanBeRemovedLikeKeptOnes) {
-  SceneStore store(1 << 30);
-  store.get(ball("cached"), kNoMeshes);
-  store.keep(ball("kept"), kNoMeshes);
-  store.remove(ball("cached").id());
-  store.remove(ball("kept").id());
-  EXPECT_THROW(store.remove(ball("kept").id()), NotFound);
-  EXPECT_EQ(store.bytes(), 0u);
+  Store store(1 << 30);
+  store.get(ball("cached"));
+  store.keep(ball("kept"));
+  store->remove(ball("cached").id());
+  store->remove(ball("kept").id());
+  EXPECT_THROW(store->remove(ball("kept").id()), NotFound);
+  EXPECT_EQ(store->bytes(), 0u);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 import { writeFileSync } from "node:fs";
 import { loadavg } from "node:os";
 import { exists_program, kOrrery } from "./command.mjs";
+import { kCancel } from "./cancel.mjs";
 import { kDrag } from "./drag.mjs";
 import { kEmbree } from "./embree.mjs";
 import { kFlakeVsPovray } from "./flake_vs_povray.mjs";
@@ -21,7 +22,7 @@ import { kReports as kStructureReports } from "./structures.mjs";
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages, ...kMotion];
 
-const kReports = [...kStructureReports, kDrag, kSlowClients];
+const kReports = [...kStructureReports, kCancel, kDrag, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too

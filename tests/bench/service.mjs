@@ -8,6 +8,7 @@ import { kBlockade } from "./service/blockade.mjs";
 import { kCached } from "./service/cached.mjs";
 import { kHealth } from "./service/health.mjs";
 import { kLeaves } from "./service/leaves.mjs";
+import { kMemory } from "./service/memory.mjs";
 import { kOverload } from "./service/overload.mjs";
 import { kSigterm } from "./service/sigterm.mjs";
 import { kSoak } from "./service/soak.mjs";
@@ -16,7 +17,7 @@ import { kViewers } from "./service/viewers.mjs";
 
 // Each has: name; what, in one line; seconds or times, how long it takes or how often it is done; and
 // run({seconds, times}), which resolves to {rows, remark}. A row: {what, target, measured, met}.
-const kProperties = [kBlockade, kHealth, kOverload, kLeaves, kSigterm, kViewers, kCached, kStart, kSoak];
+const kProperties = [kBlockade, kMemory, kHealth, kOverload, kLeaves, kSigterm, kViewers, kCached, kStart, kSoak];
 
 const kUsage =
   "usage: tests/bench/run service [PROPERTY...] [--seconds N] [--times N] [--json FILE] [--list]\n" +

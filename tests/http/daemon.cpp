@@ -179,10 +179,13 @@ bool Daemon::wait_until_idle(double limit_s) const {
   return false;
 }
 
-RawClient::RawClient(int port, int receive_buffer) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
+RawClient::RawClient(int port, int receive_buffer, std::uint8_t from) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
   if (receive_buffer > 0) setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
   sockaddr_in address{};
   address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK - 1 + from);
+  if (bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+    throw std::runtime_error("cannot take the address");
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)

@@ -53,8 +53,9 @@ std::string program();
 // A plain TCP connection to the daemon, for requests that no HTTP library would send.
 class RawClient {
  public:
-  // receive_buffer: bytes that the kernel keeps for us, 0 for its own choice.
-  explicit RawClient(int port, int receive_buffer = 0);
+  // receive_buffer: bytes that the kernel keeps for us, 0 for its own choice. from: the last byte of our
+  // address, 127.0.0.X.
+  explicit RawClient(int port, int receive_buffer = 0, std::uint8_t from = 1);
   ~RawClient();
   RawClient(const RawClient&) = delete;
 

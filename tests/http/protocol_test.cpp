@@ -132,5 +132,50 @@ TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
             std::string::npos);
 }
 
+constexpr std::uint8_t kGreedy = 2, kOther = 3;  // addresses 127.0.0.X
+const std::string kHealth = "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+
+std::string health_from(const Daemon& daemon, std::uint8_t address) {
+  const RawClient raw(daemon.port(), 0, address);
+  raw.send(kHealth);
+  return raw.receive_all();
+}
+
+TEST(Connections, OfOneAddressLeaveAQuarterToOthers) {
+  Daemon daemon(with_endless_pictures({"--connections", "8", "--queue-rays", "1000000000000"}));
+  const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
+  const std::string id = nlohmann::json::parse(posted->body).at("id");
+  std::vector<std::unique_ptr<RawClient>> at_work;  // they make no room
+  for (int i = 0; i < 6; ++i) {
+    at_work.push_back(std::make_unique<RawClient>(daemon.port(), 0, kGreedy));
+    at_work.back()->send("GET /v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096&seed=" +
+                         std::to_string(i) + " HTTP/1.1\r\nHost: x\r\n\r\n");
+  }
+  ASSERT_TRUE(test::eventually([&] {
+    return daemon.metric("orrery_renders_running") + daemon.metric("orrery_renders_waiting") == 6;
+  }));
+  const std::string refused = health_from(daemon, kGreedy);
+  EXPECT_EQ(refused.substr(0, 12), "HTTP/1.1 429");
+  EXPECT_NE(refused.find("6 connections are open already from your address, three quarters of all"),
+            std::string::npos)
+      << refused;
+  EXPECT_EQ(health_from(daemon, kOther).substr(0, 12), "HTTP/1.1 200");
+}
+
+// The last of those that one address opened all at once make room for others, who need not wait for that.
+TEST(Connections, OfABurstMakeRoomForOthers) {
+  Daemon daemon({"--connections", "8"});
+  std::vector<std::unique_ptr<RawClient>> burst, others;
+  for (int i = 0; i < 6; ++i) burst.push_back(std::make_unique<RawClient>(daemon.port(), 0, kGreedy));
+  for (int i = 0; i < 4; ++i) others.push_back(std::make_unique<RawClient>(daemon.port(), 0, kOther));
+  for (const auto& other : others) {
+    other->send(kHealth);
+    EXPECT_EQ(other->receive_all().substr(0, 12), "HTTP/1.1 200");
+  }
+  burst.front()->send(kHealth);
+  EXPECT_EQ(burst.front()->receive_all().substr(0, 12), "HTTP/1.1 200") << "the first stayed";
+  EXPECT_EQ(burst.back()->receive_all(), "");
+}
+
 }  // namespace
 }  // namespace orrery

@@ -110,22 +110,27 @@ TEST_F(Render, AllFormatsOfAPictureAreRenderedOnceWhileItsFilmIsKept) {
 }
 
 TEST_F(Render, LayersHaveALimitOfBytes) {
+  const Daemon daemon({"--memory-bytes", "160000000"});
+  httplib::Client client = daemon.client();
+  const auto limits = nlohmann::json::parse(client.Get("/v1/limits")->body);
+  const std::size_t most = limits.at("work_bytes").get<std::size_t>() / 2;
   // Radiance, depth and normal, each with a weight but the first: 9 planes of 8 bytes a pixel.
-  const std::size_t bytes = 72 * 48 * 32;
-  const auto status_with = [](std::size_t most, const char* type) {
-    const Daemon daemon({"--layer-bytes", std::to_string(most)});
-    const nlohmann::json body = {{"scene", small_scene()}, {"render", {{"layers", {"depth", "normal"}}}}};
-    return daemon.client().Post("/v1/render", {{"Accept", type}}, body.dump(), "application/json");
+  constexpr std::size_t kPixel = 72, kHeight = 100, kRow = kPixel * kHeight;
+  const auto answer = [&](std::size_t width, const char* type) {
+    const nlohmann::json body = {{"scene", small_scene()},
+                                 {"image", {{"width", width}, {"height", kHeight}}},
+                                 {"render", {{"layers", {"depth", "normal"}}}}};
+    return client.Post("/v1/render", {{"Accept", type}}, body.dump(), "application/json");
   };
-  EXPECT_EQ(status_with(bytes, "image/x-exr")->status, 200);
-  const auto problem = expect_problem(status_with(bytes - 1, "image/x-exr"), 422);
+  EXPECT_EQ(answer(most / kRow / 2, "image/x-exr")->status, 200);
+  const std::size_t wide = most / kRow + 1;
+  const auto problem = expect_problem(answer(wide, "image/x-exr"), 422);
   EXPECT_EQ(problem.at("errors")[0].at("pointer"), "/render/layers");
   const std::string detail = problem.at("errors")[0].at("detail");
   for (const std::string& told :
-       {std::to_string(bytes), std::to_string(bytes - 1), std::string("layer_bytes")})
+       {std::to_string(wide * kRow), std::to_string(most), std::string("work_bytes")})
     EXPECT_NE(detail.find(told), std::string::npos) << detail;
-  EXPECT_EQ(expect_problem(status_with(bytes, "image/png"), 422).at("errors")[0].at("pointer"),
-            "/render/layers");
+  EXPECT_EQ(expect_problem(answer(wide, "image/png"), 422).at("errors")[0].at("pointer"), "/render/layers");
 }
 
 TEST_F(Render, LayersThatASceneAsksForAreLeftOutOfWhatHasNone) {

@@ -74,7 +74,7 @@ TEST_F(Scenes, ExplainGivesReasonsForThisQuery) {
 }
 
 TEST(SceneStore, ForgetsTheScenesUnusedForLongest) {
-  Daemon daemon({"--store-bytes", "40000"});
+  Daemon daemon({"--store-bytes", "20000"});
   httplib::Client client = daemon.client();
   const auto post = [&](const char* title) {
     const auto result = client.Post("/v1/scenes", small_scene({{"title", title}}).dump(), "application/json");
@@ -82,7 +82,7 @@ TEST(SceneStore, ForgetsTheScenesUnusedForLongest) {
   };
   const std::string used = post("used");
   const std::string unused = post("unused");
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 8; ++i) {
     post(std::to_string(i).c_str());
     EXPECT_EQ(client.Get(used)->status, 200);
   }

@@ -67,12 +67,16 @@ TEST(Png, RoundTripsEveryByteAtEveryLevel) {
     }
 }
 
-TEST(Png, EncodingEndsWhenNobodyWantsIt) {
-  const Image image(8, 200, PixelFormat::srgb8);
-  std::stop_source stop;
-  EXPECT_EQ(encode_png(image, {}, stop.get_token()), encode_png(image));
-  stop.request_stop();
-  EXPECT_THROW(encode_png(image, {}, stop.get_token()), Cancelled);
+TEST(Encoding, EndsWhenNobodyWantsIt) {
+  const Image codes = noise(8, 200), linear = floats(8, 200);
+  std::stop_source source;
+  const std::stop_token stop = source.get_token();
+  const WorkScope scope({nullptr, &stop});
+  EXPECT_NE(encode_png(codes), "");
+  EXPECT_NE(encode_exr(linear), "");
+  source.request_stop();
+  EXPECT_THROW(encode_png(codes), Cancelled);
+  EXPECT_THROW(encode_exr(linear), Cancelled);
 }
 
 TEST(Exr, RoundTripsEveryFloat) {

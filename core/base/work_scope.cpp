@@ -1,0 +1,159 @@
+#include "core/base/work_scope.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/base/error.h"
+
+namespace orrery {
+namespace {
+
+// The model is the one of a library that is there from the start, and takes fewer steps.
+[[gnu::tls_model("initial-exec")]] constinit thread_local Work current_work;
+
+// Stands before each block of operator new.
+struct alignas(__STDCPP_DEFAULT_NEW_ALIGNMENT__) Header {
+  MemoryAccount* account;
+  std::size_t bytes;
+};
+
+// Bytes from the start of what the allocator gives to the block.
+std::size_t offset_of(std::size_t alignment) { return std::max(sizeof(Header), alignment); }
+
+Header& header_of(void* block) { return *(static_cast<Header*>(block) - 1); }
+
+void* take_block(std::size_t size, std::size_t alignment) {
+  constexpr std::size_t kChunk = 16;  // what the allocator rounds to, and less than it adds
+  const std::size_t offset = offset_of(alignment), all = (size + offset + kChunk - 1) / kChunk * kChunk;
+  if (all < size) throw std::bad_alloc();
+  MemoryAccount* const account = current_work.memory;
+  if (account) account->add(all);
+  void* const start = alignment > sizeof(Header)
+                          ? std::aligned_alloc(alignment, (all + alignment - 1) / alignment * alignment)
+                          : std::malloc(all);
+  if (!start) {
+    if (account) account->remove(all);
+    throw std::bad_alloc();
+  }
+  void* const block = static_cast<std::byte*>(start) + offset;
+  header_of(block) = {account, all};
+  return block;
+}
+
+void give_block(void* block, std::size_t alignment) noexcept {
+  if (!block) return;
+  const Header header = header_of(block);
+  std::free(static_cast<std::byte*>(block) - offset_of(alignment));
+  if (header.account) header.account->remove(header.bytes);
+}
+
+}  // namespace
+
+std::shared_ptr<MemoryAccount> MemoryAccount::open(Resize resize) {
+  const WorkScope nobody({});
+  return {new MemoryAccount(std::move(resize)), [](MemoryAccount* account) { account->close(); }};
+}
+
+void MemoryAccount::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    resize_ = nullptr;
+  }
+  remove(kOpen);
+}
+
+void MemoryAccount::add(std::size_t bytes) {
+  // More than nlohmann's destructor takes, which must not throw, for the nodes that a document may have.
+  constexpr std::size_t kLarge = 32 << 20;
+  if (held_.fetch_add(bytes) + bytes <= granted_ + kOpen) return;
+  const bool taken_anyhow = bytes < kLarge || std::uncaught_exceptions() > 0;
+  if ((taken_anyhow && overdrawn_) || grow()) return;
+  if (taken_anyhow) {
+    overdrawn_ = true;
+    return;
+  }
+  remove(bytes);
+  throw std::bad_alloc();
+}
+
+void MemoryAccount::remove(std::size_t bytes) {
+  if (held_.fetch_sub(bytes) == bytes) delete this;
+}
+
+// False: refused.
+bool MemoryAccount::grow() {
+  const WorkScope nobody({});
+  const std::lock_guard lock(mutex_);
+  try {
+    if (bytes() > granted_) resize_locked(false);
+  } catch (...) {
+    refusal_ = std::current_exception();
+    return false;
+  }
+  overdrawn_ = false;
+  return true;
+}
+
+void MemoryAccount::settle(std::size_t bytes) {
+  const WorkScope nobody({});
+  const std::lock_guard lock(mutex_);
+  settled_ = bytes;
+  resize_locked(true);
+}
+
+// With mutex_ held.
+void MemoryAccount::resize_locked(bool already) {
+  const std::size_t held = bytes(), settled = std::min(held, settled_);
+  granted_ = resize_ ? settled + resize_(held - settled, already) : held;
+}
+
+void MemoryAccount::rethrow_refusal() {
+  const std::lock_guard lock(mutex_);
+  if (refusal_) std::rethrow_exception(refusal_);
+}
+
+WorkScope::WorkScope(const Work& work) : before_(std::exchange(current_work, work)) {}
+WorkScope::~WorkScope() { current_work = before_; }
+Work WorkScope::current() { return current_work; }
+
+MemoryCharge::MemoryCharge(std::size_t bytes) : account_(current_work.memory), bytes_(bytes) {
+  if (account_) account_->add(bytes_);
+}
+MemoryCharge::~MemoryCharge() {
+  if (account_) account_->remove(bytes_);
+}
+
+void interruption_point() {
+  if (current_work.stop && current_work.stop->stop_requested()) throw Cancelled();
+  if (current_work.memory) current_work.memory->require_granted();
+}
+
+}  // namespace orrery
+
+void* operator new(std::size_t size) { return orrery::take_block(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return orrery::take_block(size, static_cast<std::size_t>(alignment));
+}
+// The library's own do not call the ones above.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(size);
+  } catch (...) {
+    return nullptr;
+  }
+}
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(size, alignment);
+  } catch (...) {
+    return nullptr;
+  }
+}
+void operator delete(void* block) noexcept { orrery::give_block(block, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
+void operator delete(void* block, std::size_t) noexcept { operator delete(block); }
+void operator delete(void* block, std::align_val_t alignment) noexcept {
+  orrery::give_block(block, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* block, std::size_t, std::align_val_t alignment) noexcept {
+  operator delete(block, alignment);
+}

@@ -1,0 +1,77 @@
+#include "server/app/work_memory.h"
+
+#include "core/base/error.h"
+#include "server/http/over_limit.h"
+
+namespace orrery {
+namespace {
+
+constexpr const char* kName = "work_bytes";
+constexpr double kRetry_s = 2;
+
+std::string bytes_text(std::size_t bytes) { return std::to_string(bytes) + " bytes"; }
+
+}  // namespace
+
+// What one account has taken; given back with it.
+class WorkMemory::Share {
+ public:
+  Share(WorkMemory& from, std::string client) : from_(from), client_(std::move(client)) {}
+  ~Share() { from_.resize(client_, bytes_, 0, true); }
+  Share(const Share&) = delete;
+  std::size_t resize(std::size_t bytes, bool already) {
+    return bytes_ = from_.resize(client_, bytes_, bytes, already);
+  }
+
+ private:
+  WorkMemory& from_;
+  const std::string client_;
+  std::size_t bytes_ = 0;
+};
+
+std::shared_ptr<MemoryAccount> WorkMemory::open(const std::string& client) {
+  return MemoryAccount::open([share = std::make_shared<Share>(*this, client)](
+                                 std::size_t bytes, bool already) { return share->resize(bytes, already); });
+}
+
+std::size_t WorkMemory::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return taken_;
+}
+
+std::size_t WorkMemory::resize(const std::string& client, std::size_t own, std::size_t bytes, bool already) {
+  constexpr std::size_t kStep = 256 * 1024;  // so that it is not asked for each block
+  const std::size_t rounded = (bytes + kStep - 1) / kStep * kStep;
+  const std::lock_guard lock(mutex_);
+  if (rounded > own && !already) require_room(client, own, rounded);
+  taken_ += rounded - own;
+  std::size_t& by_client = taken_by_[client];
+  by_client += rounded - own;
+  if (by_client == 0) taken_by_.erase(client);
+  return rounded;
+}
+
+void WorkMemory::require_room(const std::string& client, std::size_t own, std::size_t bytes) const {
+  const auto known = taken_by_.find(client);
+  const std::size_t others_of_client = (known == taken_by_.end() ? 0 : known->second) - own;
+  const std::size_t of_others = taken_ - own - others_of_client;
+  // Whether it leaves as much as the client then has; sums of few terms below 2^62.
+  const auto fits = [&](std::size_t beside, std::size_t client_has) {
+    return beside + 2 * (client_has + bytes) <= most_;
+  };
+  if (fits(of_others, others_of_client)) return;
+  if (!fits(0, 0))
+    throw InputError("", "it takes more than " + bytes_text(most_ / 2) +
+                             " of memory at one time, half of what all work may take (" + kName + ")");
+  if (fits(of_others, 0))
+    throw ClientBusy("Work of yours takes " + bytes_text(others_of_client) + " of memory already, of " +
+                         bytes_text(most_) + " for all (" + kName + "), and " + bytes_text(bytes) +
+                         " more are needed",
+                     kRetry_s, kName);
+  throw OverLimit("Work of others takes " + bytes_text(of_others) + " of memory already, of " +
+                      bytes_text(most_) + " for all (" + kName + "), and " +
+                      bytes_text(others_of_client + bytes) + " are needed",
+                  kRetry_s, kName);
+}
+
+}  // namespace orrery

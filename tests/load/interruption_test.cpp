@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "core/accelerators/registry.h"
+#include "core/base/work_scope.h"
+#include "core/load/load.h"
+#include "core/meshes/repair.h"
+#include "core/params/document.h"
+#include "core/prepare/prepared_scene.h"
+#include "tests/meshes/writers.h"
+#include "tests/support/scenes.h"
+
+// All that is done with input of any size ends once nobody wants it any more.
+namespace orrery {
+namespace {
+
+// Whether the work ends with Cancelled where a stop was requested before, and without it ends well.
+template <class Act>
+bool is_interrupted(const Act& act) {
+  act();
+  std::stop_source source;
+  source.request_stop();
+  const std::stop_token stop = source.get_token();
+  const WorkScope scope({nullptr, &stop});
+  try {
+    act();
+  } catch (const Cancelled&) {
+    return true;
+  }
+  return false;
+}
+
+const std::string kScene =
+    test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'white'}").dump();
+
+TEST(Interruption, EndsReadingJson) {
+  EXPECT_TRUE(is_interrupted([] { parse_document("[1, 2, 3]"); }));
+}
+
+TEST(Interruption, EndsReadingScenes) {
+  const Document document = parse_document(kScene);
+  EXPECT_TRUE(is_interrupted([&] { load_scene(document); }));
+}
+
+TEST(Interruption, EndsReadingMeshes) {
+  const TriangleMesh cube = test::cube();
+  for (const std::string& bytes :
+       {test::obj_of(cube), test::ply_of(cube), test::ply_of(cube, std::endian::little),
+        test::ascii_stl_of(cube), test::binary_stl_of(cube)})
+    EXPECT_TRUE(is_interrupted([&] { read_mesh(bytes); })) << bytes.substr(0, 60);
+}
+
+TEST(Interruption, EndsSmoothing) {
+  EXPECT_TRUE(is_interrupted([] {
+    TriangleMesh mesh = test::cube();
+    smooth_normals(mesh, 30);
+  }));
+}
+
+TEST(Interruption, EndsBuildingEveryStructure) {
+  const auto scene = load_scene(kScene);
+  for (const AcceleratorType& type : accelerator_types())
+    EXPECT_TRUE(is_interrupted([&] {
+      double build_ms = 0;
+      const std::stop_token* const stop = WorkScope::current().stop;
+      world_for<float>(PreparedScene(scene).parts(), type, 0, build_ms, stop ? *stop : std::stop_token());
+    })) << type.name;
+}
+
+// What was interrupted is built for who asks next.
+TEST(Interruption, LeavesNothingHalfBuilt) {
+  const PreparedScene scene(load_scene(kScene));
+  std::stop_source source;
+  source.request_stop();
+  double build_ms = 0;
+  const AcceleratorType& type = accelerator_types()[0];
+  EXPECT_THROW(world_for<float>(scene.parts(), type, 0, build_ms, source.get_token()), Cancelled);
+  EXPECT_EQ(world_for<float>(scene.parts(), type, 0, build_ms).geometry->primitives.size(), 1u);
+}
+
+}  // namespace
+}  // namespace orrery
