@@ -64,6 +64,7 @@ using AcceleratorPtr = std::unique_ptr<Accelerator<T>>;
 // 40 %. Only ratios mean something.
 struct AcceleratorCosts {
   double ray, visit, box, primitive;
+  double each = 0;  // a ray, for each primitive that there is, where every one is asked
 
   double of(std::uint64_t rays, const AcceleratorCounts& counts) const {
     return ray * static_cast<double>(rays) + visit * static_cast<double>(counts.node_visits) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/model/accelerator.h"
 #include "core/model/technique.h"
 
 namespace orrery {
@@ -31,6 +32,12 @@ double expected_rays(const Scene& scene, const Plan& plan) {
   const double lit = shadows ? (branches ? 1 - kSpecularShare : 1) : 0;
   const double camera_rays = double(plan.width) * plan.height * plan.samples;
   return camera_rays * tree * (1 + lit * static_cast<double>(scene.lights.size()));
+}
+
+double ray_weight(const Scene& scene, const Plan& plan) {
+  constexpr double kUsualRay_ns = 20;
+  const auto primitives = static_cast<double>(scene.primitive_count());
+  return std::max(1.0, plan.accelerator->costs.each * primitives / kUsualRay_ns);
 }
 
 }  // namespace orrery

@@ -28,8 +28,8 @@ std::string in_millions(double rays) {
 }  // namespace
 
 TooManyRays::TooManyRays(double expected, double most)
-    : InputError("", "the picture is expected to take " + whole(expected) +
-                         " rays, and one request may ask for " + whole(most) +
+    : InputError("", "the picture is expected to take as long as " + whole(expected) +
+                         " usual rays, and one request may ask for " + whole(most) +
                          " (request_rays); a job takes longer work: POST /v1/jobs") {}
 
 double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }

@@ -24,7 +24,7 @@ namespace orrery {
 // A picture is expected to cost more than one request may ask for.
 class TooManyRays : public InputError {
  public:
-  // Of a picture that is expected to take so many rays, where so many are the limit.
+  // Of a picture that is expected to take as long as so many rays, where so many are the limit.
   TooManyRays(double expected, double most);
   const char* limit() const noexcept { return "request_rays"; }  // its name in /v1/limits
 };

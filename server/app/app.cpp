@@ -146,7 +146,8 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
 
 void App::require_request_rays(const Scene& scene, const Plan& plan) {
   // The less of the two: what others rendered of the scene refuses nothing.
-  const double rays = std::min(estimator_.estimate(scene, plan), expected_rays(scene, plan));
+  const double rays =
+      ray_weight(scene, plan) * std::min(estimator_.estimate(scene, plan), expected_rays(scene, plan));
   if (rays > settings_.request_rays) throw TooManyRays(rays, settings_.request_rays);
 }
 

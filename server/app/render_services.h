@@ -26,12 +26,12 @@ struct RenderServices {
   SceneStore& scenes;
   double interactive_rays;  // of one frame, beyond which it is batch work
 
-  // What a frame is expected to cost, in rays: those that it traces, and a little for its fixed work. It is
-  // batch work if either the plan alone or what was learned says so.
+  // What a frame is expected to cost, in usual rays: for those that it traces, and a little for its fixed
+  // work. It is batch work if either the plan alone or what was learned says so.
   Demand demand_of(const Scene& scene, const Plan& plan, const std::string& client) const {
-    const double rays = estimator.estimate(scene, plan);
-    const bool small = std::max(rays, expected_rays(scene, plan)) <= interactive_rays;
-    return {small ? Lane::interactive : Lane::batch, client, kLeastCost + rays};
+    const double rays = estimator.estimate(scene, plan), weight = ray_weight(scene, plan);
+    const bool small = weight * std::max(rays, expected_rays(scene, plan)) <= interactive_rays;
+    return {small ? Lane::interactive : Lane::batch, client, kLeastCost + weight * rays};
   }
 
   // A frame, in the turn that `ticket` gives; tells it what the frame has cost, and the store what the scene
@@ -44,7 +44,7 @@ struct RenderServices {
     const SettledPlan settled = settle(scene, plan, control.stop);
     RenderResult result = render_frame(scene, settled, storage, pool, shared);
     const std::uint64_t rays = result.stats.counts.rays.total();
-    ticket.set_cost(kLeastCost + static_cast<double>(rays));
+    ticket.set_cost(kLeastCost + ray_weight(scene.scene(), *settled) * static_cast<double>(rays));
     estimator.learn(scene.scene(), *settled, rays);
     meters.rays += rays;
     meters.render.Observe((result.stats.build_ms + result.stats.trace_ms) / 1000);

@@ -33,6 +33,8 @@ Response share(App& app, Request& request) {
   } catch (const HttpError& error) {
     throw InputError("/path", error.what());
   }
+  target.headers = request.headers;
+  require_access(app.access(), Scope::read, target);  // what a link gives, its maker has to have
   const std::int64_t expires =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
           .count() +
@@ -48,7 +50,6 @@ Response share(App& app, Request& request) {
 }  // namespace
 
 void add_shares_routes(Router& router, App& app) {
-  // What a link gives, its maker has to have.
   router.add("POST", "/v1/shares", Scope::write | Scope::read, LogLevel::info, json_body(app),
              [&app](Request& request) { return share(app, request); });
 }

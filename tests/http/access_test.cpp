@@ -82,6 +82,12 @@ TEST(Access, NeedsATokenOfTheScope) {
   expect_problem(client.Delete("/v1/jobs/x", bearer("p")), 404);
   const auto share = expect_problem(post("/v1/shares", "w", R"({"path": "/v1/limits"})"), 403);
   EXPECT_EQ(share.at("detail"), "The token lacks the scope read");
+  const std::string chosen = cached + "/frame.png?accelerator=list";
+  const auto choice = expect_problem(client.Get(chosen, bearer("r")), 403);
+  EXPECT_EQ(choice.at("detail"), "The token lacks the scope render, which choosing the accelerator takes");
+  EXPECT_EQ(client.Get(chosen, bearer("p"))->status, 200);
+  expect_problem(post("/v1/shares", "k", nlohmann::json({{"path", chosen}}).dump()), 403);
+  EXPECT_EQ(post("/v1/shares", "k", nlohmann::json({{"path", cached}}).dump())->status, 201);
   for (const char* open :
        {"/", "/app.js", "/schemas/scene.json", "/healthz", "/readyz", "/scenes/paper.json"})
     EXPECT_EQ(client.Get(open)->status, 200) << open;

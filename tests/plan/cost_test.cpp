@@ -43,6 +43,24 @@ TEST(Cost, OfRoughThingsIsCameraRaysAndAShadowRayToEachLight) {
   EXPECT_EQ(expected(balls("plaster", 3), deep(5)), 4);
 }
 
+TEST(Cost, OfARayGrowsWithThePrimitivesWhereEachIsAsked) {
+  Json many = scene_of("[]");
+  for (int i = 0; i < 1000; ++i)
+    many["objects"].push_back(
+        {{"type", "sphere"}, {"center", {i, 0, 0}}, {"radius", 0.4}, {"material", "white"}});
+  const auto weight = [scene = load(many)](const char* accelerator) {
+    RenderRequest request = size(8, 4);
+    request.accelerator = accelerator;
+    return ray_weight(*scene, make_plan(*scene, request));
+  };
+  EXPECT_EQ(weight("auto"), 1);
+  EXPECT_EQ(weight("bvh"), 1);
+  EXPECT_EQ(weight("kd-sah"), 1);
+  EXPECT_EQ(weight("list"), 1000 * 0.5 / 20);
+  EXPECT_EQ(weight("boxes"), 1000 * 0.25 / 20);
+  EXPECT_EQ(weight("oriented-boxes"), 1000 * 2.8 / 20);
+}
+
 TEST(Cost, GrowsWithPixelsAndSamples) {
   const auto scene = balls("glass", 1);
   RenderRequest large = deep(5);
