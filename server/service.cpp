@@ -110,6 +110,7 @@ void Service::reload() {
     app_.access().reload();
   } catch (const std::exception& error) {
     level = LogLevel::error;
+    ++app_.meters().reloads_failed;
     fields["error"] = error.what();
   }
   log_.write(level, level == LogLevel::info ? "reloaded" : "not reloaded", fields);
@@ -141,6 +142,8 @@ HttpServer::Admitted Service::admit(const Router& router, Request& request) {
   if (request.method == "OPTIONS")
     return answered({.status = 204, .headers = {{"Allow", router.allowed_methods(request)}}});
   const Route& route = router.find(request);
+  if (route.scope != Scope::none && settings.tokens_file.empty() && !settings.insecure)
+    refuse_foreign_host(request, settings.cors_origins);
   const Audience audience = require_access(app_.access(), route.scope, request);
   HttpServer::Admitted admitted{.body = {}, .answer = [this, &route, audience](Request& r) {
                                   Response response = route.handler(r);

@@ -11,6 +11,7 @@ namespace {
 // The model is the one of a library that is there from the start, and takes fewer steps.
 [[gnu::tls_model("initial-exec")]] constinit thread_local Work current_work;
 
+#ifndef ORRERY_SANITIZED  // sanitizers have an operator new of their own
 // Stands before each block of operator new.
 struct alignas(__STDCPP_DEFAULT_NEW_ALIGNMENT__) Header {
   MemoryAccount* account;
@@ -47,14 +48,17 @@ void give_block(void* block, std::size_t alignment) noexcept {
   if (header.account) header.account->remove(header.bytes);
 }
 
+#endif
+
 }  // namespace
 
-std::shared_ptr<MemoryAccount> MemoryAccount::open(Resize resize) {
+std::shared_ptr<MemoryAccount> MemoryAccount::open(Source source) {
   const WorkScope nobody({});
-  return {new MemoryAccount(std::move(resize)), [](MemoryAccount* account) { account->close(); }};
+  return {new MemoryAccount(std::move(source)), [](MemoryAccount* account) { account->close(); }};
 }
 
 void MemoryAccount::close() {
+  const WorkScope nobody({});
   {
     const std::lock_guard lock(mutex_);
     resize_ = nullptr;
@@ -90,6 +94,7 @@ bool MemoryAccount::grow() {
     refusal_ = std::current_exception();
     return false;
   }
+  refusal_ = nullptr;
   overdrawn_ = false;
   return true;
 }
@@ -130,6 +135,7 @@ void interruption_point() {
 
 }  // namespace orrery
 
+#ifndef ORRERY_SANITIZED
 void* operator new(std::size_t size) { return orrery::take_block(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return orrery::take_block(size, static_cast<std::size_t>(alignment));
@@ -157,3 +163,4 @@ void operator delete(void* block, std::align_val_t alignment) noexcept {
 void operator delete(void* block, std::size_t, std::align_val_t alignment) noexcept {
   operator delete(block, alignment);
 }
+#endif

@@ -20,8 +20,10 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   // Asked for the right to hold so many bytes in all, more or fewer than before. Returns how many it may hold
   // from now on, at least that; or throws why it may not hold more, unless it holds them `already`.
   using Resize = std::function<std::size_t(std::size_t bytes, bool already)>;
-  // Closes with its last owner.
-  static std::shared_ptr<MemoryAccount> open(Resize resize);
+  // `source`: called for this account, and for those that open_another() gives. Closes with its last owner.
+  using Source = std::function<Resize()>;
+  static std::shared_ptr<MemoryAccount> open(Source source);
+  std::shared_ptr<MemoryAccount> open_another() const { return open(source_); }  // of the same source
   MemoryAccount(const MemoryAccount&) = delete;
 
   std::size_t bytes() const { return held_ - kOpen; }  // also what the allocator adds to each block
@@ -45,12 +47,13 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
  private:
   static constexpr std::size_t kOpen = 1;  // in held_ until it is closed; blocks have even sizes
 
-  explicit MemoryAccount(Resize resize) : resize_(std::move(resize)) {}
+  explicit MemoryAccount(Source source) : source_(std::move(source)), resize_(source_()) {}
   void close();
   bool grow();
   void resize_locked(bool already);
   void rethrow_refusal();
 
+  const Source source_;
   std::atomic<std::size_t> held_{kOpen}, granted_{0};
   std::atomic<bool> overdrawn_{false};
   std::mutex mutex_;  // guards all below

@@ -32,6 +32,17 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   return {};
 }
 
+// For what is built now, of the client that has it built; null if nobody counts.
+std::shared_ptr<MemoryAccount> open_account(PreparedScene::Parts& parts) {
+  const MemoryAccount* const client = WorkScope::current().memory;
+  if (!client) return nullptr;
+  const auto account = client->open_another();
+  const WorkScope nobody({});
+  const std::lock_guard lock(parts.accounts_mutex);
+  std::erase_if(parts.built, [](const auto& some) { return some->bytes() == 0; });
+  return parts.built.emplace_back(account);
+}
+
 }  // namespace
 
 template <class T>
@@ -50,10 +61,10 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, dou
     if (!geometry) geometry = make_geometry<T>(parts.scene, type, time, before.geometry.get());
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
   };
-  if (parts.memory) {
-    parts.memory->run(stop, make);
+  if (const auto memory = open_account(parts)) {
+    memory->run(stop, make);
   } else {
-    const WorkScope scope({WorkScope::current().memory, &stop});
+    const WorkScope scope({nullptr, &stop});
     make();
   }
   build_ms += milliseconds_since(start);
@@ -73,7 +84,7 @@ std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::s
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
   parts_->scene = std::move(scene);
   if (MemoryAccount* const memory = WorkScope::current().memory) {
-    parts_->memory = memory->shared_from_this();
+    parts_->loaded = memory->shared_from_this();
     parts_->loaded_bytes = memory->bytes();
   }
 }
@@ -81,13 +92,26 @@ PreparedScene::~PreparedScene() = default;
 
 std::shared_ptr<const PreparedScene> PreparedScene::without_built() const {
   const auto fresh = std::make_shared<PreparedScene>(parts_->scene);
-  fresh->parts_->memory = parts_->memory;
+  fresh->parts_->loaded = parts_->loaded;
   fresh->parts_->loaded_bytes = parts_->loaded_bytes;
   return fresh;
 }
 
-const std::shared_ptr<MemoryAccount>& PreparedScene::memory() const { return parts_->memory; }
 std::size_t PreparedScene::loaded_bytes() const { return parts_->loaded_bytes; }
+
+std::size_t PreparedScene::bytes() const {
+  std::size_t bytes = parts_->loaded_bytes;
+  const std::lock_guard lock(parts_->accounts_mutex);
+  for (const auto& account : parts_->built) bytes += account->bytes();
+  return bytes;
+}
+
+void PreparedScene::settle(bool loaded, bool built) const {
+  if (parts_->loaded) parts_->loaded->settle(loaded ? parts_->loaded->bytes() : 0);
+  const std::lock_guard lock(parts_->accounts_mutex);
+  for (const auto& account : parts_->built) account->settle(built ? account->bytes() : 0);
+}
+
 const Scene& PreparedScene::scene() const { return *parts_->scene; }
 std::shared_ptr<const Scene> PreparedScene::shared_scene() const { return parts_->scene; }
 

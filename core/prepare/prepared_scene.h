@@ -3,8 +3,10 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "core/base/stoppable_mutex.h"
 #include "core/base/work_scope.h"
@@ -15,8 +17,9 @@
 namespace orrery {
 
 // A scene with what rendering it has built so far (its shapes in the render's precision, its accelerators),
-// kept for the next frame. Safe to use from any number of threads; each part is built once. What is built is
-// charged to the memory account of the scope that it was made in, if there was one.
+// kept for the next frame. Safe to use from any number of threads; each part is built once. The memory of
+// what was loaded is in the account of the scope that it was made in, if there was one; that of what is
+// built, in another account of who has it built.
 class PreparedScene {
  public:
   explicit PreparedScene(std::shared_ptr<const Scene> scene);
@@ -27,9 +30,12 @@ class PreparedScene {
   const Scene& scene() const;
   std::shared_ptr<const Scene> shared_scene() const;
 
-  const std::shared_ptr<MemoryAccount>& memory() const;  // null: none
-  // Those of the account when it was made, before anything was built; 0 without one.
+  // Bytes in these accounts: of the scene as it was loaded, and with what was built.
   std::size_t loaded_bytes() const;
+  std::size_t bytes() const;
+  // Whether others answer for them from now on, as many as there are now: for what was loaded, if `loaded`,
+  // and for what was built, if `built`.
+  void settle(bool loaded, bool built) const;
 
   // Of a scene that moves: for so many moments, those asked for last, what was built is kept.
   static constexpr std::size_t kMoments = 2;
@@ -58,8 +64,10 @@ struct PreparedScene::Parts {
     PredictorPtr<T> network;         // trained on the first plan that wanted one
   };
   std::shared_ptr<const Scene> scene;
-  std::shared_ptr<MemoryAccount> memory;
-  std::size_t loaded_bytes = 0;
+  std::shared_ptr<MemoryAccount> loaded;  // null: none
+  std::size_t loaded_bytes = 0;           // of it, when the scene was made
+  mutable std::mutex accounts_mutex;
+  std::vector<std::shared_ptr<MemoryAccount>> built;  // guarded by accounts_mutex
   StoppableMutex trying;  // held while structures are tried or a network trained, so that it is done once
   StoppableMutex mutex;   // guards the rest; all is built under it, so that it is built once
   Made<float> made_float;

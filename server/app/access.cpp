@@ -124,14 +124,14 @@ std::string token_line(std::string_view name, std::string_view scopes, std::stri
 }
 
 Scope parse_scopes(std::string_view list) {
-  if (list.empty()) throw InputError("", "expected a scope: read, render or write");
+  if (list.empty()) throw InputError("", "expected a scope: read, render, write or admin");
   std::istringstream names{std::string(list)};
   Scope scopes = Scope::none;
   for (std::string name; std::getline(names, name, ',');) {
     const auto known = std::find(kScopes.begin(), kScopes.end(), name);
     if (known == kScopes.end())
       throw InputError("", "there is no scope \"" + name.substr(0, 40) + "\"" + did_you_mean(name, kScopes) +
-                               "; there are read, render and write");
+                               "; there are read, render, write and admin");
     scopes = scopes | scope_number(known - kScopes.begin());
   }
   return scopes;

@@ -11,9 +11,10 @@
 namespace orrery {
 
 // What the holder of a token may do, and what a request needs: look at what is there, pictures included; have
-// pictures made of other scenes, and jobs done; keep and remove scenes and assets; or several of these.
-enum class Scope : unsigned { none = 0, read = 1, render = 2, write = 4 };
-inline constexpr std::array<std::string_view, 3> kScopes{"read", "render", "write"};
+// pictures made of other scenes, and jobs done; keep scenes and assets, and remove one's own; remove those
+// and the jobs of others; or several of these.
+enum class Scope : unsigned { none = 0, read = 1, render = 2, write = 4, admin = 8 };
+inline constexpr std::array<std::string_view, 4> kScopes{"read", "render", "write", "admin"};
 constexpr Scope operator|(Scope a, Scope b) {
   return static_cast<Scope>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }

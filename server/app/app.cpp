@@ -122,8 +122,10 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   const Films::Found film = films_.get(
       key + std::to_string(static_cast<int>(storage)), stop, [&](const std::stop_token& nobody_waits) {
         enter(demand, nobody_waits);
-        return services_.render(*ticket, scene, plan, storage,
-                                {.stop = nobody_waits, .background = demand.lane == Lane::batch});
+        return WorkScope::current().memory->run(nobody_waits, [&] {
+          return services_.render(*ticket, scene, plan, storage,
+                                  {.stop = nobody_waits, .background = demand.lane == Lane::batch});
+        });
       });
   const RenderStats& stats = film.value->stats;
   if (film.made_here) {

@@ -59,7 +59,7 @@ class App {
   const Films& films() const { return films_; }
   const Admission& admission() const { return admission_; }
   const WorkMemory& memory() const { return memory_; }
-  const Meters& meters() const { return meters_; }
+  Meters& meters() { return meters_; }
 
   // Calls `work` to read a text of so many bytes that may name assets: in its turn if that takes long. Throws
   // what `work` does, ClientBusy, Busy, Cancelled, TimedOut.

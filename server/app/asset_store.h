@@ -34,6 +34,7 @@ class AssetStore final : public MeshSource {
   void remove(const std::string& sha256);
 
   std::size_t bytes() const { return assets_.bytes(); }
+  std::uint64_t evictions() const { return assets_.evictions(); }
 
   TriangleMesh asset(const std::string& sha256) const override;
 

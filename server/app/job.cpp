@@ -47,7 +47,11 @@ void Job::run() {
       },
       .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
       .encode =
-          [&](const Film& film) { return memory_->run(watch.stop(), [&] { return work().encode(film); }); },
+          [&](const Film& film) {
+            const std::stop_token stop = watch.stop();
+            const WorkScope scope({nullptr, &stop});
+            return work().encode(film);
+          },
       .deliver = [this](std::int64_t number,
                         Frame&& frame) { keep(static_cast<int>(number), std::move(frame)); }};
   std::exception_ptr error;
@@ -74,6 +78,16 @@ double Job::rays_of_all() const {
 }
 
 RenderResult Job::render(int step, const Watch& watch) {
+  for (;;) try {
+      RenderResult rendered = try_render(step, watch);
+      spec_.work->add(rendered);
+      return rendered;
+    } catch (const OverLimit& busy) {  // others have the memory that it needs
+      services_.pause(busy.retry_after_s(), watch.stop());
+    }
+}
+
+RenderResult Job::try_render(int step, const Watch& watch) {
   const Scene& scene = spec_.scene->scene();
   const Plan asked = plan(step);
   Demand demand = services_.demand_of(scene, asked, spec_.client);
@@ -93,18 +107,15 @@ RenderResult Job::render(int step, const Watch& watch) {
     changed_.notify_all();
   };
   return memory_->run(watch.stop(), [&] {
-    RenderResult rendered =
-        services_.render(ticket, *spec_.scene, asked, work().storage(),
-                         {.stop = watch.stop(), .progress = progress, .background = true});
-    spec_.work->add(rendered);
-    return rendered;
+    return services_.render(ticket, *spec_.scene, asked, work().storage(),
+                            {.stop = watch.stop(), .progress = progress, .background = true});
   });
 }
 
 void Job::keep(int step, Frame&& frame) {
   const std::size_t bytes = frame.bytes.size();
   if (bytes > 0) room_(bytes);
-  spec_.work->keep(step, std::string(frame.bytes));  // not of the memory for work any more
+  spec_.work->keep(step, std::move(frame.bytes));
   const std::lock_guard lock(mutex_);
   bytes_ += bytes;
   ++steps_done_;
@@ -112,6 +123,7 @@ void Job::keep(int step, Frame&& frame) {
 }
 
 void Job::end(std::exception_ptr error) {
+  memory_.reset();
   const std::lock_guard lock(mutex_);
   error_ = error;
   state_ = !error ? JobState::done : cancelled_.stop_requested() ? JobState::cancelled : JobState::failed;

@@ -75,6 +75,7 @@ class Job {
   Plan plan(int step) const;
   double rays_of_all() const;  // expected of all steps, by their plans alone: their proportions stay
   RenderResult render(int step, const Watch& watch);
+  RenderResult try_render(int step, const Watch& watch);  // throws OverLimit where memory is short now
   void keep(int step, Frame&& frame);
   void end(std::exception_ptr error);
   JobStatus status_locked() const;
@@ -84,7 +85,7 @@ class Job {
   const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
-  const std::shared_ptr<MemoryAccount> memory_;  // of films
+  std::shared_ptr<MemoryAccount> memory_;  // of films; for its thread, which gives it back at the end
   std::stop_source cancelled_;
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable_any changed_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <list>
 #include <map>
 #include <mutex>
@@ -50,12 +51,11 @@ class Lru {
     return true;
   }
 
-  // Forgets those not used for longest until the rest take at most so many bytes.
-  void shrink(std::size_t most_bytes) {
+  // Values that were forgotten for others, since the start.
+  std::uint64_t evictions() const {
     const std::lock_guard lock(mutex_);
-    shrink_to(most_bytes);
+    return evictions_;
   }
-
   std::size_t bytes() const {
     const std::lock_guard lock(mutex_);
     return bytes_;
@@ -72,7 +72,7 @@ class Lru {
 
   // Below: with mutex_ held.
   void shrink_to(std::size_t most_bytes) {
-    while (bytes_ > most_bytes) erase(entries_.find(uses_.back()));
+    for (; bytes_ > most_bytes; ++evictions_) erase(entries_.find(uses_.back()));
   }
   void touch(Entry& entry) { uses_.splice(uses_.begin(), uses_, entry.use); }
   void erase(typename Entries::iterator entry) {
@@ -86,6 +86,7 @@ class Lru {
   Entries entries_;
   std::list<std::string> uses_;  // ids, the latest use first
   std::size_t bytes_ = 0;
+  std::uint64_t evictions_ = 0;
 };
 
 }  // namespace orrery

@@ -25,7 +25,8 @@ struct Meters {
   std::atomic<std::uint64_t> pictures_found{0}, pictures_made{0};  // of those asked for
   std::atomic<std::uint64_t> films_found{0};                       // of pictures made: encoded, not rendered
   std::atomic<std::uint64_t> jobs_done{0}, jobs_failed{0}, jobs_cancelled{0};
-  SecondsHistogram render;  // of a frame: building its structure and tracing it
+  std::atomic<std::uint64_t> reloads_failed{0};  // of tokens and keys, on SIGHUP
+  SecondsHistogram render;                       // of a frame: building its structure and tracing it
 };
 
 }  // namespace orrery

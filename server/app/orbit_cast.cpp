@@ -40,13 +40,17 @@ std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCa
 }
 
 void OrbitCast::run() {
-  const Pipeline pipeline{
-      .pool = services_.pool,
-      .background = false,
-      .next = [this] { return next(); },
-      .render = [this](std::int64_t n) { return render(n); },
-      .encode = [](const Film& film) { return encode_film(film, FileFormat::png, kFrameOfStream); },
-      .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
+  const Pipeline pipeline{.pool = services_.pool,
+                          .background = false,
+                          .next = [this] { return next(); },
+                          .render = [this](std::int64_t n) { return render(n); },
+                          .encode =
+                              [this](const Film& film) {
+                                const std::stop_token stop = nobody_watches_.get_token();
+                                const WorkScope scope({nullptr, &stop});
+                                return encode_film(film, FileFormat::png, kFrameOfStream);
+                              },
+                          .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
   std::exception_ptr failure;
   try {
     pipeline.run();
@@ -110,16 +114,22 @@ RenderResult OrbitCast::render(std::int64_t number) {
   const Watch watch(nobody_watches_.get_token(), services_.ends, services_.timer, services_.timer.now(),
                     {frame_time_, "request_seconds"});
   try {
-    const Scene& scene = spec_.scene->scene();
-    const Plan plan = make_plan(scene, spec_.path.at(number % spec_.frames));
-    auto ticket =
-        services_.admission.enter_again(services_.demand_of(scene, plan, spec_.client), watch.stop());
-    return memory_->run(watch.stop(), [&] {
-      return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = watch.stop()});
-    });
+    const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
+    for (;;) try {
+        return try_render(plan, watch.stop());
+      } catch (const OverLimit& busy) {  // others have the memory that it needs
+        services_.pause(busy.retry_after_s(), watch.stop());
+      }
   } catch (const Cancelled&) {
     watch.explain();
   }
+}
+
+RenderResult OrbitCast::try_render(const Plan& plan, const std::stop_token& stop) {
+  auto ticket =
+      services_.admission.enter_again(services_.demand_of(spec_.scene->scene(), plan, spec_.client), stop);
+  return memory_->run(
+      stop, [&] { return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = stop}); });
 }
 
 void OrbitCast::deliver(std::int64_t number, Frame&& picture) {

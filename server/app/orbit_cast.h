@@ -41,6 +41,7 @@ class OrbitCast {
   void run();
   std::optional<std::int64_t> next();
   RenderResult render(std::int64_t number);
+  RenderResult try_render(const Plan& plan, const std::stop_token& stop);
   void deliver(std::int64_t number, Frame&& frame);
   // Below: with mutex_ held.
   void post();  // puts finished frames into the mailboxes, as far as they may

@@ -32,7 +32,7 @@ std::string canonical_orbit(const Scene& scene, const OrbitPath& path, int frame
 }
 
 std::string etag_of(const Scene& scene, const RenderRequest& request) {
-  const std::string all = scene.id + "\n" + canonical_request(scene, request) + "\n" + std::string(kVersion);
+  const std::string all = scene.id + "\n" + canonical_request(scene, request) + "\n" + std::string(kPictures);
   return "\"" + sha256_hex(all).substr(0, 32) + "\"";
 }
 

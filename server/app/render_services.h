@@ -34,6 +34,17 @@ struct RenderServices {
     return {small ? Lane::interactive : Lane::batch, client, kLeastCost + weight * rays};
   }
 
+  // Waits so long. Throws Cancelled once `stop` is requested.
+  void pause(double seconds, const std::stop_token& stop) const {
+    std::mutex mutex;
+    std::condition_variable_any nothing;
+    std::unique_lock lock(mutex);
+    const auto until =
+        timer.now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    wait_until(timer, nothing, lock, stop, until, [] { return false; });
+    if (stop.stop_requested()) throw Cancelled();
+  }
+
   // A frame, in the turn that `ticket` gives; tells it what the frame has cost, and the store what the scene
   // takes. Throws Cancelled.
   RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const Plan& plan,

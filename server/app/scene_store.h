@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "core/model/mesh_source.h"
@@ -41,7 +42,9 @@ class SceneStore {
 
   // Kept or cached. Throws NotFound.
   Prepared find(const std::string& id);
-  void remove(const std::string& id);
+  // The client does not keep it any more: it goes unless others keep it, too, or with `of_all` in any case.
+  // Throws NotFound if it is not here, HttpError 403 if others alone keep it.
+  void remove(const std::string& id, const std::string& client, bool of_all);
 
   // Until its end something may be built for the scene, which is measured then.
   class Measured {
@@ -59,11 +62,12 @@ class SceneStore {
   // Since the start, of scenes asked for by what they say: found here, and loaded.
   std::uint64_t hits() const { return hits_; }
   std::uint64_t loads() const { return loads_; }
+  std::uint64_t evictions() const { return evictions_; }  // cached and kept
 
  private:
   struct Entry {
     Prepared scene;
-    bool kept;
+    std::set<std::string> keepers;  // clients; none: it is only cached
     std::size_t bytes = 0;
   };
   using Entries = std::list<Entry>;
@@ -75,7 +79,7 @@ class SceneStore {
   // Below: with mutex_ held.
   Entry* find_locked(const std::string& id);  // makes it the one used last; null: it is not here
   std::size_t kept_bytes() const;
-  Prepared add(const Prepared& scene, bool kept);
+  Prepared add(const Prepared& scene, const std::set<std::string>& keepers);
   void set_bytes(Entry& entry, std::size_t bytes);
   void erase(Entries::iterator entry);
   // Removes entries until all take at most so many bytes, or none is left that gives way.
@@ -89,7 +93,7 @@ class SceneStore {
   Entries entries_;           // the latest use first
   std::map<std::string, Entries::iterator> by_id_;
   std::size_t bytes_ = 0;
-  std::atomic<std::uint64_t> hits_{0}, loads_{0};
+  std::atomic<std::uint64_t> hits_{0}, loads_{0}, evictions_{0};
 };
 
 }  // namespace orrery

@@ -34,7 +34,7 @@ constexpr std::array kSettings{
         "memory_bytes", &S::memory_bytes, "N",
         "Bytes of memory that the service takes; the other budgets are parts of it, and what they leave is "
         "for scenes and pictures under way (work_bytes)",
-        64'000'000, kMost},
+        160'000'000, kMost},
     Setting{"body_bytes", &S::body_bytes, "N", "Bytes of a request's body", 1, 1'000'000'000},
     Setting{"bodies_bytes", &S::bodies_bytes, "N",
             "Bytes of the bodies of all requests at one time; half of them for one client", 1, kMost},
@@ -134,12 +134,16 @@ Settings settings_within(std::size_t memory_bytes) {
   settings.memory_bytes = memory_bytes;
   for (const auto budget : kBudgets)
     settings.*budget = static_cast<std::size_t>(static_cast<double>(settings.*budget) * part);
+  settings.body_bytes = std::min(settings.body_bytes, settings.bodies_bytes);
+  settings.asset_bytes = std::min({settings.asset_bytes, settings.asset_store_bytes, settings.bodies_bytes});
   return settings;
 }
 
 std::size_t work_bytes(const Settings& settings) {
   constexpr std::size_t kProgram = 32 << 20, kConnection = 64 << 10, kLeast = 16 << 20;
+  const std::size_t one_body = std::max(settings.body_bytes, settings.asset_bytes);
   std::size_t others = kProgram + settings.connections * kConnection;
+  if (one_body > settings.bodies_bytes) others += one_body - settings.bodies_bytes;  // one is always read
   for (const auto budget : kBudgets) others += settings.*budget;
   if (settings.memory_bytes >= others + kLeast) return settings.memory_bytes - others;
   throw InputError("", "memory_bytes is " + std::to_string(settings.memory_bytes) +

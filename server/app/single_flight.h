@@ -59,6 +59,7 @@ class SingleFlight {
   }
 
   std::size_t bytes() const { return kept_.bytes(); }
+  std::uint64_t evictions() const { return kept_.evictions(); }
   std::size_t largest() const { return largest_; }
   // How many wait for the value called `key`, which is being made, with the one who makes it.
   int waiting(const std::string& key) const {

@@ -1,5 +1,7 @@
 #include "server/app/work_memory.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "server/http/over_limit.h"
 
@@ -30,8 +32,11 @@ class WorkMemory::Share {
 };
 
 std::shared_ptr<MemoryAccount> WorkMemory::open(const std::string& client) {
-  return MemoryAccount::open([share = std::make_shared<Share>(*this, client)](
-                                 std::size_t bytes, bool already) { return share->resize(bytes, already); });
+  return MemoryAccount::open([this, client] {
+    return [share = std::make_shared<Share>(*this, client)](std::size_t bytes, bool already) {
+      return share->resize(bytes, already);
+    };
+  });
 }
 
 std::size_t WorkMemory::bytes() const {
@@ -41,9 +46,11 @@ std::size_t WorkMemory::bytes() const {
 
 std::size_t WorkMemory::resize(const std::string& client, std::size_t own, std::size_t bytes, bool already) {
   constexpr std::size_t kStep = 256 * 1024;  // so that it is not asked for each block
+  constexpr std::size_t kSmall = 2 * kStep;  // what a small picture takes, and has whatever others hold
   const std::size_t rounded = (bytes + kStep - 1) / kStep * kStep;
   const std::lock_guard lock(mutex_);
-  if (rounded > own && !already) require_room(client, own, rounded);
+  if (rounded == own) return own;
+  if (rounded > std::max(own, kSmall) && !already) require_room(client, own, rounded);
   taken_ += rounded - own;
   std::size_t& by_client = taken_by_[client];
   by_client += rounded - own;

@@ -39,7 +39,8 @@ Command add_token(CLI::App& root) {
   CLI::App* app = root.add_subcommand("token", "Make a token, and its line for a tokens file");
   app->footer(kTokenExamples);
   app->add_option("NAME", options->name, "Who will hold it")->required();
-  app->add_option("--scopes", options->scopes, "What the holder may do: read, render, write")
+  app->add_option("--scopes", options->scopes,
+                  "What the holder may do: read, render, write, admin (remove what others made)")
       ->type_name("SCOPE,...")
       ->capture_default_str();
   return {app, [options] { return make_token(*options); }};

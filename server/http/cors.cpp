@@ -40,6 +40,18 @@ void refuse_foreign(const Request& request, const std::vector<std::string>& orig
         403, "Pages of the origin " + origin->substr(0, 100) + " may change nothing here (cors_origins)");
 }
 
+void refuse_foreign_host(const Request& request, const std::vector<std::string>& origins) {
+  const std::string host = request.header("Host").value_or("");
+  const bool listed = std::any_of(origins.begin(), origins.end(), [&](const std::string& origin) {
+    return origin == "*" || equal_ignoring_case(origin.substr(origin.find("//") + 2), host);
+  });
+  const bool may_be_owned = host.find('.') != std::string::npos;  // on the internet
+  if (!listed && may_be_owned && !names_no_domain(host))
+    throw HttpError(
+        403, "The host " + host.substr(0, 100) +
+                 " is not known here: expected an address, localhost or the host of one of cors_origins");
+}
+
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response) {
   if (origins.empty()) return;
   const std::string vary = find_field(response.headers, "Vary").value_or("");

@@ -17,6 +17,10 @@ std::optional<Response> preflight(const Request& request, const std::vector<std:
 // may not, as its owner can let it stand for this machine (DNS rebinding). Throws HttpError 403.
 void refuse_foreign(const Request& request, const std::vector<std::string>& origins, bool domains);
 
+// Refuses what is asked of a domain with a dot that no listed origin has: its owner may have let it stand for
+// this machine, so that his pages read what is here. Throws HttpError 403.
+void refuse_foreign_host(const Request& request, const std::vector<std::string>& origins);
+
 // Lets pages of a listed origin read the answer.
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response);
 

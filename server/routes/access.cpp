@@ -64,6 +64,12 @@ Audience require_access(const Access& access, Scope needed, Request& request) {
   return Audience::holders;
 }
 
+bool may_remove_others(const Access& access, const Request& request) {
+  if (!access.needs_token()) return true;
+  const auto holder = access.holder_of(bearer_of(request.header("Authorization").value_or("")));
+  return holder && !lacking(holder->scopes, Scope::admin);
+}
+
 bool is_link(const Request& request) {
   return find_field(request.query, kExpires) || find_field(request.query, kSignature);
 }

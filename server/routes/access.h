@@ -12,6 +12,9 @@ enum class Audience { all, holders, link };
 // notes who it is from. A link's own parameters are taken out of the query. Throws HttpError 401 or 403.
 Audience require_access(const Access& access, Scope needed, Request& request);
 
+// Whether the request may remove what others made: where there are tokens, that takes the scope admin.
+bool may_remove_others(const Access& access, const Request& request);
+
 // Whether the address has parameters of a link.
 bool is_link(const Request& request);
 // The parameters that make an address a link: "expires=...&signature=...".

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
+#include "server/routes/access.h"
 #include "server/routes/job_answers.h"
 
 // /v1/jobs/{id}: how far jobs are, of whatever kind, and their end.
@@ -82,7 +83,10 @@ Response get_events(App& app, Request& request) {
 }
 
 Response remove_job(App& app, Request& request) {
-  app.jobs().remove(request.path_value("id"));
+  const std::string& id = request.path_value("id");
+  if (app.jobs().find(id)->client() != request.client && !may_remove_others(app.access(), request))
+    throw HttpError(403, "Only who started the job may remove it, or a token of the scope admin");
+  app.jobs().remove(id);
   return {.status = 204};
 }
 

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app/app.h"
+#include "server/routes/access.h"
 #include "server/routes/answers.h"
 
 // /v1/scenes: scenes that are kept to be rendered again and again, by the hash of what they say.
@@ -65,7 +66,7 @@ Response get_scene(App& app, Request& request) {
 }
 
 Response remove_scene(App& app, Request& request) {
-  app.scenes().remove(request.path_value("id"));
+  app.scenes().remove(request.path_value("id"), request.client, may_remove_others(app.access(), request));
   return {.status = 204};
 }
 

@@ -11,7 +11,7 @@
 namespace orrery {
 namespace {
 
-Response share(App& app, Request& request) {
+Response share(App& app, const Router& router, Request& request) {
   constexpr std::int64_t kLongest_s = 366 * 86400, kUsual_s = 7 * 86400;
   constexpr std::size_t kLongestPath = 1900;  // what is added has its place in a target, too
   std::string path;
@@ -25,10 +25,14 @@ Response share(App& app, Request& request) {
       std::all_of(path.begin(), path.end(), [](char c) { return c > ' ' && c < 0x7F && c != '#'; });
   if (!plain) throw InputError("/path", "expected an address without blanks and #, escaped by %");
   Request target;
+  target.method = "GET";
   try {
     Target parsed = parse_target(path);
     target.path = std::move(parsed.path);
+    target.segments = std::move(parsed.segments);
     target.query = std::move(parsed.query);
+    if (router.find(target).scope != Scope::read)
+      throw HttpError(422, "expected an address that links may give");
     if (is_link(target)) throw HttpError(422, "expected an address that is no link yet");
   } catch (const HttpError& error) {
     throw InputError("/path", error.what());
@@ -51,7 +55,7 @@ Response share(App& app, Request& request) {
 
 void add_shares_routes(Router& router, App& app) {
   router.add("POST", "/v1/shares", Scope::write | Scope::read, LogLevel::info, json_body(app),
-             [&app](Request& request) { return share(app, request); });
+             [&app, &router](Request& request) { return share(app, router, request); });
 }
 
 }  // namespace orrery

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/accelerators/registry.h"
 #include "core/base/error.h"
+#include "server/http/message.h"
 
 // Which scenes are loaded, and which go when there is no more room.
 namespace orrery {
@@ -144,10 +146,60 @@ TEST(SceneStore, CachedScenesCanBeRemovedLikeKeptOnes) {
   Store store(1 << 30);
   store.get(ball("cached"));
   store.keep(ball("kept"));
-  store->remove(ball("cached").id());
-  store->remove(ball("kept").id());
-  EXPECT_THROW(store->remove(ball("kept").id()), NotFound);
+  store->remove(ball("cached").id(), kClient, false);
+  store->remove(ball("kept").id(), kClient, false);
+  EXPECT_THROW(store->remove(ball("kept").id(), kClient, true), NotFound);
   EXPECT_EQ(store->bytes(), 0u);
+}
+
+TEST(SceneStore, KeptScenesStayWhileAnyoneKeepsThem) {
+  Store store(1 << 30);
+  const Document scene = ball("kept");
+  const auto remove = [&](const char* client, bool of_all) { store->remove(scene.id(), client, of_all); };
+  store->keep(scene, kNoMeshes, "a");
+  EXPECT_TRUE(store->keep(scene, kNoMeshes, "b").known);
+  EXPECT_THROW(remove("c", false), HttpError);
+  remove("a", false);
+  EXPECT_TRUE(store.has(scene));
+  EXPECT_THROW(remove("a", false), HttpError);
+  remove("b", false);
+  EXPECT_FALSE(store.has(scene));
+  store->keep(scene, kNoMeshes, "a");
+  remove("c", true);
+  EXPECT_FALSE(store.has(scene));
+}
+
+// What was built for a kept scene goes before the scene does.
+TEST(SceneStore, ForgetsWhatWasBuiltWhereItTakesTooMuch) {
+  const std::size_t bare = size_of(balls("kept", 2000));
+  Store store(2 * bare);
+  const auto scene = store.keep(balls("kept", 2000)).scene;
+  {
+    const SceneStore::Measured measured(store.scenes, *scene);
+    double build_ms = 0;
+    store.work.open("builder")->run({}, [&] {
+      for (const AcceleratorType& type : accelerator_types())
+        world_for<double>(scene->parts(), type, 0, build_ms);
+    });
+  }
+  EXPECT_GT(scene->bytes(), 2 * bare);
+  EXPECT_EQ(store->bytes(), bare);
+  EXPECT_NE(store.scenes.find(scene->scene().id), scene) << "a fresh one";
+  EXPECT_GT(store.work.bytes(), bare) << "as long as it is used";
+}
+
+TEST(SceneStore, GivesAllBackOnceNothingIsUsed) {
+  Store store(1 << 30);
+  const auto scene = store.keep(balls("kept", 2000)).scene;
+  const auto other = store.get(balls("cached", 2000));
+  for (const auto& some : {scene, other}) {
+    const SceneStore::Measured measured(store.scenes, *some);
+    double build_ms = 0;
+    store.work.open("builder")->run(
+        {}, [&] { world_for<float>(some->parts(), accelerator_types()[0], 0, build_ms); });
+  }
+  EXPECT_EQ(store.work.bytes(), 0u) << "the store answers for it";
+  EXPECT_EQ(store->bytes(), scene->bytes() + other->bytes());
 }
 
 }  // namespace

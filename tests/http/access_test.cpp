@@ -37,7 +37,8 @@ struct Guarded {
   Folder folder;
   std::string tokens = folder.write(
       "tokens", "# people\n" + line("reader", "read", "r") + line("painter", "read,render", "p") + "\n" +
-                    line("keeper", "read,write", "k") + line("filler", "write", "w"));
+                    line("keeper", "read,write", "k") + line("filler", "write", "w") +
+                    line("boss", "read,render,write,admin", "b"));
   std::string key = folder.write("key", std::string(32, 'k'));
   Daemon daemon{{"--tokens-file", tokens, "--share-key-file", key}};
   httplib::Client client = daemon.client();
@@ -82,12 +83,21 @@ TEST(Access, NeedsATokenOfTheScope) {
   expect_problem(client.Delete("/v1/jobs/x", bearer("p")), 404);
   const auto share = expect_problem(post("/v1/shares", "w", R"({"path": "/v1/limits"})"), 403);
   EXPECT_EQ(share.at("detail"), "The token lacks the scope read");
+  const std::string kept_path = kept->get_header_value("Location");
+  expect_problem(client.Delete(kept_path, bearer("w")), 403);
+  EXPECT_EQ(client.Delete(kept_path, bearer("k"))->status, 204);
+  const auto job = post("/v1/jobs", "p", nlohmann::json({{"scene", small_scene()}}).dump());
+  const std::string job_path = job->get_header_value("Location");
+  EXPECT_EQ(client.Delete(job_path, bearer("b"))->status, 204);
+  post("/v1/scenes", "k", scene);
   const std::string chosen = cached + "/frame.png?accelerator=list";
   const auto choice = expect_problem(client.Get(chosen, bearer("r")), 403);
   EXPECT_EQ(choice.at("detail"), "The token lacks the scope render, which choosing the accelerator takes");
   EXPECT_EQ(client.Get(chosen, bearer("p"))->status, 200);
   expect_problem(post("/v1/shares", "k", nlohmann::json({{"path", chosen}}).dump()), 403);
   EXPECT_EQ(post("/v1/shares", "k", nlohmann::json({{"path", cached}}).dump())->status, 201);
+  for (const char* path : {"/v1/nothing", "/v1/render", "/v1/jobs/x/nothing"})
+    expect_problem(post("/v1/shares", "k", nlohmann::json({{"path", path}}).dump()), 422);
   for (const char* open :
        {"/", "/app.js", "/schemas/scene.json", "/healthz", "/readyz", "/scenes/paper.json"})
     EXPECT_EQ(client.Get(open)->status, 200) << open;
@@ -223,6 +233,23 @@ TEST(Cors, DomainsChangeNothingUnlessAccessIsControlled) {
                       small_scene().dump(), "application/json")
                 ->status,
             201);
+}
+
+TEST(Cors, DomainsReadNothingUnlessListedOrAccessIsControlled) {
+  Daemon daemon({"--cors-origins", "http://render.example:8080"});
+  auto client = daemon.client();
+  const auto status = [&](const char* path, const char* host) {
+    return client.Get(path, {{"Host", host}})->status;
+  };
+  for (const char* host : {"127.0.0.1", "[::1]:80", "localhost:8080", "orrery:8080", "render.example:8080"})
+    EXPECT_EQ(status("/v1/limits", host), 200) << host;
+  for (const char* host : {"evil.example", "evil.example:8080", "127.0.0.1.evil.example"})
+    EXPECT_EQ(status("/v1/limits", host), 403) << host;
+  EXPECT_EQ(status("/", "evil.example"), 200) << "the page is nobody's secret";
+  Guarded guarded;
+  httplib::Headers headers = bearer("r");
+  headers.emplace("Host", "render.example");
+  EXPECT_EQ(guarded.client.Get("/v1/limits", headers)->status, 200);
 }
 
 TEST(Cors, IsOffUnlessAsked) {

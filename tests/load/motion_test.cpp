@@ -126,7 +126,7 @@ TEST(LoadMotion, KeysShareWhatTheyHaveInCommon) {
   const auto bytes = [](const char* keys) {
     Json scene = scene_of(R"([{'type': 'mesh', 'file': 'a.obj'}])");
     scene["objects"][0]["motion"] = json(keys);
-    const auto account = MemoryAccount::open([](std::size_t most, bool) { return most; });
+    const auto account = MemoryAccount::open([] { return [](std::size_t most, bool) { return most; }; });
     const auto loaded = account->run({}, [&] { return load_scene(scene.dump(), Heavy()); });
     return account->bytes();
   };

@@ -128,9 +128,10 @@ TEST_P(EveryScene, LooksTheSameCastAndTracedToDepthZero) {
 }
 
 TEST_P(EveryScene, CountsCameraRaysAndNoImpossibleOnes) {
-  const Picture picture = render(scene_, small(3));
+  const RenderRequest request = small(3);
+  const Picture picture = render(scene_, request);
   const RayCounts& rays = picture.stats.counts.rays;
-  EXPECT_EQ(rays.camera, 160u * 120 * 3);
+  EXPECT_EQ(rays.camera, static_cast<std::uint64_t>(*request.width * *request.height * 3));
   EXPECT_EQ(rays.reflected[0] + rays.refracted[0], 0u);
   const auto lights = scene_->lights.size();
   std::uint64_t from_here = rays.camera;

@@ -109,6 +109,10 @@ std::string glb_of(const TriangleMesh& mesh) {
   return glb + std::string("BIN\0", 4) + data;
 }
 
+std::shared_ptr<MemoryAccount> open_account() {
+  return MemoryAccount::open([] { return [](std::size_t bytes, bool) { return bytes; }; });
+}
+
 // Milliseconds from the request to stop until the stage threw Cancelled; none if it was done before.
 std::optional<double> stop_after(const Stage& stage, double ms) {
   std::stop_source source;
@@ -120,7 +124,7 @@ std::optional<double> stop_after(const Stage& stage, double ms) {
     source.request_stop();
   });
   try {
-    MemoryAccount::open([](std::size_t bytes, bool) { return bytes; })->run(stop, [&] { stage(stop); });
+    open_account()->run(stop, [&] { stage(stop); });
   } catch (const Cancelled&) {
     const auto ended = Clock::now();
     stopper.join();
@@ -133,7 +137,7 @@ void measure(const std::string& name, int times, const Stage& stage) {
   double whole_ms = 0;
   for (int i = 0; i < 2; ++i) {  // the first takes longer
     const auto start = Clock::now();
-    MemoryAccount::open([](std::size_t bytes, bool) { return bytes; })->run({}, [&] { stage({}); });
+    open_account()->run({}, [&] { stage({}); });
     whole_ms = milliseconds_since(start);
   }
   std::vector<double> took;
