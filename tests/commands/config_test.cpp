@@ -75,7 +75,7 @@ TEST_F(Config, AllMistakesAreNamedAtOnce) {
            std::string("ORRERY_COLOUR: there is no such setting"),
            std::string("--body-bites: there is no such flag (did you mean \"--body-bytes\"?)"),
            tokens + ":1: expected a name, scopes and the SHA-256 of a token, with blanks between them",
-           tokens + ":2: there is no scope \"paint\"; there are read, render and write",
+           tokens + ":2: there is no scope \"paint\"; there are read, render, write and admin",
            key + ": a key has at least 32 bytes, got 5",
            std::string("--log: expected text or json, got loud"),
            std::string(
@@ -108,6 +108,21 @@ TEST_F(Config, FlagsComeBeforeTheEnvironmentAndThatBeforeTheFile) {
   EXPECT_EQ(all.at("renders"), 3);
   EXPECT_EQ(all.at("queue_rays"), 1'000'000);
   EXPECT_EQ(all.at("jobs_kept"), 1000);
+}
+
+TEST_F(Config, BudgetsArePartsOfTheMemory) {
+  const auto usual = settings(""), half = settings("--memory-bytes 1610612736 --film-bytes 1000");
+  for (const char* budget :
+       {"bodies_bytes", "answers_bytes", "store_bytes", "asset_store_bytes", "job_bytes"})
+    EXPECT_EQ(half.at(budget), usual.at(budget).get<std::size_t>() / 2) << budget;
+  EXPECT_EQ(half.at("film_bytes"), 1000) << "what is given stays";
+  const auto small = settings("--memory-bytes 160000000");
+  EXPECT_EQ(small.at("asset_bytes"), small.at("asset_store_bytes")) << "more could not be kept";
+  const Outcome refused = serve("--check-config --job-bytes 3000000000");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("orrery: --memory-bytes: memory_bytes is 3221225472, but the other budgets"),
+            std::string::npos)
+      << refused.err;
 }
 
 TEST_F(Config, ValuesOfEveryKindAreReadFromEverySource) {
