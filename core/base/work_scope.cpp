@@ -18,12 +18,19 @@ struct alignas(__STDCPP_DEFAULT_NEW_ALIGNMENT__) Header {
   std::size_t bytes;
 };
 
+// Large blocks begin with a cache line, as the allocator's own do: arrays of nodes then straddle no more of
+// them.
+constexpr std::size_t kCacheLine = 64, kLargeBlock = 4096;
+constexpr std::size_t kOnCacheLine = 1;  // in Header::bytes, which are even beside
+
 // Bytes from the start of what the allocator gives to the block.
 std::size_t offset_of(std::size_t alignment) { return std::max(sizeof(Header), alignment); }
 
 Header& header_of(void* block) { return *(static_cast<Header*>(block) - 1); }
 
 void* take_block(std::size_t size, std::size_t alignment) {
+  const bool on_cache_line = size >= kLargeBlock && alignment < kCacheLine;
+  if (on_cache_line) alignment = kCacheLine;
   constexpr std::size_t kChunk = 16;  // what the allocator rounds to, and less than it adds
   const std::size_t offset = offset_of(alignment), all = (size + offset + kChunk - 1) / kChunk * kChunk;
   if (all < size) throw std::bad_alloc();
@@ -37,15 +44,16 @@ void* take_block(std::size_t size, std::size_t alignment) {
     throw std::bad_alloc();
   }
   void* const block = static_cast<std::byte*>(start) + offset;
-  header_of(block) = {account, all};
+  header_of(block) = {account, all | (on_cache_line ? kOnCacheLine : 0)};
   return block;
 }
 
 void give_block(void* block, std::size_t alignment) noexcept {
   if (!block) return;
   const Header header = header_of(block);
+  if (header.bytes & kOnCacheLine) alignment = kCacheLine;
   std::free(static_cast<std::byte*>(block) - offset_of(alignment));
-  if (header.account) header.account->remove(header.bytes);
+  if (header.account) header.account->remove(header.bytes & ~kOnCacheLine);
 }
 
 #endif
