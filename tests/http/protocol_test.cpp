@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <thread>
 
 #include "tests/http/daemon.h"
@@ -162,7 +163,7 @@ TEST(Connections, OfOneAddressLeaveAQuarterToOthers) {
   EXPECT_EQ(health_from(daemon, kOther).substr(0, 12), "HTTP/1.1 200");
 }
 
-// The last of those that one address opened all at once make room for others, who need not wait for that.
+// Some of those that one address opened all at once make room for others, who need not wait for that.
 TEST(Connections, OfABurstMakeRoomForOthers) {
   Daemon daemon({"--connections", "8"});
   std::vector<std::unique_ptr<RawClient>> burst, others;
@@ -172,9 +173,11 @@ TEST(Connections, OfABurstMakeRoomForOthers) {
     other->send(kHealth);
     EXPECT_EQ(other->receive_all().substr(0, 12), "HTTP/1.1 200");
   }
-  burst.front()->send(kHealth);
-  EXPECT_EQ(burst.front()->receive_all().substr(0, 12), "HTTP/1.1 200") << "the first stayed";
-  EXPECT_EQ(burst.back()->receive_all(), "");
+  const auto stayed = std::count_if(burst.begin(), burst.end(), [](const auto& client) {
+    client->send(kHealth);
+    return client->receive_all().starts_with("HTTP/1.1 200");
+  });
+  EXPECT_EQ(stayed, 4) << "two made room";
 }
 
 }  // namespace
