@@ -46,12 +46,8 @@ void Job::run() {
         return next++;
       },
       .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
-      .encode =
-          [&](const Film& film) {
-            const std::stop_token stop = watch.stop();
-            const WorkScope scope({nullptr, &stop});
-            return work().encode(film);
-          },
+      .encode = [this](const Film& film) { return work().encode(film); },
+      .stop = watch.stop(),
       .deliver = [this](std::int64_t number,
                         Frame&& frame) { keep(static_cast<int>(number), std::move(frame)); }};
   std::exception_ptr error;
@@ -78,13 +74,10 @@ double Job::rays_of_all() const {
 }
 
 RenderResult Job::render(int step, const Watch& watch) {
-  for (;;) try {
-      RenderResult rendered = try_render(step, watch);
-      spec_.work->add(rendered);
-      return rendered;
-    } catch (const OverLimit& busy) {  // others have the memory that it needs
-      services_.pause(busy.retry_after_s(), watch.stop());
-    }
+  RenderResult rendered =
+      services_.once_there_is_memory(watch.stop(), [&] { return try_render(step, watch); });
+  spec_.work->add(rendered);
+  return rendered;
 }
 
 RenderResult Job::try_render(int step, const Watch& watch) {

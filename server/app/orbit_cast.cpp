@@ -40,17 +40,14 @@ std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCa
 }
 
 void OrbitCast::run() {
-  const Pipeline pipeline{.pool = services_.pool,
-                          .background = false,
-                          .next = [this] { return next(); },
-                          .render = [this](std::int64_t n) { return render(n); },
-                          .encode =
-                              [this](const Film& film) {
-                                const std::stop_token stop = nobody_watches_.get_token();
-                                const WorkScope scope({nullptr, &stop});
-                                return encode_film(film, FileFormat::png, kFrameOfStream);
-                              },
-                          .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
+  const Pipeline pipeline{
+      .pool = services_.pool,
+      .background = false,
+      .next = [this] { return next(); },
+      .render = [this](std::int64_t n) { return render(n); },
+      .encode = [](const Film& film) { return encode_film(film, FileFormat::png, kFrameOfStream); },
+      .stop = nobody_watches_.get_token(),
+      .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
   std::exception_ptr failure;
   try {
     pipeline.run();
@@ -115,11 +112,7 @@ RenderResult OrbitCast::render(std::int64_t number) {
                     {frame_time_, "request_seconds"});
   try {
     const Plan plan = make_plan(spec_.scene->scene(), spec_.path.at(number % spec_.frames));
-    for (;;) try {
-        return try_render(plan, watch.stop());
-      } catch (const OverLimit& busy) {  // others have the memory that it needs
-        services_.pause(busy.retry_after_s(), watch.stop());
-      }
+    return services_.once_there_is_memory(watch.stop(), [&] { return try_render(plan, watch.stop()); });
   } catch (const Cancelled&) {
     watch.explain();
   }

@@ -34,6 +34,7 @@ class Line {
     pipeline_.pool.enqueue(pipeline_.background, [this, place, number, shared, render_ms] {
       Encoded encoded{.number = number, .frame = {}, .error = {}};
       try {
+        const WorkScope scope({nullptr, &pipeline_.stop});
         encoded.frame = encode_frame(std::move(*shared), render_ms, pipeline_.encode);
       } catch (...) {
         encoded.error = std::current_exception();

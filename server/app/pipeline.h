@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stop_token>
 
 #include "server/app/frame.h"
 
@@ -17,6 +18,7 @@ struct Pipeline {
   std::function<std::optional<std::int64_t>()> next;  // number of the frame to render; none: the end
   std::function<RenderResult(std::int64_t)> render;
   std::function<std::string(const Film&)> encode;      // several at once
+  std::stop_token stop = {};                           // ends what is being encoded, with Cancelled
   std::function<void(std::int64_t, Frame&&)> deliver;  // one at a time, in the order of `next`
 
   // Returns once all frames are delivered. What a stage throws ends it and is thrown here, after the frames

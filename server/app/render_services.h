@@ -34,15 +34,15 @@ struct RenderServices {
     return {small ? Lane::interactive : Lane::batch, client, kLeastCost + weight * rays};
   }
 
-  // Waits so long. Throws Cancelled once `stop` is requested.
-  void pause(double seconds, const std::stop_token& stop) const {
-    std::mutex mutex;
-    std::condition_variable_any nothing;
-    std::unique_lock lock(mutex);
-    const auto until =
-        timer.now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-    wait_until(timer, nothing, lock, stop, until, [] { return false; });
-    if (stop.stop_requested()) throw Cancelled();
+  // What render() returns; where it throws OverLimit, because others have the memory that it needs, it is
+  // called again after a while. Throws what else it throws, and Cancelled once `stop` is requested.
+  template <class Render>
+  RenderResult once_there_is_memory(const std::stop_token& stop, const Render& render) const {
+    for (;;) try {
+        return render();
+      } catch (const OverLimit& busy) {
+        pause(busy.retry_after_s(), stop);
+      }
   }
 
   // A frame, in the turn that `ticket` gives; tells it what the frame has cost, and the store what the scene
@@ -60,6 +60,18 @@ struct RenderServices {
     meters.rays += rays;
     meters.render.Observe((result.stats.build_ms + result.stats.trace_ms) / 1000);
     return result;
+  }
+
+ private:
+  // Throws Cancelled once `stop` is requested.
+  void pause(double seconds, const std::stop_token& stop) const {
+    std::mutex mutex;
+    std::condition_variable_any nothing;
+    std::unique_lock lock(mutex);
+    const auto until =
+        timer.now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    wait_until(timer, nothing, lock, stop, until, [] { return false; });
+    if (stop.stop_requested()) throw Cancelled();
   }
 };
 

@@ -11,7 +11,7 @@ import http from "node:http";
 const kPeriod_ms = 100; // between two small pictures, and two frames of the orbit
 const kPicture_ms = 1000;
 const kHealth_ms = 50;
-const kVictim = "127.0.0.200";
+export const kVictim = "127.0.0.200";
 
 // How many attack, and from how many addresses.
 const kForces = [
@@ -21,7 +21,7 @@ const kForces = [
 ];
 
 // Asks every kPeriod_ms, whatever the last answer does, until stop(), which resolves to all answers.
-function open_loop(port, path_of, address) {
+export function open_loop(port, path_of, address) {
   const answers = [];
   const timer = setInterval(async () => {
     const client = new Client(port, address);

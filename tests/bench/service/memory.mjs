@@ -2,14 +2,13 @@
 
 import { createHash } from "node:crypto";
 import net from "node:net";
+import { kVictim, open_loop } from "./blockade.mjs";
 import { Client } from "./client.mjs";
 import {
   Gauges, mib, most, ms, new_picture, outcome, p99, pause, process_state, row, tally, with_service,
 } from "./support.mjs";
 
-const kPeriod_ms = 100; // between two small pictures
 const kPicture_ms = 1000;
-const kVictim = "127.0.0.200";
 const kAttackers = 16;
 const kAddresses = 8;
 const kSlow = 60; // connections that take or give a byte now and then
@@ -112,25 +111,12 @@ function slow_connections(port, asset) {
   });
 }
 
-// Asks for small pictures until stop(), which resolves to all answers.
-function victim(port, paper) {
-  const answers = [];
-  const timer = setInterval(() => {
-    const client = new Client(port, kVictim);
-    answers.push(client.ask(new_picture(paper, 64, 1)).finally(() => client.leave()));
-  }, kPeriod_ms);
-  return async () => {
-    clearInterval(timer);
-    return Promise.all(answers);
-  };
-}
-
 async function run({ seconds }) {
   return with_service(async (service, { paper }) => {
     const assets = [await put(service.port, polygon(8_000_000)), await put(service.port, sheet(500))];
     const limits = JSON.parse((await new Client(service.port).ask("/v1/limits")).text());
     const gauges = new Gauges(service);
-    const small = victim(service.port, paper);
+    const small = open_loop(service.port, () => new_picture(paper, 64, 1), kVictim);
     const statuses = [];
     let going = true;
     const clients = Array.from({ length: kAttackers }, (_, i) => new Client(service.port, address(i)));
