@@ -56,5 +56,6 @@ std::span<const EmbeddedFile> embedded_files() {
 }  // namespace orrery
 ]==])
   add_custom_target(strip_text DEPENDS ${all_stripped})  # its commands belong to a target, or there is no rule
-  set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${inputs}")
+  # A unity build would forget what the source depends on.
+  set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${inputs}" SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
