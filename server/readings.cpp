@@ -59,6 +59,17 @@ void append_process_metrics(std::vector<MetricFamily>& families, const Meters& m
        {"process_open_fds", "Open file descriptors", kGauge, {value(open_files())}}});
 }
 
+MetricFamily given_up_family(const Meters& meters) {
+  MetricFamily family{"orrery_given_up_total",
+                      "Work that ended before it was done (its client had gone, its time was up or the "
+                      "service ended), by what it was at",
+                      MetricType::Counter,
+                      {}};
+  for (std::size_t i = 0; i < kStages.size(); ++i)
+    family.metric.push_back(value(meters.given_up[i], {{"stage", std::string(kStages[i])}}));
+  return family;
+}
+
 MetricFamily limits_family(const Settings& settings) {
   MetricFamily family{"orrery_limit", "Limits, as /v1/limits tells them", MetricType::Gauge, {}};
   for (const Setting& limit : limits())
@@ -125,7 +136,7 @@ std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
         value(app.pictures().evictions(), {{"store", "pictures"}}),
         value(app.films().evictions(), {{"store", "films"}})}},
       {"orrery_reload_failures_total",
-       "Times that SIGHUP found files of tokens and keys that cannot be used",
+       "Times that SIGHUP found files that cannot be used",
        kCounter,
        {value(meters.reloads_failed)}},
       {"orrery_orbits", "Different orbits that are streamed", kGauge, {value(app.orbits().count())}},
@@ -141,6 +152,7 @@ std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
        kCounter,
        {value(server.refused())}},
   };
+  families.push_back(given_up_family(meters));
   families.push_back(limits_family(app.settings()));
   append_process_metrics(families, meters);
   return families;

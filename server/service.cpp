@@ -63,7 +63,8 @@ HttpServer::Options options_of(const Settings& settings) {
           .max_bodies = std::max({settings.bodies_bytes, settings.body_bytes, settings.asset_bytes}),
           .max_answers = settings.answers_bytes,
           .max_connections = settings.connections,
-          .grace = settings.grace_seconds};
+          .grace = settings.grace_seconds,
+          .forwarding = {settings.trusted_proxies, settings.path_prefix}};
 }
 
 HttpServer::Options health_options_of(const Settings& settings) {
@@ -72,14 +73,17 @@ HttpServer::Options health_options_of(const Settings& settings) {
           .port = settings.health_port,
           .max_bodies = 0,
           .max_connections = kConnections,
-          .grace = std::chrono::seconds(1)};
+          .grace = std::chrono::seconds(1),
+          .forwarding = {}};
 }
 
 }  // namespace
 
 Service::Service(const Settings& settings, const Log& log)
-    : log_(log),
+    : settings_(settings),
+      log_(log),
       app_(settings, timer_),
+      origins_(settings.cors_origins),
       server_(options_of(settings), handler_of(router_)),
       health_(health_options_of(settings), handler_of(health_router_)) {
   add_routes(router_, app_);
@@ -103,17 +107,27 @@ void Service::run() {
   health.join();
 }
 
-void Service::reload() {
+void Service::reload(const std::function<Settings()>& read) try {
+  const Settings fresh = read();
+  app_.access().reload();
   nlohmann::ordered_json fields = nlohmann::ordered_json::object();
-  LogLevel level = LogLevel::info;
-  try {
-    app_.access().reload();
-  } catch (const std::exception& error) {
-    level = LogLevel::error;
-    ++app_.meters().reloads_failed;
-    fields["error"] = error.what();
+  if (app_.access().needs_token()) fields["tokens"] = app_.access().tokens();
+  for (const Setting& setting : all_settings())
+    if (setting.name != "cors_origins" && setting.text(fresh) != setting.text(settings_))
+      fields["needs_restart"].push_back(setting.name);
+  {
+    const std::lock_guard lock(mutex_);
+    origins_ = fresh.cors_origins;
   }
-  log_.write(level, level == LogLevel::info ? "reloaded" : "not reloaded", fields);
+  log_.write(fields.contains("needs_restart") ? LogLevel::warning : LogLevel::info, "reloaded", fields);
+} catch (const std::exception& error) {
+  ++app_.meters().reloads_failed;
+  log_.write(LogLevel::error, "not reloaded", {{"error", error.what()}});
+}
+
+std::vector<std::string> Service::origins() const {
+  const std::lock_guard lock(mutex_);
+  return origins_;
 }
 
 void Service::stop() {
@@ -133,17 +147,19 @@ Response Service::metrics() {
 }
 
 HttpServer::Admitted Service::admit(const Router& router, Request& request) {
-  const Settings& settings = app_.settings();
+  const std::vector<std::string> origins = this->origins();
   const auto answered = [this](const Response& response) -> HttpServer::Admitted {
     return {.body = {}, .answer = [this, response](Request& r) { return finished(r, response); }};
   };
-  if (const auto answer = preflight(request, settings.cors_origins)) return answered(*answer);
-  refuse_foreign(request, settings.cors_origins, !settings.tokens_file.empty());
+  if (request.path.empty())  // links of the page begin at its folder
+    return answered({.status = 308, .headers = {{"Location", "/"}}});
+  if (const auto answer = preflight(request, origins)) return answered(*answer);
+  refuse_foreign(request, origins, !settings_.tokens_file.empty());
   if (request.method == "OPTIONS")
     return answered({.status = 204, .headers = {{"Allow", router.allowed_methods(request)}}});
   const Route& route = router.find(request);
-  if (route.scope != Scope::none && settings.tokens_file.empty() && !settings.insecure)
-    refuse_foreign_host(request, settings.cors_origins);
+  if (route.scope != Scope::none && settings_.tokens_file.empty() && !settings_.insecure)
+    refuse_foreign_host(request, origins);
   const Audience audience = require_access(app_.access(), route.scope, request);
   HttpServer::Admitted admitted{.body = {}, .answer = [this, &route, audience](Request& r) {
                                   Response response = route.handler(r);
@@ -161,8 +177,11 @@ Response Service::refuse(const Request& request, std::exception_ptr error) const
 }
 
 Response Service::finished(const Request& request, Response response) const {
+  compressor_.compress(request, response);
   add_common_headers(request, response);
-  allow_origin(request, app_.settings().cors_origins, response);
+  if (const auto location = find_field(response.headers, "Location"))
+    response.set("Location", request.prefix + *location);
+  allow_origin(request, origins(), response);
   return response;
 }
 

@@ -3,6 +3,7 @@
 #include "server/app/app.h"
 #include "server/app/log.h"
 #include "server/app/metrics.h"
+#include "server/http/compression.h"
 #include "server/http/server.h"
 #include "server/routes/router.h"
 
@@ -20,8 +21,11 @@ class Service {
   // Serves until stop() was called and what ran then is done.
   void run();
   // Both from any thread.
-  void stop();    // after drain_delay_seconds
-  void reload();  // reads the files of tokens and keys again; the log says if that failed
+  void stop();  // after drain_delay_seconds
+  // Reads the files of tokens and keys again, and takes the cors_origins of what `read` returns. The log
+  // names the other settings that differ, which need a restart, or says what was thrown: then all stays as it
+  // is.
+  void reload(const std::function<Settings()>& read);
 
  private:
   HttpServer::Handler handler_of(const Router& router);
@@ -29,12 +33,17 @@ class Service {
   Response refuse(const Request& request, std::exception_ptr error) const;
   Response finished(const Request& request, Response response) const;
   Response metrics();
+  std::vector<std::string> origins() const;
   void note(const Request& request, const Response& response, std::uint64_t bytes, bool gone);
 
+  const Settings settings_;  // as they were given
   const Log& log_;
+  mutable Compressor compressor_;
   SteadyTimer timer_;
   App app_;
   Metrics metrics_;
+  mutable std::mutex mutex_;
+  std::vector<std::string> origins_;  // guarded by mutex_
   Router router_, health_router_;
   HttpServer server_, health_;  // their threads use the others
   std::unique_ptr<Timer::Alarm> drain_;

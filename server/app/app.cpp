@@ -56,7 +56,7 @@ App::App(const Settings& settings, Timer& timer)
                         settings.job_kept_seconds}) {}
 
 template <class Work>
-void App::watched(const Caller& caller, Clock::time_point since, const Work& work) {
+void App::watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work) {
   require_open();
   const Watch watch(caller.gone, ends_.get_token(), timer_, since,
                     {settings_.request_seconds, "request_seconds"});
@@ -65,13 +65,14 @@ void App::watched(const Caller& caller, Clock::time_point since, const Work& wor
   try {
     memory->run(stop, [&] { work(stop); });
   } catch (const Cancelled&) {
+    ++meters_.given_up[static_cast<std::size_t>(stage)];
     watch.explain();
   }
 }
 
 void App::read(std::size_t bytes, const Caller& caller, Timing& timing,
                const std::function<void(const MeshSource&)>& work) {
-  watched(caller, timer_.now(), [&](const std::stop_token& stop) {
+  watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto start = Clock::now();
     const Reading reading(assets_, admission_, caller.client, bytes, stop);
     work(reading);
@@ -82,7 +83,7 @@ void App::read(std::size_t bytes, const Caller& caller, Timing& timing,
 
 AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, const Caller& caller) {
   AssetStore::Added added;
-  watched(caller, timer_.now(), [&](const std::stop_token& stop) {
+  watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto ticket =
         admission_.enter({Lane::interactive, caller.client, cost_of_reading(bytes.size())}, stop);
     added = assets_.add(sha256, std::move(bytes));
@@ -99,8 +100,9 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
       key + std::to_string(static_cast<int>(format)), caller.gone, [&](const std::stop_token& nobody_waits) {
         require_request_rays(scene.scene(), plan);
         Picture picture;
-        watched({caller.client, nobody_waits}, since, [&](const std::stop_token& stop) {
-          picture = make(scene, plan, key, format, demand, stop, timing);
+        Stage stage = Stage::queue;
+        watched({caller.client, nobody_waits}, since, stage, [&](const std::stop_token& stop) {
+          picture = make(scene, plan, key, format, demand, stop, timing, stage);
         });
         return picture;
       });
@@ -110,7 +112,7 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
 }
 
 Picture App::make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-                  const Demand& demand, const std::stop_token& stop, Timing& timing) {
+                  const Demand& demand, const std::stop_token& stop, Timing& timing, Stage& stage) {
   std::optional<Admission::Ticket> ticket;
   const auto enter = [&](const Demand& asked, const std::stop_token& ends) {
     const auto start = Clock::now();
@@ -122,6 +124,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   const Films::Found film = films_.get(
       key + std::to_string(static_cast<int>(storage)), stop, [&](const std::stop_token& nobody_waits) {
         enter(demand, nobody_waits);
+        stage = Stage::render;
         return WorkScope::current().memory->run(nobody_waits, [&] {
           return services_.render(*ticket, scene, plan, storage,
                                   {.stop = nobody_waits, .background = demand.lane == Lane::batch});
@@ -139,6 +142,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
                   .stats = stats,
                   .warnings = find_warnings(scene.scene(), plan, stats.counts),
                   .of_kept_film = !film.made_here};
+  stage = Stage::encode;
   const auto start = Clock::now();
   picture.bytes = encode_film(film.value->film, format);
   picture.bytes.shrink_to_fit();  // it may be kept
@@ -156,7 +160,7 @@ void App::require_request_rays(const Scene& scene, const Plan& plan) {
 SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Caller& caller) {
   if (!plan.try_accelerators) return orrery::settle(scene, plan);
   std::optional<SettledPlan> settled;
-  watched(caller, timer_.now(), [&](const std::stop_token& stop) {
+  watched(caller, timer_.now(), Stage::settle, [&](const std::stop_token& stop) {
     const auto ticket = admission_.enter({Lane::interactive, caller.client, kLeastCost}, stop);
     const SceneStore::Measured measured(scenes_, scene);
     settled = orrery::settle(scene, plan, stop);

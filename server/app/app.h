@@ -91,13 +91,13 @@ class App {
   void require_open() const;
 
  private:
-  // Calls work(stop), which is stopped when it should end early; its time counts from `since`. It takes
-  // memory of the caller's share.
+  // Calls work(stop), which is stopped when it should end early and tells `stage` what it is at; its time
+  // counts from `since`. It takes memory of the caller's share.
   template <class Work>
-  void watched(const Caller& caller, Clock::time_point since, const Work& work);
+  void watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work);
   // Renders it, unless a film of it is kept, and encodes it.
   Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-               const Demand& demand, const std::stop_token& stop, Timing& timing);
+               const Demand& demand, const std::stop_token& stop, Timing& timing, Stage& stage);
 
   Timer& timer_;
   std::atomic<bool> retires_{false};

@@ -92,11 +92,13 @@ RenderResult Job::try_render(int step, const Watch& watch) {
     if (rays_ == 0) rays_ = rays_of_all();
     state_ = JobState::running;
   }
-  const auto progress = [this, rays = expected_rays(scene, asked)](int, int total) {
+  const auto progress = [this, step, rays = expected_rays(scene, asked)](int done, int total) {
     const std::lock_guard lock(mutex_);
     tiles_a_step_ = total;
-    ++tiles_done_;
-    rays_done_ += rays / total;
+    const std::int64_t tiles = std::int64_t{step} * total + done;
+    if (tiles <= tiles_done_) return;  // done before, when there was no memory for the others
+    rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / total;
+    tiles_done_ = tiles;
     changed_.notify_all();
   };
   return memory_->run(watch.stop(), [&] {

@@ -2,9 +2,11 @@
 
 #include <prometheus/histogram.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <string_view>
 
 namespace orrery {
 
@@ -18,6 +20,10 @@ class SecondsHistogram : public prometheus::Histogram {
   }
 };
 
+// What the work for a request is at. A render builds its structure and traces.
+enum class Stage : std::size_t { read, queue, settle, render, encode };
+inline constexpr std::array<std::string_view, 5> kStages{"read", "queue", "settle", "render", "encode"};
+
 // What is counted of the work, since the start. Safe from any thread.
 struct Meters {
   const std::chrono::system_clock::time_point started = std::chrono::system_clock::now();
@@ -25,8 +31,9 @@ struct Meters {
   std::atomic<std::uint64_t> pictures_found{0}, pictures_made{0};  // of those asked for
   std::atomic<std::uint64_t> films_found{0};                       // of pictures made: encoded, not rendered
   std::atomic<std::uint64_t> jobs_done{0}, jobs_failed{0}, jobs_cancelled{0};
-  std::atomic<std::uint64_t> reloads_failed{0};  // of tokens and keys, on SIGHUP
-  SecondsHistogram render;                       // of a frame: building its structure and tracing it
+  std::array<std::atomic<std::uint64_t>, kStages.size()> given_up{};  // work before its end, by stage
+  std::atomic<std::uint64_t> reloads_failed{0};                       // on SIGHUP
+  SecondsHistogram render;  // of a frame: building its structure and tracing it
 };
 
 }  // namespace orrery

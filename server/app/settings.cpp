@@ -28,6 +28,11 @@ constexpr std::array kSettings{
     Setting{"cors_origins", &S::cors_origins, "ORIGIN,...",
             "Origins whose pages may use the service, also its own if that is a domain and there are no "
             "tokens; * for all"},
+    Setting{"trusted_proxies", &S::trusted_proxies, "NETWORK,...",
+            "Addresses and networks of proxies, which are believed who asks, of which host and below which "
+            "path: Forwarded, X-Forwarded-For, -Host and -Prefix"},
+    Setting{"path_prefix", &S::path_prefix, "PATH",
+            "What addresses begin with for clients, such as /render; links begin with it, and requests may"},
     Setting{"insecure", &S::insecure, "", "Allow an address that other machines can reach without tokens"},
     // The limits.
     Setting{
@@ -77,7 +82,7 @@ constexpr std::array kSettings{
     Setting{"grace_seconds", &S::grace_seconds, "N",
             "Seconds that running requests get when the service ends", 1, 1'000'000},
 };
-constexpr std::size_t kFirstLimit = 9;
+constexpr std::size_t kFirstLimit = 11;
 static_assert(kSettings[kFirstLimit].name == "memory_bytes");
 
 // Parts of memory_bytes.

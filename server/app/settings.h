@@ -49,6 +49,10 @@ struct Settings {
   bool insecure = false;  // also from other machines
   std::string tokens_file, share_key_file;
   std::vector<std::string> cors_origins;
+
+  // What stands in front of it.
+  std::vector<std::string> trusted_proxies;
+  std::string path_prefix;
 };
 
 // One setting, under the one name that flags (--body-bytes), environment (ORRERY_BODY_BYTES), files,

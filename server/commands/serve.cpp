@@ -11,8 +11,9 @@
 #include "server/commands/config.h"
 #include "server/commands/signals.h"
 #include "server/http/authority.h"
-#include "server/http/descriptors.h"
+#include "server/http/forwarding.h"
 #include "server/http/listener.h"
+#include "server/http/process_limits.h"
 #include "server/service.h"
 
 namespace orrery {
@@ -29,7 +30,7 @@ A setting comes from its flag, or else its variable (ORRERY_PORT), or else the f
 that do not exist are refused in all three; ORRERY_TOKEN alone is left to clients.
 All that is posted or put is kept in memory only and ends with the service.
 SIGTERM or Ctrl-C ends it, after --drain-delay-seconds: running requests are answered, streams stop after a frame. A second one ends it at once.
-SIGHUP reads the files of tokens and keys again.
+SIGHUP reads the files of tokens and keys again, and cors_origins of --config; the log names what else differs.
 )";
 
 struct ServeOptions {
@@ -37,8 +38,32 @@ struct ServeOptions {
   std::string config, log = isatty(STDERR_FILENO) ? "text" : "json";
 };
 
-// Appends what is wrong with settings of which each is a value that it may have.
-void check(const Settings& settings, std::vector<Problem>& problems) {
+// Appends what the process may not have of what these settings may take.
+void check_process(const Settings& settings, std::vector<Problem>& problems) {
+  const std::size_t addresses = settings.memory_bytes + addresses_for(settings.connections);
+  if (const std::size_t allowed = allowed_addresses(); allowed < addresses)
+    problems.push_back({"--memory-bytes", std::to_string(settings.memory_bytes) + " and " +
+                                              std::to_string(settings.connections) +
+                                              " connections may take " + std::to_string(addresses) +
+                                              " bytes of addresses, the process may have " +
+                                              std::to_string(allowed) + " (ulimit -v)"});
+  const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
+  if (allowed < needed)
+    problems.push_back({"--connections", std::to_string(settings.connections) + " may take " +
+                                             std::to_string(needed) + " open files, the process may have " +
+                                             std::to_string(allowed) + " (ulimit -n)"});
+}
+
+// Appends what is wrong with settings of which each is a value that it may have. Returns how many tokens
+// there are.
+std::size_t check(const Settings& settings, std::vector<Problem>& problems) {
+  const auto note = [&](const char* flag, const auto& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      problems.push_back({flag, error.what()});
+    }
+  };
   if (settings.port == settings.health_port && settings.port != 0)
     problems.push_back({"--health-port", "is the same as --port, " + std::to_string(settings.port)});
   try {
@@ -54,21 +79,17 @@ void check(const Settings& settings, std::vector<Problem>& problems) {
       problems.push_back(
           {"--cors-origins",
            "expected *, null or origins such as https://app.example:8443, got " + origin.substr(0, 80)});
+  for (const std::string& proxy : settings.trusted_proxies)
+    note("--trusted-proxies", [&] { IpNetwork{proxy}; });
+  note("--path-prefix", [&] { Forwarding({}, settings.path_prefix); });
+  note("--memory-bytes", [&] { work_bytes(settings); });
+  check_process(settings, problems);
   try {
-    work_bytes(settings);
-  } catch (const InputError& error) {
-    problems.push_back({"--memory-bytes", error.what()});
-  }
-  const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
-  if (allowed < needed)
-    problems.push_back({"--connections", std::to_string(settings.connections) + " may take " +
-                                             std::to_string(needed) + " open files, the process may have " +
-                                             std::to_string(allowed) + " (ulimit -n)"});
-  try {
-    const Access access(settings.tokens_file, settings.share_key_file);
+    return Access(settings.tokens_file, settings.share_key_file).tokens();
   } catch (const InputError& error) {
     problems.insert(problems.end(), error.problems().begin(), error.problems().end());
   }
+  return 0;
 }
 
 void announce(const Service& service, const Settings& settings) {
@@ -77,15 +98,17 @@ void announce(const Service& service, const Settings& settings) {
             << service.port() << "\nhealth and metrics on port " << service.health_port() << std::endl;
 }
 
-int run_service(const Settings& settings, const Log& log) {
+// `read`: the settings as they are when it is called.
+int run_service(const Settings& settings, const Log& log, const std::function<Settings()>& read) {
   // The signals are taken before the service starts threads; it learns of them once it is there.
   std::mutex mutex;
   Service* running = nullptr;  // guarded by mutex
-  const auto tell = [&](void (Service::*what)()) {
+  const auto tell = [&](const auto& what) {
     const std::lock_guard lock(mutex);
-    if (running) (running->*what)();
+    if (running) what(*running);
   };
-  const SignalWatch signals([&] { tell(&Service::stop); }, [&] { tell(&Service::reload); });
+  const SignalWatch signals([&] { tell([](Service& service) { service.stop(); }); },
+                            [&] { tell([&](Service& service) { service.reload(read); }); });
   Service service(settings, log);
   {
     const std::lock_guard lock(mutex);
@@ -110,18 +133,23 @@ int run_service(const Settings& settings, const Log& log) {
 int serve(const CLI::App& app, const ServeOptions& options) {
   std::vector<Problem> problems;
   const Settings settings = read_settings(app, options.config, problems);
-  check(settings, problems);
+  const std::size_t tokens = check(settings, problems);
   if (options.log != "json" && options.log != "text")
     problems.push_back({"--log", "expected text or json, got " + options.log.substr(0, 80)});
   if (!problems.empty()) throw InputError(std::move(problems));
   if (options.print_config) std::cout << config_text(settings);
   if (options.check_config && !settings.tokens_file.empty())
-    std::cout << settings.tokens_file << ": "
-              << Access(settings.tokens_file, settings.share_key_file).tokens() << " tokens\n";
+    std::cout << settings.tokens_file << ": " << tokens << " tokens\n";
   if (options.print_config || options.check_config) return kDone;
   const Log log(options.log == "json" ? LogForm::json : LogForm::text,
                 options.quiet ? LogLevel::warning : LogLevel::info);
-  return run_service(settings, log);
+  return run_service(settings, log, [&] {
+    std::vector<Problem> found;
+    const Settings fresh = read_settings(app, options.config, found);
+    check(fresh, found);
+    if (!found.empty()) throw InputError(std::move(found));
+    return fresh;
+  });
 }
 
 }  // namespace

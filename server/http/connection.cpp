@@ -61,10 +61,11 @@ class Connection::Pace {
   Clock::time_point deadline_ = Clock::now() + window_;
 };
 
-Connection::Connection(int fd, std::string network, int wake, const Patience& patience)
+Connection::Connection(int fd, const IpAddress& peer, int wake, const Patience& patience)
     : fd_(fd),
       wake_(wake),
-      network_(std::move(network)),
+      peer_(peer),
+      network_(peer.network()),
       patience_(patience),
       reading_since_(Clock::now()),
       waiting_(POLLIN) {}

@@ -10,6 +10,7 @@
 
 #include "core/base/clock.h"
 #include "server/http/head.h"
+#include "server/http/network.h"
 #include "server/http/waiting.h"
 
 namespace orrery {
@@ -31,8 +32,7 @@ class Connection final {
  public:
   // Takes the socket, which must not block. `wake` becomes readable when the service ends: idle connections
   // end then, and half a request has a last call.
-  // `network`: of the client.
-  Connection(int fd, std::string network, int wake, const Patience& patience);
+  Connection(int fd, const IpAddress& peer, int wake, const Patience& patience);
   ~Connection();
   Connection(const Connection&) = delete;
 
@@ -71,7 +71,8 @@ class Connection final {
   bool made_room() const { return waiting_.gave_up(); }
 
   std::uint64_t bytes_written() const { return written_; }
-  const std::string& network() const { return network_; }
+  const IpAddress& peer() const { return peer_; }
+  const std::string& network() const { return network_; }  // of the peer
 
  private:
   using Clock = Waiting::Clock;
@@ -95,6 +96,7 @@ class Connection final {
   void count_progress(Clock::time_point& since, std::size_t bytes) const;
 
   const int fd_, wake_;
+  const IpAddress peer_;
   const std::string network_;
   const Patience patience_;
   std::string received_;  // read from the socket, not used yet

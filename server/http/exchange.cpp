@@ -8,25 +8,21 @@ namespace {
 
 constexpr int kClientGone = 499;  // the status of work that was given up
 
-// The host of an absolute target is meant, whatever Host says (RFC 9112, 3.2.2).
-void name_host(Fields& headers, const std::string& authority) {
-  std::erase_if(headers, [](const auto& field) { return equal_ignoring_case(field.first, "Host"); });
-  headers.emplace_back("Host", authority);
-}
-
 // Takes over what the head says. Throws HttpError for a target that cannot be understood.
-void read_head_into(Request& request, const Head& head, const Connection& connection) {
+void read_head_into(Request& request, const Head& head, const IpAddress& peer, const Forwarding& forwarding) {
   request.method = head.method;
   request.path = head.target.substr(0, head.target.find('?'));  // for the log, should the rest fail
   request.headers = head.headers;
-  request.client = connection.network();
+  request.client = peer.network();
   if (const auto id = head.header("X-Request-ID"); id && is_request_id(*id)) request.id = *id;
   if (head.target == "*" && head.method == "OPTIONS") return;  // the server as a whole (RFC 9112, 3.2.4)
   Target target = parse_target(head.target);
   request.path = std::move(target.path);
   request.segments = std::move(target.segments);
   request.query = std::move(target.query);
+  // The host of an absolute target is meant, whatever Host says (RFC 9112, 3.2.2).
   if (!target.authority.empty()) name_host(request.headers, target.authority);
+  forwarding.apply(peer, request);
 }
 
 }  // namespace
@@ -40,25 +36,32 @@ bool Exchanger::exchange(Connection& connection) {
   try {
     head = connection.read_head();
     framing = {.head_only = head.method == "HEAD", .minor_version = head.minor_version, .keep_alive = false};
-    read_head_into(request, head, connection);
+    read_head_into(request, head, connection.peer(), forwarding_);
   } catch (const HttpError&) {
     if (connection.left()) return false;  // it only came and went
     return send(connection, request, handler_.refuse(request, std::current_exception()), framing);
   }
   framing.keep_alive = head.keep_alive;
-  std::stop_source gone;
-  request.gone = gone.get_token();
-  const HangupMonitor::Watching watching = monitor_.watch(connection.fd(), gone);
   Budget::Share body(bodies_, request.client);  // as long as it is used
-  return send(connection, request, response_to(request, head, connection, body), framing);
-}
-
-Response Exchanger::response_to(Request& request, const Head& head, Connection& connection,
-                                Budget::Share& body) {
+  HttpServer::Admitted admitted;
   try {
-    const HttpServer::Admitted admitted = handler_.admit(request);
+    admitted = handler_.admit(request);
     if (admitted.body)  // takes of the budget what has come: what is only announced takes nothing from others
       request.body = connection.read_body(head, *admitted.body, [&](std::size_t bytes) { body.grow(bytes); });
+  } catch (...) {
+    return send(connection, request, handler_.refuse(request, std::current_exception()), framing);
+  }
+  std::stop_source gone;
+  request.gone = gone.get_token();
+  // HTTP/1.0 knows no interim responses.
+  HangupMonitor::Watching watching = monitor_.watch(connection.fd(), gone, framing.minor_version == 1);
+  Response response = answer(request, admitted);
+  watching.stop_asking();
+  return send(connection, request, std::move(response), framing);
+}
+
+Response Exchanger::answer(Request& request, const HttpServer::Admitted& admitted) {
+  try {
     return admitted.answer(request);
   } catch (...) {
     return handler_.refuse(request, std::current_exception());

@@ -19,7 +19,8 @@ class Exchanger {
       : handler_(handler),
         monitor_(monitor),
         bodies_(options.max_bodies, "bodies_bytes", "Bodies of requests"),
-        answers_(options.max_answers) {}
+        answers_(options.max_answers),
+        forwarding_(options.forwarding) {}
 
   // Reads and answers the request that begins there. False if the connection ends with it. Throws nothing but
   // std::bad_alloc and its like.
@@ -29,13 +30,14 @@ class Exchanger {
   void drain() { draining_ = true; }
 
  private:
-  Response response_to(Request& request, const Head& head, Connection& connection, Budget::Share& body);
+  Response answer(Request& request, const HttpServer::Admitted& admitted);
   bool send(Connection& connection, const Request& request, Response response, Framing framing);
 
   const HttpServer::Handler& handler_;
   HangupMonitor& monitor_;
   Budget bodies_;
   AnswerBudget answers_;
+  const Forwarding forwarding_;
   std::atomic<bool> draining_{false};
 };
 

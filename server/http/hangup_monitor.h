@@ -10,6 +10,10 @@ namespace orrery {
 
 // Tells those who work for a client that it has gone: one thread waits for all sockets at once. Safe from any
 // thread.
+//
+// Who sends no more may still wait for its answer, and looks just like who has closed its socket. It is asked
+// by an interim response, "100 Continue", which every client of HTTP/1.1 skips (RFC 9110, 15.2): a closed
+// socket answers that with a reset.
 class HangupMonitor {
  public:
   // Throws std::system_error if the system has no descriptors left.
@@ -23,6 +27,9 @@ class HangupMonitor {
     ~Watching() { monitor_.forget(fd_, number_); }
     Watching(const Watching&) = delete;
 
+    // The answer begins: from now on who sends no more has gone.
+    void stop_asking() { monitor_.stop_asking(number_); }
+
    private:
     friend class HangupMonitor;
     Watching(HangupMonitor& monitor, int fd, std::uint64_t number)
@@ -32,21 +39,28 @@ class HangupMonitor {
     const std::uint64_t number_;
   };
 
-  // Requests a stop of `work` on the monitor's thread once the client has closed its side of the socket, or
-  // the connection is broken; soon, if that is so already. What the stop calls must be short. A socket is
-  // watched once at a time.
-  [[nodiscard]] Watching watch(int fd, std::stop_source work);
+  // Requests a stop of `work` on the monitor's thread once the client has closed its socket, or the
+  // connection is broken; soon, if that is so already. What the stop calls must be short. A socket is watched
+  // once at a time. asks: whether interim responses may be sent; who sends no more has gone, without.
+  [[nodiscard]] Watching watch(int fd, std::stop_source work, bool asks);
 
  private:
+  struct Client {
+    int fd;
+    std::stop_source work;
+    bool asks;
+  };
+
   void forget(int fd, std::uint64_t number);
+  void stop_asking(std::uint64_t number);
   void run();
-  void stop_work(std::uint64_t number);
+  void heed(std::uint64_t number, bool broken);
 
   const int epoll_, end_;
   std::mutex mutex_;
-  std::uint64_t last_number_ = 0;                   // guarded by mutex_
-  std::map<std::uint64_t, std::stop_source> work_;  // by number; guarded by mutex_
-  std::thread thread_;                              // last: it uses the others
+  std::uint64_t last_number_ = 0;            // guarded by mutex_
+  std::map<std::uint64_t, Client> clients_;  // by number; guarded by mutex_
+  std::thread thread_;                       // last: it uses the others
 };
 
 }  // namespace orrery

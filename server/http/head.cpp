@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "server/http/authority.h"
+#include "server/http/field_list.h"
 
 namespace orrery {
 namespace {
@@ -12,12 +13,6 @@ namespace {
 // CONNECT is not among them: its target is of no form that this service could serve.
 constexpr std::array<std::string_view, 8> kMethods{"GET",    "HEAD",    "POST",  "PUT",
                                                    "DELETE", "OPTIONS", "TRACE", "PATCH"};
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 [[noreturn]] void throw_too_long() {
   throw HttpError(414, "The address has more than " + std::to_string(kMaxTargetBytes) + " bytes");
@@ -90,16 +85,10 @@ void judge_framing(Head& head) {
 
 // Whether a Connection header lists `word`.
 bool connection_says(const Head& head, std::string_view word) {
-  for (const auto& [name, value] : head.headers) {
-    if (!equal_ignoring_case(name, "Connection")) continue;
-    for (std::string_view rest = value;;) {
-      const std::size_t comma = rest.find(',');
-      if (equal_ignoring_case(trimmed(rest.substr(0, comma)), word)) return true;
-      if (comma == std::string_view::npos) break;
-      rest.remove_prefix(comma + 1);
-    }
-  }
-  return false;
+  bool says = false;
+  for_each_entry(joined(head.headers, "Connection"), ',',
+                 [&](std::string_view entry) { says = says || equal_ignoring_case(entry, word); });
+  return says;
 }
 
 }  // namespace

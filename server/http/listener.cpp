@@ -87,19 +87,4 @@ bool is_loopback(const std::string& host) {
   return true;
 }
 
-std::string network_of_peer(int fd) {
-  sockaddr_storage address{};
-  socklen_t size = sizeof address;
-  if (getpeername(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) return "";
-  std::array<char, INET6_ADDRSTRLEN> text{};
-  const void* bytes = &reinterpret_cast<sockaddr_in&>(address).sin_addr;
-  if (address.ss_family == AF_INET6) {
-    in6_addr& v6 = reinterpret_cast<sockaddr_in6&>(address).sin6_addr;
-    if (!IN6_IS_ADDR_V4MAPPED(&v6)) std::fill(v6.s6_addr + 8, v6.s6_addr + 16, std::uint8_t{0});
-    bytes = &v6;
-  }
-  inet_ntop(address.ss_family, bytes, text.data(), text.size());
-  return text.data();
-}
-
 }  // namespace orrery

@@ -25,10 +25,6 @@ class Listener {
   bool out_of_room_ = false;
 };
 
-// The network of the client at the other end of a socket: its IPv4 address, or the half of its IPv6 address
-// that it does not choose itself; "" if it has gone.
-std::string network_of_peer(int fd);
-
 // Whether only this machine reaches what listens there. REQUIRES: `host` is a name or an address.
 bool is_loopback(const std::string& host);
 

@@ -20,6 +20,11 @@ std::optional<std::string> find_field(const Fields& fields, std::string_view nam
   return std::nullopt;
 }
 
+void name_host(Fields& headers, std::string_view authority) {
+  std::erase_if(headers, [](const auto& field) { return equal_ignoring_case(field.first, "Host"); });
+  headers.emplace_back("Host", authority);
+}
+
 const std::string& Request::path_value(std::string_view name) const {
   return std::find_if(path_values.begin(), path_values.end(), [&](const auto& p) { return p.first == name; })
       ->second;

@@ -24,6 +24,9 @@ using Fields = std::vector<std::pair<std::string, std::string>>;
 // The value of the first field of that name, whatever its case.
 std::optional<std::string> find_field(const Fields& fields, std::string_view name);
 
+// The host of these headers, whatever they said.
+void name_host(Fields& headers, std::string_view authority);
+
 // How long a body may be.
 struct BodyLimit {
   std::size_t bytes;
@@ -37,6 +40,7 @@ struct Request {
   const Route* route = nullptr;       // whose path it has; null: none has
   std::string id;      // of this request: sent by the client, or made up; letters, digits, . _ -
   std::string client;  // who asks: the address, or what it is known as
+  std::string prefix;  // what paths begin with for the client, which `path` does not: "" or "/render"
   Fields query;        // decoded; names are unique
   Fields path_values;  // of the route's {places}
   Fields headers;

@@ -1,8 +1,9 @@
-#include "server/http/descriptors.h"
+#include "server/http/process_limits.h"
 
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "server/http/shed.h"
 
@@ -21,6 +22,19 @@ std::size_t allow_descriptors(std::size_t count) {
   setrlimit(RLIMIT_NOFILE, &limit);
   getrlimit(RLIMIT_NOFILE, &limit);  // it may have been refused
   return limit.rlim_cur;
+}
+
+std::size_t allowed_addresses() {
+  rlimit limit{};
+  getrlimit(RLIMIT_AS, &limit);
+  return limit.rlim_cur == RLIM_INFINITY ? std::numeric_limits<std::size_t>::max() : limit.rlim_cur;
+}
+
+std::size_t addresses_for(std::size_t connections) {
+  constexpr std::size_t kProgram = 256 << 20, kUsualStack = 8 << 20;
+  rlimit stack{};
+  getrlimit(RLIMIT_STACK, &stack);
+  return kProgram + connections * (stack.rlim_cur == RLIM_INFINITY ? kUsualStack : stack.rlim_cur);
 }
 
 }  // namespace orrery

@@ -10,4 +10,9 @@ std::size_t descriptors_for(std::size_t connections);
 // Has the process allowed to open so many, if it can be. Returns how many it may.
 std::size_t allow_descriptors(std::size_t count);
 
+// Bytes of addresses that the process may use, however little memory is behind them; SIZE_MAX: no limit.
+std::size_t allowed_addresses();
+// What a server of so many connections takes at most, beside its memory: stacks of threads and the program.
+std::size_t addresses_for(std::size_t connections);
+
 }  // namespace orrery

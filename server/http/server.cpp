@@ -101,10 +101,12 @@ class HttpServer::Parts {
   void accept_all() {
     shed_.close_old();
     for (int fd; (fd = listener_->accept()) >= 0;) {
-      const std::string network = network_of_peer(fd);
-      const bool over_share = count(network) > share_of_one() && share_of_one() < options_.max_connections;
+      const IpAddress peer = IpAddress::of_peer(fd);
+      const std::string network = peer.network();
+      const bool over_share = count(network) > share_of_one() && share_of_one() < options_.max_connections &&
+                              !options_.forwarding.trusts(peer);
       if ((!over_share && threads_.has_room()) || make_room(network, over_share)) {
-        const auto connection = std::make_shared<Connection>(fd, network, wake_.fd(), Patience{});
+        const auto connection = std::make_shared<Connection>(fd, peer, wake_.fd(), Patience{});
         threads_.start([this, connection, entry = remember(*connection)] { serve(*connection, entry); });
       } else {
         forget(network);
@@ -188,18 +190,26 @@ class HttpServer::Parts {
 
   using Open = std::list<Connection*>;
 
-  void serve(Connection& connection, Open::iterator entry) {
-    while (connection.wait_for_request()) {
-      ++busy_;
-      bool go_on = false;
-      try {
-        go_on = exchanger_.exchange(connection);
-      } catch (const std::exception&) {  // out of memory before there was a request to answer
+  // False if the connection ends with it.
+  bool answer(Connection& connection) {
+    struct Counted {
+      Parts& parts;
+      explicit Counted(Parts& all) : parts(all) { ++parts.busy_; }
+      ~Counted() {
+        if (--parts.busy_ == 0 && parts.draining_) parts.idle_.ring();
       }
-      if (--busy_ == 0 && draining_) idle_.ring();
-      if (!go_on) break;
+    };
+    const Counted counted(*this);
+    return exchanger_.exchange(connection);
+  }
+
+  void serve(Connection& connection, Open::iterator entry) {
+    try {
+      while (connection.wait_for_request() && answer(connection)) {
+      }
+      connection.linger();
+    } catch (const std::exception&) {  // out of memory where there is no request to answer
     }
-    connection.linger();
     {
       const std::lock_guard lock(mutex_);
       open_.erase(entry);

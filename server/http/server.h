@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "server/http/forwarding.h"
 #include "server/http/message.h"
 
 namespace orrery {
@@ -25,6 +26,7 @@ class HttpServer {
     std::size_t max_answers = 256 << 20;  // of all that are sent at one time (answers_bytes)
     std::size_t max_connections = 256;
     std::chrono::seconds grace{30};  // for running requests once drain() was called
+    Forwarding forwarding = {};      // its trusted proxies may take all connections
   };
 
   // A request that was judged by its head: what is left to be done.

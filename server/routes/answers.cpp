@@ -2,51 +2,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "core/params/suggest.h"
 #include "server/app/render_options.h"
+#include "server/http/field_list.h"
 
 namespace orrery {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-// Calls `part` with each piece of a list, without the blanks around it.
-template <class Part>
-void for_each_entry(std::string_view list, char separator, const Part& part) {
-  while (!list.empty()) {
-    const std::size_t end = list.find(separator);
-    part(trimmed(list.substr(0, end)));
-    list.remove_prefix(end == std::string_view::npos ? list.size() : end + 1);
-  }
-}
-
-// A header that may have several lines is one list (RFC 9110, 5.3).
-std::string joined(const Request& request, std::string_view name) {
-  std::string all;
-  for (const auto& [key, value] : request.headers)
-    if (equal_ignoring_case(key, name)) all += (all.empty() ? "" : ", ") + value;
-  return all;
-}
-
-// "utf-8" of "application/json; charset=utf-8"; "" if none is told.
-std::string_view charset_of(std::string_view content_type) {
-  std::string_view charset;
-  for_each_entry(content_type, ';', [&](std::string_view parameter) {
-    constexpr std::string_view kCharset = "charset=";
-    if (!starts_with_ignoring_case(parameter, kCharset)) return;
-    charset = parameter.substr(kCharset.size());
-    if (charset.size() > 1 && charset.front() == '"' && charset.back() == '"')
-      charset = charset.substr(1, charset.size() - 2);
-  });
-  return charset;
-}
 
 void require_json(const Request& request) {
   refuse_compressed(request);
@@ -59,7 +22,7 @@ void require_json(const Request& request) {
       std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
   if (!known && !(type.starts_with("application/") && type.ends_with("+json")))
     throw HttpError(415, "Expected a body of application/json, got " + std::string(type.substr(0, 100)));
-  const std::string_view charset = charset_of(header);
+  const std::string_view charset = parameter_of(header, "charset");
   if (!charset.empty() && !equal_ignoring_case(charset, "utf-8") && !equal_ignoring_case(charset, "us-ascii"))
     throw HttpError(415, "Expected JSON in UTF-8 (RFC 8259), got " + std::string(charset.substr(0, 40)));
 }
@@ -94,11 +57,7 @@ Fit fit_of(std::string_view entry, std::string_view type) {
            equal_ignoring_case(range.substr(0, range.size() - 1), type.substr(0, type.find('/') + 1)))
     fit.exactness = 1;
   if (fit.exactness < 0) return fit;
-  fit.weight = 1;
-  for_each_entry(entry, ';', [&](std::string_view parameter) {
-    if (starts_with_ignoring_case(parameter, "q="))
-      fit.weight = std::strtod(std::string(parameter.substr(2)).c_str(), nullptr);
-  });
+  fit.weight = weight_of(entry);
   return fit;
 }
 
@@ -139,7 +98,7 @@ RenderRequest read_query(const Request& request, std::span<const std::string_vie
 
 bool has_current(const Request& request, std::string_view etag) {
   bool found = false;
-  for_each_entry(joined(request, "If-None-Match"), ',', [&](std::string_view known) {
+  for_each_entry(joined(request.headers, "If-None-Match"), ',', [&](std::string_view known) {
     if (known.starts_with("W/")) known.remove_prefix(2);
     found = found || known == etag || known == "*";
   });
@@ -147,7 +106,7 @@ bool has_current(const Request& request, std::string_view etag) {
 }
 
 std::string_view negotiate(const Request& request, std::span<const std::string_view> offered) {
-  const std::string header = joined(request, "Accept");
+  const std::string header = joined(request.headers, "Accept");
   if (trimmed(header).empty()) return offered[0];
   std::string_view best;
   double best_weight = 0;

@@ -11,7 +11,12 @@ using nlohmann::ordered_json;
 
 std::string job_path(const std::string& job_id) { return "/v1/jobs/" + job_id; }
 
-ordered_json job_json(const Job& job, const JobStatus& status) {
+ordered_json with_prefix(ordered_json links, const std::string& prefix) {
+  for (auto& link : links) link = prefix + link.get<std::string>();
+  return links;
+}
+
+ordered_json job_json(const Job& job, const JobStatus& status, const std::string& prefix) {
   const auto milli = [](double seconds) { return std::round(seconds * 1000) / 1000; };
   ordered_json json = {{"id", job.id()},
                        {"state", name_of(status.state)},
@@ -20,8 +25,8 @@ ordered_json job_json(const Job& job, const JobStatus& status) {
                        {"tiles", status.tiles},
                        {"tiles_done", status.tiles_done},
                        {"elapsed_s", milli(status.elapsed_s)},
-                       {"events", job_path(job.id()) + "/events"}};
-  json.update(job.work().links(job.id()));
+                       {"events", prefix + job_path(job.id()) + "/events"}};
+  json.update(with_prefix(job.work().links(job.id()), prefix));
   if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
   if (status.error)
     json["error"] = ordered_json::parse(std::string_view(problem_response(status.error, job.id()).body));
@@ -35,7 +40,7 @@ Response start_job(App& app, Request& request, JobSpec spec, const std::string& 
   if (key.size() > kLongestKey)
     throw HttpError(400, "Idempotency-Key has more than " + std::to_string(kLongestKey) + " characters");
   const Jobs::Started started = app.jobs().start(std::move(spec), key, content);
-  Response response = json_answer(202, job_json(*started.job, started.job->status()));
+  Response response = json_answer(202, job_json(*started.job, started.job->status(), request.prefix));
   response.set("Location", job_path(started.job->id()));
   response.set("Server-Timing", server_timing(timing));
   response.set("Cache-Control", "no-store");

@@ -6,8 +6,10 @@
 namespace orrery {
 
 std::string job_path(const std::string& job_id);
-// How far it is, and where its results are.
-nlohmann::ordered_json job_json(const Job& job, const JobStatus& status);
+// Links of JobWork as clients need them.
+nlohmann::ordered_json with_prefix(nlohmann::ordered_json links, const std::string& prefix);
+// How far it is, and where its results are: links begin with `prefix`.
+nlohmann::ordered_json job_json(const Job& job, const JobStatus& status, const std::string& prefix);
 
 // Starts it, once for an Idempotency-Key with the same `content`: 202. Throws HttpError, and what
 // Jobs::start() does.

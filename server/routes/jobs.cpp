@@ -13,7 +13,7 @@ using nlohmann::ordered_json;
 
 Response get_job(App& app, Request& request) {
   const auto job = app.jobs().find(request.path_value("id"));
-  Response response = json_answer(200, job_json(*job, job->status()));
+  Response response = json_answer(200, job_json(*job, job->status(), request.prefix));
   response.set("Cache-Control", "no-store");
   return response;
 }
@@ -26,6 +26,7 @@ std::string event(std::string_view name, int id, const ordered_json& data) {
 // back with the number it saw last misses none.
 struct Events {
   std::shared_ptr<Job> job;
+  std::string prefix;       // of links
   int seen;                 // steps that the client knows of
   std::int64_t tiles = -1;  // likewise
   bool ended = false;
@@ -50,14 +51,14 @@ struct Events {
     ended = has_ended(status.state);
     std::string text;
     for (; seen < status.steps_done; ++seen) text += frame_event(status);
-    if (ended) return text + event(name_of(status.state), status.steps + 1, job_json(*job, status));
+    if (ended) return text + event(name_of(status.state), status.steps + 1, job_json(*job, status, prefix));
     if (!text.empty()) return text;
-    return moved ? event("progress", seen, job_json(*job, status)) : ": still waiting\n\n";
+    return moved ? event("progress", seen, job_json(*job, status, prefix)) : ": still waiting\n\n";
   }
   std::string frame_event(const JobStatus& status) const {
-    ordered_json json = job_json(*job, status);
+    ordered_json json = job_json(*job, status, prefix);
     json["frame"] = seen;
-    json.update(job->work().links_of_step(job->id(), seen));
+    json.update(with_prefix(job->work().links_of_step(job->id(), seen), prefix));
     return event("frame", seen + 1, json);
   }
 };
@@ -76,7 +77,7 @@ Response get_events(App& app, Request& request) {
   response.set("Content-Type", "text/event-stream");
   response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");
   if (request.method == "HEAD") return response;
-  response.stream = [place = app.streams().open(request.client), events = Events{job, seen},
+  response.stream = [place = app.streams().open(request.client), events = Events{job, request.prefix, seen},
                      gone = request.gone,
                      &timer = app.timer()](Sink& sink) mutable { events.send(sink, timer, gone); };
   return response;

@@ -1,6 +1,7 @@
 #include "server/routes/problem.h"
 
 #include <cmath>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "server/app/admission.h"
@@ -89,6 +90,9 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
     return response;
   } catch (const Cancelled& e) {
     return respond(499, e.what(), request_id);
+  } catch (const std::bad_alloc&) {
+    return try_later(503, Busy("There is no memory left for this at the moment", 5), request_id,
+                     "memory_bytes");
   } catch (const std::exception& e) {
     Response response =
         respond(500, "Something went wrong inside; the log has more under this request's id", request_id);

@@ -20,6 +20,7 @@ Response share(App& app, const Router& router, Request& request) {
     path = p.text("path", "What is shared, beginning with /v1/.", kLongestPath);
     seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
   });
+  if (path.starts_with(request.prefix + "/")) path.erase(0, request.prefix.size());
   if (!path.starts_with("/v1/")) throw InputError("/path", "expected an address that begins with /v1/");
   const bool plain =
       std::all_of(path.begin(), path.end(), [](char c) { return c > ' ' && c < 0x7F && c != '#'; });
@@ -45,8 +46,8 @@ Response share(App& app, const Router& router, Request& request) {
       seconds;
   const std::string separator = path.find('?') == std::string::npos ? "?" : "&";
   Response response = json_answer(
-      201,
-      {{"href", path + separator + link_parameters(app.access(), target, expires)}, {"expires", expires}});
+      201, {{"href", request.prefix + path + separator + link_parameters(app.access(), target, expires)},
+            {"expires", expires}});
   response.set("Cache-Control", "no-store");
   return response;
 }

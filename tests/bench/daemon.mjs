@@ -27,10 +27,10 @@ function read_ports(child) {
   });
 }
 
-// Starts a service on free ports. Resolves to {port, health_port, pid, gone, signal(), stop()}; gone resolves to
+// Starts a service on these ports, or on free ones. Resolves to {port, health_port, pid, gone, signal(), stop()}; gone resolves to
 // its exit status, null if a signal ended it.
-export async function start_service(words = []) {
-  const child = spawn(kOrrery, ["serve", "--port", "0", "--health-port", "0", ...words.map(String)], {
+export async function start_service(words = [], { port = 0, health_port = 0 } = {}) {
+  const child = spawn(kOrrery, ["serve", "--port", `${port}`, "--health-port", `${health_port}`, ...words.map(String)], {
     stdio: ["ignore", "pipe", "ignore"],
   });
   const gone = new Promise((resolve) => child.once("close", resolve));

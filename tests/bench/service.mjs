@@ -10,6 +10,7 @@ import { kHealth } from "./service/health.mjs";
 import { kLeaves } from "./service/leaves.mjs";
 import { kMemory } from "./service/memory.mjs";
 import { kOverload } from "./service/overload.mjs";
+import { kRestarts } from "./service/restarts.mjs";
 import { kSigterm } from "./service/sigterm.mjs";
 import { kSoak } from "./service/soak.mjs";
 import { kStart } from "./service/start.mjs";
@@ -17,7 +18,7 @@ import { kViewers } from "./service/viewers.mjs";
 
 // Each has: name; what, in one line; seconds or times, how long it takes or how often it is done; and
 // run({seconds, times}), which resolves to {rows, remark}. A row: {what, target, measured, met}.
-const kProperties = [kBlockade, kMemory, kHealth, kOverload, kLeaves, kSigterm, kViewers, kCached, kStart, kSoak];
+const kProperties = [kBlockade, kMemory, kHealth, kOverload, kLeaves, kSigterm, kRestarts, kViewers, kCached, kStart, kSoak];
 
 const kUsage =
   "usage: tests/bench/run service [PROPERTY...] [--seconds N] [--times N] [--json FILE] [--list]\n" +

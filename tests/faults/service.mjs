@@ -79,7 +79,7 @@ export const serviceFaults = [
   entry(20, "reading goes on for nobody", "core/params/parse.cpp", "interruption_point(nodes_);", "", "test_load", "Interruption.EndsReadingJson"),
   entry(20, "smoothing goes on for nobody", "core/meshes/smooth_normals.cpp", "      interruption_point();\n", "", "test_load", "Interruption.EndsSmoothing"),
   entry(21, "events begin anew for who comes back", "server/routes/jobs.cpp",
-        "events = Events{job, seen}", "events = Events{job, 0}", "test_http",
+        "events = Events{job, request.prefix, seen}", "events = Events{job, request.prefix, 0}", "test_http",
         "JobTest.WhoComesBack*"),
   entry(21, "a key starts a job each time", "server/app/jobs.cpp", "return !key.empty() && e.key == key", "return false && e.key == key",
         "test_http", "JobTest.TheSameKey*"),

@@ -113,7 +113,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(send(ends[0], data, size, MSG_NOSIGNAL) == static_cast<ssize_t>(size));
   shutdown(ends[0], SHUT_WR);
   {
-    Connection connection(ends[1], "", wake, Patience{});
+    Connection connection(ends[1], IpAddress(), wake, Patience{});
     while (connection.wait_for_request() && exchanger.exchange(connection))
       ;
     connection.linger();

@@ -23,7 +23,7 @@ class Trickle {
       throw std::runtime_error("socketpair");
     client_ = ends[1];
     EXPECT_EQ(send(client_, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
-    connection_.emplace(ends[0], "", wake_, kBrief);
+    connection_.emplace(ends[0], IpAddress(), wake_, kBrief);
     thread_ = std::jthread([this](const std::stop_token& stop) {
       for (char byte = ' '; !stop.stop_requested();
            std::this_thread::sleep_for(std::chrono::milliseconds(5))) {

@@ -4,12 +4,15 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <future>
 #include <optional>
 
 // Who learns that a client has gone.
 namespace orrery {
 namespace {
+
+constexpr bool kAsks = true;
 
 // Both ends of a connection.
 struct Pair {
@@ -37,8 +40,8 @@ TEST(HangupMonitor, StopsTheWorkOfWhoHangsUp) {
   HangupMonitor monitor;
   Pair stays, leaves;
   Told staying, leaving;
-  const auto first = monitor.watch(stays.ends[0], staying.source);
-  const auto second = monitor.watch(leaves.ends[0], leaving.source);
+  const auto first = monitor.watch(stays.ends[0], staying.source, kAsks);
+  const auto second = monitor.watch(leaves.ends[0], leaving.source, kAsks);
   leaves.hang_up();
   leaving.future.wait();
   EXPECT_FALSE(staying.source.stop_requested());
@@ -48,10 +51,36 @@ TEST(HangupMonitor, StopsTheWorkOfWhoSendsNoMore) {
   HangupMonitor monitor;
   Pair pair;
   Told told;
-  const auto watching = monitor.watch(pair.ends[0], told.source);
+  const auto watching = monitor.watch(pair.ends[0], told.source, !kAsks);
   EXPECT_EQ(write(pair.ends[1], "bytes", 5), 5);  // which is no end
   shutdown(pair.ends[1], SHUT_WR);
   told.future.wait();
+}
+
+TEST(HangupMonitor, AsksWhoSendsNoMoreWhetherItWaits) {
+  HangupMonitor monitor;
+  Pair pair;
+  Told told;
+  const auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
+  shutdown(pair.ends[1], SHUT_WR);
+  std::array<char, 100> bytes;
+  const ssize_t count = read(pair.ends[1], bytes.data(), bytes.size());
+  EXPECT_EQ(std::string(bytes.data(), static_cast<std::size_t>(count)), "HTTP/1.1 100 Continue\r\n\r\n");
+  EXPECT_FALSE(told.source.stop_requested());
+  pair.hang_up();
+  told.future.wait();
+}
+
+TEST(HangupMonitor, AsksNobodyOnceTheAnswerBegins) {
+  HangupMonitor monitor;
+  Pair pair;
+  Told told;
+  auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
+  watching.stop_asking();
+  shutdown(pair.ends[1], SHUT_WR);
+  told.future.wait();
+  char byte;
+  EXPECT_EQ(recv(pair.ends[1], &byte, 1, MSG_DONTWAIT), -1);
 }
 
 TEST(HangupMonitor, StopsTheWorkOfWhoHasLeftBefore) {
@@ -59,7 +88,7 @@ TEST(HangupMonitor, StopsTheWorkOfWhoHasLeftBefore) {
   Pair pair;
   pair.hang_up();
   Told told;
-  const auto watching = monitor.watch(pair.ends[0], told.source);
+  const auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
   told.future.wait();
 }
 
@@ -68,8 +97,8 @@ TEST(HangupMonitor, TellsOnlyTheWorkThatGoesOn) {
   HangupMonitor monitor;
   Pair pair;
   Told before, now;
-  { const auto watching = monitor.watch(pair.ends[0], before.source); }
-  const auto watching = monitor.watch(pair.ends[0], now.source);
+  { const auto watching = monitor.watch(pair.ends[0], before.source, kAsks); }
+  const auto watching = monitor.watch(pair.ends[0], now.source, kAsks);
   pair.hang_up();
   now.future.wait();
   EXPECT_FALSE(before.source.stop_requested());

@@ -132,6 +132,18 @@ TEST(Descriptors, AreRaisedOrTheServiceDoesNotStart) {
   EXPECT_EQ(run("ulimit -Sn 64; " + check + "256"), std::pair(std::string(), 0));
 }
 
+TEST(Addresses, AreEnoughOrTheServiceDoesNotStart) {
+  const std::string check = "'" + program() + "' serve --check-config --connections ";
+  const std::string stacks = "ulimit -Ss 8192; ulimit -v ";  // in KiB
+  const auto [addresses, refused] = run(stacks + "3000000; " + check + "8 --memory-bytes 3000000000");
+  EXPECT_EQ(refused, 2);
+  EXPECT_NE(addresses.find("3000000000 and 8 connections may take 3335544320 bytes of addresses, the process "
+                           "may have 3072000000 (ulimit -v)"),
+            std::string::npos)
+      << addresses;
+  EXPECT_EQ(run(stacks + "3257368; " + check + "8 --memory-bytes 3000000000"), std::pair(std::string(), 0));
+}
+
 // A balancer has the time to notice.
 TEST(Terminated, GoesOnServingForADelayWhileNotReady) {
   Daemon daemon({"--drain-delay-seconds", "3600"});

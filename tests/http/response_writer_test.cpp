@@ -22,7 +22,7 @@ class Wire {
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
       throw std::runtime_error("socketpair");
     if (send_buffer > 0) setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
-    connection_.emplace(ends[0], "", wake_, Patience{});
+    connection_.emplace(ends[0], IpAddress(), wake_, Patience{});
     reader_ = ends[1];
   }
   ~Wire() {
