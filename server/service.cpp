@@ -8,6 +8,7 @@
 
 #include "core/base/version.h"
 #include "server/http/cors.h"
+#include "server/http/process_limits.h"
 #include "server/readings.h"
 #include "server/routes/access.h"
 #include "server/routes/problem.h"
@@ -68,11 +69,10 @@ HttpServer::Options options_of(const Settings& settings) {
 }
 
 HttpServer::Options health_options_of(const Settings& settings) {
-  constexpr std::size_t kConnections = 16;
   return {.host = settings.health_host,
           .port = settings.health_port,
           .max_bodies = 0,
-          .max_connections = kConnections,
+          .max_connections = kHealthConnections,
           .grace = std::chrono::seconds(1),
           .forwarding = {}};
 }
@@ -109,7 +109,8 @@ void Service::run() {
 
 void Service::reload(const std::function<Settings()>& read) try {
   const Settings fresh = read();
-  app_.access().reload();
+  if (fresh.tokens_file == settings_.tokens_file && fresh.share_key_file == settings_.share_key_file)
+    app_.access().reload();
   nlohmann::ordered_json fields = nlohmann::ordered_json::object();
   if (app_.access().needs_token()) fields["tokens"] = app_.access().tokens();
   for (const Setting& setting : all_settings())
@@ -152,7 +153,7 @@ HttpServer::Admitted Service::admit(const Router& router, Request& request) {
     return {.body = {}, .answer = [this, response](Request& r) { return finished(r, response); }};
   };
   if (request.path.empty())  // links of the page begin at its folder
-    return answered({.status = 308, .headers = {{"Location", "/"}}});
+    return answered({.status = 308, .headers = {{"Location", "/"}, {"Cache-Control", "no-store"}}});
   if (const auto answer = preflight(request, origins)) return answered(*answer);
   refuse_foreign(request, origins, !settings_.tokens_file.empty());
   if (request.method == "OPTIONS")

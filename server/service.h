@@ -22,9 +22,9 @@ class Service {
   void run();
   // Both from any thread.
   void stop();  // after drain_delay_seconds
-  // Reads the files of tokens and keys again, and takes the cors_origins of what `read` returns. The log
-  // names the other settings that differ, which need a restart, or says what was thrown: then all stays as it
-  // is.
+  // Reads the files of tokens and keys again, unless `read` returns the names of others, and takes the
+  // cors_origins of what it returns. The log names the other settings that differ, which need a restart, or
+  // says what was thrown: then all stays as it is.
   void reload(const std::function<Settings()>& read);
 
  private:

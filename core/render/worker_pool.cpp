@@ -35,19 +35,15 @@ constexpr std::chrono::milliseconds kSlice{20}, kOverdue{50};
 class WorkerThreads {
  public:
   WorkerThreads(int count, int niceness) : count_(count), niceness_(niceness), idle_(count) {
-    for (int i = 0; i < count; ++i) threads_.emplace_back([this] { serve(); });
-    watch_ = std::thread([this] { watch(); });
-  }
-  ~WorkerThreads() {
-    {
-      const std::lock_guard lock(mutex_);
-      ends_ = true;
+    try {
+      for (int i = 0; i < count; ++i) threads_.emplace_back([this] { serve(); });
+      watch_ = std::thread([this] { watch(); });
+    } catch (...) {  // the machine has no more
+      end();
+      throw;
     }
-    changed_.notify_all();
-    contended_.notify_one();
-    watch_.join();
-    for (std::thread& thread : threads_) thread.join();
   }
+  ~WorkerThreads() { end(); }
 
   int count() const { return count_; }
 
@@ -159,6 +155,17 @@ class WorkerThreads {
     });
     return loops_.size() + tasks_.size() + static_cast<std::size_t>(others) > 1;
   }
+  void end() {
+    {
+      const std::lock_guard lock(mutex_);
+      ends_ = true;
+    }
+    changed_.notify_all();
+    contended_.notify_one();
+    if (watch_.joinable()) watch_.join();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
   bool place_free() const { return static_cast<int>(places_.size()) < count_; }
   bool has(const Place& place) const {
     return std::find(places_.begin(), places_.end(), &place) != places_.end();

@@ -98,18 +98,18 @@ void read_members(Settings& settings, const nlohmann::json& json, const std::str
   }
 }
 
-void read_file_of_settings(Settings& settings, const std::string& path, std::vector<Problem>& problems) {
+// Its object of settings; null if it cannot be used.
+nlohmann::json read_file_of_settings(const std::string& path, std::vector<Problem>& problems) {
   try {
     const Document document = parse_document(read_file(path));
-    if (json_of(document).is_object())
-      read_members(settings, json_of(document), path, problems);
-    else
-      problems.push_back({path, "expected an object"});
+    if (json_of(document).is_object()) return json_of(document);
+    problems.push_back({path, "expected an object"});
   } catch (const InputError& error) {
     for (const Problem& p : error.problems()) problems.push_back({path, p.text()});
   } catch (const FileError& error) {
     problems.push_back({"--config", error.what()});
   }
+  return nullptr;
 }
 
 // From the command line or, as CLI11 asks for that, else from the environment.
@@ -164,8 +164,10 @@ void add_setting_flags(CLI::App& app) {
 }
 
 Settings read_settings(const CLI::App& app, const std::string& config_file, std::vector<Problem>& problems) {
+  // Read once: a pipe has nothing to give the second time.
+  const nlohmann::json file = config_file.empty() ? nullptr : read_file_of_settings(config_file, problems);
   const auto read_over = [&](Settings settings, std::vector<Problem>& found) {
-    if (!config_file.empty()) read_file_of_settings(settings, config_file, found);
+    if (!file.is_null()) read_members(settings, file, config_file, found);
     for (const Setting& setting : all_settings())
       read_flag(settings, setting, *app.get_option(flag_of(setting.name)), found);
     return settings;

@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <mutex>
+#include <thread>
 
 #include "core/base/version.h"
 #include "core/math/instruction_level.h"
@@ -38,25 +40,8 @@ struct ServeOptions {
   std::string config, log = isatty(STDERR_FILENO) ? "text" : "json";
 };
 
-// Appends what the process may not have of what these settings may take.
-void check_process(const Settings& settings, std::vector<Problem>& problems) {
-  const std::size_t addresses = settings.memory_bytes + addresses_for(settings.connections);
-  if (const std::size_t allowed = allowed_addresses(); allowed < addresses)
-    problems.push_back({"--memory-bytes", std::to_string(settings.memory_bytes) + " and " +
-                                              std::to_string(settings.connections) +
-                                              " connections may take " + std::to_string(addresses) +
-                                              " bytes of addresses, the process may have " +
-                                              std::to_string(allowed) + " (ulimit -v)"});
-  const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
-  if (allowed < needed)
-    problems.push_back({"--connections", std::to_string(settings.connections) + " may take " +
-                                             std::to_string(needed) + " open files, the process may have " +
-                                             std::to_string(allowed) + " (ulimit -n)"});
-}
-
-// Appends what is wrong with settings of which each is a value that it may have. Returns how many tokens
-// there are.
-std::size_t check(const Settings& settings, std::vector<Problem>& problems) {
+// Appends what is wrong with settings of which each is a value that it may have.
+void check_values(const Settings& settings, std::vector<Problem>& problems) {
   const auto note = [&](const char* flag, const auto& read) {
     try {
       read();
@@ -66,14 +51,6 @@ std::size_t check(const Settings& settings, std::vector<Problem>& problems) {
   };
   if (settings.port == settings.health_port && settings.port != 0)
     problems.push_back({"--health-port", "is the same as --port, " + std::to_string(settings.port)});
-  try {
-    if (!settings.insecure && settings.tokens_file.empty() && !is_loopback(settings.host))
-      problems.push_back({"--host", settings.host +
-                                        " can be reached from other machines, and everyone who reaches it "
-                                        "may render; give --tokens-file, or --insecure if that is meant"});
-  } catch (const Error& error) {  // there is no such address
-    problems.push_back({"--host", error.what()});
-  }
   for (const std::string& origin : settings.cors_origins)
     if (origin != "*" && origin != "null" && !is_origin(origin))
       problems.push_back(
@@ -82,13 +59,44 @@ std::size_t check(const Settings& settings, std::vector<Problem>& problems) {
   for (const std::string& proxy : settings.trusted_proxies)
     note("--trusted-proxies", [&] { IpNetwork{proxy}; });
   note("--path-prefix", [&] { Forwarding({}, settings.path_prefix); });
+  for (const std::string_view own : {"/v1/", "/scenes/", "/schemas/", "/healthz/", "/readyz/"})
+    if ((settings.path_prefix + "/").starts_with(own))
+      problems.push_back(
+          {"--path-prefix", "is where the service has addresses of its own: " + settings.path_prefix});
   note("--memory-bytes", [&] { work_bytes(settings); });
-  check_process(settings, problems);
+}
+
+// Appends what other machines may not reach, and what the process may not have of what these settings take.
+void check_surroundings(const Settings& settings, std::vector<Problem>& problems) {
   try {
-    return Access(settings.tokens_file, settings.share_key_file).tokens();
-  } catch (const InputError& error) {
-    problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    if (!settings.insecure && settings.tokens_file.empty() && !is_loopback(settings.host))
+      problems.push_back({"--host", settings.host +
+                                        " can be reached from other machines, and everyone who reaches it "
+                                        "may render; give --tokens-file, or --insecure if that is meant"});
+  } catch (const Error& error) {  // there is no such address
+    problems.push_back({"--host", error.what()});
   }
+  const std::size_t threads =
+      settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : std::thread::hardware_concurrency();
+  const std::size_t addresses = settings.memory_bytes + addresses_for(settings.connections, threads);
+  if (const std::size_t allowed = allowed_addresses(); allowed < addresses)
+    problems.push_back({"--memory-bytes",
+                        std::to_string(settings.memory_bytes) + ", " + std::to_string(settings.connections) +
+                            " connections and " + std::to_string(threads) + " threads may take " +
+                            std::to_string(addresses) + " bytes of addresses, the process may have " +
+                            std::to_string(allowed) + " (ulimit -v)"});
+  const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
+  if (allowed < needed)
+    problems.push_back({"--connections", std::to_string(settings.connections) + " may take " +
+                                             std::to_string(needed) + " open files, the process may have " +
+                                             std::to_string(allowed) + " (ulimit -n)"});
+}
+
+// How many tokens there are. Appends what is wrong with the files.
+std::size_t count_tokens(const Settings& settings, std::vector<Problem>& problems) try {
+  return Access(settings.tokens_file, settings.share_key_file).tokens();
+} catch (const InputError& error) {
+  problems.insert(problems.end(), error.problems().begin(), error.problems().end());
   return 0;
 }
 
@@ -133,7 +141,9 @@ int run_service(const Settings& settings, const Log& log, const std::function<Se
 int serve(const CLI::App& app, const ServeOptions& options) {
   std::vector<Problem> problems;
   const Settings settings = read_settings(app, options.config, problems);
-  const std::size_t tokens = check(settings, problems);
+  check_values(settings, problems);
+  check_surroundings(settings, problems);
+  const std::size_t tokens = count_tokens(settings, problems);
   if (options.log != "json" && options.log != "text")
     problems.push_back({"--log", "expected text or json, got " + options.log.substr(0, 80)});
   if (!problems.empty()) throw InputError(std::move(problems));
@@ -144,9 +154,11 @@ int serve(const CLI::App& app, const ServeOptions& options) {
   const Log log(options.log == "json" ? LogForm::json : LogForm::text,
                 options.quiet ? LogLevel::warning : LogLevel::info);
   return run_service(settings, log, [&] {
+    // A pipe has nothing to give the second time, or keeps us waiting.
+    if (!options.config.empty() && !std::filesystem::is_regular_file(options.config)) return settings;
     std::vector<Problem> found;
     const Settings fresh = read_settings(app, options.config, found);
-    check(fresh, found);
+    check_values(fresh, found);
     if (!found.empty()) throw InputError(std::move(found));
     return fresh;
   });

@@ -16,10 +16,9 @@ namespace {
 constexpr std::size_t kLeast = 1024, kMost = 1 << 20;  // bytes
 
 bool is_text(std::string_view content_type) {
-  constexpr std::array<std::string_view, 3> kTypes{"application/json", "image/svg+xml",
-                                                   "application/manifest+json"};
+  constexpr std::array<std::string_view, 2> kTypes{"application/json", "image/svg+xml"};
   const std::string_view type = trimmed(content_type.substr(0, content_type.find(';')));
-  return starts_with_ignoring_case(type, "text/") ||
+  return starts_with_ignoring_case(type, "text/") || type.ends_with("+json") ||
          std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
 }
 
@@ -57,11 +56,21 @@ std::string gzip(std::string_view bytes) {
 
 void Compressor::compress(const Request& request, Response& response) {
   const auto header = [&](std::string_view name) { return find_field(response.headers, name).value_or(""); };
+  const auto vary = [&] {
+    const std::string others = header("Vary");
+    response.set("Vary", (others.empty() ? "" : others + ", ") + "Accept-Encoding");
+  };
+  if (response.status == 304) {  // of the answer that the client has, which may be the compressed one
+    const std::string weak = "W/" + header("ETag");
+    if (joined(request.headers, "If-None-Match").find(weak) == std::string::npos) return;
+    response.set("ETag", weak);
+    return vary();
+  }
   const std::size_t size = response.body.size();
   if (response.stream || size < kLeast || size > kMost || !is_text(header("Content-Type")) ||
       header("Cache-Control").find("no-store") != std::string::npos)
     return;
-  response.set("Vary", "Accept-Encoding");
+  vary();
   if (!takes_gzip(request)) return;
   const std::unique_lock lock(busy_, std::try_to_lock);
   if (!lock) return;

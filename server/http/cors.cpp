@@ -14,6 +14,18 @@ bool is_listed(const Request& request, const std::vector<std::string>& origins) 
                                [&](const std::string& listed) { return listed == "*" || listed == *origin; });
 }
 
+// Throws HttpError 403 for a domain with a dot that no listed origin has.
+void require_known(const std::string& host, const std::vector<std::string>& origins) {
+  const bool listed = std::any_of(origins.begin(), origins.end(), [&](const std::string& origin) {
+    return origin == "*" || equal_ignoring_case(origin.substr(origin.find("//") + 2), host);
+  });
+  const bool may_be_owned = host.find('.') != std::string::npos;  // on the internet
+  if (!listed && may_be_owned && !names_no_domain(host))
+    throw HttpError(
+        403, "The host " + host.substr(0, 100) +
+                 " is not known here: expected an address, localhost or the host of one of cors_origins");
+}
+
 }  // namespace
 
 std::optional<Response> preflight(const Request& request, const std::vector<std::string>& origins) {
@@ -31,7 +43,8 @@ void refuse_foreign(const Request& request, const std::vector<std::string>& orig
   constexpr std::array<std::string_view, 3> kSafe{"GET", "HEAD", "OPTIONS"};
   const auto origin = request.header("Origin");
   if (!origin || std::find(kSafe.begin(), kSafe.end(), request.method) != kSafe.end()) return;
-  const std::string host = request.header("Host").value_or("");
+  const std::string host =
+      request.told_host.empty() ? request.header("Host").value_or("") : request.told_host;
   const std::size_t slashes = origin->find("//");
   const bool own = slashes != std::string::npos && equal_ignoring_case(origin->substr(slashes + 2), host) &&
                    (domains || names_no_domain(host));
@@ -41,15 +54,8 @@ void refuse_foreign(const Request& request, const std::vector<std::string>& orig
 }
 
 void refuse_foreign_host(const Request& request, const std::vector<std::string>& origins) {
-  const std::string host = request.header("Host").value_or("");
-  const bool listed = std::any_of(origins.begin(), origins.end(), [&](const std::string& origin) {
-    return origin == "*" || equal_ignoring_case(origin.substr(origin.find("//") + 2), host);
-  });
-  const bool may_be_owned = host.find('.') != std::string::npos;  // on the internet
-  if (!listed && may_be_owned && !names_no_domain(host))
-    throw HttpError(
-        403, "The host " + host.substr(0, 100) +
-                 " is not known here: expected an address, localhost or the host of one of cors_origins");
+  require_known(request.header("Host").value_or(""), origins);
+  require_known(request.told_host, origins);  // which may be the client's word, where the proxy tells none
 }
 
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response) {

@@ -8,6 +8,12 @@ namespace {
 
 constexpr int kClientGone = 499;  // the status of work that was given up
 
+// The host of an absolute target is meant, whatever Host says (RFC 9112, 3.2.2).
+void name_host(Fields& headers, const std::string& authority) {
+  std::erase_if(headers, [](const auto& field) { return equal_ignoring_case(field.first, "Host"); });
+  headers.emplace_back("Host", authority);
+}
+
 // Takes over what the head says. Throws HttpError for a target that cannot be understood.
 void read_head_into(Request& request, const Head& head, const IpAddress& peer, const Forwarding& forwarding) {
   request.method = head.method;
@@ -20,7 +26,6 @@ void read_head_into(Request& request, const Head& head, const IpAddress& peer, c
   request.path = std::move(target.path);
   request.segments = std::move(target.segments);
   request.query = std::move(target.query);
-  // The host of an absolute target is meant, whatever Host says (RFC 9112, 3.2.2).
   if (!target.authority.empty()) name_host(request.headers, target.authority);
   forwarding.apply(peer, request);
 }

@@ -20,6 +20,10 @@ void for_each_entry(std::string_view list, char separator, const Part& part) {
   bool quoted = false;
   std::size_t begin = 0;
   for (std::size_t i = 0; i <= list.size(); ++i) {
+    if (quoted && i + 1 < list.size() && list[i] == '\\') {
+      ++i;  // what it stands before is no end of the quotes
+      continue;
+    }
     if (i < list.size() && list[i] == '"') quoted = !quoted;
     if (i < list.size() && (quoted || list[i] != separator)) continue;
     if (const auto entry = trimmed(list.substr(begin, i - begin)); !entry.empty()) part(entry);
@@ -27,8 +31,11 @@ void for_each_entry(std::string_view list, char separator, const Part& part) {
   }
 }
 
+// Whether quotes that it opens do not end.
+bool ends_in_quotes(std::string_view text);
+
 // The value of the parameter `name` among those of an entry, "0.5" of "image/*;q=0.5", without quotes; "" if
-// there is none.
+// there is none, or several.
 std::string_view parameter_of(std::string_view entry, std::string_view name);
 
 // How much an entry is liked, 0..1: its q, or 1.

@@ -5,30 +5,74 @@
 #include "core/base/error.h"
 #include "server/http/authority.h"
 #include "server/http/field_list.h"
+#include "server/http/head.h"
 #include "server/http/target.h"
 
 namespace orrery {
 namespace {
 
 constexpr std::size_t kLongestPrefix = 200;
+constexpr const char* kNobody = "for=unknown";  // RFC 7239, 6.3
 
 // The entries of a header, the nearest proxy's last.
 std::vector<std::string> entries_of(const Request& request, std::string_view name) {
   std::vector<std::string> entries;
-  for_each_entry(joined(request.headers, name), ',',
-                 [&](std::string_view entry) { entries.emplace_back(entry); });
+  std::string list = joined(request.headers, name);
+  for (char& c : list)
+    if (c == '"') c = ' ';  // these headers have no quotes: a client's would hide what a proxy has appended
+  for_each_entry(list, ',', [&](std::string_view entry) { entries.emplace_back(entry); });
   return entries;
 }
 
-// "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]" and "[2001:db8::1]:80"; none for names.
+// The entries of Forwarded, likewise. Each line is read for itself: quotes that a client has opened end with
+// its line. A line that ends within quotes is one entry, of nobody.
+std::vector<std::string> entries_of_forwarded(const Request& request) {
+  std::vector<std::string> entries;
+  for (const auto& [name, line] : request.headers) {
+    if (!equal_ignoring_case(name, "Forwarded")) continue;
+    if (ends_in_quotes(line))
+      entries.emplace_back(kNobody);
+    else
+      for_each_entry(line, ',', [&](std::string_view entry) { entries.emplace_back(entry); });
+  }
+  return entries;
+}
+
+// Whom an entry of Forwarded names: "" if it has no `for`.
+std::string node_of(const std::string& entry) {
+  const std::string_view node = parameter_of(entry, "for");
+  if (!node.empty()) return std::string(node);
+  bool named = false;
+  for_each_entry(entry, ';', [&](std::string_view pair) {
+    named = named || equal_ignoring_case(trimmed(pair.substr(0, pair.find('='))), "for");
+  });
+  return named ? "unknown" : "";  // by none, or by several
+}
+
+// Digits, or a name that begins with _ (RFC 7239, 6.2).
+bool is_port(std::string_view text) {
+  constexpr std::size_t kMostDigits = 5;
+  const bool number =
+      text.size() <= kMostDigits && text.find_first_not_of("0123456789") == std::string_view::npos;
+  return !text.empty() && (number || (text.front() == '_' && is_token(text)));
+}
+
+// "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]" and "[2001:db8::1]:80"; none for names, and for
+// the addresses of nobody.
 std::optional<IpAddress> address_of(std::string_view node) {
+  std::string_view host = node, rest;
   if (node.starts_with('[')) {
     const std::size_t end = node.find(']');
-    return end == std::string_view::npos ? std::nullopt : IpAddress::parse(node.substr(1, end - 1));
+    if (end == std::string_view::npos) return std::nullopt;
+    host = node.substr(1, end - 1);
+    rest = node.substr(end + 1);
+  } else if (const std::size_t colon = node.find(':'); colon == node.rfind(':')) {
+    host = node.substr(0, colon);
+    rest = node.substr(host.size());
   }
-  const std::size_t colon = node.find(':');
-  const bool has_port = colon != std::string_view::npos && colon == node.rfind(':');
-  return IpAddress::parse(has_port ? node.substr(0, colon) : node);
+  if (!rest.empty() && (rest.front() != ':' || !is_port(rest.substr(1)))) return std::nullopt;
+  const auto address = IpAddress::parse(host);
+  return address == IpAddress() || address == IpAddress::parse("0.0.0.0") ? std::nullopt : address;
 }
 
 // Whether links may begin with it: the path of no other host, without escapes.
@@ -47,8 +91,21 @@ std::string last_of(const std::vector<std::string>& entries) { return entries.em
 // The host that the client asked, as the nearest proxy tells it.
 std::string host_of(const Request& request) {
   const std::string host = last_of(entries_of(request, "X-Forwarded-Host"));
-  const std::string told = last_of(entries_of(request, "Forwarded"));
+  const std::string told = last_of(entries_of_forwarded(request));
   return host.empty() ? std::string(parameter_of(told, "host")) : host;
+}
+
+// Takes the prefix off the path. False if the path does not begin with it.
+bool take_off(std::string_view prefix, Request& request) {
+  if (prefix.empty()) return false;
+  const std::vector<std::string> wanted = parse_target(prefix).segments;
+  auto& segments = request.segments;
+  if (segments.size() < wanted.size() || !std::equal(wanted.begin(), wanted.end(), segments.begin()))
+    return false;
+  segments.erase(segments.begin(), segments.begin() + static_cast<std::ptrdiff_t>(wanted.size()));
+  if (segments == std::vector<std::string>{""}) segments.clear();  // "/" has none
+  request.path.erase(0, prefix.size());
+  return true;
 }
 
 }  // namespace
@@ -60,7 +117,6 @@ Forwarding::Forwarding(const std::vector<std::string>& trusted_proxies, std::str
     throw InputError("", "expected a path such as /render, of letters, digits and - . _ ~, at most " +
                              std::to_string(kLongestPrefix) + " bytes, without / at its end, got " +
                              prefix_.substr(0, 80));
-  prefix_segments_ = parse_target(prefix_).segments;
 }
 
 bool Forwarding::trusts(const IpAddress& peer) const {
@@ -80,21 +136,13 @@ IpAddress Forwarding::client_of(const IpAddress& peer, const std::vector<std::st
 
 IpAddress Forwarding::client_of(const IpAddress& peer, const Request& request) const {
   const std::vector<std::string> listed = entries_of(request, "X-Forwarded-For");
-  std::vector<std::string> told = entries_of(request, "Forwarded");
-  for (std::string& entry : told) entry = std::string(parameter_of(entry, "for"));
-  if (told.empty()) return client_of(peer, listed);
+  std::vector<std::string> told = entries_of_forwarded(request);
+  for (std::string& entry : told) entry = node_of(entry);
+  const bool names_nobody =
+      std::all_of(told.begin(), told.end(), [](const auto& node) { return node.empty(); });
+  if (names_nobody) return client_of(peer, listed);
   const IpAddress client = client_of(peer, told);
   return listed.empty() || client_of(peer, listed) == client ? client : peer;
-}
-
-void Forwarding::take_prefix_off(Request& request) const {
-  auto& segments = request.segments;
-  if (prefix_.empty() || segments.size() < prefix_segments_.size() ||
-      !std::equal(prefix_segments_.begin(), prefix_segments_.end(), segments.begin()))
-    return;
-  segments.erase(segments.begin(), segments.begin() + static_cast<std::ptrdiff_t>(prefix_segments_.size()));
-  if (segments == std::vector<std::string>{""}) segments.clear();  // "/" has none
-  request.path.erase(0, prefix_.size());
 }
 
 void Forwarding::apply(const IpAddress& peer, Request& request) const {
@@ -104,10 +152,9 @@ void Forwarding::apply(const IpAddress& peer, Request& request) const {
     request.client = client_of(peer, request).network();
     const std::string prefix = last_of(entries_of(request, "X-Forwarded-Prefix"));
     if (is_prefix(prefix)) request.prefix = prefix;
-    const std::string host = host_of(request);
-    if (is_authority(host)) name_host(request.headers, host);
+    request.told_host = host_of(request);
   }
-  take_prefix_off(request);
+  if (!take_off(request.prefix, request)) take_off(prefix_, request);
 }
 
 }  // namespace orrery

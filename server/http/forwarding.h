@@ -21,20 +21,18 @@ class Forwarding {
 
   bool trusts(const IpAddress& peer) const;
 
-  // Fills request.client, prefix and Host of what came from `peer`, and takes the prefix off its path, if the
-  // proxy has not. The client is the last one of the list that is no trusted proxy. Where Forwarded and
-  // X-Forwarded-For name two, one of them comes from the client itself, and `peer` is taken for it.
-  // The path of what was asked of the prefix itself, without a slash after it, is then empty.
+  // Fills request.client, prefix and told_host of what came from `peer`, and takes the prefix off its path,
+  // if the proxy has not. The client is the last one of the list that is no trusted proxy. Where Forwarded
+  // and X-Forwarded-For name two, one of them comes from the client itself, and `peer` is taken for it. The
+  // path of what was asked of the prefix itself, without a slash after it, is then empty.
   void apply(const IpAddress& peer, Request& request) const;
 
  private:
   IpAddress client_of(const IpAddress& peer, const std::vector<std::string>& hops) const;
   IpAddress client_of(const IpAddress& peer, const Request& request) const;
-  void take_prefix_off(Request& request) const;
 
   std::vector<IpNetwork> trusted_;
   std::string prefix_;
-  std::vector<std::string> prefix_segments_;
 };
 
 }  // namespace orrery

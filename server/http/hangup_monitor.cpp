@@ -5,12 +5,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <optional>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 namespace orrery {
 namespace {
@@ -23,8 +23,11 @@ void control(int epoll, int operation, int fd, std::uint32_t events, std::uint64
     throw std::system_error(errno, std::generic_category(), "epoll_ctl");
 }
 
-// False if it cannot be asked: then nothing can be sent to it any more.
-bool ask(int fd) {
+constexpr int kAsks = 4;
+constexpr std::chrono::milliseconds kBetweenAsks{50};
+
+// False if nothing can be sent any more.
+bool send_interim(int fd) {
   constexpr std::string_view kInterim = "HTTP/1.1 100 Continue\r\n\r\n";
   const ssize_t sent = send(fd, kInterim.data(), kInterim.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   const bool whole = sent == static_cast<ssize_t>(kInterim.size());
@@ -53,7 +56,7 @@ HangupMonitor::Watching HangupMonitor::watch(int fd, std::stop_source work, bool
   // Numbers never return: an event that was on its way when its socket was forgotten finds nobody. Broken
   // connections are reported unasked.
   control(epoll_, EPOLL_CTL_ADD, fd, EPOLLRDHUP | EPOLLONESHOT, number);
-  clients_.emplace(number, Client{fd, std::move(work), asks});
+  clients_.emplace(number, Client{fd, std::move(work), asks ? kAsks : 0});
   return Watching(*this, fd, number);
 }
 
@@ -65,7 +68,7 @@ void HangupMonitor::forget(int fd, std::uint64_t number) {
 
 void HangupMonitor::stop_asking(std::uint64_t number) {
   const std::lock_guard lock(mutex_);
-  clients_.at(number).asks = false;
+  clients_.at(number).asks = 0;
 }
 
 void HangupMonitor::heed(std::uint64_t number, bool broken) {
@@ -75,22 +78,51 @@ void HangupMonitor::heed(std::uint64_t number, bool broken) {
     const auto found = clients_.find(number);
     if (found == clients_.end()) return;
     Client& client = found->second;
-    if (!broken && std::exchange(client.asks, false) && ask(client.fd))
+    if (!broken && client.asks > 0 && ask(client, number))
       return control(epoll_, EPOLL_CTL_MOD, client.fd, EPOLLONESHOT, number);  // until it is broken
     work = client.work;
   }
   work->request_stop();
 }
 
+bool HangupMonitor::ask(Client& client, std::uint64_t number) {
+  if (!send_interim(client.fd)) return false;
+  if (--client.asks > 0) next_asks_.push_back({Clock::now() + kBetweenAsks, number});
+  return true;
+}
+
+void HangupMonitor::ask_again() {
+  while (!next_asks_.empty() && next_asks_.front().at <= Clock::now()) {
+    const std::uint64_t number = next_asks_.front().number;
+    next_asks_.pop_front();
+    std::optional<std::stop_source> work;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto found = clients_.find(number);
+      if (found == clients_.end() || found->second.asks == 0 || ask(found->second, number)) continue;
+      work = found->second.work;
+    }
+    work->request_stop();
+  }
+}
+
+int HangupMonitor::milliseconds_to_next_ask() const {
+  if (next_asks_.empty()) return -1;
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_asks_.front().at - Clock::now());
+  return static_cast<int>(std::max<std::int64_t>(left.count(), 0));
+}
+
 void HangupMonitor::run() {
   std::array<epoll_event, 64> events;
   for (;;) {
-    const int count = epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), -1);
+    const int count =
+        epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), milliseconds_to_next_ask());
     for (int i = 0; i < count; ++i) {
       const std::uint64_t number = events[static_cast<std::size_t>(i)].data.u64;
       if (number == kEnd) return;
       heed(number, events[static_cast<std::size_t>(i)].events & (EPOLLHUP | EPOLLERR));
     }
+    ask_again();
   }
 }
 

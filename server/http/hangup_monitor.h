@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <stop_token>
 #include <thread>
+
+#include "core/base/clock.h"
 
 namespace orrery {
 
@@ -13,7 +16,8 @@ namespace orrery {
 //
 // Who sends no more may still wait for its answer, and looks just like who has closed its socket. It is asked
 // by an interim response, "100 Continue", which every client of HTTP/1.1 skips (RFC 9110, 15.2): a closed
-// socket answers that with a reset.
+// socket answers that with a reset. It is asked several times, as a relay in between learns that its client
+// has gone by the first, can send no more at the second, and is itself closed at the third.
 class HangupMonitor {
  public:
   // Throws std::system_error if the system has no descriptors left.
@@ -48,18 +52,27 @@ class HangupMonitor {
   struct Client {
     int fd;
     std::stop_source work;
-    bool asks;
+    int asks;  // that may still be sent
+  };
+  struct NextAsk {
+    Clock::time_point at;
+    std::uint64_t number;
   };
 
   void forget(int fd, std::uint64_t number);
   void stop_asking(std::uint64_t number);
   void run();
   void heed(std::uint64_t number, bool broken);
+  void ask_again();
+  int milliseconds_to_next_ask() const;
+  // Asks the client, if it may be asked. False if it has gone.
+  bool ask(Client& client, std::uint64_t number);
 
   const int epoll_, end_;
   std::mutex mutex_;
   std::uint64_t last_number_ = 0;            // guarded by mutex_
   std::map<std::uint64_t, Client> clients_;  // by number; guarded by mutex_
+  std::deque<NextAsk> next_asks_;            // the next first; for thread_
   std::thread thread_;                       // last: it uses the others
 };
 

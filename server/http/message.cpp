@@ -20,11 +20,6 @@ std::optional<std::string> find_field(const Fields& fields, std::string_view nam
   return std::nullopt;
 }
 
-void name_host(Fields& headers, std::string_view authority) {
-  std::erase_if(headers, [](const auto& field) { return equal_ignoring_case(field.first, "Host"); });
-  headers.emplace_back("Host", authority);
-}
-
 const std::string& Request::path_value(std::string_view name) const {
   return std::find_if(path_values.begin(), path_values.end(), [&](const auto& p) { return p.first == name; })
       ->second;
@@ -53,6 +48,7 @@ std::string_view reason_phrase(int status) {
     case 202: return "Accepted";
     case 204: return "No Content";
     case 304: return "Not Modified";
+    case 308: return "Permanent Redirect";
     case 400: return "Bad Request";
     case 401: return "Unauthorized";
     case 403: return "Forbidden";

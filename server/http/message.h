@@ -24,9 +24,6 @@ using Fields = std::vector<std::pair<std::string, std::string>>;
 // The value of the first field of that name, whatever its case.
 std::optional<std::string> find_field(const Fields& fields, std::string_view name);
 
-// The host of these headers, whatever they said.
-void name_host(Fields& headers, std::string_view authority);
-
 // How long a body may be.
 struct BodyLimit {
   std::size_t bytes;
@@ -38,11 +35,12 @@ struct Request {
   std::string path;                   // decoded
   std::vector<std::string> segments;  // of the path, each decoded
   const Route* route = nullptr;       // whose path it has; null: none has
-  std::string id;      // of this request: sent by the client, or made up; letters, digits, . _ -
-  std::string client;  // who asks: the address, or what it is known as
-  std::string prefix;  // what paths begin with for the client, which `path` does not: "" or "/render"
-  Fields query;        // decoded; names are unique
-  Fields path_values;  // of the route's {places}
+  std::string id;         // of this request: sent by the client, or made up; letters, digits, . _ -
+  std::string client;     // who asks: the address, or what it is known as
+  std::string told_host;  // that the client asked, by a proxy; "": none told
+  std::string prefix;     // what paths begin with for the client, which `path` does not: "" or "/render"
+  Fields query;           // decoded; names are unique
+  Fields path_values;     // of the route's {places}
   Fields headers;
   std::string body;  // if the route has one read
   std::chrono::steady_clock::time_point start;

@@ -69,13 +69,14 @@ std::string IpAddress::network() const {
 IpNetwork::IpNetwork(std::string_view text) {
   const std::size_t slash = text.find('/');
   const auto first = IpAddress::parse(text.substr(0, slash));
-  const int most = first && first->is_v4() ? 32 : 128;
+  const bool v4 = first && text.find(':') == std::string_view::npos;
+  const int most = v4 ? 32 : 128;
   const auto bits = slash == std::string_view::npos ? most : number_in<int>(text.substr(slash + 1));
   if (!first || !bits || *bits < 0 || *bits > most)
     throw InputError(
         "", "expected an address or a network such as 10.0.0.0/8, got " + std::string(text.substr(0, 80)));
   first_ = *first;
-  bits_ = first->is_v4() ? kMappedBits + *bits : *bits;
+  bits_ = v4 ? kMappedBits + *bits : *bits;
   for (int bit = bits_; bit < 128; ++bit)
     if (first_.bytes()[static_cast<std::size_t>(bit) / 8] >> (7 - bit % 8) & 1)
       throw InputError("", "expected a network whose bits after the first " + std::to_string(*bits) +

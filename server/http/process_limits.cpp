@@ -10,8 +10,8 @@
 namespace orrery {
 
 std::size_t descriptors_for(std::size_t connections) {
-  constexpr std::size_t kHealth = 16, kOthers = 64;
-  return connections + kHealth + 2 * Shed::kMost + kOthers;
+  constexpr std::size_t kOthers = 64;
+  return connections + kHealthConnections + 2 * Shed::kMost + kOthers;
 }
 
 std::size_t allow_descriptors(std::size_t count) {
@@ -30,11 +30,14 @@ std::size_t allowed_addresses() {
   return limit.rlim_cur == RLIM_INFINITY ? std::numeric_limits<std::size_t>::max() : limit.rlim_cur;
 }
 
-std::size_t addresses_for(std::size_t connections) {
+std::size_t addresses_for(std::size_t connections, std::size_t renderers) {
   constexpr std::size_t kProgram = 256 << 20, kUsualStack = 8 << 20;
+  constexpr std::size_t kOthers = 8;  // accept, signals, timers and the like
+  // Each renderer has one beside it for background work, and while they give way to others one more each.
+  const std::size_t threads = connections + kHealthConnections + 4 * renderers + kOthers;
   rlimit stack{};
   getrlimit(RLIMIT_STACK, &stack);
-  return kProgram + connections * (stack.rlim_cur == RLIM_INFINITY ? kUsualStack : stack.rlim_cur);
+  return kProgram + threads * (stack.rlim_cur == RLIM_INFINITY ? kUsualStack : stack.rlim_cur);
 }
 
 }  // namespace orrery

@@ -20,7 +20,8 @@ Response share(App& app, const Router& router, Request& request) {
     path = p.text("path", "What is shared, beginning with /v1/.", kLongestPath);
     seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
   });
-  if (path.starts_with(request.prefix + "/")) path.erase(0, request.prefix.size());
+  for (const std::string& prefix : {request.prefix, app.settings().path_prefix})
+    if (path.starts_with(prefix + "/") && !path.starts_with("/v1/")) path.erase(0, prefix.size());
   if (!path.starts_with("/v1/")) throw InputError("/path", "expected an address that begins with /v1/");
   const bool plain =
       std::all_of(path.begin(), path.end(), [](char c) { return c > ' ' && c < 0x7F && c != '#'; });

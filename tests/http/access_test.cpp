@@ -140,6 +140,10 @@ TEST(Settings, OriginsAreReadAgainOnSighup) {
   EXPECT_TRUE(test::eventually([&] { return is_allowed("https://two.example"); }));
   EXPECT_FALSE(is_allowed("https://one.example"));
   EXPECT_NE(json::parse(client.Get("/v1/limits")->body).at("jobs"), 7);  // it needs a restart
+  // The files of tokens are not looked at if others are named.
+  write({{"cors_origins", {"https://one.example"}}, {"tokens_file", "/nowhere"}});
+  daemon.signal(SIGHUP);
+  EXPECT_TRUE(test::eventually([&] { return is_allowed("https://one.example"); }));
   write({{"cors_origins", {"https://three.example"}}, {"jobs", "many"}});
   daemon.signal(SIGHUP);
   EXPECT_TRUE(test::eventually([&] { return daemon.metric("orrery_reload_failures_total") == 1; }));

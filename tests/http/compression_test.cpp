@@ -62,8 +62,8 @@ TEST(Compression, IsForWhoTakesIt) {
 }
 
 TEST(Compression, IsForTextOfSomeLength) {
-  for (const char* type :
-       {"application/json", "image/svg+xml; charset=utf-8", "text/html", "Application/JSON"})
+  for (const char* type : {"application/json", "application/schema+json", "image/svg+xml; charset=utf-8",
+                           "text/html", "Application/JSON"})
     EXPECT_TRUE(is_compressed(compressed(text(kLong, type)))) << type;
   for (const char* type : {"image/png", "image/x-exr", "application/octet-stream", ""})
     EXPECT_FALSE(is_compressed(compressed(text(kLong, type)))) << type;
@@ -83,6 +83,22 @@ TEST(Compression, IsNotForWhatMayNotBeKept) {
 TEST(Compression, WeakensTheETag) {
   EXPECT_EQ(find_field(compressed(text().set("ETag", "\"a\"")).headers, "ETag"), "W/\"a\"");
   EXPECT_EQ(find_field(compressed(text().set("ETag", "\"a\""), "").headers, "ETag"), "\"a\"");
+}
+
+// An answer that says "what you have is current" has the tag of what that is.
+TEST(Compression, NotModifiedHasTheTagOfWhatTheClientHas) {
+  const auto tag_for = [](const std::string& known) {
+    Compressor compressor;
+    Request request;
+    request.headers = {{"Accept-Encoding", "gzip"}, {"If-None-Match", known}};
+    Response response{.status = 304};
+    response.set("ETag", "\"a\"");
+    compressor.compress(request, response);
+    return find_field(response.headers, "ETag").value_or("") + " " +
+           find_field(response.headers, "Vary").value_or("");
+  };
+  EXPECT_EQ(tag_for("W/\"a\""), "W/\"a\" Accept-Encoding");
+  EXPECT_EQ(tag_for("\"a\""), "\"a\" ");
 }
 
 TEST(Compression, ReachesThePageAndIsKnownAgain) {

@@ -81,8 +81,36 @@ TEST(Forwarding, ReadsEveryFormOfAnAddress) {
   EXPECT_EQ(client_of({{"Forwarded", "for=203.0.113.9;by=\"a, b\", for=198.51.100.1"}}), "198.51.100.1");
 }
 
+// What the client itself sends stands before what the proxy appends, in the same line or in one before.
+TEST(Forwarding, AClientCannotHideWhatAProxyAppends) {
+  for (const char* own :
+       {"1.2.3.4:\"", "[1.2.3.4]\"", "[::]\"", "\"", "1.2.3.4, \"", "[1.2.3.4", "1.2.3.4:\\\""}) {
+    EXPECT_EQ(client_of({{"X-Forwarded-For", std::string(own) + ", 198.51.100.1"}}), "198.51.100.1") << own;
+    EXPECT_EQ(client_of({{"X-Forwarded-For", own}, {"X-Forwarded-For", "198.51.100.1"}}), "198.51.100.1")
+        << own;
+  }
+  for (const char* own :
+       {"for=1.2.3.4;x=\"", "for=1.2.3.4;by=\"", "for=\"1.2.3.4", "\"", "for=1.2.3.4;x=\"\\\""}) {
+    const std::string appended = std::string(own) + ", for=198.51.100.1";
+    EXPECT_EQ(client_of({{"Forwarded", appended}}), "10.0.0.1") << own;
+    EXPECT_EQ(client_of({{"Forwarded", appended}, {"X-Forwarded-For", "1.2.3.4"}}), "10.0.0.1") << own;
+    EXPECT_EQ(client_of({{"Forwarded", own}, {"Forwarded", "for=198.51.100.1"}}), "198.51.100.1") << own;
+  }
+  EXPECT_EQ(client_of({{"Forwarded", "for=1.2.3.4;x=\"\\\"\", for=198.51.100.1"}}), "198.51.100.1");
+  EXPECT_EQ(client_of({{"Forwarded", "for=1.2.3.4;by=\", for=\"[2001:db8::9]:4711\""}}), "10.0.0.1");
+  EXPECT_EQ(client_of({{"Forwarded", "for=198.51.100.1;host=a;for=6.6.6.6"}}), "10.0.0.1");
+  EXPECT_EQ(client_of({{"Forwarded", "for=198.51.100.1;host=a;for=6.6.6.6"}, {"X-Forwarded-For", "6.6.6.6"}}),
+            "10.0.0.1");
+}
+
+TEST(Forwarding, ForwardedWithoutAClientLeavesTheOtherHeader) {
+  EXPECT_EQ(client_of({{"Forwarded", "proto=https;host=x"}, {"X-Forwarded-For", "198.51.100.1"}}),
+            "198.51.100.1");
+}
+
 TEST(Forwarding, WhatIsNoAddressEndsTheList) {
-  for (const char* node : {"unknown", "_hidden", "198.51.100.999", "[198.51.100.1", "[", "]",
+  for (const char* node : {"unknown", "_hidden", "198.51.100.999", "[198.51.100.1", "[198.51.100.1]x",
+                           "198.51.100.1:x", "198.51.100.1:123456", "::", "0.0.0.0", "[::]:80", "[", "]",
                            "::1::", "1.2.3.4:5:6", "evil.example"}) {
     EXPECT_EQ(client_of({{"X-Forwarded-For", std::string("203.0.113.9, ") + node}}), "10.0.0.1") << node;
     EXPECT_EQ(client_of({{"X-Forwarded-For", std::string("203.0.113.9,") + node + ", 10.2.2.2"}}), "10.2.2.2")
@@ -100,13 +128,14 @@ TEST(Forwarding, OfTwoHeadersThatDisagreeNoneIsBelieved) {
 
 TEST(Forwarding, TheHostIsWhatTheClientAsked) {
   const auto host = [](const Fields& headers, const char* peer = "10.0.0.1") {
-    return find_field(applied(headers, peer).headers, "Host");
+    return applied(headers, peer).told_host;
   };
   EXPECT_EQ(host({{"Host", "inner"}, {"X-Forwarded-Host", "render.example"}}), "render.example");
   EXPECT_EQ(host({{"Host", "inner"}, {"Forwarded", "for=1.2.3.4;host=\"render.example:8443\""}}),
             "render.example:8443");
-  EXPECT_EQ(host({{"Host", "inner"}, {"X-Forwarded-Host", "a b"}}), "inner");
-  EXPECT_EQ(host({{"Host", "inner"}, {"X-Forwarded-Host", "render.example"}}, "203.0.113.1"), "inner");
+  EXPECT_EQ(host({{"X-Forwarded-Host", "outer.example, render.example"}}), "render.example");
+  EXPECT_EQ(host({{"Host", "inner"}}), "");
+  EXPECT_EQ(host({{"Host", "inner"}, {"X-Forwarded-Host", "render.example"}}, "203.0.113.1"), "");
 }
 
 TEST(Forwarding, ThePrefixIsTakenOffWhereItIs) {
@@ -132,6 +161,9 @@ TEST(Forwarding, AProxyTellsThePrefixThatItTookOff) {
   for (const char* bad :
        {"", "/", "//evil.example", "/a//b", "/a/", "render", "/a/../b", "/a?b", "/a b", "/%2f"})
     EXPECT_EQ(prefix(bad), "/usual") << bad;
+  const Request kept = applied({{"X-Forwarded-Prefix", "/render"}}, "10.0.0.1", "/usual", {"render", "v1"});
+  EXPECT_EQ(kept.path, "/v1");
+  EXPECT_EQ(applied({{"X-Forwarded-Prefix", "/render"}}, "10.0.0.1", "/usual", {"usual", "v1"}).path, "/v1");
   EXPECT_EQ(prefix("/" + std::string(200, 'a')), "/usual");
 }
 

@@ -71,6 +71,19 @@ TEST(HangupMonitor, AsksWhoSendsNoMoreWhetherItWaits) {
   told.future.wait();
 }
 
+// As behind a relay, which has to be told more than once.
+TEST(HangupMonitor, AsksAgain) {
+  HangupMonitor monitor;
+  Pair pair;
+  Told told;
+  const auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
+  shutdown(pair.ends[1], SHUT_WR);
+  const std::string once = "HTTP/1.1 100 Continue\r\n\r\n";
+  std::string all(3 * once.size(), ' ');
+  EXPECT_EQ(recv(pair.ends[1], all.data(), all.size(), MSG_WAITALL), static_cast<ssize_t>(all.size()));
+  EXPECT_EQ(all, once + once + once);
+}
+
 TEST(HangupMonitor, AsksNobodyOnceTheAnswerBegins) {
   HangupMonitor monitor;
   Pair pair;

@@ -27,6 +27,32 @@ TEST(ClientThatLeaves, EndsItsRender) {
   raw.close();
   EXPECT_TRUE(daemon.wait_until_idle());
   EXPECT_EQ(daemon.client().Get(scene + "/frame.png")->status, 200);
+  EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_given_up_total{stage=\"render\"} 1\n"),
+            std::string::npos);
+}
+
+// It looks like one that leaves, until it is asked.
+TEST(ClientThatSendsNoMore, GetsItsAnswer) {
+  Daemon daemon;
+  const RawClient raw(daemon.port());
+  const std::string frame = post(daemon, small_scene()) + "/frame.png?width=800&height=800&samples=16";
+  raw.send(get(frame) + get("/healthz"));
+  raw.send_no_more();
+  const std::string answers = raw.receive_all();
+  const std::size_t picture = answers.find("HTTP/1.1 200"), health = answers.rfind("HTTP/1.1 200");
+  EXPECT_NE(picture, std::string::npos);
+  EXPECT_NE(picture, health);
+  EXPECT_TRUE(is_png(answers.substr(answers.find("\r\n\r\n", picture) + 4)));
+  EXPECT_EQ(daemon.metric("orrery_clients_left_total"), 0);
+}
+
+TEST(ClientThatSendsNoMore, HasLeftIfItSpeaksHttp10) {  // it could not be asked
+  Daemon daemon(with_endless_pictures());
+  const RawClient raw(daemon.port());
+  raw.send("GET " + post(daemon, small_scene()) + "/frame.png" + kEndless + " HTTP/1.0\r\n\r\n");
+  ASSERT_TRUE(daemon.wait_until_working());
+  raw.send_no_more();
+  EXPECT_TRUE(daemon.wait_until_idle());
 }
 
 TEST(ClientThatLeaves, EndsItsPostedRender) {
@@ -135,13 +161,15 @@ TEST(Descriptors, AreRaisedOrTheServiceDoesNotStart) {
 TEST(Addresses, AreEnoughOrTheServiceDoesNotStart) {
   const std::string check = "'" + program() + "' serve --check-config --connections ";
   const std::string stacks = "ulimit -Ss 8192; ulimit -v ";  // in KiB
-  const auto [addresses, refused] = run(stacks + "3000000; " + check + "8 --memory-bytes 3000000000");
+  const auto [addresses, refused] =
+      run(stacks + "3000000; " + check + "8 --threads 2 --memory-bytes 3000000000");
   EXPECT_EQ(refused, 2);
-  EXPECT_NE(addresses.find("3000000000 and 8 connections may take 3335544320 bytes of addresses, the process "
-                           "may have 3072000000 (ulimit -v)"),
+  EXPECT_NE(addresses.find("3000000000, 8 connections and 2 threads may take 3603979776 bytes of "
+                           "addresses, the process may have 3072000000 (ulimit -v)"),
             std::string::npos)
       << addresses;
-  EXPECT_EQ(run(stacks + "3257368; " + check + "8 --memory-bytes 3000000000"), std::pair(std::string(), 0));
+  EXPECT_EQ(run(stacks + "3519512; " + check + "8 --threads 2 --memory-bytes 3000000000"),
+            std::pair(std::string(), 0));
 }
 
 // A balancer has the time to notice.

@@ -62,6 +62,22 @@ TEST(Proxy, SharedLinksHoldBelowThePrefix) {
   }
 }
 
+// A page whose owner lets its domain stand for this machine can send any header.
+TEST(Proxy, AHostThatIsToldDoesNotExcuseTheOther) {
+  const Daemon daemon({"--trusted-proxies", "127.0.0.1", "--cors-origins", "https://render.example"});
+  auto client = daemon.client();
+  const auto get = [&](const char* host, const char* told) {
+    return client.Get("/v1/limits", {{"Host", host}, {"X-Forwarded-Host", told}});
+  };
+  expect_problem(get("evil.example", "localhost"), 403);
+  expect_problem(get("localhost", "evil.example"), 403);
+  EXPECT_EQ(get("localhost", "render.example")->status, 200);
+  const auto post = client.Post(
+      "/v1/scenes", {{"X-Forwarded-Host", "render.example"}, {"Origin", "https://render.example"}},
+      small_scene().dump(), "application/json");
+  EXPECT_EQ(post->status, 201);
+}
+
 // Half of the streams are for one client: of two behind one proxy, each has its own half.
 TEST(Proxy, EachClientBehindItHasItsOwnShares) {
   const Daemon daemon({"--trusted-proxies", "127.0.0.1", "--jobs", "2"});
