@@ -71,7 +71,11 @@ Connection::Connection(int fd, const IpAddress& peer, int wake, const Patience& 
       waiting_(POLLIN) {}
 
 Connection::~Connection() {
-  shutdown(fd_, SHUT_RDWR);
+  const ::linger at_once{.l_onoff = 1, .l_linger = 0};
+  if (ends_by_reset_)
+    setsockopt(fd_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  else
+    shutdown(fd_, SHUT_RDWR);
   close(fd_);
 }
 

@@ -62,6 +62,8 @@ class Connection final {
   int fd() const { return fd_; }
   bool left() const { return broken_ || ended_; }  // seen before the answer ended
   void abandon() const;                            // breaks it off
+  // Has the client see a reset instead of an end, which it would take for that of the answer.
+  void end_by_reset() { ends_by_reset_ = true; }
 
   // Since when the client has kept its thread waiting; none: it does not. A body that comes, or an answer
   // that is taken, at the least rate allowed keeps nobody waiting.
@@ -109,6 +111,7 @@ class Connection final {
   std::optional<Clock::time_point> last_call_;      // when it ends
   Waiting waiting_;
   bool ended_ = false;  // the client sends no more, though it owes something
+  bool ends_by_reset_ = false;
   mutable std::atomic<bool> broken_{false};
 };
 

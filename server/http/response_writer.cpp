@@ -90,6 +90,7 @@ bool write_response(Connection& connection, Response& response, const Framing& f
     response.stream(sink);
   } catch (const std::exception& error) {
     response.note = error.what();
+    if (framing.minor_version == 0) connection.end_by_reset();  // where the end is that of the body
     return false;
   }
   return sink.finish();

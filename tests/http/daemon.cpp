@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -193,6 +195,14 @@ RawClient::RawClient(int port, int receive_buffer, std::uint8_t from) : fd_(sock
 }
 
 RawClient::~RawClient() { close(); }
+
+bool RawClient::is_reset() const {
+  std::array<char, 4096> bytes;
+  ssize_t count;
+  do count = recv(fd_, bytes.data(), bytes.size(), 0);
+  while (count > 0);
+  return count < 0 && errno == ECONNRESET;
+}
 
 void RawClient::send_no_more() const { shutdown(fd_, SHUT_WR); }
 

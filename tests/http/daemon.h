@@ -63,6 +63,8 @@ class RawClient {
   // All that comes until the daemon closes, or until nothing came for 5 s.
   std::string receive_all() const;
   std::string receive_some() const;
+  // Receives to the end. Whether that was a reset.
+  bool is_reset() const;
   void send_no_more() const;
   void close();
 

@@ -195,6 +195,10 @@ TEST(OrbitFailure, StreamThatFailsIsBrokenOff) {
   std::thread thread([&] { server.run(); });
   EXPECT_FALSE(httplib::Client("127.0.0.1", server.port()).Get("/"));  // no end of the chunks came
   EXPECT_EQ(served.get_future().get(), std::pair(std::string("no more"), false));
+  served = {};
+  const RawClient old(server.port());
+  old.send("GET / HTTP/1.0\r\n\r\n");
+  EXPECT_TRUE(old.is_reset());  // its end would be that of the body
   server.drain();
   thread.join();
 }
