@@ -114,7 +114,7 @@ async function run({ times }) {
     rows: [
       row(`asked while ${times} services were started again`, `>= ${kAnswers}`, answers.length, answers.length >= kAnswers),
       none_row("not answered by a picture", bad),
-      row("services that ended with 0", times, clean, clean === times),
+      row("services that ended with 0", `${times}`, clean, clean === times),
     ],
     remark: `p99 ${ms(p99(answers.filter((a) => a.ms).map((a) => a.ms)))}, through HAProxy without retries`,
   };
