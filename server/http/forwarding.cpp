@@ -50,7 +50,7 @@ std::string node_of(const std::string& entry) {
 }
 
 // Digits, or a name that begins with _ (RFC 7239, 6.2).
-bool is_port(std::string_view text) {
+bool is_node_port(std::string_view text) {
   constexpr std::size_t kMostDigits = 5;
   const bool number =
       text.size() <= kMostDigits && text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -70,7 +70,7 @@ std::optional<IpAddress> address_of(std::string_view node) {
     host = node.substr(0, colon);
     rest = node.substr(host.size());
   }
-  if (!rest.empty() && (rest.front() != ':' || !is_port(rest.substr(1)))) return std::nullopt;
+  if (!rest.empty() && (rest.front() != ':' || !is_node_port(rest.substr(1)))) return std::nullopt;
   const auto address = IpAddress::parse(host);
   return address == IpAddress() || address == IpAddress::parse("0.0.0.0") ? std::nullopt : address;
 }
