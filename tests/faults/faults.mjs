@@ -221,22 +221,22 @@ const insideOfGlass = [
   },
 ];
 
-const kTotal = {
-  fault: 6,
-  file: "core/materials/refractive.h",
-  from: "return {select(total, one, r),",
-  to: "return {select(total, fresnel_schlick(f0, cos_incident), r),",
-};
 const totalReflection = [
   {
-    ...kTotal,
-    about: "beyond the critical angle the transmitted part is dropped",
+    fault: 6,
+    about: "beyond the critical angle light leaves that should be mirrored",
+    file: "core/materials/refractive.h",
+    from: "return {select(total, one, r),",
+    to: "return {select(total, fresnel_schlick(f0, cos_incident), r),",
     target: "test_materials",
     tests: ["Refraction.BeyondTheCriticalAngleAllIsMirrored"],
   },
   {
-    ...kTotal,
-    about: "beyond the critical angle light is lost on its way",
+    fault: 6,
+    about: "light is lost on its way into glass",
+    file: "core/materials/refractive.cpp",
+    from: "Vec3<N>(one - split.reflectance)",
+    to: "Vec3<N>((one - split.reflectance) * (one - split.reflectance))",
     target: "test_techniques",
     tests: ["Furnace.GlassUnderAnEvenSkyIsInvisible"],
   },
