@@ -1,11 +1,9 @@
 #include "server/http/authority.h"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
-#include <string>
 
 #include "server/http/message.h"
+#include "server/http/network.h"
 
 namespace orrery {
 namespace {
@@ -26,9 +24,7 @@ bool is_name(std::string_view text) {  // reg-name, which every IPv4 address is 
 }
 
 bool is_ipv6(std::string_view text) {
-  in6_addr address;
-  return text.find('\0') == std::string_view::npos &&
-         inet_pton(AF_INET6, std::string(text).c_str(), &address) == 1;
+  return text.find(':') != std::string_view::npos && IpAddress::parse(text);
 }
 
 bool is_port(std::string_view text) {
@@ -44,9 +40,8 @@ bool is_port(std::string_view text) {
 
 bool names_no_domain(std::string_view text) {
   if (text.starts_with('[')) return true;
-  const std::string host(text.substr(0, text.find(':')));
-  in_addr address;
-  return equal_ignoring_case(host, "localhost") || inet_pton(AF_INET, host.c_str(), &address) == 1;
+  const std::string_view host = text.substr(0, text.find(':'));
+  return equal_ignoring_case(host, "localhost") || IpAddress::parse(host);
 }
 
 bool is_origin(std::string_view text) {

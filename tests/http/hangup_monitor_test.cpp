@@ -36,6 +36,15 @@ struct Told {
   std::stop_callback<std::function<void()>> callback{source.get_token(), [this] { promise.set_value(); }};
 };
 
+// Work for one client.
+struct Watched {
+  explicit Watched(bool asks) : watching(monitor.watch(pair.ends[0], told.source, asks)) {}
+  HangupMonitor monitor;
+  Pair pair;
+  Told told;
+  HangupMonitor::Watching watching;
+};
+
 TEST(HangupMonitor, StopsTheWorkOfWhoHangsUp) {
   HangupMonitor monitor;
   Pair stays, leaves;
@@ -48,52 +57,40 @@ TEST(HangupMonitor, StopsTheWorkOfWhoHangsUp) {
 }
 
 TEST(HangupMonitor, StopsTheWorkOfWhoSendsNoMore) {
-  HangupMonitor monitor;
-  Pair pair;
-  Told told;
-  const auto watching = monitor.watch(pair.ends[0], told.source, !kAsks);
-  EXPECT_EQ(write(pair.ends[1], "bytes", 5), 5);  // which is no end
-  shutdown(pair.ends[1], SHUT_WR);
-  told.future.wait();
+  Watched work(!kAsks);
+  EXPECT_EQ(write(work.pair.ends[1], "bytes", 5), 5);  // which is no end
+  shutdown(work.pair.ends[1], SHUT_WR);
+  work.told.future.wait();
 }
 
 TEST(HangupMonitor, AsksWhoSendsNoMoreWhetherItWaits) {
-  HangupMonitor monitor;
-  Pair pair;
-  Told told;
-  const auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
-  shutdown(pair.ends[1], SHUT_WR);
+  Watched work(kAsks);
+  shutdown(work.pair.ends[1], SHUT_WR);
   std::array<char, 100> bytes;
-  const ssize_t count = read(pair.ends[1], bytes.data(), bytes.size());
+  const ssize_t count = read(work.pair.ends[1], bytes.data(), bytes.size());
   EXPECT_EQ(std::string(bytes.data(), static_cast<std::size_t>(count)), "HTTP/1.1 100 Continue\r\n\r\n");
-  EXPECT_FALSE(told.source.stop_requested());
-  pair.hang_up();
-  told.future.wait();
+  EXPECT_FALSE(work.told.source.stop_requested());
+  work.pair.hang_up();
+  work.told.future.wait();
 }
 
 // As behind a relay, which has to be told more than once.
 TEST(HangupMonitor, AsksAgain) {
-  HangupMonitor monitor;
-  Pair pair;
-  Told told;
-  const auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
-  shutdown(pair.ends[1], SHUT_WR);
+  Watched work(kAsks);
+  shutdown(work.pair.ends[1], SHUT_WR);
   const std::string once = "HTTP/1.1 100 Continue\r\n\r\n";
   std::string all(3 * once.size(), ' ');
-  EXPECT_EQ(recv(pair.ends[1], all.data(), all.size(), MSG_WAITALL), static_cast<ssize_t>(all.size()));
+  EXPECT_EQ(recv(work.pair.ends[1], all.data(), all.size(), MSG_WAITALL), static_cast<ssize_t>(all.size()));
   EXPECT_EQ(all, once + once + once);
 }
 
 TEST(HangupMonitor, AsksNobodyOnceTheAnswerBegins) {
-  HangupMonitor monitor;
-  Pair pair;
-  Told told;
-  auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
-  watching.stop_asking();
-  shutdown(pair.ends[1], SHUT_WR);
-  told.future.wait();
+  Watched work(kAsks);
+  work.watching.stop_asking();
+  shutdown(work.pair.ends[1], SHUT_WR);
+  work.told.future.wait();
   char byte;
-  EXPECT_EQ(recv(pair.ends[1], &byte, 1, MSG_DONTWAIT), -1);
+  EXPECT_EQ(recv(work.pair.ends[1], &byte, 1, MSG_DONTWAIT), -1);
 }
 
 TEST(HangupMonitor, StopsTheWorkOfWhoHasLeftBefore) {
