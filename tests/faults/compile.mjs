@@ -14,11 +14,17 @@ function readCommands() {
   const file = join(kRoot, "build/compile_commands.json");
   if (!existsSync(file)) throw new Error(`${file} is missing: run script/setup`);
   const commands = new Map();
-  for (const {file: source, command, directory} of JSON.parse(readFileSync(file, "utf8")))
-    if (source.startsWith(`${kRoot}/core/`) || source.startsWith(`${kRoot}/server/`))
-      commands.set(source.slice(kRoot.length + 1), {command, directory});
+  for (const {file: compiled, command, directory} of JSON.parse(readFileSync(file, "utf8")))
+    for (const source of sourcesOf(compiled))
+      if (source.startsWith(`${kRoot}/core/`) || source.startsWith(`${kRoot}/server/`))
+        commands.set(source.slice(kRoot.length + 1), {command, directory});
   return commands;
 }
+
+// CMake compiles several sources as one that includes them.
+const sourcesOf = (file) =>
+  !file.includes("/Unity/") ? [file] :
+    [...readFileSync(file, "utf8").matchAll(/^#include "([^"]+)"/gm)].map((match) => match[1]);
 
 const includesOf = (path) =>
   [...readFileSync(join(kRoot, path), "utf8").matchAll(/^#include "([^"]+)"/gm)]
