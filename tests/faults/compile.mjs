@@ -47,10 +47,25 @@ function sourceFor(file, commands) {
     users.find((source) => dirname(source) === dirname(file)) ?? users[0];
 }
 
+// The first error that a command tells; nothing if it ends well.
+function complaintsFrom(command, args, cwd, input = "") {
+  return new Promise((done) => {
+    const child = spawn(command, args, {cwd, stdio: ["pipe", "ignore", "pipe"]});
+    let output = "";
+    child.stderr.on("data", (data) => { output += data; });
+    child.on("close", (status) =>
+      done(status === 0 ? "" : output.split("\n").find((line) => /error/i.test(line)) ?? `status ${status}`));
+    child.stdin.end(input);
+  });
+}
+
+const complaintsAboutScript = (text) => complaintsFrom("node", ["--check", "--input-type=module", "-"], kRoot, text);
+
 // What the compiler complains about; nothing if it compiles.
 async function complaintsOf(fault, commands) {
   const {text, problem} = planted(fault);
   if (problem) return problem;
+  if (fault.file.endsWith(".js")) return complaintsAboutScript(text);
   const source = sourceFor(fault.file, commands);
   if (!source) return `no source includes ${fault.file}`;
   const folder = mkdtempSync(join(tmpdir(), "orrery-fault-"));
@@ -61,13 +76,7 @@ async function complaintsOf(fault, commands) {
     const {command, directory} = commands.get(source);
     const [compiler, ...flags] = command.slice(0, command.indexOf(" -o ")).split(" ");
     const read = source === fault.file ? changed : join(kRoot, source);
-    const shell = [compiler, `-I${folder}`, ...flags, "-w", "-fsyntax-only", read].join(" ");
-    return await new Promise((done) => {
-      const child = spawn("sh", ["-c", shell], {cwd: directory, stdio: ["ignore", "ignore", "pipe"]});
-      let output = "";
-      child.stderr.on("data", (data) => { output += data; });
-      child.on("close", (status) => done(status === 0 ? "" : output.split("\n").find((line) => /error/.test(line)) ?? `status ${status}`));
-    });
+    return await complaintsFrom("sh", ["-c", [compiler, `-I${folder}`, ...flags, "-w", "-fsyntax-only", read].join(" ")], directory);
   } finally {
     rmSync(folder, {recursive: true});
   }

@@ -1,9 +1,10 @@
 // Mistakes of readers of mesh files, as faults.mjs has them: fault 11 trusts the file, 12 misreads its
 // conventions, 13 averages normals wrongly.
 
-const kMeshes = "core/meshes";
+import {posix} from "node:path";
+
 const entry = (fault, about, file, from, to, test) => ({
-  fault, about, file: `${kMeshes}/${file}`, from, to, target: "test_meshes", tests: [test],
+  fault, about, file: posix.join("core/meshes", file), from, to, target: "test_meshes", tests: [test],
 });
 
 export const meshFaults = [
