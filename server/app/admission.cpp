@@ -136,10 +136,36 @@ void Admission::Ticket::renew() {
   set_alarm();
 }
 
+Admission::Sharing::Sharing(Admission& in, std::shared_ptr<Sharers> sharers, std::string client)
+    : in_(in), sharers_(std::move(sharers)), client_(std::move(client)) {
+  const std::lock_guard lock(in_.mutex_);
+  sharers_->insert(client_);
+  for (Work& work : in_.works_)
+    if (work.demand.sharers == sharers_ && !work.is_wanted_by(client_))
+      work.finishes.emplace(client_, in_.virtual_finish(work, client_));
+  in_.start_next();
+}
+
+Admission::Sharing::~Sharing() {
+  const std::lock_guard lock(in_.mutex_);
+  sharers_->erase(sharers_->find(client_));
+  if (sharers_->count(client_) > 0) return;
+  for (Work& work : in_.works_)
+    if (work.demand.sharers == sharers_ && work.demand.client != client_) work.finishes.erase(client_);
+}
+
+double Admission::Work::finish() const {
+  const auto earlier = [](const auto& a, const auto& b) { return a.second < b.second; };
+  return std::min_element(finishes.begin(), finishes.end(), earlier)->second;
+}
+
 void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop) {
   const Lane lane = work.demand.lane;
   const auto asked = work.since = timer_.now();
-  work.finish = virtual_finish(work);
+  work.finishes = {{work.demand.client, virtual_finish(work, work.demand.client)}};
+  if (work.demand.sharers)
+    for (const std::string& client : *work.demand.sharers)
+      work.finishes.emplace(client, virtual_finish(work, client));
   work.state = State::waits;
   start_next();
   work.changed.wait(lock, stop, [&] { return work.state != State::waits; });
@@ -170,7 +196,7 @@ void Admission::begin(Work& work) {
   if (running_++ == 0) measured_ = timer_.now();
   if (work.demand.lane == Lane::batch) ++running_batch_;
   latest_ = work.demand.lane;
-  virtual_time_[static_cast<int>(latest_)] = work.finish;
+  virtual_time_[static_cast<int>(latest_)] = work.finish();
   work.since = timer_.now();
   work.state = State::runs;
   work.changed.notify_one();
@@ -224,7 +250,7 @@ Admission::Work* Admission::next() {
   const bool batch_starves = running_batch_ == 0 && latest_ != Lane::batch;
   const auto rank = [&](const Work& w) {
     const bool first = batch_starves == (w.demand.lane == Lane::batch);
-    return std::pair(first ? 0 : 1, w.finish);
+    return std::pair(first ? 0 : 1, w.finish());
   };
   for (Work& work : works_) {
     if (work.state != State::waits) continue;
@@ -235,22 +261,28 @@ Admission::Work* Admission::next() {
 }
 
 // What has lost its place does not wait for what its client asked for later.
-double Admission::virtual_finish(const Work& work) const {
+double Admission::virtual_finish(const Work& work, const std::string& client) const {
   const bool again = work.entry == Entry::again;
   double start = virtual_time_[static_cast<int>(work.demand.lane)];
   for (const Work& w : works_)
-    if (w.state == State::waits && w.demand.lane == work.demand.lane &&
-        w.demand.client == work.demand.client && (!again || w.entry == Entry::again))
-      start = std::max(start, w.finish);
+    if (w.state == State::waits && w.demand.lane == work.demand.lane && w.is_wanted_by(client) &&
+        (!again || w.entry == Entry::again))
+      start = std::max(start, w.finishes.at(client));
   return start + work.charge;
+}
+
+bool Admission::has_lost_many(const Demand& demand) const {
+  const auto lost_many = [&](const std::string& client) { return has_lost_many(demand.lane, client); };
+  return lost_many(demand.client) &&
+         (!demand.sharers || std::all_of(demand.sharers->begin(), demand.sharers->end(), lost_many));
 }
 
 // Whether so much work of that client and lane has lost its place, twice as much as there are places, that it
 // begins no more: what is begun stays bounded, with the memory that it holds.
-bool Admission::has_lost_many(const Demand& demand) const {
+bool Admission::has_lost_many(Lane lane, const std::string& client) const {
   const auto lost = std::count_if(works_.begin(), works_.end(), [&](const Work& w) {
     const bool has_lost = w.state == State::lost || (w.state == State::waits && w.entry == Entry::again);
-    return has_lost && w.demand.lane == demand.lane && w.demand.client == demand.client;
+    return has_lost && w.demand.lane == lane && w.is_wanted_by(client);
   });
   return lost >= 2 * limits_.running;
 }

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -41,11 +42,15 @@ struct Quota {
 
 enum class Lane { interactive, batch };  // somebody waits for it; or it is long
 
+// Clients that want a piece of work besides the one that asked first. Admission guards it.
+using Sharers = std::multiset<std::string>;
+
 // A piece of work that waits for its turn.
 struct Demand {
   Lane lane = Lane::interactive;
-  std::string client;  // who asked for it
+  std::string client;  // who asked for it first
   double cost = 0;     // rays, as expected
+  std::shared_ptr<Sharers> sharers = {};
 };
 
 inline constexpr double kLeastCost = 20'000;  // rays that the fixed work of a render amounts to
@@ -56,7 +61,8 @@ double cost_of_reading(std::size_t bytes);
 //  - Interactive work goes first. Batch work has at most half of the places, and one of every two that
 //    come free as long as it has none.
 //  - Within a lane, clients share by cost: each piece starts in the order of its client's virtual finish
-//    time (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for.
+//    time (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for. Work that
+//    several clients want starts in the earliest turn of any of them, and counts as work of each.
 //  - Work that has had its place for a while loses it to who waits: interactive work to interactive work,
 //    batch work to both, and interactive work to batch work while none of that has a place. It goes on with
 //    what it does until it renews its ticket, which waits in the queue. A client that has lost many places
@@ -99,6 +105,19 @@ class Admission {
     int exceptions_ = std::uncaught_exceptions();
   };
 
+  // Says that `client` wants the work of those sharers as well, until its end.
+  class Sharing {
+   public:
+    Sharing(Admission& in, std::shared_ptr<Sharers> sharers, std::string client);
+    ~Sharing();
+    Sharing(const Sharing&) = delete;
+
+   private:
+    Admission& in_;
+    const std::shared_ptr<Sharers> sharers_;
+    const std::string client_;
+  };
+
   int running() const;
   int waiting() const;
   // Whether small work would be turned away.
@@ -125,9 +144,11 @@ class Admission {
     Entry entry;
     const bool counts;  // among what may wait
     std::atomic<State> state{State::waits};
-    double charge;              // rays that the next place is expected to take, or the last one did
-    double used = 0;            // rays, about, in the places that it has lost
-    double finish = 0;          // virtual time
+    double charge;    // rays that the next place is expected to take, or the last one did
+    double used = 0;  // rays, about, in the places that it has lost
+    std::map<std::string, double> finishes;  // virtual time, for each client that wants it
+    double finish() const;                   // the earliest
+    bool is_wanted_by(const std::string& client) const { return finishes.count(client) > 0; }
     Clock::time_point since{};  // it got its place, or asked for one
     std::condition_variable_any changed;
   };
@@ -146,8 +167,9 @@ class Admission {
   bool fits(Lane lane, double cost) const;
   bool place_free(Lane lane) const;
   Work* loser(Lane lane);  // whose place such work may have; none: nullptr
-  double virtual_finish(const Work& work) const;
+  double virtual_finish(const Work& work, const std::string& client) const;
   bool has_lost_many(const Demand& demand) const;
+  bool has_lost_many(Lane lane, const std::string& client) const;
   bool may_begin(const Demand& demand, Entry entry);  // as far as places go
   Work* next();                                       // who may start now; none: nullptr
   // Of a lane, by client, and all; without what enters again.

@@ -93,11 +93,13 @@ AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, c
 
 Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                      const Caller& caller, Timing& timing) {
-  const Demand demand = services_.demand_of(scene.scene(), plan, caller.client);
+  Demand demand = services_.demand_of(scene.scene(), plan, caller.client);
+  demand.sharers = std::make_shared<Sharers>();
   const auto start = Clock::now();
   const auto since = timer_.now();
   const Pictures::Found found = pictures_.get(
-      key + std::to_string(static_cast<int>(format)), caller.gone, [&](const std::stop_token& nobody_waits) {
+      key + std::to_string(static_cast<int>(format)),
+      {caller.gone, caller.client, demand.sharers, &admission_}, [&](const std::stop_token& nobody_waits) {
         require_request_rays(scene.scene(), plan);
         Picture picture;
         Stage stage = Stage::queue;
@@ -122,7 +124,8 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
   if (storage == FilmStorage::sums) require_layers_fit(plan, memory_.most());
   const Films::Found film = films_.get(
-      key + std::to_string(static_cast<int>(storage)), stop, [&](const std::stop_token& nobody_waits) {
+      key + std::to_string(static_cast<int>(storage)), {stop, demand.client, demand.sharers, &admission_},
+      [&](const std::stop_token& nobody_waits) {
         enter(demand, nobody_waits);
         stage = Stage::render;
         return WorkScope::current().memory->run(nobody_waits, [&] {
@@ -136,7 +139,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
     timing.render = stats.trace_ms;
   } else {
     ++meters_.films_found;
-    enter({Lane::interactive, demand.client, kLeastCost}, stop);
+    enter({Lane::interactive, demand.client, kLeastCost, demand.sharers}, stop);
   }
   Picture picture{.bytes = {},
                   .stats = stats,

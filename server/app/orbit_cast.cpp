@@ -24,7 +24,8 @@ OrbitCast::~OrbitCast() {
   if (thread_.joinable()) thread_.join();
 }
 
-std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCast>& cast) {
+std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCast>& cast,
+                                                   const std::string& client) {
   const std::lock_guard lock(cast->mutex_);
   if (cast->closed_) return nullptr;
   const std::int64_t begin = cast->delivered_ - (cast->latest_ ? 1 : 0);
@@ -36,7 +37,7 @@ std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCa
     cast->thread_ = std::thread([c = cast.get()] { c->run(); });
   }
   cast->changed_.notify_all();
-  return std::unique_ptr<Viewer>(new Viewer(cast, mailbox));
+  return std::unique_ptr<Viewer>(new Viewer(cast, mailbox, client));
 }
 
 void OrbitCast::run() {
@@ -119,8 +120,9 @@ RenderResult OrbitCast::render(std::int64_t number) {
 }
 
 RenderResult OrbitCast::try_render(const Plan& plan, const std::stop_token& stop) {
-  auto ticket =
-      services_.admission.enter_again(services_.demand_of(spec_.scene->scene(), plan, spec_.client), stop);
+  Demand demand = services_.demand_of(spec_.scene->scene(), plan, spec_.client);
+  demand.sharers = sharers_;
+  auto ticket = services_.admission.enter_again(demand, stop);
   return memory_->run(
       stop, [&] { return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = stop}); });
 }

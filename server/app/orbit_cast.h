@@ -26,8 +26,8 @@ class OrbitCast {
   const OrbitSpec& spec() const { return spec_; }
 
   class Viewer;
-  // None once the cast is ending.
-  static std::unique_ptr<Viewer> join(const std::shared_ptr<OrbitCast>& cast);
+  // None once the cast is ending. Each frame is rendered in the earliest turn of any viewer's client.
+  static std::unique_ptr<Viewer> join(const std::shared_ptr<OrbitCast>& cast, const std::string& client);
 
  private:
   struct Mailbox {
@@ -52,6 +52,7 @@ class OrbitCast {
   const OrbitSpec spec_;
   const RenderServices services_;
   const std::shared_ptr<MemoryAccount> memory_;  // of films
+  const std::shared_ptr<Sharers> sharers_ = std::make_shared<Sharers>();
   const std::chrono::seconds frame_time_;
   std::stop_source nobody_watches_;  // then nobody can join either
   mutable std::mutex mutex_;         // guards all below
@@ -84,11 +85,14 @@ class OrbitCast::Viewer {
 
  private:
   friend class OrbitCast;
-  Viewer(std::shared_ptr<OrbitCast> cast, std::list<Mailbox>::iterator mailbox)
-      : cast_(std::move(cast)), mailbox_(mailbox) {}
+  Viewer(std::shared_ptr<OrbitCast> cast, std::list<Mailbox>::iterator mailbox, const std::string& client)
+      : cast_(std::move(cast)),
+        mailbox_(mailbox),
+        sharing_(cast_->services_.admission, cast_->sharers_, client) {}
 
   const std::shared_ptr<OrbitCast> cast_;
   const std::list<Mailbox>::iterator mailbox_;
+  const Admission::Sharing sharing_;
   std::int64_t skipped_ = 0;
   bool at_end_ = false;
 };

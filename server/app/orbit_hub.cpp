@@ -12,7 +12,7 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
   for (const auto& known : casts_) {
     const auto cast = known.lock();
     if (!cast || cast->spec().key != spec.key) continue;
-    if (auto viewer = OrbitCast::join(cast)) return viewer;
+    if (auto viewer = OrbitCast::join(cast, spec.client)) return viewer;
   }
   const auto own = std::count_if(casts_.begin(), casts_.end(), [&](const auto& known) {
     const auto cast = known.lock();
@@ -22,7 +22,7 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
       static_cast<int>(casts_.size()), static_cast<int>(own));
   const auto cast = std::make_shared<OrbitCast>(spec, services_, frame_time_);
   casts_.push_back(cast);
-  return OrbitCast::join(cast);
+  return OrbitCast::join(cast, spec.client);
 }
 
 void OrbitHub::forget_ended() {

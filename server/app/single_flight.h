@@ -6,10 +6,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 
 #include "core/base/error.h"
+#include "server/app/admission.h"
 #include "server/app/lru.h"
 #include "server/app/watch.h"
 
@@ -24,6 +26,13 @@ class SingleFlight {
   using ValuePtr = std::shared_ptr<const Value>;
   // Makes a value; a stop request says that nobody wants it any more.
   using Make = std::function<Value(const std::stop_token&)>;
+  // Who asks for a value. What `sharers` shares is made in the turns of all who ask for it meanwhile.
+  struct Client {
+    std::stop_token gone;
+    std::string name = {};
+    std::shared_ptr<Sharers> sharers = {};
+    Admission* admission = nullptr;  // of the sharers, if there are any
+  };
 
   explicit SingleFlight(std::size_t most_bytes) : SingleFlight(most_bytes, most_bytes) {}
   SingleFlight(std::size_t most_bytes, std::size_t largest) : kept_(most_bytes), largest_(largest) {}
@@ -35,26 +44,28 @@ class SingleFlight {
   // The value called `key`. Where there is none, calls `make` on this thread, with a token that is stopped
   // once neither this caller nor others who came meanwhile wait any more. Throws what `make` throws, also for
   // those others, except that Busy, Cancelled and TimedOut concern the maker alone: one of the others then
-  // makes it. Throws Cancelled once `gone` is requested.
-  Found get(const std::string& key, const std::stop_token& gone, const Make& make) {
+  // makes it. Throws Cancelled once the client is gone.
+  Found get(const std::string& key, const Client& client, const Make& make) {
     for (;;) {
       std::unique_lock lock(mutex_);
       if (const auto kept = kept_.find(key)) return {*kept, false};
       const auto [entry, first] = under_way_.try_emplace(key);
-      if (first) entry->second = std::make_shared<Work>();
+      if (first) entry->second = std::make_shared<Work>(client.sharers);
       const WorkPtr work = entry->second;
+      std::optional<Admission::Sharing> sharing;
+      if (!first && work->sharers) sharing.emplace(*client.admission, work->sharers, client.name);
       ++work->waiting;
       lock.unlock();
-      const std::stop_callback leaves(gone, [this, &work] { leave(*work); });
+      const std::stop_callback leaves(client.gone, [this, &work] { leave(*work); });
       if (first) return make_for_all(key, work, make);
       lock.lock();
-      work->changed.wait(lock, gone, [&] { return work->done; });
+      work->changed.wait(lock, client.gone, [&] { return work->done; });
       const ValuePtr value = work->value;
       const std::exception_ptr error = work->error;
       lock.unlock();  // before `leaves` goes: it may be waiting for the mutex
       if (value) return {value, false};
       if (error) std::rethrow_exception(error);
-      if (gone.stop_requested()) throw Cancelled("the client has gone");
+      if (client.gone.stop_requested()) throw Cancelled("the client has gone");
     }
   }
 
@@ -70,6 +81,8 @@ class SingleFlight {
 
  private:
   struct Work {
+    explicit Work(std::shared_ptr<Sharers> with) : sharers(std::move(with)) {}
+    const std::shared_ptr<Sharers> sharers;
     int waiting = 0;                // how many want it
     std::stop_source nobody_waits;  // requested once none of them is left
     bool done = false;

@@ -13,6 +13,7 @@
 #include "core/plan/plan.h"
 #include "server/app/settings.h"
 #include "tests/app/manual_timer.h"
+#include "tests/app/waiters.h"
 #include "tests/support/eventually.h"
 #include "tests/support/pictures.h"
 
@@ -20,57 +21,10 @@
 namespace orrery {
 namespace {
 
-using RenderOrder = std::vector<std::string>;
-
-const std::stop_token kNever;
-
-// People who wait for their turn, each on a thread, and the order in which they got it.
-class Waiters {
- public:
-  explicit Waiters(Admission& admission) : admission_(admission) {}
-  ~Waiters() { join(); }
-
-  // Returns once `name` waits, or was turned away.
-  void add(const std::string& name, const Demand& demand) {
-    const auto settled = [&] { return admission_.waiting() + order().size(); };
-    const auto before = settled();
-    threads_.emplace_back([this, name, demand] { wait(name, demand); });
-    EXPECT_TRUE(test::eventually([&] { return settled() != before; }));
-  }
-  void join() {
-    for (std::thread& thread : threads_) thread.join();
-    threads_.clear();
-  }
-  RenderOrder order() {
-    const std::lock_guard lock(mutex_);
-    return order_;
-  }
-
- private:
-  void wait(const std::string& name, const Demand& demand) {
-    try {
-      const auto ticket = admission_.enter(demand, kNever);
-      note(name);
-    } catch (const ClientBusy&) {
-      note(name + " 429");
-    } catch (const Busy&) {
-      note(name + " 503");
-    }
-  }
-  void note(const std::string& what) {
-    const std::lock_guard lock(mutex_);
-    order_.push_back(what);
-  }
-
-  Admission& admission_;
-  std::vector<std::thread> threads_;
-  std::mutex mutex_;
-  RenderOrder order_;
-};
-
-Demand demand(const std::string& client, double cost = 10, Lane lane = Lane::interactive) {
-  return {lane, client, cost};
-}
+using test::demand;
+using test::kNever;
+using test::RenderOrder;
+using test::Waiters;
 
 TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
   ManualTimer timer;

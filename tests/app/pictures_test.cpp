@@ -22,7 +22,7 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
   Pictures pictures(10'000);
   int made = 0;
   const auto get = [&](const std::string& key) {
-    return pictures.get(key, kStays, [&](const auto&) {
+    return pictures.get(key, {kStays}, [&](const auto&) {
       ++made;
       return picture(std::string(3000, key[0]));
     });
@@ -41,7 +41,7 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
 TEST(Pictures, TooLargeToKeepAreMadeAllTheSame) {
   Pictures pictures(0);
   for (int i = 0; i < 2; ++i)
-    EXPECT_TRUE(pictures.get("a", kStays, [](const auto&) { return picture("x"); }).made_here);
+    EXPECT_TRUE(pictures.get("a", {kStays}, [](const auto&) { return picture("x"); }).made_here);
   EXPECT_EQ(pictures.bytes(), 0U);
 }
 
@@ -51,7 +51,7 @@ TEST(Pictures, ThatManyAskForAtOnceAreMadeOnce) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 8; ++i)
     threads.emplace_back([&] {
-      const auto found = pictures.get("a", kStays, [&](const auto&) {
+      const auto found = pictures.get("a", {kStays}, [&](const auto&) {
         while (pictures.waiting("a") < 8) std::this_thread::yield();
         ++made;
         return picture("x");
@@ -75,7 +75,7 @@ struct Pair {
     std::promise<void> making, joined;
     std::thread one([&] {
       first([&](const Pictures::Make& make) {
-        return pictures.get("a", first_gone.get_token(), [&](const std::stop_token& stop) {
+        return pictures.get("a", {first_gone.get_token()}, [&](const std::stop_token& stop) {
           making.set_value();
           joined.get_future().wait();
           return make(stop);
@@ -84,7 +84,7 @@ struct Pair {
     });
     making.get_future().wait();
     std::thread two([&] {
-      second([&](const Pictures::Make& make) { return pictures.get("a", second_gone.get_token(), make); });
+      second([&](const Pictures::Make& make) { return pictures.get("a", {second_gone.get_token()}, make); });
     });
     while (pictures.waiting("a") < 2) std::this_thread::yield();
     joined.set_value();

@@ -77,6 +77,8 @@ export const serviceFaults = [
   entry(20, "work of many small blocks goes on", "core/base/work_scope.h", "if (overdrawn_ && !grow()) throw", "if (false) throw",
         "test_app", "MemoryAccount.EndsWork*"),
   entry(20, "reading goes on for nobody", "core/params/parse.cpp", "interruption_point(nodes_);", "", "test_load", "Interruption.EndsReadingJson"),
+  entry(20, "work that several want waits for its first client's turn", "server/app/admission.cpp",
+        "work.demand.sharers == sharers_ && !work.is_wanted_by(client_)", "false", "test_app", "SharedWork.*"),
   entry(20, "smoothing goes on for nobody", "core/meshes/smooth_normals.cpp", "      interruption_point();\n", "", "test_load", "Interruption.EndsSmoothingAmongTheFacets"),
   entry(21, "events begin anew for who comes back", "server/routes/jobs.cpp",
         "events = Events{job, request.prefix, seen}", "events = Events{job, request.prefix, 0}", "test_http",

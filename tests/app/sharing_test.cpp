@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <list>
+#include <memory>
+#include <optional>
+
+#include "server/app/admission.h"
+#include "server/app/pictures.h"
+#include "tests/app/manual_timer.h"
+#include "tests/app/waiters.h"
+
+// Work that several clients want is nobody's alone.
+namespace orrery {
+namespace {
+
+using test::demand;
+using test::kNever;
+using test::RenderOrder;
+using test::Waiters;
+
+class SharedWork : public testing::Test {
+ protected:
+  // Client a asks for a lot, and last for what is shared.
+  void ask() {
+    for (const char* name : {"a1", "a2", "a3"}) waiters_.add(name, demand("a"));
+    waiters_.add("c", demand("c", 15));
+    waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
+  }
+  const RenderOrder& order() {
+    ticket_.reset();
+    waiters_.join();
+    return order_ = waiters_.order();
+  }
+
+  ManualTimer timer_;
+  Admission admission_{{.running = 1, .queue_rays = 1000}, timer_};
+  const std::shared_ptr<Sharers> sharers_ = std::make_shared<Sharers>();
+  std::optional<Admission::Ticket> ticket_{admission_.enter(demand("z"), kNever)};
+  Waiters waiters_{admission_};
+  RenderOrder order_;
+};
+
+TEST_F(SharedWork, IsItsFirstClientsWhereNobodyElseWantsIt) {
+  ask();
+  { const Admission::Sharing sharing(admission_, sharers_, "b"); }
+  EXPECT_EQ(order(), (RenderOrder{"a1", "c", "a2", "a3", "shared"}));  // finish at 10 15 20 30 40
+}
+
+TEST_F(SharedWork, StartsInTheEarliestTurnAndCountsAsWorkOfEach) {
+  ask();
+  const Admission::Sharing sharing(admission_, sharers_, "b");
+  waiters_.add("b", demand("b"));
+  EXPECT_EQ(order(), (RenderOrder{"a1", "shared", "c", "a2", "b", "a3"}));  // finish at 10 10 15 20 20 30
+}
+
+TEST_F(SharedWork, MayBeWantedBeforeItWaits) {
+  const Admission::Sharing sharing(admission_, sharers_, "b");
+  const Admission::Sharing again(admission_, sharers_, "b");
+  { const Admission::Sharing third(admission_, sharers_, "b"); }
+  ask();
+  EXPECT_EQ(order(), (RenderOrder{"a1", "shared", "c", "a2", "a3"}));
+}
+
+TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
+  ticket_.reset();
+  std::list<Admission::Ticket> own;
+  for (int i = 0; i < 2; ++i) {  // two for each place
+    own.push_back(admission_.enter(demand("a"), kNever));
+    timer_.advance(std::chrono::milliseconds(50));
+    const auto other = admission_.enter(demand("c"), kNever);
+  }
+  waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
+  EXPECT_EQ(admission_.running(), 0);
+  const Admission::Sharing sharing(admission_, sharers_, "b");
+  EXPECT_EQ(order(), (RenderOrder{"shared"}));
+}
+
+// Two ask for one picture; the first has much waiting before it.
+TEST_F(SharedWork, MayBeAPicture) {
+  for (const char* name : {"a1", "a2"}) waiters_.add(name, demand("a"));
+  waiters_.add("c", demand("c", 15));
+  Pictures pictures(1 << 20);
+  const auto get = [&](const std::string& client) {
+    Demand asked = demand(client);
+    asked.sharers = std::make_shared<Sharers>();
+    pictures.get("key", {kNever, client, asked.sharers, &admission_}, [&](const std::stop_token& stop) {
+      const auto ticket = admission_.enter(asked, stop);
+      waiters_.note("picture");
+      return Picture{.bytes = "x", .stats = {}};
+    });
+  };
+  std::jthread first(get, "a");
+  EXPECT_TRUE(test::eventually([&] { return admission_.waiting() == 4; }));
+  std::jthread second(get, "b");
+  EXPECT_TRUE(test::eventually([&] { return pictures.waiting("key") == 2; }));
+  EXPECT_EQ(order(), (RenderOrder{"a1", "picture", "c", "a2"}));
+}
+
+}  // namespace
+}  // namespace orrery
