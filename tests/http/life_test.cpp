@@ -4,6 +4,7 @@
 
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
+#include "tests/support/sanitized.h"
 
 // Work that nobody waits for any more, and the end of the daemon.
 namespace orrery {
@@ -35,7 +36,8 @@ TEST(ClientThatLeaves, EndsItsRender) {
 TEST(ClientThatSendsNoMore, GetsItsAnswer) {
   Daemon daemon;
   const RawClient raw(daemon.port());
-  const std::string frame = post(daemon, small_scene()) + "/frame.png?width=800&height=800&samples=16";
+  const std::string size = test::kSanitized ? "?width=400&height=400" : "?width=800&height=800";
+  const std::string frame = post(daemon, small_scene()) + "/frame.png" + size + "&samples=16";
   raw.send(get(frame) + get("/healthz"));
   raw.send_no_more();
   const std::string answers = raw.receive_all();
