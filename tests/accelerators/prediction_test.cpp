@@ -87,7 +87,9 @@ std::vector<Front<T>> fronts(const Json& scene, const Rays<T>& rays) {
       {"out of range", adversary<T>(Evil::out_of_range)},
       {"random", by(random_predictor<T>(load(scene)->primitive_count()))},
       {"last", [](const auto& primitives, auto behind) { return predicted_by_last<T>(primitives, behind); }},
-      {"network", by(trained_on<T>(scene, Rays<T>(rays.begin(), rays.begin() + 2000)))}};
+      {"network",
+       by(trained_on<T>(
+           scene, Rays<T>(rays.begin(), rays.begin() + std::min<std::ptrdiff_t>(2000, std::ssize(rays)))))}};
 }
 
 // Rays from a cluster of places, so that neighbours are alike and the last occluder is often the next one.

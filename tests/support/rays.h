@@ -38,12 +38,12 @@ struct Spot {
 template <class T>
 using Rays = std::vector<Ray<T>>;
 
-// All of them; under a sanitizer, which wants to see all of the code but not all numbers, some 500 of those
+// All of them; under a sanitizer, which wants to see all of the code but not all numbers, some 1000 of those
 // all over.
 template <class T>
 Rays<T> enough_of(const Rays<T>& rays) {
   if (!kSanitized) return rays;
-  constexpr std::size_t kEnough = 500;
+  constexpr std::size_t kEnough = 1000;
   Rays<T> some;
   for (std::size_t i = 0; i < rays.size(); i += std::max<std::size_t>(1, rays.size() / kEnough))
     some.push_back(rays[i]);
