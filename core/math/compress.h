@@ -11,10 +11,17 @@ namespace orrery {
 // The lanes of a mask as bits, lane 0 lowest.
 template <class T, class Abi>
 [[gnu::always_inline]] inline unsigned bits_of(const stdx::simd_mask<T, Abi>& m) {
-  if constexpr (stdx::simd_mask<T, Abi>::size() == 1)
+  if constexpr (stdx::simd_mask<T, Abi>::size() == 1) {
     return m[0];
-  else
-    return static_cast<unsigned>(m.__to_bitset().to_ulong());
+  } else {
+    auto bits = static_cast<unsigned>(m.__to_bitset().to_ulong());
+#if defined(ORRERY_SANITIZED) && defined(__AVX512F__)
+    // With checks of threads, GCC 12 stores 8 or 16 bits of a mask register on the stack and reads 32 there.
+    // In a general register they are extended.
+    asm("" : "+r"(bits));
+#endif
+    return bits;
+  }
 }
 
 // Writes the lanes named by `bits` to consecutive places from `to`, in order. May write a whole register's
