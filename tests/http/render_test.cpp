@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/http/daemon.h"
+#include "tests/support/eventually.h"
 
 namespace orrery {
 namespace {
@@ -231,7 +232,9 @@ TEST(RenderThatTakesTooLong, IsRefusedAtOnceAndToldWhereToGo) {
   const std::string scene = posted->get_header_value("Location");
   for (const char* address : {"/frame.png?", "/orbit?frames=2&"})
     expect_refused(client.Get(scene + address + "width=4096&height=4096&samples=256"));
-  EXPECT_EQ(daemon.metric("orrery_refusals_total{reason=\"request_rays\"}"), 3);
+  EXPECT_TRUE(test::eventually([&] {  // counted once the answer has gone
+    return daemon.metric("orrery_refusals_total{reason=\"request_rays\"}") == 3;
+  }));
   EXPECT_EQ(daemon.metric("orrery_rays_total"), 0);
   EXPECT_EQ(nlohmann::json::parse(client.Get("/v1/limits")->body).at("request_rays"), 1'000'000'000);
   EXPECT_EQ(client.Post("/v1/jobs", body.dump(), kJson)->status, 202);
