@@ -277,8 +277,6 @@ bool Admission::has_lost_many(const Demand& demand) const {
          (!demand.sharers || std::all_of(demand.sharers->begin(), demand.sharers->end(), lost_many));
 }
 
-// Whether so much work of that client and lane has lost its place, twice as much as there are places, that it
-// begins no more: what is begun stays bounded, with the memory that it holds.
 bool Admission::has_lost_many(Lane lane, const std::string& client) const {
   const auto lost = std::count_if(works_.begin(), works_.end(), [&](const Work& w) {
     const bool has_lost = w.state == State::lost || (w.state == State::waits && w.entry == Entry::again);

@@ -48,9 +48,9 @@ using Sharers = std::multiset<std::string>;
 // A piece of work that waits for its turn.
 struct Demand {
   Lane lane = Lane::interactive;
-  std::string client;  // who asked for it first
-  double cost = 0;     // rays, as expected
-  std::shared_ptr<Sharers> sharers = {};
+  std::string client;                     // who asked for it first
+  double cost = 0;                        // rays, as expected
+  std::shared_ptr<Sharers> sharers = {};  // nobody can share it: null
 };
 
 inline constexpr double kLeastCost = 20'000;  // rays that the fixed work of a render amounts to
@@ -140,6 +140,9 @@ class Admission {
   enum class State { waits, runs, lost, dropped };
   struct Work {
     Work(const Demand& d, Entry e) : demand(d), entry(e), counts(e == Entry::first), charge(d.cost) {}
+    double finish() const;  // the earliest
+    bool is_wanted_by(const std::string& client) const { return finishes.count(client) > 0; }
+
     Demand demand;
     Entry entry;
     const bool counts;  // among what may wait
@@ -147,9 +150,7 @@ class Admission {
     double charge;    // rays that the next place is expected to take, or the last one did
     double used = 0;  // rays, about, in the places that it has lost
     std::map<std::string, double> finishes;  // virtual time, for each client that wants it
-    double finish() const;                   // the earliest
-    bool is_wanted_by(const std::string& client) const { return finishes.count(client) > 0; }
-    Clock::time_point since{};  // it got its place, or asked for one
+    Clock::time_point since{};               // it got its place, or asked for one
     std::condition_variable_any changed;
   };
   using Works = std::list<Work>;
@@ -168,6 +169,8 @@ class Admission {
   bool place_free(Lane lane) const;
   Work* loser(Lane lane);  // whose place such work may have; none: nullptr
   double virtual_finish(const Work& work, const std::string& client) const;
+  // Whether so much work of all clients that want it has lost its place, twice as much as there are places,
+  // that they begin no more: what is begun stays bounded, with the memory that it holds.
   bool has_lost_many(const Demand& demand) const;
   bool has_lost_many(Lane lane, const std::string& client) const;
   bool may_begin(const Demand& demand, Entry entry);  // as far as places go

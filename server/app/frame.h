@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/base/clock.h"
+#include "core/base/work_scope.h"
 #include "core/render/renderer.h"
 #include "core/render/views.h"
 
@@ -16,6 +17,7 @@ struct Frame {
   std::string bytes;
   RenderStats stats;
   double render_ms = 0, encode_ms = 0;
+  MemoryCharge charge = {};  // for the bytes, where they are counted
 };
 
 // Adds what `encoder` makes of the film, and how long that took.

@@ -48,6 +48,7 @@ void Job::run() {
       .render = [&](std::int64_t number) { return render(static_cast<int>(number), watch); },
       .encode = [this](const Film& film) { return work().encode(film); },
       .stop = watch.stop(),
+      .memory = memory_.get(),
       .deliver = [this](std::int64_t number,
                         Frame&& frame) { keep(static_cast<int>(number), std::move(frame)); }};
   std::exception_ptr error;
@@ -108,6 +109,7 @@ RenderResult Job::try_render(int step, const Watch& watch) {
 }
 
 void Job::keep(int step, Frame&& frame) {
+  frame.bytes.shrink_to_fit();
   const std::size_t bytes = frame.bytes.size();
   if (bytes > 0) room_(bytes);
   spec_.work->keep(step, std::move(frame.bytes));

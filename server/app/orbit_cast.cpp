@@ -48,6 +48,7 @@ void OrbitCast::run() {
       .render = [this](std::int64_t n) { return render(n); },
       .encode = [](const Film& film) { return encode_film(film, FileFormat::png, kFrameOfStream); },
       .stop = nobody_watches_.get_token(),
+      .memory = memory_.get(),
       .deliver = [this](std::int64_t n, Frame&& frame) { deliver(n, std::move(frame)); }};
   std::exception_ptr failure;
   try {

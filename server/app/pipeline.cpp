@@ -34,8 +34,7 @@ class Line {
     pipeline_.pool.enqueue(pipeline_.background, [this, place, number, shared, render_ms] {
       Encoded encoded{.number = number, .frame = {}, .error = {}};
       try {
-        const WorkScope scope({nullptr, &pipeline_.stop});
-        encoded.frame = encode_frame(std::move(*shared), render_ms, pipeline_.encode);
+        encoded.frame = encode(std::move(*shared), render_ms);
       } catch (...) {
         encoded.error = std::current_exception();
       }
@@ -55,6 +54,15 @@ class Line {
     Frame frame;
     std::exception_ptr error;
   };
+
+  // Where memory is short, frames of less than 32 MiB are kept all the same, and the next one waits for it.
+  Frame encode(RenderResult&& rendered, double render_ms) const {
+    const WorkScope scope({nullptr, &pipeline_.stop});
+    Frame frame = encode_frame(std::move(rendered), render_ms, pipeline_.encode);
+    const auto charge = [&] { return MemoryCharge(frame.bytes.capacity()); };
+    if (pipeline_.memory) frame.charge = pipeline_.memory->run(pipeline_.stop, charge);
+    return frame;
+  }
 
   void wait_until_empty() {
     std::unique_lock lock(mutex_);

@@ -19,6 +19,7 @@ struct Pipeline {
   std::function<RenderResult(std::int64_t)> render;
   std::function<std::string(const Film&)> encode;      // several at once
   std::stop_token stop = {};                           // ends what is being encoded, with Cancelled
+  MemoryAccount* memory = nullptr;                     // to which encoded frames are charged; none: nullptr
   std::function<void(std::int64_t, Frame&&)> deliver;  // one at a time, in the order of `next`
 
   // Returns once all frames are delivered. What a stage throws ends it and is thrown here, after the frames

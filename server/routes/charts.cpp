@@ -32,7 +32,7 @@ class ChartWork final : public JobWork {
   JobResult result(const std::string& job_id, std::string_view path) const override {
     const ChartForm* form = chart_form_of(path);
     if (!form || path != folder() + job_id + std::string(form->ending))
-      throw NotFound("The job makes the chart " + folder() + job_id + ".svg, .csv and .json");
+      throw NotFound("The job makes the chart " + job_id + ".svg, .csv and .json");
     return {"The chart", form->type, steps(), [this, form] { return form->write(study_.chart()); }};
   }
 

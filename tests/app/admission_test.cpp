@@ -23,7 +23,7 @@ namespace {
 
 using test::demand;
 using test::kNever;
-using test::RenderOrder;
+using test::TurnOrder;
 using test::Waiters;
 
 TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
@@ -36,8 +36,7 @@ TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
     for (const char* name : {"b1", "b2"}) waiters.add(name, demand("b", 15));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(),
-            (RenderOrder{"a1", "b1", "a2", "a3", "b2", "a4"}));  // finish at 10 15 20 30 30 40
+  EXPECT_EQ(waiters.order(), (TurnOrder{"a1", "b1", "a2", "a3", "b2", "a4"}));  // finish at 10 15 20 30 30 40
 }
 
 TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
@@ -54,10 +53,10 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
     }
     EXPECT_TRUE(test::eventually([&] { return waiters.order().size() == 2; }));
     EXPECT_EQ(admission.waiting(), 1);  // half of the places are batch work's, and that is one
-    EXPECT_EQ(waiters.order(), (RenderOrder{"i1", "i2"}));
+    EXPECT_EQ(waiters.order(), (TurnOrder{"i1", "i2"}));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (RenderOrder{"i1", "i2", "batch"}));
+  EXPECT_EQ(waiters.order(), (TurnOrder{"i1", "i2", "batch"}));
 
   const auto first = admission.enter(demand("z"), kNever);
   Waiters others(admission);
@@ -67,7 +66,7 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
     others.add("batch", demand("a", 10, Lane::batch));
   }
   others.join();
-  EXPECT_EQ(others.order(), (RenderOrder{"batch", "i"}));  // none of it ran
+  EXPECT_EQ(others.order(), (TurnOrder{"batch", "i"}));  // none of it ran
 }
 
 using std::chrono_literals::operator""ms;
@@ -81,10 +80,10 @@ TEST(Admission, WorkLosesItsPlaceAfterAWhileToWhoWaits) {
   timer.advance(49ms);
   EXPECT_FALSE(ticket->expired());
   ticket->renew();  // changes nothing
-  EXPECT_EQ(waiters.order(), RenderOrder{});
+  EXPECT_EQ(waiters.order(), TurnOrder{});
   timer.advance(1ms);
   EXPECT_TRUE(ticket->expired());
-  EXPECT_TRUE(test::eventually([&] { return waiters.order() == RenderOrder{"a1"}; }));
+  EXPECT_TRUE(test::eventually([&] { return waiters.order() == TurnOrder{"a1"}; }));
   waiters.join();
   EXPECT_EQ(admission.running(), 0);
   ticket->renew();
@@ -127,10 +126,10 @@ TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
   waiters.add("less", demand("b", 9.9e6));
   second.reset();
   renewal.join();
-  EXPECT_EQ(waiters.order(), RenderOrder{"less"});
+  EXPECT_EQ(waiters.order(), TurnOrder{"less"});
   first.reset();
   waiters.join();
-  EXPECT_EQ(waiters.order(), (RenderOrder{"less", "more"}));
+  EXPECT_EQ(waiters.order(), (TurnOrder{"less", "more"}));
 }
 
 TEST(Admission, InteractiveWorkTakesThePlaceOfBatchWork) {
@@ -175,10 +174,10 @@ TEST(Admission, WhoHasLostManyPlacesBeginsNoMore) {
   waiters.add("z", demand("z"));
   EXPECT_EQ(admission.running(), 0);  // though the place is free
   { const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever); }
-  EXPECT_EQ(waiters.order(), RenderOrder{});
+  EXPECT_EQ(waiters.order(), TurnOrder{});
   own.pop_front();
   waiters.join();
-  EXPECT_EQ(waiters.order(), RenderOrder{"z"});
+  EXPECT_EQ(waiters.order(), TurnOrder{"z"});
 }
 
 // What has begun cannot be turned away, however much is left of it.
@@ -192,11 +191,11 @@ TEST(Admission, WorkThatLostItsPlaceShutsNobodyElseOut) {
   EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
   Waiters waiters(admission);
   waiters.add("b", demand("b", 5000));
-  EXPECT_EQ(waiters.order(), RenderOrder{});
+  EXPECT_EQ(waiters.order(), TurnOrder{});
   EXPECT_THROW(admission.enter(demand("z", 1), kNever), OverLimit);
   other.reset();
   waiters.join();
-  EXPECT_EQ(waiters.order(), RenderOrder{"b"});
+  EXPECT_EQ(waiters.order(), TurnOrder{"b"});
   renewal.join();
 }
 
@@ -247,7 +246,7 @@ TEST(Admission, WhatWaitsIsBoundedByItsCost) {
     EXPECT_THROW(admission.enter(demand("a", 1), kNever), Busy);
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (RenderOrder{"large"}));
+  EXPECT_EQ(waiters.order(), (TurnOrder{"large"}));
   {
     const auto ticket = admission.enter(demand("z"), kNever);
     for (int i = 0; i < 10; ++i) waiters.add("small", demand("a", 10));
@@ -268,7 +267,7 @@ TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
     EXPECT_FALSE(admission.full());
     const auto interactive = admission.enter(demand("a"), kNever);  // at once
     waiters.add("i1", demand("b"));
-    EXPECT_EQ(waiters.order(), RenderOrder{});
+    EXPECT_EQ(waiters.order(), TurnOrder{});
   }
   waiters.join();
   EXPECT_EQ(waiters.order().size(), 2U);
@@ -284,7 +283,7 @@ TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
     for (const char* name : {"i1", "i2"}) waiters.add(name, demand("b"));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (RenderOrder{"b1", "i1", "b2", "i2", "b3"}));
+  EXPECT_EQ(waiters.order(), (TurnOrder{"b1", "i1", "b2", "i2", "b3"}));
 }
 
 TEST(Admission, WhoHasMostWaitingMakesRoom) {
@@ -296,14 +295,14 @@ TEST(Admission, WhoHasMostWaitingMakesRoom) {
     for (const char* name : {"a1", "a2", "a3"}) waiters.add(name, demand("a", 30));
     waiters.add("b1", demand("b", 30));
     EXPECT_TRUE(test::eventually([&] { return !waiters.order().empty(); }));
-    EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429"}));
+    EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429"}));
     waiters.add("a4", demand("a", 30));  // now a has 60 and b 30
-    EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429", "a4 429"}));
+    EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429"}));
     waiters.add("b2", demand("b", 30));  // which would not leave b with less than a
-    EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429", "a4 429", "b2 429"}));
+    EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429", "b2 429"}));
   }
   waiters.join();
-  EXPECT_EQ(waiters.order(), (RenderOrder{"a3 429", "a4 429", "b2 429", "a1", "b1", "a2"}));
+  EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429", "b2 429", "a1", "b1", "a2"}));
 }
 
 TEST(Admission, WorkThatBeganIsNotTurnedAway) {
@@ -419,7 +418,7 @@ TEST(Admission, RefusesNoSecondOfWorkByDefault) {
     {
       const auto ticket = admission.enter(demand("z", cost), kNever);
       for (int i = 1; i < 20; ++i) waiters.add(name, demand("z", cost));
-      EXPECT_EQ(waiters.order(), RenderOrder{}) << name;
+      EXPECT_EQ(waiters.order(), TurnOrder{}) << name;
     }
   }
 }

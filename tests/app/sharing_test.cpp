@@ -15,7 +15,7 @@ namespace {
 
 using test::demand;
 using test::kNever;
-using test::RenderOrder;
+using test::TurnOrder;
 using test::Waiters;
 
 class SharedWork : public testing::Test {
@@ -26,7 +26,7 @@ class SharedWork : public testing::Test {
     waiters_.add("c", demand("c", 15));
     waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
   }
-  const RenderOrder& order() {
+  const TurnOrder& order() {
     ticket_.reset();
     waiters_.join();
     return order_ = waiters_.order();
@@ -37,20 +37,20 @@ class SharedWork : public testing::Test {
   const std::shared_ptr<Sharers> sharers_ = std::make_shared<Sharers>();
   std::optional<Admission::Ticket> ticket_{admission_.enter(demand("z"), kNever)};
   Waiters waiters_{admission_};
-  RenderOrder order_;
+  TurnOrder order_;
 };
 
 TEST_F(SharedWork, IsItsFirstClientsWhereNobodyElseWantsIt) {
   ask();
   { const Admission::Sharing sharing(admission_, sharers_, "b"); }
-  EXPECT_EQ(order(), (RenderOrder{"a1", "c", "a2", "a3", "shared"}));  // finish at 10 15 20 30 40
+  EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "a3", "shared"}));  // finish at 10 15 20 30 40
 }
 
 TEST_F(SharedWork, StartsInTheEarliestTurnAndCountsAsWorkOfEach) {
   ask();
   const Admission::Sharing sharing(admission_, sharers_, "b");
   waiters_.add("b", demand("b"));
-  EXPECT_EQ(order(), (RenderOrder{"a1", "shared", "c", "a2", "b", "a3"}));  // finish at 10 10 15 20 20 30
+  EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "b", "a3"}));  // finish at 10 10 15 20 20 30
 }
 
 TEST_F(SharedWork, MayBeWantedBeforeItWaits) {
@@ -58,7 +58,7 @@ TEST_F(SharedWork, MayBeWantedBeforeItWaits) {
   const Admission::Sharing again(admission_, sharers_, "b");
   { const Admission::Sharing third(admission_, sharers_, "b"); }
   ask();
-  EXPECT_EQ(order(), (RenderOrder{"a1", "shared", "c", "a2", "a3"}));
+  EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "a3"}));
 }
 
 TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
@@ -72,7 +72,7 @@ TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
   waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
   EXPECT_EQ(admission_.running(), 0);
   const Admission::Sharing sharing(admission_, sharers_, "b");
-  EXPECT_EQ(order(), (RenderOrder{"shared"}));
+  EXPECT_EQ(order(), (TurnOrder{"shared"}));
 }
 
 // Two ask for one picture; the first has much waiting before it.
@@ -93,7 +93,7 @@ TEST_F(SharedWork, MayBeAPicture) {
   EXPECT_TRUE(test::eventually([&] { return admission_.waiting() == 4; }));
   std::jthread second(get, "b");
   EXPECT_TRUE(test::eventually([&] { return pictures.waiting("key") == 2; }));
-  EXPECT_EQ(order(), (RenderOrder{"a1", "picture", "c", "a2"}));
+  EXPECT_EQ(order(), (TurnOrder{"a1", "picture", "c", "a2"}));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 namespace orrery::test {
 
-using RenderOrder = std::vector<std::string>;
+using TurnOrder = std::vector<std::string>;
 
 inline const std::stop_token kNever;
 
@@ -34,7 +34,7 @@ class Waiters {
     for (std::thread& thread : threads_) thread.join();
     threads_.clear();
   }
-  RenderOrder order() {
+  TurnOrder order() {
     const std::lock_guard lock(mutex_);
     return order_;
   }
@@ -58,7 +58,7 @@ class Waiters {
   Admission& admission_;
   std::vector<std::thread> threads_;
   std::mutex mutex_;
-  RenderOrder order_;
+  TurnOrder order_;
 };
 
 inline Demand demand(const std::string& client, double cost = 10, Lane lane = Lane::interactive) {

@@ -79,6 +79,8 @@ export const serviceFaults = [
   entry(20, "reading goes on for nobody", "core/params/parse.cpp", "interruption_point(nodes_);", "", "test_load", "Interruption.EndsReadingJson"),
   entry(20, "work that several want waits for its first client's turn", "server/app/admission.cpp",
         "work.demand.sharers == sharers_ && !work.is_wanted_by(client_)", "false", "test_app", "SharedWork.*"),
+  entry(20, "encoded frames are nobody's memory", "server/app/pipeline.cpp", "if (pipeline_.memory) frame.charge", "if (false) frame.charge",
+        "test_app", "PipelineMemory.IsTakenWhile*"),
   entry(20, "smoothing goes on for nobody", "core/meshes/smooth_normals.cpp", "      interruption_point();\n", "", "test_load", "Interruption.EndsSmoothingAmongTheFacets"),
   entry(21, "events begin anew for who comes back", "server/routes/jobs.cpp",
         "events = Events{job, request.prefix, seen}", "events = Events{job, request.prefix, 0}", "test_http",
