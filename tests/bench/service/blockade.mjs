@@ -4,7 +4,7 @@ import { Client } from "./client.mjs";
 import { kAttacks } from "./attacks.mjs";
 import { FrameReader } from "../daemon.mjs";
 import {
-  mib, outcome, most, ms, new_picture, p99, pause, percent, process_state, row, tally, with_service,
+  memory_bound, mib, ms, outcome, new_picture, p99, pause, percent, process_state, row, tally, with_service,
 } from "./support.mjs";
 import http from "node:http";
 
@@ -104,6 +104,7 @@ async function try_attack(service, paper, one, force, seconds) {
     health: p99(times(pings)),
     frames: frames / (10 * seconds),
     resident,
+    bound: await memory_bound(service.port),
     attackers,
   };
 }
@@ -122,7 +123,7 @@ function rows_of(tries) {
     row("small pictures refused", "0", bad.length ? tally(bad.map(outcome)) : "0", bad.length === 0),
     row("frames of a viewer, worst attack", ">= 50 %", told(frames, percent(frames.frames)), frames.frames >= 0.5),
     row("/healthz p99, worst attack", `<= ${kHealth_ms} ms`, told(health, ms(health.health)), health.health <= kHealth_ms),
-    row("memory, most", "", told(resident, mib(resident.resident)), null),
+    row("memory, most", `<= ${mib(resident.bound)}`, told(resident, mib(resident.resident)), resident.resident <= resident.bound),
   ];
 }
 

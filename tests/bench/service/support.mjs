@@ -114,6 +114,12 @@ export class Gauges {
   }
 }
 
+// Bytes that the service is said to take at most (memory_bytes), and what is granted beyond them.
+export async function memory_bound(port) {
+  const limits = JSON.parse((await new Client(port).ask("/v1/limits")).text());
+  return 1.1 * limits.memory_bytes;
+}
+
 // ---- load
 
 // `count` clients that ask again as soon as they have an answer, until stop(). `path_of` gives the next address,
