@@ -49,8 +49,9 @@ int Admission::running() const {
 }
 int Admission::waiting() const {
   const std::lock_guard lock(mutex_);
-  return static_cast<int>(
-      std::count_if(works_.begin(), works_.end(), [](const Work& w) { return w.state == State::waits; }));
+  return static_cast<int>(std::count_if(works_.begin(), works_.end(), [](const Work& w) {
+    return w.state == State::waits || w.state == State::lost;
+  }));
 }
 bool Admission::full() const {
   const std::lock_guard lock(mutex_);

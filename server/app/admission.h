@@ -119,7 +119,7 @@ class Admission {
   };
 
   int running() const;
-  int waiting() const;
+  int waiting() const;  // also what has lost its place, and is on its way to the next checkpoint
   // Whether small work would be turned away.
   bool full() const;
   std::uint64_t places_lost() const { return places_lost_; }  // since the start

@@ -86,6 +86,7 @@ TEST(Admission, WorkLosesItsPlaceAfterAWhileToWhoWaits) {
   EXPECT_TRUE(test::eventually([&] { return waiters.order() == TurnOrder{"a1"}; }));
   waiters.join();
   EXPECT_EQ(admission.running(), 0);
+  EXPECT_EQ(admission.waiting(), 1);  // what has lost its place
   ticket->renew();
   EXPECT_FALSE(ticket->expired());
   EXPECT_EQ(admission.running(), 1);
