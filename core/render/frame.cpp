@@ -1,8 +1,18 @@
 #include <vector>
 
+#include "core/base/work_scope.h"
 #include "core/render/renderer.h"
 
 namespace orrery {
+namespace {
+
+// Throws std::bad_alloc unless the work may hold so many bytes more, before it touches any of them.
+void require_memory(std::size_t bytes) {
+  const MemoryCharge charge(bytes);
+  interruption_point();
+}
+
+}  // namespace
 
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control) {
@@ -11,6 +21,7 @@ RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, F
   const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
   std::span<const ChannelType* const> channels;
   if (storage == FilmStorage::sums) channels = plan->channels;
+  require_memory(Film::bytes(plan->width, plan->height, storage, channels));
   Film film(plan->width, plan->height, storage, channels);
   const TileGrid grid(plan->width, plan->height);
   std::vector<TileView> tiles;

@@ -85,6 +85,7 @@ Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std:
     wait_for_place(lock, *work, stop);
   } catch (...) {
     works_.erase(work);
+    start_next();
     throw;
   }
   lock.unlock();
@@ -120,7 +121,10 @@ void Admission::Ticket::set_alarm() {
   others_may_have_it_.reset(new Timer::Alarm(from_->timer_.at(work_->since + kLeastPlace, start_next)));
 }
 
-void Admission::Ticket::set_cost(double rays) { work_->demand.cost = rays; }
+void Admission::Ticket::set_cost(double rays) {
+  const std::lock_guard lock(from_->mutex_);
+  work_->demand.cost = rays;
+}
 
 bool Admission::Ticket::expired() const { return work_->state == State::lost; }
 
@@ -142,17 +146,31 @@ Admission::Sharing::Sharing(Admission& in, std::shared_ptr<Sharers> sharers, std
   const std::lock_guard lock(in_.mutex_);
   sharers_->insert(client_);
   for (Work& work : in_.works_)
-    if (work.demand.sharers == sharers_ && !work.is_wanted_by(client_))
-      work.finishes.emplace(client_, in_.virtual_finish(work, client_));
+    if (work.demand.sharers == sharers_) in_.update_finishes(work);
   in_.start_next();
 }
 
 Admission::Sharing::~Sharing() {
   const std::lock_guard lock(in_.mutex_);
   sharers_->erase(sharers_->find(client_));
-  if (sharers_->count(client_) > 0) return;
   for (Work& work : in_.works_)
-    if (work.demand.sharers == sharers_ && work.demand.client != client_) work.finishes.erase(client_);
+    if (work.demand.sharers == sharers_) in_.update_finishes(work);
+}
+
+void Admission::update_finishes(Work& work) {
+  const Demand& demand = work.demand;
+  const bool alone = !demand.sharers || demand.sharers->empty();
+  const auto wants = [&](const std::string& client) {
+    return alone ? client == demand.client : demand.sharers->count(client) > 0;
+  };
+  const auto add = [&](const std::string& client) {
+    if (!work.is_wanted_by(client)) work.finishes.emplace(client, virtual_finish(work, client));
+  };
+  if (alone)
+    add(demand.client);
+  else
+    std::for_each(demand.sharers->begin(), demand.sharers->end(), add);
+  std::erase_if(work.finishes, [&](const auto& entry) { return !wants(entry.first); });
 }
 
 double Admission::Work::finish() const {
@@ -163,10 +181,8 @@ double Admission::Work::finish() const {
 void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop) {
   const Lane lane = work.demand.lane;
   const auto asked = work.since = timer_.now();
-  work.finishes = {{work.demand.client, virtual_finish(work, work.demand.client)}};
-  if (work.demand.sharers)
-    for (const std::string& client : *work.demand.sharers)
-      work.finishes.emplace(client, virtual_finish(work, client));
+  work.finishes.clear();
+  update_finishes(work);
   work.state = State::waits;
   start_next();
   work.changed.wait(lock, stop, [&] { return work.state != State::waits; });
@@ -175,7 +191,6 @@ void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, c
     return;
   }
   const State state = work.state.exchange(State::lost);
-  start_next();
   if (state == State::waits) throw Cancelled();
   throw ClientBusy("Others wait for their turn, and you had asked for more than they (queue_rays)",
                    retry_after_s(lane), "queue_rays");
@@ -197,7 +212,8 @@ void Admission::begin(Work& work) {
   if (running_++ == 0) measured_ = timer_.now();
   if (work.demand.lane == Lane::batch) ++running_batch_;
   latest_ = work.demand.lane;
-  virtual_time_[static_cast<int>(latest_)] = work.finish();
+  double& virtual_time = virtual_time_[static_cast<int>(latest_)];
+  virtual_time = std::max(virtual_time, work.finish());
   work.since = timer_.now();
   work.state = State::runs;
   work.changed.notify_one();
@@ -274,8 +290,8 @@ double Admission::virtual_finish(const Work& work, const std::string& client) co
 
 bool Admission::has_lost_many(const Demand& demand) const {
   const auto lost_many = [&](const std::string& client) { return has_lost_many(demand.lane, client); };
-  return lost_many(demand.client) &&
-         (!demand.sharers || std::all_of(demand.sharers->begin(), demand.sharers->end(), lost_many));
+  if (!demand.sharers || demand.sharers->empty()) return lost_many(demand.client);
+  return std::all_of(demand.sharers->begin(), demand.sharers->end(), lost_many);
 }
 
 bool Admission::has_lost_many(Lane lane, const std::string& client) const {

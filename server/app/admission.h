@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/render/worker_pool.h"
 #include "server/app/meters.h"
+#include "server/app/sharers.h"
 #include "server/app/timer.h"
 #include "server/http/over_limit.h"
 
@@ -42,13 +42,10 @@ struct Quota {
 
 enum class Lane { interactive, batch };  // somebody waits for it; or it is long
 
-// Clients that want a piece of work besides the one that asked first. Admission guards it.
-using Sharers = std::multiset<std::string>;
-
 // A piece of work that waits for its turn.
 struct Demand {
   Lane lane = Lane::interactive;
-  std::string client;                     // who asked for it first
+  std::string client;                     // who asked for it first, and wants it where nobody shares it
   double cost = 0;                        // rays, as expected
   std::shared_ptr<Sharers> sharers = {};  // nobody can share it: null
 };
@@ -105,7 +102,7 @@ class Admission {
     int exceptions_ = std::uncaught_exceptions();
   };
 
-  // Says that `client` wants the work of those sharers as well, until its end.
+  // Says that `client` wants the work of those sharers, until its end.
   class Sharing {
    public:
     Sharing(Admission& in, std::shared_ptr<Sharers> sharers, std::string client);
@@ -167,7 +164,8 @@ class Admission {
   void make_room(const Demand& demand);
   bool fits(Lane lane, double cost) const;
   bool place_free(Lane lane) const;
-  Work* loser(Lane lane);  // whose place such work may have; none: nullptr
+  Work* loser(Lane lane);            // whose place such work may have; none: nullptr
+  void update_finishes(Work& work);  // who wants it has changed
   double virtual_finish(const Work& work, const std::string& client) const;
   // Whether so much work of all clients that want it has lost its place, twice as much as there are places,
   // that they begin no more: what is begun stays bounded, with the memory that it holds.

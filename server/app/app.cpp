@@ -94,7 +94,7 @@ AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, c
 Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                      const Caller& caller, Timing& timing) {
   Demand demand = services_.demand_of(scene.scene(), plan, caller.client);
-  demand.sharers = std::make_shared<Sharers>();
+  demand.sharers = sharers_.of(key);
   const auto start = Clock::now();
   const auto since = timer_.now();
   const Pictures::Found found = pictures_.get(
@@ -124,8 +124,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
   if (storage == FilmStorage::sums) require_layers_fit(plan, memory_.most());
   const Films::Found film = films_.get(
-      key + std::to_string(static_cast<int>(storage)), {stop, demand.client, demand.sharers, &admission_},
-      [&](const std::stop_token& nobody_waits) {
+      key + std::to_string(static_cast<int>(storage)), {stop}, [&](const std::stop_token& nobody_waits) {
         enter(demand, nobody_waits);
         stage = Stage::render;
         return WorkScope::current().memory->run(nobody_waits, [&] {

@@ -109,6 +109,7 @@ class App {
   WorkMemory memory_;
   SceneStore scenes_;
   AssetStore assets_;
+  SharersByKey sharers_;  // of pictures, whatever their format
   Pictures pictures_;
   Films films_;
   Admission admission_;

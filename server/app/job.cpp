@@ -87,6 +87,7 @@ RenderResult Job::try_render(int step, const Watch& watch) {
   Demand demand = services_.demand_of(scene, asked, spec_.client);
   demand.lane = Lane::batch;
   auto ticket = services_.admission.enter_again(demand, watch.stop());
+  memory_->settle(0);  // gives back what the steps before had
   {
     const std::lock_guard lock(mutex_);
     if (!started_) started_ = services_.timer.now();
@@ -109,7 +110,6 @@ RenderResult Job::try_render(int step, const Watch& watch) {
 }
 
 void Job::keep(int step, Frame&& frame) {
-  frame.bytes.shrink_to_fit();
   const std::size_t bytes = frame.bytes.size();
   if (bytes > 0) room_(bytes);
   spec_.work->keep(step, std::move(frame.bytes));

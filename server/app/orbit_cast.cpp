@@ -29,15 +29,23 @@ std::unique_ptr<OrbitCast::Viewer> OrbitCast::join(const std::shared_ptr<OrbitCa
   const std::lock_guard lock(cast->mutex_);
   if (cast->closed_) return nullptr;
   const std::int64_t begin = cast->delivered_ - (cast->latest_ ? 1 : 0);
-  const auto mailbox = cast->mailboxes_.insert(
-      cast->mailboxes_.end(),
-      {.begin = begin, .end = begin + cast->spec_.frames, .frame = cast->latest_, .number = begin});
+  const auto mailbox = cast->mailboxes_.insert(cast->mailboxes_.end(), {.client = client,
+                                                                        .begin = begin,
+                                                                        .end = begin + cast->spec_.frames,
+                                                                        .frame = cast->latest_,
+                                                                        .number = begin});
   if (!cast->thread_.joinable()) {
     cast->start_ = cast->services_.timer.now();
     cast->thread_ = std::thread([c = cast.get()] { c->run(); });
   }
   cast->changed_.notify_all();
   return std::unique_ptr<Viewer>(new Viewer(cast, mailbox, client));
+}
+
+bool OrbitCast::is_watched_by(const std::string& client) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(mailboxes_.begin(), mailboxes_.end(),
+                     [&](const Mailbox& mailbox) { return mailbox.client == client; });
 }
 
 void OrbitCast::run() {
@@ -124,6 +132,7 @@ RenderResult OrbitCast::try_render(const Plan& plan, const std::stop_token& stop
   Demand demand = services_.demand_of(spec_.scene->scene(), plan, spec_.client);
   demand.sharers = sharers_;
   auto ticket = services_.admission.enter_again(demand, stop);
+  memory_->settle(0);  // gives back what the frames before had
   return memory_->run(
       stop, [&] { return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = stop}); });
 }

@@ -24,6 +24,7 @@ class OrbitCast {
   ~OrbitCast();
 
   const OrbitSpec& spec() const { return spec_; }
+  bool is_watched_by(const std::string& client) const;
 
   class Viewer;
   // None once the cast is ending. Each frame is rendered in the earliest turn of any viewer's client.
@@ -31,6 +32,7 @@ class OrbitCast {
 
  private:
   struct Mailbox {
+    std::string client;
     std::int64_t begin, end;  // numbers of the frames this viewer gets
     std::shared_ptr<const OrbitFrame> frame;
     std::int64_t number = 0;   // of `frame`

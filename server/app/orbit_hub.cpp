@@ -16,7 +16,7 @@ std::unique_ptr<OrbitCast::Viewer> OrbitHub::watch(const OrbitSpec& spec) {
   }
   const auto own = std::count_if(casts_.begin(), casts_.end(), [&](const auto& known) {
     const auto cast = known.lock();
-    return cast && cast->spec().client == spec.client;
+    return cast && cast->is_watched_by(spec.client);
   });
   Quota{.what = "orbits are being watched", .limit = "orbits", .most = most_, .retry_s = 5}.require_one_more(
       static_cast<int>(casts_.size()), static_cast<int>(own));

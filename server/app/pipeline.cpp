@@ -15,7 +15,8 @@ constexpr std::int64_t kUnderWay = 3;  // frames in memory at once: one being re
 // order in which they came.
 class Line {
  public:
-  explicit Line(const Pipeline& pipeline) : pipeline_(pipeline) {}
+  explicit Line(const Pipeline& pipeline)
+      : pipeline_(pipeline), memory_(pipeline.memory ? pipeline.memory->open_another() : nullptr) {}
   ~Line() { wait_until_empty(); }
 
   // Waits until one more frame may be rendered. False if one before failed.
@@ -26,10 +27,7 @@ class Line {
   }
 
   void enter(std::int64_t number, RenderResult&& rendered, double render_ms) {
-    const std::int64_t place = [&] {
-      const std::lock_guard lock(mutex_);
-      return entered_++;
-    }();
+    const std::int64_t place = entered_;  // which changes on this thread alone
     const auto shared = std::make_shared<RenderResult>(std::move(rendered));
     pipeline_.pool.enqueue(pipeline_.background, [this, place, number, shared, render_ms] {
       Encoded encoded{.number = number, .frame = {}, .error = {}};
@@ -40,6 +38,8 @@ class Line {
       }
       leave(place, std::move(encoded));
     });
+    const std::lock_guard lock(mutex_);
+    ++entered_;
   }
 
   // Waits for all that entered. Throws what the first of them that failed threw.
@@ -59,8 +59,11 @@ class Line {
   Frame encode(RenderResult&& rendered, double render_ms) const {
     const WorkScope scope({nullptr, &pipeline_.stop});
     Frame frame = encode_frame(std::move(rendered), render_ms, pipeline_.encode);
+    frame.bytes.shrink_to_fit();
     const auto charge = [&] { return MemoryCharge(frame.bytes.capacity()); };
-    if (pipeline_.memory) frame.charge = pipeline_.memory->run(pipeline_.stop, charge);
+    if (!memory_) return frame;
+    frame.charge = memory_->run(pipeline_.stop, charge);
+    memory_->settle(0);  // all frames that there are count, also where that was refused
     return frame;
   }
 
@@ -89,7 +92,8 @@ class Line {
   }
 
   const Pipeline& pipeline_;
-  std::mutex mutex_;  // guards all below
+  const std::shared_ptr<MemoryAccount> memory_;  // beside that of the films, which wait until there is room
+  std::mutex mutex_;                             // guards all below
   std::condition_variable changed_;
   std::int64_t entered_ = 0, left_ = 0;
   std::map<std::int64_t, Encoded> waiting_;  // by place in the line, for those before them

@@ -17,9 +17,9 @@ struct Pipeline {
   bool background;                                    // others come first
   std::function<std::optional<std::int64_t>()> next;  // number of the frame to render; none: the end
   std::function<RenderResult(std::int64_t)> render;
-  std::function<std::string(const Film&)> encode;      // several at once
-  std::stop_token stop = {};                           // ends what is being encoded, with Cancelled
-  MemoryAccount* memory = nullptr;                     // to which encoded frames are charged; none: nullptr
+  std::function<std::string(const Film&)> encode;  // several at once
+  std::stop_token stop = {};                       // ends what is being encoded, with Cancelled
+  MemoryAccount* memory = nullptr;  // encoded frames are charged to another like it; none: nullptr
   std::function<void(std::int64_t, Frame&&)> deliver;  // one at a time, in the order of `next`
 
   // Returns once all frames are delivered. What a stage throws ends it and is thrown here, after the frames

@@ -26,12 +26,12 @@ class SingleFlight {
   using ValuePtr = std::shared_ptr<const Value>;
   // Makes a value; a stop request says that nobody wants it any more.
   using Make = std::function<Value(const std::stop_token&)>;
-  // Who asks for a value. What `sharers` shares is made in the turns of all who ask for it meanwhile.
+  // Who asks for a value, and is one of `sharers` until it has it or is gone.
   struct Client {
     std::stop_token gone;
     std::string name = {};
-    std::shared_ptr<Sharers> sharers = {};
-    Admission* admission = nullptr;  // of the sharers, if there are any
+    std::shared_ptr<Sharers> sharers = {};  // of all who ask for the value; null: they are not told
+    Admission* admission = nullptr;         // of the sharers, if there are any
   };
 
   explicit SingleFlight(std::size_t most_bytes) : SingleFlight(most_bytes, most_bytes) {}
@@ -49,14 +49,18 @@ class SingleFlight {
     for (;;) {
       std::unique_lock lock(mutex_);
       if (const auto kept = kept_.find(key)) return {*kept, false};
-      const auto [entry, first] = under_way_.try_emplace(key);
-      if (first) entry->second = std::make_shared<Work>(client.sharers);
-      const WorkPtr work = entry->second;
       std::optional<Admission::Sharing> sharing;
-      if (!first && work->sharers) sharing.emplace(*client.admission, work->sharers, client.name);
+      if (client.sharers) sharing.emplace(*client.admission, client.sharers, client.name);
+      const auto known = under_way_.find(key);
+      const bool first = known == under_way_.end();
+      const WorkPtr work =
+          first ? under_way_.emplace(key, std::make_shared<Work>()).first->second : known->second;
       ++work->waiting;
       lock.unlock();
-      const std::stop_callback leaves(client.gone, [this, &work] { leave(*work); });
+      const std::stop_callback leaves(client.gone, [this, &work, &sharing] {
+        sharing.reset();
+        leave(*work);
+      });
       if (first) return make_for_all(key, work, make);
       lock.lock();
       work->changed.wait(lock, client.gone, [&] { return work->done; });
@@ -81,8 +85,6 @@ class SingleFlight {
 
  private:
   struct Work {
-    explicit Work(std::shared_ptr<Sharers> with) : sharers(std::move(with)) {}
-    const std::shared_ptr<Sharers> sharers;
     int waiting = 0;                // how many want it
     std::stop_source nobody_waits;  // requested once none of them is left
     bool done = false;

@@ -11,22 +11,6 @@
 namespace orrery {
 namespace {
 
-void require_json(const Request& request) {
-  refuse_compressed(request);
-  const std::string header = request.header("Content-Type").value_or("");
-  const std::string_view type = trimmed(std::string_view(header).substr(0, header.find(';')));
-  // curl and forms call every body x-www-form-urlencoded; it is read as JSON all the same.
-  constexpr std::array<std::string_view, 4> kTypes{"", "application/json",
-                                                   "application/x-www-form-urlencoded", "text/plain"};
-  const bool known =
-      std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
-  if (!known && !(type.starts_with("application/") && type.ends_with("+json")))
-    throw HttpError(415, "Expected a body of application/json, got " + std::string(type.substr(0, 100)));
-  const std::string_view charset = parameter_of(header, "charset");
-  if (!charset.empty() && !equal_ignoring_case(charset, "utf-8") && !equal_ignoring_case(charset, "us-ascii"))
-    throw HttpError(415, "Expected JSON in UTF-8 (RFC 8259), got " + std::string(charset.substr(0, 40)));
-}
-
 // The query as an object: "/azimuth" (RFC 6901).
 std::string pointer_to(std::string_view name) {
   std::string pointer = "/";
@@ -39,6 +23,30 @@ std::string pointer_to(std::string_view name) {
       pointer += c;
   }
   return pointer;
+}
+
+// What a client believes to have asked for must not be passed over.
+void require_no_query(const Request& request) {
+  if (!request.query.empty())
+    throw InputError(pointer_to(request.query.begin()->first),
+                     "not read in the address: options stand in the body");
+}
+
+void require_json(const Request& request) {
+  refuse_compressed(request);
+  require_no_query(request);
+  const std::string header = request.header("Content-Type").value_or("");
+  const std::string_view type = trimmed(std::string_view(header).substr(0, header.find(';')));
+  // curl and forms call every body x-www-form-urlencoded; it is read as JSON all the same.
+  constexpr std::array<std::string_view, 4> kTypes{"", "application/json",
+                                                   "application/x-www-form-urlencoded", "text/plain"};
+  const bool known =
+      std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
+  if (!known && !(type.starts_with("application/") && type.ends_with("+json")))
+    throw HttpError(415, "Expected a body of application/json, got " + std::string(type.substr(0, 100)));
+  const std::string_view charset = parameter_of(header, "charset");
+  if (!charset.empty() && !equal_ignoring_case(charset, "utf-8") && !equal_ignoring_case(charset, "us-ascii"))
+    throw HttpError(415, "Expected JSON in UTF-8 (RFC 8259), got " + std::string(charset.substr(0, 40)));
 }
 
 // How well one entry of an Accept header, such as "image/*;q=0.5", fits a type: 0..1 by its weight, or none.

@@ -15,7 +15,7 @@ namespace orrery {
 
 Caller caller_of(const Request& request);
 
-// A body of JSON, of at most `body_bytes`. Refuses other content types, and what is compressed.
+// A body of JSON, of at most `body_bytes`. Refuses other content types, what is compressed, and a query.
 RouteBody json_body(const App& app);
 // Throws HttpError 415 for a body that is compressed.
 void refuse_compressed(const Request& request);

@@ -287,6 +287,32 @@ TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"b1", "i1", "b2", "i2", "b3"}));
 }
 
+// Work that was held back for long starts at last, and its old turn brings nobody before who waits.
+TEST(Admission, TimeDoesNotRunBackwards) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  Waiters waiters(admission);
+  std::list<Admission::Ticket> lost;
+  for (int i = 0; i < 2; ++i) {
+    lost.push_back(admission.enter(demand("x"), kNever));
+    timer.advance(50ms);
+    const auto other = admission.enter(demand("y"), kNever);
+  }
+  std::optional<Admission::Ticket> old_ticket;
+  std::thread old([&] { old_ticket.emplace(admission.enter(demand("x"), kNever)); });  // has lost many
+  EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 3; }));
+  for (int i = 0; i < 10; ++i) const auto work = admission.enter(demand("y", 1000), kNever);
+  std::optional ticket(admission.enter(demand("y", 1000), kNever));
+  waiters.add("v", demand("v"));
+  lost.pop_front();
+  ticket.reset();  // now the old work starts
+  old.join();
+  waiters.add("z", demand("z", 1000));
+  old_ticket.reset();
+  waiters.join();
+  EXPECT_EQ(waiters.order(), (TurnOrder{"v", "z"}));
+}
+
 TEST(Admission, WhoHasMostWaitingMakesRoom) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 100}, timer);

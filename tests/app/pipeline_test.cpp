@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <vector>
 
 #include "core/base/error.h"
 #include "server/app/work_memory.h"
+#include "server/http/over_limit.h"
 #include "tests/support/pictures.h"
 
 // Frames count as memory of whom they are made for, from their encoding until they are thrown away.
@@ -16,9 +18,13 @@ constexpr std::size_t kMega = 1 << 20;
 
 class PipelineMemory : public testing::Test {
  protected:
-  // Keeps `count` frames of so many bytes.
-  void run(int count, std::size_t bytes) {
-    int next = 0;
+  // Keeps `count` frames of so many bytes; `then` is called with the last one.
+  void run(std::size_t count, std::size_t bytes, const std::function<void()>& then) {
+    std::size_t next = 0;
+    const auto deliver = [&](std::int64_t, Frame&& frame) {
+      frames_.push_back(std::move(frame));
+      if (frames_.size() == count) then();
+    };
     Pipeline{.pool = test::shared_pool(),
              .background = false,
              .next = [&] { return next < count ? std::optional<std::int64_t>(next++) : std::nullopt; },
@@ -28,33 +34,38 @@ class PipelineMemory : public testing::Test {
                  },
              .encode = [&](const Film&) { return std::string(bytes, 'x'); },
              .memory = account_.get(),
-             .deliver = [&](std::int64_t, Frame&& frame) { frames_.push_back(std::move(frame)); }}
+             .deliver = deliver}
         .run();
   }
 
   WorkMemory memory_{100 * kMega};
-  const std::shared_ptr<MemoryAccount> account_ = memory_.open("a");
+  const std::shared_ptr<MemoryAccount> account_ = memory_.open("a");  // of films
   std::vector<Frame> frames_;
 };
 
 TEST_F(PipelineMemory, IsTakenWhileFramesAreKept) {
-  run(3, kMega);
-  EXPECT_GE(memory_.bytes(), 3 * kMega);
-  EXPECT_LE(memory_.bytes(), 3 * kMega + kMega / 2);
-  frames_.pop_back();
-  EXPECT_LE(account_->bytes(), 2 * kMega + kMega / 2);
+  run(3, kMega, [&] {
+    EXPECT_GE(memory_.bytes(), 3 * kMega);
+    EXPECT_LE(memory_.bytes(), 3 * kMega + kMega / 2);
+  });
+  EXPECT_EQ(frames_.size(), 3U);
   frames_.clear();
-  EXPECT_EQ(account_->bytes(), 0U);
+  EXPECT_EQ(memory_.bytes(), 0U);
 }
 
-TEST_F(PipelineMemory, IsTakenBeyondTheLimitForFramesThatAreMade) {
-  run(3, 20 * kMega);
+TEST_F(PipelineMemory, IsTakenBeyondTheLimitForFramesThatAreMadeAndTheNextOneWaits) {
+  const auto next_film = [] {
+    const MemoryCharge film(kMega);
+    interruption_point();
+  };
+  run(3, 20 * kMega, [&] { EXPECT_THROW(account_->run({}, next_film), ClientBusy); });
   EXPECT_EQ(frames_.size(), 3U);
-  EXPECT_THROW(account_->run({}, [] { interruption_point(); }), InputError);
+  frames_.clear();
+  EXPECT_NO_THROW(account_->run({}, next_film));
 }
 
 TEST_F(PipelineMemory, EndsWithTheLimitWhereAFrameIsLarge) {
-  EXPECT_THROW(run(1, 60 * kMega), InputError);
+  EXPECT_THROW(run(1, 60 * kMega, [] {}), InputError);
   EXPECT_TRUE(frames_.empty());
 }
 

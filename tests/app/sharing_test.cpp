@@ -75,14 +75,38 @@ TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
   EXPECT_EQ(order(), (TurnOrder{"shared"}));
 }
 
+TEST_F(SharedWork, IsNoLongerWorkOfWhoHasLeft) {
+  {
+    const Admission::Sharing first(admission_, sharers_, "a");
+    ask();
+    std::optional<Admission::Sharing> second;
+    second.emplace(admission_, sharers_, "b");
+    waiters_.add("b", demand("b"));
+    second.reset();
+    waiters_.add("b again", demand("b"));
+    EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "b", "a3", "b again", "shared"}));
+  }
+}
+
+TEST_F(SharedWork, IsNoLongerWorkOfWhoAskedFirstAndLeft) {
+  std::optional<Admission::Sharing> first;
+  first.emplace(admission_, sharers_, "a");
+  waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
+  const Admission::Sharing second(admission_, sharers_, "b");
+  first.reset();
+  waiters_.add("a", demand("a", 5));
+  EXPECT_EQ(order(), (TurnOrder{"a", "shared"}));  // finish at 5 10, not at 15 10
+}
+
 // Two ask for one picture; the first has much waiting before it.
 TEST_F(SharedWork, MayBeAPicture) {
   for (const char* name : {"a1", "a2"}) waiters_.add(name, demand("a"));
   waiters_.add("c", demand("c", 15));
+  SharersByKey by_key;
   Pictures pictures(1 << 20);
   const auto get = [&](const std::string& client) {
     Demand asked = demand(client);
-    asked.sharers = std::make_shared<Sharers>();
+    asked.sharers = by_key.of("key");
     pictures.get("key", {kNever, client, asked.sharers, &admission_}, [&](const std::stop_token& stop) {
       const auto ticket = admission_.enter(asked, stop);
       waiters_.note("picture");

@@ -210,6 +210,12 @@ TEST_F(Render, OptionsOfARequestAreChecked) {
   EXPECT_EQ(pointer_of({{"colour", "x"}}), "");
 }
 
+TEST_F(Render, OptionsInTheAddressOfAPostAreNotPassedOver) {
+  const auto problem =
+      expect_problem(client_.Post("/v1/render?width=4", small_scene().dump(), "application/json"), 422);
+  EXPECT_EQ(problem.at("errors")[0].at("pointer"), "/width");
+}
+
 constexpr const char* kJson = "application/json";
 
 // 2 threads x 10 s x 50 million rays, and what two balls of which one is a mirror take: half of the rays go

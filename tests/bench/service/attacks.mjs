@@ -25,11 +25,13 @@ function scene_of(number, material, objects, { depth = 5, side = 64, samples = 1
 
 const sphere = (radius, center = [0, 0, 0]) => ({ type: "sphere", center, radius, material: "m" });
 const shells = (count) => Array.from({ length: count }, (_, i) => sphere(1.5 - (0.6 * i) / count));
-const render = (scene, query = "") => ({
+const render = (scene, options = {}) => ({
   method: "POST",
-  path: `/v1/render${query}`,
-  body: JSON.stringify(scene),
+  path: "/v1/render",
+  headers: options.layers ? { Accept: "image/x-exr" } : {},
+  body: JSON.stringify({ scene, render: options }),
 });
+const kLayers = { layers: ["depth", "normal", "position", "uv", "object", "footprint"] };
 
 // Two planes of mirrors that face each other, and a ball between them.
 const hall = [
@@ -91,9 +93,9 @@ const glass_of = (depth, count) => [
   `glass, ${count} shells, depth ${depth}`,
   (n) => render(scene_of(n, kGlass, shells(count), { depth })),
 ];
-const many_of = (name, material, objects, options = {}, query = "") => [
+const many_of = (name, material, objects, more = {}, options = {}) => [
   name,
-  (n) => render(scene_of(n, material, objects, options), query),
+  (n) => render(scene_of(n, material, objects, more), options),
 ];
 const structures = ["list", "boxes", "obb-tree", "octree", "kd-sah", "adaptive-grid"];
 
@@ -106,7 +108,8 @@ export const kAttacks = [
   ...[16, 32].map((depth) => glass_of(depth, 12)),
   many_of("glass of many samples", kGlass, shells(2), { depth: 32, samples: 1400 }),
   many_of("glass of many pixels", kGlass, shells(2), { depth: 32, side: 2400 }),
-  many_of("glass of EXR layers", kGlass, shells(2), { depth: 32, side: 2000 }, "?layers=depth,normal,position"),
+  many_of("glass of EXR layers", kGlass, shells(2), { depth: 32, side: 2000 }, kLayers),
+  many_of("small pictures of EXR layers", kRough, shells(2), { side: 380 }, kLayers),
   many_of("mirrors that face each other", kMirror, hall, { depth: 32, side: 2000 }),
   many_of("mirrors, many samples", kMirror, hall, { depth: 32, samples: 4096 }),
   many_of("many lights", kRough, hall, { lights: many_lights, side: 500 }),
@@ -128,10 +131,10 @@ export const kAttacks = [
   many_of("a mesh", kRough, [grid_mesh(24)], { side: 4096 }),
   many_of("a mesh of glass", kGlass, [grid_mesh(24)], { depth: 32, side: 500 }),
   ...structures.map((name) =>
-    many_of(`a mesh by ${name}`, kGlass, [grid_mesh(24)], { depth: 12, side: 500 }, `?accelerator=${name}`),
+    many_of(`a mesh by ${name}`, kGlass, [grid_mesh(24)], { depth: 12, side: 500 }, { accelerator: name }),
   ),
-  many_of("sampled and predicted", kGlass, shells(4), { depth: 16 }, "?prediction=network&reorder=true"),
-  many_of("in double precision", kGlass, shells(2), { depth: 32 }, "?precision=double"),
+  many_of("sampled and predicted", kGlass, shells(4), { depth: 16 }, { prediction: "network", reorder: true }),
+  many_of("in double precision", kGlass, shells(2), { depth: 32 }, { precision: "double" }),
   many_of("what moves", kGlass, [], { models: tiny_model, instances: moving, depth: 16, side: 500 }),
   ["large pictures", (n) => render(paper_of(n, square(4096)))],
   ["pictures of many samples", (n) => render(paper_of(n, square(600, 256)))],

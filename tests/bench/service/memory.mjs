@@ -29,6 +29,7 @@ function scene_of(objects, side = 64) {
     objects,
   };
 }
+const kLayers = { layers: ["depth", "normal", "position", "uv", "object", "footprint"] };
 const ball = () => [{ type: "sphere", center: [0, 0, 0], radius: 0.5 + Math.random(), material: "m" }];
 
 // One polygon: a triangle for each two bytes.
@@ -63,19 +64,20 @@ async function put(port, text) {
 
 // What an attacker asks for next.
 function requests(assets) {
-  const render = (body, query = "", headers = {}) => {
-    const request = json(body);
-    return { path: `/v1/render${query}`, method: "POST", ...request, headers: { ...request.headers, ...headers } };
+  const render = (scene, options = {}, headers = {}) => {
+    const request = json({ scene, render: options });
+    return { path: "/v1/render", method: "POST", ...request, headers: { ...request.headers, ...headers } };
   };
   const mesh = (more = {}) => [{ type: "mesh", asset: pick(assets), material: "m", ...more }];
   const structures = ["list", "boxes", "bvh", "octree", "kd-sah", "grid", "obb-tree"];
   return [
     () => render(scene_of(mesh())),
     () => render(scene_of(mesh({ crease_degrees: 40 }))),
-    () => render(scene_of(mesh()), `?accelerator=${pick(structures)}&precision=double`),
+    () => render(scene_of(mesh()), { accelerator: pick(structures), precision: "double" }),
     () => render(scene_of(ball(), 4096)),
-    () => render(scene_of(ball(), 4096), "", { Accept: "image/x-exr" }),
-    () => render(scene_of(ball(), 2900), "?layers=depth,normal", { Accept: "image/x-exr" }),
+    () => render(scene_of(ball(), 4096), {}, { Accept: "image/x-exr" }),
+    () => render(scene_of(ball(), 2900), { layers: ["depth", "normal"] }, { Accept: "image/x-exr" }),
+    () => render(scene_of(ball(), 390), kLayers, { Accept: "image/x-exr" }),
     () => ({ path: "/v1/scenes", method: "POST", ...json(scene_of(mesh())) }),
     () => ({ path: "/v1/render", method: "POST", headers: { "Content-Type": "application/json" }, body: kNested }),
     () => ({ path: "/v1/render", method: "POST", headers: { "Content-Type": "application/json" }, body: kNumbers }),

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+
+namespace orrery {
+
+// Clients that want one piece of work, once for each of their requests. Admission guards it.
+using Sharers = std::multiset<std::string>;
+
+// Who shares what, by its key, for as long as somebody holds it. Safe from any thread.
+class SharersByKey {
+ public:
+  std::shared_ptr<Sharers> of(const std::string& key) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(sharers_, [](const auto& entry) { return entry.second.expired(); });
+    std::weak_ptr<Sharers>& known = sharers_[key];
+    auto sharers = known.lock();
+    if (!sharers) known = sharers = std::make_shared<Sharers>();
+    return sharers;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::weak_ptr<Sharers>> sharers_;  // guarded by mutex_
+};
+
+}  // namespace orrery
