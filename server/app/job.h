@@ -85,8 +85,7 @@ class Job {
   const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
-  std::shared_ptr<MemoryAccount>
-      memory_;  // of films and frames; for its thread, which gives it back at the end
+  std::shared_ptr<MemoryAccount> memory_;  // of films; for its thread, which gives it back at the end
   std::stop_source cancelled_;
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable_any changed_;

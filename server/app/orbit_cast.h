@@ -53,7 +53,7 @@ class OrbitCast {
 
   const OrbitSpec spec_;
   const RenderServices services_;
-  const std::shared_ptr<MemoryAccount> memory_;  // of films and frames
+  const std::shared_ptr<MemoryAccount> memory_;  // of films; frames have another like it
   const std::shared_ptr<Sharers> sharers_ = std::make_shared<Sharers>();
   const std::chrono::seconds frame_time_;
   std::stop_source nobody_watches_;  // then nobody can join either

@@ -59,9 +59,9 @@ class Line {
   Frame encode(RenderResult&& rendered, double render_ms) const {
     const WorkScope scope({nullptr, &pipeline_.stop});
     Frame frame = encode_frame(std::move(rendered), render_ms, pipeline_.encode);
+    if (!memory_) return frame;
     frame.bytes.shrink_to_fit();
     const auto charge = [&] { return MemoryCharge(frame.bytes.capacity()); };
-    if (!memory_) return frame;
     frame.charge = memory_->run(pipeline_.stop, charge);
     memory_->settle(0);  // all frames that there are count, also where that was refused
     return frame;

@@ -76,16 +76,14 @@ TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
 }
 
 TEST_F(SharedWork, IsNoLongerWorkOfWhoHasLeft) {
-  {
-    const Admission::Sharing first(admission_, sharers_, "a");
-    ask();
-    std::optional<Admission::Sharing> second;
-    second.emplace(admission_, sharers_, "b");
-    waiters_.add("b", demand("b"));
-    second.reset();
-    waiters_.add("b again", demand("b"));
-    EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "b", "a3", "b again", "shared"}));
-  }
+  const Admission::Sharing first(admission_, sharers_, "a");
+  ask();
+  std::optional<Admission::Sharing> second;
+  second.emplace(admission_, sharers_, "b");
+  waiters_.add("b", demand("b"));
+  second.reset();
+  waiters_.add("b again", demand("b"));
+  EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "b", "a3", "b again", "shared"}));
 }
 
 TEST_F(SharedWork, IsNoLongerWorkOfWhoAskedFirstAndLeft) {

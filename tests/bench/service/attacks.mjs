@@ -1,7 +1,7 @@
 // Requests of under 64 KiB that ask for as much work as they can.
 
 import { readFileSync } from "node:fs";
-import { kPaper } from "./support.mjs";
+import { kLayers, kPaper } from "./support.mjs";
 
 const kGlass = { type: "refractive", ior: 1.5, fresnel: "exact" };
 const kMirror = { type: "reflective", n: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
@@ -31,7 +31,6 @@ const render = (scene, options = {}) => ({
   headers: options.layers ? { Accept: "image/x-exr" } : {},
   body: JSON.stringify({ scene, render: options }),
 });
-const kLayers = { layers: ["depth", "normal", "position", "uv", "object", "footprint"] };
 
 // Two planes of mirrors that face each other, and a ball between them.
 const hall = [

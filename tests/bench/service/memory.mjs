@@ -5,7 +5,8 @@ import net from "node:net";
 import { kVictim, open_loop } from "./blockade.mjs";
 import { Client } from "./client.mjs";
 import {
-  Gauges, memory_bound, mib, most, ms, new_picture, outcome, p99, pause, process_state, row, tally, with_service,
+  Gauges, kLayers, memory_bound, mib, most, ms, new_picture, outcome, p99, pause, process_state, row, tally,
+  with_service,
 } from "./support.mjs";
 
 const kPicture_ms = 1000;
@@ -29,7 +30,6 @@ function scene_of(objects, side = 64) {
     objects,
   };
 }
-const kLayers = { layers: ["depth", "normal", "position", "uv", "object", "footprint"] };
 const ball = () => [{ type: "sphere", center: [0, 0, 0], radius: 0.5 + Math.random(), material: "m" }];
 
 // One polygon: a triangle for each two bytes.

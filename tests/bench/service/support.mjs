@@ -120,6 +120,9 @@ export async function memory_bound(port) {
   return 1.1 * limits.memory_bytes;
 }
 
+// Options of a picture with all layers, which films of sums hold.
+export const kLayers = { layers: ["depth", "normal", "position", "uv", "object", "footprint"] };
+
 // ---- load
 
 // `count` clients that ask again as soon as they have an answer, until stop(). `path_of` gives the next address,
