@@ -9,9 +9,15 @@ namespace orrery {
 namespace {
 
 constexpr double kRaysAByte = 1;                      // of JSON or of a mesh: measured between 0.5 and 2
-constexpr double kExpectedRate = 10e6;                // rays a second, before anything was measured
+constexpr double kExpectedRate = 10e6;                // rays a second, in all places together
 constexpr std::chrono::milliseconds kLeastPlace{50};  // that work keeps a place, whoever waits
 constexpr double kMemory_s = 10;  // seconds of work after which a measurement has faded to 1/e
+
+// What is charged for a place of so many. A rate that was measured would charge little after work that was
+// slower than expected, and it is then that the charge matters.
+double rays_in(std::chrono::duration<double> held, int places) {
+  return held.count() * kExpectedRate / places;
+}
 
 std::string whole(double rays) {
   char text[32];
@@ -80,7 +86,8 @@ Admission::Ticket Admission::enter_again(const Demand& demand, const std::stop_t
 Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   if (entry == Entry::first && !may_begin(demand, entry)) make_room(demand);
-  const auto work = works_.emplace(works_.end(), demand, entry);
+  const double charge = std::min(demand.cost, kLeastCost + rays_in(kLeastPlace, limits_.running));
+  const auto work = works_.emplace(works_.end(), demand, entry, charge);
   try {
     wait_for_place(lock, *work, stop);
   } catch (...) {
@@ -126,7 +133,7 @@ void Admission::Ticket::set_cost(double rays) {
   work_->demand.cost = rays;
 }
 
-bool Admission::Ticket::expired() const { return work_->state == State::lost; }
+bool Admission::Ticket::expired() const { return work_->state != State::runs; }
 
 void Admission::Ticket::renew() {
   std::unique_lock lock(from_->mutex_);
@@ -145,31 +152,33 @@ Admission::Sharing::Sharing(Admission& in, std::shared_ptr<Sharers> sharers, std
     : in_(in), sharers_(std::move(sharers)), client_(std::move(client)) {
   const std::lock_guard lock(in_.mutex_);
   sharers_->insert(client_);
-  for (Work& work : in_.works_)
-    if (work.demand.sharers == sharers_) in_.update_finishes(work);
+  update_works();
   in_.start_next();
 }
 
 Admission::Sharing::~Sharing() {
   const std::lock_guard lock(in_.mutex_);
   sharers_->erase(sharers_->find(client_));
+  update_works();
+}
+
+void Admission::Sharing::update_works() {
   for (Work& work : in_.works_)
     if (work.demand.sharers == sharers_) in_.update_finishes(work);
 }
 
 void Admission::update_finishes(Work& work) {
   const Demand& demand = work.demand;
-  const bool alone = !demand.sharers || demand.sharers->empty();
   const auto wants = [&](const std::string& client) {
-    return alone ? client == demand.client : demand.sharers->count(client) > 0;
+    return demand.is_shared() ? demand.sharers->count(client) > 0 : client == demand.client;
   };
   const auto add = [&](const std::string& client) {
     if (!work.is_wanted_by(client)) work.finishes.emplace(client, virtual_finish(work, client));
   };
-  if (alone)
-    add(demand.client);
-  else
+  if (demand.is_shared())
     std::for_each(demand.sharers->begin(), demand.sharers->end(), add);
+  else
+    add(demand.client);
   std::erase_if(work.finishes, [&](const auto& entry) { return !wants(entry.first); });
 }
 
@@ -190,7 +199,7 @@ void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, c
     waits_[static_cast<int>(lane)].Observe(std::chrono::duration<double>(timer_.now() - asked).count());
     return;
   }
-  const State state = work.state.exchange(State::lost);
+  const State state = work.state.exchange(State::dropped);
   if (state == State::waits) throw Cancelled();
   throw ClientBusy("Others wait for their turn, and you had asked for more than they (queue_rays)",
                    retry_after_s(lane), "queue_rays");
@@ -214,6 +223,8 @@ void Admission::begin(Work& work) {
   latest_ = work.demand.lane;
   double& virtual_time = virtual_time_[static_cast<int>(latest_)];
   virtual_time = std::max(virtual_time, work.finish());
+  std::erase_if(overruns_[static_cast<int>(latest_)],
+                [&](const auto& overrun) { return overrun.second <= virtual_time; });
   work.since = timer_.now();
   work.state = State::runs;
   work.changed.notify_one();
@@ -226,14 +237,28 @@ void Admission::leave(Work& work, bool done) {
   else if (running_ > 0)
     measured_ = timer_.now();  // it was broken off: nobody knows how much of it was done
   if (work.state == State::runs) give_up_place(work);
+  if (work.state != State::dropped) add_overrun(work);
   works_.remove_if([&](const Work& other) { return &other == &work; });
   start_next();
 }
 
+double Admission::used(const Work& work) const {
+  return kLeastCost + rays_in(timer_.now() - work.since, limits_.running);
+}
+
 void Admission::charge(Work& work) {
-  const std::chrono::duration<double> held = timer_.now() - work.since;
-  work.charge = kLeastCost + held.count() * rays_a_second() / limits_.running;
+  work.charge = used(work);
   work.used += work.charge;
+}
+
+void Admission::add_overrun(const Work& work) {
+  const int lane = static_cast<int>(work.demand.lane);
+  const double rays = used(work) - std::max(kLeastCost, work.charge);
+  if (rays <= 0) return;
+  for (const auto& [client, finish] : work.finishes) {
+    double& until = overruns_[lane][client];
+    until = std::max(until, virtual_time_[lane]) + rays;
+  }
 }
 
 void Admission::give_up_place(const Work& work) {
@@ -280,7 +305,9 @@ Admission::Work* Admission::next() {
 // What has lost its place does not wait for what its client asked for later.
 double Admission::virtual_finish(const Work& work, const std::string& client) const {
   const bool again = work.entry == Entry::again;
-  double start = virtual_time_[static_cast<int>(work.demand.lane)];
+  const int lane = static_cast<int>(work.demand.lane);
+  const auto overrun = overruns_[lane].find(client);
+  double start = std::max(virtual_time_[lane], overrun == overruns_[lane].end() ? 0 : overrun->second);
   for (const Work& w : works_)
     if (w.state == State::waits && w.demand.lane == work.demand.lane && w.is_wanted_by(client) &&
         (!again || w.entry == Entry::again))
@@ -290,7 +317,7 @@ double Admission::virtual_finish(const Work& work, const std::string& client) co
 
 bool Admission::has_lost_many(const Demand& demand) const {
   const auto lost_many = [&](const std::string& client) { return has_lost_many(demand.lane, client); };
-  if (!demand.sharers || demand.sharers->empty()) return lost_many(demand.client);
+  if (!demand.is_shared()) return lost_many(demand.client);
   return std::all_of(demand.sharers->begin(), demand.sharers->end(), lost_many);
 }
 

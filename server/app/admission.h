@@ -48,6 +48,7 @@ struct Demand {
   std::string client;                     // who asked for it first, and wants it where nobody shares it
   double cost = 0;                        // rays, as expected
   std::shared_ptr<Sharers> sharers = {};  // nobody can share it: null
+  bool is_shared() const { return sharers && !sharers->empty(); }
 };
 
 inline constexpr double kLeastCost = 20'000;  // rays that the fixed work of a render amounts to
@@ -58,8 +59,9 @@ double cost_of_reading(std::size_t bytes);
 //  - Interactive work goes first. Batch work has at most half of the places, and one of every two that
 //    come free as long as it has none.
 //  - Within a lane, clients share by cost: each piece starts in the order of its client's virtual finish
-//    time (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for. Work that
-//    several clients want starts in the earliest turn of any of them, and counts as work of each.
+//    time (self-clocked fair queueing: Golestani, INFOCOM 1994), however much the others ask for. The time
+//    that work had a place beyond what was expected counts as work of its client, too. Work that several
+//    clients want starts in the earliest turn of any of them, and counts as work of each.
 //  - Work that has had its place for a while loses it to who waits: interactive work to interactive work,
 //    batch work to both, and interactive work to batch work while none of that has a place. It goes on with
 //    what it does until it renews its ticket, which waits in the queue. A client that has lost many places
@@ -110,6 +112,7 @@ class Admission {
     Sharing(const Sharing&) = delete;
 
    private:
+    void update_works();  // with the mutex of in_ held
     Admission& in_;
     const std::shared_ptr<Sharers> sharers_;
     const std::string client_;
@@ -133,10 +136,10 @@ class Admission {
   Ticket enter_again(const Demand& demand, const std::stop_token& stop);
 
  private:
-  enum class Entry { first, next, again };  // work that begins; that goes on; that has lost its place
-  enum class State { waits, runs, lost, dropped };
+  enum class Entry { first, next, again };          // work that begins; that goes on; that has lost its place
+  enum class State { waits, runs, lost, dropped };  // lost: its place; dropped: it waits no more
   struct Work {
-    Work(const Demand& d, Entry e) : demand(d), entry(e), counts(e == Entry::first), charge(d.cost) {}
+    Work(const Demand& d, Entry e, double c) : demand(d), entry(e), counts(e == Entry::first), charge(c) {}
     double finish() const;  // the earliest
     bool is_wanted_by(const std::string& client) const { return finishes.count(client) > 0; }
 
@@ -144,7 +147,7 @@ class Admission {
     Entry entry;
     const bool counts;  // among what may wait
     std::atomic<State> state{State::waits};
-    double charge;    // rays that the next place is expected to take, or the last one did
+    double charge;    // rays that the first place is expected to take, or the last one did
     double used = 0;  // rays, about, in the places that it has lost
     std::map<std::string, double> finishes;  // virtual time, for each client that wants it
     Clock::time_point since{};               // it got its place, or asked for one
@@ -158,7 +161,9 @@ class Admission {
   // Throws ClientBusy, but only at a first entry, or Cancelled.
   void wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop);
   void begin(Work& work);
-  void charge(Work& work);  // what it has used since it got its place
+  double used(const Work& work) const;  // rays, about, since it got its place
+  void charge(Work& work);              // what it has used
+  void add_overrun(const Work& work);   // of a place that it has given up
   void give_up_place(const Work& work);
   void start_next();
   void make_room(const Demand& demand);
@@ -189,8 +194,9 @@ class Admission {
   mutable std::mutex mutex_;  // guards all below
   Works works_;               // those that wait in order of arrival
   int running_ = 0, running_batch_ = 0;
-  Lane latest_ = Lane::interactive;  // that had a turn
-  double virtual_time_[2] = {0, 0};  // of a lane: finish of the piece that started last
+  Lane latest_ = Lane::interactive;            // that had a turn
+  double virtual_time_[2] = {0, 0};            // of a lane: finish of the piece that started last
+  std::map<std::string, double> overruns_[2];  // of a lane, by client: virtual time, if later than that
   // The measured rate: rays of work done and seconds in which something ran, recent ones counting more.
   double done_rays_ = 0, busy_s_ = 0;
   Clock::time_point measured_;

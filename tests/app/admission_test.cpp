@@ -113,24 +113,75 @@ TEST(Admission, WhoComesTakesAPlaceThatWasHeldForAWhile) {
   EXPECT_EQ(admission.running(), 1);
 }
 
-// 10 million rays a second are expected before anything was measured.
+class CountingTimer final : public ManualTimer {
+ public:
+  Clock::time_point now() const override {
+    ++asked;
+    return ManualTimer::now();
+  }
+  mutable std::atomic<int> asked{0};
+};
+
+// Of what goes on, before its next place: what took 60 ms goes on before what took 600 ms.
 TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
+  CountingTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  std::optional<Admission::Ticket> last;
+  std::list<Admission::Ticket> tickets;
+  for (const auto held : {600ms, 60ms}) {
+    last.reset();
+    tickets.push_back(admission.enter(demand("z" + std::to_string(held.count())), kNever));
+    timer.advance(held);
+    last.emplace(admission.enter(demand("y"), kNever));
+  }
+  TurnOrder order;  // guarded by the one place
+  const auto renew = [&](Admission::Ticket& ticket, const char* name) {
+    const int before = timer.asked;
+    std::thread thread([&order, &ticket, name] {
+      ticket.renew();
+      order.push_back(name);
+      const auto done = std::move(ticket);
+    });
+    EXPECT_TRUE(test::eventually([&] { return timer.asked > before; }));
+    EXPECT_EQ(admission.waiting(), 2);  // waits until it waits, as it does so with a lock held
+    return thread;
+  };
+  std::thread first = renew(tickets.front(), "600 ms"), second = renew(tickets.back(), "60 ms");
+  last.reset();
+  first.join();
+  second.join();
+  EXPECT_EQ(order, (TurnOrder{"60 ms", "600 ms"}));
+}
+
+// However slow the work that is done: its rate does not decide what time is charged as.
+TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
-  std::optional first(admission.enter(demand("z"), kNever));
-  timer.advance(1000ms);
-  std::optional second(admission.enter(demand("y"), kNever));
-  std::thread renewal([&] { first->renew(); });
-  EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
+  for (const char* client : {"slow", "quick"}) {
+    const auto ticket = admission.enter(demand(client, 30'000), kNever);
+    if (client == std::string("slow")) timer.advance(1000ms);  // as 10 million rays
+  }
   Waiters waiters(admission);
-  waiters.add("more", demand("a", 10.1e6));
-  waiters.add("less", demand("b", 9.9e6));
-  second.reset();
-  renewal.join();
-  EXPECT_EQ(waiters.order(), TurnOrder{"less"});
-  first.reset();
+  std::optional ticket(admission.enter(demand("z", 30'000), kNever));
+  waiters.add("slow", demand("slow", 30'000));
+  for (int i = 0; i < 3; ++i) waiters.add("quick", demand("quick", 100'000));
+  ticket.reset();
   waiters.join();
-  EXPECT_EQ(waiters.order(), (TurnOrder{"less", "more"}));
+  EXPECT_EQ(waiters.order(), (TurnOrder{"quick", "quick", "quick", "slow"}));
+}
+
+// 50 ms of work, however much there is: it starts beside who asks for less, and not after hours of that.
+TEST(Admission, LongWorkPaysForItsFirstPlaceAlone) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1e15}, timer);
+  Waiters waiters(admission);
+  {
+    const auto ticket = admission.enter(demand("z"), kNever);
+    for (int i = 0; i < 2; ++i) waiters.add("small", demand("a", 400'000));
+    waiters.add("long", demand("b", 1e12));
+  }
+  waiters.join();
+  EXPECT_EQ(waiters.order(), (TurnOrder{"small", "long", "small"}));  // finish at 0.4, 0.52, 0.8 million
 }
 
 TEST(Admission, InteractiveWorkTakesThePlaceOfBatchWork) {

@@ -8,7 +8,7 @@ namespace orrery {
 
 // A timer whose time stands still but for advance(), which does what falls due on the calling thread, in
 // order.
-class ManualTimer final : public Timer {
+class ManualTimer : public Timer {
  public:
   Clock::time_point now() const override { return now_; }
 

@@ -6,7 +6,9 @@ import { FrameReader } from "../daemon.mjs";
 import {
   memory_bound, mib, ms, outcome, new_picture, p99, pause, percent, process_state, row, tally, with_service,
 } from "./support.mjs";
+import { once } from "node:events";
 import http from "node:http";
+import { Worker } from "node:worker_threads";
 
 const kPeriod_ms = 100; // between two small pictures, and two frames of the orbit
 const kPicture_ms = 1000;
@@ -49,36 +51,14 @@ function watch(port, path) {
 
 let number = 0;
 
-const kJson = { "Content-Type": "application/json" };
-
-// One client's part: it asks for something new whenever it has an answer, but reads no stream.
-async function attack_once(client, [, ask, scene], statuses, goes_on) {
-  let id = null;
-  if (scene) {
-    const body = JSON.stringify(scene(++number));
-    const answer = await client.ask("/v1/scenes", { method: "POST", headers: kJson, body });
-    id = answer.status < 300 ? JSON.parse(answer.text()).id : "nosuch";
-  }
-  while (goes_on()) {
-    const { path, ...request } = ask(++number, id);
-    if ((request.body?.length ?? 0) > 65536) throw new Error(`the attack has ${request.body.length} bytes`);
-    const answer = await client.ask(path, request);
-    statuses.push(outcome(answer));
-    if (answer.failure || path.includes("/orbit")) return;
-    if (answer.status !== 200) await pause(20);
-  }
-}
-
-// Attacks until stop(), which tells what the attackers were answered.
-function attack({ port }, one, { count, addresses }) {
-  const statuses = [];
-  let going = true;
-  const clients = Array.from({ length: count }, (_, i) => new Client(port, `127.0.0.${2 + (i % addresses)}`));
-  const all = Promise.all(clients.map((client) => attack_once(client, one, statuses, () => going)));
+// Attacks until stop(), which resolves to what the attackers were answered.
+function attack({ port }, [name], { count, addresses }) {
+  const workerData = { port, name, count, addresses };
+  const worker = new Worker(new URL("attackers.mjs", import.meta.url), { workerData });
+  const failed = new Promise((_, reject) => worker.on("error", reject));
   return async () => {
-    going = false;
-    clients.forEach((client) => client.leave());
-    await all;
+    worker.postMessage("stop");
+    const [statuses] = await Promise.race([once(worker, "message"), failed]);
     return statuses;
   };
 }

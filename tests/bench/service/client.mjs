@@ -101,11 +101,11 @@ export class Client {
   #finish() {
     const { resolve, sent, answer, first } = this.#waiting;
     const ms = performance.now() - sent;
-    const bytes = Buffer.concat(this.#parts);
+    const parts = this.#parts; // put together if asked for: that takes a while for a large picture
     this.#waiting = null;
     this.#forget();
     if (answer.closes) this.leave();
-    resolve({ ...answer, text: () => bytes.toString("utf8", answer.body_at), ms, sent, first });
+    resolve({ ...answer, text: () => Buffer.concat(parts).toString("utf8", answer.body_at), ms, sent, first });
   }
 
   #end(failure) {

@@ -90,11 +90,12 @@ export class Gauges {
     const answer = await this.client.ask("/metrics");
     if (answer.status !== 200) throw new Error(`/metrics: ${outcome(answer)}`);
     const text = answer.text();
-    const value = (name) => Number(new RegExp(`^${name} (\\S+)`, "m").exec(text)[1]);
+    const value = (name) => Number(new RegExp(`^${name.replace(/[{}]/g, "\\$&")} (\\S+)`, "m").exec(text)[1]);
     const stored = [...text.matchAll(/^orrery_stored_bytes\{[^}]*\} (\S+)/gm)];
     return {
       running: value("orrery_renders_running"),
       waiting: value("orrery_renders_waiting"),
+      left_queue: value('orrery_given_up_total{stage="queue"}'),
       stored: stored.reduce((sum, match) => sum + Number(match[1]), 0),
     };
   }
