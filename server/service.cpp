@@ -9,6 +9,7 @@
 #include "core/base/version.h"
 #include "server/http/cors.h"
 #include "server/http/process_limits.h"
+#include "server/http/target.h"
 #include "server/readings.h"
 #include "server/routes/access.h"
 #include "server/routes/problem.h"
@@ -153,7 +154,9 @@ HttpServer::Admitted Service::admit(const Router& router, Request& request) {
     return {.body = {}, .answer = [this, response](Request& r) { return finished(r, response); }};
   };
   if (request.path.empty())  // links of the page begin at its folder
-    return answered({.status = 308, .headers = {{"Location", "/"}, {"Cache-Control", "no-store"}}});
+    return answered(
+        {.status = 308,
+         .headers = {{"Location", "/" + query_text(request.query)}, {"Cache-Control", "no-store"}}});
   if (const auto answer = preflight(request, origins)) return answered(*answer);
   refuse_foreign(request, origins, !settings_.tokens_file.empty());
   if (request.method == "OPTIONS")

@@ -1,6 +1,7 @@
 #include "server/http/target.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "server/http/authority.h"
 
@@ -113,6 +114,25 @@ Target parse_target(std::string_view target) {
     split(path, '/', [&](std::string_view segment) { parsed.segments.push_back(decode(segment, false)); });
   if (mark != std::string_view::npos) parsed.query = parse_query(target.substr(mark + 1));
   return parsed;
+}
+
+std::string query_text(const Fields& query) {
+  std::string text;
+  const auto add = [&](std::string_view part) {
+    constexpr std::string_view kHex = "0123456789ABCDEF", kUnreserved = "-._~";
+    for (const unsigned char c : part)
+      if (std::isalnum(c) || kUnreserved.find(static_cast<char>(c)) != std::string_view::npos)
+        text += static_cast<char>(c);
+      else
+        text += {'%', kHex[c / 16], kHex[c % 16]};
+  };
+  for (const auto& [name, value] : query) {
+    text += text.empty() ? '?' : '&';
+    add(name);
+    text += '=';
+    add(value);
+  }
+  return text;
 }
 
 }  // namespace orrery

@@ -21,4 +21,7 @@ struct Target {
 // characters, or a name that the query has twice.
 Target parse_target(std::string_view target);
 
+// "?" and the fields, encoded; none: "".
+std::string query_text(const Fields& query);
+
 }  // namespace orrery

@@ -84,6 +84,8 @@ TEST(Target, IsDecodedPieceByPiece) {
   EXPECT_EQ(target.segments, (std::vector<std::string>{"a/b", "c"}));
   EXPECT_EQ(target.path, "/a/b/c");
   EXPECT_EQ(target.query, (Fields{{"x", "1 2"}, {"y", "\xC3\xA9"}, {"z", ""}, {"w", "="}}));
+  EXPECT_EQ(query_text(target.query), "?x=1%202&y=%C3%A9&z=&w=%3D");
+  EXPECT_EQ(query_text({}), "");
 }
 
 TEST(Target, RefusesWhatIsNoText) {

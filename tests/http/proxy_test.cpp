@@ -16,6 +16,7 @@ TEST(Proxy, ServesBelowThePrefixAndWhereTheProxyTookItOff) {
   const auto folder = client.Get("/render");
   EXPECT_EQ(folder->status, 308);
   EXPECT_EQ(folder->get_header_value("Location"), "/render/");
+  EXPECT_EQ(client.Get("/render?scene=7&t=0.5")->get_header_value("Location"), "/render/?scene=7&t=0.5");
   expect_problem(client.Get("/other/v1/limits"), 404);
   expect_problem(client.Get("/renderv1/limits"), 404);
 }

@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "server/app/admission.h"
+#include "tests/app/manual_timer.h"
+#include "tests/app/waiters.h"
+
+// The time after which those who are turned away are told to come again.
+namespace orrery {
+namespace {
+
+using test::demand;
+using test::kNever;
+using test::Waiters;
+
+// What an admission with one place tells who comes while so many rays wait.
+double retry_after(Admission& admission, double waiting) {
+  Waiters waiters(admission);
+  const auto ticket = admission.enter(demand("z"), kNever);
+  waiters.add("a", demand("a", waiting));
+  try {
+    admission.enter(demand("b", waiting), kNever);
+  } catch (const Busy& busy) {
+    return busy.retry_after_s();
+  }
+  return 0;
+}
+
+struct Work {
+  double expected, traced;  // rays
+  double seconds;
+};
+// What is told after such work, one piece after the other, while so many rays wait.
+double retry_after(const std::vector<Work>& done, double waiting) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1}, timer);
+  for (const Work& work : done) {
+    auto ticket = admission.enter(demand("z", work.expected), kNever);
+    timer.advance(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(work.seconds)));
+    ticket.set_cost(work.traced);
+  }
+  return retry_after(admission, waiting);
+}
+
+// The time after which to come again: the rays that wait over the rate at which rays were traced.
+TEST(RetryAfter, IsWhatWaitsOverTheRateMeasured) {
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 10e6), 5);
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 40e6), 20);
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 0.5}}, 40e6), 5);
+}
+
+TEST(RetryAfter, HasBounds) {
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 2.5e6), 1.25);
+  EXPECT_EQ(retry_after({{4e6, 4e6, 2}}, 1.5e6), 1);
+  EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 58e6), 29);
+  EXPECT_EQ(retry_after({{4e6, 4e6, 2}}, 62e6), 30);
+}
+
+TEST(RetryAfter, IsByTheRaysTracedNotThoseExpected) {
+  EXPECT_DOUBLE_EQ(retry_after({{40e6, 4e6, 2}}, 10e6), 5);
+}
+
+TEST(RetryAfter, IsAGuessBeforeAnythingWasMeasured) { EXPECT_DOUBLE_EQ(retry_after({}, 50e6), 5); }
+
+// After 10 s of work a measurement counts for 1/e.
+TEST(RetryAfter, FollowsARateThatChanges) {
+  const double faded = std::exp(-1), rate = (1e6 * faded + 9e6) / (10 * faded + 10);
+  EXPECT_DOUBLE_EQ(retry_after({{1e6, 1e6, 10}, {9e6, 9e6, 10}}, 5e6), 5e6 / rate);
+}
+
+TEST(RetryAfter, CountsWorkAtOneTimeTogetherAndIdleTimeNot) {
+  ManualTimer timer;
+  Admission two({.running = 2, .queue_rays = 1}, timer);
+  {
+    const auto a = two.enter(demand("a", 3e6), kNever), b = two.enter(demand("b", 1e6), kNever);
+    timer.advance(std::chrono::seconds(1));
+  }
+  timer.advance(std::chrono::hours(1));
+  const auto other = two.enter(demand("y"), kNever);
+  EXPECT_DOUBLE_EQ(retry_after(two, 20e6), 5);
+}
+
+}  // namespace
+}  // namespace orrery
