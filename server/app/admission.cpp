@@ -143,6 +143,8 @@ void Admission::Ticket::renew() {
   from_->works_.splice(from_->works_.end(), from_->works_, place);
   work_->entry = Entry::again;
   from_->charge(*work_);
+  work_->used += from_->used(*work_);
+  work_->charge = kLeastCost;
   from_->wait_for_place(lock, *work_, stop_);
   lock.unlock();
   set_alarm();
@@ -237,7 +239,7 @@ void Admission::leave(Work& work, bool done) {
   else if (running_ > 0)
     measured_ = timer_.now();  // it was broken off: nobody knows how much of it was done
   if (work.state == State::runs) give_up_place(work);
-  if (work.state != State::dropped) add_overrun(work);
+  if (work.state != State::dropped) charge(work);
   works_.remove_if([&](const Work& other) { return &other == &work; });
   start_next();
 }
@@ -246,12 +248,7 @@ double Admission::used(const Work& work) const {
   return kLeastCost + rays_in(timer_.now() - work.since, limits_.running);
 }
 
-void Admission::charge(Work& work) {
-  work.charge = used(work);
-  work.used += work.charge;
-}
-
-void Admission::add_overrun(const Work& work) {
+void Admission::charge(const Work& work) {
   const int lane = static_cast<int>(work.demand.lane);
   const double rays = used(work) - std::max(kLeastCost, work.charge);
   if (rays <= 0) return;

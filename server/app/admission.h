@@ -147,8 +147,8 @@ class Admission {
     Entry entry;
     const bool counts;  // among what may wait
     std::atomic<State> state{State::waits};
-    double charge;    // rays that the first place is expected to take, or the last one did
-    double used = 0;  // rays, about, in the places that it has lost
+    double charge;                           // rays that were charged for its place
+    double used = 0;                         // rays, about, in the places that it has lost
     std::map<std::string, double> finishes;  // virtual time, for each client that wants it
     Clock::time_point since{};               // it got its place, or asked for one
     std::condition_variable_any changed;
@@ -162,8 +162,7 @@ class Admission {
   void wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop);
   void begin(Work& work);
   double used(const Work& work) const;  // rays, about, since it got its place
-  void charge(Work& work);              // what it has used
-  void add_overrun(const Work& work);   // of a place that it has given up
+  void charge(const Work& work);        // to its clients, what it has used beyond what was expected
   void give_up_place(const Work& work);
   void start_next();
   void make_room(const Demand& demand);

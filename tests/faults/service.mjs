@@ -26,7 +26,7 @@ export const serviceFaults = [
             "work.state != State::runs || work.since <= until", "Admission.WorkLosesItsPlace*", "Admission.WhoComesTakes*"),
   admission("what has begun shuts others out", "if (!dropped) return;", "if (!dropped) refuse(lane, own);",
             "Admission.WorkThatLostItsPlaceShutsNobodyElseOut"),
-  admission("what was used is free", "return start + work.charge;", "return start + work.demand.cost;",
+  admission("what was used is free", "  from_->charge(*work_);\n", "",
             "Admission.WhatWasUsedIsCharged*"),
   admission("what was used beyond what was expected is free", "if (rays <= 0) return;", "return;",
     "Admission.WhatWasUsedBeyond*"),
