@@ -11,6 +11,7 @@ namespace {
 constexpr double kRaysAByte = 1;                      // of JSON or of a mesh: measured between 0.5 and 2
 constexpr double kExpectedRate = 10e6;                // rays a second, in all places together
 constexpr std::chrono::milliseconds kLeastPlace{50};  // that work keeps a place, whoever waits
+constexpr auto kOwnPlace = 4 * kLeastPlace;           // where its own client waits
 constexpr double kMemory_s = 10;  // seconds of work after which a measurement has faded to 1/e
 
 // What is charged for a place of so many. A rate that was measured would charge little after work that was
@@ -106,26 +107,32 @@ Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std:
 
 Admission::Ticket::Ticket(Admission& from, Work& work, std::stop_token stop)
     : from_(&from), work_(&work), stop_(std::move(stop)) {
-  set_alarm();
+  set_alarms();
 }
 
 Admission::Ticket::Ticket(Ticket&& other) noexcept
     : from_(other.from_),
       work_(std::exchange(other.work_, nullptr)),
       stop_(std::move(other.stop_)),
-      others_may_have_it_(std::move(other.others_may_have_it_)) {}
+      others_may_have_it_(std::move(other.others_may_have_it_)),
+      all_may_have_it_(std::move(other.all_may_have_it_)) {}
 
 Admission::Ticket::~Ticket() {
   others_may_have_it_.reset();
+  all_may_have_it_.reset();
   if (work_) from_->leave(*work_, std::uncaught_exceptions() <= exceptions_);
 }
 
-void Admission::Ticket::set_alarm() {
+void Admission::Ticket::set_alarms() {
   const auto start_next = [from = from_] {
     const std::lock_guard lock(from->mutex_);
     from->start_next();
   };
-  others_may_have_it_.reset(new Timer::Alarm(from_->timer_.at(work_->since + kLeastPlace, start_next)));
+  const auto after = [&](Clock::duration held) {
+    return std::unique_ptr<Timer::Alarm>(new Timer::Alarm(from_->timer_.at(work_->since + held, start_next)));
+  };
+  others_may_have_it_ = after(kLeastPlace);
+  all_may_have_it_ = after(kOwnPlace);
 }
 
 void Admission::Ticket::set_cost(double rays) {
@@ -142,12 +149,11 @@ void Admission::Ticket::renew() {
                                   [&](const Work& work) { return &work == work_; });
   from_->works_.splice(from_->works_.end(), from_->works_, place);
   work_->entry = Entry::again;
-  from_->charge(*work_);
-  work_->used += from_->used(*work_);
+  work_->used += from_->charge_overrun(*work_);
   work_->charge = kLeastCost;
   from_->wait_for_place(lock, *work_, stop_);
   lock.unlock();
-  set_alarm();
+  set_alarms();
 }
 
 Admission::Sharing::Sharing(Admission& in, std::shared_ptr<Sharers> sharers, std::string client)
@@ -210,7 +216,7 @@ void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, c
 void Admission::start_next() {
   for (Work* work = next(); work; work = next()) {
     if (!place_free(work->demand.lane)) {
-      Work& other = *loser(work->demand.lane);
+      Work& other = *loser(work->demand);
       other.state = State::lost;
       ++places_lost_;
       give_up_place(other);
@@ -239,23 +245,21 @@ void Admission::leave(Work& work, bool done) {
   else if (running_ > 0)
     measured_ = timer_.now();  // it was broken off: nobody knows how much of it was done
   if (work.state == State::runs) give_up_place(work);
-  if (work.state != State::dropped) charge(work);
+  if (work.state != State::dropped) charge_overrun(work);
   works_.remove_if([&](const Work& other) { return &other == &work; });
   start_next();
 }
 
-double Admission::used(const Work& work) const {
-  return kLeastCost + rays_in(timer_.now() - work.since, limits_.running);
-}
-
-void Admission::charge(const Work& work) {
+double Admission::charge_overrun(const Work& work) {
   const int lane = static_cast<int>(work.demand.lane);
-  const double rays = used(work) - std::max(kLeastCost, work.charge);
-  if (rays <= 0) return;
+  const double used = kLeastCost + rays_in(timer_.now() - work.since, limits_.running);
+  const double overrun = used - std::max(kLeastCost, work.charge);
+  if (overrun <= 0) return used;
   for (const auto& [client, finish] : work.finishes) {
     double& until = overruns_[lane][client];
-    until = std::max(until, virtual_time_[lane]) + rays;
+    until = std::max(until, virtual_time_[lane]) + overrun;
   }
+  return used;
 }
 
 void Admission::give_up_place(const Work& work) {
@@ -268,11 +272,13 @@ bool Admission::place_free(Lane lane) const {
   return lane == Lane::interactive || running_batch_ < std::max(1, limits_.running / 2);
 }
 
-Admission::Work* Admission::loser(Lane lane) {
-  const auto until = timer_.now() - kLeastPlace;
+Admission::Work* Admission::loser(const Demand& demand) {
+  const auto now = timer_.now();
   Work* best = nullptr;
   for (Work& work : works_) {
-    if (work.state != State::runs || work.since > until) continue;
+    const auto keeps_it = work.is_wanted_by(demand.client) ? kOwnPlace : kLeastPlace;
+    if (work.state != State::runs || now - work.since < keeps_it) continue;
+    const Lane lane = demand.lane;
     const bool gives = lane == Lane::interactive || work.demand.lane == lane || running_batch_ == 0;
     if (gives && (!best || work.since < best->since)) best = &work;
   }
@@ -281,7 +287,7 @@ Admission::Work* Admission::loser(Lane lane) {
 
 bool Admission::may_begin(const Demand& demand, Entry entry) {
   if (entry == Entry::first && has_lost_many(demand)) return false;
-  return place_free(demand.lane) || loser(demand.lane);
+  return place_free(demand.lane) || loser(demand);
 }
 
 Admission::Work* Admission::next() {

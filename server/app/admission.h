@@ -63,9 +63,9 @@ double cost_of_reading(std::size_t bytes);
 //    that work had a place beyond what was expected counts as work of its client, too. Work that several
 //    clients want starts in the earliest turn of any of them, and counts as work of each.
 //  - Work that has had its place for a while loses it to who waits: interactive work to interactive work,
-//    batch work to both, and interactive work to batch work while none of that has a place. It goes on with
-//    what it does until it renews its ticket, which waits in the queue. A client that has lost many places
-//    begins no more.
+//    batch work to both, and interactive work to batch work while none of that has a place. To work of its
+//    own client it loses it after a longer while. It goes on with what it does until it renews its ticket,
+//    which waits in the queue. A client that has lost many places begins no more.
 //  - When a lane is full, who has most waiting in it makes room for who has less (longest queue drop:
 //    McKenney, "Stochastic Fairness Queueing", 1990).
 // Safe from any thread.
@@ -95,12 +95,12 @@ class Admission {
    private:
     friend class Admission;
     Ticket(Admission& from, Work& work, std::stop_token stop);
-    void set_alarm();
+    void set_alarms();
 
     Admission* from_;
     Work* work_;
     std::stop_token stop_;
-    std::unique_ptr<Timer::Alarm> others_may_have_it_;  // its place
+    std::unique_ptr<Timer::Alarm> others_may_have_it_, all_may_have_it_;  // its place
     int exceptions_ = std::uncaught_exceptions();
   };
 
@@ -161,15 +161,16 @@ class Admission {
   // Throws ClientBusy, but only at a first entry, or Cancelled.
   void wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop);
   void begin(Work& work);
-  double used(const Work& work) const;  // rays, about, since it got its place
-  void charge(const Work& work);        // to its clients, what it has used beyond what was expected
+  // Returns the rays, about, that it has used since it got its place, and charges its clients for those of
+  // them that were not expected.
+  double charge_overrun(const Work& work);
   void give_up_place(const Work& work);
   void start_next();
   void make_room(const Demand& demand);
   bool fits(Lane lane, double cost) const;
   bool place_free(Lane lane) const;
-  Work* loser(Lane lane);            // whose place such work may have; none: nullptr
-  void update_finishes(Work& work);  // who wants it has changed
+  Work* loser(const Demand& demand);  // whose place such work may have; none: nullptr
+  void update_finishes(Work& work);   // who wants it has changed
   double virtual_finish(const Work& work, const std::string& client) const;
   // Whether so much work of all clients that want it has lost its place, twice as much as there are places,
   // that they begin no more: what is begun stays bounded, with the memory that it holds.

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/hash.h"
+
 namespace orrery {
 namespace {
 
@@ -28,13 +30,10 @@ std::string without_c1(const std::string& utf8) {
   std::string text;
   for (std::size_t i = 0; i < utf8.size(); ++i) {
     const auto next = static_cast<unsigned char>(i + 1 < utf8.size() ? utf8[i + 1] : '\0');
-    if (utf8[i] != '\xC2' || next < 0x80 || next > 0x9F) {
+    if (utf8[i] == '\xC2' && next >= 0x80 && next <= 0x9F)
+      text += "\\u00" + hex_of({&utf8[++i], 1});
+    else
       text += utf8[i];
-      continue;
-    }
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    text += std::string("\\u00") + kDigits[next >> 4] + kDigits[next & 15];
-    ++i;
   }
   return text;
 }

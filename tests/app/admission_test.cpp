@@ -94,6 +94,20 @@ TEST(Admission, WorkLosesItsPlaceAfterAWhileToWhoWaits) {
   EXPECT_EQ(admission.running(), 0);
 }
 
+TEST(Admission, WorkLosesItsPlaceToItsOwnClientAfterALongerWhile) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1000}, timer);
+  Waiters waiters(admission);
+  const auto ticket = admission.enter(demand("a"), kNever);
+  waiters.add("a1", demand("a"));
+  timer.advance(199ms);
+  EXPECT_FALSE(ticket.expired());
+  timer.advance(1ms);
+  EXPECT_TRUE(ticket.expired());
+  waiters.join();
+  EXPECT_EQ(waiters.order(), TurnOrder{"a1"});
+}
+
 TEST(Admission, WhoComesTakesAPlaceThatWasHeldForAWhile) {
   ManualTimer timer;
   Admission admission({.running = 2, .queue_rays = 1000}, timer);
