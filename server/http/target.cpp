@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/base/hash.h"
 #include "server/http/authority.h"
 
 namespace orrery {
@@ -120,12 +119,12 @@ Target parse_target(std::string_view target) {
 std::string query_text(const Fields& query) {
   std::string text;
   const auto add = [&](std::string_view part) {
-    for (const char& c : part)
-      if (std::isalnum(static_cast<unsigned char>(c)) ||
-          std::string_view("-._~").find(c) != std::string::npos)
-        text += c;
+    constexpr std::string_view kHex = "0123456789ABCDEF", kUnreserved = "-._~";
+    for (const unsigned char c : part)
+      if (std::isalnum(c) || kUnreserved.find(static_cast<char>(c)) != std::string_view::npos)
+        text += static_cast<char>(c);
       else
-        text += "%" + hex_of({&c, 1});
+        text += {'%', kHex[c / 16], kHex[c % 16]};
   };
   for (const auto& [name, value] : query) {
     text += text.empty() ? '?' : '&';
