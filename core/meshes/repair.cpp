@@ -1,6 +1,7 @@
 #include "core/meshes/repair.h"
 
 #include "core/base/work_scope.h"
+#include "core/math/face_normal.h"
 
 namespace orrery {
 
@@ -8,7 +9,7 @@ std::size_t drop_degenerate(TriangleMesh& mesh) {
   return std::erase_if(mesh.triangles, [&](const auto& t) {
     interruption_point();
     const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-    return safe_normalize(cross(b - a, c - a)) == Vec3d();
+    return face_normal(a, b, c) == Vec3d();
   });
 }
 

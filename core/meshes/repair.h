@@ -9,7 +9,7 @@
 // REQUIRES: indices within positions, coordinates finite; as read_mesh gives them.
 namespace orrery {
 
-// Takes out the triangles without area, whose normal safe_normalize(cross(b - a, c - a)) is zero: no ray can
+// Takes out the triangles without area, whose normal face_normal() is zero: no ray can
 // meet them. Returns how many. Vertices stay.
 std::size_t drop_degenerate(TriangleMesh& mesh);
 

@@ -3,6 +3,7 @@
 
 #include "core/base/work_scope.h"
 #include "core/math/angles.h"
+#include "core/math/face_normal.h"
 #include "core/meshes/repair.h"
 #include "core/meshes/vertex_list.h"
 
@@ -56,7 +57,7 @@ struct Facets {
     for (const auto& t : mesh.triangles) {
       interruption_point();
       const Vec3d &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-      const Vec3d normal = safe_normalize(cross(b - a, c - a));
+      const Vec3d normal = face_normal(a, b, c);
       const Vec3d ab = safe_normalize(b - a), bc = safe_normalize(c - b), ca = safe_normalize(a - c);
       normals.push_back(normal);
       weighted.push_back(normal * angle_between(ab, -ca));

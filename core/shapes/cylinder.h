@@ -21,11 +21,10 @@ struct Cylinder {
 
   Boundsd bounds() const {
     if (std::isinf(half_length)) return Boundsd::everything();
-    const auto reach = [&](double a) {
-      return std::abs(a) * half_length + radius * std::sqrt(std::max(0.0, 1 - a * a));
-    };
-    return Boundsd::around(center, {reach(axis.x), reach(axis.y), reach(axis.z)});
+    return Boundsd::around(center, abs(axis) * half_length + round_reach(axis) * radius);
   }
+
+  Vec3d anchor() const { return center; }
 
   std::vector<HullTriangle> hull() const {
     return round_hull(Vec3d(center), Vec3d(axis), double(radius), double(half_length));

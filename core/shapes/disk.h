@@ -18,10 +18,7 @@ struct Disk {
 
   static void read(Params& p, std::vector<Disk<double>>& out);
 
-  Boundsd bounds() const {
-    const auto reach = [&](double n) { return radius * std::sqrt(std::max(0.0, 1 - n * n)); };
-    return Boundsd::around(center, {reach(normal.x), reach(normal.y), reach(normal.z)});
-  }
+  Boundsd bounds() const { return Boundsd::around(center, round_reach(normal) * radius); }
 
   std::vector<HullTriangle> hull() const {
     return round_hull(Vec3d(center), Vec3d(normal), double(radius), 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/work_scope.h"
+#include "core/math/face_normal.h"
 #include "core/meshes/mesh_file.h"
 #include "core/shapes/primitive_set.h"
 #include "core/shapes/triangle_hit.h"
@@ -29,7 +30,7 @@ struct MeshTriangle {
     const N size = length(sum);
     const auto usable = size > N(ScalarOf<N>(0.001));  // unit normals: below it they point opposite ways
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
-    return {corners.mix(weights),
+    return {corners.point(ray, normal, weights),
             normal,
             {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
             magnitude};
@@ -99,7 +100,7 @@ class MeshRecords {
     for (std::size_t i = 0; i < table.triangles.size(); ++i) {
       interruption_point(i);
       const Corners<double> at = table.corners(i);
-      flat_.push_back(Vec3<T>(safe_normalize(cross(at.b - at.a, at.c - at.a))));
+      flat_.push_back(Vec3<T>(face_normal(at.a, at.b, at.c)));
     }
   }
 

@@ -1,8 +1,16 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/model/shape.h"
 
 namespace orrery {
+
+// How far a circle of radius 1 across the unit vector `axis` reaches along x, y and z: sqrt(1 - a^2) of each
+// component a, from the other two, as the difference is 0 for a tilt below 1.5e-8.
+inline Vec3d round_reach(const Vec3d& axis) {
+  return {std::hypot(axis.y, axis.z), std::hypot(axis.x, axis.z), std::hypot(axis.x, axis.y)};
+}
 
 // The box around a cylinder, turned as its axis is; flat where half_length is 0.
 inline std::vector<HullTriangle> round_hull(const Vec3d& center, const Vec3d& axis, double radius,

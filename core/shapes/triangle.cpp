@@ -1,5 +1,6 @@
 #include "core/shapes/triangle.h"
 
+#include "core/math/face_normal.h"
 #include "core/params/params.h"
 #include "core/shapes/primitive_set.h"
 
@@ -10,7 +11,7 @@ void Triangle<N>::read(Params& p, std::vector<Triangle<double>>& out) {
   std::vector<Vec3d> v =
       p.points("vertices", "The three vertices, in metres; anticlockwise from the front.", {3, 3});
   v.resize(3);
-  const Vec3d normal = safe_normalize(cross(v[1] - v[0], v[2] - v[0]));
+  const Vec3d normal = face_normal(v[0], v[1], v[2]);
   if (normal == Vec3d()) p.fail("vertices", "expected three vertices that are not on one line");
   out.push_back({{v[0], v[1], v[2]}, normal, Boundsd::of({v[0], v[1], v[2]}).magnitude()});
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/math/bounds.h"
+#include "core/math/face_normal.h"
 #include "core/model/shape.h"
 
 namespace orrery {
@@ -42,12 +43,12 @@ struct Sheared {
 
 namespace detail {
 
-// Whether the ray along z through x = y = 0, which runs toward the sign of `along`, crosses the plane of
-// three points ahead. The plane's normal is taken from the two shorter sides: its relative error stays a few
-// ulp however thin the triangle is.
+// Whether a ray that crosses the triangle of three points, seen from its origin, crosses their plane ahead
+// and does not start on it. The plane's normal is taken from the two shorter sides: its relative error stays
+// a few ulp however thin the triangle is.
 template <class N>
-inline MaskOf<N> plane_ahead(const Sheared<N>& a, const Sheared<N>& b, const Sheared<N>& c, const N& along) {
-  const Vec3<N> va(a.x, a.y, a.z), vb(b.x, b.y, b.z), vc(c.x, c.y, c.z);
+inline MaskOf<N> plane_ahead(const Vec3<N>& va, const Vec3<N>& vb, const Vec3<N>& vc,
+                             const Vec3<N>& direction) {
   const Vec3<N> ab = vb - va, bc = vc - vb, ca = va - vc;
   const N la = dot(bc, bc), lb = dot(ca, ca), lc = dot(ab, ab);
   const auto first = la >= lb && la >= lc;  // bc is longest
@@ -59,8 +60,8 @@ inline MaskOf<N> plane_ahead(const Sheared<N>& a, const Sheared<N>& b, const She
   const Vec3<N> f(choose(ab.x, bc.x, ca.x), choose(ab.y, bc.y, ca.y), choose(ab.z, bc.z, ca.z));
   const Vec3<N> at(choose(va.x, vb.x, vc.x), choose(va.y, vb.y, vc.y), choose(va.z, vb.z, vc.z));
   const Vec3<N> normal = cross(e, f);
-  const N zero(ScalarOf<N>(0));
-  return (dot(at, normal) > zero) == ((normal.z > zero) == (along > zero));
+  const N zero(ScalarOf<N>(0)), distance = dot(at, normal);
+  return select(dot(direction, normal) > zero, distance, N(-distance)) > zero;
 }
 
 }  // namespace detail
@@ -70,16 +71,21 @@ template <class N>
 class OwnAxes {
  public:
   [[gnu::always_inline]] explicit OwnAxes(const Ray<N>& ray)
-      : origin_(ray.origin), axes_(ray.direction), shear_(Shear<N>::of(axes_, ray.direction)) {}
+      : origin_(ray.origin),
+        direction_(ray.direction),
+        axes_(ray.direction),
+        shear_(Shear<N>::of(axes_, ray.direction)) {}
   [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
     const Vec3<N> v = vertex - origin_;
     const N z = axes_.z(v);
     return {axes_.x(v) - shear_.x * z, axes_.y(v) - shear_.y * z, z};
   }
   [[gnu::always_inline]] N along() const { return shear_.z; }
+  const Vec3<N>& origin() const { return origin_; }
+  const Vec3<N>& direction() const { return direction_; }
 
  private:
-  Vec3<N> origin_;
+  Vec3<N> origin_, direction_;
   RayAxes<N> axes_;
   Shear<N> shear_;
 };
@@ -96,8 +102,11 @@ class SharedAxes {
     return {vx - N(rays_.shear.x) * vz, vy - N(rays_.shear.y) * vz, vz};
   }
   [[gnu::always_inline]] N along() const { return N(rays_.shear.z); }
+  Vec3<N> origin() const { return lanes_of(rays_.ray.origin); }
+  Vec3<N> direction() const { return lanes_of(rays_.ray.direction); }
 
  private:
+  static Vec3<N> lanes_of(const auto& v) { return {N(v.x), N(v.y), N(v.z)}; }
   const Rays& rays_;
 };
 
@@ -128,7 +137,8 @@ template <class N, class Axes>
   const N farthest = max_first(max_first(abs(sa.z), abs(sb.z)), abs(sc.z));
   const auto near = met && abs(t * axes.along()) < farthest * N(T(1.0 / 1024));
   if (any(near)) [[unlikely]]
-    met = met && (!near || detail::plane_ahead(sa, sb, sc, axes.along()));
+    met = met && (!near || detail::plane_ahead(a - axes.origin(), b - axes.origin(), c - axes.origin(),
+                                               axes.direction()));
   return {select(met, t, infinity), u * inverse, v * inverse, w * inverse};
 }
 
@@ -159,6 +169,25 @@ struct Corners {
     return {hit.weight_a, hit.weight_b, hit.weight_c};
   }
   Vec3<N> mix(const Vec3<N>& weights) const { return a * weights.x + b * weights.y + c * weights.z; }
+
+  // Where the ray crosses with these weights; `normal` is that of the triangle. Rounding moves the weights of
+  // a triangle of length l and width w by eps l / w, and what they mix by l times as much along it: of a long
+  // thin one, the point is taken where the ray crosses the plane, if that is the nearer to the truth.
+  Vec3<N> point(const Ray<N>& ray, const Vec3<N>& normal, const Vec3<N>& weights) const {
+    using std::abs;
+    using std::sqrt;
+    const Vec3<N> mixed = mix(weights), ab = b - a, bc = c - b, ca = a - c, product = cross(ab, ca);
+    const N longest2 = max_first(max_first(dot(ab, ab), dot(bc, bc)), dot(ca, ca)), area = length(product);
+    const auto thin = area * ScalarOf<N>(kThinAspect) < longest2;
+    if (!any(thin)) [[likely]]
+      return mixed;
+    const N slope = dot(ray.direction, normal), t = dot(mixed - ray.origin, normal) / slope;
+    const N far = abs(t) * dot(ray.direction, ray.direction);
+    const auto nearer = thin && far * area < longest2 * sqrt(longest2) * abs(slope);
+    const Vec3<N> at = ray.at(t), crossing = at - normal * dot(at - mixed, normal);
+    return {select(nearer, crossing.x, mixed.x), select(nearer, crossing.y, mixed.y),
+            select(nearer, crossing.z, mixed.z)};
+  }
 
  private:
   template <class Axes>

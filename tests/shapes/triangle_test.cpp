@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/math/face_normal.h"
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 #include "tests/support/rays.h"
@@ -174,6 +175,73 @@ TEST(Triangle, LongAndThinDoesNotShadeItself) {
   for (const double width : {0.6, 0.06}) EXPECT_EQ(hits_of_leaving_a_strip<float>(600, width), 0) << width;
   for (const double width : {0.6, 0.06, 0.006, 6e-6})
     EXPECT_EQ(hits_of_leaving_a_strip<double>(600, width), 0) << width;
+}
+
+// Rays that start exactly on a triangle leave it, whichever way round its vertices are listed.
+TEST(Triangle, IsNotMetByRaysThatStartOnIt) {
+  for (const char* vertices :
+       {"[[2, -4, -4], [2, 5, -4], [2, 0, 6]]", "[[2, -4, -4], [2, 0, 6], [2, 5, -4]]"}) {
+    const Json scene = scene_with(Json{{"type", "triangle"}, {"vertices", json(vertices)}});
+    const Target<double> in_double(scene);
+    const Target<float> in_float(scene);
+    Random random(8);
+    for (int i = 0; i < 1000; ++i) {
+      const Ray<double> ray{{2, 0.5, 0.25}, random.direction()};
+      EXPECT_FALSE(in_double.closest(ray).met());
+      EXPECT_FALSE(in_float.closest(convert_ray<float>(ray)).met());
+    }
+  }
+}
+
+// Where a ray from above meets a strip in the plane y = 0 that is `aspect` times as long as wide.
+template <class T>
+double slip_on_strip(double size, double aspect) {
+  const double w = size / aspect / 2, l = size / 2;
+  const Json strip = {{"type", "mesh"},
+                      {"positions", {{-w, 0, -l}, {-w, 0, l}, {w, 0, -l}, {w, 0, l}}},
+                      {"indices", {{0, 1, 2}, {1, 3, 2}}}};
+  const Target<T> shape(scene_with(strip));
+  Random random(6);
+  double worst = 0;
+  int met = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d at(random.between(-w, w), 0, random.between(-0.05, 0.05) * size);
+    const Vec3d from = at + random.direction_above({0, 1, 0}) * 0.1;
+    const Ray<T> ray{Vec3<T>(from), Vec3<T>(safe_normalize(at - from))};
+    const auto hit = shape.closest(ray);
+    if (!hit.met() || std::abs(ray.direction.y) < T(0.1)) continue;
+    ++met;
+    const Vec3d found(shape.surface(ray, hit).position);
+    const double t = -static_cast<double>(ray.origin.y) / static_cast<double>(ray.direction.y);
+    worst = std::max(worst, length(found - (Vec3d(ray.origin) + Vec3d(ray.direction) * t)));
+  }
+  EXPECT_GT(met, 100);
+  return worst;
+}
+
+// Weights of the vertices are uncertain by eps times the aspect ratio, and what they mix slides along the
+// strip.
+TEST(Triangle, HitsDoNotSlideAlongSlivers) {
+  EXPECT_LE(slip_on_strip<float>(100, 1e5), 1e-5);
+  EXPECT_LE(slip_on_strip<double>(100, 1e7), 1e-13);
+  EXPECT_LE(slip_on_strip<double>(100, 1e9), 1e-13);
+}
+
+// The product of two long sides loses the aspect ratio's digits: here the corners have so many that only the
+// product with the short side is exact.
+TEST(Triangle, NormalsOfSliversAreExact) {
+  Random random(9);
+  const auto whole = [](const Vec3d& v) { return Vec3d(std::round(v.x), std::round(v.y), std::round(v.z)); };
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d a = whole(random.in_cube(0x1p30)), b = whole(random.in_cube(0x1p30));
+    const Vec3d c = b + whole(random.in_cube(8));
+    using Exact = Vec3<long double>;
+    const Exact product = cross(Exact(b - a), Exact(c - b));
+    if (product == Exact()) continue;
+    const Vec3d normal(safe_normalize(product));
+    for (const Vec3d& found : {face_normal(a, b, c), face_normal(b, c, a), face_normal(c, a, b)})
+      EXPECT_LE(length(found - normal), 1e-15);
+  }
 }
 
 // A sliver with sides 11.2, 9.8 and 1.4, grazed at half a degree and less: the point at t is near the
