@@ -10,6 +10,7 @@
 //   static constexpr LightTraits kTraits;
 //   static Point<double> read(Params&);                in the .cpp, which registers the type
 //   Vec3<N> intensity;                                 at the source
+//   RoundingLimit rounding() const;                    of a Point<double>, if it has one
 //   Arrival<N> arrive(const Vec3<N>& position) const;  what arrives at a surface point
 // and `make_light_set<Point>` is its factory.
 namespace orrery {
@@ -44,6 +45,13 @@ class DeltaLightSet final : public LightSet {
   int size() const override { return static_cast<int>(records_.size()); }
   LightTraits traits() const override { return Record<double>::kTraits; }
   Vec3d intensity(int index) const override { return records_[static_cast<std::size_t>(index)].intensity; }
+  RoundingLimit rounding(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.rounding(); })
+      return record.rounding();
+    else
+      return {};
+  }
   LightKernelPtr<float> kernel(float) const override { return make<float>(); }
   LightKernelPtr<double> kernel(double) const override { return make<double>(); }
 

@@ -20,6 +20,14 @@ Spot<double> Spot<N>::read(Params& p) {
   return {position, direction, intensity, attenuation, cos_inner, cos_outer, cos_inner - cos_outer};
 }
 
+// The cosine of a direction is off by some epsilon, and with it a smooth step by 1.5 epsilon over its width.
+template <class N>
+RoundingLimit Spot<N>::rounding() const {
+  constexpr double kMostError = 2e-4;
+  const double width = cos_range > 0 ? cos_range : 1 - cos_outer;
+  return {kMostError * width, "its beam ends within a difference of cosines of " + number_text(width)};
+}
+
 LightType spot_type() { return {"spot", "Light from one point in a cone.", make_light_set<Spot>}; }
 
 }  // namespace orrery

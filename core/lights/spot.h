@@ -17,6 +17,8 @@ struct Spot {
   static constexpr LightTraits kTraits = {.delta = true};
   static Spot<double> read(Params& p);
 
+  RoundingLimit rounding() const;
+
   Arrival<N> arrive(const Vec3<N>& at) const {
     using T = ScalarOf<N>;
     const N zero(T(0));

@@ -9,6 +9,7 @@
 #include "core/base/work_scope.h"
 #include "core/cameras/registry.h"
 #include "core/lights/registry.h"
+#include "core/load/facts.h"
 #include "core/materials/registry.h"
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
@@ -190,8 +191,10 @@ class SceneReader {
     number_materials();
     number_objects();
     gather_motion();
-    gather_shape_facts();
-    gather_material_facts();
+    scene_->facts = gather_facts(*scene_);
+    if (const Extreme& smallest = scene_->facts.smallest_feature; smallest.value < kMinSize)
+      throw InputError(smallest.where, "expected shapes and triangles of at least " + number_text(kMinSize) +
+                                           " m in size, got " + number_text(smallest.value));
     return scene_;
   }
 
@@ -234,7 +237,6 @@ class SceneReader {
     const auto number = [&](const ObjectReader& objects, std::vector<std::int32_t>& into) {
       objects.for_each([&](std::size_t name, std::size_t primitives, std::int32_t) {
         const MaterialPlace place = places_[name];
-        used_sets_.push_back(place.set);
         into.insert(into.end(), primitives, first[place.set] + place.index);
       });
     };
@@ -262,10 +264,6 @@ class SceneReader {
       add(scene_->models[instance.model].material_of.size(), resting++);
   }
 
-  void gather_material_facts() {
-    for (const std::size_t set : used_sets_) scene_->facts.materials |= scene_->materials[set]->traits();
-  }
-
   // Of what stands in the scene.
   void gather_motion() {
     std::vector<double> times;
@@ -287,56 +285,6 @@ class SceneReader {
     scene_->motion = {*first, *last};
   }
 
-  // What a list of sets says alone; each primitive is asked once.
-  struct Extents {
-    Boundsd all;           // infinite if a primitive is
-    double magnitude = 0;  // the rest is that of bounded ones
-    double smallest = std::numeric_limits<double>::infinity();
-  };
-  Extents extents_of(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
-    Extents extents;
-    for (const auto& shapes : sets) {
-      scene_->facts.left_out += shapes->left_out();
-      for (int i = 0; i < shapes->size(); ++i) {
-        interruption_point(static_cast<std::size_t>(i));
-        const ShapeSet::Reach reach = shapes->reach(i);
-        extents.all.include(reach.box);
-        if (!reach.box.bounded()) continue;
-        extents.magnitude = std::max(extents.magnitude, reach.box.magnitude());
-        extents.smallest = std::min(extents.smallest, reach.least_diagonal);
-      }
-    }
-    return extents;
-  }
-
-  // Of instances in the world and, because rays are taken there, in their models.
-  void gather_shape_facts() {
-    SceneFacts& facts = scene_->facts;
-    const auto add = [&facts](double magnitude, double smallest) {
-      facts.magnitude = std::max(facts.magnitude, magnitude);
-      facts.smallest_feature = std::min(facts.smallest_feature, smallest);
-    };
-    const Extents own = extents_of(scene_->shapes);
-    add(own.magnitude, own.smallest);
-    std::vector<Extents> of_models;
-    for (const Model& model : scene_->models) of_models.push_back(extents_of(model.shapes));
-    for (const Instance& instance : scene_->instances) {
-      const Extents& of_model = of_models[instance.model];
-      for (const double time : instance.motion.times) {
-        const Affined world_from_model = instance.world_from_model(time);
-        add(of_model.magnitude, of_model.smallest / stretch(inverse(world_from_model)));
-        if (!of_model.all.bounded()) continue;
-        for (const Vec3d& v : corners_of(of_model.all))
-          facts.magnitude = std::max(facts.magnitude, reach_of(instance, world_from_model, v));
-      }
-    }
-  }
-  // Largest coordinate that a point of the model may have: on its way between two keys it turns.
-  static double reach_of(const Instance& instance, const Affined& world_from_model, const Vec3d& point) {
-    if (instance.motion.times.size() == 1) return max_component(abs(world_from_model.point(point)));
-    return max_component(abs(world_from_model.origin)) + length(world_from_model.vector(point));
-  }
-
   const ReadOnce meshes_;
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};
@@ -344,7 +292,6 @@ class SceneReader {
   ObjectReader objects_;
   Names model_names_{"model"};
   std::deque<ObjectReader> model_objects_;  // in the order of scene_->models
-  std::vector<std::size_t> used_sets_;
 };
 
 }  // namespace

@@ -8,6 +8,8 @@
 // A material type is one record, `template <class N> struct Rough`, with
 //   static Rough<double> read(Params&);         in the .cpp, which registers the type
 //   MaterialTraits traits() const;              of a Rough<double>
+//   RoundingLimit rounding() const;             likewise, if it has one
+//   double mirrored_share() const;              likewise, if it mirrors: see MaterialSet
 // and its formulas; and a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
 namespace orrery {
 
@@ -47,6 +49,20 @@ class MaterialSetOf final : public MaterialSet {
     MaterialTraits all;
     for (const auto& record : records_) all |= record.traits();
     return all;
+  }
+  RoundingLimit rounding(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.rounding(); })
+      return record.rounding();
+    else
+      return {};
+  }
+  double mirrored_share(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.mirrored_share(); })
+      return record.mirrored_share();
+    else
+      return 0;
   }
   MaterialKernelPtr<float> kernel(float, int first) const override {
     return std::make_unique<Kernel<float>>(std::span<const Record<double>>(records_), first);

@@ -19,6 +19,14 @@ Rough<double> Rough<N>::read(Params& p) {
   return {ka * cd, kd * cd, ks * cs, shininess, phong ? 1.0 : 0.0};
 }
 
+// The power of a cosine that is off by some epsilon is off by a multiple of shininess times epsilon.
+template <class N>
+RoundingLimit Rough<N>::rounding() const {
+  constexpr double kMostError = 2e-3;
+  if (specular == Vec3d(0) || shininess == 0) return {};
+  return {kMostError / shininess, "its highlight has an exponent of " + number_text(shininess)};
+}
+
 namespace {
 
 template <class T>

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/model/draws.h"
+#include "core/model/rounding.h"
 
 // Lights. As with shapes, a scene keeps all lights of one type together (a LightSet, in double precision) and
 // makes a kernel of them in the plan's number type, whose calls take whole batches.
@@ -69,6 +70,7 @@ class LightSet {
   virtual int size() const = 0;
   virtual LightTraits traits() const = 0;
   virtual Vec3d intensity(int index) const = 0;  // at the source, per channel
+  virtual RoundingLimit rounding(int /*index*/) const { return {}; }
   virtual LightKernelPtr<float> kernel(float) const = 0;
   virtual LightKernelPtr<double> kernel(double) const = 0;
 };

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/model/draws.h"
+#include "core/model/rounding.h"
 
 // Materials. As with shapes, a scene keeps all materials of one type together and makes a kernel of them in
 // the plan's number type. Radiance and coefficients are linear, per channel.
@@ -89,6 +90,9 @@ class MaterialSet {
   virtual void add(Params& params) = 0;
   virtual int size() const = 0;
   virtual MaterialTraits traits() const = 0;  // of all of them together
+  virtual RoundingLimit rounding(int /*index*/) const { return {}; }
+  // Largest share of light along the normal that it mirrors.
+  virtual double mirrored_share(int /*index*/) const { return 0; }
   // Kernels whose materials are numbered from `first`.
   virtual MaterialKernelPtr<float> kernel(float, int first) const = 0;
   virtual MaterialKernelPtr<double> kernel(double, int first) const = 0;

@@ -13,18 +13,38 @@
 #include "core/model/light.h"
 #include "core/model/material.h"
 #include "core/model/render_settings.h"
+#include "core/model/rounding.h"
 #include "core/model/shape.h"
 
 namespace orrery {
 
+// The largest or the smallest of the lengths of a scene, in metres, and what has it: a JSON Pointer.
+struct Extreme {
+  double value;
+  std::string where;
+};
+
+// Mirrors among which rays go to and fro: their errors grow from one to the next.
+struct MirrorChain {
+  double growth = 1;  // of the error of a ray's place from one mirror to the next, times the share of light
+  double radius = std::numeric_limits<double>::infinity();  // of curvature, metres
+  std::string where;
+};
+
 // What the plan wants to know about a scene, computed once.
 struct SceneFacts {
   MaterialTraits materials;  // of those that some object has
-  double magnitude = 0;      // largest absolute coordinate of bounded primitives, metres
   std::size_t left_out = 0;  // primitives without area
-  double smallest_feature =
-      std::numeric_limits<double>::infinity();  // smallest diagonal of a bounded primitive's box; infinite if
-                                                // there is none
+  Boundsd bounds;            // of the bounded primitives
+  // For the choice of the number type:
+  Extreme magnitude{0,
+                    ""};  // largest absolute coordinate, also of the points that place unbounded primitives
+  // Smallest diagonal of a bounded primitive's box, and smallest distance between two layers: the sides of
+  // one body or the surfaces of two. Infinite if there is none.
+  Extreme smallest_feature{std::numeric_limits<double>::infinity(), ""},
+      layer_distance{std::numeric_limits<double>::infinity(), ""};
+  MirrorChain mirrors;
+  RoundingLimit rounding;  // the strictest of lights and materials; the reason names it
 };
 
 // Primitives of all sets together.

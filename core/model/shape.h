@@ -130,6 +130,8 @@ class ShapeSet {
     const Boundsd box = bounds(index);
     return {box, box.diagonal()};
   }
+  // Largest absolute coordinate of the point that places an unbounded primitive; 0 of others.
+  virtual double anchor_magnitude(int /*index*/) const { return 0; }
   virtual ShapeTraits traits() const = 0;
 
   // Kernels whose primitives are numbered from `first`. They do not refer to the set afterwards.

@@ -9,6 +9,7 @@ namespace orrery {
 // What no scene and no request may exceed.
 inline constexpr int kMaxImageSide = 4096;
 inline constexpr std::int64_t kMaxImagePixels = 16'777'216;
+inline constexpr double kMinSize = 1e-90;  // of a primitive, metres: products of three lengths are not 0
 inline constexpr int kMaxSamples = 4096;
 inline constexpr int kMaxDepth = kDeepestRay;
 inline constexpr int kMaxLights = 1024;

@@ -7,6 +7,7 @@
 #include "core/accelerators/registry.h"
 #include "core/channels/registry.h"
 #include "core/plan/options.h"
+#include "core/plan/rounding.h"
 #include "core/techniques/registry.h"
 
 namespace orrery {
@@ -80,24 +81,17 @@ class Planner {
     }
   }
 
-  // Float where 8 ulp of the largest coordinate stay under a tenth of the smallest shape and of a pixel's
-  // footprint; double beyond.
+  // Float where it is fine enough for everything that tells how fine its numbers must be; double beyond.
   void choose_precision() {
     const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
       return decide("precision", precision_name(plan_.double_precision), "as asked", rounding_bound());
     }
-    const double largest = std::max(scene_.facts.magnitude, max_component(abs(plan_.frame.eye)));
-    const double footprint =
-        2 * plan_.frame.half_extent / plan_.height * (plan_.camera->parallel() ? 1.0 : plan_.frame.distance);
-    const double detail = std::min(scene_.facts.smallest_feature, footprint);
-    const double rounding = 8 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
-    plan_.double_precision = !(rounding <= detail / 10);
+    const RoundingLimit limit = rounding_limit(scene_, plan_);
+    plan_.double_precision = !(double{std::numeric_limits<float>::epsilon()} <= limit.epsilon);
     decide("precision", precision_name(plan_.double_precision),
-           plan_.double_precision
-               ? "coordinates are too large for the smallest shape or pixel in float"
-               : "8 ulp of the largest coordinate are below a tenth of the smallest shape and pixel",
+           plan_.double_precision ? limit.reason : "rounding to float is small beside all that is to be seen",
            rounding_bound());
   }
 

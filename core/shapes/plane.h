@@ -16,6 +16,7 @@ struct Plane {
   static void read(Params& p, std::vector<Plane<double>>& out);
 
   Boundsd bounds() const { return Boundsd::everything(); }
+  Vec3d anchor() const { return point; }
 
   // A ray along the plane never meets it: the quotient is then infinite or NaN, and neither is a hit.
   N distance(const Ray<N>& ray) const {

@@ -12,6 +12,7 @@
 //   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit, or +infinity (or NaN) for none
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
+//   Vec3d anchor() const;                         if it may be unbounded: a point that places it
 //   std::vector<HullTriangle> hull() const;       if it knows better than bounds(): see ShapeKernel
 //   Core, core()                                  if distance() needs only a part: see packed_records.h
 // and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
@@ -135,6 +136,13 @@ class PrimitiveSet final : public ShapeSet {
   }
   int size() const override { return static_cast<int>(records_.size()); }
   Boundsd bounds(int index) const override { return records_[static_cast<std::size_t>(index)].bounds(); }
+  double anchor_magnitude(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.anchor(); })
+      return record.bounds().bounded() ? 0 : max_component(abs(record.anchor()));
+    else
+      return 0;
+  }
   ShapeTraits traits() const override { return Record<double>::kTraits; }
   ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
   ShapeKernelPtr<double> kernel(double, int first) const override { return make<double>(first); }

@@ -13,6 +13,7 @@ import {meshFaults} from "./meshes.mjs";
 import {motionFaults} from "./motion.mjs";
 import {pageFaults} from "./page.mjs";
 import {planFaults} from "./plan.mjs";
+import {roundingFaults} from "./rounding.mjs";
 import {serviceFaults} from "./service.mjs";
 import {stageFaults} from "./stages.mjs";
 import {optionFaults} from "./options.mjs";
@@ -463,5 +464,5 @@ export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
   ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
-  ...planFaults, ...studyFaults, ...imageFaults, ...pageFaults, ...optionFaults,
+  ...planFaults, ...roundingFaults, ...studyFaults, ...imageFaults, ...pageFaults, ...optionFaults,
 ];

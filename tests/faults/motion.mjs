@@ -58,9 +58,9 @@ export const motionFaults = [
   {
     fault: 19,
     about: "the plan sees the first key alone",
-    file: "core/load/load.cpp",
-    from: "const ShapeSet::Reach reach = shapes->reach(i);",
-    to: "const ShapeSet::Reach reach = {shapes->bounds(i), shapes->bounds(i).diagonal()};",
+    file: "core/load/facts.cpp",
+    from: "const ShapeSet::Reach reach = shapes.reach(index);",
+    to: "const ShapeSet::Reach reach = {shapes.bounds(index), shapes.bounds(index).diagonal()};",
     target: "test_render",
     tests: ["Motion.PlanCountsOnEveryMoment"],
   },

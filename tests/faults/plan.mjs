@@ -23,7 +23,7 @@ export const planFaults = [
         "LeavesOutShadowsOfALonelyConvexBody", "LonelyMirrorNeedsNoDepth"),
   entry("light that enters a lonely glass ball does not leave it", "if (!used.transmits && lonely_convex()",
         "if (lonely_convex()", "LonelyMirrorNeedsNoDepth"),
-  entry("float is taken to be enough for every scene", "!(rounding <= detail / 10)", "false",
+  entry("float is taken to be enough for every scene", "!(double{std::numeric_limits<float>::epsilon()} <= limit.epsilon)", "false",
         "ChoosesDoubleWhereFloatWouldShow"),
   entry("a light of intensity 0 is followed", "intensity(light.index) != Vec3d(0)", "intensity(light.index) != Vec3d(-1)",
         "LeavesOutLightThatNothingAnswers"),

@@ -122,8 +122,11 @@ TEST(Load, WantsAnObjectOrAnInstance) {
 TEST(Load, GathersTheFactsThePlanNeeds) {
   const auto scene = load(scene_of(R"([{'type': 'plane', 'point': [0, -1e6, 0], 'normal': [0, 1, 0]},
       {'type': 'sphere', 'center': [100, 0, 0], 'radius': 2}, {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5}])"));
-  EXPECT_EQ(scene->facts.magnitude, 102) << "unbounded shapes have no largest coordinate";
-  EXPECT_NEAR(scene->facts.smallest_feature, std::sqrt(3.0), 1e-15);
+  EXPECT_EQ(scene->facts.magnitude.value, 1e6) << "the point that places a plane counts";
+  EXPECT_EQ(scene->facts.magnitude.where, "/objects/0");
+  EXPECT_NEAR(scene->facts.smallest_feature.value, std::sqrt(3.0), 1e-15);
+  EXPECT_EQ(scene->facts.smallest_feature.where, "/objects/2");
+  EXPECT_EQ(scene->facts.bounds.hi, Vec3d(102, 2, 2));
   EXPECT_TRUE(scene->facts.materials.lit);
   EXPECT_FALSE(scene->facts.materials.mirrors);
 }

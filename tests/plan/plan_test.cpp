@@ -117,7 +117,6 @@ TEST(Plan, RaycastSendsNoSecondaryRays) {
   EXPECT_EQ(sum(rays.reflected) + sum(rays.refracted), 0u);
 }
 
-// Float while 8 ulp of the largest coordinate stay under a tenth of the smallest shape and of a pixel.
 TEST(Plan, ChoosesDoubleWhereFloatWouldShow) {
   covers("A18");
   const auto is_double = [](const Vec3d& at, double radius, double distance) {

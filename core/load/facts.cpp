@@ -1,0 +1,146 @@
+#include "core/load/facts.h"
+
+#include <algorithm>
+
+#include "core/base/work_scope.h"
+#include "core/load/spacing.h"
+
+namespace orrery {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void take_larger(Extreme& extreme, double value, const std::string& where) {
+  if (value > extreme.value) extreme = {value, where};
+}
+void take_smaller(Extreme& extreme, double value, const std::string& where) {
+  if (value < extreme.value) extreme = {value, where};
+}
+
+// What a list of sets says alone; each primitive is asked once.
+struct Extents {
+  struct Length {
+    double value;
+    int primitive = 0;
+  };
+  Boundsd bounded;
+  bool has_unbounded = false;
+  Length magnitude{0}, smallest{kInfinity};
+  std::size_t left_out = 0;
+
+  explicit Extents(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
+    int number = 0;
+    for (const auto& shapes : sets) {
+      left_out += shapes->left_out();
+      for (int i = 0; i < shapes->size(); ++i) add(*shapes, i, number++);
+    }
+  }
+
+ private:
+  void add(const ShapeSet& shapes, int index, int number) {
+    interruption_point(static_cast<std::size_t>(index));
+    const ShapeSet::Reach reach = shapes.reach(index);
+    const bool is_bounded = reach.box.bounded();
+    const double coordinate = is_bounded ? reach.box.magnitude() : shapes.anchor_magnitude(index);
+    if (coordinate > magnitude.value) magnitude = {coordinate, number};
+    has_unbounded = has_unbounded || !is_bounded;
+    if (!is_bounded) return;
+    bounded.include(reach.box);
+    if (reach.least_diagonal < smallest.value) smallest = {reach.least_diagonal, number};
+  }
+};
+
+// Largest coordinate that a point of the model may have: on its way between two keys it turns.
+double reach_of(const Instance& instance, const Affined& world_from_model, const Vec3d& point) {
+  if (instance.motion.times.size() == 1) return max_component(abs(world_from_model.point(point)));
+  return max_component(abs(world_from_model.origin)) + length(world_from_model.vector(point));
+}
+
+// Of instances in the world and, because rays are taken there, in their models.
+void add_instances(const Scene& scene, SceneFacts& facts) {
+  std::vector<Extents> of_models;
+  for (const Model& model : scene.models) {
+    of_models.emplace_back(model.shapes);
+    facts.left_out += of_models.back().left_out;
+  }
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const Extents& own = of_models[instance.model];
+    const std::string where = "/instances/" + std::to_string(i);
+    for (const double time : instance.motion.times) {
+      const Affined world_from_model = instance.world_from_model(time);
+      take_larger(facts.magnitude, own.magnitude.value, where);
+      take_smaller(facts.smallest_feature, own.smallest.value / stretch(inverse(world_from_model)), where);
+      if (own.has_unbounded || !own.bounded.bounded()) continue;
+      for (const Vec3d& corner : corners_of(own.bounded)) {
+        take_larger(facts.magnitude, reach_of(instance, world_from_model, corner), where);
+        facts.bounds.include(world_from_model.point(corner));
+      }
+    }
+  }
+}
+
+void add_lights(const Scene& scene, SceneFacts& facts) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const LightPlace place = scene.lights[i];
+    RoundingLimit limit = scene.light_sets[place.set]->rounding(place.index);
+    if (limit.epsilon < facts.rounding.epsilon)
+      facts.rounding = {limit.epsilon, "of /lights/" + std::to_string(i) + " " + limit.reason};
+  }
+}
+
+// Of the materials that some primitive has.
+void add_materials(const Scene& scene, SceneFacts& facts) {
+  std::vector<std::int32_t> first_user;  // primitive, by material; -1: none
+  for (std::size_t p = scene.material_of.size(); p-- > 0;) {
+    const auto material = static_cast<std::size_t>(scene.material_of[p]);
+    if (material >= first_user.size()) first_user.resize(material + 1, -1);
+    first_user[material] = static_cast<std::int32_t>(p);
+  }
+  std::size_t first = 0;
+  for (const auto& set : scene.materials) {
+    bool used = false;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(set->size()); ++i) {
+      if (first + i >= first_user.size() || first_user[first + i] < 0) continue;
+      used = true;
+      const RoundingLimit limit = set->rounding(static_cast<int>(i));
+      if (limit.epsilon < facts.rounding.epsilon)
+        facts.rounding = {
+            limit.epsilon,
+            "of the material of " + pointer_to_object(scene, first_user[first + i]) + " " + limit.reason};
+    }
+    if (used) facts.materials |= set->traits();
+    first += static_cast<std::size_t>(set->size());
+  }
+}
+
+}  // namespace
+
+std::string pointer_to_object(const Scene& scene, int primitive) {
+  const auto after = std::upper_bound(scene.object_runs.begin(), scene.object_runs.end(), primitive,
+                                      [](int p, const ObjectRun& run) { return p < run.first_primitive; });
+  const int object = std::prev(after)->object;
+  const int resting = scene.object_count - static_cast<int>(scene.instances.size());
+  return object < resting ? "/objects/" + std::to_string(object)
+                          : "/instances/" + std::to_string(object - resting);
+}
+
+SceneFacts gather_facts(const Scene& scene) {
+  SceneFacts facts;
+  const Extents own(scene.shapes);
+  facts.left_out = own.left_out;
+  facts.bounds = own.bounded;
+  if (own.magnitude.value > 0)
+    facts.magnitude = {own.magnitude.value, pointer_to_object(scene, own.magnitude.primitive)};
+  if (own.smallest.value < kInfinity)
+    facts.smallest_feature = {own.smallest.value, pointer_to_object(scene, own.smallest.primitive)};
+  add_instances(scene, facts);
+  add_lights(scene, facts);
+  add_materials(scene, facts);
+  const Spacing spacing = measure_spacing(scene, facts);
+  facts.layer_distance = spacing.layer_distance;
+  facts.mirrors = spacing.mirrors;
+  return facts;
+}
+
+}  // namespace orrery

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/model/scene.h"
+
+namespace orrery {
+
+// What the plan wants to know about a scene that is read but for this. REQUIRES: its primitives, materials
+// and objects are numbered, its motion is known.
+SceneFacts gather_facts(const Scene& scene);
+
+// The JSON Pointer of the object or instance that a primitive belongs to.
+std::string pointer_to_object(const Scene& scene, int primitive);
+
+}  // namespace orrery

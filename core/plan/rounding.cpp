@@ -1,0 +1,88 @@
+#include "core/plan/rounding.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+constexpr double kRoundings = 8;       // of the largest coordinate, by which a hit may be off
+constexpr double kMostOfLength = 0.1;  // of a length to be seen, by which hits may be off
+constexpr double kMostTurn = 0.02;     // radians, by which a mirrored ray may be off
+// Products of three lengths stay normal numbers in float from here on, with room for what is a hundredth.
+constexpr double kLeastLengthInFloat = 1e-10;
+
+std::string metres(double x) { return number_text(x) + " m"; }
+
+class Limits {
+ public:
+  Limits(const Scene& scene, const Plan& plan)
+      : facts_(scene.facts), plan_(plan), magnitude_(facts_.magnitude) {
+    const double eye = max_component(abs(plan.frame.eye));
+    if (eye > magnitude_.value) magnitude_ = {eye, "/camera/eye"};
+  }
+
+  RoundingLimit strictest() {
+    take(facts_.rounding);
+    take_length(facts_.smallest_feature.value,
+                facts_.smallest_feature.where + " is " + metres(facts_.smallest_feature.value) + " large");
+    take_length(facts_.layer_distance.value, "a surface of " + facts_.layer_distance.where + " is " +
+                                                 metres(facts_.layer_distance.value) + " from the next");
+    const double pixel = footprint();
+    take_length(pixel, "a pixel is " + metres(pixel) + " wide where things are");
+    take_mirrors();
+    if (facts_.smallest_feature.value < kLeastLengthInFloat)
+      take({0, facts_.smallest_feature.where + " is " + metres(facts_.smallest_feature.value) +
+                   " large: products of such lengths are too small for float"});
+    return strictest_;
+  }
+
+ private:
+  void take(const RoundingLimit& limit) {
+    if (limit.epsilon < strictest_.epsilon) strictest_ = limit;
+  }
+  void take_length(double length, const std::string& what) {
+    take(
+        {kMostOfLength * length / (kRoundings * magnitude_.value),
+         what + ", beside coordinates of up to " + metres(magnitude_.value) + " (" + magnitude_.where + ")"});
+  }
+
+  // Width of a pixel, in metres: where the bounded primitives begin, or at look_at if that is nearer.
+  double footprint() const {
+    const double pixel = 2 * plan_.frame.half_extent / plan_.height;
+    if (plan_.camera->parallel()) return pixel;
+    return pixel * std::min(plan_.frame.distance, nearest());
+  }
+  double nearest() const {
+    const Boundsd& box = facts_.bounds;
+    if (!box.bounded()) return plan_.frame.distance;
+    const Vec3d &eye = plan_.frame.eye, below = box.lo - eye, above = eye - box.hi;
+    const auto beyond = [](double lo, double hi) { return std::max({lo, hi, 0.0}); };
+    const double outside =
+        length(Vec3d(beyond(below.x, above.x), beyond(below.y, above.y), beyond(below.z, above.z)));
+    return std::max(outside, box.diagonal() / 16);
+  }
+
+  // The error of a ray's direction after the last mirror.
+  void take_mirrors() {
+    const MirrorChain& chain = facts_.mirrors;
+    if (chain.where.empty() || plan_.asked.max_depth.value_or(0) < 1) return;
+    const double growth = std::pow(chain.growth, *plan_.asked.max_depth);
+    take({kMostTurn * chain.radius / (kRoundings * magnitude_.value * growth),
+          "each of " + std::to_string(*plan_.asked.max_depth) + " reflections from " + chain.where +
+              " may multiply rounding by " + number_text(chain.growth)});
+  }
+
+  const SceneFacts& facts_;
+  const Plan& plan_;
+  Extreme magnitude_;
+  RoundingLimit strictest_;
+};
+
+}  // namespace
+
+RoundingLimit rounding_limit(const Scene& scene, const Plan& plan) { return Limits(scene, plan).strictest(); }
+
+}  // namespace orrery

@@ -1,0 +1,33 @@
+// Mistakes of rounding, as faults.mjs has them: fault 24 loses hits or digits where a formula cancels, or takes float
+// for fine enough where it is not.
+
+const entry = (about, file, from, to, target, ...tests) => ({ fault: 24, about, file, from, to, target, tests });
+const limit = (about, from, to, ...scenes) =>
+  entry(about, "core/plan/rounding.cpp", from, to, "test_plan", ...scenes.map((name) => `Scenes/HardForFloat.*/${name}*`));
+const spacing = (about, from, to, ...scenes) =>
+  entry(about, "core/load/spacing.cpp", from, to, "test_plan", ...scenes.map((name) => `Scenes/HardForFloat.*/${name}*`));
+const triangle = (about, from, to, ...tests) =>
+  entry(about, "core/shapes/triangle_hit.h", from, to, "test_shapes", ...tests.map((name) => `Triangle.${name}`));
+
+export const roundingFaults = [
+  entry("boxes of nearly axis-aligned disks are flat", "core/shapes/round_hull.h", "std::hypot(axis.x, axis.z)",
+        "std::sqrt(std::max(0.0, 1 - axis.y * axis.y))", "test_accelerators", "NearlyAxisAligned.*"),
+  entry("the point that places a plane does not count", "core/load/facts.cpp", "shapes.anchor_magnitude(index)", "0.0",
+        "test_plan", "Scenes/HardForFloat.*/plane*", "Scenes/HardForFloat.*/tube*"),
+  entry("narrow beams do not count", "core/lights/spot.cpp", "kMostError * width", "1.0", "test_plan",
+        "Scenes/HardForFloat.*/spot*"),
+  entry("sharp highlights do not count", "core/materials/rough.cpp", "kMostError / shininess", "1.0", "test_plan",
+        "Scenes/HardForFloat.*/shininess*"),
+  limit("what is too small for float is left to it", "facts_.smallest_feature.value < kLeastLengthInFloat", "false", "mesh"),
+  limit("a pixel is measured at look_at alone", "std::min(plan_.frame.distance, nearest())", "plan_.frame.distance", "tele"),
+  limit("mirrors do not count", "    take_mirrors();\n", "", "mirror_tubes"),
+  limit("layers do not count", "take_length(facts_.layer_distance.value,", "take_length(1e9,", "bubble", "decal", "film"),
+  spacing("layers are looked for on the outside alone", "    take_layer(from, at, -1);\n", "", "film"),
+  entry("spheres that touch are layers", "core/load/spacing.cpp", "for (const SurfaceAt& one : at)",
+        "for (const SurfaceAt& one : {at[0]})", "test_plan", "Precision.OfSamples*"),
+  triangle("hits slide along slivers", "if (!any(thin)) [[likely]]", "if (true)", "HitsDoNotSlide*"),
+  triangle("a ray that starts on a triangle meets it", "select(dot(direction, normal) > zero, distance, N(-distance)) > zero",
+           "(distance > zero) == (dot(direction, normal) > zero)", "IsNotMetByRaysThatStartOnIt"),
+  entry("normals of slivers lose digits", "core/math/face_normal.h", "size(product) * kThinAspect >= longest * longest",
+        "true", "test_shapes", "Triangle.NormalsOfSlivers*"),
+];
