@@ -192,7 +192,8 @@ class SceneReader {
     number_objects();
     gather_motion();
     scene_->facts = gather_facts(*scene_);
-    if (const Extreme& smallest = scene_->facts.smallest_feature; smallest.value < kMinSize)
+    const Extreme& smallest = scene_->facts.smallest_feature;
+    if (smallest.value > 0 && smallest.value < kMinSize)  // 0 for a while: triangles that move
       throw InputError(smallest.where, "expected shapes and triangles of at least " + number_text(kMinSize) +
                                            " m in size, got " + number_text(smallest.value));
     return scene_;
