@@ -9,6 +9,9 @@ const spacing = (about, from, to, ...scenes) =>
 const triangle = (about, from, to, ...tests) =>
   entry(about, "core/shapes/triangle_hit.h", from, to, "test_shapes", ...tests.map((name) => `Triangle.${name}`));
 
+const exact = (about, file, from, to, ...classes) =>
+  entry(about, file, from, to, "test_exact", ...classes.map((name) => `Classes/Exact.*/${name}`));
+
 export const roundingFaults = [
   entry("boxes of nearly axis-aligned disks are flat", "core/shapes/round_hull.h", "std::hypot(axis.x, axis.z)",
         "std::sqrt(std::max(0.0, 1 - axis.y * axis.y))", "test_accelerators", "NearlyAxisAligned.*"),
@@ -25,6 +28,13 @@ export const roundingFaults = [
   spacing("layers are looked for on the outside alone", "    take_layer(from, at, -1);\n", "", "film"),
   entry("spheres that touch are layers", "core/load/spacing.cpp", "for (const SurfaceAt& one : at)",
         "for (const SurfaceAt& one : {at[0]})", "test_plan", "Precision.OfSamples*"),
+  exact("the discriminant of a sphere cancels far away", "core/shapes/sphere.h",
+        "const N discriminant = radius * radius - dot(residue, residue);",
+        "const N discriminant = b * b / a - (dot(f, f) - radius * radius);", "far"),
+  exact("the box of a tilted cylinder leaves out its caps", "core/shapes/cylinder.h",
+        "abs(axis) * half_length + round_reach(axis) * radius", "abs(axis) * half_length", "mixed"),
+  exact("the constant term of a cylinder's wall is from its centre", "core/shapes/cylinder.h",
+        "const N from_axis = length(f_across);", "const N from_axis = length(f);", "mixed", "instances"),
   triangle("hits slide along slivers", "if (!any(thin)) [[likely]]", "if (true)", "HitsDoNotSlide*"),
   triangle("a ray that starts on a triangle meets it", "select(dot(direction, normal) > zero, distance, N(-distance)) > zero",
            "(distance > zero) == (dot(direction, normal) > zero)", "IsNotMetByRaysThatStartOnIt"),
