@@ -13,7 +13,11 @@
 namespace orrery {
 namespace {
 
-constexpr int kMostPrimitives = 256;
+constexpr std::size_t kMostPrimitives = 256;
+constexpr int kMoments = 9;  // of a motion at which it is measured, the first and the last among them
+constexpr std::size_t kManyRays =
+    1024;  // toward all primitives, at all moments; each gets kFewestRays at least
+constexpr std::size_t kFewestRays = 6;
 constexpr double kCoincident = 1e-13;  // of the largest coordinate: what is as near is one surface
 constexpr double kBeside = 0.05;       // of a primitive's size
 constexpr double kParallel = 0.99;     // least cosine between the normals of surfaces that run alike
@@ -69,37 +73,57 @@ class Gauge {
  public:
   Gauge(const Scene& scene, const SceneFacts& facts)
       : scene_(scene), magnitude_(std::max(facts.magnitude.value, max_component(abs(scene.placement.eye)))) {
-    int number = 0;
-    place(scene.shapes, Affined{}, number);
-    for (const Instance& instance : scene.instances) {
-      const Affined world = instance.world_from_model(scene.motion.first);
-      if (scaled_determinant(world) != 0) place(scene.models[instance.model].shapes, world, number);
-    }
     for (const auto& set : scene.materials)
       for (int i = 0; i < set->size(); ++i) shares_.push_back(set->mirrored_share(i));
   }
 
   Spacing measure() {
-    for (const Placed& placed : placed_) {
-      interruption_point();
-      mirror_ = {};
-      for (const Ray<double>& ray : rays_at(placed)) look_around(placed, ray);
-      take_mirror(placed);
+    const auto& [first, last] = scene_.motion;
+    const int moments = last > first ? kMoments : 1;
+    for (int i = 0; i < moments; ++i) {
+      place_all(first + (last - first) * i / std::max(1, moments - 1));
+      measure_placed(std::max(kFewestRays, kManyRays / static_cast<std::size_t>(moments) /
+                                               std::max<std::size_t>(1, placed_.size())));
     }
     return spacing_;
   }
 
  private:
-  void place(const std::vector<std::unique_ptr<ShapeSet>>& sets, const Affined& world, int& number) {
+  void measure_placed(std::size_t rays_of_each) {
+    for (const Placed& placed : placed_) {
+      interruption_point();
+      mirror_ = {};
+      const std::vector<Ray<double>> rays = rays_at(placed);
+      const std::size_t step = (rays.size() + rays_of_each - 1) / rays_of_each;
+      for (std::size_t i = 0; i < rays.size(); i += step) look_around(placed, rays[i]);
+      take_mirror(placed);
+    }
+  }
+
+  void place_all(double time) {
+    placed_.clear();
+    kernels_.clear();
+    moved_.clear();
+    int number = 0;
+    place(scene_.shapes, Affined{}, time, number);
+    for (const Instance& instance : scene_.instances) {
+      const Affined world = instance.world_from_model(time);
+      if (scaled_determinant(world) != 0) place(scene_.models[instance.model].shapes, world, time, number);
+    }
+  }
+  void place(const std::vector<std::unique_ptr<ShapeSet>>& sets, const Affined& world, double time,
+             int& number) {
     for (const auto& shapes : sets) {
       const int first = std::exchange(number, number + shapes->size());
-      if (shapes->size() == 0 || placed_.size() + static_cast<std::size_t>(shapes->size()) > kMostPrimitives)
-        continue;
-      moved_.push_back(shapes->at(scene_.motion.first));
+      const auto count = static_cast<int>(
+          std::min(static_cast<std::size_t>(shapes->size()), kMostPrimitives - placed_.size()));
+      complete_ = complete_ && count == shapes->size();
+      if (count == 0) continue;
+      moved_.push_back(shapes->at(time));
       const ShapeSet& now = moved_.back() ? *moved_.back() : *shapes;
       kernels_.push_back(now.kernel(double(), 0));
       const Affined back = inverse(world);
-      for (int i = 0; i < now.size(); ++i) {
+      for (int i = 0; i < count; ++i) {
         const Boundsd own = now.bounds(i);
         const Boundsd box = own.bounded() ? box_of(own, world) : Boundsd::everything();
         placed_.push_back({&now, kernels_.back().get(), i, first + i, world, back, box});
@@ -113,7 +137,8 @@ class Gauge {
   }
 
   // Rays that may meet the primitive: of a triangle at its middle and near its corners, along its normal; of
-  // what has no bounds from where the camera looks; of others toward the middle of the box.
+  // what has no bounds from where the camera looks and from beside it; of others toward the middle of the
+  // box.
   std::vector<Ray<double>> rays_at(const Placed& placed) const {
     std::vector<Ray<double>> rays;
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
@@ -127,15 +152,25 @@ class Gauge {
       return rays;
     }
     const bool bounded = placed.box.bounded();
-    const Vec3d middle = bounded ? (placed.box.lo + placed.box.hi) * 0.5 : scene_.placement.look_at;
+    add_toward(bounded ? (placed.box.lo + placed.box.hi) * 0.5 : scene_.placement.look_at,
+               bounded ? placed.box.diagonal() : 0, rays);
+    if (!bounded) add_toward(beside_look_at(), 0, rays);
+    return rays;
+  }
+  // Rays from `away` metres off `middle` toward it, from all sides.
+  static void add_toward(const Vec3d& middle, double away, std::vector<Ray<double>>& rays) {
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z) {
           if (x == 0 && y == 0 && z == 0) continue;
           const Vec3d toward = safe_normalize(Vec3d(x, y, z));
-          rays.push_back({bounded ? middle + toward * placed.box.diagonal() : middle, -toward});
+          rays.push_back({middle + toward * away, -toward});
         }
-    return rays;
+  }
+  // Off the lines on which surfaces that are placed about look_at may cross.
+  Vec3d beside_look_at() const {
+    const Vec3d &at = scene_.placement.look_at, back = scene_.placement.eye - at;
+    return at + (back + tangents_of(safe_normalize(back)).first * length(back) * 0.5) * 0.25;
   }
   static Vec3d mix(const Vec3d& corner, const Vec3d& middle) { return corner * 0.8 + middle * 0.2; }
 
@@ -154,7 +189,7 @@ class Gauge {
     }
     take_layer(from, at, 1);
     take_layer(from, at, -1);
-    look_for_mirrors(from, at);
+    if (complete_) look_for_mirrors(from, at);
   }
 
   void take_layer(const Placed& from, const std::array<SurfaceAt, 3>& at, double side) {
@@ -234,6 +269,7 @@ class Gauge {
   std::vector<std::unique_ptr<ShapeSet>> moved_;
   std::vector<ShapeKernelPtr<double>> kernels_;
   std::vector<Placed> placed_;
+  bool complete_ = true;        // nothing was left out: else it is unknown which mirrors see each other
   std::vector<double> shares_;  // mirrored, of each material
   Probe probe_;
   struct {

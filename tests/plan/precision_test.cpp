@@ -107,6 +107,12 @@ TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
   }
 }
 
+// Also where layers come together only later.
+TEST(Precision, OfMotionIsThatOfItsNarrowestMoment) {
+  const auto scene = load(from_file("tests/scenes/closing_gap.json"));
+  EXPECT_TRUE(make_plan(*scene, {}).double_precision);
+}
+
 // The reason names what needs double precision.
 TEST(Precision, SaysWhatNeedsDouble) {
   const auto reason = [](const std::string& name) {
@@ -120,7 +126,7 @@ TEST(Precision, SaysWhatNeedsDouble) {
   EXPECT_THAT(reason("shininess_1e+06"), testing::HasSubstr("exponent of 1e6"));
   EXPECT_THAT(reason("plane_point_1e+06_away"), testing::HasSubstr("(/objects/0)"));
   EXPECT_THAT(reason("tube_point_100000_away"), testing::HasSubstr("(/objects/0)"));
-  EXPECT_THAT(reason("decal_1e-07_above_floor"), testing::HasSubstr("/objects/1 is 9.99"));
+  EXPECT_THAT(reason("decal_1e-07_above_floor"), testing::HasSubstr("/objects/0 is 9.99"));
   EXPECT_THAT(reason("bubble_1e-06_thick"), testing::HasSubstr("from the next"));
   EXPECT_THAT(reason("film_1e-06_thick_10_wide"), testing::HasSubstr("/objects/0 is 9.99"));
   EXPECT_THAT(reason("mirror_tubes_0.3_depth_5"), testing::HasSubstr("each of 5 reflections"));
