@@ -1,6 +1,7 @@
 #pragma once
 
-#include <deque>
+#include <numeric>
+#include <span>
 
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/grid_layout.h"
@@ -27,12 +28,20 @@ class GridTree {
     std::size_t left = (kOptions.references - 1) * items.size();  // references that may still be made
     Bounds<T> all;
     for (const auto& item : items) all.include(item.box);
-    PendingCell whole{all, {}, 0, 0};
-    for (std::uint32_t i = 0; i < items.size(); ++i) whole.items.push_back(i);
     cells_.emplace_back();
-    std::deque<PendingCell> open{std::move(whole)};
-    for (; !open.empty(); open.pop_front())
-      if (!divide(open.front(), items, left, open)) add_cell(open.front(), items, primitives);
+    Level level{{{all, items.size(), 0}}, std::vector<std::uint32_t>(items.size())};
+    std::iota(level.items.begin(), level.items.end(), 0u);
+    for (int depth = 0; !level.cells.empty(); ++depth) {
+      Level next;
+      std::span<const std::uint32_t> rest = level.items;
+      for (const LevelCell& open : level.cells) {
+        interruption_point();
+        const PendingCell cell{open.box, rest.first(open.items), depth, open.cell};
+        rest = rest.subspan(open.items);
+        if (!divide(cell, items, left, next)) add_cell(cell, items, primitives);
+      }
+      level = std::move(next);
+    }
     blocks_.pack();
   }
 
@@ -50,7 +59,6 @@ class GridTree {
   }
 
  private:
-  using PrimitiveIndices = std::vector<std::uint32_t>;
   struct Grid {
     GridLayout<T> layout;
     std::size_t first;  // cell
@@ -62,9 +70,18 @@ class GridTree {
   // A cell that may become a grid.
   struct PendingCell {
     Bounds<T> box;
-    PrimitiveIndices items;  // ascending
+    std::span<const std::uint32_t> items;  // places in the list of TreeItems, ascending
     int level;
     std::size_t cell;
+  };
+  // Cells of one level. Their items stand in one list, cell after cell, so that there is little to free.
+  struct LevelCell {
+    Bounds<T> box;
+    std::size_t items, cell;
+  };
+  struct Level {
+    std::vector<LevelCell> cells;
+    std::vector<std::uint32_t> items;
   };
 
   // What of the items lies in the box.
@@ -83,8 +100,8 @@ class GridTree {
   }
 
   // Makes a grid of the cell, with fewer cells while they would share too many; false if none helps.
-  bool divide(PendingCell& cell, const std::vector<TreeItem<T>>& items, std::size_t& left,
-              std::deque<PendingCell>& open) {
+  bool divide(const PendingCell& cell, const std::vector<TreeItem<T>>& items, std::size_t& left,
+              Level& next) {
     const std::size_t count = cell.items.size();
     if (cell.level >= kOptions.levels || (cell.level > 0 && count <= kOptions.most)) return false;
     const Bounds<T> box = around(cell, items);
@@ -99,36 +116,41 @@ class GridTree {
       if (made > left + count || shared) continue;
       left = left + count - made;
       depth_ = std::max(depth_, cell.level + 1);
-      add_grid(layout, cell, items, open);
+      add_grid(layout, cell, items, next);
       return true;
     }
     return false;
   }
 
-  void add_grid(const GridLayout<T>& layout, PendingCell& cell, const std::vector<TreeItem<T>>& items,
-                std::deque<PendingCell>& open) {
+  void add_grid(const GridLayout<T>& layout, const PendingCell& cell, const std::vector<TreeItem<T>>& items,
+                Level& next) {
     const std::size_t first = cells_.size();
     cells_[cell.cell] = {static_cast<std::uint32_t>(grids_.size()), kGrid};
     cells_.resize(first + layout.cells());
     grids_.push_back({layout, first});
-    std::vector<PrimitiveIndices> members(layout.cells());
-    for (const std::uint32_t item : cell.items) {
-      interruption_point();
-      layout.for_each_touching(items[item].box,
-                               [&](const CellIndex& i) { members[layout.number(i)].push_back(item); });
-    }
-    cell.items = {};
+    const auto for_each_item_in_cell = [&](const auto& visit) {
+      for (const std::uint32_t item : cell.items) {
+        interruption_point();
+        layout.for_each_touching(items[item].box, [&](const CellIndex& i) { visit(layout.number(i), item); });
+      }
+    };
+    std::vector<std::size_t> places(
+        layout.cells());  // first the items of each cell, then where the next goes
+    for_each_item_in_cell([&](std::size_t i, std::uint32_t) { ++places[i]; });
+    std::size_t end = next.items.size();
     layout.for_each_touching(layout.box(), [&](const CellIndex& i) {
-      PrimitiveIndices& here = members[layout.number(i)];
-      if (!here.empty())
-        open.push_back({layout.cell(i), std::move(here), cell.level + 1, first + layout.number(i)});
+      std::size_t& place = places[layout.number(i)];
+      const std::size_t count = std::exchange(place, end);
+      end += count;
+      if (count > 0) next.cells.push_back({layout.cell(i), count, first + layout.number(i)});
     });
+    next.items.resize(end);
+    for_each_item_in_cell([&](std::size_t i, std::uint32_t item) { next.items[places[i]++] = item; });
   }
 
   void add_cell(const PendingCell& cell, const std::vector<TreeItem<T>>& items,
                 const PrimitiveList<T>& primitives) {
-    interruption_point();
-    PrimitiveIndices places;
+    std::vector<std::uint32_t> places;
     for (const std::uint32_t item : cell.items) places.push_back(items[item].primitive);
     const std::size_t first = names_.size();
     blocks_.add_all(primitives, places, names_);

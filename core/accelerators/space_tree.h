@@ -1,7 +1,8 @@
 #pragma once
 
-#include <deque>
+#include <numeric>
 #include <optional>
+#include <span>
 
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/single_ray.h"
@@ -13,8 +14,8 @@ namespace orrery {
 template <class T>
 struct SpaceCell {
   Bounds<T> box;
-  std::vector<std::uint32_t> items;  // places in the list of TreeItems, ascending
-  int depth;                         // planes that were drawn to make it
+  std::span<const std::uint32_t> items;  // places in the list of TreeItems, ascending
+  int depth;                             // planes that were drawn to make it
   std::size_t node;
 };
 
@@ -36,19 +37,23 @@ class SpaceTree {
     const std::vector<TreeItem<T>> items = items_of(primitives);
     if (items.empty()) return;
     const Splitter splitter(items);
-    SpaceCell<T> all{{}, {}, 0, 0};
-    for (std::uint32_t i = 0; i < items.size(); ++i) all.items.push_back(i);
-    for (const auto& item : items) all.box.include(item.box);
-    box_ = all.box;
+    for (const auto& item : items) box_.include(item.box);
     nodes_.emplace_back();
+    Level level{{{box_, items.size(), 0}}, std::vector<std::uint32_t>(items.size())};
+    std::iota(level.items.begin(), level.items.end(), 0u);
     std::size_t left = (Splitter::kReferences - 1) * items.size();  // references that may still be added
-    std::deque<SpaceCell<T>> open{std::move(all)};
-    for (; !open.empty(); open.pop_front()) {
-      interruption_point();
-      SpaceCell<T>& cell = open.front();
-      depth_ = std::max(depth_, cell.depth + 1);
-      if (const auto plane = splitter.split(cell); plane && divide(cell, *plane, items, left, open)) continue;
-      add_leaf(cell, items, primitives);
+    for (; !level.cells.empty(); ++depth_) {
+      Level next;
+      std::span<const std::uint32_t> rest = level.items;
+      for (const LevelCell& open : level.cells) {
+        interruption_point();
+        const SpaceCell<T> cell{open.box, rest.first(open.items), depth_, open.node};
+        rest = rest.subspan(open.items);
+        if (const auto plane = splitter.split(cell); plane && divide(cell, *plane, items, left, next))
+          continue;
+        add_leaf(cell, items, primitives);
+      }
+      level = std::move(next);
     }
     blocks_.pack();
   }
@@ -106,35 +111,50 @@ class SpaceTree {
     std::uint32_t node;
     T from, to;
   };
+  // Cells of one depth. Their items stand in one list, cell after cell, so that there is little to free.
+  struct LevelCell {
+    Bounds<T> box;
+    std::size_t items, node;
+  };
+  struct Level {
+    std::vector<LevelCell> cells;
+    std::vector<std::uint32_t> items;
+  };
 
   static T latest(const TraversalState<T>& state, const Node& node) {
     return state.probe.latest(node.axis, node.plane) * kFarther<T>;
   }
 
   // False, and nothing is changed, if that would help no ray or cost too many references.
-  bool divide(SpaceCell<T>& cell, const SpacePlane& plane, const std::vector<TreeItem<T>>& items,
-              std::size_t& left, std::deque<SpaceCell<T>>& open) {
+  bool divide(const SpaceCell<T>& cell, const SpacePlane& plane, const std::vector<TreeItem<T>>& items,
+              std::size_t& left, Level& next) {
     const T at = static_cast<T>(plane.at);
-    T& lo = cell.box.lo[plane.axis];
-    T& hi = cell.box.hi[plane.axis];
-    if (!(lo < at && at < hi) || cell.depth + 1 >= kDeepest) return false;
-    SpaceCell<T> below{cell.box, {}, cell.depth + 1, nodes_.size()};
-    SpaceCell<T> above{cell.box, {}, cell.depth + 1, nodes_.size() + 1};
-    below.box.hi[plane.axis] = at;
-    above.box.lo[plane.axis] = at;
-    for (const std::uint32_t item : cell.items) {
-      interruption_point(item);
-      if (items[item].box.lo[plane.axis] <= at) below.items.push_back(item);
-      if (items[item].box.hi[plane.axis] >= at) above.items.push_back(item);
+    if (!(cell.box.lo[plane.axis] < at && at < cell.box.hi[plane.axis]) || cell.depth + 1 >= kDeepest)
+      return false;
+    const std::size_t first = next.items.size();
+    const auto add_items = [&](const auto& reaches) {
+      for (const std::uint32_t item : cell.items) {
+        interruption_point(item);
+        if (reaches(items[item].box)) next.items.push_back(item);
+      }
+      return next.items.size();
+    };
+    const std::size_t middle = add_items([&](const Bounds<T>& box) { return box.lo[plane.axis] <= at; });
+    const std::size_t last = add_items([&](const Bounds<T>& box) { return box.hi[plane.axis] >= at; });
+    const std::size_t added = last - first - cell.items.size();
+    if (added > left) {
+      next.items.resize(first);
+      return false;
     }
-    const std::size_t added = below.items.size() + above.items.size() - cell.items.size();
-    if (added > left) return false;
     left -= added;
+    LevelCell below{cell.box, middle - first, nodes_.size()},
+        above{cell.box, last - middle, nodes_.size() + 1};
+    below.box.hi[plane.axis] = above.box.lo[plane.axis] = at;
     nodes_[cell.node] = {at, static_cast<std::uint32_t>(plane.axis), static_cast<std::uint32_t>(below.node),
                          0};
     nodes_.resize(nodes_.size() + 2);
-    open.push_back(std::move(below));
-    open.push_back(std::move(above));
+    next.cells.push_back(below);
+    next.cells.push_back(above);
     return true;
   }
 

@@ -31,10 +31,10 @@ class PackedRecords final : public PackedPrimitives<T> {
   // records.core(i) is what distance() needs of record i.
   template <class Records>
   PackedRecords(const Records& records, int first, std::span<const int> indices) : first_(first) {
-    blocks_.resize(indices.size() / kB);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      interruption_point(b);
-      fill(blocks_[b], records, first, indices.subspan(b * kB, kB));
+    blocks_.reserve(indices.size() / kB);
+    for (; indices.size() >= kB; indices = indices.subspan(kB)) {
+      interruption_point(blocks_.size());
+      fill(blocks_.emplace_back(), records, first, indices.first(kB));
     }
   }
 
