@@ -1,25 +1,37 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 
+#include "core/math/products.h"
 #include "core/math/vec3.h"
 
 namespace orrery {
 
-// A triangle is long and thin where its longest side is more than so many times its height, about.
-inline constexpr double kThinAspect = 64;
+namespace detail {
 
-// Unit normal of a triangle by the right-hand rule, or 0 if it has no area. The product of two long sides of
-// a long thin triangle loses as many digits as its aspect ratio has; that of the two shorter sides loses
-// none.
+// b - a, and what rounding took from it (Knuth's exact sum).
+struct ExactDifference {
+  double high, low;
+  ExactDifference(double b, double a) : high(b - a) {
+    const double back = high - b;
+    low = (b - (high - back)) - (a + back);
+  }
+};
+
+}  // namespace detail
+
+// Unit normal of a triangle by the right-hand rule, or 0 if it has no area. Nothing is lost where two long
+// sides of a thin triangle run almost alike: the sides are differences without rounding, their products
+// nearly so.
 inline Vec3d face_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d ab = b - a, bc = c - b, ca = a - c;
-  const Vec3d product = cross(ab, c - a);
-  const auto size = [](const Vec3d& side) { return max_component(abs(side)); };
-  const double first = size(ab), second = size(bc), third = size(ca),
-               longest = std::max({first, second, third});
-  if (size(product) * kThinAspect >= longest * longest) return safe_normalize(product);
-  return safe_normalize(first == longest ? cross(bc, ca) : second == longest ? cross(ca, ab) : cross(ab, bc));
+  using Difference = detail::ExactDifference;
+  const std::array<Difference, 3> e{Difference(b.x, a.x), Difference(b.y, a.y), Difference(b.z, a.z)};
+  const std::array<Difference, 3> f{Difference(c.x, a.x), Difference(c.y, a.y), Difference(c.z, a.z)};
+  const auto part = [&](std::size_t i, std::size_t j) {
+    return difference_of_products(e[i].high, f[j].high, e[j].high, f[i].high) +
+           ((e[i].high * f[j].low - e[j].high * f[i].low) + (e[i].low * f[j].high - e[j].low * f[i].high));
+  };
+  return safe_normalize(Vec3d(part(1, 2), part(2, 0), part(0, 1)));
 }
 
 }  // namespace orrery

@@ -30,7 +30,7 @@ struct MeshTriangle {
     const N size = length(sum);
     const auto usable = size > N(ScalarOf<N>(0.001));  // unit normals: below it they point opposite ways
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
-    return {corners.point(ray, normal, weights),
+    return {corners.mix(weights),
             normal,
             {choose(sum.x, normal.x), choose(sum.y, normal.y), choose(sum.z, normal.z)},
             magnitude};

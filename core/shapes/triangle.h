@@ -26,7 +26,7 @@ struct Triangle {
   N distance(const Ray<N>& ray) const { return corners.distance(ray); }
 
   Surface<N> surface(const Ray<N>& ray, const N&) const {
-    return {corners.point(ray, normal, corners.weights(ray)), normal, normal, magnitude};
+    return {corners.mix(corners.weights(ray)), normal, normal, magnitude};
   }
 
   // Weights of the second and the third vertex.

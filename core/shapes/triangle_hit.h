@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/math/bounds.h"
-#include "core/math/face_normal.h"
+#include "core/math/products.h"
 #include "core/model/shape.h"
 
 namespace orrery {
@@ -14,18 +14,6 @@ struct TriangleHit {
 };
 
 namespace detail {
-
-// a * b - c * d with the right sign: rounding cannot turn the sign of a difference of rounded products, only
-// make it 0, and then the rounding errors of the products decide.
-template <class N>
-[[gnu::always_inline]] inline N difference_of_products(const N& a, const N& b, const N& c, const N& d) {
-  using std::fma;
-  const N ab = a * b, cd = c * d;
-  const N difference = ab - cd;
-  const auto undecided = difference == N(ScalarOf<N>(0));
-  if (!any(undecided)) return difference;
-  return select(undecided, N(fma(a, b, -ab) - fma(c, d, -cd)), difference);
-}
 
 // One coordinate of a point as seen from `origin`.
 template <class N, class O>
@@ -41,51 +29,21 @@ struct Sheared {
   N x, y, z;
 };
 
-namespace detail {
-
-// Whether a ray that crosses the triangle of three points, seen from its origin, crosses their plane ahead
-// and does not start on it. The plane's normal is taken from the two shorter sides: its relative error stays
-// a few ulp however thin the triangle is.
-template <class N>
-inline MaskOf<N> plane_ahead(const Vec3<N>& va, const Vec3<N>& vb, const Vec3<N>& vc,
-                             const Vec3<N>& direction) {
-  const Vec3<N> ab = vb - va, bc = vc - vb, ca = va - vc;
-  const N la = dot(bc, bc), lb = dot(ca, ca), lc = dot(ab, ab);
-  const auto first = la >= lb && la >= lc;  // bc is longest
-  const auto second = !first && lb >= lc;   // ca is
-  const auto choose = [&](const N& p, const N& q, const N& r) {
-    return select(first, p, select(second, q, r));
-  };
-  const Vec3<N> e(choose(ca.x, ab.x, bc.x), choose(ca.y, ab.y, bc.y), choose(ca.z, ab.z, bc.z));
-  const Vec3<N> f(choose(ab.x, bc.x, ca.x), choose(ab.y, bc.y, ca.y), choose(ab.z, bc.z, ca.z));
-  const Vec3<N> at(choose(va.x, vb.x, vc.x), choose(va.y, vb.y, vc.y), choose(va.z, vb.z, vc.z));
-  const Vec3<N> normal = cross(e, f);
-  const N zero(ScalarOf<N>(0)), distance = dot(at, normal);
-  return select(dot(direction, normal) > zero, distance, N(-distance)) > zero;
-}
-
-}  // namespace detail
-
 // Each lane has its own ray and so its own axes.
 template <class N>
 class OwnAxes {
  public:
   [[gnu::always_inline]] explicit OwnAxes(const Ray<N>& ray)
-      : origin_(ray.origin),
-        direction_(ray.direction),
-        axes_(ray.direction),
-        shear_(Shear<N>::of(axes_, ray.direction)) {}
+      : origin_(ray.origin), axes_(ray.direction), shear_(Shear<N>::of(axes_, ray.direction)) {}
   [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
     const Vec3<N> v = vertex - origin_;
     const N z = axes_.z(v);
     return {axes_.x(v) - shear_.x * z, axes_.y(v) - shear_.y * z, z};
   }
   [[gnu::always_inline]] N along() const { return shear_.z; }
-  const Vec3<N>& origin() const { return origin_; }
-  const Vec3<N>& direction() const { return direction_; }
 
  private:
-  Vec3<N> origin_, direction_;
+  Vec3<N> origin_;
   RayAxes<N> axes_;
   Shear<N> shear_;
 };
@@ -102,17 +60,17 @@ class SharedAxes {
     return {vx - N(rays_.shear.x) * vz, vy - N(rays_.shear.y) * vz, vz};
   }
   [[gnu::always_inline]] N along() const { return N(rays_.shear.z); }
-  Vec3<N> origin() const { return lanes_of(rays_.ray.origin); }
-  Vec3<N> direction() const { return lanes_of(rays_.ray.direction); }
 
  private:
-  static Vec3<N> lanes_of(const auto& v) { return {N(v.x), N(v.y), N(v.z)}; }
   const Rays& rays_;
 };
 
 // Watertight: a ray through a shared edge or vertex meets one of the triangles around it, in any precision.
 // Each edge is judged by the sign of a 2D edge function that its two triangles compute from the same numbers
-// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013).
+// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). The products of the edge
+// functions are not rounded before they are subtracted: so the weights of the vertices are as exact as the
+// vertices are seen, however thin the triangle or flat the ray, and what they mix lies within a few roundings
+// of the ray.
 template <class N, class Axes>
 [[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Axes& axes, const Vec3<N>& a,
                                                                 const Vec3<N>& b, const Vec3<N>& c) {
@@ -120,25 +78,16 @@ template <class N, class Axes>
   using T = ScalarOf<N>;
   const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
   const Sheared<N> sa = axes(a), sb = axes(b), sc = axes(c);
-  N u = sc.x * sb.y - sc.y * sb.x, v = sa.x * sc.y - sa.y * sc.x, w = sb.x * sa.y - sb.y * sa.x;
-  if (any(u == zero || v == zero || w == zero)) [[unlikely]] {
-    u = detail::difference_of_products(sc.x, sb.y, sc.y, sb.x);
-    v = detail::difference_of_products(sa.x, sc.y, sa.y, sc.x);
-    w = detail::difference_of_products(sb.x, sa.y, sb.y, sa.x);
-  }
+  const N u = difference_of_products(sc.x, sb.y, sc.y, sb.x);
+  const N v = difference_of_products(sa.x, sc.y, sa.y, sc.x);
+  const N w = difference_of_products(sb.x, sa.y, sb.y, sa.x);
   const auto inside = min_first(min_first(u, v), w) >= zero || max_first(max_first(u, v), w) <= zero;
-  const N determinant = u + v + w;
-  if (!any(inside && determinant != zero)) return {infinity, zero, zero, zero};
-  const N inverse = N(T(1)) / determinant;
-  const N t = (u * sa.z + v * sb.z + w * sc.z) * inverse / axes.along();
-  auto met = inside && determinant != zero && t > zero;
-  // Of a long thin triangle, whose determinant is small, t may be far off: next to the triangle, where its
-  // sign is in doubt, the plane decides.
+  const N determinant = u + v + w, inverse = N(T(1)) / determinant;
+  const N z = (u * sa.z + v * sb.z + w * sc.z) * inverse, t = z / axes.along();
+  // What is as near as the rounding error of its distance is where the ray starts.
   const N farthest = max_first(max_first(abs(sa.z), abs(sb.z)), abs(sc.z));
-  const auto near = met && abs(t * axes.along()) < farthest * N(T(1.0 / 1024));
-  if (any(near)) [[unlikely]]
-    met = met && (!near || detail::plane_ahead(a - axes.origin(), b - axes.origin(), c - axes.origin(),
-                                               axes.direction()));
+  const auto met = inside && determinant != zero && t > zero &&
+                   abs(z) > farthest * (4 * std::numeric_limits<T>::epsilon());
   return {select(met, t, infinity), u * inverse, v * inverse, w * inverse};
 }
 
@@ -169,25 +118,6 @@ struct Corners {
     return {hit.weight_a, hit.weight_b, hit.weight_c};
   }
   Vec3<N> mix(const Vec3<N>& weights) const { return a * weights.x + b * weights.y + c * weights.z; }
-
-  // Where the ray crosses with these weights; `normal` is that of the triangle. Rounding moves the weights of
-  // a triangle of length l and width w by eps l / w, and what they mix by l times as much along it: of a long
-  // thin one, the point is taken where the ray crosses the plane, if that is the nearer to the truth.
-  Vec3<N> point(const Ray<N>& ray, const Vec3<N>& normal, const Vec3<N>& weights) const {
-    using std::abs;
-    using std::sqrt;
-    const Vec3<N> mixed = mix(weights), ab = b - a, bc = c - b, ca = a - c, product = cross(ab, ca);
-    const N longest2 = max_first(max_first(dot(ab, ab), dot(bc, bc)), dot(ca, ca)), area = length(product);
-    const auto thin = area * ScalarOf<N>(kThinAspect) < longest2;
-    if (!any(thin)) [[likely]]
-      return mixed;
-    const N slope = dot(ray.direction, normal), t = dot(mixed - ray.origin, normal) / slope;
-    const N far = abs(t) * dot(ray.direction, ray.direction);
-    const auto nearer = thin && far * area < longest2 * sqrt(longest2) * abs(slope);
-    const Vec3<N> at = ray.at(t), crossing = at - normal * dot(at - mixed, normal);
-    return {select(nearer, crossing.x, mixed.x), select(nearer, crossing.y, mixed.y),
-            select(nearer, crossing.z, mixed.z)};
-  }
 
  private:
   template <class Axes>

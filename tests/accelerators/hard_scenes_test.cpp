@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 #include "tests/support/pictures.h"
+#include "tests/support/random.h"
 #include "tests/support/structures.h"
 
 // Pictures in which a structure or a shape once lost hits.
@@ -43,6 +46,61 @@ INSTANTIATE_TEST_SUITE_P(Structures, HardScenes, testing::ValuesIn(accelerator_n
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+// Slivers about one point, seen through a telescope that shows many of them.
+Json slivers(double aspect, Random& random) {
+  constexpr int kCount = 60;
+  const double width = 2 / aspect;
+  const Vec3d view = random.direction();
+  Json objects = Json::array();
+  for (int i = 0; i < kCount; ++i) {
+    const Vec3d along = random.direction(),
+                across = safe_normalize(cross(along, i % 2 ? view : random.direction())) * (width / 2);
+    const Vec3d middle = random.in_cube(0.15 * kCount * width) - along * (i % 3 == 0 ? 0.95 : 0.0);
+    const double tip = i % 4 == 0 ? -1 : random.between(-0.9, 0.9);
+    objects.push_back({{"type", "triangle"},
+                       {"vertices",
+                        {numbers(middle - along - across), numbers(middle + along - across),
+                         numbers(middle + along * tip + across)}},
+                       {"material", i % 2 ? "bright" : "dark"}});
+  }
+  const double field = 2 * std::atan(0.07 * kCount * width) * 180 / std::numbers::pi;
+  return {{"version", 1},
+          {"camera",
+           {{"type", "perspective"},
+            {"eye", numbers(view * 3.0)},
+            {"look_at", {0, 0, 0}},
+            {"up", numbers(random.direction())},
+            {"fov_degrees", std::min(120.0, field)}}},
+          {"materials",
+           {{"bright", {{"type", "rough"}, {"kd", {0.9, 0.8, 0.6}}}},
+            {"dark", {{"type", "rough"}, {"kd", {0.1, 0.2, 0.3}}}}}},
+          {"lights", {{{"type", "directional"}, {"from", numbers(random.direction())}}}},
+          {"objects", objects}};
+}
+
+class Slivers : public testing::TestWithParam<std::string> {};
+
+TEST_P(Slivers, AreTheSameByAllStructures) {
+  Random random(41);
+  for (int i = 0; i < 60; ++i) {
+    const bool in_float = i % 2 == 0;
+    const auto scene =
+        load(slivers(in_float ? random.magnitude(1e3, 1e7) : random.magnitude(1e6, 1e13), random));
+    const auto by = [&](const std::string& accelerator) {
+      RenderRequest request = size(32, 32);
+      request.precision = in_float ? Precision::single_precision : Precision::double_precision;
+      request.accelerator = accelerator;
+      return render(scene, request);
+    };
+    EXPECT_TRUE(identical(by(GetParam()), by("list"))) << i;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Structures, Slivers, testing::ValuesIn(accelerator_names()), [](const auto& test) {
+  std::string name = test.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 // Of disks and cylinders whose tilt is below the root of the rounding error.
 TEST(NearlyAxisAligned, DisksAndCylindersReachBeyondTheirPlane) {
