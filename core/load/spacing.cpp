@@ -1,6 +1,8 @@
 #include "core/load/spacing.h"
 
 #include <algorithm>
+#include <deque>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -14,16 +16,22 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kMostPrimitives = 256;
-constexpr int kMoments = 9;  // of a motion at which it is measured, the first and the last among them
-constexpr std::size_t kManyRays =
-    1024;  // toward all primitives, at all moments; each gets kFewestRays at least
-constexpr std::size_t kFewestRays = 6;
-constexpr double kCoincident = 1e-13;  // of the largest coordinate: what is as near is one surface
-constexpr double kBeside = 0.05;       // of a primitive's size
-constexpr double kParallel = 0.99;     // least cosine between the normals of surfaces that run alike
+// Of a motion: evenly spread ones, the first and the last among them, and times of keys, where things rest.
+constexpr int kEvenMoments = 9;
+constexpr std::size_t kMostKeyTimes = 16;
+// Rays toward all primitives, but so many at least toward each, as far as kMostTests allows.
+constexpr std::size_t kManyRays = 1024, kFewestRays = 6;
+constexpr std::size_t kMostTests = 1u << 19;  // of a ray with a primitive, at all moments
+constexpr double kCoincident = 1e-13;         // of the largest coordinate: what is as near is one surface
+constexpr double kBeside = 0.05;              // of a primitive's size
+constexpr double kSame = 1e-6;                // relative difference of distances that are one
+constexpr double kLayerGap = 1e-3;            // of a primitive's size: farther surfaces are no layers
+constexpr double kParallel = 0.99;            // least cosine between the normals of surfaces that run alike
 
 // A primitive where it stands.
 struct Placed {
+  bool moves;
+  std::size_t object;  // place in Scene::object_runs
   const ShapeSet* shapes;
   const ShapeKernel<double>* kernel;
   int index, number;  // within the set; within the scene
@@ -34,6 +42,7 @@ struct Placed {
 struct SurfaceAt {
   Vec3d position;
   Vec3d outward;    // unit normal of the primitive
+  Vec3d shading;    // the one that light sees, which rounds off meshes
   double distance;  // along the ray, in its lengths
 };
 
@@ -41,6 +50,7 @@ struct SurfaceAt {
 class Probe {
  public:
   std::optional<SurfaceAt> meet(const Placed& placed, const Ray<double>& ray) {
+    ++tests_;
     const Affined& into = placed.model_from_world;
     rays_.count = 1;
     rays_.set(0, {into.point(ray.origin), into.vector(ray.direction)},
@@ -51,16 +61,20 @@ class Probe {
     placed.kernel->closest(placed.index, rays_, kOne, hits_, uncounted);
     if (hits_.primitive[0] == kNoPrimitive) return std::nullopt;
     placed.kernel->surface(rays_, hits_, kOne, met_);
-    const Vec3d n = met_.geometric[0] * met_.side[0];  // to the world by the inverse transposed
-    const Vec3d normal(dot(into.x, n), dot(into.y, n), dot(into.z, n));
-    return SurfaceAt{placed.world_from_model.point(met_.position[0]), safe_normalize(normal), hits_.t[0]};
+    const auto to_world = [&](const Vec3d& n) {  // by the inverse transposed
+      return safe_normalize(Vec3d(dot(into.x, n), dot(into.y, n), dot(into.z, n))) * met_.side[0];
+    };
+    return SurfaceAt{placed.world_from_model.point(met_.position[0]), to_world(met_.geometric[0]),
+                     to_world(met_.normal[0]), hits_.t[0]};
   }
+  std::size_t tests() const { return tests_; }
 
  private:
   static inline const Groups kOne = Groups::single(0);
   RayBatch<double> rays_{};
   HitBatch<double> hits_{};
   SurfaceBatch<double> met_{};
+  std::size_t tests_ = 0;
 };
 
 bool may_meet(const Boundsd& box, const Ray<double>& ray) {
@@ -68,6 +82,12 @@ bool may_meet(const Boundsd& box, const Ray<double>& ray) {
   return enters(BoxRay<double>(ray.origin, ray.direction), box.lo, box.hi,
                 std::numeric_limits<double>::max());
 }
+
+// Curved mirrors that one of them sees, the distance to the nearest, and the radius there.
+struct MirrorsSeen {
+  std::set<std::size_t> others;
+  double distance = std::numeric_limits<double>::infinity(), radius = 0;
+};
 
 class Gauge {
  public:
@@ -78,26 +98,100 @@ class Gauge {
   }
 
   Spacing measure() {
-    const auto& [first, last] = scene_.motion;
-    const int moments = last > first ? kMoments : 1;
-    for (int i = 0; i < moments; ++i) {
-      place_all(first + (last - first) * i / std::max(1, moments - 1));
-      measure_placed(std::max(kFewestRays, kManyRays / static_cast<std::size_t>(moments) /
-                                               std::max<std::size_t>(1, placed_.size())));
+    const std::vector<double> times = moments();
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      place_all(times[i]);
+      measure_placed(i > 0, kMostTests / times.size() * i, kMostTests / times.size());
     }
     return spacing_;
   }
 
  private:
-  void measure_placed(std::size_t rays_of_each) {
-    for (const Placed& placed : placed_) {
-      interruption_point();
-      mirror_ = {};
-      const std::vector<Ray<double>> rays = rays_at(placed);
-      const std::size_t step = (rays.size() + rays_of_each - 1) / rays_of_each;
-      for (std::size_t i = 0; i < rays.size(); i += step) look_around(placed, rays[i]);
-      take_mirror(placed);
+  std::vector<double> moments() const {
+    const auto& [first, last] = scene_.motion;
+    if (!(last > first)) return {first};
+    std::vector<double> keys;
+    const auto add = [&](const std::vector<double>& times) {
+      keys.insert(keys.end(), times.begin(), times.end());
+    };
+    for (const Instance& instance : scene_.instances) add(instance.motion.times);
+    for (const auto& set : scene_.shapes) add(set->key_times());
+    for (const Model& model : scene_.models)
+      for (const auto& set : model.shapes) add(set->key_times());
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    std::vector<double> times;
+    const std::size_t step = (keys.size() + kMostKeyTimes - 1) / kMostKeyTimes;
+    for (std::size_t i = 0; i < keys.size(); i += step) times.push_back(keys[i]);
+    for (int i = 0; i < kEvenMoments; ++i) times.push_back(first + (last - first) * i / (kEvenMoments - 1));
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+  }
+
+  // What moves, or everything: round by round one ray toward each primitive, then pairs that overlap.
+  void measure_placed(bool moving_alone, std::size_t before, std::size_t tests) {
+    most_tests_ = before + tests / 2;
+    std::vector<std::vector<Ray<double>>> rays;
+    for (const Placed& placed : placed_)
+      rays.push_back(moving_alone && !placed.moves ? std::vector<Ray<double>>() : rays_at(placed));
+    mirrors_.assign(scene_.object_runs.size(), {});
+    const std::size_t most = std::max(kFewestRays, kManyRays / std::max<std::size_t>(1, placed_.size()));
+    for (std::size_t round = 0; round < most; ++round) {
+      for (std::size_t i = 0; i < placed_.size(); ++i) {
+        interruption_point();
+        if (rays[i].empty() || probe_.tests() > most_tests_) continue;
+        const std::size_t chosen = round * ((rays[i].size() + most - 1) / most);
+        if (chosen < rays[i].size()) look_around(placed_[i], rays[i][chosen], mirrors_[placed_[i].object]);
+      }
     }
+    for (const Placed& placed : placed_) take_mirror(placed, mirrors_[placed.object]);
+    most_tests_ = before + tests;
+    measure_pairs(moving_alone);
+  }
+
+  // Layers of two primitives that overlap only in part: by rays through the middle of what their boxes share.
+  void measure_pairs(bool moving_alone) {
+    for (std::size_t i = 0; i < placed_.size(); ++i) {
+      interruption_point();
+      for (std::size_t k = i + 1; k < placed_.size() && probe_.tests() < most_tests_; ++k)
+        if (!moving_alone || placed_[i].moves || placed_[k].moves) measure_pair(placed_[i], placed_[k]);
+    }
+  }
+  void measure_pair(const Placed& one, const Placed& other) {
+    if (!one.box.bounded() || !other.box.bounded()) return;
+    const double size = std::min(one.box.diagonal(), other.box.diagonal());
+    const Vec3d gap = Vec3d(1, 1, 1) * (kLayerGap * size);
+    const auto larger = [](const Vec3d& a, const Vec3d& b) {
+      return Vec3d(std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z));
+    };
+    const Vec3d lo = larger(one.box.lo, other.box.lo) - gap, hi = -larger(-one.box.hi, -other.box.hi) + gap;
+    if (!(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z)) return;
+    const Vec3d middle = (lo + hi) * 0.5, shared = hi - lo;
+    const Vec3d along = shared.x <= std::min(shared.y, shared.z) ? Vec3d(1, 0, 0)
+                        : shared.y <= shared.z                   ? Vec3d(0, 1, 0)
+                                                                 : Vec3d(0, 0, 1);
+    const auto first = probe_.meet(one, {middle - along * size, along});
+    if (!first) return;
+    // From just outside of it, at three points that are not on one line.
+    const Tangents<double> aside = tangents_of(first->outward);
+    double distance = 0;
+    for (const Vec3d& shift : {Vec3d(), aside.first, aside.second}) {
+      const Vec3d from = first->position + shift * (kBeside * size) + first->outward * (kLayerGap * size);
+      const auto here = probe_.meet(one, {from, -first->outward}),
+                 there = probe_.meet(other, {from, -first->outward});
+      if (!here || !there || std::abs(dot(here->outward, there->outward)) < kParallel) return;
+      distance = std::max(distance, std::abs(here->distance - there->distance));
+    }
+    if (distance > kCoincident * magnitude_) take_distance(one, distance);
+  }
+  // Of distances that are the same but for rounding, the object that comes first is named.
+  void take_distance(const Placed& from, double distance) {
+    const double ratio = distance / spacing_.layer_distance.value;
+    const int object = scene_.object_runs[from.object].object;
+    if (!(ratio < 1 + kSame) || (ratio > 1 - kSame && object >= layer_object_)) return;
+    layer_object_ = object;
+    spacing_.layer_distance = {distance, pointer_to_object(scene_, from.number)};
   }
 
   void place_all(double time) {
@@ -105,30 +199,40 @@ class Gauge {
     kernels_.clear();
     moved_.clear();
     int number = 0;
-    place(scene_.shapes, Affined{}, time, number);
+    place(scene_.shapes, Affined{}, time, false, number);
     for (const Instance& instance : scene_.instances) {
       const Affined world = instance.world_from_model(time);
-      if (scaled_determinant(world) != 0) place(scene_.models[instance.model].shapes, world, time, number);
+      if (scaled_determinant(world) != 0)
+        place(scene_.models[instance.model].shapes, world, time, instance.motion.times.size() > 1, number);
     }
   }
   void place(const std::vector<std::unique_ptr<ShapeSet>>& sets, const Affined& world, double time,
-             int& number) {
+             bool moves, int& number) {
     for (const auto& shapes : sets) {
       const int first = std::exchange(number, number + shapes->size());
       const auto count = static_cast<int>(
           std::min(static_cast<std::size_t>(shapes->size()), kMostPrimitives - placed_.size()));
-      complete_ = complete_ && count == shapes->size();
-      if (count == 0) continue;
+      const bool whole = count == shapes->size();
+      complete_ = complete_ && whole;
+      if (count == 0 || (!whole && time > scene_.motion.first)) continue;
       moved_.push_back(shapes->at(time));
-      const ShapeSet& now = moved_.back() ? *moved_.back() : *shapes;
-      kernels_.push_back(now.kernel(double(), 0));
+      const bool own_motion = moved_.back() != nullptr;
+      const ShapeSet& now = own_motion ? *moved_.back() : *shapes;
+      ShapeKernelPtr<double>& kernel = own_motion ? kernels_.emplace_back() : resting_[&now];
+      if (!kernel) kernel = now.kernel(double(), 0);
       const Affined back = inverse(world);
       for (int i = 0; i < count; ++i) {
         const Boundsd own = now.bounds(i);
         const Boundsd box = own.bounded() ? box_of(own, world) : Boundsd::everything();
-        placed_.push_back({&now, kernels_.back().get(), i, first + i, world, back, box});
+        placed_.push_back(
+            {moves || own_motion, object_of(first + i), &now, kernel.get(), i, first + i, world, back, box});
       }
     }
+  }
+  std::size_t object_of(int number) const {
+    const auto after = std::upper_bound(scene_.object_runs.begin(), scene_.object_runs.end(), number,
+                                        [](int n, const ObjectRun& run) { return n < run.first_primitive; });
+    return static_cast<std::size_t>(after - scene_.object_runs.begin()) - 1;
   }
   static Boundsd box_of(const Boundsd& own, const Affined& world) {
     Boundsd box;
@@ -175,28 +279,39 @@ class Gauge {
   static Vec3d mix(const Vec3d& corner, const Vec3d& middle) { return corner * 0.8 + middle * 0.2; }
 
   // At three points beside each other, for two spheres that touch are near at one point alone.
-  void look_around(const Placed& from, const Ray<double>& ray) {
+  void look_around(const Placed& from, const Ray<double>& ray, MirrorsSeen& seen) {
     const auto first = probe_.meet(from, ray);
     if (!first) return;
     const double size = from.box.bounded() ? from.box.diagonal() : length(first->position - ray.origin);
-    const Tangents<double> aside = tangents_of(first->outward);
+    const auto [one, other] = beside(from, *first, size);
     std::array<SurfaceAt, 3> at{*first};
     for (std::size_t i = 1; i < at.size(); ++i) {
-      const Vec3d shift = (i == 1 ? aside.first : aside.second) * (kBeside * size);
-      const auto beside = probe_.meet(from, {ray.origin + shift, ray.direction});
-      if (!beside) return;
-      at[i] = *beside;
+      const Vec3d shift = i == 1 ? one : other;
+      const auto met = probe_.meet(from, {ray.origin + shift, ray.direction});
+      if (!met) return;
+      at[i] = *met;
     }
     take_layer(from, at, 1);
     take_layer(from, at, -1);
-    if (complete_) look_for_mirrors(from, at);
+    if (complete_) look_for_mirrors(from, at, seen);
+  }
+
+  // From a point to two beside it: of a triangle, however thin, such as are on it.
+  static std::pair<Vec3d, Vec3d> beside(const Placed& placed, const SurfaceAt& at, double size) {
+    const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
+    if (hull.size() == 1) {
+      const auto& [a, b, c] = hull[0];
+      const Affined& world = placed.world_from_model;
+      return {world.vector(b - a) * kBeside, world.vector(c - a) * kBeside};
+    }
+    const Tangents<double> aside = tangents_of(at.outward);
+    return {aside.first * (kBeside * size), aside.second * (kBeside * size)};
   }
 
   void take_layer(const Placed& from, const std::array<SurfaceAt, 3>& at, double side) {
     double distance = 0;
     for (const SurfaceAt& one : at) distance = std::max(distance, to_next_layer(one, one.outward * side));
-    if (distance < spacing_.layer_distance.value)
-      spacing_.layer_distance = {distance, pointer_to_object(scene_, from.number)};
+    take_distance(from, distance);
   }
   double to_next_layer(const SurfaceAt& at, const Vec3d& along) {
     return nearest(at, along, [&](const Placed&, const SurfaceAt& met) {
@@ -204,24 +319,24 @@ class Gauge {
     });
   }
 
-  void look_for_mirrors(const Placed& from, const std::array<SurfaceAt, 3>& at) {
+  void look_for_mirrors(const Placed& from, const std::array<SurfaceAt, 3>& at, MirrorsSeen& seen) {
     const double radius = radius_at(at);
     if (mirrored_share(from) == 0 || !(radius < std::numeric_limits<double>::infinity())) return;
-    int other = -1;
+    std::optional<std::size_t> other;
     const double distance = nearest(at[0], at[0].outward, [&](const Placed& placed, const SurfaceAt& met) {
-      if (placed.number == from.number || mirrored_share(placed) == 0 || !is_curved(placed, met))
+      if (placed.object == from.object || mirrored_share(placed) == 0 || !is_curved(placed, met))
         return false;
-      other = placed.number;
+      other = placed.object;
       return true;
     });
-    if (other < 0) return;
-    mirror_.others.insert(other);
-    if (distance < mirror_.distance) mirror_.distance = distance, mirror_.radius = radius;
+    if (!other) return;
+    seen.others.insert(*other);
+    if (distance < seen.distance) seen.distance = distance, seen.radius = radius;
   }
   // The errors of rays to mirrors at distance d grow by 1 + 2 d / r; but of all rays that leave a mirror only
   // the share (r / (d + r))^2, about, meets each of the others, and the mean square is what counts.
-  void take_mirror(const Placed& from) {
-    const auto& [others, d, r] = mirror_;
+  void take_mirror(const Placed& from, const MirrorsSeen& seen) {
+    const auto& [others, d, r] = seen;
     if (others.empty()) return;
     const double growth = 1 + 2 * d / r, met = std::sqrt(static_cast<double>(others.size())) * r / (d + r);
     const double counted = mirrored_share(from) * growth * std::min(1.0, met);
@@ -231,11 +346,12 @@ class Gauge {
   // From the curvatures along two directions at right angles: exact for a cylinder, r / sqrt 2 for a sphere.
   static double radius_at(const std::array<SurfaceAt, 3>& at) {
     const auto curvature = [&](const SurfaceAt& beside) {
-      return length(beside.outward - at[0].outward) / length(beside.position - at[0].position);
+      return length(beside.shading - at[0].shading) / length(beside.position - at[0].position);
     };
     return 1 / std::hypot(curvature(at[1]), curvature(at[2]));
   }
   bool is_curved(const Placed& placed, const SurfaceAt& at) {
+    if (at.shading != at.outward) return true;
     const Tangents<double> aside = tangents_of(at.outward);
     for (const Vec3d& shift : {aside.first, aside.second}) {
       const Vec3d from = at.position + (at.outward + shift) * (kBeside * at.distance);
@@ -267,15 +383,15 @@ class Gauge {
   const Scene& scene_;
   const double magnitude_;
   std::vector<std::unique_ptr<ShapeSet>> moved_;
-  std::vector<ShapeKernelPtr<double>> kernels_;
+  std::deque<ShapeKernelPtr<double>> kernels_;                 // of what has moved
+  std::map<const ShapeSet*, ShapeKernelPtr<double>> resting_;  // of what has not
   std::vector<Placed> placed_;
   bool complete_ = true;        // nothing was left out: else it is unknown which mirrors see each other
   std::vector<double> shares_;  // mirrored, of each material
   Probe probe_;
-  struct {
-    std::set<int> others;                                                   // curved mirrors that it sees
-    double distance = std::numeric_limits<double>::infinity(), radius = 0;  // of the nearest, and here
-  } mirror_;                                                                // of what is looked at
+  std::vector<MirrorsSeen> mirrors_;  // by each object
+  int layer_object_ = 0;              // that has the layers
+  std::size_t most_tests_ = 0;        // at this moment and those before
   Spacing spacing_;
 };
 

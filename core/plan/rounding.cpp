@@ -26,15 +26,16 @@ class Limits {
 
   RoundingLimit strictest() {
     take(facts_.rounding);
-    take_length(facts_.smallest_feature.value,
-                facts_.smallest_feature.where + " is " + metres(facts_.smallest_feature.value) + " large");
+    take_length(facts_.smallest_feature.value, facts_.smallest_feature.where + " has parts that may be " +
+                                                   metres(facts_.smallest_feature.value) + " large");
     take_length(facts_.layer_distance.value, "a surface of " + facts_.layer_distance.where + " is " +
                                                  metres(facts_.layer_distance.value) + " from the next");
     const double pixel = footprint();
     take_length(pixel, "a pixel is " + metres(pixel) + " wide where things are");
     take_mirrors();
     if (facts_.smallest_feature.value < kLeastLengthInFloat)
-      take({0, facts_.smallest_feature.where + " is " + metres(facts_.smallest_feature.value) +
+      take({0, facts_.smallest_feature.where + " has parts that may be " +
+                   metres(facts_.smallest_feature.value) +
                    " large: products of such lengths are too small for float"});
     return strictest_;
   }

@@ -68,11 +68,11 @@ export const structureFaults = [
   },
   {
     fault: 17,
-    about: "distances along long thin triangles are believed next to them",
+    about: "one of a triangle's edges is judged by rounded products",
     file: "core/shapes/triangle_hit.h",
-    from: "farthest * N(T(1.0 / 1024));",
-    to: "farthest * N(T(0));",
+    from: "const N u = difference_of_products(sc.x, sb.y, sc.y, sb.x);",
+    to: "const N u = sc.x * sb.y - sc.y * sb.x;",
     target: "test_shapes",
-    tests: ["Triangle.LongAndThinDoesNotShadeItself"],
+    tests: ["Triangle.LongAndThinDoesNotShadeItself", "Triangle.ObtuseSlivers*"],
   },
 ];
