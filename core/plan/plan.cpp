@@ -107,7 +107,7 @@ class Planner {
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
     plan_.try_accelerators = !few && count <= kMostToTry;
-    plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bottom-up");
+    plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bvh");
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
                : "of all structures it took the least time on every scene measured with more than " +

@@ -191,7 +191,7 @@ TEST(MovingGeometry, SharesWhatRests) {
   json["models"]["other"]["objects"].push_back(swapping_triangles()["objects"][1]);
   json["instances"][3]["model"] = "other";
   const auto scene = load(json);
-  const Structure<float> first(scene, "bottom-up", 0), second(scene, "bottom-up", 0.25, &first);
+  const Structure<float> first(scene, "bvh", 0), second(scene, "bvh", 0.25, &first);
   EXPECT_EQ(first.geometry().shapes[0], second.geometry().shapes[0]);  // the sphere
   EXPECT_NE(first.geometry().shapes[1], second.geometry().shapes[1]);  // the instances
   EXPECT_EQ(first.geometry().models[0], second.geometry().models[0]);

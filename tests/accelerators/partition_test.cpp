@@ -147,5 +147,20 @@ TEST(AdaptiveGrid, FindsTheTeapotInTheStadium) {
   EXPECT_GT(tests_a_ray(scene, "grid", rays), 5 * hierarchy) << "the trap is none";
 }
 
+// Rays find what they meet by as few tests as in a tree that is grouped from the bottom up, of evenly spread
+// triangles and of such whose sizes differ by a thousand.
+TEST(SurfaceAreaHeuristic, TestsAsFewPrimitivesAsGroupingFromTheBottomUp) {
+  const Json scene = teapot_in_a_stadium();
+  Random random(10);
+  Rays<float> near, far;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d from = random.direction() * 3.0;
+    near.push_back({Vec3f(from), Vec3f(safe_normalize(random.in_cube(0.5) - from))});
+    far.push_back({Vec3f(random.in_cube(100)), Vec3f(random.direction())});
+  }
+  EXPECT_LE(tests_a_ray(scene, "bvh", near), 1.3 * tests_a_ray(scene, "bottom-up", near));
+  EXPECT_LE(tests_a_ray(scene, "bvh", far), 1.3 * tests_a_ray(scene, "bottom-up", far));
+}
+
 }  // namespace
 }  // namespace orrery::test

@@ -77,7 +77,7 @@ class Watertight : public testing::TestWithParam<std::string> {
     EXPECT_EQ(out, 0) << "of " << rays.size() << " shadow rays";
   }
   // The production structure gets a million.
-  static int rays() { return GetParam() == "bottom-up" ? 1'000'000 : 50'000; }
+  static int rays() { return GetParam() == "bvh" ? 1'000'000 : 50'000; }
 };
 
 TEST_P(Watertight, AroundTheOrigin) {

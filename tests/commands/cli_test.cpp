@@ -265,7 +265,7 @@ TEST_F(CommandLine, OrbitPlaysTheMotion) {
   EXPECT_EQ(bytes_of(file("f-3.png")), bytes_of(file("g-1.png")));
   EXPECT_NE(bytes_of(file("f-0.png")), bytes_of(file("f-1.png")));
   const auto stats = nlohmann::json::parse(
-      run("orbit " + scene + " --frames 5 --accelerator bottom-up --discard --stats=json").out);
+      run("orbit " + scene + " --frames 5 --accelerator bvh --discard --stats=json").out);
   EXPECT_EQ(stats.at("refitted"), 4);
   for (const char* wrong :
        {"--time-step 4000", "--time-step nan", "--step nan", "--step inf", "--step 361"}) {

@@ -188,5 +188,13 @@ TEST(Bounds, PaddingCoversTheRoundingToFloat) {
   }
 }
 
+// An empty box has its sides at infinity, the wrong way round.
+TEST(Bounds, AnEmptyBoxAddsNothing) {
+  Boundsd b = Boundsd::of({{-1, 2, 3}, {4, 5, 6}});
+  b.include(Boundsd());
+  EXPECT_EQ(b.lo, Vec3d(-1, 2, 3));
+  EXPECT_EQ(b.hi, Vec3d(4, 5, 6));
+}
+
 }  // namespace
 }  // namespace orrery

@@ -113,7 +113,7 @@ TEST(Settle, SaysWhatItWentBy) {
   for (const Decision& decision : plan->decisions) {
     if (decision.subject != "accelerator") continue;
     EXPECT_EQ(decision.choice, plan->accelerator->name);
-    EXPECT_NE(decision.reason.find("bottom-up"), std::string::npos) << decision.reason;
+    EXPECT_NE(decision.reason.find("bvh"), std::string::npos) << decision.reason;
     EXPECT_NE(decision.reason.find("boxes"), std::string::npos) << decision.reason;
   }
 }
