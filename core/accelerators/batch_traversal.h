@@ -13,28 +13,88 @@ class BatchTraversal {
   // `primitive`: of the hits, or null. REQUIRES: all outlive this.
   BatchTraversal(const WideTree<T>& tree, const RayBatch<T>& rays, const Groups& groups, Array<T>& t,
                  Array<IndexOf<T>>* primitive)
-      : tree_(tree), t_(t), primitive_(primitive) {
-    for (const int group : groups) add(rays.at(group), group);
-  }
+      : tree_(tree), rays_(rays), groups_(groups), t_(t), primitive_(primitive) {}
 
   template <Query kQuery>
   void run(AcceleratorCounts& counts) {
-    run_all<kQuery>(packets_, counts);
-    run_all<kQuery>(singles_, counts);
-    for (int i = 0; i < packets_.count; ++i) {
-      t_.put(packets_.place[i], packets_.hits[i].t);
-      if (primitive_) primitive_->put(packets_.place[i], packets_.hits[i].primitive);
+    for (const int group : groups_) {
+      add(rays_.at(group), group);
+      if (trial_ == Trial::packets && packets_.count == kTrialPackets) try_packets<kQuery>(counts);
+      if (trial_ == Trial::singles && singles_.count >= kTrialSingles) try_singles<kQuery>(counts);
     }
-    for (int i = 0; i < singles_.count; ++i) {
-      t_[singles_.place[i]] = singles_.hits[i].t;
-      if (primitive_) (*primitive_)[singles_.place[i]] = singles_.hits[i].primitive;
-    }
+    run_packets<kQuery>(counts);
+    run_singles<kQuery>(counts);
   }
 
  private:
   using N = Lanes<T>;
   // A packet that is wider than so many leaves meets too much that most of its rays do not.
   static constexpr T kMaxPacketExtent = 1;
+  // Tests of a packet with blocks and their primitives after which its rays go on one by one.
+  static constexpr int kPacketBudget = 200;
+  // If the first packets take more than so many tests each, some rays are taken alone and what they cost is
+  // compared; what is dearer is not done for the rest of the batch. Costs are in ns on one machine: only
+  // ratios mean something.
+  static constexpr int kTrialPackets = 8, kTrialSingles = 2 * kWidth<T>, kDearTests = 48;
+  static constexpr double kPacketCost = 100, kPacketVisitCost = 12, kPacketTestCost = 14;
+  static constexpr double kSingleCost = 30, kSingleVisitCost = 9, kSingleTestCost = 3.5;
+  enum class Trial { packets, singles, over };
+
+  template <Query kQuery>
+  void try_packets(AcceleratorCounts& counts) {
+    const std::uint64_t before = counts.node_visits;
+    const double tests = run_packets<kQuery>(counts);
+    packet_cost_ = (kPacketCost * kTrialPackets + kPacketTestCost * tests +
+                    kPacketVisitCost * static_cast<double>(counts.node_visits - before)) /
+                   (kTrialPackets * kWidth<T>);
+    packets_pay_ = tests <= kDearTests * kTrialPackets;
+    trial_ = packets_pay_ ? Trial::over : Trial::singles;
+    run_singles<kQuery>(counts);
+  }
+
+  template <Query kQuery>
+  void try_singles(AcceleratorCounts& counts) {
+    const AcceleratorCounts before = counts;
+    const double rays = singles_.count;
+    run_singles<kQuery>(counts);
+    const double cost =
+        kSingleCost * rays + kSingleVisitCost * static_cast<double>(counts.node_visits - before.node_visits) +
+        kSingleTestCost * static_cast<double>(counts.primitive_tests - before.primitive_tests);
+    packets_pay_ = packet_cost_ * rays < cost;
+    trial_ = Trial::over;
+  }
+
+  // Returns how many tests they took.
+  template <Query kQuery>
+  double run_packets(AcceleratorCounts& counts) {
+    run_all<kQuery>(packets_, counts);
+    double tests = 0;
+    for (int i = 0; i < packets_.count; ++i) {
+      const auto& hit = packets_.hits[i];
+      const int group = packets_.place[i];
+      t_.put(group, hit.t);
+      if (primitive_) primitive_->put(group, hit.primitive);
+      tests += kPacketBudget - hit.budget;
+      if (hit.budget >= 0) continue;
+      const auto& packet = packets_.rays[i];
+      for (unsigned rest = bits_of(hit.t > N(T(0))); rest != 0; rest &= rest - 1) {
+        const int lane = std::countr_zero(rest);
+        add_single(single_of(packet.ray, packet.shear, packet.axis, lane), group + lane);
+      }
+    }
+    packets_.count = 0;
+    return tests;
+  }
+
+  template <Query kQuery>
+  void run_singles(AcceleratorCounts& counts) {
+    run_all<kQuery>(singles_, counts);
+    for (int i = 0; i < singles_.count; ++i) {
+      t_[singles_.place[i]] = singles_.hits[i].t;
+      if (primitive_) (*primitive_)[singles_.place[i]] = singles_.hits[i].primitive;
+    }
+    singles_.count = 0;
+  }
 
   void add(const Ray<N>& ray, int group) {
     const auto active = t_.at(group) > N(T(0));
@@ -44,11 +104,11 @@ class BatchTraversal {
     const unsigned bits = bits_of(active), x = bits_of(axes.z_is_x), y = bits_of(axes.z_is_y);
     const unsigned any_x = x & bits, any_y = y & bits;
     const bool shared = (any_x == 0 || any_x == bits) && (any_y == 0 || any_y == bits);
-    const PacketProbe<T> probe(ray, active);
-    if (probe.narrow() && shared &&
-        probe.width_at(tree_.box()) < kMaxPacketExtent * tree_.mean_leaf_extent()) {
+    if (shared && packets_pay_) {
+      const PacketProbe<T> probe(ray, active);
       const auto& axis = kCyclicAxes[any_x ? 0 : any_y ? 1 : 2];
-      return add_packet(packet_of(ray, shear, axis, active), probe, group);
+      if (probe.narrow() && probe.width_at(tree_.box()) < kMaxPacketExtent * tree_.mean_leaf_extent())
+        return add_packet(packet_of(ray, shear, axis, active), probe, group);
     }
     for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
@@ -65,7 +125,7 @@ class BatchTraversal {
     const N t = t_.at(group);
     const auto primitive =
         primitive_ ? load_index<T>(*primitive_, group) : IndexLanes<T>(IndexOf<T>(kNoPrimitive));
-    packets_.add(packet, probe, {t, primitive, stdx::hmax(t)}, group);
+    packets_.add(packet, probe, {t, primitive, stdx::hmax(t), kPacketBudget}, group);
   }
 
   void add_single(const SingleRay<T>& single, int place) {
@@ -115,10 +175,15 @@ class BatchTraversal {
   }
 
   const WideTree<T>& tree_;
+  const RayBatch<T>& rays_;
+  const Groups& groups_;
   Array<T>& t_;
   Array<IndexOf<T>>* const primitive_;
   TraversalGroup<Packet<T>, PacketProbe<T>, PacketHit<T>, kBatch / kWidth<T>> packets_;
   TraversalGroup<SingleRay<T>, SingleProbe<T>, SingleHit<T>, kBatch> singles_;
+  Trial trial_ = Trial::packets;
+  bool packets_pay_ = true;
+  double packet_cost_ = 0;  // a ray
 };
 
 }  // namespace orrery

@@ -93,8 +93,9 @@ struct PacketHit {
   Lanes<T> t;
   IndexLanes<T> primitive;
   T farthest;  // of t
+  int budget;  // tests of blocks and primitives that are left to it; below 0, it enters nothing any more
 
-  T limit() const { return farthest; }
+  T limit() const { return budget < 0 ? T(-1) : farthest; }
 };
 
 // One of the rays, or packets, and a block of primitives that it has to be tested with.

@@ -74,7 +74,7 @@ class PackedRecords final : public PackedPrimitives<T> {
       const Block& block = blocks_[pair.block];
       PacketHit<T>& hit = hits[pair.ray];
       tested += block.count * active_in(hit);
-      for_each(block, packets[pair.ray], [&](const Core<N>& core, IndexOf<T> id) {
+      for_each(block, packets[pair.ray], hit.budget, [&](const Core<N>& core, IndexOf<T> id) {
         const N t = distance(core, packets[pair.ray]);
         if (!any(t <= min_first(hit.t, N(kFar)))) return;
         const auto nearer = takes_over(t, IndexLanes<T>(id), hit.t, hit.primitive);
@@ -94,7 +94,7 @@ class PackedRecords final : public PackedPrimitives<T> {
       PacketHit<T>& hit = hits[pair.ray];
       if (hit.farthest < 0) continue;
       tested += block.count * active_in(hit);
-      for_each(block, packets[pair.ray], [&](const Core<N>& core, IndexOf<T>) {
+      for_each(block, packets[pair.ray], hit.budget, [&](const Core<N>& core, IndexOf<T>) {
         stdx::where(distance(core, packets[pair.ray]) < hit.t, hit.t) = N(T(-1));
       });
       hit.farthest = stdx::hmax(hit.t);
@@ -176,11 +176,13 @@ class PackedRecords final : public PackedPrimitives<T> {
   }
 
   // Calls `visit` with the core of each primitive that the packet may meet, in every lane, and its number.
+  // Takes the tests off the budget.
   template <class Visit>
-  [[gnu::always_inline]] static void for_each(const Block& block, const Packet<T>& packet,
+  [[gnu::always_inline]] static void for_each(const Block& block, const Packet<T>& packet, int& budget,
                                               const Visit& visit) {
     unsigned chosen = block.filled();
     if constexpr (requires { block.core.may_meet(packet); }) chosen &= bits_of(block.core.may_meet(packet));
+    budget -= 1 + std::popcount(chosen);
     for (; chosen != 0; chosen &= chosen - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(chosen));
       std::array<N, kCoreFields> lanes;

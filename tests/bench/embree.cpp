@@ -68,7 +68,8 @@ Embree::~Embree() {
 double Embree::build_s() const { return parts_->build_s; }
 std::size_t Embree::bytes() const { return static_cast<std::size_t>(parts_->bytes); }
 
-double Embree::closest_in_packets(const Rays& rays) const {
+double Embree::closest_in_packets(const RaySet& set) const {
+  const auto& rays = set.rays;
   std::vector<RTCRayHit16> packets(rays.size() / 16);
   for (std::size_t n = 0; n < packets.size() * 16; ++n) {
     RTCRayHit16& p = packets[n / 16];
@@ -87,10 +88,11 @@ double Embree::closest_in_packets(const Rays& rays) const {
   return thread_seconds() - start;
 }
 
-double Embree::closest(const Rays& rays, std::size_t& found) const {
+double Embree::closest(const RaySet& set, std::size_t& found) const {
+  const auto& rays = set.rays;
   std::vector<RTCRayHit> hits(rays.size());
   for (std::size_t n = 0; n < rays.size(); ++n) {
-    hits[n].ray = ray_of(rays[n], kInfinity);
+    hits[n].ray = ray_of(rays[n], set.t_max[n]);
     hits[n].hit.geomID = RTC_INVALID_GEOMETRY_ID;
   }
   RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
@@ -102,9 +104,9 @@ double Embree::closest(const Rays& rays, std::size_t& found) const {
   return seconds;
 }
 
-double Embree::occluded(const Rays& rays, float t_max, std::size_t& found) const {
+double Embree::occluded(const RaySet& set, std::size_t& found) const {
   std::vector<RTCRay> tested;
-  for (const auto& ray : rays) tested.push_back(ray_of(ray, t_max));
+  for (std::size_t n = 0; n < set.rays.size(); ++n) tested.push_back(ray_of(set.rays[n], set.t_max[n]));
   RTCIntersectContext context = context_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   const double start = thread_seconds();
   for (auto& ray : tested) rtcOccluded1(parts_->scene, &context, &ray);

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "tests/bench/subject.h"
+#include "tests/bench/rays.h"
 
 // Embree 3 on one thread. Times are CPU seconds of that thread.
 namespace orrery::bench {
@@ -18,10 +18,10 @@ class Embree {
   double build_s() const;
   std::size_t bytes() const;  // held after building
 
-  double closest_in_packets(const Rays& rays) const;  // of 16, coherent
+  double closest_in_packets(const RaySet& set) const;  // of 16, coherent
   // One by one. `found`: how many met something.
-  double closest(const Rays& rays, std::size_t& found) const;
-  double occluded(const Rays& rays, float t_max, std::size_t& found) const;
+  double closest(const RaySet& set, std::size_t& found) const;
+  double occluded(const RaySet& set, std::size_t& found) const;
 
  private:
   struct Parts;

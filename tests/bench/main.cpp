@@ -1,24 +1,26 @@
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include "core/accelerators/registry.h"
 #include "core/base/error.h"
 #include "core/prepare/prepared_scene.h"
 #include "tests/bench/embree.h"
 #include "tests/bench/measuring.h"
+#include "tests/bench/rays.h"
 #include "tests/support/batches.h"
 
 // Our hierarchy beside Embree's: the same mesh, the same rays, one thread.
-//   bench build|primary|bounce|anyhit TRIANGLES default|robust
-// First prints a line about both sides, in JSON; then for each line of input, "ours" or "theirs", runs that
-// side once and prints its CPU seconds.
+//   bench SUBJECT|FILE TRIANGLES open|room default|robust [STRUCTURE]
+//   bench list
+// First prints what there is, in JSON: both sides, and the kinds of rays, "build" among them. Then for each
+// line of input, "ours KIND" or "theirs KIND", runs that side once and prints its CPU seconds.
 namespace orrery::bench {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kRepeats = 4;     // of a run that is measured as one
-constexpr float kReach = 0.5f;  // of occlusion rays, in a sphere of radius 1
+constexpr std::size_t kFewestRays = 10'000;  // of a kind that is measured
 
 constexpr const char* kScene =
     R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 5], "look_at": [0, 0, 0]},
@@ -39,14 +41,15 @@ class InMemory final : public MeshSource {
 
 class Ours {
  public:
-  explicit Ours(const Mesh& mesh) : prepared_(load_scene(kScene, InMemory(mesh))) {
+  Ours(const Mesh& mesh, std::string_view structure) : prepared_(load_scene(kScene, InMemory(mesh))) {
     for (const auto& type : accelerator_types())
-      if (std::string_view(type.name) == "bottom-up") type_ = &type;
+      if (type.name == structure) type_ = &type;
+    if (!type_) throw Error("no structure is called " + std::string(structure));
     double build_ms = 0;
     world_ = world_for<float>(prepared_.parts(), *type_, 0, build_ms);
   }
 
-  std::size_t bytes() const { return world_.accelerator->facts().bytes; }
+  AcceleratorFacts facts() const { return world_.accelerator->facts(); }
 
   double build() const {
     const double start = thread_seconds();
@@ -54,32 +57,30 @@ class Ours {
     return thread_seconds() - start;
   }
 
-  double closest(const Rays& rays, std::vector<int>& triangle, std::vector<float>& t) const {
-    const auto batches = batches_of(rays, kInfinity);
+  // Seconds. `hits`, `counts`: what was found and done.
+  double closest(const RaySet& set, Hits& found, AcceleratorCounts& counts) const {
+    const auto batches = batches_of(set);
     std::vector<HitBatch<float>> hits(batches.size());
     for (std::size_t b = 0; b < hits.size(); ++b) {
       hits[b].t = batches[b].t_max;
       hits[b].primitive.values.fill(kNoPrimitive);
     }
-    AcceleratorCounts counts;
     const double start = thread_seconds();
     for (std::size_t b = 0; b < batches.size(); ++b)
       world_.accelerator->closest(batches[b], test::groups_of(batches[b]), hits[b], counts);
     const double seconds = thread_seconds() - start;
-    triangle.clear();
-    t.clear();
+    found = {};
     for (std::size_t b = 0; b < batches.size(); ++b) {
       for (int i = 0; i < batches[b].count; ++i) {
-        triangle.push_back(hits[b].primitive[i]);
-        t.push_back(hits[b].t[i]);
+        found.triangle.push_back(hits[b].primitive[i]);
+        found.t.push_back(hits[b].t[i]);
       }
     }
     return seconds;
   }
 
-  double occlude(const Rays& rays, std::size_t& found) const {
-    auto batches = batches_of(rays, kReach);
-    AcceleratorCounts counts;
+  double occlude(const RaySet& set, std::size_t& found, AcceleratorCounts& counts) const {
+    auto batches = batches_of(set);
     const double start = thread_seconds();
     for (auto& batch : batches) world_.accelerator->occlude(batch, test::groups_of(batch), counts);
     const double seconds = thread_seconds() - start;
@@ -90,10 +91,12 @@ class Ours {
   }
 
  private:
-  static std::vector<RayBatch<float>> batches_of(const Rays& rays, float t_max) {
-    std::vector<RayBatch<float>> batches((rays.size() + kBatch - 1) / kBatch);
-    test::for_each_batch<float>(rays, [&](std::span<const Ray<float>> some, std::size_t from) {
-      test::fill_batch(some, t_max, batches[from / kBatch]);
+  static std::vector<RayBatch<float>> batches_of(const RaySet& set) {
+    std::vector<RayBatch<float>> batches((set.rays.size() + kBatch - 1) / kBatch);
+    test::for_each_batch<float>(set.rays, [&](std::span<const Ray<float>> some, std::size_t from) {
+      RayBatch<float>& batch = batches[from / kBatch];
+      test::fill_batch(some, 1.0f, batch);
+      for (int i = 0; i < batch.count; ++i) batch.t_max[i] = set.t_max[from + static_cast<std::size_t>(i)];
     });
     return batches;
   }
@@ -104,47 +107,90 @@ class Ours {
 };
 
 // Both found as much, but for rays that graze an edge.
-void require_same(std::size_t ours, std::size_t theirs, std::size_t rays) {
+void require_same(const std::string& kind, std::size_t ours, std::size_t theirs, std::size_t rays) {
   const std::size_t differ = ours > theirs ? ours - theirs : theirs - ours;
-  if (differ * 10000 > rays)
-    throw Error("ours found " + std::to_string(ours) + ", theirs " + std::to_string(theirs));
+  if (differ * 1000 > rays)
+    throw Error(kind + ": ours found " + std::to_string(ours) + ", theirs " + std::to_string(theirs) +
+                " of " + std::to_string(rays));
 }
 
-int run(const std::string& kind, int triangles, bool robust) {
-  const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-  const Mesh mesh = bumpy_sphere(triangles);
-  const Ours ours(mesh);
-  const Embree theirs(mesh, robust);
-  const Rays primary = primary_rays();
-  std::vector<int> triangle;
-  std::vector<float> t;
-  ours.closest(primary, triangle, t);
-  const Rays bounce = bounce_rays(mesh, primary, triangle, t);
-  const auto found_in = [](const std::vector<int>& hits) {
-    return hits.size() - static_cast<std::size_t>(std::count(hits.begin(), hits.end(), kNoPrimitive));
-  };
-  std::size_t our_found = 0, their_found = 0;
-  if (kind == "anyhit") {
-    ours.occlude(bounce, our_found);
-    theirs.occluded(bounce, kReach, their_found);
-  } else {
-    ours.closest(bounce, triangle, t);
-    our_found = found_in(triangle);
-    theirs.closest(bounce, their_found);
+class Comparison {
+ public:
+  Comparison(Subject subject, bool robust, std::string_view structure)
+      : subject_(std::move(subject)),
+        robust_(robust),
+        ours_(subject_.mesh, structure),
+        theirs_(subject_.mesh, robust) {
+    const FindHits find = [this](const RaySet& set) {
+      Hits hits;
+      AcceleratorCounts counts;
+      ours_.closest(set, hits, counts);
+      return hits;
+    };
+    for (const char* kind : ray_kinds()) {
+      RaySet set = rays_of(kind, subject_, find);
+      if (set.rays.size() >= kFewestRays) rays_.emplace(kind, std::move(set));
+    }
   }
-  require_same(our_found, their_found, bounce.size());
-  std::printf("{\"triangles\": %zu, \"rays\": %zu, \"our_bytes\": %zu, \"their_bytes\": %zu}\n",
-              mesh.triangles.size(), kind == "primary" ? primary.size() : bounce.size(), ours.bytes(),
-              theirs.bytes());
-  std::fflush(stdout);
-  answer_sides(kRepeats, [&](bool mine) {
-    if (kind == "build") return mine ? ours.build() : Embree(mesh, robust).build_s();
-    if (kind == "primary")
-      return mine ? ours.closest(primary, triangle, t) : theirs.closest_in_packets(primary);
-    if (kind == "bounce")
-      return mine ? ours.closest(bounce, triangle, t) : theirs.closest(bounce, their_found);
-    return mine ? ours.occlude(bounce, our_found) : theirs.occluded(bounce, kReach, their_found);
-  });
+
+  void print_facts() const {
+    std::printf(
+        "{\"triangles\": %zu, \"our_bytes\": %zu, \"their_bytes\": %zu, \"references\": %zu, \"kinds\": "
+        "{\"build\": {}",
+        subject_.mesh.triangles.size(), ours_.facts().bytes, theirs_.bytes(), ours_.facts().references);
+    for (const auto& [kind, set] : rays_) {
+      AcceleratorCounts counts;
+      Hits hits;
+      std::size_t ours = 0, theirs = 0;
+      if (set.any_hit) {
+        ours_.occlude(set, ours, counts);
+        theirs_.occluded(set, theirs);
+      } else {
+        ours_.closest(set, hits, counts);
+        ours = hits.triangle.size() -
+               static_cast<std::size_t>(std::count(hits.triangle.begin(), hits.triangle.end(), kNoPrimitive));
+        theirs_.closest(set, theirs);
+      }
+      require_same(kind, ours, theirs, set.rays.size());
+      const auto rays = static_cast<double>(set.rays.size());
+      std::printf(", \"%s\": {\"rays\": %zu, \"met\": %.3f, \"visits\": %.3f, \"triangles\": %.3f}",
+                  kind.c_str(), set.rays.size(), static_cast<double>(ours) / rays,
+                  static_cast<double>(counts.node_visits) / rays,
+                  static_cast<double>(counts.primitive_tests) / rays);
+    }
+    std::printf("}}\n");
+    std::fflush(stdout);
+  }
+
+  double seconds(bool mine, const std::string& kind) const {
+    if (kind == "build") return mine ? ours_.build() : Embree(subject_.mesh, robust_).build_s();
+    const RaySet& set = rays_.at(kind);
+    Hits hits;
+    AcceleratorCounts counts;
+    std::size_t found = 0;
+    if (set.any_hit) return mine ? ours_.occlude(set, found, counts) : theirs_.occluded(set, found);
+    if (mine) return ours_.closest(set, hits, counts);
+    return kind == "primary" ? theirs_.closest_in_packets(set) : theirs_.closest(set, found);
+  }
+
+ private:
+  const Subject subject_;
+  const bool robust_;
+  Ours ours_;
+  Embree theirs_;
+  std::map<std::string, RaySet> rays_;
+};
+
+int run(const std::vector<std::string>& words) {
+  const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+  Subject subject = subject_of(words[0], std::stoi(words[1]));
+  if (words[2] == "room") put_in_room(subject.mesh);
+  const Comparison comparison(std::move(subject), words[3] == "robust", words.size() > 4 ? words[4] : "bvh");
+  comparison.print_facts();
+  for (std::string side, kind; std::cin >> side >> kind;) {
+    std::printf("%.9f\n", comparison.seconds(side == "ours", kind));
+    std::fflush(stdout);
+  }
   return 0;
 }
 
@@ -152,6 +198,11 @@ int run(const std::string& kind, int triangles, bool robust) {
 }  // namespace orrery::bench
 
 int main(int count, char** words) {
-  if (count != 4) return 2;
-  return orrery::bench::run(words[1], std::atoi(words[2]), std::string_view(words[3]) == "robust");
+  const std::vector<std::string> arguments(words + 1, words + count);
+  if (arguments.size() == 1 && arguments[0] == "list") {
+    for (const std::string& name : orrery::bench::subject_names()) std::puts(name.c_str());
+    return 0;
+  }
+  if (arguments.size() < 4) return 2;
+  return orrery::bench::run(arguments);
 }

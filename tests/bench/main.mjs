@@ -20,14 +20,14 @@ import { kReports as kStructureReports } from "./structures.mjs";
 // Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
 // reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
-const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kEmbree, ...kStages, ...kMotion];
+const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kStages, ...kMotion];
 
-const kReports = [...kStructureReports, kCancel, kDrag, kSlowClients];
+const kReports = [kEmbree, ...kStructureReports, kCancel, kDrag, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too
 const kUsage =
-  "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--list]\n" +
+  "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--meshes FOLDER] [--list]\n" +
   "       tests/bench/run service [PROPERTY...]   the service under load, half an hour for all";
 
 function fail(message) {
@@ -39,9 +39,10 @@ function fail(message) {
 const goes_by = ({ name }, word) => name === word || name.startsWith(`${word}-`);
 
 function read_arguments(words) {
-  const options = { names: [], pairs: 7, json: null, charts: "build/charts", list: false };
+  const options = { names: [], pairs: 7, json: null, charts: "build/charts", meshes: null, list: false };
   for (let i = 0; i < words.length; ++i) {
     if (words[i] === "--list") options.list = true;
+    else if (words[i] === "--meshes") options.meshes = words[++i] ?? fail("--meshes expects a folder");
     else if (words[i] === "--pairs") options.pairs = Number(words[++i]);
     else if (words[i] === "--json") options.json = words[++i];
     else if (words[i] === "--charts") options.charts = words[++i];
@@ -115,7 +116,8 @@ async function main() {
   }
   for (const { name, what, cost, runs, remark } of results)
     console.log(`${name}: ${what}; ${runs} pairs, ratio of ${cost}${remark ? `; ${remark}` : ""}`);
-  for (const report of chosen_of(kReports)) if (!is_missing(report)) await report.run(options);
+  for (const report of chosen_of(kReports))
+    if (!is_missing(report)) results.push(...((await report.run(options)) ?? []));
   if (options.json) writeFileSync(options.json, JSON.stringify(results, null, 2) + "\n");
 }
 

@@ -1,6 +1,6 @@
 // Interleaved runs: a machine's speed drifts, the ratio of two runs side by side does not.
 
-function median(values) {
+export function median(values) {
   const sorted = [...values].sort((a, b) => a - b);
   const middle = sorted.length >> 1;
   return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;

@@ -60,7 +60,7 @@ function comparison(name, what, subject, asked) {
   };
 }
 
-const kUsual = "bottom-up";
+const kUsual = "bvh";
 const kPredictors = [
   ["none", "nobody: what chance alone does"],
   ["last", "the last occluder of the batch"],

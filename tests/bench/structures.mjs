@@ -31,7 +31,7 @@ const kColumns = ["structure", "build", "ray", "counted", "visits", "boxes", "pr
 const kWidths = [17, 9, 9, 9, 10, 10, 12, 10, 7, 12];
 
 function print_scene(name, result) {
-  const usual = result.structures.find((s) => s.name === "bottom-up");
+  const usual = result.structures.find((s) => s.name === "bvh");
   const cheapest = Math.min(...result.structures.map((s) => s.counted_cost));
   console.log(`\n${name}: ${result.primitives} primitives, ${result.precision}; auto takes ${result.auto}`);
   console.log(cells(kColumns, kWidths));
@@ -55,7 +55,7 @@ function print_scene(name, result) {
 }
 
 function scene_panel(name, result, names) {
-  const usual = result.structures.find((s) => s.name === "bottom-up");
+  const usual = result.structures.find((s) => s.name === "bvh");
   const series = names.map((structure) => {
     const s = result.structures.find((one) => one.name === structure);
     if (!s) return { name: structure, points: [] };
@@ -67,19 +67,19 @@ function scene_panel(name, result, names) {
 
 const kStructures = {
   name: "structures",
-  what: "every structure on scenes of different nature: build time and ray cost beside bottom-up, and counts a ray",
+  what: "every structure on scenes of different nature: build time and ray cost beside bvh, and counts a ray",
   run({ pairs, charts }) {
     const results = write_subjects().map(([name, scene]) => {
       const result = measure(scene, pairs, "picture");
       print_scene(name, result);
       return [name, result];
     });
-    console.log("\nbuild and ray: CPU time beside bottom-up's, medians of interleaved rounds on one thread; counted: cost by");
+    console.log("\nbuild and ray: CPU time beside bvh's, medians of interleaved rounds on one thread; counted: cost by");
     console.log("counts beside the least; visits, boxes, primitives: a ray; bytes and references: a primitive");
     const names = [...new Set(results.flatMap(([, result]) => result.structures.map((s) => s.name)))];
     const panels = results.map(([name, result]) => scene_panel(name, result, names));
     const title = "Structures: what building costs against what rays cost";
-    const note = "CPU time beside bottom-up (1, 1), one thread; ringed: what auto takes";
+    const note = "CPU time beside bvh (1, 1), one thread; ringed: what auto takes";
     save(charts, "structures.svg", chart({ title, note, panels, columns: 4, names }));
   },
 };
@@ -92,7 +92,7 @@ const kGrowth = {
     const head = ["triangles", "visits", "primitives", "ray", "build a tri.", "bytes"];
     console.log("\n" + cells(head, widths));
     const rows = kSizes.map((triangles) => {
-      const result = measure(write_ball(triangles), pairs, "random", ["bottom-up"]);
+      const result = measure(write_ball(triangles), pairs, "random", ["bvh"]);
       return { triangles: result.primitives, ...result.structures[0] };
     });
     const build = (row) => row.build_s / row.triangles;
@@ -119,7 +119,7 @@ const kGrowth = {
         : series(key),
     }));
     const title = "Growth: a straight line here is a logarithm";
-    const note = "bottom-up hierarchy, closest hits of rays at random through a bumpy ball, one thread";
+    const note = "hierarchy by the surface area heuristic, closest hits of rays at random through a bumpy ball, one thread";
     save(charts, "growth.svg", chart({ title, note, panels, columns: 3, names: [] }));
   },
 };

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
-#include "core/model/batch.h"
+#include "core/math/vec3.h"
 
-// What both sides of a benchmark are given: one mesh, and rays to trace in it.
+// Meshes of the natures that users have, for both sides of a comparison.
 namespace orrery::bench {
 
 struct Mesh {
@@ -13,17 +14,22 @@ struct Mesh {
   std::vector<std::array<unsigned, 3>> triangles;
 };
 
-// A closed sphere of about that many triangles, with bumps of several sizes.
-Mesh bumpy_sphere(int triangles);
+// A mesh in the unit sphere, where to look at it from, and a light: its middle and the side of its square.
+struct Subject {
+  Mesh mesh;
+  Vec3f eye{0.7f, 0.9f, 2.6f};
+  Vec3f light{1.1f, 2.2f, 1.3f};
+  float light_size = 0.8f;
+};
 
-using Rays = std::vector<Ray<float>>;
+// The names that subject_of() knows beside mesh files.
+std::vector<std::string> subject_names();
 
-// Through the pixels of a camera that sees the whole sphere; blocks of 4 x 4 pixels follow each other.
-Rays primary_rays();
+// A generated subject of about that many triangles, or a mesh file (OBJ, PLY, STL, GLB), scaled into the unit
+// sphere, whose triangles are as many as they are. Throws Error if it is neither.
+Subject subject_of(const std::string& name, int triangles);
 
-// One cosine-weighted ray off the surface from each primary hit. `hit_triangle` has the triangle each primary
-// ray met, or kNoPrimitive, and `t` how far away.
-Rays bounce_rays(const Mesh& mesh, const Rays& primary, const std::vector<int>& hit_triangle,
-                 const std::vector<float>& t);
+// Adds the 12 triangles of a cube around the subject and its eye, so that every ray meets something.
+void put_in_room(Mesh& mesh);
 
 }  // namespace orrery::bench

@@ -1,5 +1,6 @@
 // A program that holds both sides of a comparison. Its first line of output tells facts, in JSON; then each
-// line of input, "ours" or "theirs", asks it for one run, which it answers with the CPU seconds that took.
+// line of input, "ours" or "theirs" and the kind of run if there are several, asks it for one, which it answers with
+// the CPU seconds that took.
 
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
@@ -21,15 +22,15 @@ export async function start_two_sided(program, words) {
     child.kill();
     throw error;
   }
-  const run = async (side) => {
-    child.stdin.write(`${side}\n`);
+  const run = async (side, kind) => {
+    child.stdin.write(kind ? `${side} ${kind}\n` : `${side}\n`);
     const cpu_s = Number(await next_line());
     return { cost: cpu_s, cpu_s };
   };
   return {
     facts,
-    ours: () => run("ours"),
-    theirs: () => run("theirs"),
+    ours: (kind) => run("ours", kind),
+    theirs: (kind) => run("theirs", kind),
     stop: async () => {
       child.stdin.end();
       await ended;

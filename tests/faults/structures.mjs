@@ -75,4 +75,22 @@ export const structureFaults = [
     target: "test_shapes",
     tests: ["Triangle.LongAndThinDoesNotShadeItself", "Triangle.ObtuseSlivers*"],
   },
+  {
+    fault: 14,
+    about: "an empty bin makes the boxes of a split infinite",
+    file: "core/math/bounds.h",
+    from: "hi = {std::max(hi.x, b.hi.x), std::max(hi.y, b.hi.y), std::max(hi.z, b.hi.z)};",
+    to: "hi = {std::max(hi.x, b.lo.x > b.hi.x ? b.lo.x : b.hi.x), std::max(hi.y, b.hi.y), std::max(hi.z, b.hi.z)};",
+    target: "test_accelerators",
+    tests: ["SurfaceAreaHeuristic.*"],
+  },
+  {
+    fault: 14,
+    about: "rays of a packet that has spent its budget are forgotten",
+    file: `${kRoom}/batch_traversal.h`,
+    from: "if (hit.budget >= 0) continue;",
+    to: "if (true) continue;",
+    target: "test_accelerators",
+    tests: ["Packets.*"],
+  },
 ];

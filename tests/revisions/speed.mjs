@@ -56,14 +56,14 @@ const orbit_http = (frames) => async (build) => {
   }
 };
 
-// A process a side holds the mesh; each run is asked of it.
-function embree_row(kind, triangles) {
+// A process a side holds the mesh; each run is asked of it. REQUIRES: both revisions' build/bench know the subject.
+function embree_row(subject, place, triangles, kind) {
   const sides = new Map();
   return {
-    name: `embree-${kind}-${triangles / 1000}k`,
+    name: `embree-${subject}-${place}-${triangles / 1000}k-${kind}`,
     async run(build) {
-      if (!sides.has(build)) sides.set(build, await start_two_sided(`${build}/bench`, [kind, String(triangles), "default"]));
-      return (await sides.get(build).ours()).cpu_s;
+      if (!sides.has(build)) sides.set(build, await start_two_sided(`${build}/bench`, [subject, String(triangles), place, "default"]));
+      return (await sides.get(build).ours(kind)).cpu_s;
     },
     async stop() {
       for (const side of sides.values()) await side.stop();
@@ -76,7 +76,11 @@ function rows() {
   if (!existsSync(kFlake)) execFileSync("node", ["scenes/generate-sphereflake.mjs", "4", kFlake]);
   const plain = (name, run) => ({ name, run, stop: async () => {} });
   const embree = [70_000, 1_000_000].flatMap((triangles) =>
-    ["primary", "bounce", "anyhit", "build"].map((kind) => embree_row(kind, triangles)),
+    ["ball", "cad"].flatMap((subject) =>
+      ["open", "room"].flatMap((place) =>
+        ["primary", "bounce", "short", "build"].map((kind) => embree_row(subject, place, triangles, kind)),
+      ),
+    ),
   );
   return [
     plain("paper", render("scenes/paper.json", 1500, ["--depth", 5])),

@@ -30,7 +30,7 @@ int run(const std::string& path, const std::string& what) {
   const auto scene = load_scene_at(path);
   RenderRequest request;
   request.precision = Precision::single_precision;
-  request.accelerator = "bottom-up";
+  request.accelerator = "bvh";
   const Plan plan = make_plan(*scene, request);
   World<float> before, followed;
   int refitted = 0;

@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/agreement.h"
+#include "tests/support/random.h"
+
+// Rays that run alike walk a tree together while that pays.
+namespace orrery::test {
+namespace {
+
+// Straws in a bundle, each two triangles 2 m long and 1 mm wide.
+Json straws(int count) {
+  Random random(3);
+  Json positions = Json::array(), indices = Json::array();
+  for (int i = 0; i < count; ++i) {
+    const Vec3d middle = random.in_cube(0.4),
+                along = safe_normalize(Vec3d(1, 0.2, 0.1) + random.in_cube(0.3)),
+                across = safe_normalize(cross(along, random.direction())) * 5e-4;
+    for (const Vec3d& corner :
+         {middle - along - across, middle + along - across, middle + along + across, middle - along + across})
+      positions.push_back(numbers(corner));
+    indices.push_back({4 * i, 4 * i + 1, 4 * i + 2});
+    indices.push_back({4 * i, 4 * i + 2, 4 * i + 3});
+  }
+  return scene_with(Json{{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
+}
+
+// From a camera, in blocks of 16 that are next to each other.
+template <class T>
+Rays<T> camera_rays() {
+  constexpr int kSide = 64;
+  const Vec3<T> eye(0, 0, 3);
+  Rays<T> rays;
+  for (int block = 0; block < kSide * kSide / 16; ++block)
+    for (int i = 0; i < 16; ++i) {
+      const int x = block % (kSide / 4) * 4 + i % 4, y = block / (kSide / 4) * 4 + i / 4;
+      rays.push_back({eye, normalize(Vec3<T>(T(x - kSide / 2) / kSide, T(y - kSide / 2) / kSide, -1))});
+    }
+  return rays;
+}
+
+template <class T>
+void expect_agreement() {
+  const Json scene = straws(4000);
+  Structure<T> tree(scene, "bvh"), list(scene, "list");
+  const Rays<T> rays = camera_rays<T>();
+  const auto found = tree.closest(rays), right = list.closest(rays);
+  int differ = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    differ += found[i].primitive != right[i].primitive || found[i].t != right[i].t;
+  EXPECT_EQ(differ, 0);
+  EXPECT_EQ(tree.occluded(rays, T(2.9)), list.occluded(rays, T(2.9)));
+}
+
+TEST(Packets, FindWhatTheListFindsAlsoWhereTheirBudgetEnds) {
+  expect_agreement<float>();
+  expect_agreement<double>();
+}
+
+// A register of rays may meet a thousand times what each of them meets: from the surface of a bundle to a
+// lamp, rays that begin beside each other pass many straws together, and few each.
+TEST(Packets, EndWhereRaysAloneAreCheaper) {
+  const Json scene = straws(4000);
+  Structure<float> tree(scene, "bvh");
+  const Rays<float> camera = camera_rays<float>();
+  const auto hits = tree.closest(camera);
+  Rays<float> shadows;
+  for (std::size_t i = 0; i < camera.size(); ++i)
+    if (hits[i].met()) {
+      const Vec3f at = camera[i].at(hits[i].t * 0.999f);
+      shadows.push_back({at, normalize(Vec3f(0.3f, 2, 0.5f) - at)});
+    }
+  ASSERT_GT(shadows.size(), 500u);
+  Rays<float> mixed;  // the same, no two alike beside each other
+  for (std::size_t i = 0; i < shadows.size(); ++i) mixed.push_back(shadows[i * 389 % shadows.size()]);
+  const auto tests_of = [&](const Rays<float>& rays) {
+    Structure<float> fresh(scene, "bvh");
+    fresh.occluded(rays, 3);
+    return static_cast<double>(fresh.counts().primitive_tests);
+  };
+  EXPECT_LE(tests_of(shadows), 4 * tests_of(mixed));
+}
+
+}  // namespace
+}  // namespace orrery::test
