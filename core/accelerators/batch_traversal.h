@@ -77,10 +77,9 @@ class BatchTraversal {
       tests += kPacketBudget - hit.budget;
       if (hit.budget >= 0) continue;
       const auto& packet = packets_.rays[i];
-      for (unsigned rest = bits_of(hit.t > N(T(0))); rest != 0; rest &= rest - 1) {
-        const int lane = std::countr_zero(rest);
-        add_single(single_of(packet.ray, packet.shear, packet.axis, lane), group + lane);
-      }
+      const unsigned all = ~0u;
+      add_singles(packet.ray, packet.shear, packet.axis[2] == 0 ? all : 0, packet.axis[2] == 1 ? all : 0,
+                  bits_of(hit.t > N(T(0))), group);
     }
     packets_.count = 0;
     return tests;
@@ -108,17 +107,9 @@ class BatchTraversal {
       const PacketProbe<T> probe(ray, active);
       const auto& axis = kCyclicAxes[any_x ? 0 : any_y ? 1 : 2];
       if (probe.narrow() && probe.width_at(tree_.box()) < kMaxPacketExtent * tree_.mean_leaf_extent())
-        return add_packet(packet_of(ray, shear, axis, active), probe, group);
+        return add_packet(packet_of(ray, shear, axis, probe, active), probe, group);
     }
-    for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
-      add_single(single_of(ray, shear,
-                           kCyclicAxes[x >> lane & 1u   ? 0
-                                       : y >> lane & 1u ? 1
-                                                        : 2],
-                           lane),
-                 group + lane);
-    }
+    add_singles(ray, shear, x, y, bits, group);
   }
 
   void add_packet(const Packet<T>& packet, const PacketProbe<T>& probe, int group) {
@@ -128,33 +119,37 @@ class BatchTraversal {
     packets_.add(packet, probe, {t, primitive, stdx::hmax(t), kPacketBudget}, group);
   }
 
-  void add_single(const SingleRay<T>& single, int place) {
-    const auto primitive = primitive_ ? (*primitive_)[place] : IndexOf<T>(kNoPrimitive);
-    singles_.add(single, SingleProbe<T>(single.ray), {t_[place], primitive}, place);
+  // Those of the register that `chosen` names. `x`, `y`: those whose largest axis is that.
+  void add_singles(const Ray<N>& ray, const Shear<N>& shear, unsigned x, unsigned y, unsigned chosen,
+                   int group) {
+    const typename SingleProbe<T>::Register probes(ray);
+    alignas(64) std::array<std::array<T, static_cast<std::size_t>(kWidth<T>)>, 9> row;
+    const std::array<const N*, 9> from{&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
+                                       &ray.direction.x, &ray.direction.y, &ray.direction.z,
+                                       &shear.x,         &shear.y,         &shear.z};
+    for (std::size_t i = 0; i < from.size(); ++i) from[i]->copy_to(row[i].data(), stdx::vector_aligned);
+    for (; chosen != 0; chosen &= chosen - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(chosen));
+      const auto& axis = kCyclicAxes[x >> lane & 1u ? 0 : y >> lane & 1u ? 1 : 2];
+      const int place = group + static_cast<int>(lane);
+      const auto primitive = primitive_ ? (*primitive_)[place] : IndexOf<T>(kNoPrimitive);
+      singles_.add({{{row[0][lane], row[1][lane], row[2][lane]}, {row[3][lane], row[4][lane], row[5][lane]}},
+                    axis,
+                    {row[6][lane], row[7][lane], row[8][lane]}},
+                   SingleProbe<T>(probes, lane), {t_[place], primitive}, place);
+    }
   }
 
   static Packet<T> packet_of(const Ray<N>& ray, const Shear<N>& shear, const std::array<int, 3>& axis,
-                             const MaskOf<N>& active) {
-    const Vec3<T> origin(smallest(active, ray.origin.x), smallest(active, ray.origin.y),
-                         smallest(active, ray.origin.z));
-    const bool one_origin = !any(active && (ray.origin.x != N(origin.x) || ray.origin.y != N(origin.y) ||
-                                            ray.origin.z != N(origin.z)));
+                             const PacketProbe<T>& probe, const MaskOf<N>& active) {
+    if (!probe.one_origin()) return {ray, axis, shear, false, {}, {}, {}};
     return {ray,
             axis,
             shear,
-            one_origin,
-            origin,
+            true,
+            probe.origin(),
             {smallest(active, shear.x), smallest(active, shear.y)},
             {largest(active, shear.x), largest(active, shear.y)}};
-  }
-
-  static SingleRay<T> single_of(const Ray<N>& ray, const Shear<N>& shear, const std::array<int, 3>& axis,
-                                int lane) {
-    const auto i = static_cast<std::size_t>(lane);
-    return {{{ray.origin.x[i], ray.origin.y[i], ray.origin.z[i]},
-             {ray.direction.x[i], ray.direction.y[i], ray.direction.z[i]}},
-            axis,
-            {shear.x[i], shear.y[i], shear.z[i]}};
   }
 
   // Those whose directions have the same signs agree about what is nearer: they go together.

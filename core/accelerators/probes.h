@@ -39,6 +39,41 @@ class SingleProbe {
  public:
   using N = Lanes<T>;
 
+  // Those of a register of rays, worked out together.
+  struct Register {
+    using Array = std::array<T, static_cast<std::size_t>(kWidth<T>)>;
+    struct Axis {
+      alignas(64) Array inverse, near_offset, far_offset;
+      unsigned descending;  // lanes
+    };
+    std::array<Axis, 3> axis;
+
+    [[gnu::always_inline]] explicit Register(const Ray<N>& rays) {
+      const N pad = max_component(abs(rays.origin)) * kRounding<T>;
+      const N least = max_component(abs(rays.direction)) * T(1e-18);
+      for (std::size_t i = 0; i < 3; ++i) {
+        using std::abs;
+        const N zero(T(0));
+        const N direction = select(abs(rays.direction[i]) < least,
+                                   select(rays.direction[i] < zero, N(-least), least), rays.direction[i]);
+        const N inverse = N(T(1)) / direction, middle = rays.origin[i] * inverse, reach = pad * abs(inverse);
+        inverse.copy_to(axis[i].inverse.data(), stdx::vector_aligned);
+        N(middle + reach).copy_to(axis[i].near_offset.data(), stdx::vector_aligned);
+        N(middle - reach).copy_to(axis[i].far_offset.data(), stdx::vector_aligned);
+        axis[i].descending = bits_of(inverse < zero);
+      }
+    }
+  };
+  SingleProbe(const Register& rays, std::size_t lane) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& axis = rays.axis[i];
+      near_[i] = 2 * i + (axis.descending >> lane & 1u);
+      inverse_[i] = axis.inverse[lane];
+      near_offset_[i] = axis.near_offset[lane];
+      far_offset_[i] = axis.far_offset[lane];
+    }
+  }
+
   explicit SingleProbe(const Ray<T>& ray) {
     const T pad = max_component(abs(ray.origin)) * kRounding<T>;
     const T least = max_component(abs(ray.direction)) * T(1e-18);
@@ -104,13 +139,22 @@ class PacketProbe {
 
   // For those of `active`. REQUIRES: any(active).
   PacketProbe(const Ray<N>& rays, const MaskOf<N>& active) {
-    const T pad = largest(active, max_component(abs(rays.origin))) * kRounding<T>;
-    const T size = largest(active, max_component(abs(rays.direction)));
-    set(0, active, rays.origin.x, rays.direction.x, pad, size);
-    set(1, active, rays.origin.y, rays.direction.y, pad, size);
-    set(2, active, rays.origin.z, rays.direction.z, pad, size);
+    std::array<Interval, 3> origin, direction;
+    T pad = 0, size = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      origin[i] = Interval::of(active, rays.origin[i]);
+      direction[i] = Interval::of(active, rays.direction[i]);
+      pad = std::max(pad, origin[i].magnitude() * kRounding<T>);
+      size = std::max(size, direction[i].magnitude());
+    }
+    for (std::size_t i = 0; i < 3; ++i) set(i, origin[i], direction[i], pad, size);
+    one_origin_ = origin[0].empty() && origin[1].empty() && origin[2].empty();
+    origin_ = {origin[0].lo, origin[1].lo, origin[2].lo};
   }
 
+  // Whether the rays start at one point, which is origin().
+  bool one_origin() const { return one_origin_; }
+  const Vec3<T>& origin() const { return origin_; }
   std::uint8_t octant() const {
     return static_cast<std::uint8_t>((axis_[0].near & 1) | (axis_[1].near & 1) << 1 |
                                      (axis_[2].near & 1) << 2);
@@ -145,22 +189,34 @@ class PacketProbe {
     T inverse_lo, inverse_hi, near_origin, far_origin;
   };
 
+  struct Interval {
+    T lo, hi;
+    static Interval of(const MaskOf<N>& active, const N& v) {
+      const T first = v[0];
+      if (all(v == N(first))) return {first, first};
+      return {smallest(active, v), largest(active, v)};
+    }
+    T magnitude() const { return std::max(std::abs(lo), std::abs(hi)); }
+    bool empty() const { return lo == hi; }
+  };
+
   // `size`: the largest part of a direction.
-  void set(std::size_t axis, const MaskOf<N>& active, const N& origin, const N& direction, T pad, T size) {
+  void set(std::size_t axis, const Interval& origin, const Interval& direction, T pad, T size) {
     const T kLeast = T(1e-18) * size, kWidest = T(0.3) * size;
-    const T lo = smallest(active, direction), hi = largest(active, direction);
+    const auto [lo, hi] = direction;
     const bool negative = hi < 0;
     narrow_ = narrow_ && (lo > kLeast || hi < -kLeast) && hi - lo < kWidest;
     directions_ = std::max(directions_, (hi - lo) / size);
-    const T origin_lo = smallest(active, origin) - pad, origin_hi = largest(active, origin) + pad;
-    origins_ = std::max(origins_, origin_hi - origin_lo - 2 * pad);
+    const T origin_lo = origin.lo - pad, origin_hi = origin.hi + pad;
+    origins_ = std::max(origins_, origin.hi - origin.lo);
     axis_[axis] = {2 * axis + negative, 1 / hi, 1 / lo, negative ? origin_lo : origin_hi,
                    negative ? origin_hi : origin_lo};
   }
 
   std::array<Axis, 3> axis_;
   T origins_ = 0, directions_ = 0;  // their spread, of directions as for length 1
-  bool narrow_ = true;
+  bool narrow_ = true, one_origin_ = false;
+  Vec3<T> origin_;
 };
 
 }  // namespace orrery

@@ -74,7 +74,7 @@ class PackedRecords final : public PackedPrimitives<T> {
       const Block& block = blocks_[pair.block];
       PacketHit<T>& hit = hits[pair.ray];
       tested += block.count * active_in(hit);
-      for_each(block, packets[pair.ray], hit.budget, [&](const Core<N>& core, IndexOf<T> id) {
+      for_each(block, packets[pair.ray], hit.budget, [&](const Core<T>& core, IndexOf<T> id) {
         const N t = distance(core, packets[pair.ray]);
         if (!any(t <= min_first(hit.t, N(kFar)))) return;
         const auto nearer = takes_over(t, IndexLanes<T>(id), hit.t, hit.primitive);
@@ -94,7 +94,7 @@ class PackedRecords final : public PackedPrimitives<T> {
       PacketHit<T>& hit = hits[pair.ray];
       if (hit.farthest < 0) continue;
       tested += block.count * active_in(hit);
-      for_each(block, packets[pair.ray], hit.budget, [&](const Core<N>& core, IndexOf<T>) {
+      for_each(block, packets[pair.ray], hit.budget, [&](const Core<T>& core, IndexOf<T>) {
         stdx::where(distance(core, packets[pair.ray]) < hit.t, hit.t) = N(T(-1));
       });
       hit.farthest = stdx::hmax(hit.t);
@@ -154,11 +154,19 @@ class PackedRecords final : public PackedPrimitives<T> {
     else
       return core.distance(Ray<B>{Vec3<B>(single.ray.origin), Vec3<B>(single.ray.direction)});
   }
-  static N distance(const Core<N>& core, const Packet<T>& packet) {
-    if constexpr (requires { core.distance(packet); })
+  // Of one primitive, in every lane.
+  [[gnu::always_inline]] static N distance(const Core<T>& core, const Packet<T>& packet) {
+    if constexpr (requires { core.distance(packet); }) {
       return core.distance(packet);
-    else
-      return core.distance(packet.ray);
+    } else {
+      std::array<T, kCoreFields> row;
+      std::memcpy(row.data(), &core, sizeof row);
+      std::array<N, kCoreFields> lanes;
+      for (std::size_t field = 0; field < kCoreFields; ++field) lanes[field] = N(row[field]);
+      Core<N> wide;
+      std::memcpy(static_cast<void*>(&wide), lanes.data(), sizeof wide);
+      return wide.distance(packet.ray);
+    }
   }
 
   static unsigned active_in(const PacketHit<T>& hit) {
@@ -175,7 +183,7 @@ class PackedRecords final : public PackedPrimitives<T> {
     }
   }
 
-  // Calls `visit` with the core of each primitive that the packet may meet, in every lane, and its number.
+  // Calls `visit` with the core of each primitive that the packet may meet, and its number.
   // Takes the tests off the budget.
   template <class Visit>
   [[gnu::always_inline]] static void for_each(const Block& block, const Packet<T>& packet, int& budget,
@@ -185,14 +193,11 @@ class PackedRecords final : public PackedPrimitives<T> {
     budget -= 1 + std::popcount(chosen);
     for (; chosen != 0; chosen &= chosen - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(chosen));
-      std::array<N, kCoreFields> lanes;
-      for (std::size_t field = 0; field < kCoreFields; ++field) {
-        T value;
-        std::memcpy(&value, reinterpret_cast<const T*>(&block.core) + field * kB + k, sizeof value);
-        lanes[field] = N(value);
-      }
-      Core<N> core;
-      std::memcpy(static_cast<void*>(&core), lanes.data(), sizeof core);
+      std::array<T, kCoreFields> row;
+      for (std::size_t field = 0; field < kCoreFields; ++field)
+        std::memcpy(&row[field], reinterpret_cast<const T*>(&block.core) + field * kB + k, sizeof(T));
+      Core<T> core;
+      std::memcpy(static_cast<void*>(&core), row.data(), sizeof core);
       visit(core, block.id[k]);
     }
   }

@@ -15,10 +15,10 @@ struct TriangleHit {
 
 namespace detail {
 
-// One coordinate of a point as seen from `origin`.
-template <class N, class O>
-[[gnu::always_inline]] inline N moved(const Vec3<N>& point, const Vec3<O>& origin, int axis) {
-  return point[axis] - N(origin[axis]);
+// One coordinate of a point as seen from `origin`; each may be a number for all lanes.
+template <class N, class V, class O>
+[[gnu::always_inline]] inline N moved(const Vec3<V>& point, const Vec3<O>& origin, int axis) {
+  return N(point[axis]) - N(origin[axis]);
 }
 
 }  // namespace detail
@@ -53,9 +53,10 @@ template <class N, class Rays>
 class SharedAxes {
  public:
   [[gnu::always_inline]] explicit SharedAxes(const Rays& rays) : rays_(rays) {}
-  [[gnu::always_inline]] Sheared<N> operator()(const Vec3<N>& vertex) const {
+  template <class V>
+  [[gnu::always_inline]] Sheared<N> operator()(const Vec3<V>& vertex) const {
     const auto [x, y, z] = rays_.axis;
-    const auto moved = [&](int axis) { return detail::moved(vertex, rays_.ray.origin, axis); };
+    const auto moved = [&](int axis) { return detail::moved<N>(vertex, rays_.ray.origin, axis); };
     const N vx = moved(x), vy = moved(y), vz = moved(z);
     return {vx - N(rays_.shear.x) * vz, vy - N(rays_.shear.y) * vz, vz};
   }
@@ -71,9 +72,9 @@ class SharedAxes {
 // functions are not rounded before they are subtracted: so the weights of the vertices are as exact as the
 // vertices are seen, however thin the triangle or flat the ray, and what they mix lies within a few roundings
 // of the ray.
-template <class N, class Axes>
-[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Axes& axes, const Vec3<N>& a,
-                                                                const Vec3<N>& b, const Vec3<N>& c) {
+template <class N, class Axes, class V>
+[[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Axes& axes, const Vec3<V>& a,
+                                                                const Vec3<V>& b, const Vec3<V>& c) {
   using std::abs;
   using T = ScalarOf<N>;
   const N zero(T(0)), infinity(std::numeric_limits<T>::infinity());
@@ -103,8 +104,10 @@ struct Corners {
   N distance(const SingleRay<ScalarOf<N>>& single) const {
     return distance_by(SharedAxes<N, SingleRay<ScalarOf<N>>>(single));
   }
-  N distance(const Packet<ScalarOf<N>>& packet) const requires std::is_same_v<N, Lanes<ScalarOf<N>>> {
-    return distance_by(SharedAxes<N, Packet<ScalarOf<N>>>(packet));
+  // Of one triangle, in every lane.
+  template <class T>
+  Lanes<T> distance(const Packet<T>& packet) const requires std::is_same_v<T, N> {
+    return intersect_triangle<Lanes<T>>(SharedAxes<Lanes<T>, Packet<T>>(packet), a, b, c).t;
   }
   // Whether an active ray of the packet may cross: not if the corners, as all these rays see them, lie on one
   // side of an axis. Their rounded shears are between those of the limits, because rounding keeps order.
@@ -114,7 +117,7 @@ struct Corners {
   }
   // Barycentric weights where the ray crosses.
   Vec3<N> weights(const Ray<N>& ray) const {
-    const TriangleHit<N> hit = intersect_triangle(OwnAxes<N>(ray), a, b, c);
+    const TriangleHit<N> hit = intersect_triangle<N>(OwnAxes<N>(ray), a, b, c);
     return {hit.weight_a, hit.weight_b, hit.weight_c};
   }
   Vec3<N> mix(const Vec3<N>& weights) const { return a * weights.x + b * weights.y + c * weights.z; }
@@ -122,12 +125,12 @@ struct Corners {
  private:
   template <class Axes>
   [[gnu::always_inline]] N distance_by(const Axes& axes) const {
-    return intersect_triangle(axes, a, b, c).t;
+    return intersect_triangle<N>(axes, a, b, c).t;
   }
   [[gnu::always_inline]] MaskOf<N> beside(const Packet<ScalarOf<N>>& packet, std::size_t side) const {
     using T = ScalarOf<N>;
     const auto moved = [&](const Vec3<N>& v, std::size_t i) {
-      return detail::moved(v, packet.origin, packet.axis[i]);
+      return detail::moved<N>(v, packet.origin, packet.axis[i]);
     };
     N least(std::numeric_limits<T>::infinity()), most(-std::numeric_limits<T>::infinity());
     for (const Vec3<N>* corner : {&a, &b, &c}) {
