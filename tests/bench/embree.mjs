@@ -8,7 +8,7 @@ import { ratio_chart } from "./ratio_chart.mjs";
 import { start_two_sided } from "./two_sided.mjs";
 
 const kProgram = "build/bench";
-const kSizes = [1_000, 70_000, 1_000_000]; // triangles, of the subjects that are made
+const kSizes = [1_000, 70_000, 1_000_000], kUsualSize = 70_000; // triangles, of the subjects that are made
 const kKinds = ["primary", "bounce", "bounce-4", "point", "area", "short"], kReach = 1, kAim = 1.2;
 const kMostBuilds = 3; // pairs of builds, which take long
 const kWidths = [26, 10, 10, ...kKinds.map(() => 10), 10];
@@ -40,16 +40,16 @@ async function measure_case({ mesh, triangles, place, mode }, pairs) {
   return { ratios, facts: sides.facts };
 }
 
-function cases_of(meshes) {
+function cases_of(meshes, sizes) {
   const made = spawnSync(kProgram, ["list"], { encoding: "utf8" }).stdout.trim().split("\n");
   const files = meshes ? readdirSync(meshes).filter((name) => /\.(obj|ply|stl|glb)$/i.test(name)) : [];
   const subjects = [
-    ...made.flatMap((name) => (name === "cornell" ? [0] : kSizes).map((triangles) => ({ name, mesh: name, triangles }))),
+    ...made.flatMap((name) => (name === "cornell" ? [0] : sizes).map((triangles) => ({ name, mesh: name, triangles }))),
     ...files.map((file) => ({ name: file.replace(/\.\w+$/, ""), mesh: `${meshes}/${file}`, triangles: 0 })),
   ];
   return ["default", "robust"].flatMap((mode) =>
     subjects
-      .filter(({ triangles }) => mode === "default" || triangles === kSizes[1])
+      .filter(({ triangles }) => mode === "default" || triangles === kUsualSize)
       .flatMap((subject) => ["open", "room"].map((place) => ({ ...subject, place, mode }))),
   );
 }
@@ -74,11 +74,11 @@ export const kEmbree = {
   name: "embree",
   what: "rays and builds beside Embree 3's on meshes of different nature, open and in a closed room; one thread",
   needs: [kProgram],
-  async run({ pairs, charts, meshes }) {
+  async run({ pairs, charts, meshes, triangles }) {
     console.log("\ntheirs / ours, CPU time: primary rays against Embree's packets of 16, others against its single rays");
     console.log(cells(["subject", "triangles", "build", ...kKinds, "bytes"]));
     const rows = [];
-    for (const one of cases_of(meshes)) {
+    for (const one of cases_of(meshes, triangles ? [triangles] : kSizes)) {
       const name = name_of(one);
       try {
         const { ratios, facts } = await measure_case(one, pairs);

@@ -27,7 +27,8 @@ const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too
 const kUsage =
-  "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--meshes FOLDER] [--list]\n" +
+  "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--list]\n" +
+  "                       [--meshes FOLDER] [--triangles N]      of embree: mesh files beside those that are made, one size\n" +
   "       tests/bench/run service [PROPERTY...]   the service under load, half an hour for all";
 
 function fail(message) {
@@ -39,9 +40,10 @@ function fail(message) {
 const goes_by = ({ name }, word) => name === word || name.startsWith(`${word}-`);
 
 function read_arguments(words) {
-  const options = { names: [], pairs: 7, json: null, charts: "build/charts", meshes: null, list: false };
+  const options = { names: [], pairs: 7, json: null, charts: "build/charts", meshes: null, triangles: null, list: false };
   for (let i = 0; i < words.length; ++i) {
     if (words[i] === "--list") options.list = true;
+    else if (words[i] === "--triangles") options.triangles = Number(words[++i]);
     else if (words[i] === "--meshes") options.meshes = words[++i] ?? fail("--meshes expects a folder");
     else if (words[i] === "--pairs") options.pairs = Number(words[++i]);
     else if (words[i] === "--json") options.json = words[++i];
@@ -51,6 +53,7 @@ function read_arguments(words) {
     else fail(`no benchmark is called ${words[i]}; there are ${kAll.map((b) => b.name).join(", ")}`);
   }
   if (!Number.isInteger(options.pairs) || options.pairs < 1) fail("--pairs expects a whole number > 0");
+  if (options.triangles !== null && !(options.triangles > 0)) fail("--triangles expects a number > 0");
   if (options.json === undefined) fail("--json expects a file name");
   if (options.charts === undefined) fail("--charts expects a folder");
   return options;
