@@ -12,6 +12,7 @@ constexpr double kRaysAByte = 1;                      // of JSON or of a mesh: m
 constexpr double kExpectedRate = 10e6;                // rays a second, in all places together
 constexpr std::chrono::milliseconds kLeastPlace{50};  // that work keeps a place, whoever waits
 constexpr auto kOwnPlace = 4 * kLeastPlace;           // where its own client waits
+constexpr double kMostDebt = 16;  // places that a client may owe, so that it waits for seconds, not minutes
 constexpr double kMemory_s = 10;  // seconds of work after which a measurement has faded to 1/e
 
 // What is charged for a place of so many. A rate that was measured would charge little after work that was
@@ -213,16 +214,30 @@ void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, c
                    retry_after_s(lane), "queue_rays");
 }
 
+void Admission::note_who_waits() {
+  for (const Lane lane : {Lane::interactive, Lane::batch}) {
+    auto& since = waited_since_[static_cast<int>(lane)];
+    const bool waits = std::any_of(works_.begin(), works_.end(), [&](const Work& w) {
+      return w.state == State::waits && w.demand.lane == lane;
+    });
+    if (!waits) since.reset();
+    if (waits && !since) since = timer_.now();
+  }
+}
+
 void Admission::start_next() {
+  note_who_waits();
   for (Work* work = next(); work; work = next()) {
     if (!place_free(work->demand.lane)) {
       Work& other = *loser(work->demand);
+      other.charged_from = charged_from(other);
       other.state = State::lost;
       ++places_lost_;
       give_up_place(other);
     }
     begin(*work);
   }
+  note_who_waits();
 }
 
 void Admission::begin(Work& work) {
@@ -234,6 +249,7 @@ void Admission::begin(Work& work) {
   std::erase_if(overruns_[static_cast<int>(latest_)],
                 [&](const auto& overrun) { return overrun.second <= virtual_time; });
   work.since = timer_.now();
+  work.charged_from.reset();
   work.state = State::runs;
   work.changed.notify_one();
 }
@@ -252,14 +268,23 @@ void Admission::leave(Work& work, bool done) {
 
 double Admission::charge_overrun(const Work& work) {
   const int lane = static_cast<int>(work.demand.lane);
-  const double used = kLeastCost + rays_in(timer_.now() - work.since, limits_.running);
-  const double overrun = used - std::max(kLeastCost, work.charge);
+  const auto now = timer_.now();
+  const double used = kLeastCost + rays_in(now - work.since, limits_.running);
+  const double charged =
+      kLeastCost + rays_in(now - work.charged_from.value_or(charged_from(work)), limits_.running);
+  const double overrun = charged - std::max(kLeastCost, work.charge);
   if (overrun <= 0) return used;
+  const double most = virtual_time_[lane] + kMostDebt * rays_in(kLeastPlace, limits_.running);
   for (const auto& [client, finish] : work.finishes) {
     double& until = overruns_[lane][client];
-    until = std::max(until, virtual_time_[lane]) + overrun;
+    until = std::max(until, std::min(std::max(until, virtual_time_[lane]) + overrun, most));
   }
   return used;
+}
+
+Clock::time_point Admission::charged_from(const Work& work) const {
+  const auto& waited = waited_since_[static_cast<int>(work.demand.lane)];
+  return waited ? std::max(work.since, *waited) : timer_.now();
 }
 
 void Admission::give_up_place(const Work& work) {

@@ -147,10 +147,11 @@ class Admission {
     Entry entry;
     const bool counts;  // among what may wait
     std::atomic<State> state{State::waits};
-    double charge;                           // rays that were charged for its place
-    double used = 0;                         // rays, about, in the places that it has lost
-    std::map<std::string, double> finishes;  // virtual time, for each client that wants it
-    Clock::time_point since{};               // it got its place, or asked for one
+    double charge;                                  // rays that were charged for its place
+    double used = 0;                                // rays, about, in the places that it has lost
+    std::map<std::string, double> finishes;         // virtual time, for each client that wants it
+    Clock::time_point since{};                      // it got its place, or asked for one
+    std::optional<Clock::time_point> charged_from;  // of work that lost its place: others waited since then
     std::condition_variable_any changed;
   };
   using Works = std::list<Work>;
@@ -162,8 +163,11 @@ class Admission {
   void wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop);
   void begin(Work& work);
   // Returns the rays, about, that it has used since it got its place, and charges its clients for those of
-  // them that were not expected.
+  // them that were not expected and that others waited for. What nobody waits for is free: who had the
+  // service alone owes nothing to who comes later.
   double charge_overrun(const Work& work);
+  Clock::time_point charged_from(const Work& work) const;
+  void note_who_waits();
   void give_up_place(const Work& work);
   void start_next();
   void make_room(const Demand& demand);
@@ -197,6 +201,8 @@ class Admission {
   Lane latest_ = Lane::interactive;            // that had a turn
   double virtual_time_[2] = {0, 0};            // of a lane: finish of the piece that started last
   std::map<std::string, double> overruns_[2];  // of a lane, by client: virtual time, if later than that
+  std::optional<Clock::time_point>
+      waited_since_[2];  // of a lane: something has waited all the time; none: nothing does
   // The measured rate: rays of work done and seconds in which something ran, recent ones counting more.
   double done_rays_ = 0, busy_s_ = 0;
   Clock::time_point measured_;

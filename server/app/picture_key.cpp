@@ -26,8 +26,12 @@ std::string canonical_work(const Scene& scene, const RenderRequest& request) {
   return text_of(resolve(scene, request), [](const RenderOption&) { return true; });
 }
 
+std::string work_key(const Scene& scene, const RenderRequest& request) {
+  return sha256_hex(scene.id + "\n" + canonical_work(scene, request));
+}
+
 std::string canonical_orbit(const Scene& scene, const OrbitPath& path, int frames) {
-  return scene.id + " " + canonical_request(scene, path.first) + " " + std::to_string(frames) + " " +
+  return work_key(scene, path.first) + " " + std::to_string(frames) + " " +
          number_text(path.step_degrees + 0.0) + " " + number_text(path.step_seconds + 0.0);
 }
 

@@ -23,7 +23,8 @@ Response frame(App& app, Request& request) {
   } else if (request.method == "HEAD") {
     response.set("Content-Type", "image/png");
   } else {
-    const Rendered rendered = app.render(*scene, plan, etag, FileFormat::png, caller_of(request), timing);
+    const Rendered rendered = app.render(*scene, plan, work_key(scene->scene(), wanted), FileFormat::png,
+                                         caller_of(request), timing);
     response = picture_response("image/png", rendered, timing);
   }
   response.set("ETag", etag);

@@ -32,7 +32,7 @@ Response render(App& app, Request& request) {
   const auto start = Clock::now();
   const Plan plan = make_plan(order.scene->scene(), order.request);
   timing.plan = milliseconds_since(start);
-  const Rendered rendered = app.render(*order.scene, plan, etag_of(order.scene->scene(), order.request),
+  const Rendered rendered = app.render(*order.scene, plan, work_key(order.scene->scene(), order.request),
                                        format_of(type), caller_of(request), timing);
   Response response = picture_response(type, rendered, timing);
   response.set("Orrery-Scene-Id", order.scene->scene().id);

@@ -171,10 +171,13 @@ TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
 TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
-  for (const char* client : {"slow", "quick"}) {
-    const auto ticket = admission.enter(demand(client, 30'000), kNever);
-    if (client == std::string("slow")) timer.advance(1000ms);  // as 10 million rays
+  Waiters others(admission);
+  {
+    const auto ticket = admission.enter(demand("slow", 30'000), kNever);
+    others.add("other", demand("other", 30'000));
+    timer.advance(1000ms);  // as 10 million rays
   }
+  others.join();
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z", 30'000), kNever));
   waiters.add("slow", demand("slow", 30'000));
@@ -182,6 +185,46 @@ TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
   ticket.reset();
   waiters.join();
   EXPECT_EQ(waiters.order(), (TurnOrder{"quick", "quick", "quick", "slow"}));
+}
+
+// Who had the service alone for a minute owes nothing to those who come later.
+TEST(Admission, WhatNobodyWaitedForIsFree) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  {
+    const auto ticket = admission.enter(demand("slow", 30'000), kNever);
+    timer.advance(60'000ms);
+  }
+  Waiters waiters(admission);
+  std::optional ticket(admission.enter(demand("z", 30'000), kNever));
+  for (int i = 0; i < 3; ++i) waiters.add("quick", demand("quick", 100'000));
+  waiters.add("slow", demand("slow", 30'000));
+  ticket.reset();
+  waiters.join();
+  EXPECT_EQ(waiters.order(), (TurnOrder{"slow", "quick", "quick", "quick"}));
+}
+
+// Whatever it took from others, a client waits for seconds and not for minutes.
+TEST(Admission, WhatAClientOwesIsBounded) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1e15}, timer);
+  Waiters others(admission);
+  {
+    const auto ticket = admission.enter(demand("slow", 30'000), kNever);
+    others.add("other", demand("other", 30'000));
+    timer.advance(60'000ms);  // as 600 million rays; 16 places are 8 million
+  }
+  others.join();
+  Waiters waiters(admission);
+  std::optional ticket(admission.enter(demand("z", 30'000), kNever));
+  waiters.add("slow", demand("slow", 30'000));
+  for (int i = 0; i < 20; ++i) waiters.add("quick", demand("quick", 1e9));  // 0.52 million each, a place
+  ticket.reset();
+  waiters.join();
+  const TurnOrder order = waiters.order();
+  const auto before = std::find(order.begin(), order.end(), "slow") - order.begin();
+  EXPECT_GE(before, 14);
+  EXPECT_LE(before, 17);
 }
 
 // 50 ms of work, however much there is: it starts beside who asks for less, and not after hours of that.
