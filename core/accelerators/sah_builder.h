@@ -13,10 +13,8 @@ namespace orrery {
 template <class T>
 class SahBuilder {
  public:
-  // Relative costs: of a node of the binary tree, of which 15 make one that is visited, and of testing a
-  // block of items. Cheaper nodes would make many small leaves, and 100 bytes a triangle where there is much
-  // air between them.
-  static constexpr T kNodeCost = T(0.3), kBlockCost = T(1);
+  // Relative costs: of visiting a node, and of testing a block of items.
+  static constexpr T kNodeCost = T(0.5), kBlockCost = T(1);
 
   static BoxTree<T> build(std::vector<TreeItem<T>> items) {
     BoxTree<T> tree{.nodes = {}, .items = std::move(items)};
