@@ -224,15 +224,10 @@ class Gauge {
       for (int i = 0; i < count; ++i) {
         const Boundsd own = now.bounds(i);
         const Boundsd box = own.bounded() ? box_of(own, world) : Boundsd::everything();
-        placed_.push_back(
-            {moves || own_motion, object_of(first + i), &now, kernel.get(), i, first + i, world, back, box});
+        placed_.push_back({moves || own_motion, object_run_of(scene_, first + i), &now, kernel.get(), i,
+                           first + i, world, back, box});
       }
     }
-  }
-  std::size_t object_of(int number) const {
-    const auto after = std::upper_bound(scene_.object_runs.begin(), scene_.object_runs.end(), number,
-                                        [](int n, const ObjectRun& run) { return n < run.first_primitive; });
-    return static_cast<std::size_t>(after - scene_.object_runs.begin()) - 1;
   }
   static Boundsd box_of(const Boundsd& own, const Affined& world) {
     Boundsd box;

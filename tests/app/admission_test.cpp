@@ -167,17 +167,22 @@ TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
   EXPECT_EQ(order, (TurnOrder{"60 ms", "600 ms"}));
 }
 
-// However slow the work that is done: its rate does not decide what time is charged as.
-TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
-  ManualTimer timer;
-  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+// Work of "slow", which another waits for all the time.
+void hold_while_another_waits(Admission& admission, ManualTimer& timer, std::chrono::milliseconds held) {
   Waiters others(admission);
   {
     const auto ticket = admission.enter(demand("slow", 30'000), kNever);
     others.add("other", demand("other", 30'000));
-    timer.advance(1000ms);  // as 10 million rays
+    timer.advance(held);
   }
   others.join();
+}
+
+// However slow the work that is done: its rate does not decide what time is charged as.
+TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
+  ManualTimer timer;
+  Admission admission({.running = 1, .queue_rays = 1e9}, timer);
+  hold_while_another_waits(admission, timer, 1000ms);  // as 10 million rays
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z", 30'000), kNever));
   waiters.add("slow", demand("slow", 30'000));
@@ -208,13 +213,7 @@ TEST(Admission, WhatNobodyWaitedForIsFree) {
 TEST(Admission, WhatAClientOwesIsBounded) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e15}, timer);
-  Waiters others(admission);
-  {
-    const auto ticket = admission.enter(demand("slow", 30'000), kNever);
-    others.add("other", demand("other", 30'000));
-    timer.advance(60'000ms);  // as 600 million rays; 16 places are 8 million
-  }
-  others.join();
+  hold_while_another_waits(admission, timer, 60'000ms);  // as 600 million rays; 16 places are 8 million
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z", 30'000), kNever));
   waiters.add("slow", demand("slow", 30'000));
