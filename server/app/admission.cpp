@@ -13,6 +13,7 @@ constexpr double kExpectedRate = 10e6;                // rays a second, in all p
 constexpr std::chrono::milliseconds kLeastPlace{50};  // that work keeps a place, whoever waits
 constexpr auto kOwnPlace = 4 * kLeastPlace;           // where its own client waits
 constexpr double kMostDebt = 16;  // places that a client may owe, so that it waits for seconds, not minutes
+constexpr double kSmallCost = 2 * kLeastCost;
 constexpr double kMemory_s = 10;  // seconds of work after which a measurement has faded to 1/e
 
 // What is charged for a place of so many. A rate that was measured would charge little after work that was
@@ -25,6 +26,12 @@ std::string whole(double rays) {
   char text[32];
   std::snprintf(text, sizeof text, rays < 1e15 ? "%.0f" : "%.3g", rays);
   return text;
+}
+
+// Of what clients have waiting; not of nothing.
+std::pair<std::string, double> greediest(const std::map<std::string, double>& costs) {
+  return *std::max_element(costs.begin(), costs.end(),
+                           [](const auto& a, const auto& b) { return a.second < b.second; });
 }
 
 std::string in_millions(double rays) {
@@ -63,7 +70,8 @@ int Admission::waiting() const {
 }
 bool Admission::full() const {
   const std::lock_guard lock(mutex_);
-  return running_ >= limits_.running && !fits(Lane::interactive, kLeastCost);
+  return running_ >= limits_.running && !fits(Lane::interactive, kSmallCost) &&
+         greediest(waiting_costs(Lane::interactive)).second <= kSmallCost;
 }
 
 Clock::duration Admission::longest_wait() const {
@@ -150,7 +158,7 @@ void Admission::Ticket::renew() {
                                   [&](const Work& work) { return &work == work_; });
   from_->works_.splice(from_->works_.end(), from_->works_, place);
   work_->entry = Entry::again;
-  work_->used += from_->charge_overrun(*work_);
+  work_->used += from_->charge_overruns(*work_);
   work_->charge = kLeastCost;
   from_->wait_for_place(lock, *work_, stop_);
   lock.unlock();
@@ -169,42 +177,48 @@ Admission::Sharing::~Sharing() {
   const std::lock_guard lock(in_.mutex_);
   sharers_->erase(sharers_->find(client_));
   update_works();
+  in_.start_next();  // what it kept from its place as its own may have it now
 }
 
 void Admission::Sharing::update_works() {
   for (Work& work : in_.works_)
-    if (work.demand.sharers == sharers_) in_.update_finishes(work);
+    if (work.demand.sharers == sharers_) in_.update_wishes(work);
 }
 
-void Admission::update_finishes(Work& work) {
+void Admission::update_wishes(Work& work) {
   const Demand& demand = work.demand;
   const auto wants = [&](const std::string& client) {
     return demand.is_shared() ? demand.sharers->count(client) > 0 : client == demand.client;
   };
   const auto add = [&](const std::string& client) {
-    if (!work.is_wanted_by(client)) work.finishes.emplace(client, virtual_finish(work, client));
+    if (!work.is_wanted_by(client))
+      work.wishes.emplace(client, Wish{virtual_finish(work, client), timer_.now()});
   };
   if (demand.is_shared())
     std::for_each(demand.sharers->begin(), demand.sharers->end(), add);
   else
     add(demand.client);
-  std::erase_if(work.finishes, [&](const auto& entry) { return !wants(entry.first); });
+  std::erase_if(work.wishes, [&](const auto& entry) {
+    if (wants(entry.first)) return false;
+    if (work.has_begun()) charge_overrun(work, entry.first, entry.second.since);
+    return true;
+  });
 }
 
 double Admission::Work::finish() const {
-  const auto earlier = [](const auto& a, const auto& b) { return a.second < b.second; };
-  return std::min_element(finishes.begin(), finishes.end(), earlier)->second;
+  const auto earlier = [](const auto& a, const auto& b) { return a.second.finish < b.second.finish; };
+  return std::min_element(wishes.begin(), wishes.end(), earlier)->second.finish;
 }
 
 void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop) {
   const Lane lane = work.demand.lane;
   const auto asked = work.since = timer_.now();
-  work.finishes.clear();
-  update_finishes(work);
+  work.wishes.clear();
+  update_wishes(work);
   work.state = State::waits;
   start_next();
   work.changed.wait(lock, stop, [&] { return work.state != State::waits; });
-  if (work.state == State::runs) {  // who gives up finds it soon
+  if (work.has_begun()) {  // who gives up finds it soon, as does who has lost its place since
     waits_[static_cast<int>(lane)].Observe(std::chrono::duration<double>(timer_.now() - asked).count());
     return;
   }
@@ -261,25 +275,26 @@ void Admission::leave(Work& work, bool done) {
   else if (running_ > 0)
     measured_ = timer_.now();  // it was broken off: nobody knows how much of it was done
   if (work.state == State::runs) give_up_place(work);
-  if (work.state != State::dropped) charge_overrun(work);
+  if (work.state != State::dropped) charge_overruns(work);
   works_.remove_if([&](const Work& other) { return &other == &work; });
   start_next();
 }
 
-double Admission::charge_overrun(const Work& work) {
+double Admission::charge_overruns(const Work& work) {
+  for (const auto& [client, wish] : work.wishes) charge_overrun(work, client, wish.since);
+  return kLeastCost + rays_in(timer_.now() - work.since, limits_.running);
+}
+
+void Admission::charge_overrun(const Work& work, const std::string& client, Clock::time_point since) {
   const int lane = static_cast<int>(work.demand.lane);
-  const auto now = timer_.now();
-  const double used = kLeastCost + rays_in(now - work.since, limits_.running);
-  const double charged =
-      kLeastCost + rays_in(now - work.charged_from.value_or(charged_from(work)), limits_.running);
-  const double overrun = charged - std::max(kLeastCost, work.charge);
-  if (overrun <= 0) return used;
+  const auto from = std::max(since, work.charged_from.value_or(charged_from(work)));
+  const double used = kLeastCost + rays_in(timer_.now() - from, limits_.running);
+  const bool came_later = since > work.since;  // to work that did not run in its turn
+  const double overrun = used - (came_later ? kLeastCost : std::max(kLeastCost, work.charge));
+  if (overrun <= 0) return;
   const double most = virtual_time_[lane] + kMostDebt * rays_in(kLeastPlace, limits_.running);
-  for (const auto& [client, finish] : work.finishes) {
-    double& until = overruns_[lane][client];
-    until = std::max(until, std::min(std::max(until, virtual_time_[lane]) + overrun, most));
-  }
-  return used;
+  double& until = overruns_[lane][client];
+  until = std::max(until, std::min(std::max(until, virtual_time_[lane]) + overrun, most));
 }
 
 Clock::time_point Admission::charged_from(const Work& work) const {
@@ -301,13 +316,19 @@ Admission::Work* Admission::loser(const Demand& demand) {
   const auto now = timer_.now();
   Work* best = nullptr;
   for (Work& work : works_) {
-    const auto keeps_it = work.is_wanted_by(demand.client) ? kOwnPlace : kLeastPlace;
+    const auto keeps_it = is_for_its_own(demand, work) ? kOwnPlace : kLeastPlace;
     if (work.state != State::runs || now - work.since < keeps_it) continue;
     const Lane lane = demand.lane;
     const bool gives = lane == Lane::interactive || work.demand.lane == lane || running_batch_ == 0;
     if (gives && (!best || work.since < best->since)) best = &work;
   }
   return best;
+}
+
+bool Admission::is_for_its_own(const Demand& demand, const Work& work) {
+  const auto wants = [&](const std::string& client) { return work.is_wanted_by(client); };
+  if (!demand.is_shared()) return wants(demand.client);
+  return std::all_of(demand.sharers->begin(), demand.sharers->end(), wants);
 }
 
 bool Admission::may_begin(const Demand& demand, Entry entry) {
@@ -339,7 +360,7 @@ double Admission::virtual_finish(const Work& work, const std::string& client) co
   for (const Work& w : works_)
     if (w.state == State::waits && w.demand.lane == work.demand.lane && w.is_wanted_by(client) &&
         (!again || w.entry == Entry::again))
-      start = std::max(start, w.finishes.at(client));
+      start = std::max(start, w.wishes.at(client).finish);
   return start + work.charge;
 }
 
@@ -352,7 +373,7 @@ bool Admission::has_lost_many(const Demand& demand) const {
 bool Admission::has_lost_many(Lane lane, const std::string& client) const {
   const auto lost = std::count_if(works_.begin(), works_.end(), [&](const Work& w) {
     const bool has_lost = w.state == State::lost || (w.state == State::waits && w.entry == Entry::again);
-    return has_lost && w.demand.lane == lane && w.is_wanted_by(client);
+    return has_lost && w.demand.lane == lane && (w.demand.client == client || w.is_wanted_by(client));
   });
   return lost >= 2 * limits_.running;
 }
@@ -390,12 +411,11 @@ void Admission::make_room(const Demand& demand) {
   const Lane lane = demand.lane;
   while (!fits(lane, demand.cost)) {
     const auto costs = waiting_costs(lane);
-    const auto greediest = std::max_element(costs.begin(), costs.end(),
-                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto [greedy, most] = greediest(costs);
     const auto known = costs.find(demand.client);
     const double own = known == costs.end() ? 0 : known->second;
-    if (greediest->first == demand.client || own + demand.cost >= greediest->second) refuse(lane, own);
-    Work* const dropped = newest_to_begin(lane, greediest->first);
+    if (greedy == demand.client || own + demand.cost >= most) refuse(lane, own);
+    Work* const dropped = newest_to_begin(lane, greedy);
     if (!dropped) return;
     dropped->state = State::dropped;
     dropped->changed.notify_one();

@@ -120,7 +120,7 @@ class Admission {
 
   int running() const;
   int waiting() const;  // also what has lost its place, and is on its way to the next checkpoint
-  // Whether small work would be turned away.
+  // Whether small work of a client that has nothing waiting would be turned away.
   bool full() const;
   std::uint64_t places_lost() const { return places_lost_; }  // since the start
   // How long the client that waits least for its interactive work to begin has waited; none does: 0. Those
@@ -138,10 +138,15 @@ class Admission {
  private:
   enum class Entry { first, next, again };          // work that begins; that goes on; that has lost its place
   enum class State { waits, runs, lost, dropped };  // lost: its place; dropped: it waits no more
+  struct Wish {                                     // of a client for a piece of work
+    double finish;                                  // in virtual time
+    Clock::time_point since;                        // it wants that work
+  };
   struct Work {
     Work(const Demand& d, Entry e, double c) : demand(d), entry(e), counts(e == Entry::first), charge(c) {}
     double finish() const;  // the earliest
-    bool is_wanted_by(const std::string& client) const { return finishes.count(client) > 0; }
+    bool is_wanted_by(const std::string& client) const { return wishes.count(client) > 0; }
+    bool has_begun() const { return state == State::runs || state == State::lost; }
 
     Demand demand;
     Entry entry;
@@ -149,7 +154,7 @@ class Admission {
     std::atomic<State> state{State::waits};
     double charge;                                  // rays that were charged for its place
     double used = 0;                                // rays, about, in the places that it has lost
-    std::map<std::string, double> finishes;         // virtual time, for each client that wants it
+    std::map<std::string, Wish> wishes;             // of the clients that want it
     Clock::time_point since{};                      // it got its place, or asked for one
     std::optional<Clock::time_point> charged_from;  // of work that lost its place: others waited since then
     std::condition_variable_any changed;
@@ -162,10 +167,12 @@ class Admission {
   // Throws ClientBusy, but only at a first entry, or Cancelled.
   void wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop);
   void begin(Work& work);
-  // Returns the rays, about, that it has used since it got its place, and charges its clients for those of
-  // them that were not expected and that others waited for. What nobody waits for is free: who had the
-  // service alone owes nothing to who comes later.
-  double charge_overrun(const Work& work);
+  // Charges a client that wants the work for what that has used meanwhile beyond what was expected, as far as
+  // others waited for it. What nobody waits for is free: who had the service alone owes nothing to who comes
+  // later.
+  void charge_overrun(const Work& work, const std::string& client, Clock::time_point since);
+  // Charges all who want it. Returns the rays, about, that it has used since it got its place.
+  double charge_overruns(const Work& work);
   Clock::time_point charged_from(const Work& work) const;
   void note_who_waits();
   void give_up_place(const Work& work);
@@ -174,10 +181,12 @@ class Admission {
   bool fits(Lane lane, double cost) const;
   bool place_free(Lane lane) const;
   Work* loser(const Demand& demand);  // whose place such work may have; none: nullptr
-  void update_finishes(Work& work);   // who wants it has changed
+  static bool is_for_its_own(const Demand& demand, const Work& work);  // nobody else wants it
+  void update_wishes(Work& work);                                      // who wants it has changed
   double virtual_finish(const Work& work, const std::string& client) const;
   // Whether so much work of all clients that want it has lost its place, twice as much as there are places,
-  // that they begin no more: what is begun stays bounded, with the memory that it holds.
+  // that they begin no more: what is begun stays bounded, with the memory that it holds. Who began it and
+  // left it to others counts among them.
   bool has_lost_many(const Demand& demand) const;
   bool has_lost_many(Lane lane, const std::string& client) const;
   bool may_begin(const Demand& demand, Entry entry);  // as far as places go

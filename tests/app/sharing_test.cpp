@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <list>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "server/app/admission.h"
 #include "server/app/pictures.h"
@@ -13,6 +15,7 @@
 namespace orrery {
 namespace {
 
+using namespace std::chrono_literals;
 using test::demand;
 using test::kNever;
 using test::TurnOrder;
@@ -66,7 +69,7 @@ TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
   std::list<Admission::Ticket> own;
   for (int i = 0; i < 2; ++i) {  // two for each place
     own.push_back(admission_.enter(demand("a"), kNever));
-    timer_.advance(std::chrono::milliseconds(50));
+    timer_.advance(50ms);
     const auto other = admission_.enter(demand("c"), kNever);
   }
   waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
@@ -94,6 +97,86 @@ TEST_F(SharedWork, IsNoLongerWorkOfWhoAskedFirstAndLeft) {
   first.reset();
   waiters_.add("a", demand("a", 5));
   EXPECT_EQ(order(), (TurnOrder{"a", "shared"}));  // finish at 5 10, not at 15 10
+}
+
+// Work that several want has a place that another waits for, and keeps on working.
+class SharedWorkThatRuns : public SharedWork {
+ protected:
+  SharedWorkThatRuns() {
+    ticket_.reset();
+    ticket_.emplace(admission_.enter({Lane::interactive, "a", 10, sharers_}, kNever));
+  }
+  void another_waits() {
+    waiters_.add("z", demand("z"));
+    timer_.advance(50ms);
+    waiters_.join();
+    timer_.advance(200ms);
+  }
+  // In which they have their turn once the work has ended.
+  TurnOrder order_of(const std::vector<const char*>& clients) {
+    ticket_.reset();
+    ticket_.emplace(admission_.enter(demand("y"), kNever));
+    for (const char* client : clients) waiters_.add(client, demand(client));
+    return order();
+  }
+
+  std::optional<Admission::Sharing> first_{std::in_place, admission_, sharers_, "a"};
+};
+
+TEST_F(SharedWorkThatRuns, IsPaidByWhoLeavesIt) {
+  const Admission::Sharing second(admission_, sharers_, "b");
+  another_waits();
+  first_.reset();
+  EXPECT_EQ(order_of({"a", "c"}), (TurnOrder{"z", "c", "a"}));
+}
+
+TEST_F(SharedWorkThatRuns, IsPaidByWhoComesLateOnlyFromThenOn) {
+  another_waits();
+  const Admission::Sharing late(admission_, sharers_, "b");
+  EXPECT_EQ(order_of({"a", "b", "c"}), (TurnOrder{"z", "b", "c", "a"}));
+}
+
+TEST_F(SharedWorkThatRuns, IsNotFreeToWhoComesAndLeavesAgainAndAgain) {
+  waiters_.add("z", demand("z"));
+  for (int i = 0; i < 8; ++i) {
+    const Admission::Sharing visit(admission_, sharers_, "b");
+    timer_.advance(40ms);
+  }
+  EXPECT_EQ(order_of({"b", "c"}), (TurnOrder{"z", "c", "b"}));
+}
+
+TEST_F(SharedWorkThatRuns, KeepsItsPlaceNoLongerFromWhoHasLeftIt) {
+  std::optional<Admission::Sharing> second(std::in_place, admission_, sharers_, "b");
+  waiters_.add("b", demand("b"));
+  timer_.advance(100ms);
+  EXPECT_FALSE(ticket_->expired());  // it is work of b, too
+  second.reset();
+  EXPECT_TRUE(ticket_->expired());
+  waiters_.join();
+}
+
+TEST_F(SharedWork, TakesAPlaceFromWhatOnlyOneOfItsClientsWants) {
+  const Admission::Sharing first(admission_, sharers_, "z"), second(admission_, sharers_, "b");
+  waiters_.add("shared", {Lane::interactive, "z", 10, sharers_});
+  timer_.advance(50ms);
+  EXPECT_TRUE(ticket_->expired());
+  waiters_.join();
+}
+
+TEST_F(SharedWork, CountsAsLostByWhoBeganItAndLeft) {
+  ticket_.reset();
+  const Admission::Sharing stays(admission_, sharers_, "b");
+  std::list<Admission::Ticket> lost;
+  for (int i = 0; i < 2; ++i) {  // two for each place
+    const Admission::Sharing leaves(admission_, sharers_, "a");
+    lost.push_back(admission_.enter({Lane::interactive, "a", 10, sharers_}, kNever));
+    timer_.advance(50ms);
+    const auto other = admission_.enter(demand("c"), kNever);
+  }
+  waiters_.add("a", demand("a"));
+  EXPECT_EQ(admission_.running(), 0);  // though the place is free
+  lost.clear();
+  waiters_.join();
 }
 
 // Two ask for one picture; the first has much waiting before it.
