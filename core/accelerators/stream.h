@@ -72,6 +72,9 @@ class Stream {
   };
   using Lists = std::array<List, kLists>;
 
+  // Where no more than so many enter a node, each goes on alone: what lists cost is not shared any more.
+  static constexpr int kFew = 2;
+
   // Lists are read and written by whole registers, so each has kPad places more than it needs.
   static constexpr int room_for(int count) { return (kWidth<T> + 1) * (count + kPad); }
   static constexpr int kReserve = (kDeepestTree + 1) * room_for(1);
@@ -82,6 +85,10 @@ class Stream {
     if (WideTree<T>::is_leaf(at)) {
       meet(at, ids, count);
       return flush();
+    }
+    if (count <= kFew) {
+      for (int i = 0; i < count; ++i) walk(at, ids[i]);
+      return;
     }
     if (count > 1 && room + room_for(count) > room_.data() + (kRoom - kReserve)) {
       const int half = count / 2;
@@ -100,6 +107,41 @@ class Stream {
       }
     }
     flush();
+  }
+
+  // One traversal alone through a subtree: of Query::closest by distance, as far as it may still matter.
+  void walk(Child at, std::int32_t id) {
+    const auto& probe = traversals_.probes[id];
+    auto& hit = traversals_.hits[id];
+    std::size_t waiting = 0;
+    for (;;) {
+      if (WideTree<T>::is_leaf(at)) {
+        const RayBlockPair pair{Blocks<T>::block_of(at), id};
+        test(at, std::span(&pair, 1));
+      } else {
+        const auto& node = tree_.node(at);
+        Lanes<T> near;
+        unsigned entered = probe.enter(node.planes, hit.limit(), near);
+        ++counts_.node_visits;
+        counts_.box_tests += kLists;
+        alignas(64) std::array<T, kLists> distance;
+        near.copy_to(distance.data(), stdx::vector_aligned);
+        const std::size_t first = waiting;
+        for (; entered != 0; entered &= entered - 1) {
+          const auto child = static_cast<std::size_t>(std::countr_zero(entered));
+          std::size_t place = waiting++;
+          if constexpr (kQuery == Query::closest)
+            for (; place > first && stack_[place - 1].near < distance[child]; --place)
+              stack_[place] = stack_[place - 1];
+          stack_[place] = {distance[child], node.child[child]};
+        }
+      }
+      do {
+        if (waiting == 0) return;
+        --waiting;
+      } while (!(stack_[waiting].near <= hit.limit() * kFarther<T>));
+      at = stack_[waiting].child;
+    }
   }
 
   // Holds the traversals against the children of a node; returns how many of these get a list. Lists go to
@@ -163,18 +205,28 @@ class Stream {
 
   void flush() {
     if (met_ == 0) return;
-    const auto& pack = tree_.blocks().pack_of(leaf_);
-    const std::span<const RayBlockPair> pairs(pairs_.data(), met_);
+    test(leaf_, std::span(pairs_).first(met_));
+    met_ = 0;
+  }
+
+  // With blocks of the pack that `leaf` is of.
+  void test(Child leaf, std::span<const RayBlockPair> pairs) {
+    const auto& pack = tree_.blocks().pack_of(leaf);
     if constexpr (kQuery == Query::closest)
       pack.closest(pairs, traversals_.rays.data(), traversals_.hits.data(), counts_);
     else
       pack.occlude(pairs, traversals_.rays.data(), traversals_.hits.data(), counts_);
-    met_ = 0;
   }
+
+  struct Waiting {
+    T near;
+    Child child;
+  };
 
   const WideTree<T>& tree_;
   Traversals& traversals_;
   AcceleratorCounts& counts_;
+  std::array<Waiting, (kDeepestTree + 1) * kLists> stack_;
   Child leaf_ = 0;  // one of the pack that pairs_ are with
   std::size_t met_ = 0;
   std::array<RayBlockPair, 1024> pairs_;
