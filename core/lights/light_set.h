@@ -34,6 +34,22 @@ class DeltaLightKernel final : public LightKernel<T> {
     }
   }
 
+  void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices, const PathDraws<T>&,
+                   const Groups& groups, LightBatch<T>& out) const override {
+    using N = Lanes<T>;
+    for (const int i : groups) {
+      const IndexLanes<T> index = load_index<T>(choices.index, i);
+      const auto mine = mask_cast<N>(index >= 0);
+      if (!any(mine)) continue;
+      const Arrival<N> arrival =
+          fetch_records<Record, T>(records_, index, mine).arrive(surface.position.at(i));
+      out.shadow.direction.put(i, mine, arrival.direction);
+      out.shadow.t_max.put(i, mine, arrival.distance);
+      out.incident.put(i, mine, arrival.incident * (N(T(1)) / choices.probability.at(i)));
+      out.pdf.put(i, mine, N(T(0)));
+    }
+  }
+
  private:
   std::vector<Record<T>> records_;
 };

@@ -103,6 +103,7 @@ void add_materials(const Scene& scene, SceneFacts& facts) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(set->size()); ++i) {
       if (first + i >= first_user.size() || first_user[first + i] < 0) continue;
       used = true;
+      facts.materials.emits |= scene.emission[first + i] != Vec3d(0);
       const RoundingLimit limit = set->rounding(static_cast<int>(i));
       if (limit.epsilon < facts.rounding.epsilon)
         facts.rounding = {

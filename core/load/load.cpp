@@ -203,15 +203,19 @@ class SceneReader {
   struct MaterialPlace {
     std::size_t set;
     int index;  // within the set
+    Vec3d emission;
   };
 
   void read_material(const std::string& name, Params& p) {
     const auto type = p.pick("type", "Kind of material.", choices_of(material_types()));
     names_.add(name);
-    if (!type) return places_.push_back({0, 0});
+    if (!type) return places_.push_back({0, 0, {}});
     MaterialSet& set = *scene_->materials[*type];
-    places_.push_back({*type, set.size()});
+    const int index = set.size();
     set.add(p);
+    const Vec3d emission =
+        p.color("emission", "Radiance that its surfaces send out on both sides, per channel.", Vec3d(0));
+    places_.push_back({*type, index, emission});
   }
 
   void read_light(Params& p) {
@@ -235,6 +239,9 @@ class SceneReader {
     std::vector<int> first(scene_->materials.size(), 0);
     for (std::size_t set = 1; set < first.size(); ++set)
       first[set] = first[set - 1] + scene_->materials[set - 1]->size();
+    scene_->emission.resize(static_cast<std::size_t>(first.back() + scene_->materials.back()->size()));
+    for (const auto& [set, index, emission] : places_)
+      scene_->emission[static_cast<std::size_t>(first[set] + index)] = emission;
     const auto number = [&](const ObjectReader& objects, std::vector<std::int32_t>& into) {
       objects.for_each([&](std::size_t name, std::size_t primitives, std::int32_t) {
         const MaterialPlace place = places_[name];

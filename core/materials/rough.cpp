@@ -1,5 +1,7 @@
 #include "core/materials/rough.h"
 
+#include <numbers>
+
 #include "core/materials/material_set.h"
 #include "core/math/hemisphere.h"
 #include "core/params/params.h"
@@ -78,7 +80,8 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
       const Vec3<N> f_cos =
           rough.reflected(normal, direction, viewer, half_vector(direction, viewer), cosine);
       out.direction.put(i, mine, direction);
-      out.weight.put(i, mine, f_cos * select(leaves, N(T(1) / pdf), zero));
+      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
+      out.weight.put(i, mine, f_cos * select(leaves, N(T(1) / (kPi * pdf)), zero));
       out.pdf.put(i, mine, pdf);
     });
   }

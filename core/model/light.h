@@ -22,7 +22,11 @@ struct LightBatch {
   RayBatch<T> shadow;
   // Radiance times cosine at the light over the density with which it was drawn and the probability of the
   // choice; of a light that is one point, its intensity after attenuation and cone.
+  // (Area lights: radiance over pi and the density, so that a white Lambert surface reflects as much.)
   Vec3Array<T> incident;
+  // Density per solid angle with which the direction was drawn, times the probability of the choice; 0 of a
+  // light that no ray can hit.
+  Array<T> pdf;
 };
 
 // Which light of a kernel a batch asks, and the probability with which it was chosen.
@@ -30,6 +34,13 @@ template <class T>
 struct LightChoice {
   int index;  // within the kernel
   T probability = 1;
+};
+
+// One of a kernel's lights for each lane, or -1 for none, and the probability with which it was chosen.
+template <class T>
+struct LightChoices {
+  Array<IndexOf<T>> index;
+  Array<T> probability;
 };
 
 // Const and free of state: any number of threads may call it at once.
@@ -42,17 +53,17 @@ class LightKernel {
   virtual void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
                       const Groups& groups, LightBatch<T>& out) const = 0;
 
-  // Density per solid angle with which sample() draws the directions of `rays` from `surface`; 0 for a light
-  // of which no ray can hit anything, because it is a point or infinitely narrow.
-  virtual void pdf(const SurfaceBatch<T>& /*surface*/, const RayBatch<T>& /*rays*/,
-                   const LightChoice<T>& /*choice*/, const Groups& groups, Array<T>& out) const {
+  // Likewise, each surface point of another light: fills the lanes that have one, and pdf.
+  virtual void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices,
+                           const PathDraws<T>& draws, const Groups& groups, LightBatch<T>& out) const = 0;
+
+  // Density per solid angle, times the probability of the choice, with which sample_each() draws the
+  // directions of `rays`, which hit the lights at `hits`, from where they start. Fills the lanes that have a
+  // light; 0 of a light that no ray can hit.
+  virtual void pdf(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/,
+                   const LightChoices<T>& /*choices*/, const Groups& groups, Array<T>& out) const {
     for (const int i : groups) out.put(i, Lanes<T>(T(0)));
   }
-
-  // Adds what rays see that meet the light itself, or that leave the scene. Lights that no ray can hit add
-  // nothing.
-  virtual void emitted(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/, const Groups& /*groups*/,
-                       Vec3Array<T>& /*radiance*/) const {}
 };
 template <class T>
 using LightKernelPtr = std::unique_ptr<LightKernel<T>>;

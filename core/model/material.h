@@ -47,8 +47,9 @@ class MaterialKernel {
                        Vec3Array<T>& /*radiance*/) const {}
 
   // Light along `directions.light` that leaves toward the ray's origin: `f_cos` is the share per channel,
-  // cosine included; `pdf` the density per solid angle with which sample() draws that direction. Both are set
-  // for the lanes with this material alone; pdf is 0, and f_cos undefined, where nothing is reflected.
+  // cosine included, times pi (a white Lambert surface: the cosine); `pdf` the density per solid angle with
+  // which sample() draws that direction. Both are set for the lanes with this material alone; pdf is 0, and
+  // f_cos undefined, where nothing is reflected.
   virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const Groups&, Vec3Array<T>& /*f_cos*/,
                         Array<T>& /*pdf*/) const {}
 
@@ -59,9 +60,6 @@ class MaterialKernel {
   // All directions of a perfectly specular material, for the lanes with it.
   virtual void specular(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const Groups&,
                         SpecularBatch<T>&) const {}
-
-  // Adds what the surface itself sends toward the ray's origin.
-  virtual void emitted(const SurfaceBatch<T>&, const Groups&, Vec3Array<T>& /*radiance*/) const {}
 };
 
 template <class T>
@@ -72,7 +70,7 @@ struct MaterialTraits {
   bool mirrors = false;    // `specular` may have reflectance
   bool transmits = false;  // `specular` may have transmittance
   bool filters = false;    // `specular` may have a filter other than 1
-  bool emits = false;      // `emitted` may add something
+  bool emits = false;      // some surface with it sends light out by itself
 
   MaterialTraits& operator|=(const MaterialTraits& other) {
     lit |= other.lit;

@@ -15,6 +15,9 @@ struct PathBatch {
   // With SurfaceFields::footprint: metres across the ray that a pixel covers at its origin, and how much they
   // grow per metre.
   Array<T> width, spread;
+  // Density per solid angle with which the ray's direction was drawn where it starts; 0 of one that no other
+  // could be. Only of techniques that draw directions, and not of camera rays.
+  Array<T> pdf;
   int depth = 0;  // 0: camera rays
 
   // Appends the lanes of `mask`. Returns the bits of the mask.
@@ -41,6 +44,11 @@ struct PathBatch {
     compress_store(spreads, bits, &spread[n]);
   }
 
+  // Gives the rays appended last, those of `bits`, their density.
+  void append_pdf(unsigned bits, const Lanes<T>& pdfs) {
+    compress_store(pdfs, bits, &pdf[rays.count - std::popcount(bits)]);
+  }
+
   // Makes every ray active without an end, and the rest of the last register inactive but harmless.
   void seal() {
     using N = Lanes<T>;
@@ -51,7 +59,7 @@ struct PathBatch {
       rays.direction.x[i] = rays.direction.y[i] = rays.direction.z[i] = 1;
       throughput.x[i] = throughput.y[i] = throughput.z[i] = 0;
       slot[i] = 0;
-      width[i] = spread[i] = 0;
+      width[i] = spread[i] = pdf[i] = 0;
     }
   }
 

@@ -119,6 +119,7 @@ struct Scene {
   Vec3d ambient, background;
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
+  std::vector<Vec3d> emission;  // by material: radiance that its surfaces send out on both sides
   std::vector<std::unique_ptr<LightSet>> light_sets;
   std::vector<LightPlace> lights;  // in the order of the file
   std::deque<Model> models;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -106,6 +107,14 @@ struct ShapeTraits {
   bool closed = false;  // has an inside
 };
 
+// A surface from whose points light can be drawn.
+struct Patch {
+  enum class Kind { rectangle, triangle, disk, sphere } kind;
+  // Rectangle: a corner and two sides at right angles. Triangle: a corner and two sides. Disk: its centre and
+  // two radii at right angles. Sphere: its centre, and the radius in a.x.
+  Vec3d at, a, b;
+};
+
 class ShapeSet {
  public:
   virtual ~ShapeSet() = default;
@@ -133,6 +142,8 @@ class ShapeSet {
   // Largest absolute coordinate of the point that places an unbounded primitive; 0 of others.
   virtual double anchor_magnitude(int /*index*/) const { return 0; }
   virtual ShapeTraits traits() const = 0;
+  // The primitive's whole surface, if light can be drawn from it.
+  virtual std::optional<Patch> patch(int /*index*/) const { return std::nullopt; }
 
   // Kernels whose primitives are numbered from `first`. They do not refer to the set afterwards.
   virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;

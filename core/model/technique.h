@@ -41,6 +41,7 @@ struct TechniqueType {
   bool secondary_rays;  // follows mirrored and refracted rays
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
+  bool interreflects = false;  // surfaces light each other, and surfaces that emit are light sources
 };
 
 template <template <class> class Derived, class T>

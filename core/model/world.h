@@ -25,7 +25,12 @@ struct Geometry {
   std::vector<std::shared_ptr<const ModelGeometry<T>>> models;
   std::vector<Materials> materials;
   std::vector<LightKernelPtr<T>>
-      lights;  // one a type, in the order of Scene::light_sets; null if it has none
+      lights;                     // one a type, in the order of Scene::light_sets; null if it has none
+  std::vector<Vec3<T>> emission;  // by material: see Scene; empty if nothing in the scene emits
+  // Primitives that emit and that light can be drawn from, all in one kernel: null if there are none.
+  LightKernelPtr<T> emitters;
+  std::vector<double> emitter_powers;  // by number within the kernel
+  std::vector<IndexOf<T>> emitter_of;  // of each primitive: its number there, or -1
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;
   Vec3<T> ambient, background;

@@ -11,9 +11,21 @@ namespace {
 
 constexpr double kSpecularShare = 0.5;  // of the rays, where some material is specular
 
+// Half of the vertices of a closed room survive the roulette; each sends one ray to a light source.
+double expected_path_rays(const Plan& plan) {
+  constexpr double kSurviving = 0.7;
+  double rays = 1, share = 1;
+  for (int depth = 1; depth <= plan.max_depth; ++depth) {
+    rays += share * (1 + kSurviving);
+    share *= kSurviving;
+  }
+  return double(plan.width) * plan.height * plan.samples * rays;
+}
+
 }  // namespace
 
 double expected_rays(const Scene& scene, const Plan& plan) {
+  if (plan.technique->interreflects) return expected_path_rays(plan);
   const MaterialTraits& materials = scene.facts.materials;
   const bool branches = plan.specular && materials.mirrors && plan.technique->secondary_rays;
   const double children = materials.transmits ? 2 : 1;

@@ -40,7 +40,8 @@ class Planner {
     choose_accelerator();
     choose_order();
     choose_prediction();
-    if (request_.full_model) return plan_;
+    if (plan_.technique->interreflects) choose_paths();
+    if (request_.full_model || plan_.technique->interreflects) return plan_;
     choose_lights();
     choose_specular();
     return plan_;
@@ -145,6 +146,13 @@ class Planner {
     decide("shadows", plan_.shadows ? "traced" : "absent",
            plan_.shadows ? "objects may stand between light and surface"
                          : "the only object is convex and seen from outside: nothing stands in its light");
+  }
+
+  void choose_paths() {
+    plan_.min_contribution = 0;
+    if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
+    decide("depth", std::to_string(plan_.max_depth), "as asked; what longer paths would bring is left out",
+           Bound::unknown());
   }
 
   void choose_specular() {

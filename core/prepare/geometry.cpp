@@ -4,6 +4,7 @@
 
 #include "core/accelerators/instances.h"
 #include "core/base/work_scope.h"
+#include "core/lights/emitters.h"
 
 namespace orrery {
 namespace {
@@ -90,6 +91,32 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, double time
     geometry.primitives.push_back({geometry.shapes.back().get(), static_cast<int>(i), boxes[i]});
 }
 
+// Surfaces that emit. Those within instances are met by chance alone.
+template <class T>
+void add_emitters(const Scene& scene, double time, Geometry<T>& geometry) {
+  if (!scene.facts.materials.emits) return;
+  for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
+  std::vector<Emitter<double>> emitters;
+  geometry.emitter_of.assign(geometry.material_of.size(), -1);
+  std::size_t primitive = 0;
+  for (const auto& shapes : scene.shapes) {
+    const auto posed = shapes->at(time);
+    const ShapeSet& now = posed ? *posed : *shapes;
+    for (int i = 0; i < now.size(); ++i, ++primitive) {
+      interruption_point(primitive);
+      const Vec3d& radiance = scene.emission[static_cast<std::size_t>(scene.material_of[primitive])];
+      const auto patch = radiance == Vec3d(0) ? std::nullopt : now.patch(i);
+      if (!patch) continue;
+      const Emitter<double> emitter = Emitter<double>::of(*patch, radiance);
+      if (!(emitter.area > 0)) continue;
+      geometry.emitter_of[primitive] = static_cast<IndexOf<T>>(emitters.size());
+      geometry.emitter_powers.push_back(power_of(emitter));
+      emitters.push_back(emitter);
+    }
+  }
+  if (!emitters.empty()) geometry.emitters = make_emitters<T>(emitters);
+}
+
 }  // namespace
 
 template <class T>
@@ -121,6 +148,7 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
   }
   for (const auto& lights : scene->light_sets)
     geometry->lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
+  add_emitters(*scene, time, *geometry);
   geometry->scene = std::move(scene);
   return geometry;
 }

@@ -83,9 +83,9 @@ void TileRenderer<T>::find_pixel_streams(const TileView& tile) {
 
 template <class T>
 void TileRenderer<T>::place_samples(std::uint32_t sample) {
+  using Bits = Draws::Bits<float>;
   for (int slot = 0; slot < kBatch; slot += kWidth<float>) {
-    const auto point =
-        stratified_point(sample, Draws::Bits<float>(&pixel_streams_[slot], stdx::vector_aligned));
+    const auto point = scrambled_point(Bits(sample), Bits(&pixel_streams_[slot], stdx::vector_aligned));
     samples_.u.put(slot, point.u);
     samples_.v.put(slot, point.v);
   }

@@ -24,6 +24,11 @@ struct Disk {
     return round_hull(Vec3d(center), Vec3d(normal), double(radius), 0);
   }
 
+  Patch patch() const {
+    const Tangents<double> axes = tangents_of(normal);
+    return {Patch::Kind::disk, center, axes.first * radius, axes.second * radius};
+  }
+
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     const N t = dot(center - ray.origin, normal) / dot(ray.direction, normal);

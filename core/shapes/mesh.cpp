@@ -55,6 +55,9 @@ class MeshSet final : public ShapeSet {
     return reach;
   }
   ShapeTraits traits() const override { return {.convex = false, .closed = false}; }
+  std::optional<Patch> patch(int index) const override {
+    return patch_of(table_.corners(static_cast<std::size_t>(index)));
+  }
   ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
   ShapeKernelPtr<double> kernel(double, int first) const override { return make<double>(first); }
   ShapeKernelPtr<long double> kernel(long double, int first) const override {

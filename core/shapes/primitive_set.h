@@ -14,6 +14,7 @@
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
 //   Vec3d anchor() const;                         if it may be unbounded: a point that places it
 //   std::vector<HullTriangle> hull() const;       if it knows better than bounds(): see ShapeKernel
+//   Patch patch() const;                          of a Sphere<double>, if light can be drawn from it
 //   Core, core()                                  if distance() needs only a part: see packed_records.h
 // and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
 namespace orrery {
@@ -144,6 +145,13 @@ class PrimitiveSet final : public ShapeSet {
       return 0;
   }
   ShapeTraits traits() const override { return Record<double>::kTraits; }
+  std::optional<Patch> patch(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.patch(); })
+      return record.patch();
+    else
+      return std::nullopt;
+  }
   ShapeKernelPtr<float> kernel(float, int first) const override { return make<float>(first); }
   ShapeKernelPtr<double> kernel(double, int first) const override { return make<double>(first); }
   ShapeKernelPtr<long double> kernel(long double, int first) const override {

@@ -13,6 +13,7 @@ namespace orrery {
   add(mesh)                \
   add(box)                 \
   add(disk)                \
+  add(rectangle)           \
   add(cylinder)
 // clang-format on
 

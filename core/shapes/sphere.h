@@ -72,6 +72,8 @@ struct Sphere {
 
   Boundsd bounds() const { return Boundsd::around(ball.center, Vec3d(ball.radius)); }
 
+  Patch patch() const { return {Patch::Kind::sphere, ball.center, Vec3d(ball.radius), {}}; }
+
   using Core = Ball<N>;
   const Core& core() const { return ball; }
   N distance(const Ray<N>& ray) const { return ball.distance(ray); }

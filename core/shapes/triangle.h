@@ -20,6 +20,7 @@ struct Triangle {
 
   Boundsd bounds() const { return corners.bounds(); }
   std::vector<HullTriangle> hull() const { return corners.hull(); }
+  Patch patch() const { return patch_of(corners); }
 
   using Core = Corners<N>;
   const Core& core() const { return corners; }

@@ -143,4 +143,8 @@ struct Corners {
   }
 };
 
+inline Patch patch_of(const Corners<double>& corners) {
+  return {Patch::Kind::triangle, corners.a, corners.b - corners.a, corners.c - corners.a};
+}
+
 }  // namespace orrery

@@ -3,20 +3,19 @@
 namespace orrery {
 
 template <class T>
-void DirectLight<T>::add(const PathBatch<T>& paths, const Draws& draws, const SurfaceBatch<T>& surface,
+void DirectLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
                          const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts,
                          const Checkpoint& checkpoint) {
   if (groups.empty()) return;
   for (const auto& m : geometry_.materials)
     if (m.traits.lit) m.kernel->ambient(surface, groups, geometry_.ambient, radiance);
   if (!plan_.direct_light) return;
-  const PathDraws<T> path_draws{draws, paths.slot, paths.depth};
   bool ends = false;
   lights_.for_each(
       [&](const LightKernel<T>& kernel, const LightChoice<T>& choice, const LightTraits& traits) {
         ends = ends || !checkpoint.go_on();
         if (ends) return;
-        kernel.sample(surface, choice, path_draws, groups, light_);
+        kernel.sample(surface, choice, draws, groups, light_);
         add_one(traits, paths, surface, groups, radiance, counts);
       });
 }

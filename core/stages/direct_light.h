@@ -20,7 +20,7 @@ class DirectLight {
   // Sets `radiance` of the lanes whose material is lit to what ambient light makes leave them, and adds what
   // each light does. `groups`: registers with such a lane. `checkpoint` is asked before each light; once the
   // work is to end the other lights are left.
-  void add(const PathBatch<T>& paths, const Draws& draws, const SurfaceBatch<T>& surface,
+  void add(const PathBatch<T>& paths, const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
            const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts, const Checkpoint& checkpoint);
 
  private:

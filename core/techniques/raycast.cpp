@@ -1,4 +1,4 @@
-#include "core/techniques/wavefront.h"
+#include "core/techniques/specular_tree.h"
 
 namespace orrery {
 namespace {
@@ -6,15 +6,15 @@ namespace {
 // Appel, "Some techniques for shading machine renderings of solids" (1968): what the eye sees, and shadows.
 // Specular surfaces show ambient light in place of what they would mirror.
 template <class T>
-class Raycast final : public Wavefront<T> {
+class Raycast final : public SpecularTree<T> {
  public:
-  using Wavefront<T>::Wavefront;
+  using SpecularTree<T>::SpecularTree;
 
  private:
   using N = Lanes<T>;
 
   void scatter(const Groups& groups) override {
-    const auto& specular = this->vertices_->specular;
+    const auto& specular = this->specular_;
     for (const int i : groups)
       for (const Vec3<N>& weight : {specular.reflectance.at(i), specular.transmittance.at(i)})
         this->cut(i, this->specular_lanes(i) && max_component(weight) > N(T(0)), weight);

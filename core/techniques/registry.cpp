@@ -8,7 +8,8 @@ namespace orrery {
 // clang-format off
 #define ORRERY_TECHNIQUES(add) \
   add(raycast)                 \
-  add(whitted)
+  add(whitted)                 \
+  add(path)
 // clang-format on
 
 #define ORRERY_DECLARE(name) TechniqueType name##_type();

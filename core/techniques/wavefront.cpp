@@ -1,7 +1,6 @@
 #include "core/techniques/wavefront.h"
 
 #include "core/stages/deposit.h"
-#include "core/stages/specular.h"
 #include "core/stages/surfaces.h"
 
 namespace orrery {
@@ -11,8 +10,7 @@ Wavefront<T>::Wavefront(const World<T>& world, const Plan& plan)
     : geometry_(*world.geometry),
       accelerator_(*world.accelerator),
       plan_(plan),
-      vertices_(std::make_unique<Vertices>()),
-      direct_light_(std::make_unique<DirectLight<T>>(geometry_, accelerator_, plan)) {}
+      vertices_(std::make_unique<Vertices>()) {}
 
 template <class T>
 bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
@@ -88,13 +86,7 @@ void Wavefront<T>::run_slice(const Groups& groups) {
   accelerator_.closest(paths.rays, groups, v.hits, counts_->accelerator);
   const Groups met = find_surfaces(geometry_, plan_.fields, paths, groups, v.hits, v.surface, v.radiance);
   if (paths.depth == 0) record_channels(groups, met);
-  direct_light_->add(paths, *draws_, v.surface, groups_with(geometry_, v.surface, met, &MaterialTraits::lit),
-                     v.radiance, *counts_, *checkpoint_);
-  if (plan_.specular) {
-    const Groups specular = groups_with(geometry_, v.surface, met, &MaterialTraits::mirrors);
-    evaluate_specular(geometry_, plan_.filters, v.hits, v.surface, specular, paths, v.specular);
-    scatter(specular);
-  }
+  shade(met);
   deposit(paths, groups, v.radiance, out_->radiance);
 }
 
@@ -116,37 +108,36 @@ void Wavefront<T>::record_channels(const Groups& groups, const Groups& met) {
 }
 
 template <class T>
-void Wavefront<T>::spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
-                         const Vec3<N>& weight) {
-  Vertices& v = *vertices_;
-  const N zero(T(0));
-  const auto wanted = mask && max_component(weight) > zero;
-  if (!any(wanted)) return;
-  const Vec3<N> throughput = v.paths->throughput.at(i) * weight;
-  auto traced = wanted;
-  if (v.paths->depth >= plan_.max_depth)
-    traced = typename N::mask_type(false);
-  else if (plan_.min_contribution > 0)
-    traced = wanted && max_component(throughput) >= N(static_cast<T>(plan_.min_contribution));
-  if (!all(traced == wanted)) cut(i, wanted && !traced, weight);
-  if (!any(traced)) return;
+unsigned Wavefront<T>::append(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
+                              const Vec3<N>& throughput) {
+  const Vertices& v = *vertices_;
   const Vec3<N> geometric = v.surface.geometric.at(i);
   const N step = v.surface.step.at(i);
-  const N signed_step = select(dot(direction, geometric) < zero, -step, step);
+  const N signed_step = select(dot(direction, geometric) < N(T(0)), -step, step);
   const Ray<N> ray = {v.surface.position.at(i) + geometric * signed_step, direction};
   PathBatch<T>& into = kind == Kind::reflected ? *reflected_ : *refracted_;
-  const unsigned bits = into.append(traced, ray, throughput, load_index<T>(v.paths->slot, i));
+  const unsigned bits = into.append(mask, ray, throughput, load_index<T>(v.paths->slot, i));
   if (plan_.fields.footprint) into.append_footprint(bits, v.surface.footprint.at(i), v.paths->spread.at(i));
+  return bits;
 }
 
 template <class T>
-void Wavefront<T>::cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
-  Vertices& v = *vertices_;
-  v.radiance.put(i, mask, v.radiance.at(i) + weight * Vec3<N>(geometry_.ambient));
-  const N lost = max_component(v.paths->throughput.at(i) * weight);
+void Wavefront<T>::spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
+                         const Vec3<N>& throughput) {
+  append(kind, i, mask, direction, throughput);
+}
+
+template <class T>
+void Wavefront<T>::spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput,
+                         const N& pdf) {
+  reflected_->append_pdf(append(Kind::reflected, i, mask, direction, throughput), pdf);
+}
+
+template <class T>
+void Wavefront<T>::note_cut(int i, const MaskOf<N>& mask, const N& lost) {
   for (unsigned bits = bits_of(mask); bits != 0; bits &= bits - 1) {
     const int lane = std::countr_zero(bits);
-    out_->cut[static_cast<int>(v.paths->slot[i + lane])] += lost[static_cast<std::size_t>(lane)];
+    out_->cut[static_cast<int>(vertices_->paths->slot[i + lane])] += lost[static_cast<std::size_t>(lane)];
     ++counts_->cut_rays;
   }
 }

@@ -4,12 +4,10 @@
 
 #include "core/model/path.h"
 #include "core/model/technique.h"
-#include "core/stages/direct_light.h"
-#include "core/stages/lane_masks.h"
 
 // The loop that all techniques share. A batch of rays passes whole through the stages
-//   closest hit -> surface -> ambient and direct light -> shadow rays -> scattering
-// and the rays that scattering sends out form the next batches. Nothing recurses: batches wait on a stack, at
+//   closest hit -> surface -> shading, which is the technique's -> deposit
+// and the rays that shading sends out form the next batches. Nothing recurses: batches wait on a stack, at
 // most two a depth, so memory is bounded whatever the scene. Which rays form a batch, and so the order in
 // which a slot's light is summed, depends on the scene alone, not on lane width, slice or thread.
 namespace orrery {
@@ -24,28 +22,29 @@ class Wavefront : public Tracer<T> {
              const Checkpoint& checkpoint) final;
 
  protected:
-  // What the current batch met, for scatter(). Groups name the registers with a specular surface.
+  // What the current batch met.
   struct Vertices {
     PathBatch<T>* paths;
     HitBatch<T> hits;
     SurfaceBatch<T> surface;
-    SpecularBatch<T> specular;
-    Vec3Array<T> radiance;  // toward each ray's origin, so far
+    Vec3Array<T> radiance;  // toward each ray's origin, so far: background for rays that met nothing
   };
 
-  // Sends on the light of specular surfaces: calls spawn() or cut() for the lanes of each group.
-  virtual void scatter(const Groups& groups) = 0;
+  // Adds the light that leaves surfaces toward the origins of the rays, and sends on rays by spawn(). `met`:
+  // the registers with a surface.
+  virtual void shade(const Groups& met) = 0;
 
   enum class Kind { reflected, refracted };
-  // A ray from the surface at register i along `direction` with `weight` (per channel) of what it will find.
-  // If it would be too deep or too weak it is cut instead.
-  void spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
-  // Stands in for rays that are not traced: ambient light, entered into the ledger.
-  void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
-  // Lanes of register i whose material is specular.
-  MaskOf<N> specular_lanes(int i) const {
-    return lanes_with(geometry_, vertices_->surface, i, &MaterialTraits::mirrors);
-  }
+  // A ray from the surface at register i along `direction` that carries `throughput` to its slot.
+  void spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput);
+  // The only one from there, and the density with which it was drawn.
+  void spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput, const N& pdf);
+  // Enters rays that are not traced into the ledger, with `lost` of what they would have found.
+  void note_cut(int i, const MaskOf<N>& mask, const N& lost);
+
+  PathDraws<T> draws() const { return {*draws_, vertices_->paths->slot, vertices_->paths->depth}; }
+  TraceCounts& counts() { return *counts_; }
+  const Checkpoint& checkpoint() const { return *checkpoint_; }
 
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;
@@ -60,7 +59,9 @@ class Wavefront : public Tracer<T> {
   std::unique_ptr<PathBatch<T>> take_batch(int depth);
   void push(std::unique_ptr<PathBatch<T>> batch);
 
-  const std::unique_ptr<DirectLight<T>> direct_light_;
+  unsigned append(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
+                  const Vec3<N>& throughput);
+
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;
   const Draws* draws_ = nullptr;

@@ -1,5 +1,5 @@
 #include "core/math/mirror.h"
-#include "core/techniques/wavefront.h"
+#include "core/techniques/specular_tree.h"
 
 namespace orrery {
 namespace {
@@ -7,22 +7,23 @@ namespace {
 // Whitted, "An improved illumination model for shaded display" (1980): one mirrored and one refracted ray a
 // specular surface.
 template <class T>
-class Whitted final : public Wavefront<T> {
+class Whitted final : public SpecularTree<T> {
  public:
-  using Wavefront<T>::Wavefront;
+  using SpecularTree<T>::SpecularTree;
 
  private:
   using N = Lanes<T>;
-  using Kind = typename Wavefront<T>::Kind;
+  using Kind = typename SpecularTree<T>::Kind;
 
   void scatter(const Groups& groups) override {
     const auto& v = *this->vertices_;
+    const auto& specular = this->specular_;
     for (const int i : groups) {
       const auto mine = this->specular_lanes(i);
       const Vec3<N> reflected =
           mirrored(v.paths->rays.direction.at(i), v.surface.normal.at(i), v.surface.geometric.at(i));
-      this->spawn(Kind::reflected, i, mine, reflected, v.specular.reflectance.at(i));
-      this->spawn(Kind::refracted, i, mine, v.specular.refracted.at(i), v.specular.transmittance.at(i));
+      this->follow(Kind::reflected, i, mine, reflected, specular.reflectance.at(i));
+      this->follow(Kind::refracted, i, mine, specular.refracted.at(i), specular.transmittance.at(i));
     }
   }
 };

@@ -48,8 +48,8 @@ MaterialKernelPtr<double> kernel_of(const char* material) {
 
 const Vec3d kSlanted = safe_normalize(Vec3d(0.6, 0.1, -0.7));
 
-// The mean of the weights is the albedo, here by quadrature over the hemisphere: 1.5 % is four standard
-// deviations of the highlight.
+// The mean of the weights is the albedo, here by quadrature over the hemisphere (f_cos is pi times the
+// share): 1.5 % is four standard deviations of the highlight.
 TEST(RoughSampling, MeanWeightIsTheAlbedo) {
   const auto kernel = kernel_of("{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.4, 'shininess': 8}");
   const auto drawn = std::make_unique<Drawn>(kSlanted, 1.0);
@@ -75,7 +75,7 @@ TEST(RoughSampling, MeanWeightIsTheAlbedo) {
     kernel->evaluate({drawn->rays.direction, drawn->rays.origin, drawn->reach}, drawn->surface,
                      Groups::covering(0, kSteps, kWidth<double>), drawn->f_cos, drawn->pdf);
     for (int i = 0; i < kSteps; ++i)
-      if (drawn->pdf[i] > 0) albedo = albedo + drawn->f_cos[i] * (2 * std::numbers::pi / (kSteps * kSteps));
+      if (drawn->pdf[i] > 0) albedo = albedo + drawn->f_cos[i] * (2.0 / (kSteps * kSteps));
   }
   EXPECT_NEAR(mean.x / albedo.x, 1, 0.015);
   EXPECT_NEAR(mean.y / albedo.y, 1, 0.015);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "tests/support/covers.h"
@@ -10,17 +11,29 @@
 namespace orrery {
 namespace {
 
-class Stratification : public testing::TestWithParam<int> {};
+using Point = SamplePoint<float> (*)(std::uint32_t sample, std::uint32_t stream);
+SamplePoint<float> in_order(std::uint32_t sample, std::uint32_t stream) {
+  return scrambled_point(sample, stream);
+}
+SamplePoint<float> shuffled(std::uint32_t sample, std::uint32_t stream) {
+  return stratified_point(sample, stream);
+}
+struct Sequence {
+  int count;
+  Point point;
+};
+
+class Stratification : public testing::TestWithParam<Sequence> {};
 
 // Every way of cutting the pixel into n equal boxes, n = 2^k: 1 x n, 2 x n/2, ... n x 1.
 TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
-  const int count = GetParam();
-  for (std::uint32_t stream = 0; stream < 200; ++stream) {
+  const int count = GetParam().count;
+  for (std::uint32_t stream = 0; stream < (count > 64 ? 4u : 200u); ++stream) {
     for (int across = 1; across <= count; across *= 2) {
       const int down = count / across;
       std::set<std::pair<int, int>> taken;
       for (int sample = 0; sample < count; ++sample) {
-        const auto p = stratified_point(static_cast<std::uint32_t>(sample), mix_bits(stream));
+        const auto p = GetParam().point(static_cast<std::uint32_t>(sample), mix_bits(stream));
         taken.insert({static_cast<int>(p.u * static_cast<float>(across)),
                       static_cast<int>(p.v * static_cast<float>(down))});
       }
@@ -32,12 +45,12 @@ TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
 
 // Aligned blocks of the sequence are stratified as well: a picture of 4 samples continued to 16 stays so.
 TEST_P(Stratification, HoldsForEveryAlignedBlock) {
-  const int count = GetParam();
+  const int count = GetParam().count;
   const int side = static_cast<int>(std::lround(std::sqrt(count)));
   for (int block = 0; block < 16; ++block) {
     std::set<std::pair<int, int>> taken;
     for (int i = 0; i < count; ++i) {
-      const auto p = stratified_point(static_cast<std::uint32_t>(block * count + i), 12345u);
+      const auto p = GetParam().point(static_cast<std::uint32_t>(block * count + i), 12345u);
       taken.insert({static_cast<int>(p.u * static_cast<float>(side)),
                     static_cast<int>(p.v * static_cast<float>(side))});
     }
@@ -45,7 +58,11 @@ TEST_P(Stratification, HoldsForEveryAlignedBlock) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, Stratification, testing::Values(4, 16, 64));
+INSTANTIATE_TEST_SUITE_P(Sizes, Stratification,
+                         testing::Values(Sequence{4, in_order}, Sequence{16, in_order},
+                                         Sequence{64, in_order}, Sequence{4, shuffled},
+                                         Sequence{16, shuffled}, Sequence{64, shuffled},
+                                         Sequence{4096, shuffled}));
 
 TEST(Sampling, RandomBitsNeverReachOne) {
   test::covers("A33");
@@ -60,7 +77,7 @@ TEST(Sampling, MixingAndScramblingLoseNothing) {
   std::set<std::uint32_t> mixed, scrambled, reversed;
   for (std::uint32_t i = 0; i < 65536; ++i) {
     mixed.insert(mix_bits(i));
-    scrambled.insert(scramble_reversed(i, 99u));
+    scrambled.insert(scramble_reversed<std::uint32_t>(i, 99u));
     reversed.insert(reverse_bits(i));
     EXPECT_EQ(reverse_bits(reverse_bits(i * 2654435761u)), i * 2654435761u);
   }
@@ -81,6 +98,59 @@ TEST(Sampling, LanesAreNumbers) {
       EXPECT_EQ(points.v[lane], alone.v);
     }
   }
+}
+
+// Dimensions of one integral that come from two streams: the share of samples in which both are below a half
+// is a quarter, with the error of independent numbers. In one order for all streams it would be 0 or a half.
+TEST(Sampling, TwoStreamsFillTheirProduct) {
+  test::covers("light-2");
+  constexpr int kPixels = 64, kSamples = 256;
+  double squares = 0;
+  for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
+    int both = 0;
+    for (std::uint32_t sample = 0; sample < kSamples; ++sample)
+      both += stratified_point(sample, combine_bits(1, pixel)).u < 0.5f &&
+              stratified_point(sample, combine_bits(2, pixel)).u < 0.5f;
+    squares += std::pow(double{1} * both / kSamples - 0.25, 2) / kPixels;
+  }
+  EXPECT_LT(std::sqrt(squares), 0.03);
+}
+
+// Root-mean-square error over 64 streams of an integral's estimate from the first `count` samples.
+template <class F>
+double rms_error(const F& f, double exact, int count) {
+  double squares = 0;
+  for (std::uint32_t stream = 0; stream < 64; ++stream) {
+    double sum = 0;
+    for (int sample = 0; sample < count; ++sample) {
+      const auto p = stratified_point(static_cast<std::uint32_t>(sample), mix_bits(stream + 77));
+      sum += f(double{p.u}, double{p.v});
+    }
+    squares += std::pow(sum / count - exact, 2) / 64;
+  }
+  return std::sqrt(squares);
+}
+
+TEST(Sampling, ErrorOfASmoothIntegralFallsWithThePower1_5) {
+  test::covers("light-4");
+  const auto f = [](double u, double v) { return std::exp(-u - v); };
+  const double exact = std::pow(1 - std::exp(-1), 2);
+  const double e64 = rms_error(f, exact, 64), e256 = rms_error(f, exact, 256),
+               e1024 = rms_error(f, exact, 1024);
+  EXPECT_NEAR(e64 / 3.6e-4, 1, 0.25);
+  EXPECT_NEAR(e256 / 5.7e-5, 1, 0.25);
+  EXPECT_NEAR(e1024 / 8.7e-6, 1, 0.25);
+  EXPECT_LE(std::log(e1024 / e64) / std::log(16), -1.3);
+}
+
+TEST(Sampling, ErrorAtAnEdgeFallsWithThePower0_75) {
+  test::covers("light-5");
+  const auto f = [](double u, double v) { return u * u + v * v < 1 ? 1.0 : 0.0; };
+  const double e64 = rms_error(f, std::numbers::pi / 4, 64), e1024 = rms_error(f, std::numbers::pi / 4, 1024);
+  EXPECT_NEAR(e1024 / 2.6e-3, 1, 0.25);
+  const double slope = std::log(e1024 / e64) / std::log(16);
+  EXPECT_LE(slope, -0.65);
+  EXPECT_GE(slope, -0.80);
 }
 
 // Correlation between the samples of neighbouring streams stays below 4 standard deviations.

@@ -23,8 +23,9 @@ constexpr std::string_view kEmptyScene = R"({
 })";
 
 // What the keys of the scene format mean.
-const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center", "point",
-                                       "base",      "top", "min",     "max",    "position"};
+const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center",   "point", "base",
+                                       "top",       "min", "max",     "position", "corner"};
+const std::set<std::string> kSides = {"a", "b"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};
 const std::set<std::string> kLengths = {"radius", "height"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
@@ -58,6 +59,7 @@ Change scale_by(double factor) {
   return [factor](const std::string& key, Json& value) {
     change_points(key, value, [factor](const Vec3d& p) { return p * factor; });
     if (kLengths.contains(key)) value = value.get<double>() * factor;
+    if (kSides.contains(key)) value = numbers(vector(value) * factor);
     if (key == "attenuation") {
       value[1] = value[1].get<double>() / factor;
       value[2] = value[2].get<double>() / factor / factor;
@@ -69,6 +71,12 @@ Change move_by(const Vec3d& offset) {
   return [offset](const std::string& key, Json& value) {
     change_points(key, value, [offset](const Vec3d& p) { return p + offset; });
   };
+}
+
+void mirror_rectangle(Json& object) {
+  if (!object.contains("corner")) return;
+  for (const std::string& side : kSides) object[side][0] = -object[side][0].get<double>();
+  std::swap(object["a"], object["b"]);
 }
 
 void mirror_mesh(Json& object) {
@@ -181,6 +189,7 @@ Json mirrored(Json scene) {
   });
   for (Json& object : scene["objects"]) {
     mirror_mesh(object);
+    mirror_rectangle(object);
     if (object.contains("min")) std::swap(object["min"][0], object["max"][0]);
   }
   if (scene.contains("instances"))

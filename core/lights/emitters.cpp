@@ -1,0 +1,114 @@
+#include "core/lights/emitters.h"
+
+#include <vector>
+
+#include "core/math/bounds.h"
+#include "core/model/record.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+class EmitterKernel final : public LightKernel<T> {
+ public:
+  using N = Lanes<T>;
+
+  explicit EmitterKernel(std::span<const Emitter<double>> emitters) {
+    for (const auto& emitter : emitters) records_.push_back(convert_record<Emitter, T, double>(emitter));
+  }
+
+  void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
+              const Groups& groups, LightBatch<T>& out) const override {
+    const auto emitter = broadcast_record<Emitter, T>(records_[static_cast<std::size_t>(choice.index)]);
+    for (const int i : groups) put(emitter, surface, draws, i, MaskOf<N>(true), N(choice.probability), out);
+  }
+
+  void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices, const PathDraws<T>& draws,
+                   const Groups& groups, LightBatch<T>& out) const override {
+    for_each_register(choices, groups, [&](int i, const auto& mine, const Emitter<N>& emitter) {
+      put(emitter, surface, draws, i, mine, choices.probability.at(i), out);
+    });
+  }
+
+  void pdf(const RayBatch<T>& rays, const HitBatch<T>& hits, const LightChoices<T>& choices,
+           const Groups& groups, Array<T>& out) const override {
+    for_each_register(choices, groups, [&](int i, const auto& mine, const Emitter<N>& emitter) {
+      out.put(i, mine, emitter.pdf(rays.at(i), hits.t.at(i)) * choices.probability.at(i));
+    });
+  }
+
+ private:
+  template <class Visit>
+  void for_each_register(const LightChoices<T>& choices, const Groups& groups, const Visit& visit) const {
+    for (const int i : groups) {
+      const IndexLanes<T> index = load_index<T>(choices.index, i);
+      const auto mine = mask_cast<N>(index >= 0);
+      if (any(mine)) visit(i, mine, fetch_records<Emitter, T>(records_, index, mine));
+    }
+  }
+
+  // The shadow ray ends before the emitter by as much as rounding may move it or the ray's origin.
+  static void put(const Emitter<N>& emitter, const SurfaceBatch<T>& surface, const PathDraws<T>& draws, int i,
+                  const MaskOf<N>& mine, const N& probability, LightBatch<T>& out) {
+    const N zero(T(0));
+    const auto [u, v] = draws.two(SampleSet::light, i);
+    const Vec3<N> from = surface.position.at(i);
+    const auto drawn = emitter.draw(from, u, v);
+    const N step = T(2) * (emitter.magnitude * (8 * std::numeric_limits<T>::epsilon()) + surface.step.at(i));
+    const N side = select(dot(drawn.point - from, drawn.normal) > zero, N(-step), step);
+    const Vec3<N> toward = drawn.point + drawn.normal * side - from;
+    const N distance = length(toward), pdf = drawn.pdf * probability;
+    const auto shines = pdf > zero && distance > zero && pdf < N(std::numeric_limits<T>::max());
+    out.shadow.direction.put(i, mine, toward * select(shines, N(T(1) / distance), zero));
+    out.shadow.t_max.put(i, mine, select(shines, distance, N(T(-1))));
+    constexpr T kPi = std::numbers::pi_v<T>;
+    out.incident.put(i, mine, emitter.radiance * select(shines, N(T(1) / (kPi * pdf)), zero));
+    out.pdf.put(i, mine, pdf);
+  }
+
+  std::vector<Emitter<T>> records_;
+};
+
+}  // namespace
+
+template <class N>
+Emitter<double> Emitter<N>::of(const Patch& patch, const Vec3d& radiance) {
+  const double length_a = orrery::length(patch.a), length_b = orrery::length(patch.b);
+  const Vec3d product = cross(patch.a, patch.b), normal = safe_normalize(product);
+  const double pi = std::numbers::pi, parallelogram = orrery::length(product);
+  Emitter<double> e{patch.at, patch.a,  patch.b,  normal,
+                    radiance, length_a, length_b, static_cast<double>(patch.kind),
+                    0,        0};
+  const Boundsd box = Boundsd::of({patch.at, patch.at + patch.a, patch.at + patch.b,
+                                   patch.at + patch.a + patch.b, patch.at - patch.a - patch.b});
+  e.magnitude = box.magnitude();
+  switch (patch.kind) {
+    case Patch::Kind::rectangle:
+      e.a = patch.a / length_a;
+      e.b = patch.b / length_b;
+      e.area = parallelogram;
+      break;
+    case Patch::Kind::triangle: e.area = parallelogram / 2; break;
+    case Patch::Kind::disk: e.area = parallelogram * pi; break;
+    case Patch::Kind::sphere:
+      e.length_a = patch.a.x;
+      e.area = 4 * pi * patch.a.x * patch.a.x;
+      e.magnitude = max_component(abs(patch.at)) + patch.a.x;
+      break;
+  }
+  return e;
+}
+
+template struct Emitter<double>;
+
+double power_of(const Emitter<double>& emitter) { return emitter.area * max_component(emitter.radiance); }
+
+template <class T>
+LightKernelPtr<T> make_emitters(std::span<const Emitter<double>> emitters) {
+  return std::make_unique<EmitterKernel<T>>(emitters);
+}
+
+template LightKernelPtr<float> make_emitters<float>(std::span<const Emitter<double>>);
+template LightKernelPtr<double> make_emitters<double>(std::span<const Emitter<double>>);
+
+}  // namespace orrery

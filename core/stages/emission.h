@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/model/world.h"
+
+namespace orrery {
+
+// Radiance that the surfaces at register i send out by themselves; 0 where there is none. REQUIRES: the
+// register's materials are set.
+template <class T>
+Vec3<Lanes<T>> emission_at(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, int i) {
+  using N = Lanes<T>;
+  const auto of = [&](IndexOf<T> material) {
+    return material < 0 ? Vec3<T>() : geometry.emission[static_cast<std::size_t>(material)];
+  };
+  const IndexLanes<T> material = load_index<T>(surface.material, i);
+  if (all(material == material[0])) return Vec3<N>(of(material[0]));
+  Vec3<N> radiance;
+  for (std::size_t lane = 0; lane < N::size(); ++lane) {
+    const Vec3<T> one = of(material[lane]);
+    radiance.x[lane] = one.x;
+    radiance.y[lane] = one.y;
+    radiance.z[lane] = one.z;
+  }
+  return radiance;
+}
+
+// Adds it to the radiance of the registers of `met`.
+template <class T>
+void add_emission(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const Groups& met,
+                  Vec3Array<T>& radiance) {
+  if (geometry.emission.empty()) return;
+  for (const int i : met) radiance.put(i, radiance.at(i) + emission_at(geometry, surface, i));
+}
+
+}  // namespace orrery

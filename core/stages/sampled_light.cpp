@@ -1,0 +1,169 @@
+#include "core/stages/sampled_light.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/stages/emission.h"
+
+namespace orrery {
+namespace {
+
+// One half evenly, so that no light is forgotten where it is near, and one half by power.
+template <class T>
+std::vector<T> probabilities_of(const std::vector<double>& powers) {
+  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
+  const double even = 1 / static_cast<double>(powers.size());
+  std::vector<T> probabilities;
+  for (const double power : powers)
+    probabilities.push_back(static_cast<T>(sum > 0 ? (even + power / sum) / 2 : even));
+  return probabilities;
+}
+
+// The share of what one strategy found that counts, where another would have found it with density `other`.
+template <class N>
+N power_heuristic(const N& own, const N& other) {
+  const N a = own * own, b = other * other;
+  return a / (a + b);
+}
+
+}  // namespace
+
+template <class T>
+SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator,
+                              const Plan& plan)
+    : geometry_(geometry), accelerator_(accelerator), plan_(plan) {
+  const Scene& scene = *geometry.scene;
+  std::vector<double> powers;
+  for (const LightPlace& light : scene.lights)
+    powers.push_back(max_component(scene.light_sets[light.set]->intensity(light.index)));
+  first_emitter_ = powers.size();
+  powers.insert(powers.end(), geometry.emitter_powers.begin(), geometry.emitter_powers.end());
+  for (std::size_t set = 0; set < geometry.lights.size(); ++set) {
+    if (!geometry.lights[set]) continue;
+    Source& source = sources_.emplace_back(Source{geometry.lights[set].get(), {}});
+    source.index.assign(powers.size(), IndexOf<T>(-1));
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+      if (scene.lights[i].set == set) source.index[i] = scene.lights[i].index;
+  }
+  if (geometry.emitters) {
+    Source& source = sources_.emplace_back(Source{geometry.emitters.get(), {}});
+    source.index.assign(powers.size(), IndexOf<T>(-1));
+    std::iota(source.index.begin() + static_cast<std::ptrdiff_t>(first_emitter_), source.index.end(), 0);
+  }
+  if (powers.empty()) return;
+  probability_ = probabilities_of<T>(powers);
+  cumulative_.resize(powers.size());
+  std::partial_sum(probability_.begin(), probability_.end(), cumulative_.begin());
+}
+
+template <class T>
+void SampledLight<T>::choose(const PathDraws<T>& draws, const Groups& groups) {
+  if (probability_.size() == 1) {
+    for (const int i : groups) {
+      chosen_.put(i, IndexLanes<T>(IndexOf<T>{0}));
+      choices_.probability.put(i, N(T(1)));
+    }
+    return;
+  }
+  const auto last = static_cast<std::ptrdiff_t>(cumulative_.size()) - 1;
+  for (const int i : groups) {
+    const N u = draws.two(SampleSet::light_choice, i).u;
+    for (int lane = 0; lane < kWidth<T>; ++lane) {
+      const auto found =
+          std::upper_bound(cumulative_.begin(), cumulative_.end(), u[static_cast<std::size_t>(lane)]);
+      const auto number = std::min(found - cumulative_.begin(), last);
+      chosen_[i + lane] = static_cast<IndexOf<T>>(number);
+      choices_.probability[i + lane] = probability_[static_cast<std::size_t>(number)];
+    }
+  }
+}
+
+template <class T>
+void SampledLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws,
+                          const SurfaceBatch<T>& surface, const Groups& groups, Vec3Array<T>& radiance,
+                          TraceCounts& counts) {
+  if (groups.empty() || probability_.empty()) return;
+  choose(draws, groups);
+  for (const Source& source : sources_) {
+    for (const int i : groups)
+      for (int lane = i; lane < i + kWidth<T>; ++lane)
+        choices_.index[lane] = source.index[static_cast<std::size_t>(chosen_[lane])];
+    source.kernel->sample_each(surface, choices_, draws, groups, light_);
+  }
+  trace(paths, surface, groups, radiance, counts);
+}
+
+// The light's direction decides on which side of the surface the shadow ray starts.
+template <class T>
+void SampledLight<T>::trace(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
+                            Vec3Array<T>& radiance, TraceCounts& counts) {
+  const N zero(T(0)), one(T(1));
+  RayBatch<T>& shadow = light_.shadow;
+  for (const int i : groups) pdf_.put(i, zero);
+  const Directions<T> directions{paths.rays.direction, shadow.direction, shadow.t_max};
+  for (const auto& m : geometry_.materials)
+    if (m.traits.lit) m.kernel->evaluate(directions, surface, groups, f_cos_, pdf_);
+  Groups reached;
+  for (const int i : groups) {
+    const auto lit = pdf_.at(i) > zero;
+    shadow.t_max.put(i, !lit, N(T(-1)));
+    if (!any(lit)) continue;
+    reached.add(i);
+    const Vec3<N> geometric = surface.geometric.at(i);
+    const N step = surface.step.at(i);
+    const N side = select(dot(shadow.direction.at(i), geometric) < zero, N(-step), step);
+    shadow.origin.put(i, surface.position.at(i) + geometric * side);
+  }
+  if (plan_.shadows) {
+    counts.rays.shadow[static_cast<std::size_t>(paths.depth)] += active_rays(shadow, reached);
+    accelerator_.occlude(shadow, reached, counts.accelerator);
+  }
+  for (const int i : reached) {
+    const auto seen = shadow.t_max.at(i) > zero;
+    const N by_light = light_.pdf.at(i);
+    const N weight = select(by_light > zero, power_heuristic(by_light, pdf_.at(i)), one);
+    radiance.put(i, seen, radiance.at(i) + light_.incident.at(i) * f_cos_.at(i) * weight);
+  }
+}
+
+template <class T>
+void SampledLight<T>::add_emission(const PathBatch<T>& paths, const HitBatch<T>& hits,
+                                   const SurfaceBatch<T>& surface, const Groups& met,
+                                   Vec3Array<T>& radiance) {
+  if (geometry_.emission.empty()) return;
+  const N zero(T(0)), one(T(1));
+  Groups emitting;
+  for (const int i : met) {
+    const Vec3<N> emission = emission_at(geometry_, surface, i);
+    const auto emits = max_component(emission) > zero;
+    if (!any(emits)) continue;
+    if (paths.depth == 0 || !geometry_.emitters) {
+      radiance.put(i, emits, radiance.at(i) + emission);
+      continue;
+    }
+    emitting.add(i);
+    light_.pdf.put(i, zero);
+    for (int lane = i; lane < i + kWidth<T>; ++lane) {
+      const IndexOf<T> primitive = hits.primitive[lane];
+      const bool mine = primitive >= 0 && emits[static_cast<std::size_t>(lane - i)];
+      const IndexOf<T> number = mine ? geometry_.emitter_of[static_cast<std::size_t>(primitive)] : -1;
+      choices_.index[lane] = number;
+      choices_.probability[lane] =
+          number < 0 ? T(0) : probability_[first_emitter_ + static_cast<std::size_t>(number)];
+    }
+  }
+  if (emitting.empty()) return;
+  geometry_.emitters->pdf(paths.rays, hits, choices_, emitting, light_.pdf);
+  for (const int i : emitting) {
+    const N by_lobe = paths.pdf.at(i), by_light = light_.pdf.at(i);
+    const N weight = select(by_lobe > zero && by_light > zero, power_heuristic(by_lobe, by_light), one);
+    const Vec3<N> emission = emission_at(geometry_, surface, i);
+    const auto emits = max_component(emission) > zero;
+    radiance.put(i, emits, radiance.at(i) + emission * weight);
+  }
+}
+
+template class SampledLight<float>;
+template class SampledLight<double>;
+
+}  // namespace orrery

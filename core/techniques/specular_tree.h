@@ -1,0 +1,45 @@
+#pragma once
+
+#include "core/stages/direct_light.h"
+#include "core/stages/lane_masks.h"
+#include "core/techniques/wavefront.h"
+
+namespace orrery {
+
+// Techniques that light surfaces by ambient light and by every light source, and follow perfectly specular
+// directions alone, all of them.
+template <class T>
+class SpecularTree : public Wavefront<T> {
+ public:
+  using N = Lanes<T>;
+  using Kind = typename Wavefront<T>::Kind;
+
+  SpecularTree(const World<T>& world, const Plan& plan);
+
+ protected:
+  // Sends on the light of specular surfaces: calls follow() or cut() for the lanes of each group. Groups name
+  // the registers with a specular surface.
+  virtual void scatter(const Groups& groups) = 0;
+
+  // A ray from the surface at register i along `direction` with `weight` (per channel) of what it will find.
+  // If it would be too deep or too weak it is cut instead.
+  void follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
+  // Stands in for rays that are not traced: ambient light, entered into the ledger.
+  void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
+  // Lanes of register i whose material is specular.
+  MaskOf<N> specular_lanes(int i) const {
+    return lanes_with(this->geometry_, this->vertices_->surface, i, &MaterialTraits::mirrors);
+  }
+
+  SpecularBatch<T> specular_;
+
+ private:
+  void shade(const Groups& met) final;
+
+  DirectLight<T> direct_light_;
+};
+
+extern template class SpecularTree<float>;
+extern template class SpecularTree<double>;
+
+}  // namespace orrery

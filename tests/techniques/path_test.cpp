@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+#include "tests/support/tracing.h"
+
+// Light that surfaces send out and send on to each other, against closed forms.
+namespace orrery::test {
+namespace {
+
+struct Estimate {
+  double mean, sd;  // of one sample
+  double error() const { return sd / std::sqrt(double{kBatch}); }
+};
+
+// Of the red light along one ray, from a batch of samples that are independent of each other.
+Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth) {
+  RenderRequest request;
+  request.technique = "path";
+  request.max_depth = max_depth;
+  const std::vector<Ray<double>> rays(kBatch, Ray<double>{from, safe_normalize(toward - from)});
+  double sum = 0, squares = 0;
+  for (const Answer& answer : Tracing(scene, request).trace(rays)) {
+    sum += answer.radiance.x / kBatch;
+    squares += answer.radiance.x * answer.radiance.x / kBatch;
+  }
+  return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
+}
+
+// A lamp over a white floor that reflects all, seen beside the lamp at the point straight below.
+Json over_floor(const Json& lamp) {
+  Json scene = scene_of(
+      "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
+      "{'materials': {'white': {'kd': 1}, 'lamp': {'type': 'rough', 'kd': 0, 'emission': [1, 1, 1]}}}");
+  scene["objects"].push_back(lamp);
+  scene["objects"].back()["material"] = "lamp";
+  return scene;
+}
+Json square_at(double height) {
+  return {{"type", "rectangle"}, {"corner", {-0.5, height, -0.5}}, {"a", {1, 0, 0}}, {"b", {0, 0, 1}}};
+}
+const Vec3d kBelow(0, 0, 0), kBeside(30, 0.05, 0);
+
+class PathFurnace : public testing::TestWithParam<const char*> {};
+
+// In a closed room whose walls send out 1 and reflect a share, every point shows the sum of the powers of
+// that.
+TEST_P(PathFurnace, ShowsTheSumOfAllBounces) {
+  covers("R2 light-11");
+  const Json room = scene_of(GetParam(), "{'materials': {'white': {'kd': 0.5, 'emission': [1, 1, 1]}}}");
+  for (const int depth : {0, 1, 2, 3, 8, 32}) {
+    const Estimate found = estimate(room, Vec3d(0.1, 0.2, 0.3), Vec3d(1, 0.4, -0.5), depth);
+    EXPECT_NEAR(found.mean, 2 - std::pow(0.5, depth), 4 * found.error() + 1e-12) << depth;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Rooms, PathFurnace,
+                         testing::Values("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
+                                         "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
+
+// Unit square over a point, by height; sd: of a sample by solid angle, relative to the mean.
+TEST(Path, IrradianceOfASquare) {
+  covers("R9 light-17 light-19");
+  struct Case {
+    double height, irradiance, sd;
+  };
+  for (const auto& [height, irradiance, sd] : {Case{2, .073478, .01245}, Case{1, .239457, .04328},
+                                               Case{.5, .554127, .1204}, Case{.1, .968340, .4042}}) {
+    const Estimate found = estimate(over_floor(square_at(height)), kBeside, kBelow, 1);
+    EXPECT_NEAR(found.mean / irradiance, 1, 4 * sd / 32 + 1e-4) << height;
+  }
+}
+
+TEST(Path, IrradianceOfASphereAndADisk) {
+  covers("light-17 light-20");
+  const Estimate ball =
+      estimate(over_floor({{"type", "sphere"}, {"center", {0, 2, 0}}, {"radius", 0.5}}), kBeside, kBelow, 1);
+  EXPECT_NEAR(ball.mean, 0.5 * 0.5 / 4, 4 * ball.error() + 1e-9);
+  const Estimate disk =
+      estimate(over_floor({{"type", "disk"}, {"center", {0, 2, 0}}, {"normal", {0, -1, 0}}, {"radius", 0.5}}),
+               kBeside, kBelow, 1);
+  EXPECT_NEAR(disk.mean, 0.25 / (4 + 0.25), 4 * disk.error() + 1e-9);
+}
+
+}  // namespace
+}  // namespace orrery::test
