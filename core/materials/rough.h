@@ -14,7 +14,7 @@ struct Rough {
   N phong;  // 1: the mirrored light direction decides the highlight, 0: the half vector
 
   static Rough<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true}; }
+  MaterialTraits traits() const { return {.lit = true, .glossy = specular != Vec3<N>(N(0))}; }
   RoundingLimit rounding() const;
 
   // Cosine that the highlight is a power of, 0 where there is none. Unit vectors: normal, toward the light,

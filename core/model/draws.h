@@ -1,13 +1,15 @@
 #pragma once
 
+#include <array>
+
 #include "core/math/sampling.h"
 #include "core/model/tile.h"
 
 namespace orrery {
 
 // What a pair of random numbers is for. Each purpose has a sequence of its own at each depth.
-enum class SampleSet : std::uint32_t { pixel, light, lobe, light_choice, survival };
-inline constexpr std::uint32_t kSampleSets = 5;
+enum class SampleSet : std::uint32_t { pixel, light, lobe, light_choice, survival, look };
+inline constexpr std::uint32_t kSampleSets = 6;
 
 // The random numbers of one sample of a tile: pure functions of (seed, frame, x, y, sample, set). They do not
 // depend on the tile's place in a schedule, on threads or on the width of registers.
@@ -28,6 +30,14 @@ class Draws {
                                                    const IndexLanes<T>& slot) const {
     const auto point = stratified_point(sample_, stream<T>(set, depth, slot));
     return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
+  }
+
+  // A random number for each slot of the tile, by which to put slots in an order of this sample alone.
+  void shuffle_keys(std::array<std::uint32_t, kBatch>& keys) const {
+    for (std::uint32_t slot = 0; slot < keys.size(); ++slot)
+      keys[slot] = combine_bits<std::uint32_t>(
+          combine_bits<std::uint32_t>(sample_, combine_bits<std::uint32_t>(frame_, seed_ ^ 0x5bd1e995u)),
+          pixel_of(slot));
   }
 
   // The sequences, for stratified_point(), that two() takes its numbers from: the same for every sample.

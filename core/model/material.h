@@ -70,6 +70,7 @@ struct MaterialTraits {
   bool mirrors = false;    // `specular` may have reflectance
   bool transmits = false;  // `specular` may have transmittance
   bool filters = false;    // `specular` may have a filter other than 1
+  bool glossy = false;     // some may look different from different sides, though they answer light sources
   bool emits = false;      // some surface with it sends light out by itself
 
   MaterialTraits& operator|=(const MaterialTraits& other) {
@@ -77,6 +78,7 @@ struct MaterialTraits {
     mirrors |= other.mirrors;
     transmits |= other.transmits;
     filters |= other.filters;
+    glossy |= other.glossy;
     emits |= other.emits;
     return *this;
   }

@@ -34,6 +34,7 @@ struct RenderSettings {
   std::optional<int> max_depth;
   std::optional<double> min_contribution;
   std::optional<int> samples;  // a pixel
+  std::optional<int> reuse;    // paths in a group
   std::optional<std::string> accelerator;
   std::optional<Precision> precision;
   std::optional<std::uint64_t> seed;

@@ -29,6 +29,13 @@ class Tracer {
   // left, the result means nothing and false is returned.
   virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
                      TraceCounts& counts, const Checkpoint& checkpoint = {}) = 0;
+
+  // Whether what shines by itself is found by look() alone, with camera rays elsewhere within the pixels: it
+  // has the sharpest edges of a picture, and a ray that only looks costs little.
+  virtual bool looks() const { return false; }
+  // Adds `share` of the light of surfaces that emit, and of the background, that the rays meet first.
+  virtual void look(const RayBatch<T>& /*camera_rays*/, T /*share*/, TraceResult<T>& /*out*/,
+                    TraceCounts& /*counts*/) {}
 };
 
 template <class T>

@@ -12,6 +12,7 @@ inline constexpr std::int64_t kMaxImagePixels = 16'777'216;
 inline constexpr double kMinSize = 1e-90;  // of a primitive, metres: products of three lengths are not 0
 inline constexpr int kMaxSamples = 4096;
 inline constexpr int kMaxDepth = kDeepestRay;
+inline constexpr int kMaxReuse = 64;
 inline constexpr int kMaxLights = 1024;
 inline constexpr int kMaxObjects = 1'000'000;
 inline constexpr std::size_t kMaxInstanced = 20'000'000;  // primitives in all instances

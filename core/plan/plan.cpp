@@ -107,12 +107,12 @@ class Planner {
     }
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
-    plan_.try_accelerators = !few && count <= kMostToTry;
+    plan_.try_accelerators = !few && count <= kMostToTry && !plan_.technique->interreflects;
     plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bvh");
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
                : "of all structures it took the least time on every scene measured with more than " +
-                     std::to_string(kMostToTry) + " primitives");
+                     std::to_string(kMostToTry) + " primitives, and on paths");
   }
 
   void choose_order() {
@@ -151,6 +151,12 @@ class Planner {
   void choose_paths() {
     plan_.min_contribution = 0;
     if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
+    const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit;
+    plan_.reuse = shares ? *plan_.asked.reuse : 1;
+    decide("reuse of paths", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
+           plan_.reuse > 1 ? "connections to what others found cost less than paths of one's own"
+           : shares        ? "as asked"
+                           : "no path has a second vertex that receives light");
     decide("depth", std::to_string(plan_.max_depth), "as asked; what longer paths would bring is left out",
            Bound::unknown());
   }

@@ -33,13 +33,14 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
 template <class T>
 bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint, Film& film) {
   cut_.clear();
+  begin_looks(tile);
   if (plan_.samples == 1 && film.storage() != FilmStorage::sums) {
     if (!trace(tile, 0, checkpoint)) return false;
     put_single(tile, film);
   } else {
     sums_.samples = 0;
     if (tile.first_sample > 0) film.take(tile, sums_);
-    if (plan_.samples > 1) find_pixel_streams(tile);
+    if (plan_.samples > 1) find_streams(tile, SampleSet::pixel, pixel_streams_);
     for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
       if (!checkpoint.go_on() || !trace(tile, sample, checkpoint)) return false;
       add_sample();
@@ -53,10 +54,11 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
 template <class T>
 bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& checkpoint) {
   const Draws draws(plan_.seed, tile, sample);
-  if (plan_.samples > 1) place_samples(static_cast<std::uint32_t>(sample));
+  if (plan_.samples > 1) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, samples_);
   plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   if (!tracer_->trace(rays_, draws, result_, stats_.counts, checkpoint)) return false;
+  look(tile, sample);
   if (stats_.counts.cut_rays == cut_before) return true;
   cut_.resize(kBatch);
   for (std::size_t i = 0; i < kBatch; ++i) cut_[i] += static_cast<double>(result_.cut.values[i]);
@@ -72,22 +74,54 @@ void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   stats_.non_finite_pixels += film.put(tile, means_);
 }
 
+// Many looks where what is seen through two opposite corners of the tile's pixels differs, else one. That
+// does not depend on anything random, so that the number of looks is independent of what they find.
 template <class T>
-void TileRenderer<T>::find_pixel_streams(const TileView& tile) {
-  const Draws draws(plan_.seed, tile, 0);
-  const IndexLanes<float> lane([](int i) { return i; });
-  for (int slot = 0; slot < kBatch; slot += kWidth<float>)
-    draws.stream<float>(SampleSet::pixel, 0, lane + slot)
-        .copy_to(&pixel_streams_[slot], stdx::vector_aligned);
+void TileRenderer<T>::begin_looks(const TileView& tile) {
+  looks_ = 0;
+  if (!tracer_->looks()) return;
+  find_streams(tile, SampleSet::look, look_streams_);
+  const Groups all = Groups::covering(0, kBatch, kWidth<T>);
+  Vec3<T> first;
+  bool differs = false;
+  for (const float corner : {0.0f, 1.0f - 0x1p-24f}) {
+    look_samples_.u.values.fill(corner);
+    look_samples_.v.values.fill(corner);
+    plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
+    for (const int i : all) result_.radiance.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
+    tracer_->look(rays_, T(1), result_, stats_.counts);
+    if (corner == 0) first = result_.radiance[0];
+    for (int slot = 0; slot < kBatch; ++slot)
+      differs = differs || (rays_.t_max[slot] > 0 && result_.radiance[slot] != first);
+  }
+  looks_ = differs ? kMostLooks : 1;
 }
 
 template <class T>
-void TileRenderer<T>::place_samples(std::uint32_t sample) {
+void TileRenderer<T>::look(const TileView& tile, int sample) {
+  for (int i = looks_ * sample; i < looks_ * (sample + 1); ++i) {
+    place_samples(static_cast<std::uint32_t>(i), look_streams_, look_samples_);
+    plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
+    tracer_->look(rays_, T(1) / static_cast<T>(looks_), result_, stats_.counts);
+  }
+}
+
+template <class T>
+void TileRenderer<T>::find_streams(const TileView& tile, SampleSet set, Array<std::uint32_t>& streams) {
+  const Draws draws(plan_.seed, tile, 0);
+  const IndexLanes<float> lane([](int i) { return i; });
+  for (int slot = 0; slot < kBatch; slot += kWidth<float>)
+    draws.stream<float>(set, 0, lane + slot).copy_to(&streams[slot], stdx::vector_aligned);
+}
+
+template <class T>
+void TileRenderer<T>::place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams,
+                                    TileSamples& to) {
   using Bits = Draws::Bits<float>;
   for (int slot = 0; slot < kBatch; slot += kWidth<float>) {
-    const auto point = scrambled_point(Bits(sample), Bits(&pixel_streams_[slot], stdx::vector_aligned));
-    samples_.u.put(slot, point.u);
-    samples_.v.put(slot, point.v);
+    const auto point = scrambled_point(Bits(sample), Bits(&streams[slot], stdx::vector_aligned));
+    to.u.put(slot, point.u);
+    to.v.put(slot, point.v);
   }
 }
 

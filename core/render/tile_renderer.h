@@ -21,17 +21,22 @@ class TileRenderer {
  private:
   // Traces one sample of every pixel. False once the work is to end.
   bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
-  void find_pixel_streams(const TileView& tile);
-  void place_samples(std::uint32_t sample);
+  // Has the tracer look elsewhere within the pixels.
+  void begin_looks(const TileView& tile);
+  void look(const TileView& tile, int sample);
+  void find_streams(const TileView& tile, SampleSet set, Array<std::uint32_t>& streams);
+  void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, TileSamples& to);
   void add_sample();
   void add_cut(const TileView& tile);
   void put_single(const TileView& tile, Film& film);
 
   const Plan& plan_;
   TracerPtr<T> tracer_;
-  Array<std::uint32_t>
-      pixel_streams_;  // by slot: where the samples' places within this tile's pixels come from
-  TileSamples samples_ = TileSamples::centres();
+  // By slot: where the samples' places within this tile's pixels come from, and those of looks.
+  Array<std::uint32_t> pixel_streams_, look_streams_;
+  TileSamples samples_ = TileSamples::centres(), look_samples_ = TileSamples::centres();
+  static constexpr int kMostLooks = 16;
+  int looks_ = 0;  // of this tile, a sample
   RayBatch<T> rays_;
   TraceResult<T> result_;
   TileSums sums_;

@@ -5,18 +5,6 @@
 namespace orrery {
 namespace {
 
-// Neighbours mostly meet the same primitive.
-template <class T>
-void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i,
-                    const IndexLanes<T>& primitive, SurfaceBatch<T>& surface) {
-  const auto material = [&](IndexOf<T> p) {
-    return p < 0 ? -1 : geometry.material_of[static_cast<std::size_t>(p)];
-  };
-  const IndexOf<T> first = primitive[0];
-  if (all(primitive == first)) return surface.material.put(i, IndexLanes<T>(material(first)));
-  for (int lane = i; lane < i + kWidth<T>; ++lane) surface.material[lane] = material(hits.primitive[lane]);
-}
-
 template <class T>
 void find_objects(const Scene& scene, const Groups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface) {
   const auto resting = scene.object_count - static_cast<int>(scene.instances.size());
@@ -57,7 +45,7 @@ Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, c
                      select(missed, background.z, zero)});
     if (all(missed)) continue;
     met.add(i);
-    find_materials(geometry, hits, i, primitive, surface);
+    find_materials(geometry, hits, i, surface);
   }
   for (const auto& shapes : geometry.shapes) shapes->surface(paths.rays, hits, met, surface);
   if (fields.parameters)

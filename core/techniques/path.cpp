@@ -1,5 +1,8 @@
+#include "core/stages/emission.h"
 #include "core/stages/lane_masks.h"
+#include "core/stages/path_reuse.h"
 #include "core/stages/sampled_light.h"
+#include "core/stages/surfaces.h"
 #include "core/techniques/wavefront.h"
 
 namespace orrery {
@@ -13,26 +16,88 @@ template <class T>
 class Path final : public Wavefront<T> {
  public:
   Path(const World<T>& world, const Plan& plan)
-      : Wavefront<T>(world, plan), sampled_light_(this->geometry_, this->accelerator_, this->plan_) {}
+      : Wavefront<T>(world, plan),
+        looks_(!world.geometry->emission.empty() || world.geometry->background != Vec3<T>()),
+        sampled_light_(this->geometry_, this->accelerator_, this->plan_) {
+    if (plan.reuse > 1)
+      reuse_ = std::make_unique<PathReuse<T>>(this->geometry_, this->accelerator_, this->plan_);
+  }
 
  private:
   using N = Lanes<T>;
 
-  void shade(const Groups& met) override {
+  void begin() override {
+    if (reuse_) reuse_->begin(this->batch_draws());
+  }
+  bool finish() override {
+    return !reuse_ || reuse_->finish(Wavefront<T>::sums(0), this->counts(), this->checkpoint());
+  }
+  Vec3Array<T>& sums(int depth) override {
+    return reuse_ && depth > 0 ? reuse_->suffixes() : Wavefront<T>::sums(depth);
+  }
+
+  bool looks() const override { return looks_; }
+  void look(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out, TraceCounts& counts) override {
+    auto& v = *this->vertices_;
+    const Groups all = Groups::covering(0, kBatch, kWidth<T>);
+    counts.rays.camera += active_rays(camera_rays, all);
+    reset(camera_rays, all, v.hits);
+    this->accelerator_.closest(camera_rays, all, v.hits, counts.accelerator);
+    for (const int i : all) {
+      const auto missed =
+          mask_cast<N>(load_index<T>(v.hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+      find_materials(this->geometry_, v.hits, i, v.surface);
+      Vec3<N> seen;
+      if (!this->geometry_.emission.empty()) seen = emission_at(this->geometry_, v.surface, i);
+      const Vec3<N> background(this->geometry_.background);
+      seen = {select(missed, background.x, seen.x), select(missed, background.y, seen.y),
+              select(missed, background.z, seen.z)};
+      out.radiance.put(i, out.radiance.at(i) + seen * N(share));
+    }
+  }
+
+  void shade(const Groups& groups, const Groups& met) override {
     auto& [paths, hits, surface, radiance] = *this->vertices_;
     const Geometry<T>& geometry = this->geometry_;
-    sampled_light_.add_emission(*paths, hits, surface, met, radiance);
+    if (paths->depth == 0 && looks_)
+      for (const int i : groups) radiance.put(i, Vec3<N>(N(T(0))));  // look() finds it
+    else if (reuse_ && paths->depth == 1)
+      add_emission_alone(met);
+    else
+      sampled_light_.add_emission(*paths, hits, surface, met, radiance);
     if (paths->depth >= this->plan_.max_depth) return note_end(met);
     sampled_light_.add(*paths, this->draws(), surface,
                        groups_with(geometry, surface, met, &MaterialTraits::lit), radiance, this->counts());
     for (const auto& m : geometry.materials)
       m.kernel->sample(paths->rays, hits, surface, this->draws(), met, scatter_);
     for (const int i : met) go_on(i);
+    if (reuse_ && paths->depth == 1)
+      for (const int i : met) reuse_->keep_second(i, *paths, surface, even_lanes(i));
+  }
+
+  // What a second vertex sends out by itself is found from the first vertex by its light sources as well, and
+  // shared by nobody.
+  void add_emission_alone(const Groups& met) {
+    const auto& v = *this->vertices_;
+    for (const int i : met) emission_.put(i, Vec3<N>(N(T(0))));
+    sampled_light_.add_emission(*v.paths, v.hits, v.surface, met, emission_);
+    for (const int i : met)
+      for (int lane = i; lane < std::min(i + kWidth<T>, v.paths->rays.count); ++lane) {
+        const int slot = static_cast<int>(v.paths->slot[lane]);
+        Vec3Array<T>& sums = Wavefront<T>::sums(0);
+        sums.set(slot, sums[slot] + reuse_->weights()[slot] * emission_[lane]);
+      }
   }
 
   MaskOf<N> surface_lanes(int i) const {
-    return mask_cast<N>(load_index<T>(this->vertices_->hits.primitive, i) !=
-                        IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+    const auto primitive = load_index<T>(this->vertices_->hits.primitive, i);
+    return mask_cast<N>(primitive != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+  }
+  // Those whose light looks the same from everywhere.
+  MaskOf<N> even_lanes(int i) const {
+    const SurfaceBatch<T>& surface = this->vertices_->surface;
+    return surface_lanes(i) && lanes_with(this->geometry_, surface, i, &MaterialTraits::lit) &&
+           !lanes_with(this->geometry_, surface, i, &MaterialTraits::glossy);
   }
 
   void go_on(int i) {
@@ -41,6 +106,11 @@ class Path final : public Wavefront<T> {
     Vec3<N> throughput = paths.throughput.at(i) * scatter_.weight.at(i);
     N most = max_component(throughput);
     auto alive = surface_lanes(i) && most > zero;
+    if (paths.depth == 0 && reuse_) {
+      reuse_->keep_first(i, paths, this->vertices_->surface, scatter_, alive,
+                         alive && scatter_.pdf.at(i) > zero);
+      throughput = Vec3<N>(one);
+    }
     if (paths.depth > 0) {
       using std::sqrt;
       const N chance = min_first(one, max_first(N(kLeastChance), sqrt(select(alive, most, one))));
@@ -57,8 +127,11 @@ class Path final : public Wavefront<T> {
   }
 
   static constexpr T kLeastChance = T(0.05);
+  const bool looks_;
   SampledLight<T> sampled_light_;
+  std::unique_ptr<PathReuse<T>> reuse_;  // null: paths share nothing
   ScatterBatch<T> scatter_;
+  Vec3Array<T> emission_;
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ SpecularTree<T>::SpecularTree(const World<T>& world, const Plan& plan)
     : Wavefront<T>(world, plan), direct_light_(this->geometry_, this->accelerator_, this->plan_) {}
 
 template <class T>
-void SpecularTree<T>::shade(const Groups& met) {
+void SpecularTree<T>::shade(const Groups&, const Groups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const Geometry<T>& geometry = this->geometry_;
   direct_light_.add(*paths, this->draws(), surface, groups_with(geometry, surface, met, &MaterialTraits::lit),

@@ -34,7 +34,7 @@ class SpecularTree : public Wavefront<T> {
   SpecularBatch<T> specular_;
 
  private:
-  void shade(const Groups& met) final;
+  void shade(const Groups& groups, const Groups& met) final;
 
   DirectLight<T> direct_light_;
 };

@@ -18,8 +18,9 @@ bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, Tra
   draws_ = &draws;
   out_ = &out;
   counts_ = &counts;
-  start(camera_rays);
   checkpoint_ = &checkpoint;
+  start(camera_rays);
+  begin();
   while (!waiting_.empty()) {  // a tree of glass in glass can grow to billions of rays
     auto batch = std::move(waiting_.back());
     waiting_.pop_back();
@@ -30,7 +31,7 @@ bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, Tra
       return false;
     }
   }
-  return true;
+  return finish();
 }
 
 template <class T>
@@ -86,8 +87,8 @@ void Wavefront<T>::run_slice(const Groups& groups) {
   accelerator_.closest(paths.rays, groups, v.hits, counts_->accelerator);
   const Groups met = find_surfaces(geometry_, plan_.fields, paths, groups, v.hits, v.surface, v.radiance);
   if (paths.depth == 0) record_channels(groups, met);
-  shade(met);
-  deposit(paths, groups, v.radiance, out_->radiance);
+  shade(groups, met);
+  deposit(paths, groups, v.radiance, sums(paths.depth));
 }
 
 template <class T>

@@ -30,9 +30,15 @@ class Wavefront : public Tracer<T> {
     Vec3Array<T> radiance;  // toward each ray's origin, so far: background for rays that met nothing
   };
 
-  // Adds the light that leaves surfaces toward the origins of the rays, and sends on rays by spawn(). `met`:
-  // the registers with a surface.
-  virtual void shade(const Groups& met) = 0;
+  // Adds the light that leaves surfaces toward the origins of the rays of `groups`, and sends on rays by
+  // spawn(). `met`: the registers of them with a surface.
+  virtual void shade(const Groups& groups, const Groups& met) = 0;
+
+  // Before a batch of camera rays, and after all that followed from it; false once the work is to end.
+  virtual void begin() {}
+  virtual bool finish() { return true; }
+  // Where the light of rays of this depth goes, by slot.
+  virtual Vec3Array<T>& sums(int /*depth*/) { return out_->radiance; }
 
   enum class Kind { reflected, refracted };
   // A ray from the surface at register i along `direction` that carries `throughput` to its slot.
@@ -42,6 +48,7 @@ class Wavefront : public Tracer<T> {
   // Enters rays that are not traced into the ledger, with `lost` of what they would have found.
   void note_cut(int i, const MaskOf<N>& mask, const N& lost);
 
+  const Draws& batch_draws() const { return *draws_; }
   PathDraws<T> draws() const { return {*draws_, vertices_->paths->slot, vertices_->paths->depth}; }
   TraceCounts& counts() { return *counts_; }
   const Checkpoint& checkpoint() const { return *checkpoint_; }

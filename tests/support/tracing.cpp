@@ -63,6 +63,7 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
   recorder_->generations.clear();
   recorder_->shadow.clear();
   tracer_->trace(*batch, Draws(plan_.seed, TileView{0, 0, kTileSide, kTileSide}, 0), *result, counts_);
+  if (tracer_->looks()) tracer_->look(*batch, 1, *result, counts_);
   std::vector<Answer> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
     answers.push_back({result->radiance[i], result->cut[i]});

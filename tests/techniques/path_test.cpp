@@ -84,5 +84,45 @@ TEST(Path, IrradianceOfASphereAndADisk) {
   EXPECT_NEAR(disk.mean, 0.25 / (4 + 0.25), 4 * disk.error() + 1e-9);
 }
 
+// Groups of paths that share what they find change neither the mean nor which light arrives where, and lower
+// the error of a pixel.
+TEST(Path, SharingPathsChangesTheNoiseAlone) {
+  covers("light-8 light-9");
+  const auto box = load(sample("cornell-box"));
+  const auto picture = [&](int reuse, int samples, std::uint64_t seed) {
+    const int side = samples > 16 ? 64 : 160;
+    RenderRequest request = size(side, side);
+    request.reuse = reuse;
+    request.samples = samples;
+    request.seed = seed;
+    return render(box, request);
+  };
+  const auto mean_square = [](const Picture& a, const Picture& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+      sum += std::pow(double{a.pixels[i].x} - b.pixels[i].x, 2);
+    return sum / static_cast<double>(a.pixels.size());
+  };
+  const Picture alone = picture(1, 256, 1);
+  const double pixels = 64 * 64, mean = alone.sum() / pixels;
+  const double noise = mean_square(picture(1, 16, 2), picture(1, 16, 3));
+  for (const int reuse : {4, 8, 16}) {
+    EXPECT_NEAR(picture(reuse, 256, 1).sum() / pixels / mean, 1, 4e-3) << reuse;
+    const double shared_noise = mean_square(picture(reuse, 16, 2), picture(reuse, 16, 3));
+    EXPECT_LT(shared_noise, noise * (reuse == 16 ? 0.25 : 0.5)) << reuse;
+  }
+}
+
+// Samples in two parts, in parts of a batch, on one thread and several: the same sums.
+TEST(Path, DependsOnNothingButTheSample) {
+  covers("light-7");
+  const auto box = load(sample("cornell-box"));
+  RenderRequest request = size(80, 72);
+  request.samples = 8;
+  const Picture whole = render(box, request);
+  request.slice = 64;
+  EXPECT_TRUE(identical(whole, render(box, request, 1)));
+}
+
 }  // namespace
 }  // namespace orrery::test
