@@ -37,7 +37,7 @@ function linear_axis(values, from, to) {
 }
 
 const tick_name = (value) => {
-  if (value >= 1e4) return `1e${Math.round(Math.log10(value))}`;
+  if (value >= 1e4 || (value > 0 && value < 1e-3)) return `1e${Math.round(Math.log10(value))}`;
   return String(Number(value.toPrecision(3)));
 };
 

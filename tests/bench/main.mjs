@@ -4,6 +4,7 @@ import { writeFileSync } from "node:fs";
 import { loadavg } from "node:os";
 import { exists_program, kOrrery } from "./command.mjs";
 import { kCancel } from "./cancel.mjs";
+import { kCycles } from "./cycles.mjs";
 import { kDrag } from "./drag.mjs";
 import { kEmbree } from "./embree.mjs";
 import { kFlakeVsPovray } from "./flake_vs_povray.mjs";
@@ -22,13 +23,15 @@ import { kReports as kStructureReports } from "./structures.mjs";
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kStages, ...kMotion];
 
-const kReports = [kEmbree, ...kStructureReports, kCancel, kDrag, kSlowClients];
+const kReports = [kEmbree, kCycles, ...kStructureReports, kCancel, kDrag, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too
 const kUsage =
   "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--list]\n" +
   "                       [--meshes FOLDER] [--triangles N]      of embree: mesh files beside those that are made, one size\n" +
+  "                       [--seeds N] [--samples N] [--size N]   of cycles: pairs of seeds, most samples, pixels a side\n" +
+  "                       [--bounces]                            of cycles: means by path length instead\n" +
   "       tests/bench/run service [PROPERTY...]   the service under load, half an hour for all";
 
 function fail(message) {
@@ -36,24 +39,31 @@ function fail(message) {
   process.exit(2);
 }
 
+function whole_number(option, word) {
+  const value = Number(word);
+  return Number.isInteger(value) && value > 0 ? value : fail(`${option} expects a whole number > 0`);
+}
+
 // By its name, or by how it begins: "embree" names all of them.
 const goes_by = ({ name }, word) => name === word || name.startsWith(`${word}-`);
 
+// Those that count something, for some benchmarks only; they have defaults of their own.
+const kCounts = { "--triangles": "triangles", "--seeds": "seeds", "--samples": "samples", "--size": "size" };
+
 function read_arguments(words) {
-  const options = { names: [], pairs: 7, json: null, charts: "build/charts", meshes: null, triangles: null, list: false };
+  const options = { names: [], pairs: 7, json: null, charts: "build/charts", meshes: null, list: false, bounces: false };
   for (let i = 0; i < words.length; ++i) {
     if (words[i] === "--list") options.list = true;
-    else if (words[i] === "--triangles") options.triangles = Number(words[++i]);
+    else if (words[i] === "--bounces") options.bounces = true;
+    else if (words[i] in kCounts) options[kCounts[words[i]]] = whole_number(words[i], words[++i]);
     else if (words[i] === "--meshes") options.meshes = words[++i] ?? fail("--meshes expects a folder");
-    else if (words[i] === "--pairs") options.pairs = Number(words[++i]);
+    else if (words[i] === "--pairs") options.pairs = whole_number(words[i], words[++i]);
     else if (words[i] === "--json") options.json = words[++i];
     else if (words[i] === "--charts") options.charts = words[++i];
     else if (words[i].startsWith("-")) fail(`unknown option ${words[i]}`);
     else if (kAll.some((b) => goes_by(b, words[i]))) options.names.push(words[i]);
     else fail(`no benchmark is called ${words[i]}; there are ${kAll.map((b) => b.name).join(", ")}`);
   }
-  if (!Number.isInteger(options.pairs) || options.pairs < 1) fail("--pairs expects a whole number > 0");
-  if (options.triangles !== null && !(options.triangles > 0)) fail("--triangles expects a number > 0");
   if (options.json === undefined) fail("--json expects a file name");
   if (options.charts === undefined) fail("--charts expects a folder");
   return options;

@@ -1,0 +1,120 @@
+# Renders one of our scenes with Blender's Cycles, run by `blender -b --factory-startup -P FILE -- SCENE`. Meshes,
+# parallelograms, Lambert's surfaces and those that emit are all it knows. Each line of input is an order in JSON:
+# samples, seed, bounces, size in pixels, threads, preset ("fair" or "defaults") and out, a file that ends with .exr. It
+# is answered by a line "rendered SECONDS": CPU time of all threads, scene conversion and writing included.
+
+import json
+import math
+import resource
+import sys
+
+import bpy
+import mathutils
+
+
+def material_of(name, record):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    if "emission" in record:
+        shader = nodes.new("ShaderNodeEmission")
+        shader.inputs["Strength"].default_value = 1
+        color = record["emission"]
+    else:
+        shader = nodes.new("ShaderNodeBsdfDiffuse")
+        shader.inputs["Roughness"].default_value = 0
+        color = record["kd"]
+    shader.inputs["Color"].default_value = (*color, 1)
+    links.new(shader.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return material
+
+
+def vertices_and_faces(record):
+    if record["type"] == "mesh":
+        return record["positions"], record["indices"]
+    corner, a, b = (mathutils.Vector(record[key]) for key in ("corner", "a", "b"))
+    return [corner, corner + a, corner + a + b, corner + b], [[0, 1, 2], [0, 2, 3]]
+
+
+def add_camera(scene, record):
+    camera = bpy.data.cameras.new("camera")
+    camera.sensor_fit = "VERTICAL"
+    camera.angle = math.radians(record["fov_degrees"])
+    camera.clip_start = 0.001
+    eye, target = mathutils.Vector(record["eye"]), mathutils.Vector(record["look_at"])
+    z = (eye - target).normalized()
+    x = mathutils.Vector(record.get("up", (0, 1, 0))).cross(z).normalized()
+    y = z.cross(x)
+    placed = bpy.data.objects.new("camera", camera)
+    placed.matrix_world = mathutils.Matrix([(x[i], y[i], z[i], eye[i]) for i in range(3)] + [(0, 0, 0, 1)])
+    scene.collection.objects.link(placed)
+    scene.camera = placed
+
+
+def convert(record):
+    scene = bpy.context.scene
+    for placed in list(bpy.data.objects):
+        bpy.data.objects.remove(placed)
+    materials = {name: material_of(name, one) for name, one in record["materials"].items()}
+    for i, one in enumerate(record["objects"]):
+        mesh = bpy.data.meshes.new(str(i))
+        vertices, faces = vertices_and_faces(one)
+        mesh.from_pydata(vertices, [], faces)
+        mesh.materials.append(materials[one["material"]])
+        scene.collection.objects.link(bpy.data.objects.new(str(i), mesh))
+    add_camera(scene, record["camera"])
+    scene.world = bpy.data.worlds.new("world")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0, 0, 0, 1)
+    return scene
+
+
+# "fair" is unbiased: nothing clamped, no light left out, no pixel stopped for its own noise. And it begins with sample
+# number N of N: Cycles sends sample 0 of every pixel through the centre, not where the filter says, which would be an
+# error of 1/N of the edges in each picture, the same for every seed; samples N to 2N - 1 are as well stratified.
+# "defaults" has all five as Blender has them. Neither denoises, both take our pixel filter and path length.
+def choose_preset(cycles, preset, samples):
+    fair = preset == "fair"
+    cycles.sample_offset = samples if fair else 0
+    cycles.use_adaptive_sampling = not fair
+    cycles.adaptive_threshold = 0.01
+    cycles.sample_clamp_direct = 0
+    cycles.sample_clamp_indirect = 0 if fair else 10
+    cycles.light_sampling_threshold = 0 if fair else 0.01
+    cycles.blur_glossy = 0 if fair else 1
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    cycles.use_denoising = False
+    cycles.pixel_filter_type = "BOX"
+    cycles.filter_width = 1
+
+
+def render(scene, order):
+    cycles, settings = scene.cycles, scene.render
+    settings.engine = "CYCLES"
+    cycles.device = "CPU"
+    cycles.samples, cycles.seed = order["samples"], order["seed"]
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = order["bounces"]
+    cycles.transmission_bounces = order["bounces"]
+    cycles.use_auto_tile = False
+    choose_preset(cycles, order["preset"], order["samples"])
+    settings.resolution_x = settings.resolution_y = order["size"]
+    settings.resolution_percentage = 100
+    settings.threads_mode, settings.threads = "FIXED", order["threads"]
+    image = settings.image_settings
+    image.file_format, image.color_mode, image.color_depth, image.exr_codec = "OPEN_EXR", "RGB", "32", "ZIP"
+    settings.filepath = order["out"]
+    before = resource.getrusage(resource.RUSAGE_SELF)
+    bpy.ops.render.render(write_still=True)
+    after = resource.getrusage(resource.RUSAGE_SELF)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+
+
+def main():
+    with open(sys.argv[sys.argv.index("--") + 1], encoding="utf-8") as file:
+        scene = convert(json.load(file))
+    for line in sys.stdin:
+        print("\nrendered", render(scene, json.loads(line)), flush=True)
+
+
+main()
