@@ -9,7 +9,9 @@ namespace orrery {
 #define ORRERY_MATERIALS(add) \
   add(rough)                  \
   add(reflective)             \
-  add(refractive)
+  add(refractive)             \
+  add(lambert)                \
+  add(oren_nayar)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();
