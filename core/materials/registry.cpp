@@ -11,7 +11,8 @@ namespace orrery {
   add(reflective)             \
   add(refractive)             \
   add(lambert)                \
-  add(oren_nayar)
+  add(oren_nayar)             \
+  add(metal)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();

@@ -21,6 +21,11 @@ struct Material {
 const Material kMaterials[] = {
     {"Lambert", "{'type': 'lambert', 'reflectance': [0.9, 0.5, 0.1]}"},
     {"OrenNayar", "{'type': 'oren-nayar', 'reflectance': [0.9, 0.5, 0.1], 'roughness': 0.7}"},
+    {"PolishedMetal",
+     "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], 'roughness': 0.3}"},
+    {"BrushedMetal",
+     "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], 'roughness': 0.6}"},
+    {"RoughestMetal", "{'type': 'metal', 'n': [0, 0, 0], 'k': [1, 1, 1], 'roughness': 1}"},
 };
 
 constexpr int kViewers = 5;
@@ -98,14 +103,14 @@ double chi_square_deviations(const Cells& expected, const std::vector<Probe<doub
 
 class Scattering : public testing::TestWithParam<Material> {};
 
-// Sidak: with 10 tests, one in a hundred runs would have a deviation above 3.09.
+// Sidak: with 25 tests, one in a hundred runs would have a deviation above 3.35.
 TEST_P(Scattering, DrawsInProportionToItsDensity) {
   covers("light-24");
   const Probe<double> material(GetParam().text);
   for (int v = 0; v < kViewers; ++v) {
     const Case point = seen_from(viewer(v));
     const double z = chi_square_deviations(cells_of(material, point), material.sampled(point, 500'000));
-    EXPECT_LT(z, 3.09) << "viewer " << v;
+    EXPECT_LT(z, 3.35) << "viewer " << v;
     EXPECT_GT(z, -5) << "viewer " << v;
   }
 }
@@ -165,7 +170,7 @@ TEST_P(Scattering, WeighsDrawsByWhatItEvaluates) {
   }
 }
 
-// In float the direction itself is off by 1e-7.
+// In float the direction itself is off by 1e-7, and the narrowest lobe is 0.09 wide.
 TEST_P(Scattering, FloatAndDoubleAgree) {
   const Probe<double> exact(GetParam().text);
   const Probe<float> single(GetParam().text);
