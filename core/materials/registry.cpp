@@ -9,7 +9,10 @@ namespace orrery {
 #define ORRERY_MATERIALS(add) \
   add(rough)                  \
   add(reflective)             \
-  add(refractive)
+  add(refractive)             \
+  add(lambert)                \
+  add(oren_nayar)             \
+  add(metal)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();

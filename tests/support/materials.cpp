@@ -13,6 +13,8 @@ struct Batches {
   Vec3Array<T> light, f_cos;
   Array<T> reach, pdf;
   SpecularBatch<T> specular;
+  ScatterBatch<T> scatter;
+  Array<IndexOf<T>> slot;
   Vec3Array<T> radiance;
   Groups groups;
 };
@@ -49,15 +51,40 @@ Probe<T>::Probe(const Json& material)
 
 template <class T>
 std::vector<Vec3<T>> Probe<T>::reflected(std::span<const Case> cases) const {
-  const auto b = std::make_unique<Batches<T>>();
   std::vector<Vec3<T>> found;
+  for (const Evaluated& one : evaluated(cases)) found.push_back(one.f_cos);
+  return found;
+}
+
+template <class T>
+std::vector<typename Probe<T>::Evaluated> Probe<T>::evaluated(std::span<const Case> cases) const {
+  const auto b = std::make_unique<Batches<T>>();
+  std::vector<Evaluated> found;
   while (!cases.empty()) {
     const auto some = cases.first(std::min<std::size_t>(cases.size(), kBatch));
     fill<T>(some, *b);
     kernel_->evaluate({b->rays.direction, b->light, b->reach}, b->surface, b->groups, b->f_cos, b->pdf);
     for (int i = 0; i < static_cast<int>(some.size()); ++i)
-      found.push_back(b->pdf[i] > 0 ? b->f_cos[i] : Vec3<T>());
+      found.push_back({b->pdf[i] > 0 ? b->f_cos[i] : Vec3<T>(), b->pdf[i]});
     cases = cases.subspan(some.size());
+  }
+  return found;
+}
+
+// Each batch has a seed, and each of its slots a pixel, of its own.
+template <class T>
+std::vector<typename Probe<T>::Sampled> Probe<T>::sampled(const Case& one, int count,
+                                                          std::uint64_t seed) const {
+  const auto b = std::make_unique<Batches<T>>();
+  const std::vector<Case> cases(kBatch, one);
+  fill<T>(cases, *b);
+  for (int i = 0; i < kBatchRoom; ++i) b->slot[i] = static_cast<IndexOf<T>>(i % kBatch);
+  std::vector<Sampled> found;
+  for (std::uint64_t batch = 0; static_cast<int>(found.size()) < count; ++batch) {
+    const Draws draws((seed << 32) + batch, TileView{0, 0, kTileSide, kTileSide}, 0);
+    kernel_->sample(b->rays, b->hits, b->surface, PathDraws<T>{draws, b->slot, 0}, b->groups, b->scatter);
+    for (int i = 0; i < kBatch && static_cast<int>(found.size()) < count; ++i)
+      found.push_back({b->scatter.direction[i], b->scatter.weight[i], b->scatter.pdf[i]});
   }
   return found;
 }

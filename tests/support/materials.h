@@ -32,6 +32,19 @@ class Probe {
   // What leaves toward the ray's origin of a light of intensity 1; 0 where the material leaves the light out.
   std::vector<Vec3<T>> reflected(std::span<const Case> cases) const;
   Vec3<T> reflected(const Case& one) const { return reflected(std::span(&one, 1)).front(); }
+  // What the kernel says of these pairs of directions; f_cos is 0 where pdf is.
+  struct Evaluated {
+    Vec3<T> f_cos;
+    T pdf;
+  };
+  std::vector<Evaluated> evaluated(std::span<const Case> cases) const;
+  Evaluated evaluated(const Case& one) const { return evaluated(std::span(&one, 1)).front(); }
+  // Directions drawn at one surface point, independent of each other.
+  struct Sampled {
+    Vec3<T> direction, weight;
+    T pdf;
+  };
+  std::vector<Sampled> sampled(const Case& one, int count, std::uint64_t seed = 1) const;
   std::vector<Specular> specular(std::span<const Case> cases) const;
   Specular specular(const Case& one) const { return specular(std::span(&one, 1)).front(); }
   // What leaves under ambient light of 1.

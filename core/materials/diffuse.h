@@ -1,0 +1,65 @@
+#pragma once
+
+#include "core/materials/material_set.h"
+#include "core/math/hemisphere.h"
+
+namespace orrery {
+
+// Kernel of materials that scatter over the whole hemisphere and draw directions in proportion to the cosine.
+// Beside what MaterialRecords asks for, a record has
+//   Vec3<N> reflectance;                    what leaves of even light from everywhere, roughly
+//   Vec3<N> pi_brdf(light, viewer, between) pi times the bidirectional reflectance distribution function, of
+//                                           N.L > 0, N.V and L.V
+template <template <class> class Record, class T>
+class DiffuseKernel : public MaterialRecords<Record, T> {
+ public:
+  using N = Lanes<T>;
+  using MaterialRecords<Record, T>::MaterialRecords;
+
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+               Vec3Array<T>& radiance) const override {
+    const Vec3<N> from_everywhere(ambient);
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
+      radiance.put(i, mine, record.reflectance * from_everywhere);
+    });
+  }
+
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
+                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
+      const Vec3<N> normal = surface.normal.at(i), light = directions.light.at(i);
+      const N cosine = dot(normal, light);
+      const auto lit = mine && directions.reach.at(i) > zero && cosine > zero &&
+                       dot(surface.geometric.at(i), light) > zero;
+      pdf.put(i, mine, select(lit, cosine_pdf(cosine), zero));
+      if (any(lit))
+        f_cos.put(i, mine, pi_brdf(record, normal, light, -directions.ray.at(i), cosine) * cosine);
+    });
+  }
+
+  // The weight f cos / pdf is pi f.
+  void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
+      const auto [u, v] = draws.two(SampleSet::lobe, i);
+      const Vec3<N> normal = surface.normal.at(i), light = cosine_direction(normal, u, v);
+      const N cosine = dot(normal, light);
+      const auto leaves = cosine > zero && dot(surface.geometric.at(i), light) > zero;
+      const Vec3<N> weight = pi_brdf(record, normal, light, -rays.direction.at(i), cosine);
+      out.direction.put(i, mine, light);
+      out.weight.put(i, mine, Vec3<N>(zero));
+      out.weight.put(i, mine && leaves, weight);
+      out.pdf.put(i, mine, select(leaves, cosine_pdf(cosine), zero));
+    });
+  }
+
+ private:
+  static Vec3<N> pi_brdf(const Record<N>& record, const Vec3<N>& normal, const Vec3<N>& light,
+                         const Vec3<N>& viewer, const N& cosine) {
+    return record.pi_brdf(cosine, dot(normal, viewer), dot(light, viewer));
+  }
+};
+
+}  // namespace orrery

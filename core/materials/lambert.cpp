@@ -1,0 +1,28 @@
+#include "core/materials/lambert.h"
+
+#include "core/materials/diffuse.h"
+#include "core/params/params.h"
+
+namespace orrery {
+
+template <class N>
+Lambert<double> Lambert<N>::read(Params& p) {
+  return {p.coefficient("reflectance", "Share of light that it reflects.", Vec3d(0.8), 1)};
+}
+
+namespace {
+
+template <class T>
+class LambertKernel final : public DiffuseKernel<Lambert, T> {
+ public:
+  using DiffuseKernel<Lambert, T>::DiffuseKernel;
+};
+
+}  // namespace
+
+MaterialType lambert_type() {
+  return {"lambert", "A matt surface, equally bright from everywhere.",
+          make_material_set<Lambert, LambertKernel>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/math/vec3.h"
+#include "core/model/material.h"
+
+namespace orrery {
+
+// A matt surface that looks equally bright from everywhere (Lambert, Photometria, 1760).
+template <class N>
+struct Lambert {
+  Vec3<N> reflectance;
+
+  static Lambert<double> read(Params& p);
+  MaterialTraits traits() const { return {.lit = true}; }
+
+  [[gnu::always_inline]] Vec3<N> pi_brdf(const N&, const N&, const N&) const { return reflectance; }
+};
+
+}  // namespace orrery

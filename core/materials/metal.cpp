@@ -1,0 +1,165 @@
+#include "core/materials/metal.h"
+
+#include "core/materials/material_set.h"
+#include "core/materials/shading_frame.h"
+#include "core/math/mirror.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+constexpr double kLeastAlpha = 1e-3;  // below it a mirror
+
+// The integral of 2 mu F(mu).
+double mean_reflectance(double n, double k) {
+  constexpr int kSteps = 256;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = (i + 0.5) / kSteps;
+    sum += 2 * mu * fresnel_conductor(n, k, mu);
+  }
+  return sum / kSteps;
+}
+
+}  // namespace
+
+template <class N>
+Metal<double> Metal<N>::read(Params& p) {
+  const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
+  const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
+  const double roughness =
+      p.number("roughness", "0: a mirror, 1: the roughest. Its square is alpha of the distribution GGX.",
+               {.min = 0, .max = 1}, 0.3);
+  Metal<double> metal{n, k, {}, roughness * roughness, {}, {}};
+  metal.f0 = metal.reflectance(1);
+  if (metal.alpha < kLeastAlpha) {
+    metal.alpha = 0;
+    return metal;
+  }
+  metal.albedo = ggx_albedo(metal.alpha);
+  const double mean = metal.albedo.mean;
+  if (mean == 1) return metal;
+  const auto scale = [&](double mean_f) {
+    return multiple_scattering_reflectance(mean_f, mean) / (1 - mean);
+  };
+  metal.multiple_scale = {scale(mean_reflectance(n.x, k.x)), scale(mean_reflectance(n.y, k.y)),
+                          scale(mean_reflectance(n.z, k.z))};
+  return metal;
+}
+
+namespace {
+
+template <class N>
+Vec3<N> select_each(const MaskOf<N>& mask, const Vec3<N>& a, const Vec3<N>& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+template <class T>
+class MetalKernel final : public MaterialRecords<Metal, T> {
+ public:
+  using N = Lanes<T>;
+  using MaterialRecords<Metal, T>::MaterialRecords;
+
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+               Vec3Array<T>& radiance) const override {
+    const N zero(T(0)), one(T(1));
+    const Vec3<N> from_everywhere(ambient);
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
+      radiance.put(i, mine, metal.f0 * from_everywhere * select(metal.alpha > zero, one, zero));
+    });
+  }
+
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
+                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
+      const Vec3<N> geometric = surface.geometric.at(i), light = directions.light.at(i);
+      const Vec3<N> viewer = -directions.ray.at(i);
+      const ShadingFrame<N> frame(surface.normal.at(i), geometric, viewer);
+      const Vec3<N> local_viewer = frame.local(viewer), local_light = frame.local(light);
+      const auto lit = mine && directions.reach.at(i) > zero &&
+                       reflects(metal, local_viewer, local_light, dot(geometric, light));
+      pdf.put(i, mine, zero);
+      if (!any(lit)) return;
+      const auto scattered = metal.scattered(local_viewer, local_light);
+      f_cos.put(i, lit, scattered.f_cos);
+      pdf.put(i, lit, scattered.pdf);
+    });
+  }
+
+  // A microfacet that the viewer sees mirrors, or light leaves in proportion to the cosine: see
+  // Metal::multiple_share().
+  void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
+      const Vec3<N> direction = rays.direction.at(i), viewer = -direction;
+      const Vec3<N> normal = surface.normal.at(i), geometric = surface.geometric.at(i);
+      out.pdf.put(i, mine, zero);
+      out.weight.put(i, mine, Vec3<N>(zero));
+      const auto smooth = mine && !(metal.alpha > zero);
+      if (any(smooth)) {
+        out.direction.put(i, smooth, mirrored(direction, normal, geometric));
+        out.weight.put(i, smooth, metal.reflectance(cosine_of(viewer, normal)));
+      }
+      const auto rough = mine && !smooth;
+      if (!any(rough)) return;
+      const ShadingFrame<N> frame(normal, geometric, viewer);
+      const Vec3<N> local_viewer = frame.local(viewer);
+      const Vec3<N> light = drawn(metal, frame, local_viewer, draws.two(SampleSet::lobe, i));
+      const Vec3<N> local_light = frame.local(light);
+      const auto leaves = rough && reflects(metal, local_viewer, local_light, dot(geometric, light));
+      const auto scattered = metal.scattered(local_viewer, local_light);
+      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
+      out.direction.put(i, rough, select_each(leaves, light, geometric));
+      out.weight.put(i, leaves, scattered.f_cos * (N(T(1)) / (kPi * scattered.pdf)));
+      out.pdf.put(i, leaves, scattered.pdf);
+    });
+  }
+
+  void specular(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+                const Groups& groups, SpecularBatch<T>& out) const override {
+    const N zero(T(0)), one(T(1));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
+      const Vec3<N> mirrored_share =
+          metal.reflectance(cosine_of(-rays.direction.at(i), surface.normal.at(i)));
+      out.reflectance.put(i, mine, mirrored_share * select(metal.alpha > zero, zero, one));
+      out.transmittance.put(i, mine, Vec3<N>(zero));
+      out.filter.put(i, mine, Vec3<N>(one));
+    });
+  }
+
+ private:
+  static N cosine_of(const Vec3<N>& viewer, const Vec3<N>& normal) {
+    return min_first(N(T(1)), max_first(N(T(0)), dot(viewer, normal)));
+  }
+
+  // Both directions are in front of the surface, the light's of the true one too.
+  static MaskOf<N> reflects(const Metal<N>& metal, const Vec3<N>& local_viewer, const Vec3<N>& local_light,
+                            const N& true_cosine) {
+    const N zero(T(0));
+    return metal.alpha > zero && local_viewer.z > zero && local_light.z > zero && true_cosine > zero;
+  }
+
+  // The first number chooses the lobe, and what is left of it, stretched to [0, 1), a direction.
+  static Vec3<N> drawn(const Metal<N>& metal, const ShadingFrame<N>& frame, const Vec3<N>& local_viewer,
+                       const SamplePoint<N>& point) {
+    const N one(T(1)), last(T(1) - std::numeric_limits<T>::epsilon() / 2);
+    const N share = metal.multiple_share(local_viewer.z);
+    const auto evenly = point.u < share;
+    const N u = min_first(last, select(evenly, N(point.u / share), N((point.u - share) / (one - share))));
+    const Ggx<N> facets{metal.alpha};
+    const Vec3<N> facet = facets.visible_normal(local_viewer, u, point.v);
+    return select_each(evenly, cosine_direction(frame.normal, u, point.v),
+                       frame.world(mirrored_about(local_viewer, facet)));
+  }
+};
+
+}  // namespace
+
+MaterialType metal_type() {
+  return {"metal", "A metal of microfacets, rough or smooth, coloured by Fresnel's law.",
+          make_material_set<Metal, MetalKernel>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <numbers>
+
+#include "core/materials/fresnel.h"
+#include "core/materials/ggx_albedo.h"
+#include "core/materials/microfacet.h"
+#include "core/math/vec3.h"
+#include "core/model/material.h"
+
+namespace orrery {
+
+// A metal of microfacets, coloured by Fresnel's equations. Light that facets pass on to each other is put
+// back by the lobe of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", SIGGRAPH course,
+// 2017), so that a metal that mirrors all light reflects all of it at any roughness. With alpha 0 it is a
+// mirror.
+template <class N>
+struct Metal {
+  Vec3<N> n, k;  // index of refraction and extinction
+  Vec3<N> f0;    // reflectance along the normal
+  N alpha;       // of GGX; 0: mirror
+  GgxAlbedo<N> albedo;
+  Vec3<N> multiple_scale;  // F_ms / (1 - mean albedo)
+
+  static Metal<double> read(Params& p);
+  MaterialTraits traits() const { return {.lit = alpha > 0, .mirrors = !(alpha > 0)}; }
+  double mirrored_share() const { return alpha > 0 ? 0 : max_component(f0); }
+
+  [[gnu::always_inline]] Vec3<N> reflectance(const N& cosine) const {
+    return {fresnel_conductor(n.x, k.x, cosine), fresnel_conductor(n.y, k.y, cosine),
+            fresnel_conductor(n.z, k.z, cosine)};
+  }
+
+  // See MaterialKernel::evaluate(). REQUIRES: alpha, N.V and N.L above 0; directions as Ggx has them.
+  struct Scattered {
+    Vec3<N> f_cos;
+    N pdf;
+  };
+  [[gnu::always_inline]] Scattered scattered(const Vec3<N>& viewer, const Vec3<N>& light) const {
+    using T = ScalarOf<N>;
+    constexpr T kPi = std::numbers::pi_v<T>;
+    const N one(T(1));
+    const Ggx<N> facets{alpha};
+    const auto half = facets.half(viewer, light);
+    const N missing_viewer = multiple_share(viewer.z), missing_light = multiple_share(light.z);
+    const N single = facets.brdf(viewer, light, half.density) * light.z * kPi;
+    const N multiple = missing_viewer * missing_light * light.z;
+    return {
+        reflectance(min_first(one, N(half.length * T(0.5)))) * single + multiple_scale * multiple,
+        (one - missing_viewer) * facets.pdf(viewer, half.density) + missing_viewer * light.z * (one / kPi)};
+  }
+
+  // Share of light at this cosine that facets pass on to each other, which is also the probability that
+  // sample() draws in proportion to the cosine: the weight is bounded without any limit on the choice.
+  [[gnu::always_inline]] N multiple_share(const N& cosine) const {
+    const N one(ScalarOf<N>(1));
+    return one - albedo.at(min_first(one, cosine));
+  }
+};
+
+// F_ms of Kulla and Conty, from a metal's mean reflectance and the mean albedo of facets that mirror all: the
+// series F^2 E / (1 - F (1 - E)) over all bounces.
+inline double multiple_scattering_reflectance(double mean_reflectance, double mean_albedo) {
+  return mean_reflectance * mean_reflectance * mean_albedo / (1 - mean_reflectance * (1 - mean_albedo));
+}
+
+}  // namespace orrery

@@ -1,0 +1,39 @@
+#include "core/materials/oren_nayar.h"
+
+#include "core/materials/diffuse.h"
+#include "core/params/params.h"
+
+namespace orrery {
+
+// The share that facets pass on, again and again, is coloured by the series over all bounces:
+// rho^2 E / (1 - rho (1 - E)), with E the mean albedo of white facets.
+template <class N>
+OrenNayar<double> OrenNayar<N>::read(Params& p) {
+  const Vec3d reflectance =
+      p.coefficient("reflectance", "Share of light that a facet reflects.", Vec3d(0.8), 1);
+  const double roughness =
+      p.number("roughness", "0: smooth, as lambert; 1: the roughest.", {.min = 0, .max = 1}, 0.5);
+  const double a = 1 / (1 + kFujii * roughness), mean = a * (1 + kMeanG * roughness);
+  const auto multiple = [&](double rho) {
+    return rho * rho * mean / (1 - rho * (1 - mean)) * (a * roughness / (kFujii - kMeanG));
+  };
+  return {reflectance, roughness, a,
+          Vec3d(multiple(reflectance.x), multiple(reflectance.y), multiple(reflectance.z))};
+}
+
+namespace {
+
+template <class T>
+class OrenNayarKernel final : public DiffuseKernel<OrenNayar, T> {
+ public:
+  using DiffuseKernel<OrenNayar, T>::DiffuseKernel;
+};
+
+}  // namespace
+
+MaterialType oren_nayar_type() {
+  return {"oren-nayar", "A matt surface of facets, brighter toward the light, as clay or plaster.",
+          make_material_set<OrenNayar, OrenNayarKernel>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <numbers>
+
+#include "core/math/elementary.h"
+#include "core/math/vec3.h"
+#include "core/model/material.h"
+
+namespace orrery {
+
+// A matt surface of facets, such as clay or plaster: the model of Oren and Nayar ("Generalization of
+// Lambert's reflectance model", SIGGRAPH 1994) as Fujii improved it, and light that facets pass on to each
+// other, so that a white surface reflects all light (Portsmouth, Kutz, Hill, "EON: a practical
+// energy-preserving rough diffuse BRDF", 2024). With roughness 0 it is Lambert's.
+template <class N>
+struct OrenNayar {
+  Vec3<N> reflectance;
+  N roughness;
+  N single_scale;          // A of Fujii's model
+  Vec3<N> multiple_scale;  // of the product of two grazing_loss()
+
+  static OrenNayar<double> read(Params& p);
+  MaterialTraits traits() const { return {.lit = true}; }
+
+  // Fujii: A (1 + roughness s / t) with s = L.V - N.L N.V and t = max(N.L, N.V) where s > 0, else 1. An
+  // interpolated normal may face away from the viewer, who then looks along the surface.
+  [[gnu::always_inline]] Vec3<N> pi_brdf(const N& light, const N& viewer, const N& between) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    const N v = min_first(one, max_first(zero, viewer)), l = min_first(one, light);
+    const N s = between - l * v;
+    const N t = select(s > zero, max_first(l, v), one);
+    return reflectance * (single_scale * (one + roughness * s / t)) +
+           multiple_scale * (grazing_loss(l) * grazing_loss(v));
+  }
+
+  // 1/2 - 2 / (3 pi), what A is made of, and 2/3 - 28 / (15 pi), mean of G / pi over the hemisphere.
+  static constexpr double kFujii = 0.5 - 2 / (3 * std::numbers::pi);
+  static constexpr double kMeanG = 2.0 / 3 - 28 / (15 * std::numbers::pi);
+
+  // Light that facets of a white surface do not reflect at once, over A roughness: kFujii - G / pi with
+  // G = S (acos mu - S mu) + 2/3 ((S / mu) (1 - S^3) - S) and S = sin of the angle whose cosine is mu.
+  // Written with 1 - S = mu^2 / (1 + S), G needs no division by mu.
+  [[gnu::always_inline]] static N grazing_loss(const N& mu) {
+    using T = ScalarOf<N>;
+    using std::sqrt;
+    constexpr T kPi = std::numbers::pi_v<T>;
+    const N zero(T(0)), one(T(1));
+    const N sine = sqrt(max_first(zero, N(one - mu * mu)));
+    const N angle = direction_turns(mu, sine) * (2 * kPi);
+    const N steep = sine * (mu * (one + sine + sine * sine) / (one + sine)) - sine;
+    const N g = sine * (angle - sine * mu) + steep * T(2.0 / 3);
+    return max_first(zero, N(T(kFujii) - g * (1 / kPi)));
+  }
+};
+
+}  // namespace orrery

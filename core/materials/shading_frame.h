@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/math/hemisphere.h"
+
+namespace orrery {
+
+// Coordinates about a surface's normal, which is the third axis. Materials whose light depends on the viewer
+// take the true normal where an interpolated one faces away from the viewer.
+template <class N>
+struct ShadingFrame {
+  Vec3<N> normal;
+  Tangents<N> tangents;
+
+  ShadingFrame(const Vec3<N>& shading, const Vec3<N>& geometric, const Vec3<N>& viewer)
+      : normal(facing(shading, geometric, viewer)), tangents(tangents_of(normal)) {}
+
+  [[gnu::always_inline]] Vec3<N> local(const Vec3<N>& v) const {
+    return {dot(tangents.first, v), dot(tangents.second, v), dot(normal, v)};
+  }
+  [[gnu::always_inline]] Vec3<N> world(const Vec3<N>& v) const {
+    return tangents.first * v.x + tangents.second * v.y + normal * v.z;
+  }
+
+ private:
+  static Vec3<N> facing(const Vec3<N>& shading, const Vec3<N>& geometric, const Vec3<N>& viewer) {
+    const auto seen = dot(shading, viewer) > N(ScalarOf<N>(0));
+    return {select(seen, shading.x, geometric.x), select(seen, shading.y, geometric.y),
+            select(seen, shading.z, geometric.z)};
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,237 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "tests/support/covers.h"
+#include "tests/support/materials.h"
+#include "tests/support/random.h"
+
+// What every material that scatters light owes the techniques that draw directions.
+namespace orrery::test {
+namespace {
+
+using Case = Probe<double>::Case;
+
+struct Material {
+  const char *name, *text;
+};
+const Material kMaterials[] = {
+    {"Lambert", "{'type': 'lambert', 'reflectance': [0.9, 0.5, 0.1]}"},
+    {"OrenNayar", "{'type': 'oren-nayar', 'reflectance': [0.9, 0.5, 0.1], 'roughness': 0.7}"},
+    {"PolishedMetal",
+     "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], 'roughness': 0.3}"},
+    {"BrushedMetal",
+     "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], 'roughness': 0.6}"},
+    {"RoughestMetal", "{'type': 'metal', 'n': [0, 0, 0], 'k': [1, 1, 1], 'roughness': 1}"},
+};
+
+constexpr int kViewers = 5;
+Vec3d viewer(int number) {
+  const double cosine[kViewers] = {1, 0.85, 0.5, 0.2, 0.05};
+  const double angle = 0.7 + 1.3 * number, sine = std::sqrt(1 - cosine[number] * cosine[number]);
+  return {sine * std::cos(angle), sine * std::sin(angle), cosine[number]};
+}
+Case seen_from(const Vec3d& viewer) {
+  Case c;
+  c.direction = -viewer;
+  return c;
+}
+
+// The hemisphere in cells: the cosine is 1 - r^2, the azimuth in turns, a grid of points in each.
+constexpr int kRings = 48, kSectors = 64, kPointsAcross = 8, kPointsAround = 20;
+struct Cells {
+  std::vector<double> mass = std::vector<double>(kRings * kSectors);
+
+  static std::size_t of(const Vec3d& direction) {
+    const double r = std::sqrt(std::max(0.0, 1 - direction.z));
+    const double turns = std::atan2(direction.y, direction.x) / (2 * std::numbers::pi) + 0.5;
+    return static_cast<std::size_t>(std::min(kRings - 1, static_cast<int>(r * kRings)) * kSectors +
+                                    std::min(kSectors - 1, static_cast<int>(turns * kSectors)));
+  }
+  double sum() const { return std::accumulate(mass.begin(), mass.end(), 0.0); }
+};
+
+// Integral over each cell of the density that the material tells.
+Cells cells_of(const Probe<double>& material, const Case& point) {
+  constexpr int kRows = kRings * kPointsAcross, kColumns = kSectors * kPointsAround;
+  std::vector<Case> cases;
+  std::vector<double> angle_share;
+  for (int i = 0; i < kRows; ++i)
+    for (int j = 0; j < kColumns; ++j) {
+      const double r = (i + 0.5) / (kRows), turns = (j + 0.5) / (kColumns)-0.5;
+      const double z = 1 - r * r, sine = std::sqrt(1 - z * z), angle = 2 * std::numbers::pi * turns;
+      cases.push_back(point);
+      cases.back().light = Vec3d(sine * std::cos(angle), sine * std::sin(angle), z);
+      angle_share.push_back(4 * std::numbers::pi * r / (kRows * kColumns));
+    }
+  const auto found = material.evaluated(cases);
+  Cells cells;
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    cells.mass[Cells::of(cases[i].light)] += found[i].pdf * angle_share[i];
+  return cells;
+}
+
+// Standard deviations that chi-square lies above its mean (Wilson and Hilferty). Cells that expect less than
+// 5 are one cell, together with draws that nothing goes on from.
+double chi_square_deviations(const Cells& expected, const std::vector<Probe<double>::Sampled>& drawn) {
+  std::vector<double> count(expected.mass.size());
+  double lost = 0;
+  for (const auto& one : drawn) (one.pdf > 0 ? count[Cells::of(one.direction)] : lost) += 1;
+  const auto total = static_cast<double>(drawn.size());
+  double chi2 = 0, rest_expected = total * (1 - expected.sum()), rest = lost;
+  int degrees = 0;
+  const auto add = [&](double found, double mean) {
+    chi2 += (found - mean) * (found - mean) / mean;
+    ++degrees;
+  };
+  for (std::size_t i = 0; i < count.size(); ++i) {
+    const double mean = total * expected.mass[i];
+    if (mean >= 5) {
+      add(count[i], mean);
+    } else {
+      rest_expected += mean;
+      rest += count[i];
+    }
+  }
+  if (rest_expected >= 5) add(rest, rest_expected);
+  const double k = degrees - 1, spread = 2 / (9 * k);
+  return (std::cbrt(chi2 / k) - (1 - spread)) / std::sqrt(spread);
+}
+
+class Scattering : public testing::TestWithParam<Material> {};
+
+// Sidak: with 25 tests, one in a hundred runs would have a deviation above 3.35.
+TEST_P(Scattering, DrawsInProportionToItsDensity) {
+  covers("light-24");
+  const Probe<double> material(GetParam().text);
+  for (int v = 0; v < kViewers; ++v) {
+    const Case point = seen_from(viewer(v));
+    const double z = chi_square_deviations(cells_of(material, point), material.sampled(point, 500'000));
+    EXPECT_LT(z, 3.35) << "viewer " << v;
+    EXPECT_GT(z, -5) << "viewer " << v;
+  }
+}
+
+TEST_P(Scattering, DensityIntegratesToTheShareThatLeaves) {
+  covers("light-25");
+  const Probe<double> material(GetParam().text);
+  for (int v = 0; v < kViewers; ++v) {
+    const Case point = seen_from(viewer(v));
+    const auto drawn = material.sampled(point, 500'000);
+    const auto leave = std::count_if(drawn.begin(), drawn.end(), [](const auto& d) { return d.pdf > 0; });
+    EXPECT_NEAR(cells_of(material, point).sum(), static_cast<double>(leave) / 500'000, 2e-3) << v;
+  }
+}
+
+TEST_P(Scattering, IsTheSameFromLightToViewerAndBack) {
+  covers("light-26");
+  const Probe<double> material(GetParam().text);
+  Random random(1);
+  std::vector<Case> there, back;
+  for (int i = 0; i < 100'000; ++i) {
+    const Vec3d a = random.direction_above(Vec3d(0, 0, 1)), b = random.direction_above(Vec3d(0, 0, 1));
+    there.push_back(seen_from(a));
+    there.back().light = b;
+    back.push_back(seen_from(b));
+    back.back().light = a;
+  }
+  const auto forth = material.evaluated(there), reverse = material.evaluated(back);
+  double worst = 0;
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const double f = forth[i].f_cos.x / there[i].light.z, r = reverse[i].f_cos.x / back[i].light.z;
+    worst = std::max(worst, std::abs(f - r) / std::max(f, r));
+  }
+  EXPECT_LT(worst, 1e-12);
+}
+
+TEST_P(Scattering, WeighsDrawsByWhatItEvaluates) {
+  const Probe<double> material(GetParam().text);
+  for (int v = 0; v < kViewers; ++v) {
+    std::vector<Case> cases;
+    const auto drawn = material.sampled(seen_from(viewer(v)), 10'000);
+    for (const auto& d : drawn) {
+      cases.push_back(seen_from(viewer(v)));
+      cases.back().light = d.direction;
+    }
+    const auto told = material.evaluated(cases);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (drawn[i].pdf == 0) {
+        ASSERT_EQ(drawn[i].weight, Vec3d());
+        continue;
+      }
+      ASSERT_EQ(drawn[i].pdf, told[i].pdf);
+      ASSERT_NEAR(length(drawn[i].direction), 1, 1e-14);
+      const double scale = 1 / (std::numbers::pi * told[i].pdf);
+      ASSERT_NEAR(length(drawn[i].weight - told[i].f_cos * scale), 0, 1e-13 * (1 + length(drawn[i].weight)));
+    }
+  }
+}
+
+// In float the direction itself is off by 1e-7, and the narrowest lobe is 0.09 wide.
+TEST_P(Scattering, FloatAndDoubleAgree) {
+  const Probe<double> exact(GetParam().text);
+  const Probe<float> single(GetParam().text);
+  Random random(3);
+  std::vector<Case> doubles;
+  std::vector<Probe<float>::Case> floats;
+  for (int i = 0; i < 20'000; ++i) {
+    Case c = seen_from(random.direction_above(Vec3d(0, 0, 1)));
+    c.light = random.below(2) ? random.direction_above(c.normal)
+                              : Vec3d(c.direction.x, c.direction.y, -c.direction.z);
+    Probe<float>::Case f;
+    f.direction = Vec3f(c.direction);
+    f.light = Vec3f(c.light);
+    doubles.push_back(c);
+    floats.push_back(f);
+  }
+  const auto a = exact.evaluated(doubles);
+  const auto b = single.evaluated(floats);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_NEAR(static_cast<double>(b[i].f_cos.x), a[i].f_cos.x, 2e-4 * (a[i].f_cos.x + 0.01));
+    ASSERT_NEAR(static_cast<double>(b[i].pdf), a[i].pdf, 2e-4 * (a[i].pdf + 0.01));
+  }
+}
+
+// Interpolated normals may face away from the viewer, and the light may stand behind either surface.
+template <class T>
+void million_points(const char* text) {
+  const Probe<T> material(text);
+  Random random(4);
+  std::vector<typename Probe<T>::Case> cases(1'000'000);
+  for (auto& c : cases) {
+    const Vec3d normal = random.direction();
+    c.geometric = safe_normalize(Vec3<T>(normal));
+    c.direction = -safe_normalize(Vec3<T>(random.below(4) ? random.direction_above(normal) : normal));
+    c.normal = random.below(2) ? c.geometric : safe_normalize(Vec3<T>(random.direction()));
+    c.light = random.below(4) ? safe_normalize(Vec3<T>(random.direction()))
+                              : (random.below(2) ? -c.direction : c.direction);
+  }
+  int wrong = 0;
+  const auto found = material.evaluated(cases);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto& [f_cos, pdf] = found[i];
+    wrong += !(std::isfinite(pdf) && pdf >= 0 && std::isfinite(f_cos.x) && f_cos.x >= 0);
+    wrong += pdf > 0 && !(dot(cases[i].light, cases[i].geometric) > 0);
+  }
+  for (int i = 0; i < 2'000; ++i)
+    for (const auto& drawn : material.sampled(cases[static_cast<std::size_t>(i)], 64)) {
+      wrong += !(std::isfinite(drawn.pdf) && std::isfinite(drawn.weight.x) && drawn.weight.x >= 0);
+      wrong += !(std::abs(length(drawn.direction) - 1) < 8 * std::numeric_limits<T>::epsilon());
+      wrong += drawn.pdf > 0 && !(dot(drawn.direction, cases[static_cast<std::size_t>(i)].geometric) > 0);
+    }
+  EXPECT_EQ(wrong, 0);
+}
+TEST_P(Scattering, AMillionPointsGiveNumbers) {
+  covers("A32");
+  million_points<float>(GetParam().text);
+  million_points<double>(GetParam().text);
+}
+
+INSTANTIATE_TEST_SUITE_P(Materials, Scattering, testing::ValuesIn(kMaterials),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
+
+}  // namespace
+}  // namespace orrery::test
