@@ -20,7 +20,7 @@ struct OrenNayar {
   Vec3<N> multiple_scale;  // of the product of two grazing_loss()
 
   static OrenNayar<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true}; }
+  MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
 
   // Fujii: A (1 + roughness s / t) with s = L.V - N.L N.V and t = max(N.L, N.V) where s > 0, else 1. An
   // interpolated normal may face away from the viewer, who then looks along the surface.

@@ -233,5 +233,22 @@ TEST_P(Scattering, AMillionPointsGiveNumbers) {
 INSTANTIATE_TEST_SUITE_P(Materials, Scattering, testing::ValuesIn(kMaterials),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
+// Paths may share what they find where a surface looks the same from everywhere.
+TEST(Scatter, WhatLooksOtherwiseFromAnotherSideIsGlossy) {
+  std::vector<Material> all(std::begin(kMaterials), std::end(kMaterials));
+  all.push_back({"Matt", "{'type': 'rough', 'kd': 0.5}"});
+  all.push_back({"Shiny", "{'type': 'rough', 'kd': 0.5, 'ks': 0.5, 'shininess': 4}"});
+  for (const Material& material : all) {
+    const Probe<double> probe(material.text);
+    bool same = true;
+    for (int a = 0; a < kViewers; ++a) {
+      Case first = seen_from(viewer(0)), other = seen_from(viewer(a));
+      first.light = other.light = safe_normalize(Vec3d(0.3, -0.2, 0.6));
+      same = same && length(probe.evaluated(first).f_cos - probe.evaluated(other).f_cos) < 1e-12;
+    }
+    EXPECT_EQ(probe.traits().glossy, !same) << material.name;
+  }
+}
+
 }  // namespace
 }  // namespace orrery::test

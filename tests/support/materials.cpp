@@ -114,6 +114,14 @@ Vec3<T> Probe<T>::ambient() const {
   return b->radiance[0];
 }
 
+template <class T>
+MaterialTraits Probe<T>::traits() const {
+  MaterialTraits all;
+  for (const auto& set : scene_->materials)
+    if (set->size() > 0) all |= set->traits();
+  return all;
+}
+
 template class Probe<float>;
 template class Probe<double>;
 

@@ -47,6 +47,7 @@ class Probe {
   std::vector<Sampled> sampled(const Case& one, int count, std::uint64_t seed = 1) const;
   std::vector<Specular> specular(std::span<const Case> cases) const;
   Specular specular(const Case& one) const { return specular(std::span(&one, 1)).front(); }
+  MaterialTraits traits() const;
   // What leaves under ambient light of 1.
   Vec3<T> ambient() const;
 
