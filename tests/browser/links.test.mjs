@@ -103,7 +103,7 @@ page_test(
     await rest(page);
     assert.equal(await card_of(page).isVisible(), false);
     const { scene, technique, samples } = await hash_of(page);
-    assert.deepEqual([scene, technique, samples], ["flag", undefined, "1"], "only what was refused is dropped");
+    assert.deepEqual([scene, technique, samples], ["cornell-box", undefined, "1"], "only what was refused is dropped");
   },
   refused,
 );
