@@ -6,6 +6,7 @@
 
 #include "core/model/counts.h"
 #include "core/model/film.h"
+#include "core/render/sampled_error.h"
 #include "core/render/worker_pool.h"
 #include "core/tuning/settle.h"
 
@@ -29,6 +30,7 @@ struct RenderStats {
   double trace_ms = 0;               // wall clock
   double cpu_ms = 0;                 // of tracing, on all threads together
   std::uint64_t non_finite_pixels = 0;
+  SampledError error;  // of an even number of samples that were traced together
 };
 
 // A scene and a settled plan, ready to render.

@@ -26,7 +26,9 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
 
 template <class T>
 TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
-    : plan_(plan), tracer_(make_tracer(*plan.technique, world, plan)) {
+    : plan_(plan),
+      places_samples_(plan.samples > 1 || plan.technique->interreflects),
+      tracer_(make_tracer(*plan.technique, world, plan)) {
   sums_.channels.resize(plan.channels.size());
 }
 
@@ -34,17 +36,19 @@ template <class T>
 bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint, Film& film) {
   cut_.clear();
   begin_looks(tile);
+  if (places_samples_) find_streams(tile, SampleSet::pixel, pixel_streams_);
   if (plan_.samples == 1 && film.storage() != FilmStorage::sums) {
     if (!trace(tile, 0, checkpoint)) return false;
     put_single(tile, film);
   } else {
     sums_.samples = 0;
     if (tile.first_sample > 0) film.take(tile, sums_);
-    if (plan_.samples > 1) find_streams(tile, SampleSet::pixel, pixel_streams_);
     for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
       if (!checkpoint.go_on() || !trace(tile, sample, checkpoint)) return false;
       add_sample();
+      if (tile.first_sample == 0 && 2 * (sample + 1) == tile.samples) first_half_ = sums_.radiance;
     }
+    if (tile.first_sample == 0 && tile.samples % 2 == 0) add_error(tile);
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
   if (!cut_.empty()) add_cut(tile);
@@ -54,7 +58,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
 template <class T>
 bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& checkpoint) {
   const Draws draws(plan_.seed, tile, sample);
-  if (plan_.samples > 1) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, samples_);
+  if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, samples_);
   plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   if (!tracer_->trace(rays_, draws, result_, stats_.counts, checkpoint)) return false;
@@ -156,8 +160,44 @@ void TileRenderer<T>::add_cut(const TileView& tile) {
 }
 
 template <class T>
+void TileRenderer<T>::add_error(const TileView& tile) {
+  const double share = 1.0 / tile.samples;
+  SampledError of_tile;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double all = 0;
+    for (int block = 0; block < kBatch; block += 16) {
+      double sum = 0;
+      int inside = 0;
+      for (int slot = block; slot < block + 16; ++slot) {
+        const TilePixel p = tile_pixel(slot);
+        if (p.x >= tile.width || p.y >= tile.height) continue;
+        const auto i = static_cast<std::size_t>(slot);
+        const double half_difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * share;
+        of_tile.pixel.squares += half_difference * half_difference;
+        sum += half_difference;
+        ++inside;
+      }
+      of_tile.pixel.values += inside;
+      all += sum;
+      if (inside < 16) continue;
+      of_tile.block4.squares += sum * sum / 256;
+      of_tile.block4.values += 1;
+    }
+    if (tile.width < kTileSide || tile.height < kTileSide) continue;
+    of_tile.block32.squares += all * all / (double{kBatch} * kBatch);
+    of_tile.block32.values += 1;
+  }
+  const double mean_square = of_tile.pixel.squares / of_tile.pixel.values;
+  of_tile.tiles = 1;
+  of_tile.tile_sum = mean_square;
+  of_tile.tile_squares = mean_square * mean_square;
+  stats_.error.add(of_tile);
+}
+
+template <class T>
 void TileRenderer<T>::add_to(RenderStats& stats) const {
   stats.counts.add(stats_.counts);
+  stats.error.add(stats_.error);
   stats.mean_cut += stats_.mean_cut;
   stats.max_cut = std::max(stats.max_cut, stats_.max_cut);
   stats.non_finite_pixels += stats_.non_finite_pixels;

@@ -28,9 +28,11 @@ class TileRenderer {
   void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, TileSamples& to);
   void add_sample();
   void add_cut(const TileView& tile);
+  void add_error(const TileView& tile);
   void put_single(const TileView& tile, Film& film);
 
   const Plan& plan_;
+  const bool places_samples_;  // elsewhere than at the pixels' centres
   TracerPtr<T> tracer_;
   // By slot: where the samples' places within this tile's pixels come from, and those of looks.
   Array<std::uint32_t> pixel_streams_, look_streams_;
@@ -40,6 +42,7 @@ class TileRenderer {
   RayBatch<T> rays_;
   TraceResult<T> result_;
   TileSums sums_;
+  std::array<TileSums::Plane, 3> first_half_;  // of the radiance, after half of the samples
   TileMeans means_;
   std::vector<double> cut_;  // sums by slot of this tile; empty as long as nothing was cut
   RenderStats stats_;

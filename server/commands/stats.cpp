@@ -1,6 +1,7 @@
 #include "server/commands/stats.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -59,6 +60,16 @@ void prediction_text(std::string& text, const Plan& plan, const TraceCounts& cou
        static_cast<unsigned long long>(proofs), share);
 }
 
+// In linear radiance; an interval of 95 %.
+ordered_json error_json(const SampledError& error) {
+  const auto [low, high] = error.interval();
+  ordered_json json = {{"rmse", error.pixel.rmse()}, {"rmse_low", low}};
+  json["rmse_high"] = std::isfinite(high) ? ordered_json(high) : ordered_json(nullptr);
+  json["rmse_4"] = error.block4.rmse();
+  json["rmse_32"] = error.block32.rmse();
+  return json;
+}
+
 }  // namespace
 
 ordered_json stats_json(const Plan& plan, const RunStats& stats) {
@@ -93,6 +104,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
                                  {"render_cpu_s", stats.render_cpu_s},
                                  {"cpu_s", process_cpu_ms() / 1000}};
   json.update(measured);
+  if (stats.render.error.known()) json["error"] = error_json(stats.render.error);
   return json;
 }
 
@@ -115,6 +127,11 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
   if (plan.prediction != Prediction::none) prediction_text(text, plan, counts);
   line(text, "%-12s %14llu rays, weight a pixel %.3g on average, %.3g at most", "cut",
        static_cast<unsigned long long>(counts.cut_rays), stats.render.mean_cut, stats.render.max_cut);
+  if (const SampledError& error = stats.render.error; error.known()) {
+    const auto [low, high] = error.interval();
+    line(text, "%-12s %14.4g RMSE of a pixel (95 %%: %.4g to %.4g), %.3g of 4 x 4, %.3g of 32 x 32", "error",
+         error.pixel.rmse(), low, high, error.block4.rmse(), error.block32.rmse());
+  }
   if (stats.render.non_finite_pixels > 0)
     line(text, "%-12s %14llu", "not finite", static_cast<unsigned long long>(stats.render.non_finite_pixels));
   line(text, "%-12s %11.1f ms loading", "time", stats.load_ms);

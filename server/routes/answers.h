@@ -36,7 +36,8 @@ std::string server_timing(const Timing& timing);
 // Sets Orrery-Warning, unless there are none.
 void set_warnings(Response& response, std::span<const Problem> warnings);
 
-// A picture, and what it took: Server-Timing with the steps, the structure and its counted work, and X-Rays.
+// A picture, and what it took: Server-Timing with the steps, the structure and its counted work, and X-Rays;
+// X-RMSE where its samples tell their error.
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);
 
 Response json_answer(int status, const nlohmann::ordered_json& json);

@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+
+// The error that a picture tells of itself.
+namespace orrery::test {
+namespace {
+
+RenderRequest of(int side, int samples, int reuse, std::uint64_t seed) {
+  RenderRequest request = size(side, side);
+  request.samples = samples;
+  request.reuse = reuse;
+  request.seed = seed;
+  return request;
+}
+
+// Against the true one, from pictures of other seeds: the mean of half of their squared differences. Where
+// edges have much of it, the halves are not independent, and tell up to a third too much.
+TEST(SampledError, IsTheErrorOfThePicture) {
+  covers("light-47 D17");
+  constexpr int kSeeds = 12;
+  const auto box = load(sample("cornell-box"));
+  for (const int reuse : {1, 16}) {
+    std::vector<Picture> pictures;
+    double told = 0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      pictures.push_back(render(box, of(64, 16, reuse, static_cast<std::uint64_t>(seed))));
+      told += std::pow(pictures.back().stats.error.pixel.rmse(), 2) / kSeeds;
+    }
+    double squares = 0;
+    for (int a = 0; a < kSeeds; a += 2)
+      for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i)
+        for (float Vec3f::*channel : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
+          const auto& p = pictures[static_cast<std::size_t>(a)].pixels[i];
+          const auto& q = pictures[static_cast<std::size_t>(a) + 1].pixels[i];
+          squares += std::pow(double{p.*channel} - q.*channel, 2);
+        }
+    const double truth = squares / (kSeeds * 3.0 * static_cast<double>(pictures[0].pixels.size()));
+    EXPECT_GT(std::sqrt(told / truth), 0.97) << reuse;
+    EXPECT_LT(std::sqrt(told / truth), 1.6) << reuse;
+    const auto [low, high] = pictures[0].stats.error.interval();
+    EXPECT_LT(low, pictures[0].stats.error.pixel.rmse());
+    EXPECT_GT(high, pictures[0].stats.error.pixel.rmse());
+  }
+}
+
+TEST(SampledError, IsToldOfEvenCountsAlone) {
+  const auto box = load(sample("cornell-box"));
+  EXPECT_FALSE(render(box, of(32, 1, 1, 0)).stats.error.known());
+  EXPECT_FALSE(render(box, of(32, 3, 1, 0)).stats.error.known());
+  EXPECT_TRUE(render(box, of(32, 2, 1, 0)).stats.error.known());
+}
+
+TEST(SampledError, IsNothingOfAnEvenPicture) {
+  RenderRequest request = size(40, 40);
+  request.samples = 4;
+  const Picture picture = render(
+      scene_of("[{'type': 'sphere', 'center': [0, 0, 50], 'radius': 1}]", "{'background': [0.25, 0.5, 1]}"),
+      request);
+  EXPECT_TRUE(picture.stats.error.known());
+  EXPECT_EQ(picture.stats.error.pixel.rmse(), 0);
+  EXPECT_EQ(picture.stats.error.block32.values, 3);  // one whole tile
+}
+
+}  // namespace
+}  // namespace orrery::test
