@@ -33,6 +33,12 @@ void read_camera(Params& p, Scene& scene) {
   placement.eye = p.point("eye", "Where the picture is taken from, in metres.");
   placement.look_at = p.point("look_at", "What stands in the middle of the picture, in metres.");
   placement.up = p.direction("up", "Direction that is up in the picture.", Vec3d(0, 1, 0));
+  placement.aperture_radius =
+      p.number("aperture_radius", "Of the lens that paths are seen through, in metres; 0: a pinhole.",
+               {.min = 0, .max = kMaxLength}, 0.0);
+  const double focus = p.positive(
+      "focus_distance", "Along the view to what is sharp, in metres; to look_at if left out.", derived(1.0));
+  if (p.has("focus_distance")) placement.focus_distance = focus;
   scene.camera = camera_types()[*type].read(p);
   for (const auto& [name, value] : scene.camera->parameters())
     if (std::string_view(name) == "fov_degrees") scene.render.fov_degrees = value;

@@ -34,6 +34,8 @@ CameraFrame frame_at(const CameraPlacement& placement, const Camera& camera, con
   frame.up = pole * cosine - out * sine;
   frame.right = right;
   frame.distance = own_distance * orbit.distance;
+  frame.aperture_radius = placement.aperture_radius;
+  frame.focus_distance = placement.focus_distance.value_or(frame.distance);
   frame.eye = placement.look_at + frame.back * frame.distance;
   const bool own_place = turn.sine == 0 && turn.cosine == 1 && lift.sine == 0 && orbit.distance == 1;
   if (own_place) frame.eye = placement.eye;

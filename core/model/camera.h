@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/model/tile.h"
@@ -13,6 +14,8 @@ class Params;
 // Where a scene's own camera stands.
 struct CameraPlacement {
   Vec3d eye{0, 0, 4}, look_at{0, 0, 0}, up{0, 1, 0};
+  double aperture_radius = 0;                 // of a thin lens, metres; 0: a pinhole
+  std::optional<double> focus_distance = {};  // along the view, metres; none: where look_at is
 };
 
 // A place on an orbit, relative to the scene's own camera: a turn about `up` through `look_at` (anticlockwise
@@ -28,6 +31,7 @@ struct CameraFrame {
   Vec3d eye, right, up, back;
   double distance = 0;     // from eye to look_at, metres
   double half_extent = 0;  // half the picture's height: see Camera::half_extent()
+  double aperture_radius = 0, focus_distance = 0;
 };
 
 // Where in its pixel each slot of a tile is sampled, in [0, 1).

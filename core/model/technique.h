@@ -48,7 +48,8 @@ struct TechniqueType {
   bool secondary_rays;  // follows mirrored and refracted rays
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
-  bool interreflects = false;  // surfaces light each other, and surfaces that emit are light sources
+  bool interreflects =
+      false;  // surfaces light each other, those that emit are light sources, and lenses blur
 };
 
 template <template <class> class Derived, class T>

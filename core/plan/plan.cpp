@@ -149,6 +149,7 @@ class Planner {
   }
 
   void choose_paths() {
+    plan_.lens = plan_.frame.aperture_radius > 0;
     plan_.min_contribution = 0;
     if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/cameras/thin_lens.h"
+
 namespace orrery {
 namespace {
 
@@ -60,6 +62,7 @@ bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& 
   const Draws draws(plan_.seed, tile, sample);
   if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, samples_);
   plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
+  if (plan_.lens) apply_thin_lens(plan_.frame, draws, SampleSet::lens, rays_);
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   if (!tracer_->trace(rays_, draws, result_, stats_.counts, checkpoint)) return false;
   look(tile, sample);
@@ -98,7 +101,7 @@ void TileRenderer<T>::begin_looks(const TileView& tile) {
     for (int slot = 0; slot < kBatch; ++slot)
       differs = differs || (rays_.t_max[slot] > 0 && result_.radiance[slot] != first);
   }
-  looks_ = differs ? kMostLooks : 1;
+  looks_ = differs || plan_.lens ? kMostLooks : 1;
 }
 
 template <class T>
@@ -106,6 +109,7 @@ void TileRenderer<T>::look(const TileView& tile, int sample) {
   for (int i = looks_ * sample; i < looks_ * (sample + 1); ++i) {
     place_samples(static_cast<std::uint32_t>(i), look_streams_, look_samples_);
     plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
+    if (plan_.lens) apply_thin_lens(plan_.frame, Draws(plan_.seed, tile, i), SampleSet::look_lens, rays_);
     tracer_->look(rays_, T(1) / static_cast<T>(looks_), result_, stats_.counts);
   }
 }
