@@ -64,9 +64,9 @@ void allow_origin(const Request& request, const std::vector<std::string>& origin
   response.set("Vary", vary.empty() ? "Origin" : vary + ", Origin");
   if (!is_listed(request, origins)) return;
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
-  response.set(
-      "Access-Control-Expose-Headers",
-      "ETag, Location, Orrery-Scene-Id, Orrery-Warning, Retry-After, Server-Timing, X-Rays, X-RMSE, X-Request-ID");
+  response.set("Access-Control-Expose-Headers",
+               "ETag, Location, Orrery-Scene-Id, Orrery-Warning, Retry-After, Server-Timing, X-Rays, X-RMSE, "
+               "X-Request-ID");
 }
 
 }  // namespace orrery
