@@ -11,10 +11,12 @@ namespace {
 
 constexpr double kSpecularShare = 0.5;  // of the rays, where some material is specular
 
-// Half of the vertices of a closed room survive the roulette; each sends one ray to a light source.
+// Seven of ten paths survive the roulette; each vertex sends one ray to a light source, and the first ones
+// are connected to those that others found. About two rays a sample look for what shines.
 double expected_path_rays(const Plan& plan) {
   constexpr double kSurviving = 0.7;
-  double rays = 1, share = 1;
+  constexpr double kLooks = 2;
+  double rays = 1 + kLooks + (plan.reuse - 1), share = 1;
   for (int depth = 1; depth <= plan.max_depth; ++depth) {
     rays += share * (1 + kSurviving);
     share *= kSurviving;

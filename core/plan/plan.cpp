@@ -41,6 +41,7 @@ class Planner {
     choose_order();
     choose_prediction();
     if (plan_.technique->interreflects) choose_paths();
+    if (!plan_.technique->interreflects) leave_out_for_trees();
     if (request_.full_model || plan_.technique->interreflects) return plan_;
     choose_lights();
     choose_specular();
@@ -148,8 +149,19 @@ class Planner {
                          : "the only object is convex and seen from outside: nothing stands in its light");
   }
 
+  // What a scene may have that is seen along paths alone.
+  void leave_out_for_trees() {
+    const std::string only = std::string(plan_.technique->name) + " does not follow such light; path does";
+    if (plan_.frame.aperture_radius > 0) decide("lens", "absent", only, Bound::unknown());
+    if (scene_.facts.materials.emits)
+      decide("light of surfaces that emit", "seen, lights nothing", only, Bound::unknown());
+  }
+
   void choose_paths() {
     plan_.lens = plan_.frame.aperture_radius > 0;
+    if (plan_.lens)
+      decide("lens", "thin",
+             "its aperture has a radius of " + number_text(plan_.frame.aperture_radius) + " m");
     plan_.min_contribution = 0;
     if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit;
