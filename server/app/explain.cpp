@@ -65,8 +65,9 @@ std::string explain_text(const Scene& scene, const Plan& plan) {
                      std::to_string(plan.samples) + (plan.samples == 1 ? " sample" : " samples") +
                      " each, of " + std::to_string(scene.object_count) +
                      (scene.object_count == 1 ? " object" : " objects") + " in the light of " +
-                     std::to_string(scene.lights.size()) + ": " + std::to_string(camera_rays(plan)) +
-                     " camera rays, " + plan.technique->name + "\n";
+                     std::to_string(scene.lights.size()) +
+                     (scene.facts.materials.emits ? " and of what emits: " : ": ") +
+                     std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "\n";
   std::size_t subject_width = 0, choice_width = 0;
   for (const Decision& d : plan.decisions) {
     subject_width = std::max(subject_width, d.subject.size());
