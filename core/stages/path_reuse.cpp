@@ -56,6 +56,7 @@ void PathReuse<T>::keep_second(int i, const PathBatch<T>& paths, const SurfaceBa
   for (unsigned bits = bits_of(shared); bits != 0; bits &= bits - 1) {
     const int lane = i + std::countr_zero(bits);
     const int slot = static_cast<int>(paths.slot[lane]);
+    if (!(pdf_[slot] > 0)) continue;  // found through a mirror: no density of the others tells how likely
     position_.set(slot, surface.position[lane]);
     geometric_.set(slot, surface.geometric[lane]);
     step_[slot] = surface.step[lane];

@@ -113,6 +113,25 @@ TEST(Path, SharingPathsChangesTheNoiseAlone) {
   }
 }
 
+// What some paths find through a mirror is not what others could have drawn.
+TEST(Path, SharingLeavesOutWhatMirrorsFind) {
+  const auto room = load(scene_of(
+      "[{'type': 'box', 'min': [-2, -1, -2], 'max': [2, 2, 5]}, {'type': 'sphere', 'center': [0.9, -0.4, 0],"
+      "'radius': 0.6, 'material': 'mirror'}, {'type': 'rectangle', 'corner': [-1, 1.9, -1], 'a': [1, 0, 0],"
+      "'b': [0, 0, 1], 'material': 'lamp'}]",
+      "{'materials': {'white': {'kd': 0.6}, 'mirror': {'type': 'metal', 'n': [0, 0, 0], 'k': [1, 1, 1], "
+      "'roughness': 0},"
+      "'lamp': {'type': 'lambert', 'reflectance': 0, 'emission': [5, 5, 5]}}}"));
+  const auto mean = [&](int reuse) {
+    RenderRequest request = size(64, 64);
+    request.technique = "path";
+    request.reuse = reuse;
+    request.samples = 128;
+    return render(room, request).sum();
+  };
+  EXPECT_NEAR(mean(16) / mean(1), 1, 0.006);
+}
+
 // Samples in two parts, in parts of a batch, on one thread and several: the same sums.
 TEST(Path, DependsOnNothingButTheSample) {
   covers("light-7");
