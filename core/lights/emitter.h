@@ -171,9 +171,11 @@ struct Emitter {
   Cone cone(const Vec3<N>& from) const {
     using std::sqrt;
     const Vec3<N> toward = at - from;
-    const N sine2 = length_a * length_a / dot(toward, toward), zero(T(0)), one(T(1));
-    // A point on the sphere sees it from inside or not at all.
-    const auto outside = sine2 < one - T(128) * std::numeric_limits<T>::epsilon();
+    const N distance2 = dot(toward, toward), zero(T(0)), one(T(1));
+    const N sine2 = length_a * length_a / distance2;
+    // A point on the sphere, but for rounding, sees it from inside or not at all.
+    const N rounding = T(128) * std::numeric_limits<T>::epsilon() * magnitude * length_a;
+    const auto outside = distance2 - length_a * length_a > rounding;
     const N height = sine2 / (one + sqrt(max_first(zero, N(one - sine2))));
     return {select(outside, height, zero), select(outside, N(T(0.5 / std::numbers::pi) / height), zero)};
   }

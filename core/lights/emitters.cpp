@@ -47,7 +47,8 @@ class EmitterKernel final : public LightKernel<T> {
     }
   }
 
-  // The shadow ray ends before the emitter by as much as rounding may move it or the ray's origin.
+  // The shadow ray ends where it is as far above the emitter as rounding may move that or the ray's origin: a
+  // point of the emitter itself is not lit by it.
   static void put(const Emitter<N>& emitter, const SurfaceBatch<T>& surface, const PathDraws<T>& draws, int i,
                   const MaskOf<N>& mine, const N& probability, LightBatch<T>& out) {
     const N zero(T(0));
@@ -55,12 +56,15 @@ class EmitterKernel final : public LightKernel<T> {
     const Vec3<N> from = surface.position.at(i);
     const auto drawn = emitter.draw(from, u, v);
     const N step = T(2) * (emitter.magnitude * (8 * std::numeric_limits<T>::epsilon()) + surface.step.at(i));
-    const N side = select(dot(drawn.point - from, drawn.normal) > zero, N(-step), step);
-    const Vec3<N> toward = drawn.point + drawn.normal * side - from;
-    const N distance = length(toward), pdf = drawn.pdf * probability;
-    const auto shines = pdf > zero && distance > zero && pdf < N(std::numeric_limits<T>::max());
-    out.shadow.direction.put(i, mine, toward * select(shines, N(T(1) / distance), zero));
-    out.shadow.t_max.put(i, mine, select(shines, distance, N(T(-1))));
+    const Vec3<N> line = drawn.point - from;
+    const N distance = length(line), pdf = drawn.pdf * probability;
+    const Vec3<N> toward = line * select(distance > zero, N(T(1) / distance), zero);
+    using std::abs;
+    const N cosine = abs(dot(toward, drawn.normal));
+    const N reach = distance - step / max_first(cosine, N(std::numeric_limits<T>::min()));
+    const auto shines = pdf > zero && reach > zero && pdf < N(std::numeric_limits<T>::max());
+    out.shadow.direction.put(i, mine, toward);
+    out.shadow.t_max.put(i, mine, select(shines, reach, N(T(-1))));
     constexpr T kPi = std::numbers::pi_v<T>;
     out.incident.put(i, mine, emitter.radiance * select(shines, N(T(1) / (kPi * pdf)), zero));
     out.pdf.put(i, mine, pdf);

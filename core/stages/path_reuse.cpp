@@ -170,8 +170,9 @@ bool PathReuse<T>::finish(Vec3Array<T>& radiance, TraceCounts& counts, const Che
       const int other = partner(slot, turn);
       if (turn == 0 && !takes_part) continue;
       const T total = total_[other];
-      if (!(total > 0)) continue;
-      const Vec3<T> share = connections_[static_cast<std::size_t>(turn)].share[slot];
+      const Connections& connections = connections_[static_cast<std::size_t>(turn)];
+      if (!(total > 0) || !(connections.density[slot] > 0)) continue;
+      const Vec3<T> share = connections.share[slot];
       found = found + share * suffix_[other] * (T(1) / total);
     }
     radiance.set(slot, radiance[slot] + found);

@@ -1,6 +1,7 @@
 #include "core/stages/sampled_light.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 #include "core/stages/emission.h"
@@ -8,15 +9,21 @@
 namespace orrery {
 namespace {
 
-// One half evenly, so that no light is forgotten where it is near, and one half by power.
-template <class T>
-std::vector<T> probabilities_of(const std::vector<double>& powers) {
+constexpr double kRandomNumbers = 0x1p24;  // that a light is chosen by
+
+// Shares of the random numbers: one half evenly, so that no light is forgotten where it is near, and one half
+// by power. Returns the first number beyond each light's own.
+std::vector<std::uint32_t> ends_of(const std::vector<double>& powers) {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
   const double even = 1 / static_cast<double>(powers.size());
-  std::vector<T> probabilities;
-  for (const double power : powers)
-    probabilities.push_back(static_cast<T>(sum > 0 ? (even + power / sum) / 2 : even));
-  return probabilities;
+  std::vector<std::uint32_t> ends;
+  double end = 0;
+  for (const double power : powers) {
+    end += sum > 0 ? (even + power / sum) / 2 : even;
+    ends.push_back(static_cast<std::uint32_t>(std::min(1.0, end) * kRandomNumbers + 0.5));
+  }
+  ends.back() = static_cast<std::uint32_t>(kRandomNumbers);
+  return ends;
 }
 
 // The share of what one strategy found that counts, where another would have found it with density `other`.
@@ -51,9 +58,12 @@ SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>&
     std::iota(source.index.begin() + static_cast<std::ptrdiff_t>(first_emitter_), source.index.end(), 0);
   }
   if (powers.empty()) return;
-  probability_ = probabilities_of<T>(powers);
-  cumulative_.resize(powers.size());
-  std::partial_sum(probability_.begin(), probability_.end(), cumulative_.begin());
+  end_ = ends_of(powers);
+  std::uint32_t begin = 0;
+  for (const std::uint32_t end : end_) {
+    probability_.push_back(static_cast<T>((end - begin) / kRandomNumbers));
+    begin = end;
+  }
 }
 
 template <class T>
@@ -65,15 +75,14 @@ void SampledLight<T>::choose(const PathDraws<T>& draws, const Groups& groups) {
     }
     return;
   }
-  const auto last = static_cast<std::ptrdiff_t>(cumulative_.size()) - 1;
   for (const int i : groups) {
     const N u = draws.two(SampleSet::light_choice, i).u;
     for (int lane = 0; lane < kWidth<T>; ++lane) {
-      const auto found =
-          std::upper_bound(cumulative_.begin(), cumulative_.end(), u[static_cast<std::size_t>(lane)]);
-      const auto number = std::min(found - cumulative_.begin(), last);
-      chosen_[i + lane] = static_cast<IndexOf<T>>(number);
-      choices_.probability[i + lane] = probability_[static_cast<std::size_t>(number)];
+      const auto number =
+          static_cast<std::uint32_t>(double{u[static_cast<std::size_t>(lane)]} * kRandomNumbers);
+      const auto light = std::upper_bound(end_.begin(), end_.end(), number) - end_.begin();
+      chosen_[i + lane] = static_cast<IndexOf<T>>(light);
+      choices_.probability[i + lane] = probability_[static_cast<std::size_t>(light)];
     }
   }
 }

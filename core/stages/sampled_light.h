@@ -42,7 +42,9 @@ class SampledLight {
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
   std::vector<Source> sources_;
-  std::vector<T> probability_, cumulative_;  // by number of the light
+  // By number of the light: its probability, and the first of the 2^24 random numbers that is beyond its own.
+  std::vector<T> probability_;
+  std::vector<std::uint32_t> end_;
   std::size_t first_emitter_ = 0;
   Array<IndexOf<T>> chosen_;  // number of the light
   LightChoices<T> choices_;

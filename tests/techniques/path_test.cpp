@@ -84,6 +84,50 @@ TEST(Path, IrradianceOfASphereAndADisk) {
   EXPECT_NEAR(disk.mean, 0.25 / (4 + 0.25), 4 * disk.error() + 1e-9);
 }
 
+// A lamp that reflects, alone in the dark: nothing but itself could light it, and it is flat or seen from
+// outside.
+TEST(Path, ConvexLampsDoNotLightThemselves) {
+  struct Lamp {
+    const char* text;
+    Vec3d middle;
+  };
+  for (const auto& [text, middle] :
+       {Lamp{"{'type': 'rectangle', 'corner': [0.1, 0.2, -0.3], 'a': [0.5, 0.2, 0.1], 'b': [-0.2, 0.4, 0.2]}",
+             Vec3d(0.25, 0.5, -0.15)},
+        Lamp{"{'type': 'disk', 'center': [0.3, 0.4, -0.2], 'normal': [0.3, 0.5, 0.8], 'radius': 0.5}",
+             Vec3d(0.3, 0.4, -0.2)},
+        Lamp{"{'type': 'sphere', 'center': [1000, 1000, 1000], 'radius': 0.2}", Vec3d(1000, 1000, 1000)},
+        Lamp{"{'type': 'sphere', 'center': [0.1, 0.2, 0.3], 'radius': 0.4}", Vec3d(0.1, 0.2, 0.3)}}) {
+    const Json scene =
+        scene_with(json(text), Json{{"materials", {{"white", {{"kd", 0.9}, {"emission", {1, 1, 1}}}}}}});
+    EXPECT_EQ(estimate(scene, middle + Vec3d(0.3, 0.4, 3), middle, 4).mean, 1) << text;
+  }
+}
+
+// A square of 80,000 triangles, each of which is chosen once in 80,000 times.
+TEST(Path, ManyEmittersAreAsBrightAsOne) {
+  constexpr int kSide = 200;
+  Json positions = Json::array(), indices = Json::array();
+  for (int y = 0; y <= kSide; ++y)
+    for (int x = 0; x <= kSide; ++x)
+      positions.push_back({static_cast<double>(x) / kSide - 0.5, 1, static_cast<double>(y) / kSide - 0.5});
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const int a = y * (kSide + 1) + x, b = a + kSide + 1;
+      indices.push_back({a, a + 1, b});
+      indices.push_back({a + 1, b + 1, b});
+    }
+  Json scene = over_floor({{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
+  scene["camera"] = {
+      {"type", "perspective"}, {"eye", {30, 0.05, 0}}, {"look_at", {0, 0, 0}}, {"fov_degrees", 1e-3}};
+  for (RenderRequest request : {in_float(size(8, 8)), in_double(size(8, 8))}) {
+    request.technique = "path";
+    request.max_depth = 1;
+    request.samples = 256;
+    EXPECT_NEAR(render(scene, request).sum() / 64 / .239457, 1, 0.01);
+  }
+}
+
 // Groups of paths that share what they find change neither the mean nor which light arrives where, and lower
 // the error of a pixel.
 TEST(Path, SharingPathsChangesTheNoiseAlone) {
