@@ -38,8 +38,6 @@ export const serviceFaults = [
             "SharedWork.CountsAsLost*"),
   admission("one client alone makes the service full", "greediest(waiting_costs(Lane::interactive)).second <= kSmallCost", "true",
             "Admission.WhatWaitsIsBounded*"),
-  admission("who loses its place before it has noticed having it is turned away", "if (work.has_begun()) {", "if (work.state == State::runs) {",
-            "SharedWorkThatRuns.IsNotFree*"),
   admission("what was used is free", "from_->charge_overruns(*work_)", "0",
             "Admission.WhatWasUsedIsCharged*"),
   admission("what nobody waited for is charged", "return waited ? std::max(work.since, *waited) : timer_.now();", "return work.since;",
