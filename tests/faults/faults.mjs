@@ -16,6 +16,7 @@ import {planFaults} from "./plan.mjs";
 import {roundingFaults} from "./rounding.mjs";
 import {serviceFaults} from "./service.mjs";
 import {stageFaults} from "./stages.mjs";
+import {lightFaults} from "./light.mjs";
 import {optionFaults} from "./options.mjs";
 import {structureFaults} from "./structures.mjs";
 import {studyFaults} from "./study.mjs";
@@ -463,6 +464,7 @@ const growth = [
 export const faults = [
   ...cylinderRoots, ...originAsSign, ...lightDirections, ...fixedEpsilons, ...insideOfGlass,
   ...totalReflection, ...negativeCosines, ...aspect, ...slabs, ...sharesOfLight, ...growth,
-  ...meshFaults, ...structureFaults, ...stageFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
+  ...meshFaults, ...structureFaults, ...stageFaults,
+  ...lightFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
   ...planFaults, ...roundingFaults, ...studyFaults, ...imageFaults, ...pageFaults, ...optionFaults,
 ];
