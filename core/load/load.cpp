@@ -26,8 +26,6 @@ std::vector<Choice> choices_of(const Types& types) {
   return choices;
 }
 
-constexpr double kMaxAperture = 1000;  // metres
-
 void read_camera(Params& p, Scene& scene) {
   const auto type = p.pick("type", "Projection.", choices_of(camera_types()));
   if (!type) return;
@@ -37,7 +35,7 @@ void read_camera(Params& p, Scene& scene) {
   placement.up = p.direction("up", "Direction that is up in the picture.", Vec3d(0, 1, 0));
   placement.aperture_radius =
       p.number("aperture_radius", "Of the lens that paths are seen through, in metres; 0: a pinhole.",
-               {.min = 0, .max = kMaxAperture}, 0.0);
+               {.min = 0, .max = kMaxLength}, 0.0);
   const double focus = p.positive(
       "focus_distance", "Along the view to what is sharp, in metres; to look_at if left out.", derived(1.0));
   if (p.has("focus_distance")) placement.focus_distance = focus;

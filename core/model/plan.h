@@ -57,12 +57,12 @@ struct Plan {
   std::vector<const ChannelType*> channels;  // beside radiance
   SurfaceFields fields;                      // what stages and channels read of surfaces
   // Stages that are present.
-  bool direct_light = true;    // light sources are evaluated
-  bool shadows = true;         // shadow rays are traced
-  bool specular = true;        // mirrored and refracted rays
-  bool filters = true;         // bodies weaken the light that crosses them
-  bool lens = false;           // camera rays leave from a lens
-  int reuse = 1;               // paths of a tile that share what their second vertices receive
+  bool direct_light = true;  // light sources are evaluated
+  bool shadows = true;       // shadow rays are traced
+  bool specular = true;      // mirrored and refracted rays
+  bool filters = true;       // bodies weaken the light that crosses them
+  bool lens = false;         // camera rays leave from a lens
+  int reuse = 1;             // paths of a tile that share what their second vertices receive; a power of two
   bool constant_half = false;  // with parallel viewer and light, the half vector is computed once a batch
   int slice = 256;             // rays that pass through the stages together; changes no result
   std::vector<Decision> decisions;

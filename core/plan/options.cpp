@@ -105,7 +105,7 @@ constexpr std::array kOptions{
       .section = Section::render,
       .kind = O::Integer<int>{&S::reuse, 1, kMaxReuse, 16},
       .placeholder = "N",
-      .help = "Paths of a tile that share what they find, at most; 1: none do."},
+      .help = "Paths of a tile that share what they find, at most, down to a power of two; 1: none do."},
     O{.key = "accelerator",
       .section = Section::render,
       .kind = O::Name{&S::accelerator, accelerator_names, "auto"},

@@ -1,6 +1,7 @@
 #include "core/plan/plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <limits>
 
@@ -90,6 +91,11 @@ class Planner {
       plan_.double_precision = asked == Precision::double_precision;
       return decide("precision", precision_name(plan_.double_precision), "as asked", rounding_bound());
     }
+    if (plan_.technique->interreflects && plan_.frame.aperture_radius > plan_.frame.focus_distance) {
+      plan_.double_precision = true;
+      return decide("precision", "double", "rays leave the lens far from where they are sharp",
+                    rounding_bound());
+    }
     const RoundingLimit limit = rounding_limit(scene_, plan_);
     plan_.double_precision = !(double{std::numeric_limits<float>::epsilon()} <= limit.epsilon);
     decide("precision", precision_name(plan_.double_precision),
@@ -165,7 +171,8 @@ class Planner {
     plan_.min_contribution = 0;
     if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit;
-    plan_.reuse = shares ? *plan_.asked.reuse : 1;
+    plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
+                         : 1;  // divides a tile
     decide("reuse of paths", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
            plan_.reuse > 1 ? "connections to what others found cost less than paths of one's own"
            : shares        ? "as asked"

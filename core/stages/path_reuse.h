@@ -19,6 +19,7 @@ template <class T>
 class PathReuse {
  public:
   // Geometry, accelerator and plan outlive it.
+  // REQUIRES: plan.reuse divides kBatch.
   PathReuse(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan);
 
   // Before a batch of camera rays.

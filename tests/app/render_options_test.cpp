@@ -12,12 +12,14 @@ namespace orrery::test {
 namespace {
 
 // Mirrors that face each other, so that depth and weight of rays matter; edges, so that samples and their
-// seed do; and a ball that moves.
+// seed do; a ball that moves; and matt balls that light each other.
 Json revealing_scene() {
   return scene_of(R"([
       {'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'mirror'},
       {'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'mirror'},
       {'type': 'sphere', 'center': [0.4, 0, 0], 'radius': 0.6, 'material': 'plum'},
+      {'type': 'sphere', 'center': [-0.8, 1.1, 0.4], 'radius': 0.4, 'material': 'chalk'},
+      {'type': 'sphere', 'center': [-0.1, 1.1, 0.4], 'radius': 0.3, 'material': 'chalk'},
       {'type': 'box', 'min': [-1.5, -0.8, -1], 'max': [-0.6, 0.3, 0.2], 'material': 'mirror'}])",
                   R"({'image': {'width': 32, 'height': 24},
       'render': {'samples': 4},
@@ -25,7 +27,8 @@ Json revealing_scene() {
       'background': [0.2, 0.3, 0.4],
       'ambient': [0.2, 0.2, 0.3],
       'lights': [{'type': 'point', 'position': [1, 1.5, 3]}],
-      'materials': {'mirror': {'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]},
+      'materials': {'chalk': {'type': 'lambert'},
+                    'mirror': {'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]},
                     'plum': {'type': 'rough', 'kd': [0.6, 0.1, 0.4], 'ks': 0.5}},
       'models': {'ball': {'objects': [
           {'type': 'sphere', 'center': [0, 0, 1], 'radius': 0.3, 'material': 'plum'}]}},
@@ -44,7 +47,8 @@ struct Others {
   }
   template <class I>
   std::vector<RenderRequest> operator()(const RenderOption::Integer<I>& kind) const {
-    return {with(kind, *(own.*kind.member) + 1)};
+    const I next = *(own.*kind.member) + 1;
+    return {with(kind, next), with(kind, 2 * next)};
   }
   std::vector<RenderRequest> operator()(const RenderOption::Number& kind) const {
     return {with(kind, *(own.*kind.member) + 1)};

@@ -27,7 +27,7 @@ const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center", 
                                        "top",       "min", "max",     "position", "corner"};
 const std::set<std::string> kSides = {"a", "b"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};
-const std::set<std::string> kLengths = {"radius", "height"};
+const std::set<std::string> kLengths = {"radius", "height", "aperture_radius", "focus_distance"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
 
 using Change = std::function<void(const std::string& key, Json& value)>;
