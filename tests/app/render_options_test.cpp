@@ -12,14 +12,14 @@ namespace orrery::test {
 namespace {
 
 // Mirrors that face each other, so that depth and weight of rays matter; edges, so that samples and their
-// seed do; a ball that moves; and matt balls that light each other.
+// seed do; a ball that moves; and a matt ball before a matt wall.
 Json revealing_scene() {
   return scene_of(R"([
       {'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'mirror'},
       {'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'mirror'},
       {'type': 'sphere', 'center': [0.4, 0, 0], 'radius': 0.6, 'material': 'plum'},
       {'type': 'sphere', 'center': [-0.8, 1.1, 0.4], 'radius': 0.4, 'material': 'chalk'},
-      {'type': 'sphere', 'center': [-0.1, 1.1, 0.4], 'radius': 0.3, 'material': 'chalk'},
+      {'type': 'plane', 'point': [0, 0, -2], 'normal': [0, 0, 1], 'material': 'chalk'},
       {'type': 'box', 'min': [-1.5, -0.8, -1], 'max': [-0.6, 0.3, 0.2], 'material': 'mirror'}])",
                   R"({'image': {'width': 32, 'height': 24},
       'render': {'samples': 4},
