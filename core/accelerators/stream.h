@@ -90,7 +90,7 @@ class Stream {
       for (int i = 0; i < count; ++i) walk(at, ids[i]);
       return;
     }
-    if (count > 1 && room + room_for(count) > room_.data() + (kRoom - kReserve)) {
+    if (room + room_for(count) > room_.data() + (kRoom - kReserve)) {
       const int half = count / 2;
       visit(at, ids, half, room);
       return visit(at, ids + half, count - half, room);

@@ -91,7 +91,7 @@ struct Emitter {
     const Drawn flat = draw_flat(from, u, v);
     if (!any(round)) return flat;
     const Drawn ball = draw_sphere(from, u, v);
-    return {choose(round, ball.point, flat.point), choose(round, ball.normal, flat.normal),
+    return {select(round, ball.point, flat.point), select(round, ball.normal, flat.normal),
             select(round, ball.pdf, flat.pdf)};
   }
 
@@ -100,7 +100,7 @@ struct Emitter {
     using std::abs;
     const auto round = is(Patch::Kind::sphere);
     const Vec3<N> radial = (ray.at(t) - at) / length_a;
-    const Vec3<N> facing = choose(round, radial, normal);
+    const Vec3<N> facing = select(round, radial, normal);
     const N by_area = density(t * t, abs(dot(facing, ray.direction)));
     N by_angle(T(0));
     if (any(round)) by_angle = select(round, cone(ray.origin).density, by_angle);
@@ -115,9 +115,6 @@ struct Emitter {
       T(0.02);  // steradians; a rectangle that looks smaller is drawn from by area
 
   MaskOf<N> is(Patch::Kind k) const { return kind == N(static_cast<T>(k)); }
-  static Vec3<N> choose(const MaskOf<N>& mask, const Vec3<N>& a, const Vec3<N>& b) {
-    return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
-  }
   N density(const N& distance2, const N& cosine) const {
     return select(cosine > N(T(0)), N(distance2 / (cosine * area)), N(T(0)));
   }
@@ -196,7 +193,7 @@ struct Emitter {
     const N axial = (distance - along * cosine) / length_a, across = along * sqrt(sine2) / length_a;
     const N z = select(outside, axial, N(one - T(2) * u));
     const N r = select(outside, across, sqrt(max_first(zero, N(one - z * z))));
-    const Vec3<N> axis = choose(outside, toward * (T(-1) / distance), Vec3<N>(zero, zero, one));
+    const Vec3<N> axis = select(outside, toward * (T(-1) / distance), Vec3<N>(zero, zero, one));
     const Tangents<N> basis = tangents_of(axis);
     const Vec3<N> out = basis.first * (r * cosine_v) + basis.second * (r * sine_v) + axis * z;
     const Vec3<N> point = at + out * length_a, line = point - from;

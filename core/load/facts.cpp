@@ -117,14 +117,8 @@ void add_materials(const Scene& scene, SceneFacts& facts) {
 
 }  // namespace
 
-std::size_t object_run_of(const Scene& scene, int primitive) {
-  const auto after = std::upper_bound(scene.object_runs.begin(), scene.object_runs.end(), primitive,
-                                      [](int p, const ObjectRun& run) { return p < run.first_primitive; });
-  return static_cast<std::size_t>(after - scene.object_runs.begin()) - 1;
-}
-
 std::string pointer_to_object(const Scene& scene, int primitive) {
-  const int object = scene.object_runs[object_run_of(scene, primitive)].object;
+  const int object = scene.object_runs[scene.object_run_of(primitive)].object;
   const int resting = scene.object_count - static_cast<int>(scene.instances.size());
   return object < resting ? "/objects/" + std::to_string(object)
                           : "/instances/" + std::to_string(object - resting);

@@ -8,9 +8,6 @@ namespace orrery {
 // and objects are numbered, its motion is known.
 SceneFacts gather_facts(const Scene& scene);
 
-// The place in Scene::object_runs of what a primitive belongs to.
-std::size_t object_run_of(const Scene& scene, int primitive);
-
 // The JSON Pointer of the object or instance that a primitive belongs to.
 std::string pointer_to_object(const Scene& scene, int primitive);
 

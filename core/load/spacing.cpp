@@ -224,7 +224,7 @@ class Gauge {
       for (int i = 0; i < count; ++i) {
         const Boundsd own = now.bounds(i);
         const Boundsd box = own.bounded() ? box_of(own, world) : Boundsd::everything();
-        placed_.push_back({moves || own_motion, object_run_of(scene_, first + i), &now, kernel.get(), i,
+        placed_.push_back({moves || own_motion, scene_.object_run_of(first + i), &now, kernel.get(), i,
                            first + i, world, back, box});
       }
     }

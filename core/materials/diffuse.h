@@ -11,7 +11,7 @@ namespace orrery {
 //   Vec3<N> pi_brdf(light, viewer, between) pi times the bidirectional reflectance distribution function, of
 //                                           N.L > 0, N.V and L.V
 template <template <class> class Record, class T>
-class DiffuseKernel : public MaterialRecords<Record, T> {
+class DiffuseKernel final : public MaterialRecords<Record, T> {
  public:
   using N = Lanes<T>;
   using MaterialRecords<Record, T>::MaterialRecords;

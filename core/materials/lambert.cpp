@@ -13,10 +13,7 @@ Lambert<double> Lambert<N>::read(Params& p) {
 namespace {
 
 template <class T>
-class LambertKernel final : public DiffuseKernel<Lambert, T> {
- public:
-  using DiffuseKernel<Lambert, T>::DiffuseKernel;
-};
+using LambertKernel = DiffuseKernel<Lambert, T>;
 
 }  // namespace
 

@@ -49,11 +49,6 @@ Metal<double> Metal<N>::read(Params& p) {
 
 namespace {
 
-template <class N>
-Vec3<N> select_each(const MaskOf<N>& mask, const Vec3<N>& a, const Vec3<N>& b) {
-  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
-}
-
 template <class T>
 class MetalKernel final : public MaterialRecords<Metal, T> {
  public:
@@ -111,7 +106,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
       const auto leaves = rough && reflects(metal, local_viewer, local_light, dot(geometric, light));
       const auto scattered = metal.scattered(local_viewer, local_light);
       constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
-      out.direction.put(i, rough, select_each(leaves, light, geometric));
+      out.direction.put(i, rough, select(leaves, light, geometric));
       out.weight.put(i, leaves, scattered.f_cos * (N(T(1)) / (kPi * scattered.pdf)));
       out.pdf.put(i, leaves, scattered.pdf);
     });
@@ -150,8 +145,8 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     const N u = min_first(last, select(evenly, N(point.u / share), N((point.u - share) / (one - share))));
     const Ggx<N> facets{metal.alpha};
     const Vec3<N> facet = facets.visible_normal(local_viewer, u, point.v);
-    return select_each(evenly, cosine_direction(frame.normal, u, point.v),
-                       frame.world(mirrored_about(local_viewer, facet)));
+    return select(evenly, cosine_direction(frame.normal, u, point.v),
+                  frame.world(mirrored_about(local_viewer, facet)));
   }
 };
 

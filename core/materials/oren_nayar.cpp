@@ -24,10 +24,7 @@ OrenNayar<double> OrenNayar<N>::read(Params& p) {
 namespace {
 
 template <class T>
-class OrenNayarKernel final : public DiffuseKernel<OrenNayar, T> {
- public:
-  using DiffuseKernel<OrenNayar, T>::DiffuseKernel;
-};
+using OrenNayarKernel = DiffuseKernel<OrenNayar, T>;
 
 }  // namespace
 

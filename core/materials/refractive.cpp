@@ -50,9 +50,7 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
       const auto split = glass.split(direction, normal, inside);
       const auto mirrors = draws.two(SampleSet::lobe, i).u < split.reflectance;
       const Vec3<N> back = mirrored(direction, normal, surface.geometric.at(i)), on = split.refracted;
-      out.direction.put(
-          i, mine,
-          {select(mirrors, back.x, on.x), select(mirrors, back.y, on.y), select(mirrors, back.z, on.z)});
+      out.direction.put(i, mine, select(mirrors, back, on));
       out.weight.put(i, mine, glass.filter(select(inside, hits.t.at(i), zero)));
       out.pdf.put(i, mine, zero);
     });

@@ -23,9 +23,7 @@ struct ShadingFrame {
 
  private:
   static Vec3<N> facing(const Vec3<N>& shading, const Vec3<N>& geometric, const Vec3<N>& viewer) {
-    const auto seen = dot(shading, viewer) > N(ScalarOf<N>(0));
-    return {select(seen, shading.x, geometric.x), select(seen, shading.y, geometric.y),
-            select(seen, shading.z, geometric.z)};
+    return select(dot(shading, viewer) > N(ScalarOf<N>(0)), shading, geometric);
   }
 };
 

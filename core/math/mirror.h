@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/math/lanes.h"
 #include "core/math/vec3.h"
 
 namespace orrery {
@@ -16,7 +15,7 @@ template <class N>
   const auto sinks = !(dot(r, true_normal) > N(T(0)));
   if (!any(sinks)) return r;
   const Vec3<N> safe = about(true_normal);
-  return {select(sinks, safe.x, r.x), select(sinks, safe.y, r.y), select(sinks, safe.z, r.z)};
+  return select(sinks, safe, r);
 }
 
 }  // namespace orrery

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "core/math/lanes.h"
+
 namespace orrery {
 
 // Three components of one number type: a scalar (float, double, long double) or lanes of it.
@@ -99,6 +101,13 @@ template <class N>
 [[gnu::always_inline]] inline Vec3<N> abs(const Vec3<N>& a) {
   using std::abs;
   return {abs(a.x), abs(a.y), abs(a.z)};
+}
+
+// Components of `a` where the mask is set, of `b` elsewhere.
+template <class N>
+[[gnu::always_inline]] inline Vec3<N> select(const std::type_identity_t<MaskOf<N>>& mask, const Vec3<N>& a,
+                                             const Vec3<N>& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
 // Unit vector of a scalar vector of any finite magnitude: the largest component is scaled to 1 first, so

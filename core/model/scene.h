@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -130,6 +131,13 @@ struct Scene {
   TimeSpan motion;
   SceneFacts facts;
 
+  // The place in object_runs of what a primitive belongs to.
+  std::size_t object_run_of(std::int32_t primitive) const {
+    const auto after =
+        std::upper_bound(object_runs.begin(), object_runs.end(), primitive,
+                         [](std::int32_t p, const ObjectRun& run) { return p < run.first_primitive; });
+    return static_cast<std::size_t>(after - object_runs.begin()) - 1;
+  }
   int primitive_count() const { return static_cast<int>(material_of.size()); }
 };
 

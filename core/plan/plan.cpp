@@ -41,8 +41,10 @@ class Planner {
     choose_accelerator();
     choose_order();
     choose_prediction();
-    if (plan_.technique->interreflects) choose_paths();
-    if (!plan_.technique->interreflects) leave_out_for_trees();
+    if (plan_.technique->interreflects)
+      choose_paths();
+    else
+      leave_out_for_trees();
     if (request_.full_model || plan_.technique->interreflects) return plan_;
     choose_lights();
     choose_specular();

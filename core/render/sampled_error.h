@@ -8,8 +8,9 @@ namespace orrery {
 
 // What a picture tells of its own error: half of its samples against the other half, as each half is a net of
 // its own. For means a and b of the halves, (a - b)^2 / 4 has the mean square error of their mean as its
-// expectation, where the halves are independent, and overestimates it a little where they are not (edges: by
-// a third in RMSE). Sums over values, three a pixel, by the side of the blocks that are averaged first.
+// expectation, where the halves are independent, and overestimates it where they are not: of edges, RMSE
+// 1.6 times at 2 samples and 1.2 times at 16. Sums over values, three a pixel, by the side of the blocks that
+// are averaged first.
 struct SampledError {
   struct Sum {
     double squares = 0, values = 0;

@@ -77,8 +77,7 @@ struct Cylinder {
     const Vec3<N> normal = outward + axis * cap_along;
     const Vec3<N> on_wall = center + axis * along + outward * radius;
     const Vec3<N> on_cap = center + across + axis * (cap_side * half_length);
-    const Vec3<N> position(select(cap, on_cap.x, on_wall.x), select(cap, on_cap.y, on_wall.y),
-                           select(cap, on_cap.z, on_wall.z));
+    const Vec3<N> position = select(cap, on_cap, on_wall);
     return {position, normal, normal, max(magnitude, max_component(orrery::abs(position)))};
   }
 
@@ -96,12 +95,7 @@ struct Cylinder {
     const N u = positive_turns(x, y), v = select(cap, N(from_axis / radius), wall);
     const auto middle = !(from_axis > N(T(0)));
     const Vec3<N> around = axes.second * (x / from_axis) - axes.first * (y / from_axis);
-    return {u,
-            v,
-            u,
-            v,
-            {select(middle, axes.second.x, around.x), select(middle, axes.second.y, around.y),
-             select(middle, axes.second.z, around.z)}};
+    return {u, v, u, v, select(middle, axes.second, around)};
   }
 };
 

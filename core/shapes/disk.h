@@ -51,12 +51,7 @@ struct Disk {
     const N u = positive_turns(x, y), v = distance / radius;
     const auto middle = !(distance > N(T(0)));
     const Vec3<N> around = axes.second * (x / distance) - axes.first * (y / distance);
-    return {u,
-            v,
-            u,
-            v,
-            {select(middle, axes.second.x, around.x), select(middle, axes.second.y, around.y),
-             select(middle, axes.second.z, around.z)}};
+    return {u, v, u, v, select(middle, axes.second, around)};
   }
 };
 

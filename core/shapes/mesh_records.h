@@ -54,9 +54,7 @@ struct MeshMapping {
     const N determinant = s1 * t2 - s2 * t1, zero(T(0));
     const Vec3<N> along = (ab * t2 - ac * t1) * select(determinant < zero, N(T(-1)), N(T(1)));
     const auto usable = dot(along, along) > zero && abs(determinant) > zero;
-    const Vec3<N> tangent = normalize(
-        Vec3<N>(select(usable, along.x, ab.x), select(usable, along.y, ab.y), select(usable, along.z, ab.z)));
-    return {weights.y, weights.z, dot(s, weights), dot(t, weights), tangent};
+    return {weights.y, weights.z, dot(s, weights), dot(t, weights), normalize(select(usable, along, ab))};
   }
 };
 

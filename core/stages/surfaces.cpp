@@ -14,10 +14,7 @@ void find_objects(const Scene& scene, const Groups& groups, HitBatch<T>& hits, S
       hits.instance[lane] = kNoInstance;
       const IndexOf<T> primitive = hits.primitive[lane];
       if (primitive == kNoPrimitive) continue;
-      const auto run =
-          std::upper_bound(scene.object_runs.begin(), scene.object_runs.end(), primitive,
-                           [](IndexOf<T> p, const ObjectRun& r) { return p < r.first_primitive; });
-      surface.object[lane] = std::prev(run)->object;
+      surface.object[lane] = scene.object_runs[scene.object_run_of(primitive)].object;
       if (surface.object[lane] >= resting) hits.instance[lane] = surface.object[lane] - resting;
     }
 }
@@ -41,8 +38,7 @@ Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, c
   for (const int i : groups) {
     const IndexLanes<T> primitive = load_index<T>(hits.primitive, i);
     const auto missed = mask_cast<N>(primitive == kNoPrimitive);
-    radiance.put(i, {select(missed, background.x, zero), select(missed, background.y, zero),
-                     select(missed, background.z, zero)});
+    radiance.put(i, select(missed, background, Vec3<N>(zero)));
     if (all(missed)) continue;
     met.add(i);
     find_materials(geometry, hits, i, surface);

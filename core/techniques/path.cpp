@@ -50,9 +50,7 @@ class Path final : public Wavefront<T> {
       Vec3<N> seen;
       if (!this->geometry_.emission.empty()) seen = emission_at(this->geometry_, v.surface, i);
       const Vec3<N> background(this->geometry_.background);
-      seen = {select(missed, background.x, seen.x), select(missed, background.y, seen.y),
-              select(missed, background.z, seen.z)};
-      out.radiance.put(i, out.radiance.at(i) + seen * N(share));
+      out.radiance.put(i, out.radiance.at(i) + select(missed, background, seen) * N(share));
     }
   }
 
