@@ -80,8 +80,6 @@ struct Emitter {
   N length_a, length_b;
   N kind, area, magnitude;
 
-  static Emitter<double> of(const Patch& patch, const Vec3d& radiance);
-
   struct Drawn {
     Vec3<N> point, normal;  // on the emitter; the normal on any side
     N pdf;                  // per solid angle; 0: nothing comes from there

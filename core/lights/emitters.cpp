@@ -75,8 +75,7 @@ class EmitterKernel final : public LightKernel<T> {
 
 }  // namespace
 
-template <class N>
-Emitter<double> Emitter<N>::of(const Patch& patch, const Vec3d& radiance) {
+Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance) {
   const double length_a = orrery::length(patch.a), length_b = orrery::length(patch.b);
   const Vec3d product = cross(patch.a, patch.b), normal = safe_normalize(product);
   const double pi = std::numbers::pi, parallelogram = orrery::length(product);
@@ -102,8 +101,6 @@ Emitter<double> Emitter<N>::of(const Patch& patch, const Vec3d& radiance) {
   }
   return e;
 }
-
-template struct Emitter<double>;
 
 double power_of(const Emitter<double>& emitter) { return emitter.area * max_component(emitter.radiance); }
 

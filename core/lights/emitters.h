@@ -7,6 +7,8 @@
 
 namespace orrery {
 
+Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance);
+
 // A kernel of such surfaces, in this order.
 template <class T>
 LightKernelPtr<T> make_emitters(std::span<const Emitter<double>> emitters);

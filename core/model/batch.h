@@ -195,6 +195,14 @@ struct SurfaceBatch {
   Array<T> u, v;         // texture coordinates: those of a mesh if it has any, else the shape's parameters
   Array<T> footprint;    // metres that a pixel covers here, across the ray
   Array<IndexOf<T>> object;  // number of the object in the scene: `objects` first, then `instances`
+
+  // Where rays along these directions leave the surfaces at register i: on the side that they go to.
+  Vec3<Lanes<T>> origin_toward(int i, const Vec3<Lanes<T>>& direction) const {
+    const Vec3<Lanes<T>> true_normal = geometric.at(i);
+    const Lanes<T> clear = step.at(i);
+    return position.at(i) +
+           true_normal * select(dot(direction, true_normal) < Lanes<T>(T(0)), Lanes<T>(-clear), clear);
+  }
 };
 
 }  // namespace orrery

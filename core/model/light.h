@@ -49,7 +49,8 @@ class LightKernel {
  public:
   virtual ~LightKernel() = default;
 
-  // Draws a point of the light for every surface point of `groups`: fills direction, t_max and incident.
+  // Draws a point of the light for every surface point of `groups`: fills direction, t_max and incident. (As
+  // sample_each() of one light for all would: where each light is asked, that takes 2.5 % more of a picture.)
   virtual void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
                       const Groups& groups, LightBatch<T>& out) const = 0;
 

@@ -99,15 +99,21 @@ void add_emitters(const Scene& scene, double time, Geometry<T>& geometry) {
   std::vector<Emitter<double>> emitters;
   geometry.emitter_of.assign(geometry.material_of.size(), -1);
   std::size_t primitive = 0;
+  const auto radiance_of = [&](std::size_t p) {
+    return scene.emission[static_cast<std::size_t>(scene.material_of[p])];
+  };
   for (const auto& shapes : scene.shapes) {
+    const auto last = primitive + static_cast<std::size_t>(shapes->size());
+    while (primitive < last && radiance_of(primitive) == Vec3d(0)) interruption_point(++primitive);
+    if (primitive == last) continue;  // nothing to be posed
     const auto posed = shapes->at(time);
     const ShapeSet& now = posed ? *posed : *shapes;
-    for (int i = 0; i < now.size(); ++i, ++primitive) {
+    for (int i = now.size() - static_cast<int>(last - primitive); i < now.size(); ++i, ++primitive) {
       interruption_point(primitive);
-      const Vec3d& radiance = scene.emission[static_cast<std::size_t>(scene.material_of[primitive])];
+      const Vec3d radiance = radiance_of(primitive);
       const auto patch = radiance == Vec3d(0) ? std::nullopt : now.patch(i);
       if (!patch) continue;
-      const Emitter<double> emitter = Emitter<double>::of(*patch, radiance);
+      const Emitter<double> emitter = make_emitter(*patch, radiance);
       if (!(emitter.area > 0)) continue;
       geometry.emitter_of[primitive] = static_cast<IndexOf<T>>(emitters.size());
       geometry.emitter_powers.push_back(power_of(emitter));

@@ -15,42 +15,13 @@ void DirectLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws, c
       [&](const LightKernel<T>& kernel, const LightChoice<T>& choice, const LightTraits& traits) {
         ends = ends || !checkpoint.go_on();
         if (ends) return;
-        kernel.sample(surface, choice, draws, groups, light_);
-        add_one(traits, paths, surface, groups, radiance, counts);
+        kernel.sample(surface, choice, draws, groups, shadowed_.light);
+        const bool constant_half = plan_.constant_half && paths.depth == 0 && traits.parallel;
+        for (const int i : shadowed_.find(paths, surface, groups, constant_half, counts)) {
+          const auto seen = shadowed_.light.shadow.t_max.at(i) > N(T(0));
+          radiance.put(i, seen, radiance.at(i) + shadowed_.light.incident.at(i) * shadowed_.f_cos.at(i));
+        }
       });
-}
-
-// The light's direction decides on which side of the surface the shadow ray starts.
-template <class T>
-void DirectLight<T>::add_one(const LightTraits& traits, const PathBatch<T>& paths,
-                             const SurfaceBatch<T>& surface, const Groups& groups, Vec3Array<T>& radiance,
-                             TraceCounts& counts) {
-  const N zero(T(0));
-  RayBatch<T>& shadow = light_.shadow;
-  for (const int i : groups) pdf_.put(i, zero);
-  const Directions<T> directions{paths.rays.direction, shadow.direction, shadow.t_max,
-                                 plan_.constant_half && paths.depth == 0 && traits.parallel};
-  for (const auto& m : geometry_.materials)
-    if (m.traits.lit) m.kernel->evaluate(directions, surface, groups, f_cos_, pdf_);
-  Groups reached;
-  for (const int i : groups) {
-    const auto lit = pdf_.at(i) > zero;
-    shadow.t_max.put(i, !lit, N(T(-1)));
-    if (!any(lit)) continue;
-    reached.add(i);
-    const Vec3<N> geometric = surface.geometric.at(i);
-    const N step = surface.step.at(i);
-    const N side = select(dot(shadow.direction.at(i), geometric) < zero, N(-step), step);
-    shadow.origin.put(i, surface.position.at(i) + geometric * side);
-  }
-  if (plan_.shadows) {
-    counts.rays.shadow[static_cast<std::size_t>(paths.depth)] += active_rays(shadow, reached);
-    accelerator_.occlude(shadow, reached, counts.accelerator);
-  }
-  for (const int i : reached) {
-    const auto seen = shadow.t_max.at(i) > zero;
-    radiance.put(i, seen, radiance.at(i) + light_.incident.at(i) * f_cos_.at(i));
-  }
 }
 
 template class DirectLight<float>;

@@ -5,6 +5,7 @@
 #include "core/model/path.h"
 #include "core/model/plan.h"
 #include "core/stages/light_selector.h"
+#include "core/stages/shadowed_light.h"
 
 namespace orrery {
 
@@ -15,7 +16,7 @@ class DirectLight {
  public:
   // Geometry, accelerator and plan outlive it.
   DirectLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan)
-      : geometry_(geometry), accelerator_(accelerator), plan_(plan), lights_(geometry) {}
+      : geometry_(geometry), plan_(plan), lights_(geometry), shadowed_(geometry, accelerator, plan) {}
 
   // Sets `radiance` of the lanes whose material is lit to what ambient light makes leave them, and adds what
   // each light does. `groups`: registers with such a lane. `checkpoint` is asked before each light; once the
@@ -25,16 +26,11 @@ class DirectLight {
 
  private:
   using N = Lanes<T>;
-  void add_one(const LightTraits& traits, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
-               const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts);
 
   const Geometry<T>& geometry_;
-  const Accelerator<T>& accelerator_;
   const Plan& plan_;
   const LightSelector<T> lights_;
-  LightBatch<T> light_;
-  Vec3Array<T> f_cos_;
-  Array<T> pdf_;
+  ShadowedLight<T> shadowed_;
 };
 
 extern template class DirectLight<float>;

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/stages/shadowed_light.h"
+
 namespace orrery {
 
 template <class T>
@@ -112,14 +114,12 @@ void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
   aim(turn);
   const Groups connected = with_active_rays(shadow_, all_);
   for (const int i : all_) {
-    lobe_pdf_.put(i, zero);
     to.density.put(i, zero);
     to.share.put(i, Vec3<N>(zero));
   }
   if (connected.empty()) return;
-  const Directions<T> directions{ray_, shadow_.direction, shadow_.t_max};
-  for (const auto& m : geometry_.materials)
-    if (m.traits.lit) m.kernel->evaluate(directions, first_, connected, f_cos_, lobe_pdf_);
+  evaluate_materials(geometry_, {ray_, shadow_.direction, shadow_.t_max}, first_, connected, f_cos_,
+                     lobe_pdf_);
   for (const int i : connected) {
     const N t = shadow_.t_max.at(i);
     const N cosine = -dot(shadow_.direction.at(i), toward_normal_.at(i));
@@ -129,10 +129,7 @@ void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
     to.density.put(i, lobe_pdf_.at(i) * change);
     to.share.put(i, possible, f_cos_.at(i) * (change * N(T(1) / kPi)));
     shadow_.t_max.put(i, !possible, N(T(-1)));
-    const Vec3<N> geometric = first_.geometric.at(i);
-    const N step = first_.step.at(i);
-    const N side = select(dot(shadow_.direction.at(i), geometric) < zero, N(-step), step);
-    shadow_.origin.put(i, first_.position.at(i) + geometric * side);
+    shadow_.origin.put(i, first_.origin_toward(i, shadow_.direction.at(i)));
   }
   counts.rays.shadow[0] += active_rays(shadow_, connected);
   accelerator_.occlude(shadow_, connected, counts.accelerator);

@@ -38,7 +38,7 @@ N power_heuristic(const N& own, const N& other) {
 template <class T>
 SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator,
                               const Plan& plan)
-    : geometry_(geometry), accelerator_(accelerator), plan_(plan) {
+    : geometry_(geometry), shadowed_(geometry, accelerator, plan) {
   const Scene& scene = *geometry.scene;
   std::vector<double> powers;
   for (const LightPlace& light : scene.lights)
@@ -97,41 +97,15 @@ void SampledLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws,
     for (const int i : groups)
       for (int lane = i; lane < i + kWidth<T>; ++lane)
         choices_.index[lane] = source.index[static_cast<std::size_t>(chosen_[lane])];
-    source.kernel->sample_each(surface, choices_, draws, groups, light_);
+    source.kernel->sample_each(surface, choices_, draws, groups, shadowed_.light);
   }
-  trace(paths, surface, groups, radiance, counts);
-}
-
-// The light's direction decides on which side of the surface the shadow ray starts.
-template <class T>
-void SampledLight<T>::trace(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
-                            Vec3Array<T>& radiance, TraceCounts& counts) {
   const N zero(T(0)), one(T(1));
-  RayBatch<T>& shadow = light_.shadow;
-  for (const int i : groups) pdf_.put(i, zero);
-  const Directions<T> directions{paths.rays.direction, shadow.direction, shadow.t_max};
-  for (const auto& m : geometry_.materials)
-    if (m.traits.lit) m.kernel->evaluate(directions, surface, groups, f_cos_, pdf_);
-  Groups reached;
-  for (const int i : groups) {
-    const auto lit = pdf_.at(i) > zero;
-    shadow.t_max.put(i, !lit, N(T(-1)));
-    if (!any(lit)) continue;
-    reached.add(i);
-    const Vec3<N> geometric = surface.geometric.at(i);
-    const N step = surface.step.at(i);
-    const N side = select(dot(shadow.direction.at(i), geometric) < zero, N(-step), step);
-    shadow.origin.put(i, surface.position.at(i) + geometric * side);
-  }
-  if (plan_.shadows) {
-    counts.rays.shadow[static_cast<std::size_t>(paths.depth)] += active_rays(shadow, reached);
-    accelerator_.occlude(shadow, reached, counts.accelerator);
-  }
-  for (const int i : reached) {
-    const auto seen = shadow.t_max.at(i) > zero;
-    const N by_light = light_.pdf.at(i);
-    const N weight = select(by_light > zero, power_heuristic(by_light, pdf_.at(i)), one);
-    radiance.put(i, seen, radiance.at(i) + light_.incident.at(i) * f_cos_.at(i) * weight);
+  for (const int i : shadowed_.find(paths, surface, groups, false, counts)) {
+    const LightBatch<T>& light = shadowed_.light;
+    const N by_light = light.pdf.at(i);
+    const N weight = select(by_light > zero, power_heuristic(by_light, shadowed_.pdf.at(i)), one);
+    radiance.put(i, light.shadow.t_max.at(i) > zero,
+                 radiance.at(i) + light.incident.at(i) * shadowed_.f_cos.at(i) * weight);
   }
 }
 
@@ -143,32 +117,30 @@ void SampledLight<T>::add_emission(const PathBatch<T>& paths, const HitBatch<T>&
   const N zero(T(0)), one(T(1));
   Groups emitting;
   for (const int i : met) {
-    const Vec3<N> emission = emission_at(geometry_, surface, i);
-    const auto emits = max_component(emission) > zero;
+    const auto emits = max_component(emission_at(geometry_, surface, i)) > zero;
     if (!any(emits)) continue;
-    if (paths.depth == 0 || !geometry_.emitters) {
-      radiance.put(i, emits, radiance.at(i) + emission);
-      continue;
-    }
     emitting.add(i);
-    light_.pdf.put(i, zero);
-    for (int lane = i; lane < i + kWidth<T>; ++lane) {
-      const IndexOf<T> primitive = hits.primitive[lane];
-      const bool mine = primitive >= 0 && emits[static_cast<std::size_t>(lane - i)];
-      const IndexOf<T> number = mine ? geometry_.emitter_of[static_cast<std::size_t>(primitive)] : -1;
-      choices_.index[lane] = number;
-      choices_.probability[lane] =
-          number < 0 ? T(0) : probability_[first_emitter_ + static_cast<std::size_t>(number)];
-    }
+    by_light_.put(i, zero);
+    if (paths.depth > 0 && geometry_.emitters) note_emitters(hits, i, emits);
   }
-  if (emitting.empty()) return;
-  geometry_.emitters->pdf(paths.rays, hits, choices_, emitting, light_.pdf);
+  if (paths.depth > 0 && geometry_.emitters)
+    geometry_.emitters->pdf(paths.rays, hits, choices_, emitting, by_light_);
   for (const int i : emitting) {
-    const N by_lobe = paths.pdf.at(i), by_light = light_.pdf.at(i);
+    const N by_lobe = paths.pdf.at(i), by_light = by_light_.at(i);
     const N weight = select(by_lobe > zero && by_light > zero, power_heuristic(by_lobe, by_light), one);
-    const Vec3<N> emission = emission_at(geometry_, surface, i);
-    const auto emits = max_component(emission) > zero;
-    radiance.put(i, emits, radiance.at(i) + emission * weight);
+    radiance.put(i, radiance.at(i) + emission_at(geometry_, surface, i) * weight);
+  }
+}
+
+template <class T>
+void SampledLight<T>::note_emitters(const HitBatch<T>& hits, int i, const MaskOf<N>& emits) {
+  for (int lane = i; lane < i + kWidth<T>; ++lane) {
+    const bool mine = emits[static_cast<std::size_t>(lane - i)];
+    const IndexOf<T> number =
+        mine ? geometry_.emitter_of[static_cast<std::size_t>(hits.primitive[lane])] : IndexOf<T>(-1);
+    choices_.index[lane] = number;
+    choices_.probability[lane] =
+        number < 0 ? T(0) : probability_[first_emitter_ + static_cast<std::size_t>(number)];
   }
 }
 

@@ -1,9 +1,6 @@
 #pragma once
 
-#include "core/model/counts.h"
-#include "core/model/path.h"
-#include "core/model/plan.h"
-#include "core/model/world.h"
+#include "core/stages/shadowed_light.h"
 
 namespace orrery {
 
@@ -35,12 +32,10 @@ class SampledLight {
     std::vector<IndexOf<T>> index;  // within the kernel, by number of the light; -1: of another kernel
   };
   void choose(const PathDraws<T>& draws, const Groups& groups);
-  void trace(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
-             Vec3Array<T>& radiance, TraceCounts& counts);
+  // Whom the lanes of `emits` of register i hit, as choices_.
+  void note_emitters(const HitBatch<T>& hits, int i, const MaskOf<N>& emits);
 
   const Geometry<T>& geometry_;
-  const Accelerator<T>& accelerator_;
-  const Plan& plan_;
   std::vector<Source> sources_;
   // By number of the light: its probability, and the first of the 2^24 random numbers that is beyond its own.
   std::vector<T> probability_;
@@ -48,9 +43,8 @@ class SampledLight {
   std::size_t first_emitter_ = 0;
   Array<IndexOf<T>> chosen_;  // number of the light
   LightChoices<T> choices_;
-  LightBatch<T> light_;
-  Vec3Array<T> f_cos_;
-  Array<T> pdf_;
+  ShadowedLight<T> shadowed_;
+  Array<T> by_light_;  // density with which lights are drawn where rays hit them by chance
 };
 
 extern template class SampledLight<float>;

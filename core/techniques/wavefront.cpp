@@ -109,13 +109,10 @@ void Wavefront<T>::record_channels(const Groups& groups, const Groups& met) {
 }
 
 template <class T>
-unsigned Wavefront<T>::append(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
-                              const Vec3<N>& throughput) {
+unsigned Wavefront<T>::spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
+                             const Vec3<N>& throughput) {
   const Vertices& v = *vertices_;
-  const Vec3<N> geometric = v.surface.geometric.at(i);
-  const N step = v.surface.step.at(i);
-  const N signed_step = select(dot(direction, geometric) < N(T(0)), -step, step);
-  const Ray<N> ray = {v.surface.position.at(i) + geometric * signed_step, direction};
+  const Ray<N> ray = {v.surface.origin_toward(i, direction), direction};
   PathBatch<T>& into = kind == Kind::reflected ? *reflected_ : *refracted_;
   const unsigned bits = into.append(mask, ray, throughput, load_index<T>(v.paths->slot, i));
   if (plan_.fields.footprint) into.append_footprint(bits, v.surface.footprint.at(i), v.paths->spread.at(i));
@@ -123,15 +120,9 @@ unsigned Wavefront<T>::append(Kind kind, int i, const MaskOf<N>& mask, const Vec
 }
 
 template <class T>
-void Wavefront<T>::spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
-                         const Vec3<N>& throughput) {
-  append(kind, i, mask, direction, throughput);
-}
-
-template <class T>
 void Wavefront<T>::spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput,
                          const N& pdf) {
-  reflected_->append_pdf(append(Kind::reflected, i, mask, direction, throughput), pdf);
+  reflected_->append_pdf(spawn(Kind::reflected, i, mask, direction, throughput), pdf);
 }
 
 template <class T>

@@ -41,8 +41,10 @@ class Wavefront : public Tracer<T> {
   virtual Vec3Array<T>& sums(int /*depth*/) { return out_->radiance; }
 
   enum class Kind { reflected, refracted };
-  // A ray from the surface at register i along `direction` that carries `throughput` to its slot.
-  void spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput);
+  // A ray from the surface at register i along `direction` that carries `throughput` to its slot. Returns the
+  // bits of the mask.
+  unsigned spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
+                 const Vec3<N>& throughput);
   // The only one from there, and the density with which it was drawn.
   void spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput, const N& pdf);
   // Enters rays that are not traced into the ledger, with `lost` of what they would have found.
@@ -65,9 +67,6 @@ class Wavefront : public Tracer<T> {
   void record_channels(const Groups& groups, const Groups& met);
   std::unique_ptr<PathBatch<T>> take_batch(int depth);
   void push(std::unique_ptr<PathBatch<T>> batch);
-
-  unsigned append(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
-                  const Vec3<N>& throughput);
 
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;

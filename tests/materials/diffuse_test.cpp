@@ -12,10 +12,6 @@ namespace {
 
 using Case = Probe<double>::Case;
 
-Vec3d tilted(double cosine, double turns = 0) {
-  const double sine = std::sqrt(1 - cosine * cosine), angle = 2 * std::numbers::pi * turns;
-  return {sine * std::cos(angle), sine * std::sin(angle), cosine};
-}
 Probe<double> clay(double reflectance, double roughness) {
   return Probe<double>(Json{{"type", "oren-nayar"}, {"reflectance", reflectance}, {"roughness", roughness}});
 }

@@ -31,8 +31,7 @@ const Material kMaterials[] = {
 constexpr int kViewers = 5;
 Vec3d viewer(int number) {
   const double cosine[kViewers] = {1, 0.85, 0.5, 0.2, 0.05};
-  const double angle = 0.7 + 1.3 * number, sine = std::sqrt(1 - cosine[number] * cosine[number]);
-  return {sine * std::cos(angle), sine * std::sin(angle), cosine[number]};
+  return tilted(cosine[number], (0.7 + 1.3 * number) / (2 * std::numbers::pi));
 }
 Case seen_from(const Vec3d& viewer) {
   Case c;

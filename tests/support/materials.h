@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -8,6 +10,12 @@
 
 // One material, asked directly about single directions.
 namespace orrery::test {
+
+// A unit direction at an angle of this cosine to the z axis, so many turns about it.
+inline Vec3d tilted(double cosine, double turns = 0) {
+  const double sine = std::sqrt(1 - cosine * cosine), angle = 2 * std::numbers::pi * turns;
+  return {sine * std::cos(angle), sine * std::sin(angle), cosine};
+}
 
 template <class T>
 class Probe {
