@@ -51,11 +51,11 @@ template <Query kQuery, class T, class Traversals>
 class Stream {
  public:
   Stream(const WideTree<T>& tree, Traversals& traversals, AcceleratorCounts& counts)
-      : tree_(tree), traversals_(traversals), counts_(counts) {}
+      : tree_(tree), traversals_(traversals), counts_(counts), far_(tree.bytes() > kNear) {}
 
   // The traversals with these numbers. REQUIRES: kPad more can be read behind them.
   static constexpr int kPad = 16;
-  void run(const std::int32_t* ids, int count) { visit(tree_.root(), ids, count, room_.data()); }
+  void run(const std::int32_t* ids, int count) { visit(tree_.root(), ids, count, count, room_.data()); }
 
  private:
   using Id = stdx::native_simd<std::int32_t>;
@@ -74,73 +74,132 @@ class Stream {
 
   // Where no more than so many enter a node, each goes on alone: what lists cost is not shared any more.
   static constexpr int kFew = 2;
+  // A tree of more bytes has to be waited for. Nodes and blocks are asked for ahead, and rays that go on
+  // alone take steps in turn, so that one is worked on while others wait. This pays earlier than lists cease
+  // to: where so few enter a node, and where rays part, so many, of which a quarter enter one child.
+  static constexpr std::size_t kNear = std::size_t{16} << 20;
+  static constexpr int kFewFar = 8, kParting = 64, kPartingShare = 4, kInTurn = 16;
 
   // Lists are read and written by whole registers, so each has kPad places more than it needs.
   static constexpr int room_for(int count) { return (kWidth<T> + 1) * (count + kPad); }
   static constexpr int kReserve = (kDeepestTree + 1) * room_for(1);
   static constexpr int kRoom = kReserve + 2 * room_for(kBatch);
 
-  // `room` is free from there on.
-  void visit(Child at, const std::int32_t* ids, int count, std::int32_t* room) {
+  bool go_alone(int count, int of) const {
+    if (!far_) return count <= kFew;
+    return count <= kFewFar || (kQuery == Query::closest && count <= kParting && count * kPartingShare <= of);
+  }
+
+  // `of`: how many entered the parent. `room` is free from there on.
+  void visit(Child at, const std::int32_t* ids, int count, int of, std::int32_t* room) {
     if (WideTree<T>::is_leaf(at)) {
       meet(at, ids, count);
       return flush();
     }
-    if (count <= kFew) {
-      for (int i = 0; i < count; ++i) walk(at, ids[i]);
-      return;
-    }
+    if (go_alone(count, of)) return walk(at, ids, count);
     if (room + room_for(count) > room_.data() + (kRoom - kReserve)) {
       const int half = count / 2;
-      visit(at, ids, half, room);
-      return visit(at, ids + half, count - half, room);
+      visit(at, ids, half, of, room);
+      return visit(at, ids + half, count - half, of, room);
     }
     Lists lists;
     const std::size_t found = enter(tree_.node(at), ids, count, room, lists);
+    if (far_)
+      for (std::size_t i = 0; i < found; ++i) tree_.prefetch(lists[i].child);
     for (std::size_t i = 0; i < found; ++i) {
       const List& list = lists[i];
       if (WideTree<T>::is_leaf(list.child)) {
         meet(list.child, list.ids, list.count);
       } else {
         flush();
-        visit(list.child, list.ids, list.count, room);
+        visit(list.child, list.ids, list.count, count, room);
       }
     }
     flush();
   }
 
-  // One traversal alone through a subtree: of Query::closest by distance, as far as it may still matter.
-  void walk(Child at, std::int32_t id) {
-    const auto& probe = traversals_.probes[id];
-    auto& hit = traversals_.hits[id];
-    std::size_t waiting = 0;
-    for (;;) {
-      if (WideTree<T>::is_leaf(at)) {
-        const RayBlockPair pair{Blocks<T>::block_of(at), id};
-        test(at, std::span(&pair, 1));
-      } else {
-        const auto& node = tree_.node(at);
-        Lanes<T> near;
-        unsigned entered = probe.enter(node.planes, hit.limit(), near);
-        ++counts_.node_visits;
-        counts_.box_tests += kLists;
-        alignas(64) std::array<T, kLists> distance;
-        near.copy_to(distance.data(), stdx::vector_aligned);
-        const std::size_t first = waiting;
-        for (; entered != 0; entered &= entered - 1) {
-          const auto child = static_cast<std::size_t>(std::countr_zero(entered));
-          std::size_t place = waiting++;
-          if constexpr (kQuery == Query::closest)
-            for (; place > first && stack_[place - 1].near < distance[child]; --place)
-              stack_[place] = stack_[place - 1];
-          stack_[place] = {distance[child], node.child[child]};
+  // A child of a node that a traversal enters, and where.
+  struct Waiting {
+    T near;
+    Child child;
+  };
+  // A traversal alone on its way: of Query::closest by distance, as far as it may still matter.
+  struct Walker {
+    std::int32_t id;
+    Child at;
+    std::size_t waiting;
+    std::array<Waiting, (kDeepestTree + 1) * kLists> stack;
+  };
+
+  // Each alone through a subtree.
+  void walk(Child root, const std::int32_t* ids, int count) {
+    const auto begin = [&](Walker& walker, std::int32_t id) {
+      walker.id = id;
+      walker.at = root;
+      walker.waiting = 0;
+    };
+    if (!far_) {
+      for (int i = 0; i < count; ++i) {
+        begin(walkers_[0], ids[i]);
+        while (step<false>(walkers_[0])) {
         }
       }
-      do {
-        if (waiting == 0) return;
-        --waiting;
-      } while (!(stack_[waiting].near <= hit.limit() * kFarther<T>));
-      at = stack_[waiting].child;
+      return;
+    }
+    int walking = std::min(count, kInTurn), next = walking;
+    std::array<Walker*, static_cast<std::size_t>(kInTurn)> in_turn;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(walking); ++i)
+      begin(*(in_turn[i] = &walkers_[i]), ids[i]);
+    while (walking > 0) {
+      for (int i = 0; i < walking;) {
+        Walker*& walker = in_turn[static_cast<std::size_t>(i)];
+        if (step<true>(*walker)) {
+          ++i;
+        } else if (next < count) {
+          begin(*walker, ids[next++]);
+          ++i;
+        } else {
+          std::swap(walker, in_turn[static_cast<std::size_t>(--walking)]);
+        }
+      }
+    }
+  }
+
+  // To the next node or block; false if there is none.
+  template <bool kFar>
+  [[gnu::always_inline]] bool step(Walker& walker) {
+    auto& hit = traversals_.hits[walker.id];
+    if (WideTree<T>::is_leaf(walker.at)) {
+      const RayBlockPair pair{Blocks<T>::block_of(walker.at), walker.id};
+      test(walker.at, std::span(&pair, 1));
+    } else {
+      open_node(walker, hit.limit());
+    }
+    do {
+      if (walker.waiting == 0) return false;
+      --walker.waiting;
+    } while (!(walker.stack[walker.waiting].near <= hit.limit() * kFarther<T>));
+    walker.at = walker.stack[walker.waiting].child;
+    if constexpr (kFar) tree_.prefetch(walker.at);
+    return true;
+  }
+
+  [[gnu::always_inline]] void open_node(Walker& walker, T limit) {
+    const auto& node = tree_.node(walker.at);
+    Lanes<T> near;
+    unsigned entered = traversals_.probes[walker.id].enter(node.planes, limit, near);
+    ++counts_.node_visits;
+    counts_.box_tests += kLists;
+    alignas(64) std::array<T, kLists> distance;
+    near.copy_to(distance.data(), stdx::vector_aligned);
+    const std::size_t first = walker.waiting;
+    for (; entered != 0; entered &= entered - 1) {
+      const auto child = static_cast<std::size_t>(std::countr_zero(entered));
+      std::size_t place = walker.waiting++;
+      if constexpr (kQuery == Query::closest)
+        for (; place > first && walker.stack[place - 1].near < distance[child]; --place)
+          walker.stack[place] = walker.stack[place - 1];
+      walker.stack[place] = {distance[child], node.child[child]};
     }
   }
 
@@ -218,15 +277,11 @@ class Stream {
       pack.occlude(pairs, traversals_.rays.data(), traversals_.hits.data(), counts_);
   }
 
-  struct Waiting {
-    T near;
-    Child child;
-  };
-
   const WideTree<T>& tree_;
   Traversals& traversals_;
   AcceleratorCounts& counts_;
-  std::array<Waiting, (kDeepestTree + 1) * kLists> stack_;
+  const bool far_;
+  std::array<Walker, static_cast<std::size_t>(kInTurn)> walkers_;
   Child leaf_ = 0;  // one of the pack that pairs_ are with
   std::size_t met_ = 0;
   std::array<RayBlockPair, 1024> pairs_;

@@ -6,6 +6,7 @@
 #include "core/accelerators/blocks.h"
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/probes.h"
+#include "core/base/prefetch.h"
 #include "core/base/work_scope.h"
 
 namespace orrery {
@@ -74,6 +75,13 @@ class WideTree {
   Child root() const { return root_; }
   const Node& node(Child child) const { return nodes_[child]; }
   const Blocks<T>& blocks() const { return blocks_; }
+  // Has the machine fetch a node or a block that is wanted soon.
+  void prefetch(Child child) const {
+    if (is_leaf(child))
+      blocks_.pack_of(child).prefetch(Blocks<T>::block_of(child));
+    else
+      prefetch_lines(nodes_[child]);
+  }
   const Bounds<T>& box() const { return box_; }
   // Mean of the longest side of a leaf's box.
   T mean_leaf_extent() const { return mean_leaf_extent_; }

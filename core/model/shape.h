@@ -53,6 +53,9 @@ class PackedPrimitives {
   virtual void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
 
+  // Has the machine fetch a block that is wanted soon; nothing if that does not pay.
+  virtual void prefetch(std::uint32_t /*block*/) const {}
+
   virtual std::size_t bytes() const = 0;
   // What it was packed from: see ShapeKernel::pack().
   virtual std::vector<int> indices() const = 0;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <vector>
 
+#include "core/base/prefetch.h"
 #include "core/base/work_scope.h"
 #include "core/math/compress.h"
 #include "core/model/record.h"
@@ -102,6 +103,7 @@ class PackedRecords final : public PackedPrimitives<T> {
     counts.primitive_tests += tested;
   }
 
+  void prefetch(std::uint32_t block) const override { prefetch_lines(blocks_[block]); }
   std::size_t bytes() const override { return blocks_.size() * sizeof(Block); }
 
   std::vector<int> indices() const override {

@@ -51,6 +51,45 @@ void expect_agreement() {
   EXPECT_EQ(tree.occluded(rays, T(2.9)), list.occluded(rays, T(2.9)));
 }
 
+// A tree that no cache holds is walked in another way.
+Json rough_sea() {
+  constexpr int kSide = 440;
+  Random random(4);
+  Json positions = Json::array(), indices = Json::array();
+  for (int y = 0; y <= kSide; ++y)
+    for (int x = 0; x <= kSide; ++x)
+      positions.push_back({2.0 * x / kSide - 1, 2.0 * y / kSide - 1, random.in_cube(0.05).z});
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const int at = y * (kSide + 1) + x;
+      indices.push_back({at, at + 1, at + kSide + 2});
+      indices.push_back({at, at + kSide + 2, at + kSide + 1});
+    }
+  return scene_with(Json{{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
+}
+
+TEST(LargeTrees, FindWhatTheListFinds) {
+  const Json scene = rough_sea();
+  Structure<float> tree(scene, "bvh"), list(scene, "list");
+  ASSERT_GT(tree.facts().bytes, std::size_t{16} << 20);
+  Rays<float> rays = camera_rays<float>();
+  rays.resize(rays.size() / 2);
+  Random random(5);
+  for (int i = 0; i < 1024; ++i) {  // along the waves and through them, no two alike
+    const Vec3d from = random.in_cube(1), way = random.direction();
+    rays.push_back({Vec3f(Vec3d(from.x, from.y, from.z * 0.05)), Vec3f(Vec3d(way.x, way.y, way.z * 0.3))});
+  }
+  const auto found = tree.closest(rays), right = list.closest(rays);
+  int differ = 0, met = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    met += right[i].met();
+    differ += found[i].primitive != right[i].primitive || found[i].t != right[i].t;
+  }
+  EXPECT_GT(met, 1500);
+  EXPECT_EQ(differ, 0);
+  EXPECT_EQ(tree.occluded(rays, 0.2f), list.occluded(rays, 0.2f));
+}
+
 TEST(Packets, FindWhatTheListFindsAlsoWhereTheirBudgetEnds) {
   expect_agreement<float>();
   expect_agreement<double>();

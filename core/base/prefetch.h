@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+
+namespace orrery {
+
+// Has the machine fetch all lines of something that is wanted soon.
+template <class X>
+[[gnu::always_inline]] inline void prefetch_lines(const X& what) {
+  constexpr std::size_t kLine = 64;  // bytes
+  const char* const from = reinterpret_cast<const char*>(&what);
+#pragma GCC unroll 16
+  for (std::size_t at = 0; at < sizeof(X); at += kLine) __builtin_prefetch(from + at);
+}
+
+}  // namespace orrery
