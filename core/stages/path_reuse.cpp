@@ -31,6 +31,7 @@ void PathReuse<T>::begin(const Draws& draws) {
   const N zero(T(0));
   for (const int i : all_) {
     pdf_.put(i, zero);
+    lit_.put(i, zero);
     shared_.put(i, zero);
     weight_.put(i, Vec3<N>(zero));
     suffix_.put(i, Vec3<N>(zero));
@@ -39,8 +40,8 @@ void PathReuse<T>::begin(const Draws& draws) {
 
 template <class T>
 void PathReuse<T>::keep_first(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
-                              const ScatterBatch<T>& scatter, const MaskOf<N>& alive,
-                              const MaskOf<N>& drawn) {
+                              const ScatterBatch<T>& scatter, const MaskOf<N>& alive, const MaskOf<N>& drawn,
+                              const MaskOf<N>& lit) {
   first_.position.put(i, surface.position.at(i));
   first_.normal.put(i, surface.normal.at(i));
   first_.geometric.put(i, surface.geometric.at(i));
@@ -50,6 +51,7 @@ void PathReuse<T>::keep_first(int i, const PathBatch<T>& paths, const SurfaceBat
   ray_.put(i, paths.rays.direction.at(i));
   weight_.put(i, alive, scatter.weight.at(i));
   pdf_.put(i, drawn, scatter.pdf.at(i));
+  lit_.put(i, lit, N(T(1)));
 }
 
 template <class T>
@@ -82,14 +84,15 @@ void PathReuse<T>::connect_own(Connections& own) {
   }
 }
 
-// Rays from first vertices to the second vertices of their partners, which end before these by as much as
-// rounding may move either.
+// Also of those whose own draw failed or went through a mirror: how likely they would have drawn a second
+// vertex is what weighs it. Rays from first vertices to the second vertices of their partners, which end
+// before these by as much as rounding may move either.
 template <class T>
 void PathReuse<T>::aim(int turn) {
   Vec3Array<T>& target = shadow_.origin;  // until origins are known
   for (int slot = 0; slot < kBatch; ++slot) {
     const int other = partner(slot, turn);
-    const bool connected = pdf_[slot] > 0 && shared_[other] > 0;
+    const bool connected = lit_[slot] > 0 && shared_[other] > 0;
     shadow_.t_max[slot] = connected ? T(1) : T(-1);
     const int from = connected ? other : slot;
     const T step = connected ? 2 * (step_[other] + first_.step[slot]) : T(0);
@@ -123,7 +126,9 @@ void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
   for (const int i : connected) {
     const N t = shadow_.t_max.at(i);
     const N cosine = -dot(shadow_.direction.at(i), toward_normal_.at(i));
-    const auto possible = t > zero && lobe_pdf_.at(i) > zero && cosine > zero;
+    // As a draw goes on only where some light would.
+    const auto possible =
+        t > zero && lobe_pdf_.at(i) > zero && cosine > zero && max_component(f_cos_.at(i)) > zero;
     const N change = select(possible, N(cosine / (t * t)), zero);  // from solid angle to area
     constexpr T kPi = std::numbers::pi_v<T>;
     to.density.put(i, lobe_pdf_.at(i) * change);

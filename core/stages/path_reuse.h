@@ -27,10 +27,11 @@ class PathReuse {
 
   // The first vertices of register i, where slots are places in the batch: the weight and the density of the
   // direction that was drawn. `drawn`: lanes whose direction others could draw; `alive`: lanes whose path
-  // goes on, with a throughput of 1 from there.
+  // goes on, with a throughput of 1 from there; `lit`: lanes that others may be connected to, whatever became
+  // of their own draw.
   void keep_first(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                   const ScatterBatch<T>& scatter, const MaskOf<Lanes<T>>& alive,
-                  const MaskOf<Lanes<T>>& drawn);
+                  const MaskOf<Lanes<T>>& drawn, const MaskOf<Lanes<T>>& lit);
   // The second vertices of register i that look the same from everywhere.
   void keep_second(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                    const MaskOf<Lanes<T>>& shared);
@@ -67,6 +68,7 @@ class PathReuse {
   SurfaceBatch<T> first_;
   Vec3Array<T> ray_, weight_;
   Array<T> pdf_;  // 0: no other could draw the direction
+  Array<T> lit_;  // 1 or 0
   // Second vertices by slot.
   Vec3Array<T> position_, geometric_, suffix_;
   Array<T> step_, shared_;  // shared: 1 or 0

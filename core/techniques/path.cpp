@@ -105,8 +105,9 @@ class Path final : public Wavefront<T> {
     N most = max_component(throughput);
     auto alive = surface_lanes(i) && most > zero;
     if (paths.depth == 0 && reuse_) {
-      reuse_->keep_first(i, paths, this->vertices_->surface, scatter_, alive,
-                         alive && scatter_.pdf.at(i) > zero);
+      reuse_->keep_first(
+          i, paths, this->vertices_->surface, scatter_, alive, alive && scatter_.pdf.at(i) > zero,
+          surface_lanes(i) && lanes_with(this->geometry_, this->vertices_->surface, i, &MaterialTraits::lit));
       throughput = Vec3<N>(one);
     }
     if (paths.depth > 0) {
