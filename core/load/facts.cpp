@@ -104,6 +104,9 @@ void add_materials(const Scene& scene, SceneFacts& facts) {
       if (first + i >= first_user.size() || first_user[first + i] < 0) continue;
       used = true;
       facts.materials.emits |= scene.emission[first + i] != Vec3d(0);
+      const double most = set->most_reflected(static_cast<int>(i));
+      if (most > facts.most_reflected.value)
+        facts.most_reflected = {most, pointer_to_object(scene, first_user[first + i])};
       const RoundingLimit limit = set->rounding(static_cast<int>(i));
       if (limit.epsilon < facts.rounding.epsilon)
         facts.rounding = {

@@ -22,6 +22,34 @@ template <class N>
   return (s * s + p * p) * ScalarOf<N>(0.5);
 }
 
+// The same by the cosine of incidence alone: 1 beyond the critical angle.
+template <class N>
+struct DielectricSplit {
+  N reflectance, cos_transmitted;
+};
+template <class N>
+[[gnu::always_inline]] inline DielectricSplit<N> split_dielectric(const N& eta, const N& cos_incident) {
+  using T = ScalarOf<N>;
+  using std::sqrt;
+  const N zero(T(0)), one(T(1));
+  const N cos2 = one - eta * eta * (one - cos_incident * cos_incident);
+  const auto total = !(cos2 > zero);
+  const N cos_transmitted = sqrt(select(total, zero, cos2));
+  const N reflectance = fresnel_dielectric(eta, cos_incident, cos_transmitted);
+  return {select(total, one, reflectance), cos_transmitted};
+}
+
+// Mean of split_dielectric() over the hemisphere: the integral of 2 mu F(mu).
+inline double mean_dielectric(double eta) {
+  constexpr int kSteps = 4096;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = (i + 0.5) / kSteps;
+    sum += 2 * mu * split_dielectric(eta, mu).reflectance / kSteps;
+  }
+  return sum;
+}
+
 // Fresnel's equations for a metal of index n and extinction k, from air.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_conductor(const N& n, const N& k, const N& cosine) {

@@ -7,14 +7,9 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kTerms = GgxAlbedo<double>::kTerms;
+constexpr std::size_t kTerms = 14;
 constexpr std::size_t kRows = 32;  // of alpha, evenly spaced up to 1
 using Row = std::array<double, kTerms>;
-
-// Cosine of pi (k + 1/2) / kTerms, times j: T_j at the nodes of the series.
-double chebyshev(std::size_t j, std::size_t k) {
-  return sine_cosine_turns(static_cast<double>(j * (2 * k + 1)) / (4.0 * kTerms)).cosine;
-}
 
 // Mean of G2 / G1 over the normals that a viewer at cosine mu sees, by the midpoint rule: half the azimuths,
 // as the other half is their mirror image.
@@ -40,10 +35,7 @@ std::array<Row, kRows> make_table() {
   std::array<Row, kRows> table;
   for (std::size_t row = 0; row < kRows; ++row) {
     const double alpha = std::max(kLeastAlpha, static_cast<double>(row) / (kRows - 1));
-    for (std::size_t k = 0; k < kTerms; ++k) {
-      const double s = (1 + chebyshev(1, k)) / 2;
-      table[row][k] = albedo(alpha, alpha * s / (1 + alpha - s));
-    }
+    for (std::size_t k = 0; k < kTerms; ++k) table[row][k] = albedo(alpha, series_node<kTerms>(alpha, k));
   }
   return table;
 }
@@ -55,18 +47,10 @@ GgxAlbedo<double> ggx_albedo(double alpha) {
   const double place = alpha * (kRows - 1);
   const std::size_t row = std::min(static_cast<std::size_t>(place), kRows - 2);
   const double share = place - static_cast<double>(row);
-  GgxAlbedo<double> curve{{}, alpha, 0};
-  for (std::size_t j = 0; j < kTerms; ++j) {
-    for (std::size_t k = 0; k < kTerms; ++k)
-      curve.coefficients[j] += ((1 - share) * table[row][k] + share * table[row + 1][k]) * chebyshev(j, k);
-    curve.coefficients[j] *= (j == 0 ? 1.0 : 2.0) / kTerms;
-  }
-  constexpr int kSteps = 1024;
-  for (int i = 0; i < kSteps; ++i) {
-    const double mu = (i + 0.5) / kSteps;
-    curve.mean += 2 * mu * curve.at(mu) / kSteps;
-  }
-  return curve;
+  Row values;
+  for (std::size_t k = 0; k < kTerms; ++k)
+    values[k] = (1 - share) * table[row][k] + share * table[row + 1][k];
+  return series_through(values, alpha);
 }
 
 }  // namespace orrery

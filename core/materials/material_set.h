@@ -10,6 +10,7 @@
 //   MaterialTraits traits() const;              of a Rough<double>
 //   RoundingLimit rounding() const;             likewise, if it has one
 //   double mirrored_share() const;              likewise, if it mirrors: see MaterialSet
+//   double most_reflected() const;              likewise, if it may create energy
 // and its formulas; and a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
 namespace orrery {
 
@@ -63,6 +64,13 @@ class MaterialSetOf final : public MaterialSet {
       return record.mirrored_share();
     else
       return 0;
+  }
+  double most_reflected(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.most_reflected(); })
+      return record.most_reflected();
+    else
+      return 1;
   }
   MaterialKernelPtr<float> kernel(float, int first) const override {
     return std::make_unique<Kernel<float>>(std::span<const Record<double>>(records_), first);

@@ -1,14 +1,16 @@
 #include "core/materials/metal.h"
 
+#include <algorithm>
+
+#include "core/materials/facet_albedo.h"
 #include "core/materials/material_set.h"
+#include "core/materials/metal_indices.h"
 #include "core/materials/shading_frame.h"
 #include "core/math/mirror.h"
 #include "core/params/params.h"
 
 namespace orrery {
 namespace {
-
-constexpr double kLeastAlpha = 1e-3;  // below it a mirror
 
 // The integral of 2 mu F(mu).
 double mean_reflectance(double n, double k) {
@@ -21,12 +23,27 @@ double mean_reflectance(double n, double k) {
   return sum / kSteps;
 }
 
+// Index of refraction and extinction, by name or as numbers.
+std::pair<Vec3d, Vec3d> read_indices(Params& p) {
+  if (p.form({{"n", "k"}, {"name"}}) == 0) {
+    const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
+    const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
+    return {n, k};
+  }
+  std::array<std::string_view, kMetals> names;
+  std::transform(metal_indices().begin(), metal_indices().end(), names.begin(),
+                 [](const MetalIndices& metal) { return metal.name; });
+  const std::string name = p.choice("name", "A metal whose measured indices are known.", names);
+  const auto known = std::find(names.begin(), names.end(), name) - names.begin();
+  const MetalIndices& metal = metal_indices()[static_cast<std::size_t>(known) % kMetals];
+  return {metal.n, metal.k};
+}
+
 }  // namespace
 
 template <class N>
 Metal<double> Metal<N>::read(Params& p) {
-  const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
-  const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
+  const auto [n, k] = read_indices(p);
   const double roughness =
       p.number("roughness", "0: a mirror, 1: the roughest. Its square is alpha of the distribution GGX.",
                {.min = 0, .max = 1}, 0.3);

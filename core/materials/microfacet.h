@@ -22,10 +22,13 @@ struct Ggx {
     N length, density;
   };
   [[gnu::always_inline]] Half half(const Vec3<N>& viewer, const Vec3<N>& light) const {
+    return along(viewer + light);
+  }
+  // Of a vector along a normal.
+  [[gnu::always_inline]] Half along(const Vec3<N>& h) const {
     using T = ScalarOf<N>;
     using std::sqrt;
     const N alpha2 = alpha * alpha;
-    const Vec3<N> h = viewer + light;
     const N across = h.x * h.x + h.y * h.y, length2 = across + h.z * h.z;
     const N ratio = min_first(N(T(1) / alpha2), N(length2 / (across + alpha2 * h.z * h.z)));
     return {sqrt(length2), alpha2 * ratio * ratio * (T(1) / std::numbers::pi_v<T>)};

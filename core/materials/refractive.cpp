@@ -12,11 +12,7 @@ Refractive<double> Refractive<N>::read(Params& p) {
   const bool exact =
       p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
   const Vec3d filter = p.color("filter", "What remains of light after one metre inside.", Vec3d(1), 1);
-  const auto log2_of = [](double x) {
-    return x < std::numeric_limits<double>::min() ? -1e30 : log2_normal(x);
-  };
-  return {ior, normal_reflectance(ior, 0.0), exact ? 1.0 : 0.0,
-          Vec3d(log2_of(filter.x), log2_of(filter.y), log2_of(filter.z))};
+  return {ior, normal_reflectance(ior, 0.0), exact ? 1.0 : 0.0, log2_filter_of(filter)};
 }
 
 namespace {

@@ -50,4 +50,12 @@ struct Refractive {
   }
 };
 
+// Refractive::log2_filter of what remains of light after one metre.
+inline Vec3d log2_filter_of(const Vec3d& filter) {
+  const auto log2_of = [](double x) {
+    return x < std::numeric_limits<double>::min() ? -1e30 : log2_normal(x);
+  };
+  return {log2_of(filter.x), log2_of(filter.y), log2_of(filter.z)};
+}
+
 }  // namespace orrery

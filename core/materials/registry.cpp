@@ -12,7 +12,12 @@ namespace orrery {
   add(refractive)             \
   add(lambert)                \
   add(oren_nayar)             \
-  add(metal)
+  add(metal)                  \
+  add(glass)                  \
+  add(plastic)                \
+  add(metallic_roughness)     \
+  add(cook_torrance)          \
+  add(translucent)
 // clang-format on
 
 #define ORRERY_DECLARE(name) MaterialType name##_type();

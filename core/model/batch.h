@@ -151,11 +151,13 @@ struct SurfaceFields {
   bool parameters = false;  // u and v of hits and surfaces, tangent
   bool identity = false;    // instance of hits, object of surfaces
   bool footprint = false;   // width and spread of rays, footprint of surfaces
+  bool travelled = false;   // of surfaces
 
   SurfaceFields& operator|=(const SurfaceFields& other) {
     parameters |= other.parameters;
     identity |= other.identity;
     footprint |= other.footprint;
+    travelled |= other.travelled;
     return *this;
   }
 };
@@ -194,6 +196,7 @@ struct SurfaceBatch {
   Vec3Array<T> tangent;  // unit, along which u grows, at right angles to the true normal
   Array<T> u, v;         // texture coordinates: those of a mesh if it has any, else the shape's parameters
   Array<T> footprint;    // metres that a pixel covers here, across the ray
+  Array<T> travelled;    // metres from the ray's origin
   Array<IndexOf<T>> object;  // number of the object in the scene: `objects` first, then `instances`
 
   // Where rays along these directions leave the surfaces at register i: on the side that they go to.

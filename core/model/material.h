@@ -68,10 +68,12 @@ using MaterialKernelPtr = std::unique_ptr<MaterialKernel<T>>;
 struct MaterialTraits {
   bool lit = false;        // answers light sources: `ambient` and `evaluate`
   bool mirrors = false;    // `specular` may have reflectance
-  bool transmits = false;  // `specular` may have transmittance
-  bool filters = false;    // `specular` may have a filter other than 1
+  bool transmits = false;  // light passes through: `specular` may have transmittance, `evaluate` may answer
+                           // light from behind
+  bool filters = false;    // light may be weakened on its way through the body
   bool glossy = false;     // some may look different from different sides, though they answer light sources
   bool emits = false;      // some surface with it sends light out by itself
+  SurfaceFields fields = {};  // that `evaluate` and `sample` read
 
   MaterialTraits& operator|=(const MaterialTraits& other) {
     lit |= other.lit;
@@ -80,6 +82,7 @@ struct MaterialTraits {
     filters |= other.filters;
     glossy |= other.glossy;
     emits |= other.emits;
+    fields |= other.fields;
     return *this;
   }
 };
@@ -93,6 +96,9 @@ class MaterialSet {
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
   // Largest share of light along the normal that it mirrors.
   virtual double mirrored_share(int /*index*/) const { return 0; }
+  // Largest share of light that it sends on, over views and channels; above 1 it creates energy. To within a
+  // hundredth; 1 of what keeps or loses energy by its formula.
+  virtual double most_reflected(int /*index*/) const { return 1; }
   // Kernels whose materials are numbered from `first`.
   virtual MaterialKernelPtr<float> kernel(float, int first) const = 0;
   virtual MaterialKernelPtr<double> kernel(double, int first) const = 0;

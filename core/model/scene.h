@@ -45,7 +45,8 @@ struct SceneFacts {
   Extreme smallest_feature{std::numeric_limits<double>::infinity(), ""},
       layer_distance{std::numeric_limits<double>::infinity(), ""};
   MirrorChain mirrors;
-  RoundingLimit rounding;  // the strictest of lights and materials; the reason names it
+  Extreme most_reflected{1, ""};  // share of light that a material in use sends on, and who has it
+  RoundingLimit rounding;         // the strictest of lights and materials; the reason names it
 };
 
 // Primitives of all sets together.

@@ -77,6 +77,7 @@ class Planner {
   }
 
   void take_camera() {
+    plan_.fields |= scene_.facts.materials.fields;
     plan_.camera = scene_.camera;
     if (auto turned = scene_.camera->with_fov(*plan_.asked.fov_degrees)) plan_.camera = std::move(turned);
     plan_.frame = frame_at(scene_.placement, *plan_.camera, orbit_of(plan_.asked));
@@ -151,7 +152,7 @@ class Planner {
     if (plan_.constant_half)
       decide("half vector", "computed once",
              "the viewer and a light are parallel, so it is the same everywhere");
-    plan_.shadows = !lonely_convex();
+    plan_.shadows = !lonely_convex() || scene_.facts.materials.transmits;
     decide("shadows", plan_.shadows ? "traced" : "absent",
            plan_.shadows ? "objects may stand between light and surface"
                          : "the only object is convex and seen from outside: nothing stands in its light");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <memory>
 
 #include "core/accelerators/instances.h"
@@ -12,6 +13,14 @@ namespace {
 
 // What is looked at at most, so that a warning takes milliseconds whatever the scene.
 constexpr int kMostPrimitives = 20'000, kMostAround = 8;
+
+constexpr double kMostReflected = 1.005;  // share of light that a material may send on, for rounding's sake
+
+std::string percents(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f %%", 100 * share);
+  return text;
+}
 
 // Whether every surface is black.
 bool is_unlit(const Scene& scene, const Plan& plan) {
@@ -221,6 +230,11 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
     found.push_back({"/lights", "no light source and no ambient light: every surface is black"});
   if (!plan.camera->parallel() && is_enclosed(scene, plan))
     found.push_back({"/camera/eye", "the camera is inside an opaque shape that holds no light"});
+  const Extreme& most = scene.facts.most_reflected;
+  if (plan.technique->interreflects && most.value > kMostReflected)
+    found.push_back({most.where + "/material",
+                     "it sends on up to " + percents(most.value) +
+                         " of the light that it gets; plastic and metallic-roughness create none"});
   if (empty) found.push_back({"/camera", "nothing is in view: the picture shows the background alone"});
   return found;
 }

@@ -50,6 +50,7 @@ void PathReuse<T>::keep_first(int i, const PathBatch<T>& paths, const SurfaceBat
   first_.material.put(i, load_index<T>(surface.material, i));
   ray_.put(i, paths.rays.direction.at(i));
   weight_.put(i, alive, scatter.weight.at(i));
+  first_.travelled.put(i, surface.travelled.at(i));
   pdf_.put(i, drawn, scatter.pdf.at(i));
   lit_.put(i, lit, N(T(1)));
 }

@@ -48,6 +48,8 @@ Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, c
     for (const auto& shapes : geometry.shapes) shapes->parameters(paths.rays, met, hits, surface);
   if (fields.identity) find_objects(*geometry.scene, met, hits, surface);
   if (fields.footprint) find_footprints(paths, met, hits, surface);
+  if (fields.travelled)
+    for (const int i : met) surface.travelled.put(i, hits.t.at(i));
   return met;
 }
 

@@ -30,6 +30,7 @@ struct Drawn {
       surface.side[i] = side;
       surface.material[i] = 0;
       hits.t[i] = 0.5;
+      surface.travelled[i] = 0.5;
       slot[i] = i % kBatch;
       reach[i] = 1;
       pdf[i] = 0;

@@ -35,6 +35,7 @@ void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
     b.pdf[i] = 0;
     b.surface.side[i] = one.side;
     b.hits.t[i] = one.t;
+    b.surface.travelled[i] = one.t;
     b.surface.material[i] = i < count ? 0 : -1;
   }
 }

@@ -1,0 +1,34 @@
+#include "core/materials/cook_torrance.h"
+
+#include "core/params/params.h"
+
+namespace orrery {
+
+template <class N>
+CookTorrance<double> CookTorrance<N>::read(Params& p) {
+  const Vec3d n = p.color("n", "Index of refraction of the facets, per channel.", Vec3d(1.5));
+  const Vec3d k = p.color("k", "Extinction of the facets, per channel.", Vec3d(0));
+  const Vec3d diffuse = p.coefficient("diffuse", "Share of light that leaves evenly.", Vec3d(0), 1);
+  const Vec3d specular = p.coefficient("specular", "Share of what facets mirror.", Vec3d(1), 1);
+  const double slope =
+      p.number("slope", "Root mean square slope of the facets.", {.min = 0.01, .max = 1}, 0.3);
+  const double most = max_component(diffuse + specular);
+  if (most > 1) p.fail("specular", "expected a sum with diffuse of at most 1, got " + number_text(most));
+  CookTorrance<double> found{n, k, diffuse, specular, slope, 0};
+  found.chance = lobe_chance(max_component(specular * found.reflectance(0.7)), max_component(diffuse));
+  return found;
+}
+
+namespace {
+
+template <class T>
+using CookTorranceKernel = LobeKernel<CookTorrance, T>;
+
+}  // namespace
+
+MaterialType cook_torrance_type() {
+  return {"cook-torrance", "Facets in grooves over a matt share, as published in 1982.",
+          make_material_set<CookTorrance, CookTorranceKernel>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "core/materials/fresnel.h"
+#include "core/materials/lobes.h"
+#include "core/materials/microfacet.h"
+#include "core/math/elementary.h"
+
+namespace orrery {
+
+// The model of Cook and Torrance ("A Reflectance Model for Computer Graphics", TOG 1982): a matt share and a
+// share of facets in V-shaped grooves, with slopes after Beckmann. Light that facets pass on to each other is
+// lost, as the model has it.
+template <class N>
+struct CookTorrance {
+  Vec3<N> n, k;      // index of refraction and extinction of the facets
+  Vec3<N> diffuse;   // share of light that leaves evenly
+  Vec3<N> specular;  // of what facets mirror
+  N slope;           // root mean square of the facets
+  N chance;          // of drawing a facet
+
+  static CookTorrance<double> read(Params& p);
+  MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
+
+  N rough() const { return N(ScalarOf<N>(1)); }
+  Vec3<N> from_everywhere() const { return diffuse + specular * reflectance(N(ScalarOf<N>(1))); }
+  Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
+
+  [[gnu::always_inline]] Vec3<N> reflectance(const N& cosine) const {
+    return {fresnel_conductor(n.x, k.x, cosine), fresnel_conductor(n.y, k.y, cosine),
+            fresnel_conductor(n.z, k.z, cosine)};
+  }
+
+  // Beckmann's density of normals exp(-tan^2 / m^2) / (pi m^2 cos^4) and the masking of V-shaped grooves,
+  // min(1, 2 H.N V.N / V.H, 2 H.N L.N / V.H).
+  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
+                                                const MaskOf<N>&) const {
+    using T = ScalarOf<N>;
+    using std::sqrt;
+    constexpr T kPi = std::numbers::pi_v<T>, kLog2E = std::numbers::log2e_v<T>;
+    constexpr T kVanished = -60;  // powers of two
+    const N zero(T(0)), one(T(1));
+    const auto lit = light.z > zero;
+    const N cosine = select(lit, light.z, one);
+    const Vec3<N> h(viewer.x + light.x, viewer.y + light.y, viewer.z + cosine);
+    const N across = h.x * h.x + h.y * h.y, up2 = h.z * h.z, length2 = across + up2;
+    const N exponent = across / (up2 * slope * slope) * (-kLog2E);
+    const auto stands = exponent > N(kVanished);
+    const N ratio = select(stands, N(length2 / up2), one);
+    const N density = select(stands, N(exp2_flushed(select(stands, exponent, zero)) * ratio * ratio), zero) *
+                      (one / (kPi * slope * slope));
+    const N half = sqrt(length2), to_viewer = half * T(0.5), up = h.z / half;
+    const N groove = T(2) * up * min_first(viewer.z, cosine) / to_viewer;
+    const N single = density * min_first(one, groove) * (kPi / T(4)) / viewer.z;
+    const N drawn = density * up / (T(4) * to_viewer);
+    return {diffuse * cosine + specular * reflectance(min_first(one, to_viewer)) * single,
+            select(lit, N(chance * drawn + (one - chance) * cosine * (one / kPi)), zero)};
+  }
+
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, const LobeDraw<N>& draw) const {
+    using T = ScalarOf<N>;
+    using std::sqrt;
+    constexpr T kLn2 = std::numbers::ln2_v<T>;
+    const N zero(T(0)), one(T(1));
+    const auto [mirrors, u] = draw.choose(chance);
+    const N tangent2 = max_first(zero, N(log2_normal(one - u) * (-kLn2) * slope * slope));
+    const N up = one / sqrt(one + tangent2), across = sqrt(tangent2) * up;
+    const auto [sine, cosine] = sine_cosine_turns(draw.v);
+    const Vec3<N> facet(across * cosine, across * sine, up);
+    return {
+        select(mirrors, mirrored_about(viewer, facet), cosine_direction(Vec3<N>(zero, zero, one), u, draw.v)),
+        MaskOf<N>(false)};
+  }
+};
+
+}  // namespace orrery

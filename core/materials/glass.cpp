@@ -1,0 +1,105 @@
+#include "core/materials/glass.h"
+
+#include "core/math/mirror.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+// Refracted light is spread by about this times alpha; less than a thousandth of it is none.
+double spread_by_index(double ior) { return std::abs(std::log2(ior)); }
+constexpr double kLeastSpread = 1e-4;
+
+// All light leaves at once but what a facet sends into another.
+FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
+  const auto share = [&](const Vec3d& viewer, const Vec3d& normal, const auto& seen) {
+    const double to_viewer = dot(viewer, normal), eta = 1 / far_index;
+    const auto [mirrored, cos_transmitted] = split_dielectric(eta, to_viewer);
+    const double back = mirrored_about(viewer, normal).z;
+    const double on = eta * viewer.z - (eta * to_viewer - cos_transmitted) * normal.z;
+    return (back > 0 ? mirrored * seen(back) : 0.0) + (on > 0 ? (1 - mirrored) * seen(on) : 0.0);
+  };
+  constexpr double kStepScale = 0.3;  // the critical angle is a step of mu itself
+  return facet_albedo(alpha, far_index < 1 ? std::max(alpha, kStepScale) : alpha, share);
+}
+
+}  // namespace
+
+// The shares that go through are those of Fresnel's mean, brought down so that both are at most 1 and
+// f / n^2 is the same both ways: see Glass. n^2 (1 - mean F) is the same seen from both sides.
+template <class N>
+Glass<double> Glass<N>::read(Params& p) {
+  const double ior =
+      p.number("ior", "Index of refraction inside over outside.", {.min = 0.1, .max = 10}, 1.5);
+  const double roughness =
+      p.number("roughness", "0: smooth, 1: the roughest. Its square is alpha of the distribution GGX.",
+               {.min = 0, .max = 1}, 0.0);
+  const Vec3d filter = p.color("filter", "What remains of light after one metre inside.", Vec3d(1), 1);
+  Glass<double> glass{};
+  glass.body = {ior, normal_reflectance(ior, 0.0), 1.0, log2_filter_of(filter)};
+  const double alpha = roughness * roughness;
+  if (alpha < kLeastAlpha || alpha * spread_by_index(ior) < kLeastSpread) return glass;
+  glass.alpha = alpha;
+  glass.outside = lossless_albedo(alpha, ior);
+  glass.inside = lossless_albedo(alpha, 1 / ior);
+  const double outside = 1 - glass.outside.mean, inside = 1 - glass.inside.mean;
+  const double passes = ior > 1 ? 1 - mean_dielectric(1 / ior) : (1 - mean_dielectric(ior)) * ior * ior;
+  const double most = std::max({outside, inside, std::numeric_limits<double>::min()});
+  glass.through_outside = passes * inside / most;
+  glass.through_inside = passes / (ior * ior) * outside / most;
+  return glass;
+}
+
+namespace {
+
+template <class T>
+class GlassKernel final : public LobeKernel<Glass, T> {
+ public:
+  using N = Lanes<T>;
+  using LobeKernel<Glass, T>::LobeKernel;
+
+  void sample(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
+              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& glass) {
+      const auto [u, v] = draws.two(SampleSet::lobe, i);
+      const auto rough = mine && glass.alpha > zero, smooth = mine && !rough;
+      if (any(rough)) {
+        const N side = draws.two(SampleSet::survival, i).v;
+        this->sample_rough(rays, surface, i, rough, glass, {u, v, side}, out);
+      }
+      if (!any(smooth)) return;
+      const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);
+      const auto inside = surface.side.at(i) < zero;
+      const auto split = glass.body.split(direction, normal, inside);
+      const Vec3<N> back = mirrored(direction, normal, surface.geometric.at(i)), on = split.refracted;
+      out.direction.put(i, smooth, select(u < split.reflectance, back, on));
+      out.weight.put(i, smooth, glass.body.filter(select(inside, hits.t.at(i), zero)));
+      out.pdf.put(i, smooth, zero);
+    });
+  }
+
+  void specular(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
+                const Groups& groups, SpecularBatch<T>& out) const override {
+    const N zero(T(0)), one(T(1));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& glass) {
+      const auto inside = surface.side.at(i) < zero;
+      const auto split = glass.body.split(rays.direction.at(i), surface.normal.at(i), inside);
+      const N smooth = select(glass.alpha > zero, zero, one);
+      out.reflectance.put(i, mine, Vec3<N>(split.reflectance * smooth));
+      out.transmittance.put(i, mine, Vec3<N>((one - split.reflectance) * smooth));
+      out.refracted.put(i, mine, split.refracted);
+      const auto crossed = inside && smooth > zero;
+      out.filter.put(i, mine, glass.body.filter(select(crossed, hits.t.at(i), zero)));
+    });
+  }
+};
+
+}  // namespace
+
+MaterialType glass_type() {
+  return {"glass", "Glass, smooth or of microfacets: mirrors, refracts, and may filter light inside.",
+          make_material_set<Glass, GlassKernel>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,144 @@
+#pragma once
+
+#include "core/materials/facet_albedo.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/lobes.h"
+#include "core/materials/refractive.h"
+
+namespace orrery {
+
+// Glass of microfacets that mirror and refract (Walter, Marschner, Li, Torrance, "Microfacet Models for
+// Refraction through Rough Surfaces", EGSR 2007), by Fresnel's equations. Light that facets pass on to each
+// other leaves on both sides by lobes after Kulla and Conty (SIGGRAPH course, 2017), so that no light is lost
+// at any roughness. With alpha 0 the surface is smooth.
+//
+// Radiance is held as radiance over the square of the index, which no surface changes: as `refractive` has
+// it. So f(in, out) / n_in^2 = f(out, in) / n_out^2, and glass among even light looks as if it were not
+// there.
+template <class N>
+struct Glass {
+  Refractive<N> body;  // of exact equations
+  N alpha;             // of GGX; 0: smooth
+  // Of facets seen from outside and from inside: what leaves at once.
+  FacetAlbedo<N> outside, inside;
+  // Share of what facets pass on that goes through, seen from outside and from inside.
+  N through_outside, through_inside;
+
+  static Glass<double> read(Params& p);
+  MaterialTraits traits() const {
+    const bool filters = body.log2_filter != Vec3<N>(N(0)), is_rough = alpha > 0;
+    return {.lit = is_rough,
+            .mirrors = !is_rough,
+            .transmits = true,
+            .filters = filters,
+            .glossy = is_rough,
+            .fields = {.travelled = is_rough && filters}};
+  }
+  double mirrored_share() const { return alpha > 0 ? 0 : body.f0; }
+
+  N rough() const { return alpha; }
+  Vec3<N> from_everywhere() const {
+    const N one(ScalarOf<N>(1)), zero(ScalarOf<N>(0));
+    return Vec3<N>(select(alpha > zero, one, zero));
+  }
+
+  // Where nothing is filtered nobody measures how far light travelled.
+  Vec3<N> passed(const MaskOf<N>& is_inside, const N& travelled) const {
+    const N zero(ScalarOf<N>(0));
+    const auto filters = is_inside && max_component(-body.log2_filter) > zero;
+    if (!any(filters)) return Vec3<N>(N(ScalarOf<N>(1)));
+    return body.filter(select(filters, travelled, zero));
+  }
+
+  // The generalised half vector V + eta L, with eta the index of the light's side over the viewer's.
+  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
+                                                const MaskOf<N>& is_inside) const {
+    using T = ScalarOf<N>;
+    using std::abs;
+    constexpr T kPi = std::numbers::pi_v<T>;
+    const N zero(T(0)), one(T(1)), cosine = abs(light.z);
+    const auto through = light.z < zero;
+    const N far_index = select(is_inside, N(one / body.ior), body.ior);
+    const N eta = select(through, far_index, one);
+    const Vec3<N> h = viewer + light * eta;
+    const Ggx<N> facets{alpha};
+    const auto half = facets.along(h);
+    const N along = select(h.z < zero, N(T(-1)), one) / half.length;
+    const N to_viewer = dot(viewer, h) * along, to_light = dot(light, h) * along;
+    const N seen = min_first(one, max_first(zero, to_viewer)), beyond = max_first(zero, -to_light);
+    const N into = one / far_index;
+    // By both cosines where light goes through, as near the critical angle one says little of the other.
+    const N mirrored =
+        select(through, fresnel_dielectric(into, seen, beyond), split_dielectric(into, seen).reflectance);
+    // d(half) / d(light) over that of a mirror.
+    const N change = T(-4) * to_viewer * to_light * eta * eta / (half.length * half.length);
+    const auto possible = half.length > zero && to_viewer > zero && (!through || to_light < zero);
+    const N share = select(possible, select(through, N((one - mirrored) * change), mirrored), zero);
+
+    const auto [passed_viewer, passed_light, spread] = passed_on(viewer.z, cosine, is_inside, through);
+    const Vec3<N> above(light.x, light.y, cosine);
+    const N single = share * facets.brdf(viewer, above, half.density) * kPi;
+    const N pdf = (one - passed_viewer) * share * facets.pdf(viewer, half.density) +
+                  passed_viewer * spread.chance * cosine * (one / kPi);
+    return {Vec3<N>((single + passed_viewer * passed_light * spread.chance * spread.scale) * cosine), pdf};
+  }
+
+  // A facet that the viewer sees mirrors or refracts, or light leaves in proportion to the cosine.
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>& is_inside, const LobeDraw<N>& draw) const {
+    using T = ScalarOf<N>;
+    const N zero(T(0)), one(T(1));
+    const N passed_viewer = one - choose(is_inside, inside, outside).at(min_first(one, viewer.z));
+    const auto [evenly, u] = draw.choose(passed_viewer);
+    const Vec3<N> facet = Ggx<N>{alpha}.visible_normal(viewer, u, draw.v);
+    const N eta = select(is_inside, body.ior, N(one / body.ior));
+    const N to_viewer = min_first(one, max_first(zero, dot(viewer, facet)));
+    const auto split = split_dielectric(eta, to_viewer);
+    const Vec3<N> refracted = facet * (eta * to_viewer - split.cos_transmitted) - viewer * eta;
+    const auto refracts = draw.side >= split.reflectance;
+    const Vec3<N> even = cosine_direction(Vec3<N>(zero, zero, one), u, draw.v);
+    const auto even_through = draw.side < select(is_inside, through_inside, through_outside);
+    const Vec3<N> across(even.x, even.y, select(even_through, N(-even.z), even.z));
+    return {select(evenly, across, select(refracts, refracted, mirrored_about(viewer, facet))),
+            (evenly && even_through) || (!evenly && refracts)};
+  }
+
+ private:
+  // Light that facets pass on, of the viewer's and of the light's direction, and where it goes.
+  struct Spread {
+    N chance;  // of the light's side
+    N scale;   // over what all directions of that side pass on
+  };
+  struct PassedOn {
+    N viewer, light;
+    Spread spread;
+  };
+  [[gnu::always_inline]] PassedOn passed_on(const N& viewer, const N& light, const MaskOf<N>& is_inside,
+                                            const MaskOf<N>& through) const {
+    using T = ScalarOf<N>;
+    const N zero(T(0)), one(T(1));
+    const FacetAlbedo<N> near = choose(is_inside, inside, outside);
+    const auto light_inside = is_inside != through;
+    const FacetAlbedo<N> there = choose(light_inside, inside, outside);
+    const N chance = select(is_inside, through_inside, through_outside);
+    const N missing = one - there.mean;
+    return {one - near.at(min_first(one, viewer)),
+            one - there.at(min_first(one, light)),
+            {select(through, chance, N(one - chance)),
+             select(missing > zero, N(one / select(missing > zero, missing, one)), zero)}};
+  }
+  [[gnu::always_inline]] static FacetAlbedo<N> choose(const MaskOf<N>& mask, const FacetAlbedo<N>& yes,
+                                                      const FacetAlbedo<N>& no) {
+    if constexpr (!std::is_arithmetic_v<N>) {
+      if (all(mask)) return yes;
+      if (!any(mask)) return no;
+    }
+    FacetAlbedo<N> chosen;
+    for (std::size_t k = 0; k < chosen.coefficients.size(); ++k)
+      chosen.coefficients[k] = select(mask, yes.coefficients[k], no.coefficients[k]);
+    chosen.scale = select(mask, yes.scale, no.scale);
+    chosen.mean = select(mask, yes.mean, no.mean);
+    return chosen;
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <numbers>
+
+#include "core/materials/material_set.h"
+#include "core/materials/shading_frame.h"
+
+namespace orrery {
+
+// What a surface does with light from one direction, as MaterialKernel::evaluate() has it.
+template <class N>
+struct Scattered {
+  Vec3<N> f_cos;
+  N pdf;
+};
+
+// A direction of ShadingFrame that was drawn; `through`: meant for the far side of the surface.
+template <class N>
+struct DrawnDirection {
+  Vec3<N> direction;
+  MaskOf<N> through;
+};
+
+// The numbers that choose a direction, in [0, 1): two of its own, and `side` for what can only be decided
+// once a microfacet is known.
+template <class N>
+struct LobeDraw {
+  N u, v, side;
+
+  // Whether u is below `share`, and the rest of it stretched to [0, 1).
+  struct Choice {
+    MaskOf<N> first;
+    N u;
+  };
+  Choice choose(const N& share) const {
+    using T = ScalarOf<N>;
+    const N one(T(1)), last(T(1) - std::numeric_limits<T>::epsilon() / 2);
+    const auto first = u < share;
+    return {first, min_first(last, select(first, N(u / share), N((u - share) / (one - share))))};
+  }
+};
+
+// The share of draws that go to a lobe of albedo `own` beside one of albedo `other`: at least a twentieth
+// each, but none to a lobe that is absent.
+template <class N>
+[[gnu::always_inline]] inline N lobe_chance(const N& own, const N& other) {
+  using T = ScalarOf<N>;
+  const N zero(T(0)), one(T(1)), sum = own + other;
+  const N chance = min_first(N(T(0.95)), max_first(N(T(0.05)), N(own / select(sum > zero, sum, one))));
+  return select(other > zero, select(own > zero, chance, zero), one);
+}
+
+// Kernel of materials whose light depends on both directions. Beside what MaterialRecords asks for, a record
+// has, with directions of ShadingFrame and the viewer above the surface,
+//   N rough() const                                    0: nothing but what the derived kernel draws
+//   Vec3<N> from_everywhere() const                    what leaves of ambient light
+//   Scattered<N> scattered(viewer, light, inside)      light on either side of the surface
+//   DrawnDirection<N> drawn(viewer, inside, LobeDraw)  in proportion to the density of scattered()
+//   Vec3<N> passed(inside, travelled)                  what the body leaves of light that crossed it
+template <template <class> class Record, class T>
+class LobeKernel : public MaterialRecords<Record, T> {
+ public:
+  using N = Lanes<T>;
+  using MaterialRecords<Record, T>::MaterialRecords;
+
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+               Vec3Array<T>& radiance) const override {
+    const Vec3<N> from_everywhere(ambient);
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
+      radiance.put(i, mine, record.from_everywhere() * from_everywhere);
+    });
+  }
+
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
+                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
+      const Vec3<N> geometric = surface.geometric.at(i), light = directions.light.at(i);
+      const Vec3<N> viewer = -directions.ray.at(i);
+      const ShadingFrame<N> frame(surface.normal.at(i), geometric, viewer);
+      const Vec3<N> local_viewer = frame.local(viewer), local_light = frame.local(light);
+      const auto lit = mine && record.rough() > zero && directions.reach.at(i) > zero &&
+                       on_one_side(local_viewer, local_light, dot(geometric, light));
+      pdf.put(i, mine, zero);
+      if (!any(lit)) return;
+      const auto inside = surface.side.at(i) < zero;
+      const auto scattered = record.scattered(local_viewer, local_light, inside);
+      f_cos.put(i, lit, scattered.f_cos * record.passed(inside, surface.travelled.at(i)));
+      pdf.put(i, lit, scattered.pdf);
+    });
+  }
+
+  void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
+      const auto [u, v] = draws.two(SampleSet::lobe, i);
+      const N side = draws.two(SampleSet::survival, i).v;
+      sample_rough(rays, surface, i, mine && record.rough() > zero, record, {u, v, side}, out);
+    });
+  }
+
+ protected:
+  // Sets `out` of these lanes to a draw of the record's lobes.
+  void sample_rough(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, int i, const MaskOf<N>& mine,
+                    const Record<N>& record, const LobeDraw<N>& draw, ScatterBatch<T>& out) const {
+    if (!any(mine)) return;
+    const N zero(T(0));
+    const Vec3<N> viewer = -rays.direction.at(i), geometric = surface.geometric.at(i);
+    const auto inside = surface.side.at(i) < zero;
+    const ShadingFrame<N> frame(surface.normal.at(i), geometric, viewer);
+    const Vec3<N> local_viewer = frame.local(viewer);
+    const auto drawn = record.drawn(local_viewer, inside, draw);
+    const Vec3<N> light = normalize(frame.world(drawn.direction)), local_light = frame.local(light);
+    const auto scattered = record.scattered(local_viewer, local_light, inside);
+    const auto leaves = mine && on_one_side(local_viewer, local_light, dot(geometric, light)) &&
+                        (local_light.z < zero) == drawn.through && scattered.pdf > zero;
+    constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
+    const Vec3<N> share = scattered.f_cos * record.passed(inside, surface.travelled.at(i));
+    out.direction.put(i, mine, select(leaves, light, geometric));
+    out.weight.put(i, mine, Vec3<N>(zero));
+    out.weight.put(i, leaves, share * (N(T(1)) / (kPi * scattered.pdf)));
+    out.pdf.put(i, mine, select(leaves, scattered.pdf, zero));
+  }
+
+ private:
+  // The viewer is above the surface, and the light on the same side of the shading and of the true one.
+  static MaskOf<N> on_one_side(const Vec3<N>& local_viewer, const Vec3<N>& local_light,
+                               const N& true_cosine) {
+    return local_viewer.z > N(T(0)) && local_light.z * true_cosine > N(T(0));
+  }
+};
+
+}  // namespace orrery

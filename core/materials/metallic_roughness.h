@@ -1,0 +1,89 @@
+#pragma once
+
+#include "core/materials/facet_albedo.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/ggx_albedo.h"
+#include "core/materials/lobes.h"
+
+namespace orrery {
+
+// The metallic-roughness material of glTF 2.0 (Khronos, specification, appendix B): GGX microfacets with
+// Schlick's approximation over a matt base. The specification's own formula lets the base scatter light that
+// facets have mirrored already, and loses light that they pass on; here the base gets what they leave, as in
+// Plastic, and what they pass on leaves by the lobe of Kulla and Conty. `strict` keeps the formula.
+template <class N>
+struct MetallicRoughness {
+  Vec3<N> f0;  // reflectance along the normal
+  Vec3<N>
+      base;  // strict: reflectance of the base; else of the product of what facets leave of both directions
+  Vec3<N> multiple;        // F_ms; 0 if strict
+  N strict;                // 1 or 0
+  N alpha;                 // of GGX
+  GgxAlbedo<N> albedo;     // of facets that mirror all
+  FacetAlbedo<N> grazing;  // of facets that mirror (1 - cos)^5
+
+  static MetallicRoughness<double> read(Params& p);
+  MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
+  double most_reflected() const;
+
+  N rough() const { return N(ScalarOf<N>(1)); }
+  Vec3<N> from_everywhere() const { return f0 + base; }
+  Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
+
+  // Albedos at a cosine: of facets that mirror all, and of the facets themselves at once.
+  struct Albedos {
+    N all;
+    Vec3<N> once;
+  };
+  [[gnu::always_inline]] Albedos albedos(const N& cosine) const {
+    const N one(ScalarOf<N>(1)), mu = min_first(one, cosine);
+    const N all = albedo.at(mu), edge = min_first(all, grazing.at(mu));
+    return {all, f0 * (all - edge) + Vec3<N>(edge)};
+  }
+  // What facets leave to the base.
+  [[gnu::always_inline]] Vec3<N> left(const Albedos& a) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    const Vec3<N> rest = Vec3<N>(one) - a.once - multiple * (one - a.all);
+    return {max_first(zero, rest.x), max_first(zero, rest.y), max_first(zero, rest.z)};
+  }
+  [[gnu::always_inline]] N facet_chance(const Albedos& a) const {
+    const N one(ScalarOf<N>(1));
+    return lobe_chance(max_component(a.once),
+                       N(max_component(left(a) * base) + max_component(multiple) * (one - a.all)));
+  }
+
+  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
+                                                const MaskOf<N>&) const {
+    using T = ScalarOf<N>;
+    constexpr T kPi = std::numbers::pi_v<T>;
+    const N zero(T(0)), one(T(1));
+    const auto lit = light.z > zero;
+    const N cosine = select(lit, light.z, one);
+    const Ggx<N> facets{alpha};
+    const auto half = facets.half(viewer, light);
+    const N along = min_first(one, N(half.length * T(0.5)));
+    const Vec3<N> fresnel(fresnel_schlick(f0.x, along), fresnel_schlick(f0.y, along),
+                          fresnel_schlick(f0.z, along));
+    const auto seen = albedos(viewer.z), given = albedos(cosine);
+    const auto is_strict = strict > zero;
+    const Vec3<N> passed_to_base = select(is_strict, Vec3<N>(one) - fresnel, left(seen) * left(given));
+    const N spread = (one - seen.all) * (one - given.all) /
+                     max_first(N(std::numeric_limits<T>::min()), N(one - albedo.mean));
+    const N single = facets.brdf(viewer, light, half.density) * kPi;
+    const N chance = facet_chance(seen);
+    return {(base * passed_to_base + multiple * spread + fresnel * single) * cosine,
+            select(lit, N(chance * facets.pdf(viewer, half.density) + (one - chance) * cosine * (one / kPi)),
+                   zero)};
+  }
+
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, const LobeDraw<N>& draw) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    const auto [mirrors, u] = draw.choose(facet_chance(albedos(viewer.z)));
+    const Vec3<N> facet = Ggx<N>{alpha}.visible_normal(viewer, u, draw.v);
+    return {
+        select(mirrors, mirrored_about(viewer, facet), cosine_direction(Vec3<N>(zero, zero, one), u, draw.v)),
+        MaskOf<N>(false)};
+  }
+};
+
+}  // namespace orrery

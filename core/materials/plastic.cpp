@@ -1,0 +1,81 @@
+#include "core/materials/plastic.h"
+
+#include "core/math/mirror.h"
+#include "core/params/params.h"
+
+namespace orrery {
+
+// Of light that the base reflects evenly, the coat sends back what it would not have let in:
+// 1 - (1 - E) / n^2, with E the mean of what it mirrors from outside.
+template <class N>
+Plastic<double> Plastic<N>::read(Params& p) {
+  const Vec3d reflectance =
+      p.coefficient("reflectance", "Share of light that the base reflects.", Vec3d(0.8), 1);
+  const double ior =
+      p.number("ior", "Index of refraction of the coat over outside.", {.min = 1, .max = 10}, 1.5);
+  const double roughness = p.number(
+      "roughness", "Of the coat. 0: smooth, 1: the roughest. Its square is alpha of the distribution GGX.",
+      {.min = 0, .max = 1}, 0.3);
+  Plastic<double> plastic{{}, ior, roughness * roughness, {}};
+  double mean;
+  if (plastic.alpha < kLeastAlpha) {
+    plastic.alpha = 0;
+    mean = mean_dielectric(1 / ior);
+  } else {
+    plastic.mirror = mirrored_albedo(plastic.alpha, [&](double cosine) { return plastic.fresnel(cosine); });
+    mean = plastic.mirror.mean;
+  }
+  const double leaves = (1 - mean) / (ior * ior);
+  const auto base = [&](double rho) { return rho * leaves / (1 - rho * (1 - leaves)) / (1 - mean); };
+  plastic.base = {base(reflectance.x), base(reflectance.y), base(reflectance.z)};
+  return plastic;
+}
+
+namespace {
+
+template <class T>
+class PlasticKernel final : public LobeKernel<Plastic, T> {
+ public:
+  using N = Lanes<T>;
+  using LobeKernel<Plastic, T>::LobeKernel;
+
+  void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+    const N zero(T(0)), one(T(1));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Plastic<N>& plastic) {
+      const auto [u, v] = draws.two(SampleSet::lobe, i);
+      const LobeDraw<N> draw{u, v, zero};
+      const auto smooth = mine && !(plastic.alpha > zero);
+      if (!any(smooth)) return this->sample_rough(rays, surface, i, mine, plastic, draw, out);
+      const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);
+      const Vec3<N> geometric = surface.geometric.at(i);
+      const N share = plastic.fresnel(dot(ShadingFrame<N>(normal, geometric, -direction).normal, -direction));
+      const N chance = select(smooth, plastic.coat_chance(share), zero);
+      const auto [coat, rest] = draw.choose(chance);
+      this->sample_rough(rays, surface, i, mine && !coat, plastic, {rest, v, zero}, out);
+      out.direction.put(i, coat && mine, orrery::mirrored(direction, normal, geometric));
+      out.weight.put(i, coat && mine, Vec3<N>(share / select(coat, chance, one)));
+      out.pdf.put(i, coat && mine, zero);
+    });
+  }
+
+  void specular(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+                const Groups& groups, SpecularBatch<T>& out) const override {
+    const N zero(T(0)), one(T(1));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Plastic<N>& plastic) {
+      const N share = plastic.fresnel(-dot(rays.direction.at(i), surface.normal.at(i)));
+      out.reflectance.put(i, mine, Vec3<N>(select(plastic.alpha > zero, zero, share)));
+      out.transmittance.put(i, mine, Vec3<N>(zero));
+      out.filter.put(i, mine, Vec3<N>(one));
+    });
+  }
+};
+
+}  // namespace
+
+MaterialType plastic_type() {
+  return {"plastic", "A matt base under a clear coat, smooth or rough.",
+          make_material_set<Plastic, PlasticKernel>};
+}
+
+}  // namespace orrery

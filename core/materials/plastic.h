@@ -1,0 +1,80 @@
+#pragma once
+
+#include "core/materials/facet_albedo.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/lobes.h"
+
+namespace orrery {
+
+// A matt base under a clear coat, smooth or of microfacets. The base gets what the coat does not mirror, on
+// the way in and out (Kelemen, Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with
+// Importance Sampling", Eurographics 2001), and light that the coat sends back to it from below is coloured
+// again. So a white base reflects, with its coat, all light at any roughness.
+template <class N>
+struct Plastic {
+  Vec3<N> base;  // of the product of what the coat leaves of both directions
+  N ior;
+  N alpha;                // of GGX; 0: smooth
+  FacetAlbedo<N> mirror;  // of a rough coat
+
+  static Plastic<double> read(Params& p);
+  MaterialTraits traits() const { return {.lit = true, .mirrors = !(alpha > 0), .glossy = true}; }
+  double mirrored_share() const { return alpha > 0 ? 0 : fresnel(1); }
+
+  N rough() const { return N(ScalarOf<N>(1)); }
+  Vec3<N> from_everywhere() const { return base; }
+  Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
+
+  [[gnu::always_inline]] N fresnel(const N& cosine) const {
+    const N one(ScalarOf<N>(1));
+    return split_dielectric(N(one / ior), min_first(one, max_first(N(ScalarOf<N>(0)), cosine))).reflectance;
+  }
+  // Share of light at this cosine that the coat mirrors.
+  [[gnu::always_inline]] N mirrored(const N& cosine) const {
+    const auto facets = alpha > N(ScalarOf<N>(0));
+    if (all(facets)) return mirror.at(min_first(N(ScalarOf<N>(1)), cosine));
+    if (!any(facets)) return fresnel(cosine);
+    return select(facets, mirror.at(min_first(N(ScalarOf<N>(1)), cosine)), fresnel(cosine));
+  }
+  // The share of draws that the coat gets, where it mirrors this share.
+  [[gnu::always_inline]] N coat_chance(const N& mirrors) const {
+    return lobe_chance(mirrors, N((ScalarOf<N>(1) - mirrors) * max_component(base)));
+  }
+
+  // Without what a smooth coat mirrors.
+  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
+                                                const MaskOf<N>&) const {
+    using T = ScalarOf<N>;
+    constexpr T kPi = std::numbers::pi_v<T>;
+    const N zero(T(0)), one(T(1));
+    const N mirrors = mirrored(viewer.z), chance = coat_chance(mirrors);
+    const auto lit = light.z > zero;
+    const N cosine = select(lit, light.z, one);
+    Scattered<N> found{base * ((one - mirrors) * (one - mirrored(cosine)) * cosine),
+                       (one - chance) * cosine * (one / kPi)};
+    const auto facets = alpha > zero;
+    if (any(facets)) {
+      const Ggx<N> coat{select(facets, alpha, one)};
+      const auto half = coat.half(viewer, light);
+      const N single = fresnel(half.length * T(0.5)) * coat.brdf(viewer, light, half.density) * cosine * kPi;
+      found.f_cos = found.f_cos + Vec3<N>(select(facets && lit, single, zero));
+      found.pdf = found.pdf + select(facets && lit, N(chance * coat.pdf(viewer, half.density)), zero);
+    }
+    found.pdf = select(lit, found.pdf, zero);
+    return found;
+  }
+
+  // REQUIRES: a smooth coat has had its share of the draws.
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, const LobeDraw<N>& draw) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    const auto facets = alpha > zero;
+    const N chance = select(facets, coat_chance(mirrored(viewer.z)), zero);
+    const auto [coat, u] = draw.choose(chance);
+    const Vec3<N> facet = Ggx<N>{select(facets, alpha, one)}.visible_normal(viewer, u, draw.v);
+    return {
+        select(coat, mirrored_about(viewer, facet), cosine_direction(Vec3<N>(zero, zero, one), u, draw.v)),
+        MaskOf<N>(false)};
+  }
+};
+
+}  // namespace orrery

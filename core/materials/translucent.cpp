@@ -1,0 +1,92 @@
+#include "core/materials/translucent.h"
+
+#include "core/materials/material_set.h"
+#include "core/math/hemisphere.h"
+#include "core/params/params.h"
+
+namespace orrery {
+
+template <class N>
+Translucent<double> Translucent<N>::read(Params& p) {
+  const Vec3d back =
+      p.coefficient("reflectance", "Share of light that leaves on the side it came from.", Vec3d(0.4), 1);
+  const Vec3d on =
+      p.coefficient("transmittance", "Share of light that leaves on the far side.", Vec3d(0.4), 1);
+  const double most = max_component(back + on);
+  if (most > 1)
+    p.fail("transmittance", "expected a sum with reflectance of at most 1, got " + number_text(most));
+  const double all = max_component(back) + max_component(on);
+  return {back, on, all > 0 ? max_component(on) / all : 0};
+}
+
+namespace {
+
+template <class T>
+class TranslucentKernel final : public MaterialRecords<Translucent, T> {
+ public:
+  using N = Lanes<T>;
+  using MaterialRecords<Translucent, T>::MaterialRecords;
+
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+               Vec3Array<T>& radiance) const override {
+    const Vec3<N> from_everywhere(ambient);
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
+      radiance.put(i, mine, (sheet.reflectance + sheet.transmittance) * from_everywhere);
+    });
+  }
+
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
+                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+    using std::abs;
+    const N zero(T(0));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
+      const Vec3<N> light = directions.light.at(i);
+      const N cosine = dot(surface.normal.at(i), light);
+      const auto lit =
+          mine && directions.reach.at(i) > zero && cosine * dot(surface.geometric.at(i), light) > zero;
+      const auto through = cosine < zero;
+      pdf.put(i, mine, select(lit, density(sheet, through, abs(cosine)), zero));
+      if (any(lit)) f_cos.put(i, mine, share(sheet, through) * abs(cosine));
+    });
+  }
+
+  void sample(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>& surface,
+              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+    using std::abs;
+    const N zero(T(0)), one(T(1));
+    this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
+      const auto [u, v] = draws.two(SampleSet::lobe, i);
+      const auto through = u < sheet.through;
+      const N chance = select(through, sheet.through, N(one - sheet.through));
+      const N rest = select(through, u, N(u - sheet.through)) / chance;
+      const Vec3<N> normal = surface.normal.at(i);
+      const Vec3<N> light =
+          cosine_direction(select(through, -normal, normal),
+                           min_first(N(T(1) - std::numeric_limits<T>::epsilon() / 2), rest), v);
+      const N cosine = dot(normal, light);
+      const auto leaves =
+          mine && cosine * dot(surface.geometric.at(i), light) > zero && (cosine < zero) == through;
+      out.direction.put(i, mine, light);
+      out.weight.put(i, mine, Vec3<N>(zero));
+      out.weight.put(i, leaves, share(sheet, through) * (one / chance));
+      out.pdf.put(i, mine, select(leaves, density(sheet, through, abs(cosine)), zero));
+    });
+  }
+
+ private:
+  static Vec3<N> share(const Translucent<N>& sheet, const MaskOf<N>& through) {
+    return select(through, sheet.transmittance, sheet.reflectance);
+  }
+  static N density(const Translucent<N>& sheet, const MaskOf<N>& through, const N& cosine) {
+    return select(through, sheet.through, N(N(T(1)) - sheet.through)) * cosine_pdf(cosine);
+  }
+};
+
+}  // namespace
+
+MaterialType translucent_type() {
+  return {"translucent", "A thin sheet that scatters light on both sides, as paper or a leaf.",
+          make_material_set<Translucent, TranslucentKernel>};
+}
+
+}  // namespace orrery

@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/covers.h"
+#include "tests/support/materials.h"
+
+// What materials leave of even light from everywhere.
+namespace orrery::test {
+namespace {
+
+using Case = Probe<double>::Case;
+
+Case seen_at(double cosine, double side = 1) {
+  Case c;
+  c.direction = -tilted(cosine);
+  c.side = side;
+  return c;
+}
+Vec3d mean_weight(const Probe<double>& material, const Case& point, int draws = 500'000) {
+  Vec3d sum;
+  for (const auto& drawn : material.sampled(point, draws)) sum = sum + drawn.weight;
+  return sum / draws;
+}
+const double kCosines[] = {1, 0.7, 0.4, 0.1};
+
+TEST(Glass, LosesAndMakesNoLight) {
+  covers("light-30");
+  double worst = 0;
+  for (const double alpha : {0.0, 0.0011, 0.04, 0.1, 0.25, 0.5, 1.0}) {
+    const Probe<double> glass(Json{{"type", "glass"}, {"ior", 1.5}, {"roughness", std::sqrt(alpha)}});
+    for (const double cosine : kCosines)
+      for (const double side : {1.0, -1.0}) {
+        const double found = mean_weight(glass, seen_at(cosine, side)).x;
+        EXPECT_NEAR(found, 1, 3e-3) << alpha << " " << cosine << " " << side;
+        worst = std::max(worst, std::abs(found - 1));
+      }
+  }
+  RecordProperty("worst_error", std::to_string(worst));
+}
+
+TEST(Glass, LosesNoLightAtOtherIndices) {
+  for (const double ior : {0.75, 1.1, 2.4, 4.0})
+    for (const double roughness : {0.3, 0.7, 1.0}) {
+      const Probe<double> glass(Json{{"type", "glass"}, {"ior", ior}, {"roughness", roughness}});
+      for (const double cosine : {0.9, 0.3})
+        for (const double side : {1.0, -1.0})
+          EXPECT_NEAR(mean_weight(glass, seen_at(cosine, side)).x, 1, 6e-3)
+              << ior << " " << roughness << " " << cosine << " " << side;
+    }
+}
+
+TEST(Glass, SmoothIsTheRefractiveOfItsIndex) {
+  const Probe<double> glass("{'type': 'glass', 'ior': 1.5, 'filter': [0.9, 0.5, 0.1]}");
+  const Probe<double> clear(
+      "{'type': 'refractive', 'ior': 1.5, 'fresnel': 'exact', 'filter': [0.9, 0.5, 0.1]}");
+  for (const double side : {1.0, -1.0}) {
+    const Case point = seen_at(0.6, side);
+    const auto mine = glass.specular(point), other = clear.specular(point);
+    EXPECT_EQ(mine.reflectance, other.reflectance);
+    EXPECT_EQ(mine.transmittance, other.transmittance);
+    EXPECT_EQ(mine.refracted, other.refracted);
+    EXPECT_EQ(mine.filter, other.filter);
+    EXPECT_EQ(glass.evaluated(point).pdf, 0);
+    const auto a = glass.sampled(point, 200), b = clear.sampled(point, 200);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].direction, b[i].direction);
+      EXPECT_EQ(a[i].weight, b[i].weight);
+      EXPECT_EQ(a[i].pdf, 0);
+    }
+  }
+}
+
+// After two metres in the body a channel is down to the square of what one metre leaves.
+TEST(Glass, RoughFiltersWhatCrossedTheBody) {
+  const Probe<double> glass("{'type': 'glass', 'roughness': 0.5, 'filter': [0.9, 0.5, 0.1]}");
+  const Probe<double> clear("{'type': 'glass', 'roughness': 0.5}");
+  Case point = seen_at(0.9, -1);
+  point.t = 2;
+  for (const double z : {1.0, -1.0}) {
+    point.light = Vec3d(0, 0, z);
+    const auto filtered = glass.evaluated(point).f_cos, plain = clear.evaluated(point).f_cos;
+    EXPECT_NEAR(filtered.x / plain.x, 0.81, 1e-12);
+    EXPECT_NEAR(filtered.z / plain.z, 0.01, 1e-12);
+  }
+  point.side = 1;
+  EXPECT_EQ(glass.evaluated(point).f_cos, clear.evaluated(point).f_cos);
+}
+
+TEST(Plastic, OfAWhiteBaseReflectsAllLight) {
+  for (const double roughness : {0.0, 0.1, 0.3, 0.6, 1.0})
+    for (const double ior : {1.0, 1.5, 2.0}) {
+      const Probe<double> white(
+          Json{{"type", "plastic"}, {"reflectance", 1}, {"ior", ior}, {"roughness", roughness}});
+      for (const double cosine : kCosines)
+        EXPECT_NEAR(mean_weight(white, seen_at(cosine)).x, 1, 3e-3)
+            << roughness << " " << ior << " " << cosine;
+    }
+}
+
+// Of a smooth coat all is known: it mirrors F, and lets 1 - F go on to the base and 1 - F of even light out
+// again, of which the base got rho (1 - F_in) in all bounces.
+TEST(Plastic, UnderASmoothCoatIsAsDarkAsLightBetweenCoatAndBaseMakesIt) {
+  const Probe<double> plastic("{'type': 'plastic', 'reflectance': [0.2, 0.5, 0.9], 'roughness': 0}");
+  constexpr double kOutside = 0.0917786, kInside = 1 - (1 - kOutside) / 2.25, kHead = 0.04;
+  const Vec3d found = mean_weight(plastic, seen_at(1));
+  const auto expected = [&](double rho) {
+    return kHead + (1 - kHead) * rho * (1 - kInside) / (1 - rho * kInside);
+  };
+  EXPECT_NEAR(found.x, expected(0.2), 2e-3);
+  EXPECT_NEAR(found.y, expected(0.5), 2e-3);
+  EXPECT_NEAR(found.z, expected(0.9), 2e-3);
+  EXPECT_NEAR(plastic.specular(seen_at(1)).reflectance.x, kHead, 1e-12);
+}
+
+TEST(MetallicRoughness, StrictCreatesTheEnergyOfItsFormula) {
+  covers("light-31");
+  const Probe<double> strict(
+      "{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}");
+  EXPECT_NEAR(mean_weight(strict, seen_at(1), 2'000'000).x, .99658, 1e-3);
+  EXPECT_NEAR(mean_weight(strict, seen_at(0.5), 2'000'000).x, 1.01099, 1e-3);
+  EXPECT_NEAR(mean_weight(strict, seen_at(0.1), 2'000'000).x, 1.1096, 1e-3);
+}
+
+TEST(MetallicRoughness, CreatesNoEnergy) {
+  covers("light-31");
+  for (const double roughness : {0.0, 0.2, 0.5, 0.8, 1.0})
+    for (const double metallic : {0.0, 0.5, 1.0}) {
+      const Probe<double> white(Json{{"type", "metallic-roughness"},
+                                     {"base_color", 1},
+                                     {"metallic", metallic},
+                                     {"roughness", roughness}});
+      for (const double cosine : kCosines) {
+        const double found = mean_weight(white, seen_at(cosine)).x;
+        EXPECT_LT(found, 1 + 2e-3) << roughness << " " << metallic << " " << cosine;
+        if (metallic == 0.5) continue;  // the metal's share absorbs
+        EXPECT_GT(found, 1 - 4e-3) << roughness << " " << metallic << " " << cosine;
+      }
+    }
+}
+
+// Against sums over the hemisphere of what evaluate() says.
+TEST(CookTorrance, ReflectsWhatItsFormulaSays) {
+  const Probe<double> gold(
+      "{'type': 'cook-torrance', 'n': [0.156, 0.424, 1.383], 'k': [3.602, 2.472, 1.915], 'slope': 0.3}");
+  for (const double cosine : {1.0, 0.5}) {
+    constexpr int kSteps = 400;
+    std::vector<Case> cases;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        cases.push_back(seen_at(cosine));
+        cases.back().light = tilted(std::sqrt((i + 0.5) / kSteps), (j + 0.5) / kSteps);
+      }
+    Vec3d sum;  // over the squares of cosines: f_cos / cosine
+    const auto found = gold.evaluated(cases);
+    for (std::size_t i = 0; i < cases.size(); ++i)
+      sum = sum + found[i].f_cos / (cases[i].light.z * kSteps * kSteps);
+    const Vec3d mean = mean_weight(gold, seen_at(cosine));
+    EXPECT_NEAR(mean.x, sum.x, 2e-3);
+    EXPECT_NEAR(mean.z, sum.z, 2e-3);
+    EXPECT_LT(mean.x, 1);
+  }
+}
+
+TEST(Translucent, SplitsLightBetweenItsSides) {
+  const Probe<double> paper("{'type': 'translucent', 'reflectance': [0.4, 0.3, 0.2], 'transmittance': 0.5}");
+  Vec3d back, on;
+  constexpr int kDraws = 200'000;
+  for (const auto& drawn : paper.sampled(seen_at(0.3), kDraws))
+    (drawn.direction.z > 0 ? back : on) = (drawn.direction.z > 0 ? back : on) + drawn.weight / kDraws;
+  EXPECT_NEAR(length(back - Vec3d(0.4, 0.3, 0.2)), 0, 3e-3);
+  EXPECT_NEAR(length(on - Vec3d(0.5)), 0, 3e-3);
+}
+
+TEST(Materials, TellHowMuchEnergyTheyCreate) {
+  const auto most = [](const char* material) {
+    const auto scene =
+        load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),
+                        Json{{"materials", {{"white", nullptr}, {"it", json(material)}}}}));
+    return scene->facts.most_reflected.value;
+  };
+  EXPECT_NEAR(most("{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}"),
+              1.1096, 0.01);
+  EXPECT_EQ(most("{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5}"), 1);
+  EXPECT_EQ(most("{'type': 'rough', 'kd': 0.5, 'ks': 0.5, 'shininess': 20}"), 1);
+  EXPECT_NEAR(most("{'type': 'rough', 'kd': 0.5, 'ks': 0.9, 'shininess': 2}"), 0.5 + 0.9 * 1.5, 1e-12);
+}
+
+TEST(Metal, GoldIsItsMeasuredIndices) {
+  const Probe<double> named("{'type': 'metal', 'name': 'gold'}");
+  const Probe<double> given("{'type': 'metal', 'n': [0.156, 0.424, 1.383], 'k': [3.602, 2.472, 1.915]}");
+  EXPECT_EQ(named.ambient(), given.ambient());
+  EXPECT_GT(named.ambient().x, named.ambient().z + 0.4);
+}
+
+}  // namespace
+}  // namespace orrery::test

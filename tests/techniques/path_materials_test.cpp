@@ -1,0 +1,139 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/covers.h"
+#include "tests/support/materials.h"
+#include "tests/support/pictures.h"
+
+// Materials of path tracing in scenes, against closed forms and sums over lamps.
+namespace orrery::test {
+namespace {
+
+double mean_of(const Json& scene, int side, int samples, int max_depth, int reuse = 1) {
+  RenderRequest request = in_double(size(side, side));
+  request.technique = "path";
+  request.samples = samples;
+  request.max_depth = max_depth;
+  request.reuse = reuse;
+  return render(scene, request).sum() / (side * side);
+}
+
+// A sky of 1 through glass over a floor that reflects rho: the glass lets t pass, the floor shows
+// rho t / (1 - rho (1 - t)).
+TEST(PathMaterials, FloorUnderASlabOfGlass) {
+  covers("light-32");
+  Json scene = scene_of(
+      "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'floor'},"
+      " {'type': 'box', 'min': [-1e4, 1, -1e4], 'max': [1e4, 2, 1e4], 'material': 'glass'}]",
+      "{'materials': {'floor': {'type': 'lambert', 'reflectance': 0.5}, 'glass': {'type': 'glass'}},"
+      " 'background': [1, 1, 1]}");
+  scene["camera"] = {
+      {"type", "perspective"}, {"eye", {0, 0.5, 0}}, {"look_at", {0.1, 0, 0}}, {"fov_degrees", 10}};
+  constexpr double kPasses = .844556;
+  EXPECT_NEAR(mean_of(scene, 64, 128, 64), 0.5 * kPasses / (1 - 0.5 * (1 - kPasses)), 1e-3);
+}
+
+// A ball that keeps all light cannot be told from the sky: each meeting is a thousandth off at most.
+TEST(PathMaterials, GlassAmongEvenLightIsNotSeen) {
+  covers("light-30");
+  for (const double roughness : {0.0, 0.4, 1.0}) {
+    Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'glass'}]",
+                          "{'materials': {'white': {}}, 'background': [1, 1, 1]}");
+    scene["materials"]["glass"] = {{"type", "glass"}, {"ior", 1.5}, {"roughness", roughness}};
+    scene["camera"] = {
+        {"type", "perspective"}, {"eye", {0, 0, 5}}, {"look_at", {0, 0, 0}}, {"fov_degrees", 20}};
+    EXPECT_NEAR(mean_of(scene, 32, 64, 64), 1, 8e-3) << roughness;
+  }
+}
+
+struct Lit {
+  const char* name;
+  const char* text;
+  double lamp_height;  // below 0: light comes through
+};
+class UnderALamp : public testing::TestWithParam<Lit> {};
+
+// One point of a wide surface under a square lamp: light sources and directions weighted together give the
+// sum over the lamp of what the material evaluates, and directions alone give it too.
+TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
+  covers("light-22");
+  const auto& [name, text, height] = GetParam();
+  const Vec3d eye = safe_normalize(Vec3d(0.8, 0.9, 0.1));
+  const Probe<double> material(text);
+  constexpr int kSteps = 300;
+  constexpr double kSide = 2, kAside = -0.8;  // the lamp stands where a mirror would show it
+  std::vector<Probe<double>::Case> cases;
+  std::vector<double> angle;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const Vec3d to(kAside + kSide * ((i + 0.5) / kSteps - 0.5), height, kSide * ((j + 0.5) / kSteps - 0.5));
+      Probe<double>::Case c;
+      c.direction = -eye;
+      c.normal = c.geometric = Vec3d(0, 1, 0);
+      c.light = safe_normalize(to);
+      cases.push_back(c);
+      const double distance2 = dot(to, to);
+      angle.push_back(kSide * kSide / (kSteps * kSteps) * std::abs(height) /
+                      (distance2 * std::sqrt(distance2)));
+    }
+  double sum = 0;
+  const auto found = material.evaluated(cases);
+  for (std::size_t i = 0; i < cases.size(); ++i) sum += found[i].f_cos.x * angle[i] / std::numbers::pi;
+
+  Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'}]",
+                        "{'materials': {'white': {}, 'lamp': {'type': 'lambert', 'reflectance': 0, "
+                        "'emission': [1, 1, 1]}}}");
+  scene["materials"]["it"] = json(text);
+  scene["objects"].push_back({{"type", "rectangle"},
+                              {"corner", {kAside - kSide / 2, height, -kSide / 2}},
+                              {"a", {kSide, 0, 0}},
+                              {"b", {0, 0, kSide}},
+                              {"material", "lamp"}});
+  scene["camera"] = {{"type", "perspective"},
+                     {"eye", {eye.x * 0.9, eye.y * 0.9, eye.z * 0.9}},
+                     {"look_at", {0, 0, 0}},
+                     {"fov_degrees", 1e-4}};
+  EXPECT_NEAR(mean_of(scene, 32, 256, 1) / sum, 1, 0.01) << name;
+  // What stands in an instance is no light source: directions alone find it.
+  scene["models"]["lamp"]["objects"] = Json::array({scene["objects"].back()});
+  scene["objects"].erase(scene["objects"].size() - 1);
+  scene["instances"] = json("[{'model': 'lamp'}]");
+  EXPECT_NEAR(mean_of(scene, 32, 256, 1) / sum, 1, 0.02) << name;
+}
+INSTANTIATE_TEST_SUITE_P(
+    Materials, UnderALamp,
+    testing::Values(Lit{"GlassThrough", "{'type': 'glass', 'roughness': 0.6}", -1},
+                    Lit{"GlassAbove", "{'type': 'glass', 'roughness': 0.6}", 1},
+                    Lit{"Plastic", "{'type': 'plastic', 'roughness': 0.4}", 1},
+                    Lit{"MetallicRoughness",
+                        "{'type': 'metallic-roughness', 'metallic': 0.5, 'roughness': 0.5}", 1},
+                    Lit{"CookTorrance", "{'type': 'cook-torrance', 'diffuse': 0.3, 'specular': 0.7}", 1},
+                    Lit{"TranslucentThrough", "{'type': 'translucent'}", -1},
+                    Lit{"TranslucentAbove", "{'type': 'translucent'}", 1}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
+// Stripes of chalk and of dark polished plastic under a ceiling that a spot light shines on. Draws of the
+// coat go through a mirror, those of chalk never do: paths that share what they find count how likely each
+// could have drawn it, not who did. The plastic is too dark to make up for what chalk would get too much.
+TEST(PathMaterials, SharingCountsDrawsThatWentThroughAMirror) {
+  covers("light-9");
+  Json scene = scene_of("[{'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'chalk'}]",
+                        "{'materials': {'chalk': {'type': 'lambert', 'reflectance': 0.8},"
+                        "'coat': {'type': 'plastic', 'reflectance': 0.1, 'roughness': 0}},"
+                        "'lights': [{'type': 'spot', 'position': [0, 1, 0], 'direction': [0, 1, 0], "
+                        "'inner_degrees': 50, 'outer_degrees': 60}]}");
+  for (int stripe = -20; stripe < 20; ++stripe)
+    scene["objects"].push_back({{"type", "rectangle"},
+                                {"corner", {0.1 * stripe, 0, -2}},
+                                {"a", {0.1, 0, 0}},
+                                {"b", {0, 0, 4}},
+                                {"material", stripe % 2 == 0 ? "coat" : "chalk"}});
+  scene["camera"] = {
+      {"type", "perspective"}, {"eye", {0, 0.9, 1.5}}, {"look_at", {0, 0, 0}}, {"fov_degrees", 40}};
+  EXPECT_NEAR(mean_of(scene, 64, 256, 2, 16) / mean_of(scene, 64, 256, 2, 1), 1, 0.006);
+}
+
+}  // namespace
+}  // namespace orrery::test
