@@ -49,6 +49,17 @@ TEST(Warnings, TellThatNothingIsLit) {
   EXPECT_EQ(warned(scene), "");
 }
 
+TEST(Warnings, TellWhoSendsOnMoreLightThanItGets) {
+  Json scene = lit(kBall);
+  scene["materials"]["white"] =
+      json("{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}");
+  EXPECT_EQ(warned(scene), "") << "nothing sends light to each other";
+  scene["render"]["technique"] = "path";
+  EXPECT_EQ(warned(scene), "/objects/0/material ");
+  scene["materials"]["white"]["strict"] = false;
+  EXPECT_EQ(warned(scene), "");
+}
+
 TEST(Warnings, KnowThatAMirrorShowsTheBackground) {
   Json scene = lit(kBall, {0, 0, 4}, "[]");
   scene["ambient"] = {0, 0, 0};
