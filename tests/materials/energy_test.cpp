@@ -17,7 +17,7 @@ Case seen_at(double cosine, double side = 1) {
   c.side = side;
   return c;
 }
-Vec3d mean_weight(const Probe<double>& material, const Case& point, int draws = 500'000) {
+Vec3d mean_weight(const Probe<double>& material, const Case& point, int draws = 250'000) {
   Vec3d sum;
   for (const auto& drawn : material.sampled(point, draws)) sum = sum + drawn.weight;
   return sum / draws;

@@ -30,8 +30,8 @@ const Material kMaterials[] = {
     {"RoughestMetal", "{'type': 'metal', 'n': [0, 0, 0], 'k': [1, 1, 1], 'roughness': 1}"},
     {"FrostedGlass", "{'type': 'glass', 'ior': 1.5, 'roughness': 0.5}", 1, 1.5},
     {"FrostedGlassFromInside", "{'type': 'glass', 'ior': 1.5, 'roughness': 0.5}", -1, 1.5},
-    {"RougherGlass", "{'type': 'glass', 'ior': 1.8, 'roughness': 0.8}", 1, 1.8},
-    {"RougherGlassFromInside", "{'type': 'glass', 'ior': 1.8, 'roughness': 0.8}", -1, 1.8},
+    {"RougherGlass", "{'type': 'glass', 'ior': 1.8, 'roughness': 0.6}", 1, 1.8},
+    {"RougherGlassFromInside", "{'type': 'glass', 'ior': 1.8, 'roughness': 0.6}", -1, 1.8},
     {"RoughBubble", "{'type': 'glass', 'ior': 0.75, 'roughness': 0.6}", 1, 0.75},
     {"Plastic", "{'type': 'plastic', 'reflectance': [0.9, 0.5, 0.1], 'roughness': 0.4}"},
     {"BlackPlastic", "{'type': 'plastic', 'reflectance': 0, 'roughness': 0.7}"},
@@ -73,7 +73,8 @@ struct Cells {
   double sum() const { return std::accumulate(mass.begin(), mass.end(), 0.0); }
 };
 
-// Integral over each cell of the density that the material tells.
+// Integral over each cell of the density that the material tells. Facets of glass rougher than these have a
+// density that ends abruptly where they stand upright, which the grid of points does not resolve.
 Cells cells_of(const Probe<double>& material, const Case& point) {
   constexpr int kRows = kRings * kPointsAcross, kColumns = kSectors * kPointsAround;
   std::vector<Case> cases;
