@@ -12,4 +12,18 @@ struct Arrival {
   Vec3<N> incident;   // per channel
 };
 
+// What arrives from a point of a light that was drawn: see LightBatch.
+template <class N>
+struct Drawn {
+  Arrival<N> arrival;
+  N pdf;  // per solid angle; 0 of a light that no ray can hit
+};
+
+// What a direction sees of a light that is infinitely far away.
+template <class N>
+struct Seen {
+  Vec3<N> radiance;
+  N pdf;  // of Drawn, in that direction
+};
+
 }  // namespace orrery

@@ -1,23 +1,50 @@
 #pragma once
 
 #include <limits>
+#include <numbers>
 
 #include "core/lights/arrival.h"
+#include "core/math/hemisphere.h"
 #include "core/model/light.h"
 
 namespace orrery {
 
-// Parallel light from infinitely far away.
+// Light from infinitely far away: parallel, or from a disc in the sky. The disc's radiance is such that a
+// white Lambert surface which faces it reads its intensity.
 template <class N>
 struct Directional {
   Vec3<N> from, intensity;
+  N height;  // 1 - cosine of the disc's half angle; 0: parallel
 
-  static constexpr LightTraits kTraits = {.delta = true, .parallel = true};
+  static constexpr LightTraits kTraits = {.delta = false, .parallel = true};
   static Directional<double> read(Params& p);
 
   Arrival<N> arrive(const Vec3<N>&) const {
-    return {from, N(std::numeric_limits<ScalarOf<N>>::infinity()), intensity};
+    return {from, N(std::numeric_limits<T>::infinity()), intensity};
   }
+
+  MaskOf<N> extended() const { return height > N(T(0)); }
+  // Evenly by solid angle.
+  Drawn<N> draw(const Vec3<N>&, const N& u, const N& v) const {
+    using std::sqrt;
+    const N h = u * height, across = sqrt(h * (T(2) - h));
+    const auto [sine, cosine] = sine_cosine_turns(v);
+    const Tangents<N> basis = tangents_of(from);
+    const Vec3<N> direction =
+        basis.first * (across * cosine) + basis.second * (across * sine) + from * (T(1) - h);
+    return {{direction, N(std::numeric_limits<T>::infinity()), intensity * (T(2) / (T(2) - height))}, density()};
+  }
+  // Radiance from the disc and density with which draw() gives a direction; 0 beside it.
+  Seen<N> beyond(const Vec3<N>& direction) const {
+    const Vec3<N> chord = direction - from;
+    const auto inside = dot(chord, chord) <= T(2) * height && extended();
+    const N sine2 = height * (T(2) - height);
+    return {select(inside, intensity * (T(1) / sine2), Vec3<N>(N(T(0)))), select(inside, density(), N(T(0)))};
+  }
+
+ private:
+  using T = ScalarOf<N>;
+  N density() const { return T(0.5 / std::numbers::pi) / height; }
 };
 
 }  // namespace orrery

@@ -6,19 +6,23 @@
 #include "core/model/light.h"
 #include "core/model/record.h"
 
-// A light type without extent is one record, `template <class N> struct Point`, with
+// A light type that one point or direction stands for is one record, `template <class N> struct Point`, with
 //   static constexpr LightTraits kTraits;
 //   static Point<double> read(Params&);                in the .cpp, which registers the type
-//   Vec3<N> intensity;                                 at the source
+//   Vec3<N> intensity;                                 at the source, or whole_intensity(), likewise
 //   RoundingLimit rounding() const;                    of a Point<double>, if it has one
 //   Arrival<N> arrive(const Vec3<N>& position) const;  what arrives at a surface point
+// and, if it may have an extent that paths see,
+//   MaskOf<N> extended() const;                        whether it has
+//   Drawn<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  from a point that u and v choose
+//   Seen<N> beyond(const Vec3<N>& direction) const;    if it is infinitely far away
 // and `make_light_set<Point>` is its factory.
 namespace orrery {
 
 template <template <class> class Record, class T>
-class DeltaLightKernel final : public LightKernel<T> {
+class RecordLightKernel final : public LightKernel<T> {
  public:
-  explicit DeltaLightKernel(std::span<const Record<double>> records) {
+  explicit RecordLightKernel(std::span<const Record<double>> records) {
     for (const auto& record : records) records_.push_back(convert_record<Record, T, double>(record));
   }
 
@@ -34,33 +38,72 @@ class DeltaLightKernel final : public LightKernel<T> {
     }
   }
 
-  void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices, const PathDraws<T>&,
+  void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices, const PathDraws<T>& draws,
                    const Groups& groups, LightBatch<T>& out) const override {
-    using N = Lanes<T>;
     for (const int i : groups) {
       const IndexLanes<T> index = load_index<T>(choices.index, i);
       const auto mine = mask_cast<N>(index >= 0);
       if (!any(mine)) continue;
-      const Arrival<N> arrival =
-          fetch_records<Record, T>(records_, index, mine).arrive(surface.position.at(i));
+      const auto [arrival, pdf] =
+          drawn(fetch_records<Record, T>(records_, index, mine), surface.position.at(i), draws, i);
+      const N probability = choices.probability.at(i);
       out.shadow.direction.put(i, mine, arrival.direction);
       out.shadow.t_max.put(i, mine, arrival.distance);
-      out.incident.put(i, mine, arrival.incident * (N(T(1)) / choices.probability.at(i)));
-      out.pdf.put(i, mine, N(T(0)));
+      out.incident.put(i, mine, arrival.incident * (N(T(1)) / probability));
+      out.pdf.put(i, mine, pdf * probability);
     }
   }
 
+  void beyond(const RayBatch<T>& rays, const LightChoice<T>& choice, const Groups& groups,
+              Vec3Array<T>& radiance, Array<T>& pdf) const override {
+    const auto light = broadcast_record<Record, T>(records_[static_cast<std::size_t>(choice.index)]);
+    if constexpr (!requires(Vec3<N> direction) { light.beyond(direction); })
+      return LightKernel<T>::beyond(rays, choice, groups, radiance, pdf);
+    else
+      for (const int i : groups) {
+        const Seen<N> seen = light.beyond(rays.direction.at(i));
+        radiance.put(i, seen.radiance);
+        pdf.put(i, seen.pdf * choice.probability);
+      }
+  }
+
  private:
+  using N = Lanes<T>;
+
+  static Drawn<N> drawn(const Record<N>& light, const Vec3<N>& position, const PathDraws<T>& draws, int i) {
+    const N zero(T(0));
+    if constexpr (requires { light.extended(); }) {
+      const auto extended = light.extended();
+      if (any(extended)) {
+        const auto [u, v] = draws.two(SampleSet::light, i);
+        const auto [area, pdf] = light.draw(position, u, v);
+        if (all(extended)) return {area, pdf};
+        const Arrival<N> point = light.arrive(position);
+        return {{select(extended, area.direction, point.direction),
+                 select(extended, area.distance, point.distance),
+                 select(extended, area.incident, point.incident)},
+                select(extended, pdf, zero)};
+      }
+    }
+    return {light.arrive(position), zero};
+  }
+
   std::vector<Record<T>> records_;
 };
 
 template <template <class> class Record>
-class DeltaLightSet final : public LightSet {
+class RecordLightSet final : public LightSet {
  public:
   void add(Params& params) override { records_.push_back(Record<double>::read(params)); }
   int size() const override { return static_cast<int>(records_.size()); }
   LightTraits traits() const override { return Record<double>::kTraits; }
-  Vec3d intensity(int index) const override { return records_[static_cast<std::size_t>(index)].intensity; }
+  Vec3d intensity(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.whole_intensity(); })
+      return record.whole_intensity();
+    else
+      return record.intensity;
+  }
   RoundingLimit rounding(int index) const override {
     const Record<double>& record = records_[static_cast<std::size_t>(index)];
     if constexpr (requires { record.rounding(); })
@@ -68,20 +111,25 @@ class DeltaLightSet final : public LightSet {
     else
       return {};
   }
+  bool extended(int index) const override {
+    if constexpr (requires(const Record<double>& record) { record.extended(); })
+      return records_[static_cast<std::size_t>(index)].extended();
+    return false;
+  }
   LightKernelPtr<float> kernel(float) const override { return make<float>(); }
   LightKernelPtr<double> kernel(double) const override { return make<double>(); }
 
  private:
   template <class T>
   LightKernelPtr<T> make() const {
-    return std::make_unique<DeltaLightKernel<Record, T>>(std::span<const Record<double>>(records_));
+    return std::make_unique<RecordLightKernel<Record, T>>(std::span<const Record<double>>(records_));
   }
   std::vector<Record<double>> records_;
 };
 
 template <template <class> class Record>
 std::unique_ptr<LightSet> make_light_set() {
-  return std::make_unique<DeltaLightSet<Record>>();
+  return std::make_unique<RecordLightSet<Record>>();
 }
 
 }  // namespace orrery

@@ -8,6 +8,7 @@ namespace orrery {
 // clang-format off
 #define ORRERY_LIGHTS(add) \
   add(directional)         \
+  add(line)                \
   add(point)               \
   add(spot)
 // clang-format on

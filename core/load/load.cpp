@@ -8,6 +8,7 @@
 #include "core/base/hash.h"
 #include "core/base/work_scope.h"
 #include "core/cameras/registry.h"
+#include "core/environments/registry.h"
 #include "core/lights/registry.h"
 #include "core/load/facts.h"
 #include "core/materials/registry.h"
@@ -49,16 +50,18 @@ void read_camera(Params& p, Scene& scene) {
     p.fail("up", "expected a direction that is not along the view");
 }
 
-// Reads each mesh once, however often a scene names it.
-class ReadOnce final : public MeshSource {
+// Reads each mesh once, however often a scene names it. (Pictures are named once.)
+class ReadOnce final : public AssetSource {
  public:
-  explicit ReadOnce(const MeshSource& from) : from_(from) {}
-  TriangleMesh file(const std::string& name) const override {
-    return once(files_, name, [&] { return from_.file(name); });
+  explicit ReadOnce(const AssetSource& from) : from_(from) {}
+  TriangleMesh mesh_file(const std::string& name) const override {
+    return once(files_, name, [&] { return from_.mesh_file(name); });
   }
-  TriangleMesh asset(const std::string& sha256) const override {
-    return once(assets_, sha256, [&] { return from_.asset(sha256); });
+  TriangleMesh mesh_asset(const std::string& sha256) const override {
+    return once(assets_, sha256, [&] { return from_.mesh_asset(sha256); });
   }
+  Texels picture_file(const std::string& name) const override { return from_.picture_file(name); }
+  Texels picture_asset(const std::string& sha256) const override { return from_.picture_asset(sha256); }
 
  private:
   using Meshes = std::map<std::string, TriangleMesh>;
@@ -67,7 +70,7 @@ class ReadOnce final : public MeshSource {
     const auto known = meshes.find(name);
     return known != meshes.end() ? known->second : meshes.emplace(name, read()).first->second;
   }
-  const MeshSource& from_;
+  const AssetSource& from_;
   mutable Meshes files_, assets_;
 };
 
@@ -79,7 +82,7 @@ class ObjectReader {
     objects_by_shape_.resize(shapes_.size());
   }
 
-  void read(Params& p, const Names& materials, const MeshSource& meshes) {
+  void read(Params& p, const Names& materials, const AssetSource& meshes) {
     interruption_point();
     const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
     if (!type) return;
@@ -149,8 +152,8 @@ Instance read_placement(Params& p, std::size_t model) {
 
 class SceneReader {
  public:
-  explicit SceneReader(const MeshSource& meshes)
-      : meshes_(meshes), scene_(std::make_shared<Scene>()), objects_(scene_->shapes) {
+  explicit SceneReader(const AssetSource& assets)
+      : assets_(assets), scene_(std::make_shared<Scene>()), objects_(scene_->shapes) {
     for (const auto& type : material_types()) scene_->materials.push_back(type.make());
     for (const auto& type : light_types()) scene_->light_sets.push_back(type.make());
   }
@@ -164,11 +167,15 @@ class SceneReader {
                       [&](Params& i) { read_scene_options(i, Section::image, scene_->render); });
     scene_->ambient = p.color("ambient", "Light that comes from everywhere.", Vec3d(0));
     scene_->background = p.color("background", "What a ray sees that meets nothing.", Vec3d(0));
+    p.object_if_given("environment", "What surrounds the scene, in place of the background.",
+                      [&](Params& e) { read_environment(e); });
+    if (p.has("background") && p.has("environment"))
+      p.fail("background", "expected a background or an environment, got both");
     p.each_named("materials", "Materials by name.", {},
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
     p.each("objects", "What there is to see, beside instances.", {0, kMaxObjects}, [&](Params& o) {
-      objects_.read(o, names_, meshes_);
+      objects_.read(o, names_, assets_);
       ++scene_->object_count;
     });
     p.each_named("models", "Objects that instances place, by name.", {},
@@ -224,6 +231,17 @@ class SceneReader {
     places_.push_back({*type, index, emission});
   }
 
+  void read_environment(Params& p) {
+    const auto type = p.pick("type", "Kind of environment.", choices_of(environment_types()));
+    if (!type) return;
+    const auto environment = environment_types()[*type].read(p, assets_);
+    if (!environment) return;
+    if (const auto constant = environment->constant())
+      scene_->background = *constant;
+    else
+      scene_->environment = environment;
+  }
+
   void read_light(Params& p) {
     const auto type = p.pick("type", "Kind of light.", choices_of(light_types()));
     if (!type) return;
@@ -237,7 +255,7 @@ class SceneReader {
     Model& model = scene_->models.emplace_back();
     ObjectReader& objects = model_objects_.emplace_back(model.shapes);
     p.each("objects", "What it consists of.", {1, kMaxObjects},
-           [&](Params& o) { objects.read(o, names_, meshes_); });
+           [&](Params& o) { objects.read(o, names_, assets_); });
   }
 
   // Materials are numbered set by set, and each primitive learns its number.
@@ -299,7 +317,7 @@ class SceneReader {
     scene_->motion = {*first, *last};
   }
 
-  const ReadOnce meshes_;
+  const ReadOnce assets_;
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};
   std::vector<MaterialPlace> places_;  // by number of the name
@@ -310,19 +328,19 @@ class SceneReader {
 
 }  // namespace
 
-std::shared_ptr<const Scene> load_scene(const Document& document, const MeshSource& meshes) {
-  SceneReader reader(meshes);
+std::shared_ptr<const Scene> load_scene(const Document& document, const AssetSource& assets) {
+  SceneReader reader(assets);
   read_document(document, [&](Params& p) { reader.read(p); });
   return reader.finish(document);
 }
 
-std::shared_ptr<const Scene> load_scene(std::string_view json, const MeshSource& meshes,
+std::shared_ptr<const Scene> load_scene(std::string_view json, const AssetSource& assets,
                                         const JsonLimits& limits) {
-  return load_scene(parse_document(json, limits), meshes);
+  return load_scene(parse_document(json, limits), assets);
 }
 
 std::string scene_schema() {
-  const MeshSource none;
+  const AssetSource none;
   SceneReader reader(none);
   return describe("scene.json", "orrery scene",
                   "A scene for orrery, version 1. Lengths in metres, angles in degrees, colours linear.",

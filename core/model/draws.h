@@ -8,8 +8,18 @@
 namespace orrery {
 
 // What a pair of random numbers is for. Each purpose has a sequence of its own at each depth.
-enum class SampleSet : std::uint32_t { pixel, light, lobe, light_choice, survival, look, lens, look_lens };
-inline constexpr std::uint32_t kSampleSets = 8;
+enum class SampleSet : std::uint32_t {
+  pixel,
+  light,
+  lobe,
+  light_choice,
+  survival,
+  look,
+  lens,
+  look_lens,
+  environment = 1u << 16  // beyond those of all depths
+};
+inline constexpr std::uint32_t kSampleSets = 8;  // before the environment's
 
 // The random numbers of one sample of a tile: pure functions of (seed, frame, x, y, sample, set). They do not
 // depend on the tile's place in a schedule, on threads or on the width of registers.

@@ -65,6 +65,17 @@ class LightKernel {
                    const LightChoices<T>& /*choices*/, const Groups& groups, Array<T>& out) const {
     for (const int i : groups) out.put(i, Lanes<T>(T(0)));
   }
+
+  // Of a light that is infinitely far away and has an angle: the radiance that `rays` bring from it where they
+  // meet nothing, and the density per solid angle, times the probability of the choice, with which
+  // sample_each() draws their directions.
+  virtual void beyond(const RayBatch<T>& /*rays*/, const LightChoice<T>& /*choice*/, const Groups& groups,
+                      Vec3Array<T>& radiance, Array<T>& pdf) const {
+    for (const int i : groups) {
+      radiance.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
+      pdf.put(i, Lanes<T>(T(0)));
+    }
+  }
 };
 template <class T>
 using LightKernelPtr = std::unique_ptr<LightKernel<T>>;
@@ -83,6 +94,8 @@ class LightSet {
   virtual LightTraits traits() const = 0;
   virtual Vec3d intensity(int index) const = 0;  // at the source, per channel
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
+  // Whether sample_each() draws from an extent of the light that sample() takes for one point or direction.
+  virtual bool extended(int /*index*/) const { return false; }
   virtual LightKernelPtr<float> kernel(float) const = 0;
   virtual LightKernelPtr<double> kernel(double) const = 0;
 };

@@ -11,6 +11,7 @@
 #include "core/math/affine.h"
 #include "core/math/keys.h"
 #include "core/model/camera.h"
+#include "core/model/environment.h"
 #include "core/model/light.h"
 #include "core/model/material.h"
 #include "core/model/render_settings.h"
@@ -119,6 +120,7 @@ struct Scene {
   std::shared_ptr<const Camera> camera;
   RenderSettings render;  // the options that scenes may give: as given, or by default
   Vec3d ambient, background;
+  std::shared_ptr<const Environment> environment;  // in place of the background, which is 0 then; may be null
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
   std::vector<Vec3d> emission;  // by material: radiance that its surfaces send out on both sides

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/math/bounds.h"
-#include "core/model/mesh_source.h"
+#include "core/model/asset_source.h"
 #include "core/model/packet.h"
 
 // Shapes. A scene keeps all shapes of one type together (a ShapeSet, in double precision); for rendering each
@@ -123,7 +123,7 @@ class ShapeSet {
   virtual ~ShapeSet() = default;
 
   // Reads one object; returns how many primitives it added.
-  virtual int add(Params& params, const MeshSource& meshes) = 0;
+  virtual int add(Params& params, const AssetSource& meshes) = 0;
   virtual int size() const = 0;
   // Primitives that were not added because no ray can meet them.
   virtual std::size_t left_out() const { return 0; }

@@ -29,6 +29,7 @@ struct Geometry {
   std::vector<Vec3<T>> emission;  // by material: see Scene; empty if nothing in the scene emits
   // Primitives that emit and that light can be drawn from, all in one kernel: null if there are none.
   LightKernelPtr<T> emitters;
+  LightKernelPtr<T> environment;       // its light 0; null: the background is the same everywhere
   std::vector<double> emitter_powers;  // by number within the kernel
   std::vector<IndexOf<T>> emitter_of;  // of each primitive: its number there, or -1
   std::vector<IndexOf<T>> material_of;

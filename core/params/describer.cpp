@@ -184,8 +184,9 @@ std::vector<std::array<std::int64_t, 3>> Describer::do_triples(Key key, Doc doc,
   return std::vector<std::array<std::int64_t, 3>>(count.min);
 }
 
-void Describer::do_object(Key key, Doc doc, bool required, const Read& read) {
-  add(key, doc, describe_object(read, definitions_), required, required ? nullptr : &kEmptyObject);
+void Describer::do_object(Key key, Doc doc, Missing missing, const Read& read) {
+  add(key, doc, describe_object(read, definitions_), missing == Missing::problem,
+      missing == Missing::empty ? &kEmptyObject : nullptr);
 }
 
 void Describer::do_each(Key key, Doc doc, Count count, const Read& read) {

@@ -78,8 +78,13 @@ std::vector<std::array<std::int64_t, 3>> Params::index_triples(Key key, Doc doc,
   return do_triples(key, doc, count, bound);
 }
 
-void Params::object(Key key, Doc doc, const Read& read) { do_object(key, doc, true, read); }
-void Params::optional_object(Key key, Doc doc, const Read& read) { do_object(key, doc, false, read); }
+void Params::object(Key key, Doc doc, const Read& read) { do_object(key, doc, Missing::problem, read); }
+void Params::optional_object(Key key, Doc doc, const Read& read) {
+  do_object(key, doc, Missing::empty, read);
+}
+void Params::object_if_given(Key key, Doc doc, const Read& read) {
+  do_object(key, doc, Missing::nothing, read);
+}
 void Params::each(Key key, Doc doc, Count count, const Read& read) { do_each(key, doc, count, read); }
 void Params::each_named(Key key, Doc doc, Count count, const ReadNamed& read) {
   do_each_named(key, doc, count, read);

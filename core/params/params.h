@@ -140,6 +140,7 @@ class Params {
   // -- Objects inside this one. A key in them that `read` did not ask for is an error. --
   void object(std::string_view key, std::string_view doc, const Read& read);           // required
   void optional_object(std::string_view key, std::string_view doc, const Read& read);  // missing reads as {}
+  void object_if_given(std::string_view key, std::string_view doc, const Read& read);  // missing: not read
   void each(std::string_view key, std::string_view doc, Count count, const Read& read);
   void each_named(std::string_view key, std::string_view doc, Count count,
                   const ReadNamed& read);  // sorted by name
@@ -173,6 +174,8 @@ class Params {
  protected:
   // What a three of numbers stands for: decides the checks, the words of errors and the schema.
   enum class Kind { point, direction, color, coefficient, numbers };
+  // What a missing object means: a problem, {}, or nothing.
+  enum class Missing { problem, empty, nothing };
   using Key = std::string_view;
   using Doc = std::string_view;
   using Options = std::span<const std::string_view>;
@@ -191,7 +194,7 @@ class Params {
   virtual std::vector<Vec3d> do_threes(Key, Doc, Kind, Count) = 0;
   virtual std::vector<std::array<double, 2>> do_pairs(Key, Doc, Count) = 0;
   virtual std::vector<std::array<std::int64_t, 3>> do_triples(Key, Doc, Count, std::int64_t bound) = 0;
-  virtual void do_object(Key, Doc, bool required, const Read&) = 0;
+  virtual void do_object(Key, Doc, Missing, const Read&) = 0;
   virtual void do_each(Key, Doc, Count, const Read&) = 0;
   virtual void do_each_named(Key, Doc, Count, const ReadNamed&) = 0;
   virtual std::optional<std::size_t> do_pick(Key, Doc, std::span<const Choice>) = 0;

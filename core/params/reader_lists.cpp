@@ -150,12 +150,11 @@ void Reader::read_inside(const json& value, const Location& location, const Read
   inside.finish();
 }
 
-void Reader::do_object(Key key, Doc, bool required, const Read& read) {
+void Reader::do_object(Key key, Doc, Missing missing, const Read& read) {
   static const json kEmpty = json::object();
-  const json* value =
-      find(key, required ? Need::required : Need::optional, [] { return std::string("an object"); });
-  if (!value && required) return;
-  read_inside(value ? *value : kEmpty, {key}, read);
+  const Need need = missing == Missing::problem ? Need::required : Need::optional;
+  const json* value = find(key, need, [] { return std::string("an object"); });
+  if (value || missing == Missing::empty) read_inside(value ? *value : kEmpty, {key}, read);
 }
 
 void Reader::do_each(Key key, Doc, Count count, const Read& read) {

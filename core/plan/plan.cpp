@@ -146,8 +146,7 @@ class Planner {
                     glows ? "no material in use answers light sources" : "no light source");
     }
     const bool parallel_light =
-        std::any_of(scene_.lights.begin(), scene_.lights.end(),
-                    [&](const LightPlace& light) { return scene_.light_sets[light.set]->traits().parallel; });
+        any_light([](const LightSet& lights, int) { return lights.traits().parallel; });
     plan_.constant_half = parallel_light && plan_.camera->parallel();
     if (plan_.constant_half)
       decide("half vector", "computed once",
@@ -164,6 +163,10 @@ class Planner {
     if (plan_.frame.aperture_radius > 0) decide("lens", "absent", only, Bound::unknown());
     if (scene_.facts.materials.emits)
       decide("light of surfaces that emit", "seen, lights nothing", only, Bound::unknown());
+    if (scene_.environment)
+      decide("light of the environment", "seen, lights nothing", only, Bound::unknown());
+    if (any_light([](const LightSet& lights, int index) { return lights.extended(index); }))
+      decide("extent of lights", "absent: one point or direction each", only, Bound::unknown());
   }
 
   void choose_paths() {
@@ -206,6 +209,14 @@ class Planner {
       decide("depth", std::to_string(plan_.max_depth), "as asked; deeper rays are replaced by ambient light",
              Bound::unknown());
     }
+  }
+
+  // Whether `has(set, index)` for some light.
+  template <class Has>
+  bool any_light(const Has& has) const {
+    return std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const LightPlace& light) {
+      return has(*scene_.light_sets[light.set], light.index);
+    });
   }
 
   // One convex primitive, and the eye surely outside of it.

@@ -154,6 +154,7 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
   }
   for (const auto& lights : scene->light_sets)
     geometry->lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
+  if (scene->environment) geometry->environment = scene->environment->kernel(T());
   add_emitters(*scene, time, *geometry);
   geometry->scene = std::move(scene);
   return geometry;

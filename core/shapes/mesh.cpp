@@ -11,7 +11,7 @@ namespace {
 // All meshes of a scene.
 class MeshSet final : public ShapeSet {
  public:
-  int add(Params& p, const MeshSource& source) override {
+  int add(Params& p, const AssetSource& source) override {
     const std::size_t before = table_.triangles.size();
     MeshObject object = reader_.read(p, source);
     if (object.mesh.triangles.empty()) return 0;

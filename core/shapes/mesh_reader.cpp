@@ -66,11 +66,11 @@ std::string file_name(Params& p, const char* fallback = nullptr) {
 std::string asset_name(Params& p, const char* fallback = nullptr) {
   return p.text("asset", "SHA-256 of an uploaded OBJ, PLY, STL or glTF file.", 64, fallback);
 }
-TriangleMesh read_file(Params& p, const MeshSource& source, const std::string& name) {
-  return read_elsewhere(p, "file", name, [&](const std::string& n) { return source.file(n); });
+TriangleMesh read_file(Params& p, const AssetSource& source, const std::string& name) {
+  return read_elsewhere(p, "file", name, [&](const std::string& n) { return source.mesh_file(n); });
 }
-TriangleMesh read_asset(Params& p, const MeshSource& source, const std::string& name) {
-  return read_elsewhere(p, "asset", name, [&](const std::string& n) { return source.asset(n); });
+TriangleMesh read_asset(Params& p, const AssetSource& source, const std::string& name) {
+  return read_elsewhere(p, "asset", name, [&](const std::string& n) { return source.mesh_asset(n); });
 }
 
 SharedVectors share(std::vector<Vec3d> vectors) {
@@ -79,7 +79,7 @@ SharedVectors share(std::vector<Vec3d> vectors) {
 
 }  // namespace
 
-MeshObject MeshReader::read(Params& p, const MeshSource& source) {
+MeshObject MeshReader::read(Params& p, const AssetSource& source) {
   MeshObject object;
   TriangleMesh& mesh = object.mesh;
   switch (p.form({{"positions", "indices"}, {"file"}, {"asset"}})) {
@@ -101,7 +101,7 @@ MeshObject MeshReader::read(Params& p, const MeshSource& source) {
 }
 
 // Where the vertices of the mesh are at one time.
-VertexKey MeshReader::read_key(Params& p, const MeshSource& source, const TriangleMesh& rest,
+VertexKey MeshReader::read_key(Params& p, const AssetSource& source, const TriangleMesh& rest,
                                const VertexKey& at_rest) {
   std::vector<Vec3d> positions =
       p.points("positions", "Vertices, as many as the mesh has.", {0, kLimits.vertices});

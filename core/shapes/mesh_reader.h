@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/mesh_source.h"
+#include "core/model/asset_source.h"
 #include "core/shapes/moving_mesh.h"
 
 namespace orrery {
@@ -17,10 +17,10 @@ struct MeshObject {
 // Reads the meshes of a scene, which have limits together: many objects and keys may name one file.
 class MeshReader {
  public:
-  MeshObject read(Params& p, const MeshSource& source);
+  MeshObject read(Params& p, const AssetSource& source);
 
  private:
-  VertexKey read_key(Params& p, const MeshSource& source, const TriangleMesh& rest, const VertexKey& at_rest);
+  VertexKey read_key(Params& p, const AssetSource& source, const TriangleMesh& rest, const VertexKey& at_rest);
   // Notes so many more; false, and a problem, if there are too many now.
   bool fits(std::size_t vertices, std::size_t triangles, Params& p);
 

@@ -5,32 +5,26 @@
 #include <numeric>
 
 #include "core/stages/emission.h"
+#include "core/stages/power_heuristic.h"
 
 namespace orrery {
 namespace {
 
-constexpr double kRandomNumbers = 0x1p24;  // that a light is chosen by
+constexpr std::uint32_t kRandomNumbers = 1u << 24;  // that a light is chosen by
 
-// Shares of the random numbers: one half evenly, so that no light is forgotten where it is near, and one half
-// by power. Returns the first number beyond each light's own.
-std::vector<std::uint32_t> ends_of(const std::vector<double>& powers) {
+// Shares of `numbers` random numbers: one half evenly, so that no light is forgotten where it is near, and one
+// half by power. Returns the first number beyond each light's own.
+std::vector<std::uint32_t> ends_of(const std::vector<double>& powers, std::uint32_t numbers) {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
   const double even = 1 / static_cast<double>(powers.size());
   std::vector<std::uint32_t> ends;
   double end = 0;
   for (const double power : powers) {
     end += sum > 0 ? (even + power / sum) / 2 : even;
-    ends.push_back(static_cast<std::uint32_t>(std::min(1.0, end) * kRandomNumbers + 0.5));
+    ends.push_back(static_cast<std::uint32_t>(std::min(1.0, end) * numbers + 0.5));
   }
-  ends.back() = static_cast<std::uint32_t>(kRandomNumbers);
+  ends.back() = numbers;
   return ends;
-}
-
-// The share of what one strategy found that counts, where another would have found it with density `other`.
-template <class N>
-N power_heuristic(const N& own, const N& other) {
-  const N a = own * own, b = other * other;
-  return a / (a + b);
 }
 
 }  // namespace
@@ -45,25 +39,43 @@ SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>&
     powers.push_back(max_component(scene.light_sets[light.set]->intensity(light.index)));
   first_emitter_ = powers.size();
   powers.insert(powers.end(), geometry.emitter_powers.begin(), geometry.emitter_powers.end());
-  for (std::size_t set = 0; set < geometry.lights.size(); ++set) {
-    if (!geometry.lights[set]) continue;
-    Source& source = sources_.emplace_back(Source{geometry.lights[set].get(), {}});
-    source.index.assign(powers.size(), IndexOf<T>(-1));
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-      if (scene.lights[i].set == set) source.index[i] = scene.lights[i].index;
-  }
-  if (geometry.emitters) {
-    Source& source = sources_.emplace_back(Source{geometry.emitters.get(), {}});
-    source.index.assign(powers.size(), IndexOf<T>(-1));
-    std::iota(source.index.begin() + static_cast<std::ptrdiff_t>(first_emitter_), source.index.end(), 0);
-  }
-  if (powers.empty()) return;
-  end_ = ends_of(powers);
+  const bool environment = scene.environment && scene.environment->sampled();
+  add_sources(powers.size() + environment);
+  if (environment) for_environment_ = powers.empty() ? kRandomNumbers : kRandomNumbers / 2;
+  if (!powers.empty()) end_ = ends_of(powers, kRandomNumbers - for_environment_);
   std::uint32_t begin = 0;
   for (const std::uint32_t end : end_) {
-    probability_.push_back(static_cast<T>((end - begin) / kRandomNumbers));
+    probability_.push_back(static_cast<T>((end - begin) / double{kRandomNumbers}));
     begin = end;
   }
+  if (environment) probability_.push_back(static_cast<T>(for_environment_ / double{kRandomNumbers}));
+  if (geometry.environment)
+    beyond_.see(*geometry.environment, {0, environment ? probability_.back() : T(0)});
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const auto& [set, index] = scene.lights[i];
+    const LightSet& lights = *scene.light_sets[set];
+    if (lights.extended(index) && lights.traits().parallel)
+      beyond_.see(*geometry.lights[set], {index, probability_[i]});
+  }
+}
+
+template <class T>
+void SampledLight<T>::add_sources(std::size_t lights) {
+  const Scene& scene = *geometry_.scene;
+  const auto add = [&](const LightKernel<T>* kernel) -> std::vector<IndexOf<T>>& {
+    return sources_.emplace_back(Source{kernel, std::vector<IndexOf<T>>(lights, -1)}).index;
+  };
+  for (std::size_t set = 0; set < geometry_.lights.size(); ++set) {
+    if (!geometry_.lights[set]) continue;
+    std::vector<IndexOf<T>>& index = add(geometry_.lights[set].get());
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+      if (scene.lights[i].set == set) index[i] = scene.lights[i].index;
+  }
+  if (geometry_.emitters) {
+    const auto first = add(geometry_.emitters.get()).begin() + static_cast<std::ptrdiff_t>(first_emitter_);
+    std::iota(first, first + static_cast<std::ptrdiff_t>(geometry_.emitter_powers.size()), 0);
+  }
+  if (scene.environment && scene.environment->sampled()) add(geometry_.environment.get()).back() = 0;
 }
 
 template <class T>
@@ -80,7 +92,9 @@ void SampledLight<T>::choose(const PathDraws<T>& draws, const Groups& groups) {
     for (int lane = 0; lane < kWidth<T>; ++lane) {
       const auto number =
           static_cast<std::uint32_t>(double{u[static_cast<std::size_t>(lane)]} * kRandomNumbers);
-      const auto light = std::upper_bound(end_.begin(), end_.end(), number) - end_.begin();
+      const auto light = number < for_environment_
+                             ? std::ssize(end_)
+                             : std::upper_bound(end_.begin(), end_.end(), number - for_environment_) - end_.begin();
       chosen_[i + lane] = static_cast<IndexOf<T>>(light);
       choices_.probability[i + lane] = probability_[static_cast<std::size_t>(light)];
     }

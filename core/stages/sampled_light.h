@@ -1,13 +1,13 @@
 #pragma once
 
+#include "core/stages/beyond.h"
 #include "core/stages/shadowed_light.h"
 
 namespace orrery {
 
 // Light that reaches surfaces straight from one light source each, which is drawn: next event estimation,
-// weighted against rays that meet the same light by chance (Veach and Guibas, "Optimally Combining Sampling
-// Techniques for Monte Carlo Rendering", SIGGRAPH 1995: the power heuristic with exponent 2). One object
-// belongs to one thread: it keeps its batches.
+// weighted against rays that meet the same light by chance (power heuristic). One object belongs to one
+// thread: it keeps its batches.
 template <class T>
 class SampledLight {
  public:
@@ -24,23 +24,37 @@ class SampledLight {
   void add_emission(const PathBatch<T>& paths, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
                     const Groups& met, Vec3Array<T>& radiance);
 
+  // Likewise, what rays that met nothing see.
+  void add_beyond(const PathBatch<T>& paths, const HitBatch<T>& hits, const Groups& groups,
+                  Vec3Array<T>& radiance) {
+    beyond_.add(paths.rays, hits, groups, paths.depth > 0 ? &paths.pdf : nullptr, radiance);
+  }
+  // All of it, for camera rays.
+  Beyond<T>& beyond() { return beyond_; }
+
  private:
   using N = Lanes<T>;
-  // All of one kernel, or the emitters.
+  // All of one kernel, the emitters, or the environment.
   struct Source {
     const LightKernel<T>* kernel;
     std::vector<IndexOf<T>> index;  // within the kernel, by number of the light; -1: of another kernel
   };
+  void add_sources(std::size_t lights);
   void choose(const PathDraws<T>& draws, const Groups& groups);
   // Whom the lanes of `emits` of register i hit, as choices_.
   void note_emitters(const HitBatch<T>& hits, int i, const MaskOf<N>& emits);
 
   const Geometry<T>& geometry_;
   std::vector<Source> sources_;
-  // By number of the light: its probability, and the first of the 2^24 random numbers that is beyond its own.
+  // Lights are numbered: those of the scene, the emitters, the environment if light is drawn from it. By
+  // number: the probability.
   std::vector<T> probability_;
+  // The environment is chosen apart, by the first of the 2^24 random numbers; by number of any other light,
+  // the first of the rest that is beyond its own.
+  std::uint32_t for_environment_ = 0;
   std::vector<std::uint32_t> end_;
   std::size_t first_emitter_ = 0;
+  Beyond<T> beyond_;
   Array<IndexOf<T>> chosen_;  // number of the light
   LightChoices<T> choices_;
   ShadowedLight<T> shadowed_;

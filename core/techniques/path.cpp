@@ -17,8 +17,9 @@ class Path final : public Wavefront<T> {
  public:
   Path(const World<T>& world, const Plan& plan)
       : Wavefront<T>(world, plan),
-        looks_(!world.geometry->emission.empty() || world.geometry->background != Vec3<T>()),
-        sampled_light_(this->geometry_, this->accelerator_, this->plan_) {
+        sampled_light_(this->geometry_, this->accelerator_, this->plan_),
+        looks_(!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
+               !sampled_light_.beyond().empty()) {
     if (plan.reuse > 1)
       reuse_ = std::make_unique<PathReuse<T>>(this->geometry_, this->accelerator_, this->plan_);
   }
@@ -52,6 +53,10 @@ class Path final : public Wavefront<T> {
       const Vec3<N> background(this->geometry_.background);
       out.radiance.put(i, out.radiance.at(i) + select(missed, background, seen) * N(share));
     }
+    if (sampled_light_.beyond().empty()) return;
+    for (const int i : all) v.radiance.put(i, Vec3<N>(N(T(0))));
+    sampled_light_.beyond().add(camera_rays, v.hits, all, nullptr, v.radiance);
+    for (const int i : all) out.radiance.put(i, out.radiance.at(i) + v.radiance.at(i) * N(share));
   }
 
   void shade(const Groups& groups, const Groups& met) override {
@@ -59,10 +64,8 @@ class Path final : public Wavefront<T> {
     const Geometry<T>& geometry = this->geometry_;
     if (paths->depth == 0 && looks_)
       for (const int i : groups) radiance.put(i, Vec3<N>(N(T(0))));  // look() finds it
-    else if (reuse_ && paths->depth == 1)
-      add_emission_alone(met);
     else
-      sampled_light_.add_emission(*paths, hits, surface, met, radiance);
+      add_what_shines(groups, met);
     if (paths->depth >= this->plan_.max_depth) return note_end(met);
     sampled_light_.add(*paths, this->draws(), surface,
                        groups_with(geometry, surface, met, &MaterialTraits::lit), radiance, this->counts());
@@ -71,6 +74,15 @@ class Path final : public Wavefront<T> {
     for (const int i : met) go_on(i);
     if (reuse_ && paths->depth == 1)
       for (const int i : met) reuse_->keep_second(i, *paths, surface, even_lanes(i));
+  }
+
+  void add_what_shines(const Groups& groups, const Groups& met) {
+    auto& [paths, hits, surface, radiance] = *this->vertices_;
+    sampled_light_.add_beyond(*paths, hits, groups, radiance);
+    if (reuse_ && paths->depth == 1)
+      add_emission_alone(met);
+    else
+      sampled_light_.add_emission(*paths, hits, surface, met, radiance);
   }
 
   // What a second vertex sends out by itself is found from the first vertex by its light sources as well, and
@@ -126,8 +138,8 @@ class Path final : public Wavefront<T> {
   }
 
   static constexpr T kLeastChance = T(0.05);
-  const bool looks_;
   SampledLight<T> sampled_light_;
+  const bool looks_;
   std::unique_ptr<PathReuse<T>> reuse_;  // null: paths share nothing
   ScatterBatch<T> scatter_;
   Vec3Array<T> emission_;

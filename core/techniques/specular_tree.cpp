@@ -7,12 +7,15 @@ namespace orrery {
 
 template <class T>
 SpecularTree<T>::SpecularTree(const World<T>& world, const Plan& plan)
-    : Wavefront<T>(world, plan), direct_light_(this->geometry_, this->accelerator_, this->plan_) {}
+    : Wavefront<T>(world, plan), direct_light_(this->geometry_, this->accelerator_, this->plan_) {
+  if (this->geometry_.environment) beyond_.see(*this->geometry_.environment, {0, 0});
+}
 
 template <class T>
-void SpecularTree<T>::shade(const Groups&, const Groups& met) {
+void SpecularTree<T>::shade(const Groups& groups, const Groups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const Geometry<T>& geometry = this->geometry_;
+  beyond_.add(paths->rays, hits, groups, nullptr, radiance);
   direct_light_.add(*paths, this->draws(), surface, groups_with(geometry, surface, met, &MaterialTraits::lit),
                     radiance, this->counts(), this->checkpoint());
   add_emission(geometry, surface, met, radiance);

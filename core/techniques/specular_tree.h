@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/stages/beyond.h"
 #include "core/stages/direct_light.h"
 #include "core/stages/lane_masks.h"
 #include "core/techniques/wavefront.h"
@@ -37,6 +38,7 @@ class SpecularTree : public Wavefront<T> {
   void shade(const Groups& groups, const Groups& met) final;
 
   DirectLight<T> direct_light_;
+  Beyond<T> beyond_;
 };
 
 extern template class SpecularTree<float>;

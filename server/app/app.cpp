@@ -71,7 +71,7 @@ void App::watched(const Caller& caller, Clock::time_point since, const Stage& st
 }
 
 void App::read(std::size_t bytes, const Caller& caller, Timing& timing,
-               const std::function<void(const MeshSource&)>& work) {
+               const std::function<void(const AssetSource&)>& work) {
   watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto start = Clock::now();
     const Reading reading(assets_, admission_, caller.client, bytes, stop);

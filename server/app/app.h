@@ -64,7 +64,7 @@ class App {
   // Calls `work` to read a text of so many bytes that may name assets: in its turn if that takes long. Throws
   // what `work` does, ClientBusy, Busy, Cancelled, TimedOut.
   void read(std::size_t bytes, const Caller& caller, Timing& timing,
-            const std::function<void(const MeshSource&)>& work);
+            const std::function<void(const AssetSource&)>& work);
   AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Caller& caller);
 
   // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded

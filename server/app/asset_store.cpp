@@ -4,6 +4,19 @@
 
 namespace orrery {
 
+namespace {
+
+decltype(AssetStore::Asset::content) content_of(const std::string& bytes) {
+  if (is_picture(bytes)) {
+    const Texels picture = read_picture(bytes);
+    return AssetStore::Asset::Picture{picture_format(bytes), picture.width, picture.height};
+  }
+  const TriangleMesh mesh = read_mesh(bytes);
+  return AssetStore::Asset::Mesh{mesh_format(bytes), mesh.positions.size(), mesh.triangles.size()};
+}
+
+}  // namespace
+
 void AssetStore::require_name(const std::string& name) {
   if (!is_sha256_hex(name))
     throw InputError(
@@ -21,11 +34,8 @@ AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes) 
   if (size > assets_.most_bytes())
     throw InputError("", "the file takes " + std::to_string(size) + " bytes of memory, at most " +
                              std::to_string(assets_.most_bytes()) + " are kept (asset_store_bytes)");
-  const TriangleMesh mesh = read_mesh(bytes);
   auto asset = std::make_shared<Asset>();
-  asset->format = mesh_format(bytes);
-  asset->vertices = mesh.positions.size();
-  asset->triangles = mesh.triangles.size();
+  asset->content = content_of(bytes);
   asset->bytes = std::move(bytes);
   const auto added = assets_.add(sha256, size, [&asset] { return asset; });
   return {added.value, added.known};
@@ -41,12 +51,20 @@ void AssetStore::remove(const std::string& sha256) {
   if (!assets_.remove(sha256)) throw NotFound("There is no asset " + sha256.substr(0, 64));
 }
 
-TriangleMesh AssetStore::asset(const std::string& sha256) const {
+AssetStore::AssetPtr AssetStore::find_for_scene(const std::string& sha256) const {
   require_name(sha256);
   const auto found = assets_.find(sha256);
   if (!found)
     throw InputError("", "there is no asset " + sha256 + " (any more): put it to /v1/assets/" + sha256);
-  return read_mesh((*found)->bytes);
+  return *found;
+}
+
+TriangleMesh AssetStore::mesh_asset(const std::string& sha256) const {
+  return read_mesh(find_for_scene(sha256)->bytes);
+}
+
+Texels AssetStore::picture_asset(const std::string& sha256) const {
+  return read_picture(find_for_scene(sha256)->bytes);
 }
 
 }  // namespace orrery

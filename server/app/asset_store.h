@@ -2,19 +2,27 @@
 
 #include <memory>
 #include <string>
+#include <variant>
 
-#include "core/model/mesh_source.h"
+#include "core/model/asset_source.h"
 #include "server/app/lru.h"
 
 namespace orrery {
 
-// Mesh files by the SHA-256 of their bytes. Safe from any thread.
-class AssetStore final : public MeshSource {
+// Mesh and picture files by the SHA-256 of their bytes. Safe from any thread.
+class AssetStore final : public AssetSource {
  public:
   struct Asset {
+    struct Mesh {
+      MeshFormat format;
+      std::size_t vertices, triangles;
+    };
+    struct Picture {
+      PictureFormat format;
+      int width, height;
+    };
     std::string bytes;
-    MeshFormat format;
-    std::size_t vertices, triangles;
+    std::variant<Mesh, Picture> content;
   };
   using AssetPtr = std::shared_ptr<const Asset>;
 
@@ -27,7 +35,7 @@ class AssetStore final : public MeshSource {
     AssetPtr asset;
     bool known;  // it was there before
   };
-  // Throws InputError if the bytes have another hash, are no mesh, or take more than all assets may.
+  // Throws InputError if the bytes have another hash, are neither mesh nor picture, or take more than all assets may.
   Added add(const std::string& sha256, std::string bytes);
   // Throws NotFound.
   AssetPtr find(const std::string& sha256);
@@ -36,9 +44,13 @@ class AssetStore final : public MeshSource {
   std::size_t bytes() const { return assets_.bytes(); }
   std::uint64_t evictions() const { return assets_.evictions(); }
 
-  TriangleMesh asset(const std::string& sha256) const override;
+  TriangleMesh mesh_asset(const std::string& sha256) const override;
+  Texels picture_asset(const std::string& sha256) const override;
 
  private:
+  // Throws InputError if there is none.
+  AssetPtr find_for_scene(const std::string& sha256) const;
+
   mutable Lru<AssetPtr> assets_;  // reading one counts as its use
 };
 

@@ -2,9 +2,9 @@
 
 namespace orrery {
 
-Reading::Reading(const MeshSource& meshes, Admission& admission, std::string client, std::size_t bytes,
+Reading::Reading(const AssetSource& assets, Admission& admission, std::string client, std::size_t bytes,
                  std::stop_token stop)
-    : meshes_(meshes),
+    : assets_(assets),
       admission_(admission),
       demand_{Lane::interactive, std::move(client), cost_of_reading(bytes)},
       stop_(std::move(stop)) {
@@ -12,9 +12,14 @@ Reading::Reading(const MeshSource& meshes, Admission& admission, std::string cli
   if (bytes > kSmall) take_turn();
 }
 
-TriangleMesh Reading::asset(const std::string& sha256) const {
+TriangleMesh Reading::mesh_asset(const std::string& sha256) const {
   if (!ticket_) take_turn();
-  return meshes_.asset(sha256);
+  return assets_.mesh_asset(sha256);
+}
+
+Texels Reading::picture_asset(const std::string& sha256) const {
+  if (!ticket_) take_turn();
+  return assets_.picture_asset(sha256);
 }
 
 void Reading::take_turn() const {

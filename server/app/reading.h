@@ -4,27 +4,28 @@
 #include <stop_token>
 #include <string>
 
-#include "core/model/mesh_source.h"
+#include "core/model/asset_source.h"
 #include "server/app/admission.h"
 
 namespace orrery {
 
-// Meshes for a scene that is being read. Small scenes are read at once; large ones, and those that have
-// meshes read, take their turn first and keep it as long as this lives. For one thread.
-class Reading final : public MeshSource {
+// Meshes and pictures for a scene that is being read. Small scenes are read at once; large ones, and those that
+// have such read, take their turn first and keep it as long as this lives. For one thread.
+class Reading final : public AssetSource {
  public:
   // `bytes`: of the scene's text. Waits as Admission::enter() if that is large.
-  Reading(const MeshSource& meshes, Admission& admission, std::string client, std::size_t bytes,
+  Reading(const AssetSource& assets, Admission& admission, std::string client, std::size_t bytes,
           std::stop_token stop);
 
-  TriangleMesh asset(const std::string& sha256) const override;
+  TriangleMesh mesh_asset(const std::string& sha256) const override;
+  Texels picture_asset(const std::string& sha256) const override;
 
   double waited_ms() const { return waited_ms_; }
 
  private:
   void take_turn() const;
 
-  const MeshSource& meshes_;
+  const AssetSource& assets_;
   Admission& admission_;
   const Demand demand_;
   const std::stop_token stop_;

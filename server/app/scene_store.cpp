@@ -12,10 +12,10 @@ SceneStore::~SceneStore() {
   while (!entries_.empty()) erase(entries_.begin());
 }
 
-SceneStore::Kept SceneStore::keep(const Document& document, const MeshSource& meshes,
+SceneStore::Kept SceneStore::keep(const Document& document, const AssetSource& assets,
                                   const std::string& client) {
   const std::string id = document.id();
-  const Prepared scene = find_or_load(id, document, meshes, client);
+  const Prepared scene = find_or_load(id, document, assets, client);
   if (scene->loaded_bytes() > most_)
     throw InputError("", "the scene takes " + std::to_string(scene->loaded_bytes()) +
                              " bytes of memory, at most " + std::to_string(most_) +
@@ -28,17 +28,17 @@ SceneStore::Kept SceneStore::keep(const Document& document, const MeshSource& me
   return {known->scene, was_kept};
 }
 
-SceneStore::Prepared SceneStore::get(const Document& document, const MeshSource& meshes,
+SceneStore::Prepared SceneStore::get(const Document& document, const AssetSource& assets,
                                      const std::string& client) {
   const std::string id = document.id();
-  const Prepared scene = find_or_load(id, document, meshes, client);
+  const Prepared scene = find_or_load(id, document, assets, client);
   const std::lock_guard lock(mutex_);
   if (const Entry* const known = find_locked(id)) return known->scene;
   return scene->loaded_bytes() <= most_ - kept_bytes() ? add(scene, {}) : scene;
 }
 
 SceneStore::Prepared SceneStore::find_or_load(const std::string& id, const Document& document,
-                                              const MeshSource& meshes, const std::string& client) {
+                                              const AssetSource& assets, const std::string& client) {
   {
     const std::lock_guard lock(mutex_);
     if (const Entry* const known = find_locked(id)) {
@@ -46,16 +46,16 @@ SceneStore::Prepared SceneStore::find_or_load(const std::string& id, const Docum
       return known->scene;
     }
   }
-  const Prepared loaded = load(document, meshes, client);
+  const Prepared loaded = load(document, assets, client);
   ++loads_;
   return loaded;
 }
 
-SceneStore::Prepared SceneStore::load(const Document& document, const MeshSource& meshes,
+SceneStore::Prepared SceneStore::load(const Document& document, const AssetSource& assets,
                                       const std::string& client) const {
   const std::stop_token* const stop = WorkScope::current().stop;
   return work_.open(client)->run(stop ? *stop : std::stop_token(), [&] {
-    return std::make_shared<const PreparedScene>(load_scene(document, meshes));
+    return std::make_shared<const PreparedScene>(load_scene(document, assets));
   });
 }
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "core/model/mesh_source.h"
+#include "core/model/asset_source.h"
 #include "core/params/document.h"
 #include "core/prepare/prepared_scene.h"
 #include "server/app/work_memory.h"
@@ -35,10 +35,10 @@ class SceneStore {
   };
   // Keeps the scene that `document` says; loads it only if it is not here, also not as a cached one. Throws
   // what load_scene() does, InputError if the scene alone is over the limit, and as WorkMemory::open() says.
-  Kept keep(const Document& document, const MeshSource& meshes, const std::string& client);
+  Kept keep(const Document& document, const AssetSource& assets, const std::string& client);
   // The scene that `document` says, loaded only if it is not here, and then cached if there is room. Throws
   // likewise.
-  Prepared get(const Document& document, const MeshSource& meshes, const std::string& client);
+  Prepared get(const Document& document, const AssetSource& assets, const std::string& client);
 
   // Kept or cached. Throws NotFound.
   Prepared find(const std::string& id);
@@ -72,9 +72,9 @@ class SceneStore {
   };
   using Entries = std::list<Entry>;
 
-  Prepared find_or_load(const std::string& id, const Document& document, const MeshSource& meshes,
+  Prepared find_or_load(const std::string& id, const Document& document, const AssetSource& assets,
                         const std::string& client);
-  Prepared load(const Document& document, const MeshSource& meshes, const std::string& client) const;
+  Prepared load(const Document& document, const AssetSource& assets, const std::string& client) const;
   void measure(const PreparedScene& scene);
   // Below: with mutex_ held.
   Entry* find_locked(const std::string& id);  // makes it the one used last; null: it is not here

@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "core/load/load.h"
-#include "server/commands/mesh_files.h"
+#include "server/commands/asset_files.h"
 
 namespace orrery {
 namespace {
@@ -66,7 +66,7 @@ std::string read_file(const std::string& path) {
 std::shared_ptr<const Scene> load_scene_file(const std::string& path) {
   const std::string text = read_file(path);
   try {
-    return load_scene(text, MeshFiles(path == "-" ? "" : std::filesystem::path(path).parent_path()));
+    return load_scene(text, AssetFiles(path == "-" ? "" : std::filesystem::path(path).parent_path()));
   } catch (const InputError& error) {
     throw BadScene(shown_name(path), error);
   }

@@ -3,7 +3,7 @@
 #include "server/app/app.h"
 #include "server/routes/answers.h"
 
-// /v1/assets: mesh files that scenes name by the hash of their bytes.
+// /v1/assets: mesh and picture files that scenes name by the hash of their bytes.
 namespace orrery {
 namespace {
 
@@ -11,15 +11,44 @@ struct FormatNames {
   const char *name, *media_type;
 };
 
-FormatNames names_of(const AssetStore::Asset& asset) {
-  switch (asset.format) {
+FormatNames names_of(MeshFormat format, const std::string& bytes) {
+  switch (format) {
     case MeshFormat::obj: return {"obj", "model/obj"};
     case MeshFormat::stl: return {"stl", "model/stl"};
     case MeshFormat::ply: return {"ply", "application/octet-stream"};
     case MeshFormat::gltf:
-      return {"gltf", asset.bytes.starts_with("glTF") ? "model/gltf-binary" : "model/gltf+json"};
+      return {"gltf", bytes.starts_with("glTF") ? "model/gltf-binary" : "model/gltf+json"};
   }
   return {"", "application/octet-stream"};
+}
+FormatNames names_of(PictureFormat format) {
+  switch (format) {
+    case PictureFormat::exr: return {"exr", "image/x-exr"};
+    case PictureFormat::hdr: return {"hdr", "image/vnd.radiance"};
+    case PictureFormat::png: return {"png", "image/png"};
+    case PictureFormat::jpeg: return {"jpeg", "image/jpeg"};
+  }
+  return {"", "application/octet-stream"};
+}
+
+FormatNames names_of(const AssetStore::Asset& asset) {
+  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content))
+    return names_of(mesh->format, asset.bytes);
+  return names_of(std::get<AssetStore::Asset::Picture>(asset.content).format);
+}
+
+nlohmann::ordered_json json_of(const std::string& id, const AssetStore::Asset& asset) {
+  nlohmann::ordered_json json = {
+      {"id", id}, {"format", names_of(asset).name}, {"bytes", asset.bytes.size()}};
+  if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) {
+    json["vertices"] = mesh->vertices;
+    json["triangles"] = mesh->triangles;
+  } else {
+    const auto& picture = std::get<AssetStore::Asset::Picture>(asset.content);
+    json["width"] = picture.width;
+    json["height"] = picture.height;
+  }
+  return json;
 }
 
 std::string etag_of(const std::string& id) { return "\"" + id + "\""; }
@@ -33,12 +62,7 @@ Response put_asset(App& app, Request& request) {
   app.require_open();
   const std::string id = request.path_value("sha256");
   const AssetStore::Added added = app.add_asset(id, std::move(request.body), caller_of(request));
-  const AssetStore::Asset& asset = *added.asset;
-  Response response = json_answer(added.known ? 200 : 201, {{"id", id},
-                                                            {"format", names_of(asset).name},
-                                                            {"bytes", asset.bytes.size()},
-                                                            {"vertices", asset.vertices},
-                                                            {"triangles", asset.triangles}});
+  Response response = json_answer(added.known ? 200 : 201, json_of(id, *added.asset));
   response.set("Location", "/v1/assets/" + id);
   response.set("ETag", etag_of(id));
   response.set("Cache-Control", "no-store");

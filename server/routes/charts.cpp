@@ -50,7 +50,7 @@ struct ChartOrder {
 ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
   const std::string body = std::move(request.body);
   ChartOrder order;
-  app.read(body.size(), caller_of(request), timing, [&](const MeshSource&) {
+  app.read(body.size(), caller_of(request), timing, [&](const AssetSource&) {
     const Document document = parse_document(body.empty() ? "{}" : body);
     for (const char* key : {"scene", "scene_id"})
       if (document.member(key)) throw InputError(std::string("/") + key, "the address names the scene");

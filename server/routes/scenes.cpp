@@ -41,8 +41,8 @@ Response add_scene(App& app, Request& request) {
   Timing timing;
   const std::string body = std::move(request.body);
   SceneStore::Kept kept;
-  app.read(body.size(), caller_of(request), timing, [&](const MeshSource& meshes) {
-    kept = app.scenes().keep(parse_document(body), meshes, caller_of(request).client);
+  app.read(body.size(), caller_of(request), timing, [&](const AssetSource& assets) {
+    kept = app.scenes().keep(parse_document(body), assets, caller_of(request).client);
   });
   const Scene& scene = kept.scene->scene();
   Response response = json_answer(kept.known ? 200 : 201, summary(scene));

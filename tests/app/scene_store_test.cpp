@@ -32,9 +32,9 @@ Document balls(const std::string& title, int count) {
 }
 
 // One triangle, and how often it was read.
-class CountedMeshes final : public MeshSource {
+class CountedMeshes final : public AssetSource {
  public:
-  TriangleMesh asset(const std::string&) const override {
+  TriangleMesh mesh_asset(const std::string&) const override {
     ++reads;
     return {
         .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}, .normals = {}, .uvs = {}};
@@ -42,17 +42,17 @@ class CountedMeshes final : public MeshSource {
   mutable int reads = 0;
 };
 
-const MeshSource kNoMeshes;
+const AssetSource kNoMeshes;
 const std::string kClient = "someone";
 
 // A store with memory for work.
 struct Store {
   explicit Store(std::size_t most_bytes) : scenes(most_bytes, work) {}
   SceneStore* operator->() { return &scenes; }
-  SceneStore::Prepared get(const Document& document, const MeshSource& meshes = kNoMeshes) {
+  SceneStore::Prepared get(const Document& document, const AssetSource& meshes = kNoMeshes) {
     return scenes.get(document, meshes, kClient);
   }
-  SceneStore::Kept keep(const Document& document, const MeshSource& meshes = kNoMeshes) {
+  SceneStore::Kept keep(const Document& document, const AssetSource& meshes = kNoMeshes) {
     return scenes.keep(document, meshes, kClient);
   }
   bool has(const Document& document) {

@@ -27,13 +27,13 @@ constexpr const char* kScene =
         "materials": {"m": {"type": "rough"}}, "lights": [{"type": "directional", "from": [1, 1, 1]}],
         "objects": [{"type": "mesh", "material": "m", "file": "the mesh"}]})";
 
-class InMemory final : public MeshSource {
+class InMemory final : public AssetSource {
  public:
   explicit InMemory(const Mesh& mesh) {
     for (const Vec3f& p : mesh.positions) mesh_.positions.push_back(Vec3d(p));
     for (const auto& t : mesh.triangles) mesh_.triangles.push_back({t[0], t[1], t[2]});
   }
-  TriangleMesh file(const std::string&) const override { return mesh_; }
+  TriangleMesh mesh_file(const std::string&) const override { return mesh_; }
 
  private:
   TriangleMesh mesh_;

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "core/load/load.h"
-#include "server/commands/mesh_files.h"
+#include "server/commands/asset_files.h"
 
 // What the programs of the benchmarks share.
 namespace orrery::bench {
@@ -25,7 +25,7 @@ inline double thread_seconds() {
 inline std::shared_ptr<const Scene> load_scene_at(const std::string& path) {
   std::ifstream in(path);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  return load_scene(text, MeshFiles(std::filesystem::path(path).parent_path()));
+  return load_scene(text, AssetFiles(std::filesystem::path(path).parent_path()));
 }
 
 // For each line of input, "ours" or "theirs": prints the seconds that `repeats` calls of seconds_of(ours)

@@ -128,7 +128,8 @@ TEST(AllLights, SendUnitDirectionsAndNoMoreThanTheirIntensity) {
       json("{'type': 'directional', 'from': [1, 2, 3], 'intensity': [1, 2, 3]}"),
       json(
           "{'type': 'point', 'position': [1, 2, 3], 'intensity': [1, 2, 3], 'attenuation': [0.5, 0.1, 0.1]}"),
-      json("{'type': 'spot', 'position': [1, 2, 3], 'direction': [-1, -2, -3], 'intensity': [1, 2, 3]}")};
+      json("{'type': 'spot', 'position': [1, 2, 3], 'direction': [-1, -2, -3], 'intensity': [1, 2, 3]}"),
+      json("{'type': 'line', 'from': [8, 9, 8], 'to': [9, 9, 8], 'intensity_per_metre': [1, 2, 3]}")};
   ASSERT_EQ(lights.size(), light_types().size()) << "a light type without a test";
   Random random(1);
   for (const Json& light : lights)

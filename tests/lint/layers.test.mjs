@@ -10,9 +10,9 @@ import {fileURLToPath} from "node:url";
 
 const kFloors = [
   ["core/base", "core/math"],
-  ["core/params", "core/image", "core/meshes"],
+  ["core/params", "core/image", "core/meshes", "core/pictures"],
   ["core/model"],
-  ["core/shapes", "core/cameras", "core/materials", "core/lights", "core/accelerators", "core/channels", "core/stages"],
+  ["core/shapes", "core/cameras", "core/materials", "core/lights", "core/environments", "core/accelerators", "core/channels", "core/stages"],
   ["core/techniques"],
   ["core/plan"],
   ["core/prepare", "core/load"],
@@ -33,6 +33,7 @@ const kLibraries = [
   {name: "httplib", header: /^httplib\.h$/, rooms: /^tests\// },  // 20,000 lines of header
   {name: "libpng", header: /^png\.h$/, rooms: /^core\/image\// },
   {name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\// },
+  {name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/pictures\/decoder\// },
   {name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\// },
 ];
 // Folders that exist on one machine only. (Preceded by a word or a dot it is a relative path.)

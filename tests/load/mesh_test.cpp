@@ -16,25 +16,25 @@ TriangleMesh roof() {
   return mesh;
 }
 
-class Shelf final : public MeshSource {
+class Shelf final : public AssetSource {
  public:
-  TriangleMesh file(const std::string& name) const override {
+  TriangleMesh mesh_file(const std::string& name) const override {
     if (name != "roof.obj") throw InputError("", "cannot read " + name);
     return roof();
   }
-  TriangleMesh asset(const std::string& sha256) const override {
+  TriangleMesh mesh_asset(const std::string& sha256) const override {
     if (sha256 == "far") {
       TriangleMesh mesh = roof();
       mesh.positions[3].x = 1e13;
       return mesh;
     }
-    return MeshSource::asset(sha256);
+    return AssetSource::mesh_asset(sha256);
   }
 };
 
 std::string text_of(const char* object) { return scene_of(object).dump(); }
 
-Problem problem_of(const char* object, const MeshSource& meshes) {
+Problem problem_of(const char* object, const AssetSource& meshes) {
   try {
     load_scene(text_of(object), meshes);
   } catch (const InputError& error) {
@@ -66,17 +66,17 @@ Vec3d shading_normal(const Scene& scene, const Vec3d& from, const Vec3d& toward)
   return {};
 }
 
-TEST(MeshFiles, AreReadFromWhereTheLoaderIsTold) {
+TEST(AssetFiles, AreReadFromWhereTheLoaderIsTold) {
   const auto scene = load_scene(text_of("[{'type': 'mesh', 'file': 'roof.obj'}]"), Shelf());
   EXPECT_EQ(scene->primitive_count(), 4);
   EXPECT_EQ(scene->facts.left_out, 1u);
 }
 
-TEST(MeshFiles, AreRefusedWhereTheirNameStands) {
+TEST(AssetFiles, AreRefusedWhereTheirNameStands) {
   const Problem missing = problem_of("[{'type': 'mesh', 'file': 'wall.obj'}]", Shelf());
   EXPECT_EQ(missing.pointer, "/objects/0/file");
   EXPECT_EQ(missing.detail, "cannot read wall.obj");
-  EXPECT_EQ(problem_of("[{'type': 'mesh', 'file': 'roof.obj'}]", MeshSource()).pointer, "/objects/0/file");
+  EXPECT_EQ(problem_of("[{'type': 'mesh', 'file': 'roof.obj'}]", AssetSource()).pointer, "/objects/0/file");
   EXPECT_EQ(problem_of("[{'type': 'mesh', 'asset': 'abc'}]", Shelf()).pointer, "/objects/0/asset");
   EXPECT_EQ(problem_of("[{'type': 'mesh', 'asset': 'far'}]", Shelf()).pointer, "/objects/0/asset");
   EXPECT_NE(problem_of("[{'type': 'mesh', 'file': 'roof.obj', 'asset': 'abc'}]", Shelf()).pointer,
@@ -86,7 +86,7 @@ TEST(MeshFiles, AreRefusedWhereTheirNameStands) {
 }
 
 // Just beside the ridge: flat without a crease angle or with one below 90 degrees, straight up above it.
-TEST(MeshFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
+TEST(AssetFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
   const auto normal = [](const char* object) {
     return shading_normal(*load_scene(text_of(object), Shelf()), {1e-9, 3, 1}, {0, -1, 0});
   };
@@ -102,10 +102,10 @@ TEST(MeshFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
 }
 
 // Many objects may name one file: it is read once, and their limits are common.
-TEST(MeshFiles, AreReadOnceALoad) {
-  class Counting final : public MeshSource {
+TEST(AssetFiles, AreReadOnceALoad) {
+  class Counting final : public AssetSource {
    public:
-    TriangleMesh file(const std::string&) const override {
+    TriangleMesh mesh_file(const std::string&) const override {
       ++reads;
       return roof();
     }
@@ -118,10 +118,10 @@ TEST(MeshFiles, AreReadOnceALoad) {
   EXPECT_EQ(shelf.reads, 1);
 }
 
-TEST(MeshFiles, AreTooManyTogether) {
-  class Dots final : public MeshSource {
+TEST(AssetFiles, AreTooManyTogether) {
+  class Dots final : public AssetSource {
    public:
-    TriangleMesh file(const std::string&) const override {
+    TriangleMesh mesh_file(const std::string&) const override {
       TriangleMesh mesh = roof();
       mesh.positions.resize(4'000'000);
       return mesh;
@@ -136,7 +136,7 @@ TEST(MeshFiles, AreTooManyTogether) {
 }
 
 // Several meshes share one set: each keeps its own vertices and normals.
-TEST(MeshFiles, KeepApartInOneScene) {
+TEST(AssetFiles, KeepApartInOneScene) {
   const auto scene = load_scene(
       text_of("[{'type': 'mesh', 'positions': [[5, 0, 0], [6, 0, 0], [5, 1, 0]], 'indices': [[0, 1, 2]],"
               "  'normals': [[1, 0, 1], [1, 0, 1], [1, 0, 1]]},"
@@ -151,7 +151,7 @@ TEST(MeshFiles, KeepApartInOneScene) {
 }
 
 // Around one vertex of n triangles, smoothing compares n * n pairs of them.
-TEST(MeshFiles, AVertexOfTooManyTrianglesIsNotSmoothed) {
+TEST(AssetFiles, AVertexOfTooManyTrianglesIsNotSmoothed) {
   Json mesh = {{"type", "mesh"}, {"positions", {{0, 0, 1}}}, {"crease_degrees", 30}};
   const auto fan = [&](int triangles) {
     mesh["indices"] = Json::array();

@@ -60,9 +60,9 @@ TEST(LoadMotion, RefusesWhatHasNoMeaning) {
     EXPECT_EQ(first_problem(mesh_with(motion)), expected) << motion;
 }
 
-class Stages final : public MeshSource {
+class Stages final : public AssetSource {
  public:
-  TriangleMesh file(const std::string& name) const override {
+  TriangleMesh mesh_file(const std::string& name) const override {
     TriangleMesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, name == "a.obj" ? 0.0 : 2.0}};
     mesh.triangles = {{0, 1, 2}};
@@ -95,10 +95,10 @@ TEST(LoadMotion, FilesAreStagesOfOneMesh) {
 }
 
 // One mesh of 100,000 vertices, and how often it was asked for.
-class Heavy final : public MeshSource {
+class Heavy final : public AssetSource {
  public:
   mutable int read = 0;
-  TriangleMesh file(const std::string&) const override {
+  TriangleMesh mesh_file(const std::string&) const override {
     ++read;
     TriangleMesh mesh;
     mesh.positions.resize(100'000, Vec3d(1, 2, 3));
@@ -130,7 +130,7 @@ TEST(LoadMotion, KeysShareWhatTheyHaveInCommon) {
     const auto loaded = account->run({}, [&] { return load_scene(scene.dump(), Heavy()); });
     return account->bytes();
   };
-  const std::size_t few = bytes("[{'time': 0}, {'time': 1}]"), vertices = Heavy().file("").positions.size();
+  const std::size_t few = bytes("[{'time': 0}, {'time': 1}]"), vertices = Heavy().mesh_file("").positions.size();
   EXPECT_LT(bytes("[{'time': 0}, {'time': 1}, {'time': 2}]"), few + 10'000);
   EXPECT_GE(bytes("[{'time': 0}, {'time': 1, 'file': 'b.obj'}]"), few + vertices * sizeof(Vec3d));
 }

@@ -24,18 +24,20 @@ constexpr std::string_view kEmptyScene = R"({
 
 // What the keys of the scene format mean.
 const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center",   "point", "base",
-                                       "top",       "min", "max",     "position", "corner"};
+                                       "top",       "min", "max",     "position", "corner", "to"};
 const std::set<std::string> kSides = {"a", "b"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};
 const std::set<std::string> kLengths = {"radius", "height", "aperture_radius", "focus_distance"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
+const std::set<std::string> kPerLength = {"intensity_per_metre"};  // colours that grow with lengths
 
 using Change = std::function<void(const std::string& key, Json& value)>;
 
 // Calls `change` for each key and value of `object` and of the keys of its motion.
 void change_members(Json& object, const Change& change) {
+  const bool line = object.contains("to");  // its "from" is a point
   for (auto& [key, value] : object.items()) {
-    change(key, value);
+    change(line && key == "from" ? "to" : key, value);
     if (key == "motion")
       for (Json& moment : value) change_members(moment, change);
   }
@@ -59,7 +61,7 @@ Change scale_by(double factor) {
   return [factor](const std::string& key, Json& value) {
     change_points(key, value, [factor](const Vec3d& p) { return p * factor; });
     if (kLengths.contains(key)) value = value.get<double>() * factor;
-    if (kSides.contains(key)) value = numbers(vector(value) * factor);
+    if (kSides.contains(key) || kPerLength.contains(key)) value = numbers(vector(value) * factor);
     if (key == "attenuation") {
       value[1] = value[1].get<double>() / factor;
       value[2] = value[2].get<double>() / factor / factor;

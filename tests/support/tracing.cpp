@@ -38,8 +38,9 @@ class Tracing::Recorder final : public Accelerator<double> {
   AcceleratorPtr<double> real_;
 };
 
-Tracing::Tracing(const Json& scene_json, RenderRequest request) {
-  const std::shared_ptr<const Scene> scene = load(scene_json);
+Tracing::Tracing(const Json& scene, RenderRequest request) : Tracing(load(scene), std::move(request)) {}
+
+Tracing::Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest request) {
   request.precision = Precision::double_precision;
   request.slice = kBatch;
   plan_ = make_plan(*scene, request);
@@ -72,6 +73,23 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
 
 const Tracing::Generations& Tracing::rays() const { return recorder_->generations; }
 const std::vector<Ray<double>>& Tracing::shadow_rays() const { return recorder_->shadow; }
+
+Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
+                  int max_depth) {
+  RenderRequest request;
+  request.technique = "path";
+  request.max_depth = max_depth;
+  const std::vector<Ray<double>> rays(kBatch, Ray<double>{from, safe_normalize(toward - from)});
+  double sum = 0, squares = 0;
+  for (const Answer& answer : Tracing(scene, request).trace(rays)) {
+    sum += answer.radiance.x / kBatch;
+    squares += answer.radiance.x * answer.radiance.x / kBatch;
+  }
+  return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
+}
+Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth) {
+  return estimate(load(scene), from, toward, max_depth);
+}
 
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request) {
   Tracing tracing(scene, request);

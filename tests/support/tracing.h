@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct Answer {
 class Tracing {
  public:
   // The request's precision is ignored.
+  explicit Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest request = {});
   explicit Tracing(const Json& scene, RenderRequest request = {});
   ~Tracing();
 
@@ -42,6 +44,15 @@ class Tracing {
   TracerPtr<double> tracer_;
   TraceCounts counts_;
 };
+
+struct Estimate {
+  double mean, sd;  // of one sample
+  double error() const { return sd / std::sqrt(double{kBatch}); }
+};
+// Of the red light along one ray that `path` finds, from a batch of samples that are independent of each other.
+Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
+                  int max_depth);
+Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth);
 
 // Radiance of every pixel in double precision, without the picture's rounding to float.
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request);

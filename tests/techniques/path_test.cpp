@@ -11,25 +11,6 @@
 namespace orrery::test {
 namespace {
 
-struct Estimate {
-  double mean, sd;  // of one sample
-  double error() const { return sd / std::sqrt(double{kBatch}); }
-};
-
-// Of the red light along one ray, from a batch of samples that are independent of each other.
-Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth) {
-  RenderRequest request;
-  request.technique = "path";
-  request.max_depth = max_depth;
-  const std::vector<Ray<double>> rays(kBatch, Ray<double>{from, safe_normalize(toward - from)});
-  double sum = 0, squares = 0;
-  for (const Answer& answer : Tracing(scene, request).trace(rays)) {
-    sum += answer.radiance.x / kBatch;
-    squares += answer.radiance.x * answer.radiance.x / kBatch;
-  }
-  return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
-}
-
 // A lamp over a white floor that reflects all, seen beside the lamp at the point straight below.
 Json over_floor(const Json& lamp) {
   Json scene = scene_of(

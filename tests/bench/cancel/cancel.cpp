@@ -40,10 +40,10 @@ TriangleMesh sheet(std::uint32_t side) {
   return mesh;
 }
 
-class OneMesh final : public MeshSource {
+class OneMesh final : public AssetSource {
  public:
   explicit OneMesh(TriangleMesh mesh) : mesh_(std::move(mesh)) {}
-  TriangleMesh file(const std::string&) const override { return mesh_; }
+  TriangleMesh mesh_file(const std::string&) const override { return mesh_; }
 
  private:
   const TriangleMesh mesh_;

@@ -1,4 +1,4 @@
-#include "server/commands/mesh_files.h"
+#include "server/commands/asset_files.h"
 
 #include <algorithm>
 
@@ -6,7 +6,8 @@
 
 namespace orrery {
 
-TriangleMesh MeshFiles::file(const std::string& name) const {
+template <class Read>
+auto AssetFiles::read_with(const std::string& name, const Read& read) const {
   namespace fs = std::filesystem;
   if (name.find('\0') != std::string::npos)
     throw InputError("", "expected the name of a file, got a NUL in it");
@@ -18,12 +19,20 @@ TriangleMesh MeshFiles::file(const std::string& name) const {
     throw InputError("", "expected a file in the scene's folder or below it, got " + name);
   if (!fs::is_regular_file(path)) throw InputError("", "cannot read " + name + ": it is no file");
   try {
-    return read_mesh(read_file(path.string()));
+    return read(read_file(path.string()));
   } catch (const FileError& unreadable) {
     throw InputError("", unreadable.what());
   } catch (const InputError& bad) {
     throw InputError("", name + ": " + bad.problems().front().detail);
   }
+}
+
+TriangleMesh AssetFiles::mesh_file(const std::string& name) const {
+  return read_with(name, [](const std::string& bytes) { return read_mesh(bytes); });
+}
+
+Texels AssetFiles::picture_file(const std::string& name) const {
+  return read_with(name, [](const std::string& bytes) { return read_picture(bytes); });
 }
 
 }  // namespace orrery

@@ -1,0 +1,25 @@
+#include "core/environments/formula.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+// What `background` says as well.
+template <class N>
+struct Constant {
+  Vec3<N> everywhere;
+
+  static Constant<double> read(Params& p) {
+    return {p.color("radiance", "What a ray sees that meets nothing.", Vec3d(1))};
+  }
+  Vec3d constant() const { return Vec3d(everywhere); }
+  Vec3<N> radiance(const Vec3<N>&) const { return everywhere; }
+};
+
+}  // namespace
+
+EnvironmentType constant_type() {
+  return {"constant", "The same light from everywhere.", read_formula<Constant>};
+}
+
+}  // namespace orrery

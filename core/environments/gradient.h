@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/model/environment.h"
+
+namespace orrery {
+
+// A sky whose radiance grows linearly with the height of the direction, over ground that is the same
+// everywhere. Up is +y.
+template <class N>
+struct Gradient {
+  Vec3<N> zenith, horizon, ground;
+
+  static Gradient<double> read(Params& p);
+
+  Vec3<N> radiance(const Vec3<N>& direction) const {
+    const N height = max_first(N(ScalarOf<N>(0)), direction.y);
+    return select(direction.y >= N(ScalarOf<N>(0)), horizon + (zenith - horizon) * height, ground);
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/error.h"
+#include "core/meshes/mesh_file.h"
+#include "core/pictures/picture.h"
+
+namespace orrery {
+
+// Where a scene gets meshes and pictures that are not written in it. This one has none; whoever loads scenes
+// may know some. Each throws InputError (pointer "") if there is no such thing, or what is there is none.
+class AssetSource {
+ public:
+  virtual ~AssetSource() = default;
+
+  // Of a file beside the scene.
+  virtual TriangleMesh mesh_file(const std::string& /*name*/) const { refuse_files(); }
+  virtual Texels picture_file(const std::string& /*name*/) const { refuse_files(); }
+  // By the SHA-256 of its bytes, in hexadecimal.
+  virtual TriangleMesh mesh_asset(const std::string& /*sha256*/) const { refuse_assets(); }
+  virtual Texels picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
+
+ private:
+  [[noreturn]] static void refuse_files() {
+    throw InputError("", "files are read on the command line only: upload it and name it by 'asset'");
+  }
+  [[noreturn]] static void refuse_assets() {
+    throw InputError("", "assets are kept by the service only: name a file beside the scene by 'file'");
+  }
+};
+
+}  // namespace orrery

@@ -1,0 +1,124 @@
+#include "core/pictures/picture.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/base/work_scope.h"
+#include "core/math/elementary.h"
+#include "core/pictures/decoder/decoder.h"
+
+namespace orrery {
+namespace {
+
+using namespace std::string_view_literals;
+
+struct Signature {
+  std::string_view bytes;
+  PictureFormat format;
+};
+constexpr std::array kSignatures = {
+    Signature{"\x76\x2f\x31\x01"sv, PictureFormat::exr}, Signature{"#?RADIANCE\n"sv, PictureFormat::hdr},
+    Signature{"#?RGBE\n"sv, PictureFormat::hdr}, Signature{"\x89PNG\r\n\x1a\n"sv, PictureFormat::png},
+    Signature{"\xff\xd8\xff"sv, PictureFormat::jpeg}};
+
+const Signature* signature_of(std::string_view bytes) {
+  const auto found = std::find_if(kSignatures.begin(), kSignatures.end(),
+                                  [&](const Signature& s) { return bytes.starts_with(s.bytes); });
+  return found == kSignatures.end() ? nullptr : &*found;
+}
+
+// Looked for along the run path, so beside the executable; stays open until the process ends.
+OrreryDecodePicture* decoder() {
+  static OrreryDecodePicture* const found = [] {
+    void* const library = dlopen("liborrery_pictures.so", RTLD_NOW | RTLD_LOCAL);
+    void* const symbol = library ? dlsym(library, "orrery_decode_picture") : nullptr;
+    if (!symbol) throw InputError("", std::string("no pictures can be read here: ") + dlerror());
+    return reinterpret_cast<OrreryDecodePicture*>(symbol);
+  }();
+  return found;
+}
+
+// Whether the work is to end; interruption_point() throws why afterwards.
+bool is_stopped() {
+  try {
+    interruption_point();
+    return false;
+  } catch (...) {
+    return true;
+  }
+}
+
+// Whether a JPEG file has its end marker after where its scans begin: libjpeg makes up what is missing. Before
+// the scans are segments that tell their length; in a scan the marker's first byte is never followed by its
+// second.
+bool has_jpeg_end(std::string_view bytes) {
+  constexpr unsigned char kMarker = 0xff, kScan = 0xda;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  std::size_t at = 2;
+  while (at + 4 <= bytes.size() && byte(at) == kMarker && byte(at + 1) != kScan)
+    at += byte(at + 1) == kMarker ? 1 : 2 + (byte(at + 2) * 256u + byte(at + 3));
+  return at < bytes.size() && bytes.find("\xff\xd9"sv, at) != std::string_view::npos;
+}
+
+// IEC 61966-2-1.
+float linear_of_srgb(float encoded) {
+  const double x = std::clamp(double{encoded}, 0.0, 1.0);
+  return static_cast<float>(x <= 0.04045 ? x / 12.92 : pow_unit((x + 0.055) / 1.055, 2.4));
+}
+
+void check_texels(const Texels& picture) {
+  for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
+    interruption_point(i);
+    const float value = picture.rgb[i];
+    if (value >= 0 && value <= kMaxTexel) continue;
+    const std::size_t texel = i / 3, width = static_cast<std::size_t>(picture.width);
+    char text[128];
+    std::snprintf(text, sizeof text, "expected texels of 0 to %g, got %g in column %zu of row %zu",
+                  double{kMaxTexel}, double{value}, texel % width, texel / width);
+    throw InputError("", std::string(text) + " (counted from 0 at the upper left)");
+  }
+}
+
+}  // namespace
+
+const char* name_of(PictureFormat format) {
+  switch (format) {
+    case PictureFormat::exr: return "EXR";
+    case PictureFormat::hdr: return "HDR";
+    case PictureFormat::png: return "PNG";
+    case PictureFormat::jpeg: return "JPEG";
+  }
+  return "";
+}
+
+bool is_picture(std::string_view bytes) { return signature_of(bytes) != nullptr; }
+
+PictureFormat picture_format(std::string_view bytes) {
+  if (const Signature* const known = signature_of(bytes)) return known->format;
+  throw InputError("", "expected an EXR, Radiance HDR, PNG or JPEG file, got " + std::to_string(bytes.size()) +
+                           " bytes of another kind");
+}
+
+Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
+  const PictureFormat format = picture_format(bytes);
+  if (format == PictureFormat::jpeg && !has_jpeg_end(bytes))
+    throw InputError("", "JPEG: the picture is damaged: it has no end");
+  Texels picture;
+  std::string problem;
+  decoder()(bytes, format, limits, is_stopped, picture, problem);
+  interruption_point();
+  if (!problem.empty()) throw InputError("", name_of(format) + (": " + problem));
+  if (format == PictureFormat::png || format == PictureFormat::jpeg)
+    for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
+      interruption_point(i);
+      picture.rgb[i] = linear_of_srgb(picture.rgb[i]);
+    }
+  check_texels(picture);
+  return picture;
+}
+
+}  // namespace orrery

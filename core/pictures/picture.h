@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace orrery {
+
+// Linear light of an image file.
+struct Texels {
+  int width = 0, height = 0;
+  std::vector<float> rgb;  // red, green and blue of each texel, row by row from the top
+};
+
+// What an image file may hold.
+struct PictureLimits {
+  int side = 16384;                 // texels
+  std::size_t texels = 33'554'432;  // in all; each takes 12 bytes, and as much again while it is decoded
+  int channels = 4;
+};
+
+// Largest value of a texel.
+inline constexpr float kMaxTexel = 1e9f;
+
+enum class PictureFormat { exr, hdr, png, jpeg };
+
+// As people write it: "EXR".
+const char* name_of(PictureFormat format);
+
+// The format of a file, told by its first bytes; none if it is of no such format.
+bool is_picture(std::string_view bytes);
+// Throws InputError (pointer "") if it is none.
+PictureFormat picture_format(std::string_view bytes);
+
+// Reads an OpenEXR, Radiance HDR, PNG or JPEG file, told by its first bytes. EXR and HDR are linear; PNG and
+// JPEG are decoded from sRGB. One channel is grey; a second or fourth, alpha, is left aside. Nothing but
+// `bytes` is read; the same bytes give the same picture.
+//
+// Throws InputError (pointer "") with the value and the limit. The size that a file states is checked before
+// anything is decoded. Texels must be finite, at least 0 and at most kMaxTexel.
+Texels read_picture(std::string_view bytes, const PictureLimits& limits = {});
+
+}  // namespace orrery

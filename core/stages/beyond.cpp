@@ -1,0 +1,40 @@
+#include "core/stages/beyond.h"
+
+#include "core/stages/power_heuristic.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+MaskOf<Lanes<T>> missed_lanes(const HitBatch<T>& hits, int i) {
+  return mask_cast<Lanes<T>>(load_index<T>(hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+}
+
+}  // namespace
+
+template <class T>
+void Beyond<T>::add(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+                    const Array<T>* by_lobe, Vec3Array<T>& radiance) {
+  if (empty()) return;
+  Groups missed;
+  for (const int i : groups)
+    if (any(missed_lanes(hits, i))) missed.add(i);
+  if (missed.empty()) return;
+  const N zero(T(0)), one(T(1));
+  for (const auto& [kernel, choice] : sources_) {
+    kernel->beyond(rays, choice, missed, found_, by_light_);
+    for (const int i : missed) {
+      N weight = one;
+      if (by_lobe) {
+        const N lobe = by_lobe->at(i), light = by_light_.at(i);
+        weight = select(lobe > zero && light > zero, power_heuristic(lobe, light), one);
+      }
+      radiance.put(i, missed_lanes(hits, i), radiance.at(i) + found_.at(i) * weight);
+    }
+  }
+}
+
+template class Beyond<float>;
+template class Beyond<double>;
+
+}  // namespace orrery

@@ -1,0 +1,14 @@
+#pragma once
+
+namespace orrery {
+
+// The share of what one strategy found that counts, where another would have found it with density `other`
+// (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH 1995: the
+// power heuristic with exponent 2).
+template <class N>
+N power_heuristic(const N& own, const N& other) {
+  const N a = own * own, b = other * other;
+  return a / (a + b);
+}
+
+}  // namespace orrery

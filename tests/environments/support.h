@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+
+#include "core/load/load.h"
+#include "core/model/asset_source.h"
+#include "tests/support/tracing.h"
+
+namespace orrery::test {
+
+// A picture whose texel in column x and row y, both in texels, is red, green and blue of `paint`.
+inline Texels painted(int width, int height, const std::function<Vec3d(int x, int y)>& paint) {
+  Texels picture{width, height, {}};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Vec3d value = paint(x, y);
+      for (const double channel : {value.x, value.y, value.z})
+        picture.rgb.push_back(static_cast<float>(channel));
+    }
+  return picture;
+}
+
+// Gives it for every file.
+class OnePicture final : public AssetSource {
+ public:
+  explicit OnePicture(Texels picture) : picture_(std::move(picture)) {}
+  Texels picture_file(const std::string&) const override { return picture_; }
+
+ private:
+  const Texels picture_;
+};
+
+// A white floor that such a picture surrounds.
+inline std::shared_ptr<const Scene> surrounded(const Texels& picture, const Vec3d& normal,
+                                               const Json& more = Json::object()) {
+  Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
+                        "{'materials': {'white': {'type': 'lambert', 'kd': null, 'reflectance': 1}}}");
+  scene["objects"][0]["normal"] = numbers(normal);
+  scene["environment"] = {{"type", "image"}, {"file", "sky.exr"}};
+  scene["environment"].update(more);
+  return load_scene(parse_document(scene.dump()), OnePicture(picture));
+}
+
+}  // namespace orrery::test

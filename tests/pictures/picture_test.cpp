@@ -1,0 +1,131 @@
+#include "core/pictures/picture.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/image/files.h"
+
+// Pictures that are read, against those that were written; and files that are none.
+namespace orrery::test {
+namespace {
+
+Image linear_image(int width, int height, const std::vector<float>& rgb) {
+  Image image(width, height, PixelFormat::linear32);
+  std::memcpy(image.bytes().data(), rgb.data(), rgb.size() * sizeof(float));
+  return image;
+}
+Image coded_image(int width, int height, unsigned char code) {
+  Image image(width, height, PixelFormat::srgb8);
+  std::memset(image.bytes().data(), code, image.bytes().size());
+  return image;
+}
+std::vector<float> ramp(std::size_t count) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(0.25f * static_cast<float>(i));
+  return values;
+}
+
+// Flat RGBE of 0.5, 1 and 4 in every texel.
+std::string hdr(int width, int height, int stated_height) {
+  std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(stated_height) + " +X " +
+                      std::to_string(width) + "\n";
+  for (int i = 0; i < width * height; ++i) bytes += std::string("\x10\x20\x80\x83", 4);
+  return bytes;
+}
+
+std::string refusal(const std::string& bytes, const PictureLimits& limits = {}) {
+  try {
+    read_picture(bytes, limits);
+  } catch (const InputError& error) {
+    return error.problems().front().detail;
+  }
+  return "accepted";
+}
+
+TEST(Pictures, ExrIsReadAsItIs) {
+  const std::vector<float> values = ramp(5 * 3 * 3);
+  const Texels read = read_picture(encode_exr(linear_image(5, 3, values)));
+  EXPECT_EQ(read.width, 5);
+  EXPECT_EQ(read.height, 3);
+  EXPECT_EQ(read.rgb, values);
+}
+
+TEST(Pictures, HdrIsLinear) {
+  const Texels read = read_picture(hdr(4, 2, 2));
+  ASSERT_EQ(read.rgb.size(), 24u);
+  EXPECT_NEAR(read.rgb[0], 0.5, 0.02);
+  EXPECT_NEAR(read.rgb[1], 1, 0.02);
+  EXPECT_NEAR(read.rgb[2], 4, 0.02);
+}
+
+// IEC 61966-2-1: code 128 is 0.2158605, code 10 is on the straight part.
+TEST(Pictures, PngAndJpegAreDecodedFromSrgb) {
+  for (const auto& [code, linear] : {std::pair<int, double>{128, 0.21586050}, {10, 10.0 / 255 / 12.92}, {255, 1}}) {
+    const Image image = coded_image(16, 8, static_cast<unsigned char>(code));
+    EXPECT_NEAR(read_picture(encode_png(image)).rgb[5], linear, 1e-7) << code;
+    EXPECT_NEAR(read_picture(encode_jpeg(image)).rgb[5], linear, 0.01) << code;
+  }
+}
+
+TEST(Pictures, TruncatedFilesAreRefused) {
+  const std::string exr = encode_exr(linear_image(64, 64, ramp(64 * 64 * 3))),
+                    png = encode_png(coded_image(64, 64, 77)), jpeg = encode_jpeg(coded_image(64, 64, 77)),
+                    flat = hdr(64, 64, 64);
+  for (const std::string& whole : {exr, png, jpeg, flat})
+    for (const double share : {0.02, 0.3, 0.6, 0.9}) {
+      const auto kept = std::max<std::size_t>(12, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
+      EXPECT_NE(refusal(whole.substr(0, kept)), "accepted") << whole.substr(1, 3) << " " << share;
+    }
+}
+
+// Sizes that a header states are held against the limits before anything is decoded.
+TEST(Pictures, StatedSizesAreCheckedFirst) {
+  EXPECT_EQ(refusal(hdr(4, 2, 2'000'000'000)),
+            "HDR: expected a picture of 1 to 16384 texels a side and at most 33554432 in all, got 4 x 2000000000");
+  EXPECT_NE(refusal(hdr(4, 2, 0)), "accepted");
+  std::string png = encode_png(coded_image(8, 8, 1));
+  const auto state = [&png](std::uint32_t width, std::uint32_t height) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      png[16 + i] = static_cast<char>(width >> (24 - 8 * i));
+      png[20 + i] = static_cast<char>(height >> (24 - 8 * i));
+    }
+    const auto crc = static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(png.data()) + 12, 17));
+    for (std::size_t i = 0; i < 4; ++i) png[29 + i] = static_cast<char>(crc >> (24 - 8 * i));
+  };
+  for (const auto& [width, height] : {std::pair<std::uint32_t, std::uint32_t>{16385, 1}, {16000, 16000}, {900'000, 900'000}, {0, 8}}) {
+    state(width, height);
+    EXPECT_NE(refusal(png), "accepted") << width << " x " << height;
+  }
+  EXPECT_NE(refusal(hdr(4, 2, 2), {.side = 3}), "accepted");
+  EXPECT_NE(refusal(hdr(4, 2, 2), {.texels = 7}), "accepted");
+  EXPECT_EQ(refusal(hdr(4, 2, 2), {.side = 4, .texels = 8}), "accepted");
+  EXPECT_EQ(refusal(hdr(4, 2, 2), {.channels = 2}), "HDR: expected a picture of 1 to 2 channels, got 3");
+}
+
+TEST(Pictures, TexelsThatAreNoLightAreNamed) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {-1.0f, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN(), 2e9f}) {
+    std::vector<float> values(4 * 3 * 3, 0.5f);
+    values[(2 * 4 + 1) * 3 + 1] = bad;
+    const std::string said = refusal(encode_exr(linear_image(4, 3, values)));
+    EXPECT_NE(said.find("expected texels of 0 to 1e+09, got "), std::string::npos) << said;
+    EXPECT_NE(said.find(" in column 1 of row 2"), std::string::npos) << said;
+  }
+}
+
+TEST(Pictures, OtherFilesAreRefused) {
+  for (const std::string& bytes : {std::string(), std::string("v 0 0 0\n"), std::string("GIF89a"), std::string("II*\0", 4),
+                                   std::string("\x89PNG\r\n\x1a\n"), std::string("\xff\xd8\xff"), std::string("#?RGBE\n"),
+                                   std::string("\x76\x2f\x31\x01")})
+    EXPECT_NE(refusal(bytes), "accepted");
+  EXPECT_FALSE(is_picture("v 0 0 0\n"));
+  EXPECT_TRUE(is_picture(hdr(1, 1, 1)));
+}
+
+}  // namespace
+}  // namespace orrery::test
