@@ -36,7 +36,8 @@ class ImageKernel final : public LightKernel<T> {
     for (const int i : groups) {
       const auto mine = mask_cast<N>(load_index<T>(choices.index, i) >= 0);
       if (!any(mine)) continue;
-      const LightMap::Place<N> place = draw(draws.two(SampleSet::environment, i), draws.two(SampleSet::light, i));
+      const LightMap::Place<N> place =
+          draw(draws.two(SampleSet::environment, i), draws.two(SampleSet::light, i));
       const auto [toward, sine] = image_->map.direction_of(place);
       const Found found = find(place, sine);
       const N pdf = found.pdf * choices.probability.at(i);
@@ -53,8 +54,7 @@ class ImageKernel final : public LightKernel<T> {
     for (const int i : groups) {
       const Vec3<N> toward = into_map(rays.direction.at(i));
       using std::sqrt;
-      const Found found =
-          find(image_->map.place_of(toward), sqrt(toward.x * toward.x + toward.z * toward.z));
+      const Found found = find(image_->map.place_of(toward), sqrt(toward.x * toward.x + toward.z * toward.z));
       radiance.put(i, found.radiance);
       pdf.put(i, found.pdf * choice.probability);
     }
@@ -83,8 +83,7 @@ class ImageKernel final : public LightKernel<T> {
   LightMap::Place<N> draw(const SamplePoint<N>& texel, const SamplePoint<N>& within) const {
     LightMap::Place<N> place;
     for (std::size_t lane = 0; lane < N::size(); ++lane) {
-      const auto one =
-          image_->map.draw<T>(texel.u[lane], texel.v[lane], within.u[lane], within.v[lane]);
+      const auto one = image_->map.draw<T>(texel.u[lane], texel.v[lane], within.u[lane], within.v[lane]);
       place.x[lane] = one.x;
       place.y[lane] = one.y;
     }
@@ -134,21 +133,25 @@ std::shared_ptr<const Environment> read_image(Params& p, const AssetSource& sour
     picture = read_picture_of(p, "file", name, [&](const std::string& n) { return source.picture_file(n); });
   } else {
     const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG or JPEG file.", 64);
-    picture = read_picture_of(p, "asset", name, [&](const std::string& n) { return source.picture_asset(n); });
+    picture =
+        read_picture_of(p, "asset", name, [&](const std::string& n) { return source.picture_asset(n); });
   }
-  const double degrees = p.number(
-      "rotation_degrees", "Turn of the sky about +y, anticlockwise from above.", {.min = -1e6, .max = 1e6}, 0.0);
-  const double scale = p.number("scale", "Factor of the picture's radiance.", {.min = 0, .max = kMaxColor}, 1.0);
+  const double degrees = p.number("rotation_degrees", "Turn of the sky about +y, anticlockwise from above.",
+                                  {.min = -1e6, .max = 1e6}, 0.0);
+  const double scale =
+      p.number("scale", "Factor of the picture's radiance.", {.min = 0, .max = kMaxColor}, 1.0);
   if (picture.rgb.empty()) return nullptr;
-  return std::make_shared<ImageEnvironment>(TurnedMap{LightMap(picture), sine_cosine_degrees(degrees), scale});
+  return std::make_shared<ImageEnvironment>(
+      TurnedMap{LightMap(picture), sine_cosine_degrees(degrees), scale});
 }
 
 }  // namespace
 
 EnvironmentType image_type() {
-  return {"image",
-          "An equirectangular picture: its centre lies toward -z, its top toward +y, its right half toward +x.",
-          read_image};
+  return {
+      "image",
+      "An equirectangular picture: its centre lies toward -z, its top toward +y, its right half toward +x.",
+      read_image};
 }
 
 }  // namespace orrery

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kNumbers = 0x1p24;
 
-// Of weights whose sum, added in their order, is `sum` > 0. (So the last that is not 0 ends at the last number.)
+// Of weights whose sum, added in their order, is `sum` > 0. (So the last that is not 0 ends at the last
+// number.)
 template <class Weights>
 void append_ends(const Weights& weights, double sum, std::vector<std::uint32_t>& ends) {
   double end = 0;
@@ -37,7 +38,8 @@ ImportanceTable::ImportanceTable(int width, int height, std::span<const float> w
   double sum = 0;
   for (int row = 0; row < height; ++row) {
     double of_row = 0;
-    for (const float weight : weights.subspan(static_cast<std::size_t>(row) * columns, columns)) of_row += double{weight};
+    for (const float weight : weights.subspan(static_cast<std::size_t>(row) * columns, columns))
+      of_row += double{weight};
     rows.push_back(of_row);
     sum += of_row;
   }

@@ -54,8 +54,8 @@ LightMap::LightMap(const Texels& picture, Weights weights)
   for (int row = 0; row < picture.height; ++row) {
     interruption_point();
     for (int column = 0; column < picture.width; ++column, rgb += 3)
-      texels_.push_back({rgb[0], rgb[1], rgb[2],
-                         sampled() ? static_cast<float>(table_.probability({column, row})) : 0.0f});
+      texels_.push_back(
+          {rgb[0], rgb[1], rgb[2], sampled() ? static_cast<float>(table_.probability({column, row})) : 0.0f});
   }
 }
 

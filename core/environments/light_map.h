@@ -40,7 +40,8 @@ class LightMap {
     using T = ScalarOf<N>;
     using std::sqrt;
     const N across = sqrt(direction.x * direction.x + direction.z * direction.z);
-    const N turns = direction_turns(N(-direction.z), direction.x), down = direction_turns(direction.y, across);
+    const N turns = direction_turns(N(-direction.z), direction.x),
+            down = direction_turns(direction.y, across);
     return {(turns + T(0.5)) * T(table_.width()), down * T(2 * table_.height())};
   }
   template <class N>

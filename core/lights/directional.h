@@ -19,9 +19,7 @@ struct Directional {
   static constexpr LightTraits kTraits = {.delta = false, .parallel = true};
   static Directional<double> read(Params& p);
 
-  Arrival<N> arrive(const Vec3<N>&) const {
-    return {from, N(std::numeric_limits<T>::infinity()), intensity};
-  }
+  Arrival<N> arrive(const Vec3<N>&) const { return {from, N(std::numeric_limits<T>::infinity()), intensity}; }
 
   MaskOf<N> extended() const { return height > N(T(0)); }
   // Evenly by solid angle.
@@ -32,7 +30,8 @@ struct Directional {
     const Tangents<N> basis = tangents_of(from);
     const Vec3<N> direction =
         basis.first * (across * cosine) + basis.second * (across * sine) + from * (T(1) - h);
-    return {{direction, N(std::numeric_limits<T>::infinity()), intensity * (T(2) / (T(2) - height))}, density()};
+    return {{direction, N(std::numeric_limits<T>::infinity()), intensity * (T(2) / (T(2) - height))},
+            density()};
   }
   // Radiance from the disc and density with which draw() gives a direction; 0 beside it.
   Seen<N> beyond(const Vec3<N>& direction) const {

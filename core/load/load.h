@@ -13,8 +13,8 @@ namespace orrery {
 
 class Params;
 
-// Reads a scene, strictly; meshes and pictures that it names come from `assets`. Throws InputError with up to 20 problems,
-// each with its JSON Pointer; MalformedJson if the text is not JSON.
+// Reads a scene, strictly; meshes and pictures that it names come from `assets`. Throws InputError with up to
+// 20 problems, each with its JSON Pointer; MalformedJson if the text is not JSON.
 std::shared_ptr<const Scene> load_scene(const Document& document, const AssetSource& assets = AssetSource());
 std::shared_ptr<const Scene> load_scene(std::string_view json, const AssetSource& assets = AssetSource(),
                                         const JsonLimits& limits = {});

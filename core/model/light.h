@@ -66,8 +66,8 @@ class LightKernel {
     for (const int i : groups) out.put(i, Lanes<T>(T(0)));
   }
 
-  // Of a light that is infinitely far away and has an angle: the radiance that `rays` bring from it where they
-  // meet nothing, and the density per solid angle, times the probability of the choice, with which
+  // Of a light that is infinitely far away and has an angle: the radiance that `rays` bring from it where
+  // they meet nothing, and the density per solid angle, times the probability of the choice, with which
   // sample_each() draws their directions.
   virtual void beyond(const RayBatch<T>& /*rays*/, const LightChoice<T>& /*choice*/, const Groups& groups,
                       Vec3Array<T>& radiance, Array<T>& pdf) const {

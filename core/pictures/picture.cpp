@@ -52,9 +52,9 @@ bool is_stopped() {
   }
 }
 
-// Whether a JPEG file has its end marker after where its scans begin: libjpeg makes up what is missing. Before
-// the scans are segments that tell their length; in a scan the marker's first byte is never followed by its
-// second.
+// Whether a JPEG file has its end marker after where its scans begin: libjpeg makes up what is missing.
+// Before the scans are segments that tell their length; in a scan the marker's first byte is never followed
+// by its second.
 bool has_jpeg_end(std::string_view bytes) {
   constexpr unsigned char kMarker = 0xff, kScan = 0xda;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
@@ -99,8 +99,8 @@ bool is_picture(std::string_view bytes) { return signature_of(bytes) != nullptr;
 
 PictureFormat picture_format(std::string_view bytes) {
   if (const Signature* const known = signature_of(bytes)) return known->format;
-  throw InputError("", "expected an EXR, Radiance HDR, PNG or JPEG file, got " + std::to_string(bytes.size()) +
-                           " bytes of another kind");
+  throw InputError("", "expected an EXR, Radiance HDR, PNG or JPEG file, got " +
+                           std::to_string(bytes.size()) + " bytes of another kind");
 }
 
 Texels read_picture(std::string_view bytes, const PictureLimits& limits) {

@@ -28,7 +28,8 @@ bool is_unlit(const Scene& scene, const Plan& plan) {
   const bool surrounded = scene.background != Vec3d(0) || scene.environment;
   const bool mirrors_something = plan.specular && plan.max_depth > 0 && surrounded;
   const bool lit_from_around = plan.technique->interreflects && scene.environment;
-  return !any_light_shines(scene) && scene.ambient == Vec3d(0) && !used.emits && !mirrors_something && !lit_from_around;
+  return !any_light_shines(scene) && scene.ambient == Vec3d(0) && !used.emits && !mirrors_something &&
+         !lit_from_around;
 }
 
 // What the camera sees, as the space on one side of planes.

@@ -20,7 +20,8 @@ class MeshReader {
   MeshObject read(Params& p, const AssetSource& source);
 
  private:
-  VertexKey read_key(Params& p, const AssetSource& source, const TriangleMesh& rest, const VertexKey& at_rest);
+  VertexKey read_key(Params& p, const AssetSource& source, const TriangleMesh& rest,
+                     const VertexKey& at_rest);
   // Notes so many more; false, and a problem, if there are too many now.
   bool fits(std::size_t vertices, std::size_t triangles, Params& p);
 

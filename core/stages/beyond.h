@@ -12,8 +12,11 @@ namespace orrery {
 template <class T>
 class Beyond {
  public:
-  // The kernel outlives this. `choice`: which of its lights, and with which probability light is drawn from it.
-  void see(const LightKernel<T>& kernel, const LightChoice<T>& choice) { sources_.push_back({&kernel, choice}); }
+  // The kernel outlives this. `choice`: which of its lights, and with which probability light is drawn from
+  // it.
+  void see(const LightKernel<T>& kernel, const LightChoice<T>& choice) {
+    sources_.push_back({&kernel, choice});
+  }
 
   bool empty() const { return sources_.empty(); }
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint32_t kRandomNumbers = 1u << 24;  // that a light is chosen by
 
-// Shares of `numbers` random numbers: one half evenly, so that no light is forgotten where it is near, and one
-// half by power. Returns the first number beyond each light's own.
+// Shares of `numbers` random numbers: one half evenly, so that no light is forgotten where it is near, and
+// one half by power. Returns the first number beyond each light's own.
 std::vector<std::uint32_t> ends_of(const std::vector<double>& powers, std::uint32_t numbers) {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
   const double even = 1 / static_cast<double>(powers.size());
@@ -49,8 +49,7 @@ SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>&
     begin = end;
   }
   if (environment) probability_.push_back(static_cast<T>(for_environment_ / double{kRandomNumbers}));
-  if (geometry.environment)
-    beyond_.see(*geometry.environment, {0, environment ? probability_.back() : T(0)});
+  if (geometry.environment) beyond_.see(*geometry.environment, {0, environment ? probability_.back() : T(0)});
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const auto& [set, index] = scene.lights[i];
     const LightSet& lights = *scene.light_sets[set];
@@ -92,9 +91,10 @@ void SampledLight<T>::choose(const PathDraws<T>& draws, const Groups& groups) {
     for (int lane = 0; lane < kWidth<T>; ++lane) {
       const auto number =
           static_cast<std::uint32_t>(double{u[static_cast<std::size_t>(lane)]} * kRandomNumbers);
-      const auto light = number < for_environment_
-                             ? std::ssize(end_)
-                             : std::upper_bound(end_.begin(), end_.end(), number - for_environment_) - end_.begin();
+      const auto light =
+          number < for_environment_
+              ? std::ssize(end_)
+              : std::upper_bound(end_.begin(), end_.end(), number - for_environment_) - end_.begin();
       chosen_[i + lane] = static_cast<IndexOf<T>>(light);
       choices_.probability[i + lane] = probability_[static_cast<std::size_t>(light)];
     }

@@ -35,7 +35,8 @@ class AssetStore final : public AssetSource {
     AssetPtr asset;
     bool known;  // it was there before
   };
-  // Throws InputError if the bytes have another hash, are neither mesh nor picture, or take more than all assets may.
+  // Throws InputError if the bytes have another hash, are neither mesh nor picture, or take more than all
+  // assets may.
   Added add(const std::string& sha256, std::string bytes);
   // Throws NotFound.
   AssetPtr find(const std::string& sha256);

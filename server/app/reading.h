@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Meshes and pictures for a scene that is being read. Small scenes are read at once; large ones, and those that
-// have such read, take their turn first and keep it as long as this lives. For one thread.
+// Meshes and pictures for a scene that is being read. Small scenes are read at once; large ones, and those
+// that have such read, take their turn first and keep it as long as this lives. For one thread.
 class Reading final : public AssetSource {
  public:
   // `bytes`: of the scene's text. Waits as Admission::enter() if that is large.

@@ -38,8 +38,7 @@ FormatNames names_of(const AssetStore::Asset& asset) {
 }
 
 nlohmann::ordered_json json_of(const std::string& id, const AssetStore::Asset& asset) {
-  nlohmann::ordered_json json = {
-      {"id", id}, {"format", names_of(asset).name}, {"bytes", asset.bytes.size()}};
+  nlohmann::ordered_json json = {{"id", id}, {"format", names_of(asset).name}, {"bytes", asset.bytes.size()}};
   if (const auto* const mesh = std::get_if<AssetStore::Asset::Mesh>(&asset.content)) {
     json["vertices"] = mesh->vertices;
     json["triangles"] = mesh->triangles;

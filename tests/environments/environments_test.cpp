@@ -29,8 +29,11 @@ Json floor_under(const Json& environment, const Vec3d& normal) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
                         "{'materials': {'white': {'type': 'lambert', 'kd': null, 'reflectance': 1}}}");
   scene["objects"][0]["normal"] = numbers(normal);
-  scene["camera"] = {{"type", "orthographic"}, {"eye", numbers(normal * 5)}, {"look_at", {0, 0, 0}},
-                     {"up", {0, 0, 1}},        {"height", 2}};
+  scene["camera"] = {{"type", "orthographic"},
+                     {"eye", numbers(normal * 5)},
+                     {"look_at", {0, 0, 0}},
+                     {"up", {0, 0, 1}},
+                     {"height", 2}};
   scene["environment"] = environment;
   return scene;
 }
@@ -50,7 +53,8 @@ TEST(Gradient, LightsAFloorAsItsIntegralSays) {
 
 TEST(Gradient, IsSeenByEveryTechnique) {
   const Json scene = floor_under(
-      {{"type", "gradient"}, {"zenith", {4, 1, 1}}, {"horizon", {2, 1, 1}}, {"ground", {0.5, 1, 1}}}, tilted(0));
+      {{"type", "gradient"}, {"zenith", {4, 1, 1}}, {"horizon", {2, 1, 1}}, {"ground", {0.5, 1, 1}}},
+      tilted(0));
   for (const char* technique : {"raycast", "whitted", "path"}) {
     RenderRequest request;
     request.technique = technique;
@@ -81,7 +85,8 @@ TEST(Image, HalfWhiteSkyLightsATiltedFloor) {
   const Texels half = painted(64, 128, [](int, int y) { return Vec3d(y < 64 ? 1 : 0); });
   for (const double angle : {0.0, 0.8, 1.5}) {
     Json scene = floor_under({{"type", "image"}, {"file", "sky.exr"}}, tilted(angle));
-    EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(half))), (1 + std::cos(angle)) / 2, 2e-3)
+    EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(half))),
+                (1 + std::cos(angle)) / 2, 2e-3)
         << angle;
   }
 }
@@ -90,7 +95,8 @@ TEST(Image, HalfWhiteSkyLightsATiltedFloor) {
 TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
   covers("light-22");
   Random random(3);
-  const Texels picture = painted(16, 8, [&](int, int) { return Vec3d(random.unit() < 0.1 ? 30.0 : random.unit()); });
+  const Texels picture =
+      painted(16, 8, [&](int, int) { return Vec3d(random.unit() < 0.1 ? 30.0 : random.unit()); });
   const LightMap map(picture);
   const Vec3d normal = safe_normalize(Vec3d(1, 2, 0.5));
   constexpr double kDegrees = 70, kScale = 0.5;
@@ -99,20 +105,24 @@ TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
   for (int row = 0; row < kSteps; ++row)
     for (int column = 0; column < kSteps; ++column) {
       const double angle = kPi * (row + 0.5) / kSteps, turn = 2 * kPi * (column + 0.5) / kSteps;
-      const Vec3d direction(std::sin(angle) * std::sin(turn), std::cos(angle), std::sin(angle) * std::cos(turn));
+      const Vec3d direction(std::sin(angle) * std::sin(turn), std::cos(angle),
+                            std::sin(angle) * std::cos(turn));
       const double cosine = dot(direction, normal);
       if (cosine <= 0) continue;
       const double back = turn - kDegrees * kPi / 180;  // where the sky was before it was turned
-      const auto place =
-          map.place_of(Vec3d(std::sin(angle) * std::sin(back), std::cos(angle), std::sin(angle) * std::cos(back)));
+      const auto place = map.place_of(
+          Vec3d(std::sin(angle) * std::sin(back), std::cos(angle), std::sin(angle) * std::cos(back)));
       sum += map.at(place.x, place.y).radiance.x * cosine * std::sin(angle);
     }
   const double expected = kScale * sum * 2 * kPi / (double{kSteps} * kSteps);  // over pi
-  Json scene = floor_under({{"type", "image"}, {"file", "f"}, {"rotation_degrees", kDegrees}, {"scale", kScale}}, normal);
+  Json scene = floor_under(
+      {{"type", "image"}, {"file", "f"}, {"rotation_degrees", kDegrees}, {"scale", kScale}}, normal);
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(picture))) / expected, 1, 3e-3);
   // Beside another light each is drawn from half of the time.
-  scene["lights"] = Json::array({{{"type", "directional"}, {"from", numbers(normal)}, {"intensity", {3, 3, 3}}}});
-  EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(picture))), expected + 3, 5e-3 * (expected + 3));
+  scene["lights"] =
+      Json::array({{{"type", "directional"}, {"from", numbers(normal)}, {"intensity", {3, 3, 3}}}});
+  EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(picture))), expected + 3,
+              5e-3 * (expected + 3));
 }
 
 // What is drawn is what rays see, in both number types.

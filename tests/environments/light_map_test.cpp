@@ -68,7 +68,8 @@ TEST(LightMap, PlacesAreDrawnWithTheirDensity) {
     Random random(2);
     for (int i = 0; i < kDraws; ++i) {
       const auto place = map.draw(unit_of(random), unit_of(random), unit_of(random), unit_of(random));
-      const int x = static_cast<int>(2 * place.x), y = std::min(2 * kHeight - 1, static_cast<int>(2 * place.y));
+      const int x = static_cast<int>(2 * place.x),
+                y = std::min(2 * kHeight - 1, static_cast<int>(2 * place.y));
       ++counts[static_cast<std::size_t>(y * 2 * kWidth + x)];
     }
     double chi2 = 0, sum = 0;
@@ -134,7 +135,8 @@ TEST(LightMap, ASunOfOneTexelIsFoundByEveryDraw) {
   for (int i = 0; i < kDraws; ++i) {
     const auto place = map.draw(unit_of(random), unit_of(random), unit_of(random), unit_of(random));
     const auto value = map.at(place.x, place.y);
-    const double light = value.radiance.x * map.direction_of(place).sine / (value.by_texel * map.density_factor());
+    const double light =
+        value.radiance.x * map.direction_of(place).sine / (value.by_texel * map.density_factor());
     sum += light / kDraws;
     squares += light * light / kDraws;
   }

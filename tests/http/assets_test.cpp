@@ -1,3 +1,6 @@
+#include <fstream>
+#include <iterator>
+
 #include "core/base/hash.h"
 #include "tests/http/daemon.h"
 
@@ -52,6 +55,28 @@ TEST_F(Assets, SceneThatNamesAMeshIsRendered) {
   const std::string id = post_scene(scene.dump());
   EXPECT_EQ(client_.Delete("/v1/assets/" + hash)->status, 204);
   EXPECT_EQ(client_.Get("/v1/scenes/" + id + "/frame.png?azimuth=20")->status, 200) << "the scene keeps it";
+}
+
+TEST_F(Assets, PictureIsDescribedAndLightsAScene) {
+  std::ifstream file("scenes/image-sky/sky.hdr", std::ios::binary);
+  const std::string sky((std::istreambuf_iterator<char>(file)), {}), path = path_of(sky);
+  auto scene = small_scene(
+      {{"title", "under a picture"}, {"environment", {{"type", "image"}, {"asset", sha256_hex(sky)}}}});
+  scene.erase("background");
+  client_.Delete(path);
+  const auto missing = expect_problem(client_.Post("/v1/render", scene.dump(), "application/json"), 422);
+  EXPECT_EQ(missing.at("errors").at(0).at("pointer"), "/environment/asset");
+  const auto kept = put(path, sky);
+  ASSERT_TRUE(kept && kept->status == 201) << kept->body;
+  const auto told = nlohmann::json::parse(kept->body);
+  EXPECT_EQ(told.at("format"), "hdr");
+  EXPECT_EQ(told.at("width"), 128);
+  EXPECT_EQ(told.at("height"), 64);
+  EXPECT_EQ(client_.Get(path)->get_header_value("Content-Type"), "image/vnd.radiance");
+  const auto rendered = client_.Post("/v1/render", scene.dump(), "application/json");
+  ASSERT_TRUE(rendered && rendered->status == 200) << rendered->body;
+  const std::string half = sky.substr(0, sky.size() / 2);
+  expect_problem(put(path_of(half), half), 422);
 }
 
 TEST_F(Assets, OfARenderedSceneAreNotReadAgain) {

@@ -132,7 +132,9 @@ TEST(Sun, IsSeenByTheCameraAndInMirrors) {
 TEST(Sun, IsParallelToTrees) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]");
   scene["lights"] = Json::array({sun(60, Vec3d(0.6, 0.8, 0))});
-  const auto answer = [&] { return Tracing(scene).trace({Vec3d(3, 1, 0), safe_normalize(Vec3d(-3, -1, 0))}); };
+  const auto answer = [&] {
+    return Tracing(scene).trace({Vec3d(3, 1, 0), safe_normalize(Vec3d(-3, -1, 0))});
+  };
   const Vec3d wide = answer().radiance;
   scene["lights"] = Json::array({sun(0, Vec3d(0.6, 0.8, 0))});
   EXPECT_EQ(wide, answer().radiance);
@@ -142,8 +144,8 @@ TEST(Sun, IsParallelToTrees) {
 Json over_floor(const Vec3d& from, const Vec3d& to) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
                         "{'materials': {'white': {'type': 'lambert', 'kd': null, 'reflectance': 1}}}");
-  scene["lights"] =
-      Json::array({{{"type", "line"}, {"from", numbers(from)}, {"to", numbers(to)}, {"intensity_per_metre", {1, 1, 1}}}});
+  scene["lights"] = Json::array(
+      {{{"type", "line"}, {"from", numbers(from)}, {"to", numbers(to)}, {"intensity_per_metre", {1, 1, 1}}}});
   return scene;
 }
 
@@ -160,7 +162,8 @@ double by_dots(const Vec3d& from, const Vec3d& to, const Vec3d& at) {
 
 TEST(Line, IrradianceIsThatOfItsPoints) {
   covers("R11 light-17");
-  const Estimate middle = estimate(over_floor(Vec3d(-1, 1, 0), Vec3d(1, 1, 0)), Vec3d(0, 0.05, 30), Vec3d(), 1);
+  const Estimate middle =
+      estimate(over_floor(Vec3d(-1, 1, 0), Vec3d(1, 1, 0)), Vec3d(0, 0.05, 30), Vec3d(), 1);
   EXPECT_NEAR(middle.mean, std::numbers::sqrt2 / kPi, 4 * middle.error());
   EXPECT_LT(middle.sd / middle.mean, 0.15) << "what is left of the noise is the cosine at the floor";
   const Estimate endless =

@@ -130,7 +130,8 @@ TEST(LoadMotion, KeysShareWhatTheyHaveInCommon) {
     const auto loaded = account->run({}, [&] { return load_scene(scene.dump(), Heavy()); });
     return account->bytes();
   };
-  const std::size_t few = bytes("[{'time': 0}, {'time': 1}]"), vertices = Heavy().mesh_file("").positions.size();
+  const std::size_t few = bytes("[{'time': 0}, {'time': 1}]"),
+                    vertices = Heavy().mesh_file("").positions.size();
   EXPECT_LT(bytes("[{'time': 0}, {'time': 1}, {'time': 2}]"), few + 10'000);
   EXPECT_GE(bytes("[{'time': 0}, {'time': 1, 'file': 'b.obj'}]"), few + vertices * sizeof(Vec3d));
 }

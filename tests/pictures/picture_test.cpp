@@ -65,7 +65,8 @@ TEST(Pictures, HdrIsLinear) {
 
 // IEC 61966-2-1: code 128 is 0.2158605, code 10 is on the straight part.
 TEST(Pictures, PngAndJpegAreDecodedFromSrgb) {
-  for (const auto& [code, linear] : {std::pair<int, double>{128, 0.21586050}, {10, 10.0 / 255 / 12.92}, {255, 1}}) {
+  for (const auto& [code, linear] :
+       {std::pair<int, double>{128, 0.21586050}, {10, 10.0 / 255 / 12.92}, {255, 1}}) {
     const Image image = coded_image(16, 8, static_cast<unsigned char>(code));
     EXPECT_NEAR(read_picture(encode_png(image)).rgb[5], linear, 1e-7) << code;
     EXPECT_NEAR(read_picture(encode_jpeg(image)).rgb[5], linear, 0.01) << code;
@@ -78,15 +79,17 @@ TEST(Pictures, TruncatedFilesAreRefused) {
                     flat = hdr(64, 64, 64);
   for (const std::string& whole : {exr, png, jpeg, flat})
     for (const double share : {0.02, 0.3, 0.6, 0.9}) {
-      const auto kept = std::max<std::size_t>(12, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
+      const auto kept =
+          std::max<std::size_t>(12, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
       EXPECT_NE(refusal(whole.substr(0, kept)), "accepted") << whole.substr(1, 3) << " " << share;
     }
 }
 
 // Sizes that a header states are held against the limits before anything is decoded.
 TEST(Pictures, StatedSizesAreCheckedFirst) {
-  EXPECT_EQ(refusal(hdr(4, 2, 2'000'000'000)),
-            "HDR: expected a picture of 1 to 16384 texels a side and at most 33554432 in all, got 4 x 2000000000");
+  EXPECT_EQ(
+      refusal(hdr(4, 2, 2'000'000'000)),
+      "HDR: expected a picture of 1 to 16384 texels a side and at most 33554432 in all, got 4 x 2000000000");
   EXPECT_NE(refusal(hdr(4, 2, 0)), "accepted");
   std::string png = encode_png(coded_image(8, 8, 1));
   const auto state = [&png](std::uint32_t width, std::uint32_t height) {
@@ -94,10 +97,12 @@ TEST(Pictures, StatedSizesAreCheckedFirst) {
       png[16 + i] = static_cast<char>(width >> (24 - 8 * i));
       png[20 + i] = static_cast<char>(height >> (24 - 8 * i));
     }
-    const auto crc = static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(png.data()) + 12, 17));
+    const auto crc =
+        static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(png.data()) + 12, 17));
     for (std::size_t i = 0; i < 4; ++i) png[29 + i] = static_cast<char>(crc >> (24 - 8 * i));
   };
-  for (const auto& [width, height] : {std::pair<std::uint32_t, std::uint32_t>{16385, 1}, {16000, 16000}, {900'000, 900'000}, {0, 8}}) {
+  for (const auto& [width, height] :
+       {std::pair<std::uint32_t, std::uint32_t>{16385, 1}, {16000, 16000}, {900'000, 900'000}, {0, 8}}) {
     state(width, height);
     EXPECT_NE(refusal(png), "accepted") << width << " x " << height;
   }
@@ -119,9 +124,10 @@ TEST(Pictures, TexelsThatAreNoLightAreNamed) {
 }
 
 TEST(Pictures, OtherFilesAreRefused) {
-  for (const std::string& bytes : {std::string(), std::string("v 0 0 0\n"), std::string("GIF89a"), std::string("II*\0", 4),
-                                   std::string("\x89PNG\r\n\x1a\n"), std::string("\xff\xd8\xff"), std::string("#?RGBE\n"),
-                                   std::string("\x76\x2f\x31\x01")})
+  for (const std::string& bytes :
+       {std::string(), std::string("v 0 0 0\n"), std::string("GIF89a"), std::string("II*\0", 4),
+        std::string("\x89PNG\r\n\x1a\n"), std::string("\xff\xd8\xff"), std::string("#?RGBE\n"),
+        std::string("\x76\x2f\x31\x01")})
     EXPECT_NE(refusal(bytes), "accepted");
   EXPECT_FALSE(is_picture("v 0 0 0\n"));
   EXPECT_TRUE(is_picture(hdr(1, 1, 1)));

@@ -23,7 +23,7 @@ constexpr std::string_view kEmptyScene = R"({
 })";
 
 // What the keys of the scene format mean.
-const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center",   "point", "base",
+const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center",   "point",  "base",
                                        "top",       "min", "max",     "position", "corner", "to"};
 const std::set<std::string> kSides = {"a", "b"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};

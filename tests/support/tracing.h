@@ -49,7 +49,8 @@ struct Estimate {
   double mean, sd;  // of one sample
   double error() const { return sd / std::sqrt(double{kBatch}); }
 };
-// Of the red light along one ray that `path` finds, from a batch of samples that are independent of each other.
+// Of the red light along one ray that `path` finds, from a batch of samples that are independent of each
+// other.
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
                   int max_depth);
 Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth);

@@ -8,9 +8,9 @@
 
 namespace {
 
-using orrery::Texels;
 using orrery::PictureFormat;
 using orrery::PictureLimits;
+using orrery::Texels;
 
 const char* plugin_of(PictureFormat format) {
   switch (format) {
@@ -56,12 +56,11 @@ std::string decode(OIIO::ImageInput& input, bool (*stopped)(), Texels& picture) 
     if (stopped()) return "reading was stopped";
     const int end = std::min(spec.height, y + rows);
     band.resize(width * channels * static_cast<std::size_t>(end - y));
-    const bool read =
-        spec.tile_width > 0
-            ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + y, spec.y + end, 0, 1, 0,
-                               spec.nchannels, OIIO::TypeDesc::FLOAT, band.data())
-            : input.read_scanlines(0, 0, spec.y + y, spec.y + end, 0, 0, spec.nchannels,
-                                   OIIO::TypeDesc::FLOAT, band.data());
+    const bool read = spec.tile_width > 0
+                          ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + y, spec.y + end, 0,
+                                             1, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, band.data())
+                          : input.read_scanlines(0, 0, spec.y + y, spec.y + end, 0, 0, spec.nchannels,
+                                                 OIIO::TypeDesc::FLOAT, band.data());
     if (!read) return "the picture is damaged: " + input.geterror();
     spread(band, spec.nchannels, picture.rgb);
   }
@@ -72,8 +71,9 @@ std::string decode(OIIO::ImageInput& input, bool (*stopped)(), Texels& picture) 
 
 }  // namespace
 
-extern "C" void orrery_decode_picture(std::string_view bytes, PictureFormat format, const PictureLimits& limits,
-                                      bool (*stopped)(), Texels& picture, std::string& problem) {
+extern "C" void orrery_decode_picture(std::string_view bytes, PictureFormat format,
+                                      const PictureLimits& limits, bool (*stopped)(), Texels& picture,
+                                      std::string& problem) {
   OIIO::attribute("threads", 1);  // this thread alone, whose memory is counted
   OIIO::attribute("exr_threads", -1);
   OIIO::Filesystem::IOMemReader reader(const_cast<char*>(bytes.data()), bytes.size());
