@@ -171,6 +171,7 @@ TEST(Image, TurnsAnticlockwiseSeenFromAbove) {
   EXPECT_NEAR(seen(0, Vec3d(0, 0, -1)), 3.5, 1e-12);
   EXPECT_NEAR(seen(0, Vec3d(1, 0, 0)), 5.5, 1e-12);
   EXPECT_NEAR(seen(90, Vec3d(-1, 0, 0)), 3.5, 1e-12);
+  EXPECT_NEAR(seen(90, Vec3d(0, 0, -1)), 5.5, 1e-12);
 }
 
 TEST(Image, EveryThreadCountAndScaleGivesTheSameBits) {
