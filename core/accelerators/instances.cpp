@@ -1,44 +1,7 @@
 #include "core/accelerators/instances.h"
 
-#include <algorithm>
-
 namespace orrery {
 namespace {
-
-template <class T>
-using N = Lanes<T>;
-
-// Rays on their way through one model, and what they meet there.
-template <class T>
-struct Visit {
-  RayBatch<T> rays;
-  HitBatch<T> hits;
-
-  void put(int i, const Ray<N<T>>& ray, const N<T>& t) {
-    rays.origin.put(i, ray.origin);
-    rays.direction.put(i, ray.direction);
-    rays.t_max.put(i, t);
-    hits.t.put(i, t);
-    hits.primitive.put(i, IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-  }
-};
-
-// Lanes whose hit in the model, at register i, takes the place of (best, best_id), and its number in the
-// scene.
-template <class T>
-struct Taken {
-  MaskOf<N<T>> nearer;
-  N<T> t;
-  IndexLanes<T> id;
-
-  Taken(const Placed<T>& placed, const Visit<T>& visit, int i, const N<T>& best, const IndexLanes<T>& best_id)
-      : t(visit.hits.t.at(i)) {
-    const IndexLanes<T> in_model = load_index<T>(visit.hits.primitive, i);
-    id = in_model + IndexOf<T>(placed.first);
-    const auto met = mask_cast<N<T>>(in_model != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-    nearer = met && takes_over(t, id, best, best_id);
-  }
-};
 
 // Instances in blocks. Single rays are put together to batches first: all that meet one instance.
 template <class T>
@@ -86,7 +49,7 @@ class PackedInstances final : public PackedPrimitives<T> {
       for (std::size_t k = 0; k < some.size(); ++k) {
         const int i = static_cast<int>(k) * kWidth<T>;
         PacketHit<T>& hit = hits[some[k].ray];
-        const Taken<T> taken(placed, *visit, i, hit.t, hit.primitive);
+        const TakenHits<T> taken(placed.first, *visit, i, hit.t, hit.primitive);
         stdx::where(taken.nearer, hit.t) = taken.t;
         stdx::where(mask_cast<IndexLanes<T>>(taken.nearer), hit.primitive) = taken.id;
         hit.farthest = stdx::hmax(hit.t);
@@ -136,9 +99,9 @@ class PackedInstances final : public PackedPrimitives<T> {
     return Groups::covering(0, static_cast<int>(some.size()) * kWidth<T>, kWidth<T>);
   }
 
-  static std::unique_ptr<Visit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
-                                          const SingleRay<T>* rays, const SingleHit<T>* hits) {
-    std::unique_ptr<Visit<T>> visit(new Visit<T>);
+  static std::unique_ptr<ModelVisit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
+                                               const SingleRay<T>* rays, const SingleHit<T>* hits) {
+    std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     RayBatch<T>& batch = visit->rays;
     batch.count = static_cast<int>(some.size());
     const int room = (batch.count + kWidth<T> - 1) / kWidth<T> * kWidth<T>;
@@ -146,16 +109,17 @@ class PackedInstances final : public PackedPrimitives<T> {
       const RayBlockPair& pair = some[std::min(static_cast<std::size_t>(i), some.size() - 1)];
       batch.set(i, rays[pair.ray].ray, i < batch.count ? hits[pair.ray].t : T(-1));
     }
-    for (int i = 0; i < room; i += kWidth<T>) visit->put(i, placed.to_model(batch.at(i)), batch.t_max.at(i));
+    for (int i = 0; i < room; i += kWidth<T>)
+      visit->put(i, placed.pose().to_model(batch.at(i)), batch.t_max.at(i));
     return visit;
   }
 
-  static std::unique_ptr<Visit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
-                                          const Packet<T>* packets, const PacketHit<T>* hits) {
-    std::unique_ptr<Visit<T>> visit(new Visit<T>);
+  static std::unique_ptr<ModelVisit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
+                                               const Packet<T>* packets, const PacketHit<T>* hits) {
+    std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     visit->rays.count = static_cast<int>(some.size()) * kWidth<T>;
     for (std::size_t k = 0; k < some.size(); ++k)
-      visit->put(static_cast<int>(k) * kWidth<T>, placed.to_model(packets[some[k].ray].ray),
+      visit->put(static_cast<int>(k) * kWidth<T>, placed.pose().to_model(packets[some[k].ray].ray),
                  hits[some[k].ray].t);
     return visit;
   }
@@ -183,100 +147,8 @@ Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model) {
 }
 
 template <class T>
-void InstanceKernel<T>::closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
-                                AcceleratorCounts& counts) const {
-  const Placed<T>& placed = (*placed_)[static_cast<std::size_t>(index)];
-  const std::unique_ptr<Visit<T>> visit(new Visit<T>);
-  visit->rays.count = rays.count;
-  for (const int i : groups) visit->put(i, placed.to_model(rays.at(i)), hits.t.at(i));
-  placed.model->accelerator->closest(visit->rays, groups, visit->hits, counts);
-  for (const int i : groups) {
-    const Taken<T> taken(placed, *visit, i, hits.t.at(i), load_index<T>(hits.primitive, i));
-    hits.t.put(i, taken.nearer, taken.t);
-    hits.primitive.put(i, mask_cast<IndexLanes<T>>(taken.nearer), taken.id);
-  }
-}
-
-template <class T>
-void InstanceKernel<T>::occlude(int index, RayBatch<T>& rays, const Groups& groups,
-                                AcceleratorCounts& counts) const {
-  const Placed<T>& placed = (*placed_)[static_cast<std::size_t>(index)];
-  const std::unique_ptr<Visit<T>> visit(new Visit<T>);
-  visit->rays.count = rays.count;
-  for (const int i : groups) visit->put(i, placed.to_model(rays.at(i)), rays.t_max.at(i));
-  placed.model->accelerator->occlude(visit->rays, groups, counts);
-  for (const int i : groups) rays.t_max.put(i, visit->rays.t_max.at(i));
-}
-
-template <class T>
 PackedPrimitivesPtr<T> InstanceKernel<T>::pack(std::span<const int> indices) const {
-  return std::make_unique<PackedInstances<T>>(placed_, indices);
-}
-
-// A register may hold hits of several instances: each takes its own lanes.
-template <class T>
-template <class Visit>
-void InstanceKernel<T>::for_each_hit(const HitBatch<T>& hits, const Groups& groups,
-                                     const Visit& visit) const {
-  const auto owner = [this](IndexOf<T> id) {
-    return std::upper_bound(placed_->begin(), placed_->end(), id,
-                            [](IndexOf<T> number, const Placed<T>& p) { return number < p.last; });
-  };
-  for (const int i : groups) {
-    const IndexLanes<T> id = load_index<T>(hits.primitive, i);
-    auto open = id >= IndexOf<T>(placed_->front().first) && id < IndexOf<T>(placed_->back().last);
-    while (any(open)) {
-      const Placed<T>& placed = *owner(id[static_cast<std::size_t>(stdx::find_first_set(open))]);
-      const auto here = open && id >= IndexOf<T>(placed.first) && id < IndexOf<T>(placed.last);
-      open = open && !here;
-      IndexLanes<T> in_model(IndexOf<T>{kNoPrimitive});
-      stdx::where(here, in_model) = id - IndexOf<T>(placed.first);
-      visit(i, mask_cast<N<T>>(here), placed, in_model);
-    }
-  }
-}
-
-template <class T>
-void InstanceKernel<T>::surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
-                                SurfaceBatch<T>& out) const {
-  const std::unique_ptr<Visit<T>> visit(new Visit<T>);
-  const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
-  visit->rays.count = rays.count;
-  for_each_hit(hits, groups, [&](int i, const auto& mask, const Placed<T>& placed, const auto& in_model) {
-    visit->put(i, placed.to_model(rays.at(i)), hits.t.at(i));
-    visit->hits.primitive.put(i, in_model);
-    for (const auto& shapes : placed.model->shapes)
-      shapes->surface(visit->rays, visit->hits, Groups::single(i), *found);
-    const auto to_world = placed.world_from_model.template as<N<T>>();
-    const auto from_world = placed.model_from_world.template as<N<T>>();
-    out.position.put(i, mask, to_world.point(found->position.at(i)));
-    out.geometric.put(i, mask, normalize(from_world.transposed(found->geometric.at(i))));
-    out.normal.put(i, mask, normalize(from_world.transposed(found->normal.at(i))));
-    out.side.put(i, mask, found->side.at(i));
-    out.step.put(i, mask, N<T>(found->step.at(i) * N<T>(placed.step_scale) + N<T>(placed.step_base)));
-  });
-}
-
-template <class T>
-void InstanceKernel<T>::parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
-                                   SurfaceBatch<T>& out) const {
-  const std::unique_ptr<Visit<T>> visit(new Visit<T>);
-  const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
-  visit->rays.count = rays.count;
-  for_each_hit(hits, groups, [&](int i, const auto& mask, const Placed<T>& placed, const auto& in_model) {
-    visit->put(i, placed.to_model(rays.at(i)), hits.t.at(i));
-    visit->hits.primitive.put(i, in_model);
-    for (const auto& shapes : placed.model->shapes) {
-      shapes->surface(visit->rays, visit->hits, Groups::single(i), *found);
-      shapes->parameters(visit->rays, Groups::single(i), visit->hits, *found);
-    }
-    hits.u.put(i, mask, visit->hits.u.at(i));
-    hits.v.put(i, mask, visit->hits.v.at(i));
-    out.u.put(i, mask, found->u.at(i));
-    out.v.put(i, mask, found->v.at(i));
-    const auto to_world = placed.world_from_model.template as<N<T>>();
-    out.tangent.put(i, mask, normalize(to_world.vector(found->tangent.at(i))));
-  });
+  return std::make_unique<PackedInstances<T>>(this->placed_, indices);
 }
 
 template class InstanceKernel<float>;

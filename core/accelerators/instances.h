@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/accelerators/instance_kernel.h"
 #include "core/model/accelerator.h"
 #include "core/model/scene.h"
 
@@ -26,10 +27,22 @@ struct Placed {
   Affine<T> world_from_model, model_from_world;
   T step_scale, step_base;  // the step off a surface in the world: from the model's, and what is added
 
-  Ray<Lanes<T>> to_model(const Ray<Lanes<T>>& ray) const {
-    const auto from_world = model_from_world.template as<Lanes<T>>();
-    return {from_world.point(ray.origin), from_world.vector(ray.direction)};
+  static constexpr bool kTimed = false;
+  struct Pose {
+    using N = Lanes<T>;
+    Affine<N> world_from_model, model_from_world;
+
+    Ray<N> to_model(const Ray<N>& ray) const {
+      return {model_from_world.point(ray.origin), model_from_world.vector(ray.direction)};
+    }
+    Vec3<N> point(const Vec3<N>& p) const { return world_from_model.point(p); }
+    Vec3<N> vector(const Vec3<N>& v) const { return world_from_model.vector(v); }
+    Vec3<N> normal(const Vec3<N>& n) const { return model_from_world.transposed(n); }
+  };
+  [[gnu::always_inline]] Pose pose() const {
+    return {world_from_model.template as<Lanes<T>>(), model_from_world.template as<Lanes<T>>()};
   }
+  [[gnu::always_inline]] Pose pose(const RayBatch<T>&, int) const { return pose(); }
 };
 template <class T>
 using PlacedList = std::vector<Placed<T>>;
@@ -42,28 +55,10 @@ Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model);
 
 // The instances of a scene as primitives, whose hits have the numbers of the models' own.
 template <class T>
-class InstanceKernel final : public ShapeKernel<T> {
+class InstanceKernel final : public InstanceKernelOf<T, Placed<T>> {
  public:
-  explicit InstanceKernel(PlacedList<T> placed)
-      : placed_(std::make_shared<const PlacedList<T>>(std::move(placed))) {}
-
-  void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
-               AcceleratorCounts& counts) const override;
-  void occlude(int index, RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override;
-  std::vector<HullTriangle> hull(int) const override { return {}; }
+  using InstanceKernelOf<T, Placed<T>>::InstanceKernelOf;
   PackedPrimitivesPtr<T> pack(std::span<const int> indices) const override;
-  void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
-               SurfaceBatch<T>& out) const override;
-  void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
-                  SurfaceBatch<T>& out) const override;
-
- private:
-  // Calls visit(i, mask, placed, ids within its model) for each register of `groups` and each instance that
-  // is hit in it.
-  template <class Visit>
-  void for_each_hit(const HitBatch<T>& hits, const Groups& groups, const Visit& visit) const;
-
-  std::shared_ptr<const PlacedList<T>> placed_;
 };
 
 extern template class InstanceKernel<float>;

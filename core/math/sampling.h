@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstdint>
 
@@ -64,6 +65,31 @@ template <Bits32 Bits>
   return x ^ (x >> 16);
 }
 
+// Third dimension of Sobol's sequence with its bits reversed: direction numbers m of the primitive polynomial
+// x^2 + x + 1, m_k = 2 m_(k-1) xor 4 m_(k-2) xor m_(k-2) from 1, 3 (Joe and Kuo, "Constructing Sobol
+// Sequences with Better Two-Dimensional Projections", 2008). Together with the first two, every aligned block
+// of 2^m indices puts two points into each elementary interval of volume 2^(1-m).
+inline constexpr std::array<std::uint32_t, 32> kSobolThirdReversed = [] {
+  std::array<std::uint32_t, 32> reversed{};
+  std::uint32_t before = 1, last = 3;  // m of the two that went before
+  for (std::uint32_t k = 0; k < 32; ++k) {
+    std::uint32_t m = k == 0 ? 1 : 3;
+    if (k > 1) {
+      m = last << 1 ^ before << 2 ^ before;
+      before = last;
+      last = m;
+    }
+    for (std::uint32_t bit = 0; bit <= k; ++bit) reversed[k] |= (m >> bit & 1u) << (k - bit);
+  }
+  return reversed;
+}();
+template <Bits32 Bits>
+[[gnu::always_inline]] inline Bits sobol_third_reversed(const Bits& index) {
+  Bits x = index & 0u;
+  for (std::uint32_t k = 0; k < 32; ++k) x ^= (0u - (index >> k & 1u)) & kSobolThirdReversed[k];
+  return x;
+}
+
 // Top 24 bits as a float in [0, 1): never rounds up to 1.
 inline float unit_float(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 template <Bits32 Bits>
@@ -87,14 +113,26 @@ template <Bits32 Bits>
   return SamplePoint<decltype(unit_float(u))>{unit_float(u), unit_float(v)};
 }
 
-// Likewise, with the points in an order of the stream's own: a scrambled order, so that every aligned block
-// of 2^m samples is an aligned block of the sequence. Points of two streams are independent of each other, as
-// they must be where they are dimensions of one integral.
+// Numbers of samples in an order of the stream's own: a scrambled order, so that every aligned block of 2^m
+// samples is an aligned block of the sequence. Points of two streams are independent of each other, as they
+// must be where they are dimensions of one integral.
+template <Bits32 Bits>
+[[gnu::always_inline]] inline Bits own_order(std::uint32_t sample, const Bits& stream) {
+  const Bits order = mix_bits<Bits>(stream ^ 0xa511e9b3u);
+  return reverse_bits(scramble_reversed<Bits>(Bits(reverse_bits(sample)), order));
+}
+
+// Likewise, with the points in that order.
 template <Bits32 Bits>
 [[gnu::always_inline]] inline auto stratified_point(std::uint32_t sample, const Bits& stream) {
-  const Bits order = mix_bits<Bits>(stream ^ 0xa511e9b3u);
-  return scrambled_point<Bits>(reverse_bits(scramble_reversed<Bits>(Bits(reverse_bits(sample)), order)),
-                               stream);
+  return scrambled_point<Bits>(own_order(sample, stream), stream);
+}
+
+// A third coordinate of the same points.
+template <Bits32 Bits>
+[[gnu::always_inline]] inline auto stratified_third(std::uint32_t sample, const Bits& stream) {
+  return unit_float(reverse_bits(scramble_reversed<Bits>(
+      sobol_third_reversed<Bits>(own_order(sample, stream)), mix_bits<Bits>(stream + 0x02e5be93u))));
 }
 
 }  // namespace orrery

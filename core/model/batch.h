@@ -115,7 +115,7 @@ struct RayBatch {
   int count = 0;
   Vec3Array<T> origin, direction;
   Array<T> t_max;
-  Array<T> time;  // seconds of the scene's motion; filled only where rays of one picture differ in it
+  Array<T> time;  // share of the exposure, in [0, 1); filled only where something moves during one
 
   [[gnu::always_inline]] Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
   // One of them.

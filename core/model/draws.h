@@ -42,6 +42,12 @@ class Draws {
     return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
   }
 
+  // A third number, so that the three of a sample are stratified together.
+  template <class T>
+  [[gnu::always_inline]] Lanes<T> third(SampleSet set, int depth, const IndexLanes<T>& slot) const {
+    return stdx::static_simd_cast<Lanes<T>>(stratified_third(sample_, stream<T>(set, depth, slot)));
+  }
+
   // A random number for each slot of the tile, by which to put slots in an order of this sample alone.
   void shuffle_keys(std::array<std::uint32_t, kBatch>& keys) const {
     for (std::uint32_t slot = 0; slot < keys.size(); ++slot)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/math/exposure.h"
 #include "core/model/camera.h"
 #include "core/model/render_settings.h"
 
@@ -49,6 +50,7 @@ struct Plan {
   bool try_accelerators = false;  // for few primitives: others may be cheaper, see settle()
   bool double_precision = false;
   double time = 0;              // of the scene's motion, seconds
+  double shutter = 0;           // seconds that the shutter is open from then on; 0: an instant
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
   std::uint64_t seed = 0;
@@ -66,6 +68,8 @@ struct Plan {
   bool constant_half = false;  // with parallel viewer and light, the half vector is computed once a batch
   int slice = 256;             // rays that pass through the stages together; changes no result
   std::vector<Decision> decisions;
+
+  Exposure exposure() const { return {time, time + shutter}; }
 };
 
 }  // namespace orrery

@@ -40,7 +40,7 @@ struct RenderSettings {
   std::optional<std::uint64_t> seed;
   std::optional<bool> reorder;
   std::optional<Prediction> prediction;
-  std::optional<double> time;                      // seconds
+  std::optional<double> time, shutter;             // seconds
   std::optional<std::vector<std::string>> layers;  // film channels beside radiance
 
   bool operator==(const RenderSettings&) const = default;

@@ -93,8 +93,14 @@ struct TimeSpan {
   double first = 0, last = 0;
 
   bool empty() const { return !(first < last); }
-  // The moment at which the scene looks as it does at `time`.
-  double moment(double time) const { return empty() ? first : std::clamp(time, first, last); }
+  // The moment at which the scene looks as it does at `time`, and for so many seconds afterwards.
+  double moment(double time, double seconds = 0) const {
+    return empty() ? first : std::clamp(time, first - seconds, last);
+  }
+  // Whether something may move during an exposure.
+  bool within(const Exposure& exposure) const {
+    return !empty() && !exposure.instant() && exposure.opens < last && exposure.closes > first;
+  }
   // The same where the motion begins again whenever it has ended.
   double moment_of_loop(double time) const {
     const double held = moment(time);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math/bounds.h"
+#include "core/math/exposure.h"
 #include "core/model/asset_source.h"
 #include "core/model/packet.h"
 
@@ -88,8 +89,11 @@ class ShapeKernel {
   // axes tells as much.
   virtual std::vector<HullTriangle> hull(int index) const = 0;
 
+  // Whether its primitives stand where they are at the rays' time.
+  virtual bool timed() const { return false; }
+
   // The primitives with these indices, in this order, or kNothing, as many as fill whole blocks. No block is
-  // empty. They do not refer to the kernel afterwards.
+  // empty. They do not refer to the kernel afterwards. REQUIRES: !timed().
   virtual PackedPrimitivesPtr<T> pack(std::span<const int> indices) const = 0;
 
   // Fills the surface of every hit in `groups` that belongs to this set, other lanes stay as they are.
@@ -118,6 +122,18 @@ struct Patch {
   Vec3d at, a, b;
 };
 
+// The primitives of a set that move, during an exposure. Const and free of state.
+class MovingShapes {
+ public:
+  virtual ~MovingShapes() = default;
+
+  // Where a primitive gets, also as rays of either precision see it. REQUIRES: it moves.
+  virtual Boundsd bounds(int index) const = 0;
+  // Timed kernels of those that move. Primitives have the numbers that they have in the set, from `first` on.
+  virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;
+  virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
+};
+
 class ShapeSet {
  public:
   virtual ~ShapeSet() = default;
@@ -131,6 +147,9 @@ class ShapeSet {
   virtual std::vector<double> key_times() const { return {}; }
   // The same primitives in the same order as they stand at `time`; null if they rest.
   virtual std::unique_ptr<ShapeSet> at(double /*time*/) const { return nullptr; }
+  // Those that move, during an exposure that is no instant; null if all rest. Refers to the set.
+  virtual std::unique_ptr<MovingShapes> during(const Exposure&) const { return nullptr; }
+  virtual bool moves(int /*index*/) const { return false; }
   // Infinite sides where the primitive is unbounded.
   virtual Boundsd bounds(int index) const = 0;
   // Where the primitive gets while it moves, and how small its box is at the least of its keys.

@@ -136,6 +136,11 @@ constexpr std::array kOptions{
       .kind = O::Number{&S::time, {.min = -kMaxTime, .max = kMaxTime}, 0},
       .placeholder = "SECONDS",
       .help = "Moment of what moves, in seconds."},
+    O{.key = "shutter",
+      .section = Section::render,
+      .kind = O::Number{&S::shutter, {.min = 0, .max = kMaxTime}, 0},
+      .placeholder = "SECONDS",
+      .help = "How long the shutter is open from that moment on; 0: an instant."},
     O{.key = "layers",
       .section = Section::render,
       .kind = O::NameList{&S::layers, channel_names},
@@ -312,7 +317,7 @@ RenderSettings resolve(const Scene& scene, const RenderSettings& asked) {
   for (const RenderSettings& otherwise : {std::cref(scene.render), std::cref(default_settings())})
     for (const RenderOption& option : kOptions)
       if (!option.given(all)) option.copy(otherwise, all);
-  all.time = scene.motion.moment(*all.time);
+  all.time = scene.motion.moment(*all.time, *all.shutter);
   return all;
 }
 

@@ -37,6 +37,7 @@ class Planner {
       const auto& [first, last] = scene_.motion;
       decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
     }
+    open_shutter();
     choose_precision();
     choose_accelerator();
     choose_order();
@@ -74,6 +75,18 @@ class Planner {
     plan_.technique = find_type(technique_types(), *asked.technique);
     plan_.time = *asked.time;
     take_camera();
+  }
+
+  void open_shutter() {
+    const double asked = *plan_.asked.shutter;
+    if (asked == 0) return;
+    if (!scene_.motion.within({plan_.time, plan_.time + asked}))
+      return decide("shutter", "absent", "nothing moves while it is open");
+    plan_.shutter = asked;
+    const bool all_at_once = plan_.samples == 1 && !plan_.technique->interreflects;
+    decide("shutter", "open for " + seconds(asked),
+           all_at_once ? "the only sample is taken in the middle of it; more are spread over it"
+                       : "each sample is taken at a time of its own");
   }
 
   void take_camera() {
@@ -176,13 +189,14 @@ class Planner {
              "its aperture has a radius of " + number_text(plan_.frame.aperture_radius) + " m");
     plan_.min_contribution = 0;
     if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
-    const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit;
+    const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
                          : 1;  // divides a tile
     decide("reuse of paths", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
-           plan_.reuse > 1 ? "connections to what others found cost less than paths of one's own"
-           : shares        ? "as asked"
-                           : "no path has a second vertex that receives light");
+           plan_.reuse > 1     ? "connections to what others found cost less than paths of one's own"
+           : shares            ? "as asked"
+           : plan_.shutter > 0 ? "paths of different times meet different scenes"
+                               : "no path has a second vertex that receives light");
     decide("depth", std::to_string(plan_.max_depth), "as asked; what longer paths would bring is left out",
            Bound::unknown());
   }

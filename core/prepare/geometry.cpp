@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "core/accelerators/instances.h"
+#include "core/accelerators/beside_moving.h"
+#include "core/accelerators/moving_instances.h"
 #include "core/base/work_scope.h"
 #include "core/lights/emitters.h"
 
@@ -12,19 +13,26 @@ namespace {
 using ShapeSets = std::vector<std::unique_ptr<ShapeSet>>;
 
 // Kernels of the sets, and their primitives, which are numbered on from `number`. `before`: the kernels they
-// had at another moment, of which those of resting sets stay, or null.
+// had at another moment, of which those of resting sets stay, or null. What moves during the exposure gets
+// kernels of its own, which go to `moving`: they are to be asked for surfaces after all others.
 template <class T>
-void add_shapes(const ShapeSets& sets, double time, const std::vector<ShapeKernelPtr<T>>* before,
-                std::vector<ShapeKernelPtr<T>>& kernels, PrimitiveList<T>& primitives, int& number) {
+void add_shapes(const ShapeSets& sets, const Exposure& exposure, const std::vector<ShapeKernelPtr<T>>* before,
+                std::vector<ShapeKernelPtr<T>>& kernels, std::vector<ShapeKernelPtr<T>>& moving,
+                PrimitiveList<T>& primitives, int& number) {
   for (const auto& shapes : sets) {
     if (shapes->size() == 0) continue;
-    const auto posed = shapes->at(time);
+    const auto posed = shapes->at(exposure.opens);
     const ShapeSet& now = posed ? *posed : *shapes;
     const bool known = before && !posed;
     kernels.push_back(known ? (*before)[kernels.size()] : now.kernel(T(), number));
+    const auto on_their_way = exposure.instant() ? nullptr : shapes->during(exposure);
+    if (on_their_way) moving.push_back(on_their_way->kernel(T(), number));
     for (int i = 0; i < now.size(); ++i) {
       interruption_point(static_cast<std::size_t>(i));
-      primitives.push_back({kernels.back().get(), i, now.bounds(i)});
+      if (on_their_way && shapes->moves(i))
+        primitives.push_back({moving.back().get(), i, on_their_way->bounds(i)});
+      else
+        primitives.push_back({kernels.back().get(), i, now.bounds(i)});
     }
     number += now.size();
   }
@@ -37,13 +45,15 @@ bool rests(const ShapeSets& sets) {
 
 template <class T>
 std::shared_ptr<const ModelGeometry<T>> make_model(const Model& model, const AcceleratorType& inner,
-                                                   double time,
+                                                   const Exposure& exposure,
                                                    const std::shared_ptr<const ModelGeometry<T>>& before) {
   if (before && rests(model.shapes)) return before;
   auto geometry = std::make_shared<ModelGeometry<T>>();
   int number = 0;
-  add_shapes(model.shapes, time, before ? &before->shapes : nullptr, geometry->shapes, geometry->primitives,
-             number);
+  std::vector<ShapeKernelPtr<T>> moving;
+  add_shapes(model.shapes, exposure, before ? &before->shapes : nullptr, geometry->shapes, moving,
+             geometry->primitives, number);
+  geometry->shapes.insert(geometry->shapes.end(), moving.begin(), moving.end());
   for (const auto& primitive : geometry->primitives) geometry->bounds.include(primitive.bounds);
   geometry->accelerator =
       build_or_refit(inner, geometry->primitives, before ? before->accelerator.get() : nullptr);
@@ -52,48 +62,66 @@ std::shared_ptr<const ModelGeometry<T>> make_model(const Model& model, const Acc
 
 template <class T>
 Placed<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, const Affined& world_from_model,
-                int& number) {
+                int first) {
   const Affined model_from_world = inverse(world_from_model);
   // Rows of the inverse stand at right angles, because instances are scaled before they are turned: so what
   // rounding moves a point across its surface grows with its coordinates alone, not with how uneven the scale
   // is. 2 > sqrt(3), the most by which a sum of three rows' errors exceeds their length.
   const double base =
       2 * 8 * double{std::numeric_limits<T>::epsilon()} * max_component(abs(world_from_model.origin));
-  const int first = number;
-  number += static_cast<int>(model->primitives.size());
   return {model,
           first,
-          number,
+          first + static_cast<int>(model->primitives.size()),
           world_from_model.as<T>(),
           model_from_world.as<T>(),
           static_cast<T>(2 * stretch(world_from_model)),
           static_cast<T>(base)};
 }
 
+// Instances that move during the exposure have a kernel of their own, which goes to `moving`.
 template <class T>
-void add_instances(const Scene& scene, const AcceleratorType& inner, double time, const Geometry<T>* before,
-                   Geometry<T>& geometry, int& number) {
+void add_instances(const Scene& scene, const AcceleratorType& inner, const Exposure& exposure,
+                   const Geometry<T>* before, Geometry<T>& geometry, std::vector<ShapeKernelPtr<T>>& moving,
+                   int& number) {
   if (scene.instances.empty()) return;
   for (std::size_t m = 0; m < scene.models.size(); ++m)
     geometry.models.push_back(
-        make_model<T>(scene.models[m], inner, time, before ? before->models[m] : nullptr));
-  PlacedList<T> placed;
-  std::vector<Boundsd> boxes;
+        make_model<T>(scene.models[m], inner, exposure, before ? before->models[m] : nullptr));
+  PlacedList<T> resting;
+  std::vector<MovingPlaced<T>> on_their_way;
+  struct Member {
+    bool moves;
+    Boundsd box;
+  };
+  std::vector<Member> members;
   for (const Instance& instance : scene.instances) {
     interruption_point();
     const auto& model = geometry.models[instance.model];
-    const Affined world_from_model = instance.world_from_model(time);
-    placed.push_back(place<T>(model, world_from_model, number));
-    boxes.push_back(bounds_of(model->bounds, world_from_model));
+    const Affined world_from_model = instance.world_from_model(exposure.opens);
+    const bool moves =
+        !exposure.instant() && (instance.motion.times.size() > 1 || any_timed(model->primitives));
+    if (moves)
+      on_their_way.emplace_back(instance, model, number, exposure);
+    else
+      resting.push_back(place<T>(model, world_from_model, number));
+    members.push_back({moves, moves ? bounds_during(model->bounds, instance, exposure)
+                                    : bounds_of(model->bounds, world_from_model)});
+    number += static_cast<int>(model->primitives.size());
   }
-  geometry.shapes.push_back(std::make_shared<InstanceKernel<T>>(std::move(placed)));
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    geometry.primitives.push_back({geometry.shapes.back().get(), static_cast<int>(i), boxes[i]});
+  if (!resting.empty()) geometry.shapes.push_back(std::make_shared<InstanceKernel<T>>(std::move(resting)));
+  if (!on_their_way.empty())
+    moving.push_back(std::make_shared<MovingInstanceKernel<T>>(std::move(on_their_way)));
+  int resting_index = 0, moving_index = 0;
+  for (const auto& [moves, box] : members) {
+    const auto* kernel = (moves ? moving : geometry.shapes).back().get();
+    geometry.primitives.push_back({kernel, moves ? moving_index++ : resting_index++, box});
+  }
 }
 
-// Surfaces that emit. Those within instances are met by chance alone.
+// Surfaces that emit. Those within instances are met by chance alone, and so are those that move during the
+// exposure.
 template <class T>
-void add_emitters(const Scene& scene, double time, Geometry<T>& geometry) {
+void add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry) {
   if (!scene.facts.materials.emits) return;
   for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
   std::vector<Emitter<double>> emitters;
@@ -106,11 +134,12 @@ void add_emitters(const Scene& scene, double time, Geometry<T>& geometry) {
     const auto last = primitive + static_cast<std::size_t>(shapes->size());
     while (primitive < last && radiance_of(primitive) == Vec3d(0)) interruption_point(++primitive);
     if (primitive == last) continue;  // nothing to be posed
-    const auto posed = shapes->at(time);
+    const auto posed = shapes->at(exposure.opens);
     const ShapeSet& now = posed ? *posed : *shapes;
     for (int i = now.size() - static_cast<int>(last - primitive); i < now.size(); ++i, ++primitive) {
       interruption_point(primitive);
       const Vec3d radiance = radiance_of(primitive);
+      if (!exposure.instant() && shapes->moves(i)) continue;
       const auto patch = radiance == Vec3d(0) ? std::nullopt : now.patch(i);
       if (!patch) continue;
       const Emitter<double> emitter = make_emitter(*patch, radiance);
@@ -128,13 +157,14 @@ void add_emitters(const Scene& scene, double time, Geometry<T>& geometry) {
 template <class T>
 AcceleratorPtr<T> build_or_refit(const AcceleratorType& type, const PrimitiveList<T>& primitives,
                                  const Accelerator<T>* before) {
+  if (any_timed(primitives)) return build_beside_moving(type, primitives, before);
   AcceleratorPtr<T> accelerator = before ? before->refitted(primitives) : nullptr;
   return accelerator ? std::move(accelerator) : build(type, primitives);
 }
 
 template <class T>
 std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> scene,
-                                                 const AcceleratorType& inner, double time,
+                                                 const AcceleratorType& inner, const Exposure& exposure,
                                                  const Geometry<T>* before) {
   auto geometry = std::make_shared<Geometry<T>>();
   geometry->ambient = Vec3<T>(scene->ambient);
@@ -142,9 +172,11 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
   geometry->material_of.assign(scene->material_of.begin(), scene->material_of.end());
   geometry->primitives.reserve(scene->material_of.size());
   int number = 0;
-  add_shapes(scene->shapes, time, before ? &before->shapes : nullptr, geometry->shapes, geometry->primitives,
-             number);
-  add_instances(*scene, inner, time, before, *geometry, number);
+  std::vector<ShapeKernelPtr<T>> moving;
+  add_shapes(scene->shapes, exposure, before ? &before->shapes : nullptr, geometry->shapes, moving,
+             geometry->primitives, number);
+  add_instances(*scene, inner, exposure, before, *geometry, moving, number);
+  geometry->shapes.insert(geometry->shapes.end(), moving.begin(), moving.end());
   int first = 0;
   for (const auto& materials : scene->materials) {
     const int last = first + materials->size();
@@ -155,7 +187,7 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
   for (const auto& lights : scene->light_sets)
     geometry->lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
   if (scene->environment) geometry->environment = scene->environment->kernel(T());
-  add_emitters(*scene, time, *geometry);
+  add_emitters(*scene, exposure, *geometry);
   geometry->scene = std::move(scene);
   return geometry;
 }
@@ -177,10 +209,10 @@ AcceleratorFacts facts_of(const World<T>& world) {
 template AcceleratorFacts facts_of(const World<float>&);
 template AcceleratorFacts facts_of(const World<double>&);
 template std::shared_ptr<const Geometry<float>> make_geometry(std::shared_ptr<const Scene>,
-                                                              const AcceleratorType&, double,
+                                                              const AcceleratorType&, const Exposure&,
                                                               const Geometry<float>*);
 template std::shared_ptr<const Geometry<double>> make_geometry(std::shared_ptr<const Scene>,
-                                                               const AcceleratorType&, double,
+                                                               const AcceleratorType&, const Exposure&,
                                                                const Geometry<double>*);
 template AcceleratorPtr<float> build_or_refit(const AcceleratorType&, const PrimitiveList<float>&,
                                               const Accelerator<float>*);

@@ -4,12 +4,12 @@
 
 namespace orrery {
 
-// The scene in number type T (float or double) as it stands at `time`, in seconds. Models get structures of
-// type `inner`. `before`: the same at another moment, or null: what rests is shared with it, and structures
-// of what moves follow from its own where they can.
+// The scene in number type T (float or double) as it stands during an exposure. Models get structures of type
+// `inner`. `before`: the same at another, or null: what rests is shared with it, and structures of what moves
+// follow from its own where they can.
 template <class T>
 std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> scene,
-                                                 const AcceleratorType& inner, double time = 0,
+                                                 const AcceleratorType& inner, const Exposure& exposure = {},
                                                  const Geometry<T>* before = nullptr);
 
 // A structure over primitives, which follows from the one that they had at another moment if it can.

@@ -13,13 +13,13 @@ namespace {
 template <class T>
 using Moments = std::list<PreparedScene::Parts::Moment<T>>;
 
-// Puts the moment of that time first.
+// Puts the moment of that exposure first.
 template <class T>
-void bring_forward(Moments<T>& moments, double time) {
+void bring_forward(Moments<T>& moments, const Exposure& exposure) {
   const auto known =
-      std::find_if(moments.begin(), moments.end(), [&](const auto& m) { return m.time == time; });
+      std::find_if(moments.begin(), moments.end(), [&](const auto& m) { return m.exposure == exposure; });
   if (known != moments.end()) return moments.splice(moments.begin(), moments, known);
-  moments.push_front({time, {}, {}});
+  moments.push_front({exposure, {}, {}});
   if (moments.size() > PreparedScene::kMoments) moments.pop_back();
 }
 
@@ -46,11 +46,11 @@ std::shared_ptr<MemoryAccount> open_account(PreparedScene::Parts& parts) {
 }  // namespace
 
 template <class T>
-World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, double time, double& build_ms,
-                   std::stop_token stop) {
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, const Exposure& exposure,
+                   double& build_ms, std::stop_token stop) {
   const auto lock = lock_unless(parts.mutex, stop);
   auto& moments = made_of<T>(parts).moments;
-  bring_forward(moments, time);
+  bring_forward(moments, exposure);
   auto& moment = moments.front();
   World<T>& world = moment.worlds[&type];
   if (world.accelerator) return world;
@@ -58,7 +58,7 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, dou
   const auto make = [&] {
     const World<T> before = world_before(moments, type);
     auto& geometry = moment.geometries[parts.scene->models.empty() ? nullptr : &type];
-    if (!geometry) geometry = make_geometry<T>(parts.scene, type, time, before.geometry.get());
+    if (!geometry) geometry = make_geometry<T>(parts.scene, type, exposure, before.geometry.get());
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
   };
   if (const auto memory = open_account(parts)) {
@@ -71,9 +71,9 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, dou
   return world;
 }
 
-template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
+template World<float> world_for(PreparedScene::Parts&, const AcceleratorType&, const Exposure&, double&,
                                 std::stop_token);
-template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, double, double&,
+template World<double> world_for(PreparedScene::Parts&, const AcceleratorType&, const Exposure&, double&,
                                  std::stop_token);
 
 std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::stop_token& stop) {

@@ -37,7 +37,7 @@ class PreparedScene {
   // and for what was built, if `built`.
   void settle(bool loaded, bool built) const;
 
-  // Of a scene that moves: for so many moments, those asked for last, what was built is kept.
+  // Of a scene that moves: for so many exposures, those asked for last, what was built is kept.
   static constexpr std::size_t kMoments = 2;
 
   struct Parts;
@@ -49,10 +49,10 @@ class PreparedScene {
 
 // What was built for one scene so far.
 struct PreparedScene::Parts {
-  // The scene as it stands at one moment.
+  // The scene as it stands during one exposure.
   template <class T>
   struct Moment {
-    double time;
+    Exposure exposure;
     // By the type of the models' structures; null if there are no models.
     std::map<const AcceleratorType*, std::shared_ptr<const Geometry<T>>> geometries;
     std::map<const AcceleratorType*, World<T>> worlds;
@@ -74,10 +74,10 @@ struct PreparedScene::Parts {
   Made<double> made_double;
 };
 
-// The scene in number type T with an accelerator, as it stands at `time`, a moment of its motion in seconds;
-// adds the milliseconds spent building, if any. Throws Cancelled if `stop` is requested while another built.
+// The scene in number type T with an accelerator, as it stands during an exposure; adds the milliseconds
+// spent building, if any. Throws Cancelled if `stop` is requested while another built.
 template <class T>
-World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, double time,
+World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& accelerator, const Exposure& exposure,
                    double& build_ms, std::stop_token stop = {});
 
 // Waits for the mutex. Throws Cancelled once `stop` is requested.

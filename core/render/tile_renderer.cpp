@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/cameras/shutter.h"
 #include "core/cameras/thin_lens.h"
 
 namespace orrery {
@@ -61,8 +62,7 @@ template <class T>
 bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& checkpoint) {
   const Draws draws(plan_.seed, tile, sample);
   if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, samples_);
-  plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples_, rays_);
-  if (plan_.lens) apply_thin_lens(plan_.frame, draws, SampleSet::lens, rays_);
+  send_rays(tile, samples_, draws, SampleSet::lens);
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   if (!tracer_->trace(rays_, draws, result_, stats_.counts, checkpoint)) return false;
   look(tile, sample);
@@ -70,6 +70,18 @@ bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& 
   cut_.resize(kBatch);
   for (std::size_t i = 0; i < kBatch; ++i) cut_[i] += static_cast<double>(result_.cut.values[i]);
   return true;
+}
+
+template <class T>
+void TileRenderer<T>::send_rays(const TileView& tile, const TileSamples& samples, const Draws& draws,
+                                SampleSet set) {
+  plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, samples, rays_);
+  if (plan_.lens) apply_thin_lens(plan_.frame, draws, set, rays_);
+  if (plan_.shutter == 0) return;
+  if (places_samples_)
+    draw_times(draws, set, rays_);
+  else
+    put_middle_time(rays_);
 }
 
 // One sample is its own mean.
@@ -95,21 +107,21 @@ void TileRenderer<T>::begin_looks(const TileView& tile) {
     look_samples_.u.values.fill(corner);
     look_samples_.v.values.fill(corner);
     plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
+    if (plan_.shutter > 0) put_middle_time(rays_);
     for (const int i : all) result_.radiance.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
     tracer_->look(rays_, T(1), result_, stats_.counts);
     if (corner == 0) first = result_.radiance[0];
     for (int slot = 0; slot < kBatch; ++slot)
       differs = differs || (rays_.t_max[slot] > 0 && result_.radiance[slot] != first);
   }
-  looks_ = differs || plan_.lens ? kMostLooks : 1;
+  looks_ = differs || plan_.lens || plan_.shutter > 0 ? kMostLooks : 1;
 }
 
 template <class T>
 void TileRenderer<T>::look(const TileView& tile, int sample) {
   for (int i = looks_ * sample; i < looks_ * (sample + 1); ++i) {
     place_samples(static_cast<std::uint32_t>(i), look_streams_, look_samples_);
-    plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
-    if (plan_.lens) apply_thin_lens(plan_.frame, Draws(plan_.seed, tile, i), SampleSet::look_lens, rays_);
+    send_rays(tile, look_samples_, Draws(plan_.seed, tile, i), SampleSet::look_lens);
     tracer_->look(rays_, T(1) / static_cast<T>(looks_), result_, stats_.counts);
   }
 }

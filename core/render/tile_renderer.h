@@ -21,6 +21,8 @@ class TileRenderer {
  private:
   // Traces one sample of every pixel. False once the work is to end.
   bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
+  // Camera rays through these places, from the lens and at times that are drawn from `set`.
+  void send_rays(const TileView& tile, const TileSamples& samples, const Draws& draws, SampleSet set);
   // Has the tracer look elsewhere within the pixels.
   void begin_looks(const TileView& tile);
   void look(const TileView& tile, int sample);

@@ -4,6 +4,7 @@
 #include "core/params/params.h"
 #include "core/shapes/mesh_reader.h"
 #include "core/shapes/mesh_records.h"
+#include "core/shapes/moving_triangles.h"
 
 namespace orrery {
 namespace {
@@ -34,6 +35,22 @@ class MeshSet final : public ShapeSet {
     }
     return posed;
   }
+  std::unique_ptr<MovingShapes> during(const Exposure& exposure) const override {
+    if (moving_.empty()) return nullptr;
+    std::vector<MovingTriangles> meshes;
+    for (const auto& [part, moving] : moving_) {
+      MovingTriangles& mesh = meshes.emplace_back(MovingTriangles{
+          table_.parts[part].first, moving.keys.moments(exposure), {}, {}, moving.triangles, moving.uvs});
+      for (const double time : mesh.moments) {
+        mesh.positions.push_back(moving.keys.at(time).positions);
+        mesh.normals.push_back(moving.corner_normals(time));
+      }
+    }
+    return moving_triangles(std::move(meshes));
+  }
+  bool moves(int index) const override {
+    return moving_.contains(part_number(static_cast<std::size_t>(index)));
+  }
   int size() const override { return static_cast<int>(table_.triangles.size()); }
   std::size_t left_out() const override { return left_out_; }
   Boundsd bounds(int index) const override {
@@ -42,7 +59,7 @@ class MeshSet final : public ShapeSet {
   Reach reach(int index) const override {
     const auto i = static_cast<std::size_t>(index);
     const auto& part = table_.part_of(i);
-    const auto moving = moving_.find(static_cast<std::size_t>(&part - table_.parts.data()));
+    const auto moving = moving_.find(part_number(i));
     if (moving == moving_.end()) return ShapeSet::reach(index);
     Reach reach;
     for (const VertexKey& key : moving->second.keys.values) {
@@ -67,6 +84,10 @@ class MeshSet final : public ShapeSet {
  private:
   static constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 30;
   static constexpr std::uint64_t kRoomForMoments = 16;  // times the pairs that are always together
+
+  std::size_t part_number(std::size_t triangle) const {
+    return static_cast<std::size_t>(&table_.part_of(triangle) - table_.parts.data());
+  }
 
   // Both false if there was a problem, which is noted.
   bool take_resting(MeshObject& object, Params& p) {

@@ -34,4 +34,31 @@ TriangleMesh MovingMesh::at(double time) const {
   return mesh;
 }
 
+std::vector<Vec3d> MovingMesh::corner_normals(double time) const {
+  const auto of_corners = [](const auto& corners, const std::vector<Vec3d>& normals) {
+    std::vector<Vec3d> all;
+    if (normals.empty()) return all;
+    all.reserve(3 * corners.size());
+    for (const auto& triangle : corners)
+      for (const std::uint32_t vertex : triangle) all.push_back(normals[vertex]);
+    return all;
+  };
+  if (crease_degrees) {
+    const TriangleMesh mesh = at(time);
+    return of_corners(mesh.triangles, mesh.normals);
+  }
+  const auto straight = [](const Vec3d& a, const Vec3d& b, double share) {
+    return a * (1 - share) + b * share;
+  };
+  return of_corners(triangles, *keys.between(time,
+                                             [&](const VertexKey& a, const VertexKey& b, double share) {
+                                               return VertexKey{a.positions,
+                                                                mixed(a.normals, b.normals,
+                                                                      [&](const Vec3d& x, const Vec3d& y) {
+                                                                        return straight(x, y, share);
+                                                                      })};
+                                             })
+                                    .normals);
+}
+
 }  // namespace orrery

@@ -32,6 +32,9 @@ struct MovingMesh {
 
   // The mesh as it stands at `time`, in seconds. Its triangles keep their order.
   TriangleMesh at(double time) const;
+  // Directions from which those of all corners, three a triangle, come by being mixed between the moments of
+  // an exposure: the keys' own, or those smoothed at that moment. None of a flat mesh.
+  std::vector<Vec3d> corner_normals(double time) const;
 };
 
 }  // namespace orrery

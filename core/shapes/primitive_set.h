@@ -40,6 +40,29 @@ class PlainRecords {
   std::vector<Record<T>> records_;
 };
 
+// Writes the lanes of `mine` of register i, on the side that rays along `direction` come from.
+template <class T>
+[[gnu::always_inline]] inline void put_surface(const Surface<Lanes<T>>& s, const Vec3<Lanes<T>>& direction,
+                                               int i, const MaskOf<Lanes<T>>& mine, SurfaceBatch<T>& out) {
+  using N = Lanes<T>;
+  const N side = select(dot(s.geometric, direction) > N(0), N(-1), N(1));
+  out.position.put(i, mine, s.position);
+  out.geometric.put(i, mine, s.geometric * side);
+  out.normal.put(i, mine, s.normal * side);
+  out.side.put(i, mine, side);
+  out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));
+}
+template <class T>
+[[gnu::always_inline]] inline void put_parameters(const SurfacePoint<Lanes<T>>& point, int i,
+                                                  const MaskOf<Lanes<T>>& mine, HitBatch<T>& hits,
+                                                  SurfaceBatch<T>& out) {
+  hits.u.put(i, mine, point.u);
+  hits.v.put(i, mine, point.v);
+  out.u.put(i, mine, point.s);
+  out.v.put(i, mine, point.t);
+  out.tangent.put(i, mine, point.tangent);
+}
+
 // Records: PlainRecords or what has its members.
 template <template <class> class Record, class T, class Records = PlainRecords<Record, T>>
 class PrimitiveKernel final : public ShapeKernel<T> {
@@ -90,7 +113,7 @@ class PrimitiveKernel final : public ShapeKernel<T> {
       const auto mine = mask_cast<N>(id >= first_ && id < last);
       if (!any(mine)) continue;
       const auto shape = fetch_records<Record, T>(records_, id - first_, mine);
-      put_surface(shape.surface(rays.at(i), hits.t.at(i)), rays.direction.at(i), i, mine, out);
+      put_surface<T>(shape.surface(rays.at(i), hits.t.at(i)), rays.direction.at(i), i, mine, out);
     }
   }
 
@@ -103,26 +126,11 @@ class PrimitiveKernel final : public ShapeKernel<T> {
       if (!any(mine)) continue;
       const auto mapping =
           fetch_records<Records::template Mapping, T>(records_.mappings(), id - first_, mine);
-      const SurfacePoint<N> point = mapping.parameters(rays.at(i), out.position.at(i));
-      hits.u.put(i, mine, point.u);
-      hits.v.put(i, mine, point.v);
-      out.u.put(i, mine, point.s);
-      out.v.put(i, mine, point.t);
-      out.tangent.put(i, mine, point.tangent);
+      put_parameters<T>(mapping.parameters(rays.at(i), out.position.at(i)), i, mine, hits, out);
     }
   }
 
  private:
-  static void put_surface(const Surface<N>& s, const Vec3<N>& direction, int i, const MaskOf<N>& mine,
-                          SurfaceBatch<T>& out) {
-    const N side = select(dot(s.geometric, direction) > N(0), N(-1), N(1));
-    out.position.put(i, mine, s.position);
-    out.geometric.put(i, mine, s.geometric * side);
-    out.normal.put(i, mine, s.normal * side);
-    out.side.put(i, mine, side);
-    out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));
-  }
-
   Records records_;
   int first_;
 };

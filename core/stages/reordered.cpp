@@ -101,7 +101,8 @@ void sort_by_digit(int digit, RayOrder& order, Keys& keys) {
 template <class T>
 class Reordered final : public Accelerator<T> {
  public:
-  explicit Reordered(std::shared_ptr<const Accelerator<T>> behind) : behind_(std::move(behind)) {}
+  Reordered(std::shared_ptr<const Accelerator<T>> behind, bool timed)
+      : behind_(std::move(behind)), timed_(timed) {}
 
   AcceleratorFacts facts() const override { return behind_->facts(); }
 
@@ -140,17 +141,19 @@ class Reordered final : public Accelerator<T> {
   static int place_of(const RayOrder& order, int i) { return order.place[static_cast<std::size_t>(i)]; }
 
   // The rays in that order, and inactive ones to the end of the last register. Returns its registers.
-  static Groups gather(const RayBatch<T>& rays, const RayOrder& order, RayBatch<T>& sorted) {
+  Groups gather(const RayBatch<T>& rays, const RayOrder& order, RayBatch<T>& sorted) const {
     sorted.count = order.count;
     const Groups all = Groups::covering(0, order.count, kWidth<T>);
     for (int to = 0; to < all.size() * kWidth<T>; ++to) {
       const int from = place_of(order, std::min(to, order.count - 1));
       sorted.set(to, rays[from], to < order.count ? rays.t_max[from] : T(-1));
+      if (timed_) sorted.time[to] = rays.time[from];
     }
     return all;
   }
 
   std::shared_ptr<const Accelerator<T>> behind_;
+  const bool timed_;
 };
 
 }  // namespace
@@ -165,13 +168,14 @@ RayOrder order_of(const RayBatch<T>& rays, const Groups& groups) {
 }
 
 template <class T>
-std::shared_ptr<const Accelerator<T>> reordered(std::shared_ptr<const Accelerator<T>> behind) {
-  return std::make_shared<const Reordered<T>>(std::move(behind));
+std::shared_ptr<const Accelerator<T>> reordered(std::shared_ptr<const Accelerator<T>> behind, bool timed) {
+  return std::make_shared<const Reordered<T>>(std::move(behind), timed);
 }
 
 template RayOrder order_of(const RayBatch<float>&, const Groups&);
 template RayOrder order_of(const RayBatch<double>&, const Groups&);
-template std::shared_ptr<const Accelerator<float>> reordered(std::shared_ptr<const Accelerator<float>>);
-template std::shared_ptr<const Accelerator<double>> reordered(std::shared_ptr<const Accelerator<double>>);
+template std::shared_ptr<const Accelerator<float>> reordered(std::shared_ptr<const Accelerator<float>>, bool);
+template std::shared_ptr<const Accelerator<double>> reordered(std::shared_ptr<const Accelerator<double>>,
+                                                              bool);
 
 }  // namespace orrery

@@ -19,8 +19,9 @@ struct RayOrder {
 template <class T>
 RayOrder order_of(const RayBatch<T>& rays, const Groups& groups);
 
-// Asks `behind` for rays in that order; its answers are the same.
+// Asks `behind` for rays in that order; its answers are the same. `timed`: rays have times.
 template <class T>
-std::shared_ptr<const Accelerator<T>> reordered(std::shared_ptr<const Accelerator<T>> behind);
+std::shared_ptr<const Accelerator<T>> reordered(std::shared_ptr<const Accelerator<T>> behind,
+                                                bool timed = false);
 
 }  // namespace orrery

@@ -17,6 +17,7 @@ Groups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<T>& 
     if (!any(lit)) continue;
     reached.add(i);
     shadow.origin.put(i, surface.origin_toward(i, shadow.direction.at(i)));
+    if (plan_.shutter > 0) shadow.time.put(i, paths.rays.time.at(i));
   }
   if (plan_.shadows) {
     counts.rays.shadow[static_cast<std::size_t>(paths.depth)] += active_rays(shadow, reached);

@@ -44,6 +44,7 @@ void Wavefront<T>::start(const RayBatch<T>& camera_rays) {
   camera->rays.origin = camera_rays.origin;
   camera->rays.direction = camera_rays.direction;
   camera->rays.t_max = camera_rays.t_max;
+  if (plan_.shutter > 0) time_ = camera_rays.time;
   for (int i = 0; i < kBatch; ++i) camera->slot[i] = static_cast<IndexOf<T>>(i);
   for (const int i : all) {
     out_->cut.put(i, N(T(0)));
@@ -62,6 +63,7 @@ void Wavefront<T>::start(const RayBatch<T>& camera_rays) {
 template <class T>
 void Wavefront<T>::run(PathBatch<T>& paths) {
   vertices_->paths = &paths;
+  if (plan_.shutter > 0) inherit_times(paths);
   reflected_ = take_batch(paths.depth + 1);
   refracted_ = take_batch(paths.depth + 1);
   for (int from = 0; from < paths.rays.count; from += plan_.slice)
@@ -77,6 +79,12 @@ void Wavefront<T>::run(PathBatch<T>& paths) {
   }
   push(std::move(refracted_));
   push(std::move(reflected_));
+}
+
+template <class T>
+void Wavefront<T>::inherit_times(PathBatch<T>& paths) const {
+  const int room = (paths.rays.count + kWidth<T> - 1) / kWidth<T> * kWidth<T>;
+  for (int i = 0; i < room; ++i) paths.rays.time[i] = time_[static_cast<int>(paths.slot[i])];
 }
 
 template <class T>

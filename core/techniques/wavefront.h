@@ -63,6 +63,8 @@ class Wavefront : public Tracer<T> {
  private:
   void start(const RayBatch<T>& camera_rays);
   void run(PathBatch<T>& paths);
+  // Rays are of the time of their camera ray.
+  void inherit_times(PathBatch<T>& paths) const;
   void run_slice(const Groups& groups);
   void record_channels(const Groups& groups, const Groups& met);
   std::unique_ptr<PathBatch<T>> take_batch(int depth);
@@ -70,6 +72,7 @@ class Wavefront : public Tracer<T> {
 
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;
+  Array<T> time_;  // of camera rays, by slot; filled only with Plan::shutter
   const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;

@@ -70,6 +70,7 @@ void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay
     const ShadowRay<T>& ray = some[static_cast<std::size_t>(real ? i : 0)];
     rays->set(i, ray.ray, real ? ray.t_max : T(-1));
   }
+  rays->time.values.fill(T(0.5));  // as try_tiles() has them
   hits->t = rays->t_max;
   hits->primitive.values.fill(kNoPrimitive);
   AcceleratorCounts counts;

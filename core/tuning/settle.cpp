@@ -24,7 +24,7 @@ TrialResult try_one(PreparedScene::Parts& parts, const AcceleratorType& type, co
                     std::stop_token stop) {
   double build_ms = 0;
   const TraceCounts counts =
-      try_tiles(world_for<T>(parts, type, plan.time, build_ms, stop), plan, kTiles, stop);
+      try_tiles(world_for<T>(parts, type, plan.exposure(), build_ms, stop), plan, kTiles, stop);
   const std::uint64_t rays = counts.rays.total();
   return {&type, type.costs.of(rays, counts.accelerator) / static_cast<double>(rays)};
 }

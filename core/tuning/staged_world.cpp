@@ -26,9 +26,9 @@ template <class T>
 World<T> staged_world(PreparedScene::Parts& parts, const SettledPlan& settled, double& build_ms,
                       std::stop_token stop) {
   const Plan& plan = *settled;
-  const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.time, build_ms, stop);
+  const World<T> bare = world_for<T>(parts, *plan.accelerator, plan.exposure(), build_ms, stop);
   const PrimitiveList<T>& primitives = bare.geometry->primitives;
-  auto asked = plan.reorder ? reordered(bare.accelerator) : bare.accelerator;
+  auto asked = plan.reorder ? reordered(bare.accelerator, plan.shutter > 0) : bare.accelerator;
   if (plan.prediction == Prediction::last)
     asked = predicted_by_last(primitives, std::move(asked));
   else if (plan.prediction == Prediction::random)

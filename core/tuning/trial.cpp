@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/cameras/shutter.h"
 
 namespace orrery {
 namespace {
@@ -41,6 +42,7 @@ TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, std::st
     const TileView tile =
         tiles.at(static_cast<int>((std::int64_t{2} * i + 1) * tiles.size() / (2 * count)), 1);
     plan.camera->generate(plan.frame, plan.width, plan.height, tile, centres, *rays);
+    if (plan.shutter > 0) put_middle_time(*rays);
     tracer->trace(*rays, Draws(plan.seed, tile, 0), *result, counts, checkpoint);
   }
   if (stop.stop_requested()) throw Cancelled();

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/model/accelerator.h"
+
+// What instances are as primitives, however they stand. An Instance<T> has
+//   std::shared_ptr<const ModelGeometry<T>> model;
+//   int first, last;                  numbers of its primitives in the scene: first..last-1
+//   T step_scale, step_base;          the step off a surface in the world: from the model's, and what is
+//   added static constexpr bool kTimed;     whether it moves with the rays' time Pose pose(rays, i) const;
+//   how it stands for register i: to_model(ray), and to the world point(p),
+//                                     vector(v) and normal(n), whose lengths are as they come out
+namespace orrery {
+
+// Rays on their way through one model, and what they meet there.
+template <class T>
+struct ModelVisit {
+  using N = Lanes<T>;
+  RayBatch<T> rays;
+  HitBatch<T> hits;
+
+  void put(int i, const Ray<N>& ray, const N& t) {
+    rays.origin.put(i, ray.origin);
+    rays.direction.put(i, ray.direction);
+    rays.t_max.put(i, t);
+    hits.t.put(i, t);
+    hits.primitive.put(i, IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+  }
+};
+
+// Lanes whose hit in the model of an instance, at register i, takes the place of (best, best_id), and its
+// number in the scene. `first`: of the instance.
+template <class T>
+struct TakenHits {
+  using N = Lanes<T>;
+  MaskOf<N> nearer;
+  N t;
+  IndexLanes<T> id;
+
+  TakenHits(int first, const ModelVisit<T>& visit, int i, const N& best, const IndexLanes<T>& best_id)
+      : t(visit.hits.t.at(i)) {
+    const IndexLanes<T> in_model = load_index<T>(visit.hits.primitive, i);
+    id = in_model + IndexOf<T>(first);
+    const auto met = mask_cast<N>(in_model != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+    nearer = met && takes_over(t, id, best, best_id);
+  }
+};
+
+template <class T, class Instance>
+class InstanceKernelOf : public ShapeKernel<T> {
+ public:
+  using N = Lanes<T>;
+  using List = std::vector<Instance>;
+
+  // In the order of their numbers.
+  explicit InstanceKernelOf(List placed) : placed_(std::make_shared<const List>(std::move(placed))) {}
+
+  bool timed() const override { return Instance::kTimed; }
+  std::vector<HullTriangle> hull(int) const override { return {}; }
+
+  void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+               AcceleratorCounts& counts) const override {
+    const Instance& placed = (*placed_)[static_cast<std::size_t>(index)];
+    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
+    visit->rays.count = rays.count;
+    for (const int i : groups) enter(placed, rays, i, hits.t.at(i), *visit);
+    placed.model->accelerator->closest(visit->rays, groups, visit->hits, counts);
+    for (const int i : groups) {
+      const TakenHits<T> taken(placed.first, *visit, i, hits.t.at(i), load_index<T>(hits.primitive, i));
+      hits.t.put(i, taken.nearer, taken.t);
+      hits.primitive.put(i, mask_cast<IndexLanes<T>>(taken.nearer), taken.id);
+    }
+  }
+
+  void occlude(int index, RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+    const Instance& placed = (*placed_)[static_cast<std::size_t>(index)];
+    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
+    visit->rays.count = rays.count;
+    for (const int i : groups) enter(placed, rays, i, rays.t_max.at(i), *visit);
+    placed.model->accelerator->occlude(visit->rays, groups, counts);
+    for (const int i : groups) rays.t_max.put(i, visit->rays.t_max.at(i));
+  }
+
+  void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+               SurfaceBatch<T>& out) const override {
+    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
+    const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
+    visit->rays.count = rays.count;
+    for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
+      const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
+      visit->hits.primitive.put(i, in_model);
+      for (const auto& shapes : placed.model->shapes)
+        shapes->surface(visit->rays, visit->hits, Groups::single(i), *found);
+      out.position.put(i, mask, pose.point(found->position.at(i)));
+      out.geometric.put(i, mask, normalize(pose.normal(found->geometric.at(i))));
+      out.normal.put(i, mask, normalize(pose.normal(found->normal.at(i))));
+      out.side.put(i, mask, found->side.at(i));
+      out.step.put(i, mask, N(found->step.at(i) * N(placed.step_scale) + N(placed.step_base)));
+    });
+  }
+
+  void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+                  SurfaceBatch<T>& out) const override {
+    const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
+    const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
+    visit->rays.count = rays.count;
+    for_each_hit(hits, groups, [&](int i, const auto& mask, const Instance& placed, const auto& in_model) {
+      const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
+      visit->hits.primitive.put(i, in_model);
+      for (const auto& shapes : placed.model->shapes) {
+        shapes->surface(visit->rays, visit->hits, Groups::single(i), *found);
+        shapes->parameters(visit->rays, Groups::single(i), visit->hits, *found);
+      }
+      hits.u.put(i, mask, visit->hits.u.at(i));
+      hits.v.put(i, mask, visit->hits.v.at(i));
+      out.u.put(i, mask, found->u.at(i));
+      out.v.put(i, mask, found->v.at(i));
+      out.tangent.put(i, mask, normalize(pose.vector(found->tangent.at(i))));
+    });
+  }
+
+ protected:
+  std::shared_ptr<const List> placed_;
+
+ private:
+  // Takes the rays of register i to the model.
+  static auto enter(const Instance& placed, const RayBatch<T>& rays, int i, const N& t,
+                    ModelVisit<T>& visit) {
+    const auto pose = placed.pose(rays, i);
+    visit.put(i, pose.to_model(rays.at(i)), t);
+    if constexpr (Instance::kTimed) visit.rays.time.put(i, rays.time.at(i));
+    return pose;
+  }
+
+  // Calls visit(i, mask, instance, ids within its model) for each register of `groups` and each instance that
+  // is hit in it: a register may hold hits of several, of which each takes its own lanes.
+  template <class Visit>
+  void for_each_hit(const HitBatch<T>& hits, const Groups& groups, const Visit& visit) const {
+    const auto owner = [this](IndexOf<T> id) {
+      return std::upper_bound(placed_->begin(), placed_->end(), id,
+                              [](IndexOf<T> number, const Instance& p) { return number < p.last; });
+    };
+    for (const int i : groups) {
+      const IndexLanes<T> id = load_index<T>(hits.primitive, i);
+      auto open = id >= IndexOf<T>(placed_->front().first) && id < IndexOf<T>(placed_->back().last);
+      while (any(open)) {
+        const IndexOf<T> one = id[static_cast<std::size_t>(stdx::find_first_set(open))];
+        const Instance& placed = *owner(one);
+        const auto here = open && id >= IndexOf<T>(placed.first) && id < IndexOf<T>(placed.last);
+        open = open && !here && id != one;
+        if (!any(here)) continue;  // none of these
+        IndexLanes<T> in_model(IndexOf<T>{kNoPrimitive});
+        stdx::where(here, in_model) = id - IndexOf<T>(placed.first);
+        visit(i, mask_cast<N>(here), placed, in_model);
+      }
+    }
+  }
+};
+
+}  // namespace orrery

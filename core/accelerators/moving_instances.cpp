@@ -1,0 +1,101 @@
+#include "core/accelerators/moving_instances.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace orrery {
+namespace {
+
+constexpr int kMostPieces = 64;      // of a stretch
+constexpr double kPieceDegrees = 4;  // that a piece turns by, if these are enough
+
+// Box of what a point, which is scaled, turned and moved, passes between two placements. It turns about an
+// axis of length 1 while its scaled place v runs straight: then its second derivative is at most
+// |turn|^2 |v| + 2 |turn| |v'|, and a path is off its chord by an eighth of that at most, time running from
+// 0 to 1.
+void include_path(const Vec3d& axis, const Placement& from, const Placement& to, const Vec3d& point,
+                  Boundsd& box) {
+  const auto at = [&](const Placement& p) {
+    return rotation(axis, p.degrees).vector(point * p.scale) + p.translate;
+  };
+  const double turn = std::abs(to.degrees - from.degrees) * (std::numbers::pi / 180);
+  const double reach = std::max(length(point * from.scale), length(point * to.scale));
+  const double off = turn * (turn * reach + 2 * length(point * (to.scale - from.scale))) / 8;
+  const Vec3d pad(std::min(off, 2 * reach));  // it stays within its reach
+  for (const Vec3d& end : {at(from), at(to)}) {
+    box.include(end - pad);
+    box.include(end + pad);
+  }
+}
+
+// How uneven the scale is.
+double condition_of(const Vec3d& scale) {
+  const Vec3d size = abs(scale);
+  return max_component(size) / std::min({size.x, size.y, size.z});
+}
+
+}  // namespace
+
+Boundsd bounds_during(const Boundsd& model, const Instance& instance, const Exposure& exposure) {
+  if (!model.bounded()) return Boundsd::everything();
+  const std::vector<double> moments = instance.motion.moments(exposure);
+  Boundsd box;
+  double condition = 1;
+  for (std::size_t k = 0; k + 1 < moments.size(); ++k) {
+    const Placement from = instance.motion.at(moments[k]), to = instance.motion.at(moments[k + 1]);
+    const double turned = std::abs(to.degrees - from.degrees);
+    const int pieces =
+        static_cast<int>(std::clamp(std::ceil(turned / kPieceDegrees), 1.0, double{kMostPieces}));
+    for (int piece = 0; piece < pieces; ++piece) {
+      const Placement start = mix(from, to, static_cast<double>(piece) / pieces),
+                      end = mix(from, to, static_cast<double>(piece + 1) / pieces);
+      for (const Vec3d& corner : corners_of(model)) include_path(instance.axis, start, end, corner, box);
+    }
+    condition = std::max({condition, condition_of(from.scale), condition_of(to.scale)});
+  }
+  const Vec3d pad(32 * double{std::numeric_limits<float>::epsilon()} * condition * box.magnitude());
+  box.lo = box.lo - pad;
+  box.hi = box.hi + pad;
+  return box;
+}
+
+template <class T>
+MovingPlaced<T>::MovingPlaced(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of,
+                              int number, const Exposure& exposure)
+    : model(std::move(of)),
+      first(number),
+      last(number + static_cast<int>(model->primitives.size())),
+      stretches(instance.motion.moments(exposure)) {
+  const std::vector<double> times = instance.motion.moments(exposure);
+  double most_scale = 0, most_translate = 0;
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
+    const Placement from = instance.motion.at(times[k]), to = instance.motion.at(times[k + 1]);
+    const Affined turn = rotation(instance.axis, from.degrees);
+    Moment& moment = moments.emplace_back();
+    const std::array<Vec3d, 3> axes{turn.x, turn.y, turn.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vec3d along = instance.axis * dot(instance.axis, axes[axis]);
+      moment.along[axis] = Vec3<T>(along);
+      moment.across[axis] = Vec3<T>(axes[axis] - along);
+      moment.beyond[axis] = Vec3<T>(cross(instance.axis, axes[axis]));
+    }
+    moment.turns = static_cast<T>((to.degrees - from.degrees) / 360);
+    moment.scale = Vec3<T>(from.scale);
+    moment.more_scale = Vec3<T>(to.scale - from.scale);
+    moment.translate = Vec3<T>(from.translate);
+    moment.more_translate = Vec3<T>(to.translate - from.translate);
+    for (const Placement& placement : {from, to}) {
+      most_scale = std::max(most_scale, max_component(abs(placement.scale)));
+      most_translate = std::max(most_translate, max_component(abs(placement.translate)));
+    }
+  }
+  // Twice as far as instances that rest: the turn is rounded once more. sqrt(3) < 2 bounds what a turn does
+  // to the largest coordinate.
+  step_scale = static_cast<T>(8 * most_scale);
+  step_base = static_cast<T>(32 * double{std::numeric_limits<T>::epsilon()} * most_translate);
+}
+
+template struct MovingPlaced<float>;
+template struct MovingPlaced<double>;
+
+}  // namespace orrery

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "core/accelerators/instances.h"
+#include "core/math/elementary.h"
+#include "core/math/stretches.h"
+
+// Instances that move while the shutter is open, or whose models do: each ray is taken to the model as it
+// stands at the ray's time.
+namespace orrery {
+
+// A model on its way. Between two moments it is scaled and moved evenly and turns evenly about its axis.
+template <class T>
+struct MovingPlaced {
+  using N = Lanes<T>;
+
+  // How it stands at one of the moments, and where it goes from there.
+  struct Moment {
+    // Where the model's x, y and z point: turned further by an angle, along + across cos + beyond sin, the
+    // parts along the axis, across it, and at right angles to both.
+    std::array<Vec3<T>, 3> along, across, beyond;
+    T turns;                                               // whole turns until the next moment
+    Vec3<T> scale, more_scale, translate, more_translate;  // and what is added until then
+  };
+
+  std::shared_ptr<const ModelGeometry<T>> model;
+  int first, last;  // numbers of its primitives in the scene: first..last-1
+  Stretches<T> stretches;
+  std::vector<Moment> moments;  // but the last
+  T step_scale, step_base;      // see Placed
+
+  MovingPlaced(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of, int number,
+               const Exposure& exposure);
+
+  static constexpr bool kTimed = true;
+  struct Pose {
+    std::array<Vec3<N>, 3> axes;       // unit, where the model's x, y and z point
+    Vec3<N> scale, shrink, translate;  // shrink: 1 / scale
+
+    Vec3<N> back(const Vec3<N>& v) const {
+      return Vec3<N>(dot(axes[0], v), dot(axes[1], v), dot(axes[2], v)) * shrink;
+    }
+    Vec3<N> turned(const Vec3<N>& v) const { return axes[0] * v.x + axes[1] * v.y + axes[2] * v.z; }
+    Ray<N> to_model(const Ray<N>& ray) const { return {back(ray.origin - translate), back(ray.direction)}; }
+    Vec3<N> point(const Vec3<N>& p) const { return turned(p * scale) + translate; }
+    Vec3<N> vector(const Vec3<N>& v) const { return turned(v * scale); }
+    Vec3<N> normal(const Vec3<N>& n) const { return turned(n * shrink); }
+  };
+  Pose pose(const RayBatch<T>& rays, int i) const {
+    Pose now;
+    now.scale = Vec3<N>(N(T(1)));
+    stretches.for_each(rays.time.at(i), [&](const auto& lanes, std::size_t moment, const N& share) {
+      const Moment& from = moments[moment];
+      const auto [sine, cosine] = sine_cosine_turns(N(share * from.turns));
+      for (std::size_t k = 0; k < 3; ++k)
+        now.axes[k] = select(
+            lanes, Vec3<N>(from.along[k]) + Vec3<N>(from.across[k]) * cosine + Vec3<N>(from.beyond[k]) * sine,
+            now.axes[k]);
+      now.scale = select(lanes, Vec3<N>(from.scale) + Vec3<N>(from.more_scale) * share, now.scale);
+      now.translate =
+          select(lanes, Vec3<N>(from.translate) + Vec3<N>(from.more_translate) * share, now.translate);
+    });
+    const N one(T(1));
+    now.shrink = {one / now.scale.x, one / now.scale.y, one / now.scale.z};
+    return now;
+  }
+};
+
+// Box of what an instance of a model with these bounds passes during an exposure, grown for the rounding of
+// rays that are taken to it in float.
+Boundsd bounds_during(const Boundsd& model, const Instance& instance, const Exposure& exposure);
+
+template <class T>
+class MovingInstanceKernel final : public InstanceKernelOf<T, MovingPlaced<T>> {
+ public:
+  using InstanceKernelOf<T, MovingPlaced<T>>::InstanceKernelOf;
+  PackedPrimitivesPtr<T> pack(std::span<const int>) const override { return nullptr; }
+};
+
+extern template struct MovingPlaced<float>;
+extern template struct MovingPlaced<double>;
+
+}  // namespace orrery
