@@ -44,14 +44,17 @@ export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, p
 
 const aspect = (size) => size.width / size.height;
 
-// The box itself; but an orthographic view has no angle to widen and keeps its proportions.
+// Orthographic views and panoramas have no angle to widen.
+const has_angle = (camera) => !["orthographic", "panorama"].includes(camera?.type);
+
+// The box itself; but a view without an angle keeps its proportions.
 function fit(own, box, camera) {
-  if (camera?.type !== "orthographic" || aspect(box) >= aspect(own)) return box;
+  if (has_angle(camera) || aspect(box) >= aspect(own)) return box;
   return { width: box.width, height: box.width / aspect(own) };
 }
 
 function fov_for(own, size, camera) {
-  if (camera?.type === "orthographic" || aspect(size) >= aspect(own)) return undefined;
+  if (!has_angle(camera) || aspect(size) >= aspect(own)) return undefined;
   const half = ((camera?.fov_degrees ?? 45) * Math.PI) / 360;
   return (Math.atan(Math.tan(half) * (aspect(own) / aspect(size))) * 360) / Math.PI;
 }

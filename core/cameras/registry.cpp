@@ -8,7 +8,8 @@ namespace orrery {
 // clang-format off
 #define ORRERY_CAMERAS(add) \
   add(perspective)          \
-  add(orthographic)
+  add(orthographic)         \
+  add(panorama)
 // clang-format on
 
 #define ORRERY_DECLARE(name) CameraType name##_type();

@@ -40,7 +40,16 @@ void read_camera(Params& p, Scene& scene) {
   const double focus = p.positive(
       "focus_distance", "Along the view to what is sharp, in metres; to look_at if left out.", derived(1.0));
   if (p.has("focus_distance")) placement.focus_distance = focus;
+  placement.blades = {static_cast<int>(p.integer(
+                          "blades", "Sides of the aperture, at least 3; 0: it is round.", 0, kMaxBlades, 0)),
+                      p.number("blade_degrees", "Turn of its first corner, from right toward up.",
+                               {.min = -360, .max = 360}, 0.0)};
+  if (const int blades = placement.blades.count; blades == 1 || blades == 2)
+    p.fail("blades", "expected 0 or at least 3, got " + std::to_string(blades));
   scene.camera = camera_types()[*type].read(p);
+  if (scene.camera->all_around() && placement.aperture_radius > 0)
+    p.fail("aperture_radius", "expected 0, as nothing can be in focus all around, got " +
+                                  number_text(placement.aperture_radius));
   for (const auto& [name, value] : scene.camera->parameters())
     if (std::string_view(name) == "fov_degrees") scene.render.fov_degrees = value;
   const Vec3d view = safe_normalize(placement.look_at - placement.eye);

@@ -35,6 +35,7 @@ CameraFrame frame_at(const CameraPlacement& placement, const Camera& camera, con
   frame.right = right;
   frame.distance = own_distance * orbit.distance;
   frame.aperture_radius = placement.aperture_radius;
+  frame.blades = placement.blades;
   frame.focus_distance = placement.focus_distance.value_or(frame.distance);
   frame.eye = placement.look_at + frame.back * frame.distance;
   const bool own_place = turn.sine == 0 && turn.cosine == 1 && lift.sine == 0 && orbit.distance == 1;

@@ -11,11 +11,20 @@ namespace orrery {
 
 class Params;
 
+inline constexpr int kMaxBlades = 16;
+
+// The aperture's form: a regular polygon, whose corners are as far from the middle as its radius.
+struct LensBlades {
+  int count = 0;       // sides, at least 3; 0: round
+  double degrees = 0;  // of the first corner, from right toward up
+};
+
 // Where a scene's own camera stands.
 struct CameraPlacement {
   Vec3d eye{0, 0, 4}, look_at{0, 0, 0}, up{0, 1, 0};
   double aperture_radius = 0;                 // of a thin lens, metres; 0: a pinhole
   std::optional<double> focus_distance = {};  // along the view, metres; none: where look_at is
+  LensBlades blades = {};
 };
 
 // A place on an orbit, relative to the scene's own camera: a turn about `up` through `look_at` (anticlockwise
@@ -32,9 +41,10 @@ struct CameraFrame {
   double distance = 0;     // from eye to look_at, metres
   double half_extent = 0;  // half the picture's height: see Camera::half_extent()
   double aperture_radius = 0, focus_distance = 0;
+  LensBlades blades;
 };
 
-// Where in its pixel each slot of a tile is sampled, in [0, 1).
+// Where each slot of a tile is sampled: in its pixel in [0, 1), or beyond with a filter that is wider.
 struct TileSamples {
   Array<float> u, v;
 
@@ -60,8 +70,10 @@ class Camera {
   virtual const char* type() const = 0;
   // Whether all rays have one direction.
   virtual bool parallel() const = 0;
+  // Whether rays leave toward all sides, so that there is no plane that a lens could be focused at.
+  virtual bool all_around() const { return false; }
   // Half the picture's height: in metres if parallel, else of the plane at distance 1 from the eye.
-  // `distance` is the orbit's factor of the own distance.
+  // `distance` is the orbit's factor of the own distance. In radians if all around.
   virtual double half_extent(double distance) const = 0;
   // The same with another vertical angle, in (0, 180) degrees; null if it has no angle.
   virtual std::unique_ptr<Camera> with_fov(double /*degrees*/) const { return nullptr; }

@@ -38,11 +38,13 @@ class View {
   explicit View(const Plan& plan)
       : frame_(plan.frame),
         parallel_(plan.camera->parallel()),
+        all_around_(plan.camera->all_around()),
         half_height_(plan.frame.half_extent),
         half_width_(half_height_ * plan.width / plan.height) {}
 
   // Whether the box lies wholly beyond one of the planes. Never for an infinite box.
   bool misses(const Affined& world_from_box, const Boundsd& box) const {
+    if (all_around_) return false;
     std::array<bool, 5> beyond;
     beyond.fill(true);
     for (const Vec3d& corner : corners_of(box)) {
@@ -58,7 +60,7 @@ class View {
 
  private:
   const CameraFrame& frame_;
-  bool parallel_;
+  bool parallel_, all_around_;
   double half_height_, half_width_;
 };
 

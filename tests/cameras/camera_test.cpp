@@ -183,6 +183,23 @@ TEST(CameraRays, OrthographicRaysAreParallelAndSpacedByTheHeight) {
   EXPECT_NEAR(frame_at(camera, {0, 0, 2}).half_extent, 3, 1e-15) << "farther away more is seen";
 }
 
+// Longitude grows evenly to the right and latitude upward; the middle is the view.
+TEST(CameraRays, OfAPanoramaHaveEvenAngles) {
+  const Standing camera{{}, camera_of({{"type", "panorama"}})};
+  const int width = 128, height = 64;
+  for (int y = 0; y < height; y += 7)
+    for (int x = 0; x < width; x += 5) {
+      const double longitude = 2 * std::numbers::pi * ((x + 0.5) / width - 0.5),
+                   latitude = std::numbers::pi * (0.5 - (y + 0.5) / height);
+      const Ray<double> ray = ray_through(camera, width, height, x, y);
+      expect_near(ray.direction,
+                  {std::cos(latitude) * std::sin(longitude), std::sin(latitude),
+                   -std::cos(latitude) * std::cos(longitude)},
+                  1e-14);
+      EXPECT_EQ(ray.origin, Vec3d(0, 0, 4));
+    }
+}
+
 TEST(CameraRays, PixelsBeyondThePictureAreInactive) {
   const auto rays = std::make_unique<RayBatch<float>>();
   const Standing standing = looking_at_origin();
@@ -198,6 +215,12 @@ TEST(Camera, RefusesWhatItCannotLookThrough) {
                                   std::string("{'camera': ") + camera + "}"));
   };
   EXPECT_EQ(problem("{'fov_degrees': 0}"), "/camera/fov_degrees");
+  EXPECT_EQ(problem("{'type': 'panorama', 'eye': [0, 0, 4], 'look_at': [0, 0, 0], 'aperture_radius': 0.1}"),
+            "/camera/aperture_radius");
+  EXPECT_EQ(problem("{'type': 'panorama', 'eye': [0, 0, 4], 'look_at': [0, 0, 0], 'aperture_radius': 0}"),
+            "accepted");
+  for (const char* blades : {"1", "2", "17", "-3"})
+    EXPECT_EQ(problem(("{'blades': " + std::string(blades) + "}").c_str()), "/camera/blades") << blades;
   EXPECT_EQ(problem("{'fov_degrees': 180}"), "/camera/fov_degrees");
   EXPECT_EQ(problem("{'eye': [1, 2, 3], 'look_at': [1, 2, 3]}"), "/camera/look_at");
   EXPECT_EQ(problem("{'eye': [0, 5, 0]}"), "/camera/up");

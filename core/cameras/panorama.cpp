@@ -1,0 +1,40 @@
+#include <numbers>
+
+#include "core/cameras/camera_of.h"
+#include "core/math/elementary.h"
+#include "core/params/params.h"
+
+namespace orrery {
+namespace {
+
+// Equirectangular: rows are latitudes, columns longitudes, evenly spaced. The height is half a turn, so that
+// a picture twice as wide as high holds every direction once; a wider one repeats them.
+class Panorama final : public CameraOf<Panorama> {
+ public:
+  const char* type() const override { return "panorama"; }
+  std::vector<Parameter> parameters() const override { return {}; }
+  bool parallel() const override { return false; }
+  bool all_around() const override { return true; }
+  // As angle, in radians.
+  double half_extent(double) const override { return std::numbers::pi / 2; }
+
+  template <class N>
+  Ray<N> ray(const CameraView<N>& view, const N& sx, const N& sy) const {
+    const N turns_per_radian(static_cast<ScalarOf<N>>(0.5 / std::numbers::pi));
+    const auto [sine, cosine] = sine_cosine_turns(N(sx * turns_per_radian));
+    const auto [lift, across] = sine_cosine_turns(N(sy * turns_per_radian));
+    const Vec3<N> level = view.forward * cosine + view.right * sine;
+    return {view.eye, normalize(level * across + view.up * lift)};
+  }
+};
+
+std::unique_ptr<Camera> read(Params&) { return std::make_unique<Panorama>(); }
+
+}  // namespace
+
+CameraType panorama_type() {
+  return {"panorama",
+          "All directions around one point: 360 degrees across and 180 high, in a picture of 2 to 1.", read};
+}
+
+}  // namespace orrery
