@@ -64,6 +64,7 @@ struct Plan {
   bool specular = true;      // mirrored and refracted rays
   bool filters = true;       // bodies weaken the light that crosses them
   bool lens = false;         // camera rays leave from a lens
+  bool filtered = false;     // samples lie as the filter that was asked for has them
   int reuse = 1;             // paths of a tile that share what their second vertices receive; a power of two
   bool constant_half = false;  // with parallel viewer and light, the half vector is computed once a batch
   int slice = 256;             // rays that pass through the stages together; changes no result

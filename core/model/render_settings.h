@@ -23,6 +23,14 @@ inline constexpr std::string_view name_of(Prediction prediction) {
   return kPredictions[static_cast<std::size_t>(prediction)];
 }
 
+// What the samples of a pixel are weighted by, and the names.
+enum class Filter { box, gaussian, blackman_harris, mitchell, lanczos };
+inline constexpr std::array<std::string_view, 5> kFilters{"box", "gaussian", "blackman-harris", "mitchell",
+                                                          "lanczos"};
+inline constexpr std::string_view name_of(Filter filter) {
+  return kFilters[static_cast<std::size_t>(filter)];
+}
+
 // Values of the render options, one member an option. The table in core/plan/options.h gives each its name,
 // range and default. A member without a value was not given.
 struct RenderSettings {
@@ -34,7 +42,9 @@ struct RenderSettings {
   std::optional<int> max_depth;
   std::optional<double> min_contribution;
   std::optional<int> samples;  // a pixel
-  std::optional<int> reuse;    // paths in a group
+  std::optional<Filter> filter;
+  std::optional<double> filter_width;  // pixels
+  std::optional<int> reuse;            // paths in a group
   std::optional<std::string> accelerator;
   std::optional<Precision> precision;
   std::optional<std::uint64_t> seed;

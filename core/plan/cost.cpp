@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/cameras/pixel_filter.h"
 #include "core/model/accelerator.h"
 #include "core/model/technique.h"
 
@@ -24,10 +25,7 @@ double expected_path_rays(const Plan& plan) {
   return double(plan.width) * plan.height * plan.samples * rays;
 }
 
-}  // namespace
-
-double expected_rays(const Scene& scene, const Plan& plan) {
-  if (plan.technique->interreflects) return expected_path_rays(plan);
+double expected_tree_rays(const Scene& scene, const Plan& plan) {
   const MaterialTraits& materials = scene.facts.materials;
   const bool branches = plan.specular && materials.mirrors && plan.technique->secondary_rays;
   const double children = materials.transmits ? 2 : 1;
@@ -46,6 +44,13 @@ double expected_rays(const Scene& scene, const Plan& plan) {
   const double lit = shadows ? (branches ? 1 - kSpecularShare : 1) : 0;
   const double camera_rays = double(plan.width) * plan.height * plan.samples;
   return camera_rays * tree * (1 + lit * static_cast<double>(scene.lights.size()));
+}
+
+}  // namespace
+
+double expected_rays(const Scene& scene, const Plan& plan) {
+  const double parts = plan.filtered && has_negative_lobes(*plan.asked.filter) ? 2 : 1;
+  return parts * (plan.technique->interreflects ? expected_path_rays(plan) : expected_tree_rays(scene, plan));
 }
 
 double ray_weight(const Scene& scene, const Plan& plan) {

@@ -62,7 +62,7 @@ struct RenderOption {
     Names (*names)();
   };
   using Kind = std::variant<Integer<int>, Integer<std::uint64_t>, Number, Flag, Point, Name,
-                            Enumeration<Precision>, Enumeration<Prediction>, NameList>;
+                            Enumeration<Precision>, Enumeration<Prediction>, Enumeration<Filter>, NameList>;
 
   std::string_view key;  // the name: in JSON, in queries and, with hyphens after --, on command lines
   std::string_view short_name = {};  // also allowed in queries and on command lines; empty: none

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/accelerators/registry.h"
+#include "core/cameras/pixel_filter.h"
 #include "core/channels/registry.h"
 #include "core/plan/options.h"
 #include "core/plan/rounding.h"
@@ -38,6 +39,7 @@ class Planner {
       decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
     }
     open_shutter();
+    choose_filter();
     choose_precision();
     choose_accelerator();
     choose_order();
@@ -87,6 +89,17 @@ class Planner {
     decide("shutter", "open for " + seconds(asked),
            all_at_once ? "the only sample is taken in the middle of it; more are spread over it"
                        : "each sample is taken at a time of its own");
+  }
+
+  void choose_filter() {
+    const Filter filter = *plan_.asked.filter;
+    if (!moves_samples(filter, *plan_.asked.filter_width)) return;
+    plan_.filtered = plan_.samples > 1 || plan_.technique->interreflects;
+    if (plan_.filtered)
+      decide("filter", std::string(name_of(filter)),
+             has_negative_lobes(filter) ? "as asked; what it takes away has samples of its own" : "as asked");
+    else
+      decide("filter", "absent", "the only sample is taken in the pixel's middle");
   }
 
   void take_camera() {

@@ -33,6 +33,9 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
       places_samples_(plan.samples > 1 || plan.technique->interreflects),
       tracer_(make_tracer(*plan.technique, world, plan)) {
   sums_.channels.resize(plan.channels.size());
+  if (!plan.filtered) return;
+  filter_.emplace(*plan.asked.filter, *plan.asked.filter_width);
+  if (filter_->negative() > 0) taken_away_ = std::make_unique<TraceResult<T>>();
 }
 
 template <class T>
@@ -60,16 +63,37 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
 
 template <class T>
 bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& checkpoint) {
-  const Draws draws(plan_.seed, tile, sample);
-  if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, samples_);
-  send_rays(tile, samples_, draws, SampleSet::lens);
   const std::uint64_t cut_before = stats_.counts.cut_rays;
-  if (!tracer_->trace(rays_, draws, result_, stats_.counts, checkpoint)) return false;
-  look(tile, sample);
+  if (!trace_part(tile, sample, PixelFilter::Part::positive, result_, checkpoint)) return false;
+  if (taken_away_) {
+    if (!trace_part(tile, sample, PixelFilter::Part::negative, *taken_away_, checkpoint)) return false;
+    take_away();
+  }
   if (stats_.counts.cut_rays == cut_before) return true;
   cut_.resize(kBatch);
   for (std::size_t i = 0; i < kBatch; ++i) cut_[i] += static_cast<double>(result_.cut.values[i]);
   return true;
+}
+
+template <class T>
+bool TileRenderer<T>::trace_part(const TileView& tile, int sample, PixelFilter::Part part,
+                                 TraceResult<T>& into, const Checkpoint& checkpoint) {
+  const Draws draws(plan_.seed, tile, sample);
+  if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, part, samples_);
+  send_rays(tile, samples_, draws, SampleSet::lens);
+  if (!tracer_->trace(rays_, draws, into, stats_.counts, checkpoint)) return false;
+  look(tile, sample, part, into);
+  return true;
+}
+
+template <class T>
+void TileRenderer<T>::take_away() {
+  using N = Lanes<T>;
+  const N more(static_cast<T>(filter_->positive())), less(static_cast<T>(filter_->negative()));
+  for (int i = 0; i < kBatch; i += kWidth<T>) {
+    result_.radiance.put(i, result_.radiance.at(i) * more - taken_away_->radiance.at(i) * less);
+    result_.cut.put(i, result_.cut.at(i) * more + taken_away_->cut.at(i) * less);
+  }
 }
 
 template <class T>
@@ -93,8 +117,9 @@ void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   stats_.non_finite_pixels += film.put(tile, means_);
 }
 
-// Many looks where what is seen through two opposite corners of the tile's pixels differs, else one. That
-// does not depend on anything random, so that the number of looks is independent of what they find.
+// Many looks where what is seen through two opposite corners of the tile's pixels differs, or of what the
+// filter covers about them, else one. That does not depend on anything random, so that the number of looks is
+// independent of what they find.
 template <class T>
 void TileRenderer<T>::begin_looks(const TileView& tile) {
   looks_ = 0;
@@ -103,14 +128,16 @@ void TileRenderer<T>::begin_looks(const TileView& tile) {
   const Groups all = Groups::covering(0, kBatch, kWidth<T>);
   Vec3<T> first;
   bool differs = false;
-  for (const float corner : {0.0f, 1.0f - 0x1p-24f}) {
+  const float reach = filter_ ? filter_->half_width() : 0.5f;
+  const std::array<float, 2> corners{0.5f - reach, filter_ ? 0.5f + reach : 1.0f - 0x1p-24f};
+  for (const float corner : corners) {
     look_samples_.u.values.fill(corner);
     look_samples_.v.values.fill(corner);
     plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
     if (plan_.shutter > 0) put_middle_time(rays_);
     for (const int i : all) result_.radiance.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
     tracer_->look(rays_, T(1), result_, stats_.counts);
-    if (corner == 0) first = result_.radiance[0];
+    if (corner == corners[0]) first = result_.radiance[0];
     for (int slot = 0; slot < kBatch; ++slot)
       differs = differs || (rays_.t_max[slot] > 0 && result_.radiance[slot] != first);
   }
@@ -118,11 +145,11 @@ void TileRenderer<T>::begin_looks(const TileView& tile) {
 }
 
 template <class T>
-void TileRenderer<T>::look(const TileView& tile, int sample) {
+void TileRenderer<T>::look(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into) {
   for (int i = looks_ * sample; i < looks_ * (sample + 1); ++i) {
-    place_samples(static_cast<std::uint32_t>(i), look_streams_, look_samples_);
+    place_samples(static_cast<std::uint32_t>(i), look_streams_, part, look_samples_);
     send_rays(tile, look_samples_, Draws(plan_.seed, tile, i), SampleSet::look_lens);
-    tracer_->look(rays_, T(1) / static_cast<T>(looks_), result_, stats_.counts);
+    tracer_->look(rays_, T(1) / static_cast<T>(looks_), into, stats_.counts);
   }
 }
 
@@ -136,13 +163,14 @@ void TileRenderer<T>::find_streams(const TileView& tile, SampleSet set, Array<st
 
 template <class T>
 void TileRenderer<T>::place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams,
-                                    TileSamples& to) {
+                                    PixelFilter::Part part, TileSamples& to) const {
   using Bits = Draws::Bits<float>;
   for (int slot = 0; slot < kBatch; slot += kWidth<float>) {
     const auto point = scrambled_point(Bits(sample), Bits(&streams[slot], stdx::vector_aligned));
     to.u.put(slot, point.u);
     to.v.put(slot, point.v);
   }
+  if (filter_) filter_->place(part, to);
 }
 
 template <class T>

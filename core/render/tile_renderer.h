@@ -1,5 +1,9 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+
+#include "core/cameras/pixel_filter.h"
 #include "core/model/technique.h"
 #include "core/render/backend.h"
 
@@ -21,13 +25,19 @@ class TileRenderer {
  private:
   // Traces one sample of every pixel. False once the work is to end.
   bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
+  // Of what a part of the pixel's filter sees.
+  bool trace_part(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into,
+                  const Checkpoint& checkpoint);
+  // Puts the parts together.
+  void take_away();
   // Camera rays through these places, from the lens and at times that are drawn from `set`.
   void send_rays(const TileView& tile, const TileSamples& samples, const Draws& draws, SampleSet set);
   // Has the tracer look elsewhere within the pixels.
   void begin_looks(const TileView& tile);
-  void look(const TileView& tile, int sample);
+  void look(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into);
   void find_streams(const TileView& tile, SampleSet set, Array<std::uint32_t>& streams);
-  void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, TileSamples& to);
+  void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, PixelFilter::Part part,
+                     TileSamples& to) const;
   void add_sample();
   void add_cut(const TileView& tile);
   void add_error(const TileView& tile);
@@ -43,6 +53,8 @@ class TileRenderer {
   int looks_ = 0;  // of this tile, a sample
   RayBatch<T> rays_;
   TraceResult<T> result_;
+  std::optional<PixelFilter> filter_;           // none: samples lie in their pixels evenly
+  std::unique_ptr<TraceResult<T>> taken_away_;  // by its negative lobes; null if it has none
   TileSums sums_;
   std::array<TileSums::Plane, 3> first_half_;  // of the radiance, after half of the samples
   TileMeans means_;

@@ -22,7 +22,7 @@ Json revealing_scene() {
       {'type': 'plane', 'point': [0, 0, -2], 'normal': [0, 0, 1], 'material': 'chalk'},
       {'type': 'box', 'min': [-1.5, -0.8, -1], 'max': [-0.6, 0.3, 0.2], 'material': 'mirror'}])",
                   R"({'image': {'width': 32, 'height': 24},
-      'render': {'samples': 4},
+      'render': {'samples': 4, 'filter': 'gaussian'},
       'camera': {'eye': [0.3, 0.5, 4]},
       'background': [0.2, 0.3, 0.4],
       'ambient': [0.2, 0.2, 0.3],
