@@ -1,6 +1,6 @@
 // Mistakes of path tracing, as faults.mjs has them: fault 26 draws light or directions wrongly, 27 shares paths wrongly,
-// 28 tells another error than the picture has, 29 scatters
-// other light at a surface than arrives.
+// 28 tells another error than the picture has, 29 scatters other light at a surface than arrives, 30 opens the shutter, the
+// lens or a pixel's filter wrongly.
 
 const entry = (fault, about, file, from, to, target, ...tests) => ({ fault, about, file, from, to, target, tests });
 
@@ -49,4 +49,20 @@ export const lightFaults = [
         "left(seen)", "test_materials", "MetallicRoughness.CreatesNoEnergy", "Materials/Scattering.IsTheSame*/MetallicRoughness"),
   entry(29, "a sheet sends through what it should send back", "core/materials/translucent.cpp",
         "select(through, sheet.transmittance, sheet.reflectance)", "sheet.reflectance", "test_materials", "Translucent.*"),
+  entry(30, "rays forget their time after the first hit", "core/techniques/wavefront.cpp", "time_[static_cast<int>(paths.slot[i])]",
+        "T(paths.depth > 0 ? 0 : time_[static_cast<int>(paths.slot[i])])", "test_render", "Shutter.AMovingLamp*"),
+  entry(30, "shadows are of the opening", "core/stages/shadowed_light.cpp", "shadow.time.put(i, paths.rays.time.at(i))",
+        "shadow.time.put(i, N(T(0)))", "test_render", "Shutter.Shadows*", "Shutter.IsTheMean*"),
+  entry(30, "boxes hold ends, not arcs", "core/accelerators/moving_instances.cpp", "const Vec3d pad(std::min(off, 2 * reach));",
+        "const Vec3d pad(0 * off);", "test_accelerators", "MovingDuringAnExposure.BoxesHoldArcs"),
+  entry(30, "a key within the exposure is passed over", "core/math/keys.h", "if (time > exposure.opens && time < exposure.closes) all.push_back(time);",
+        "(void)time;", "test_accelerators", "MovingDuringAnExposure.StandsWhere*"),
+  entry(30, "times do not change with the sample", "core/model/draws.h", "stratified_third(sample_,", "stratified_third(0u * sample_,", "test_render",
+        "Shutter.AMovingSquare*"),
+  entry(30, "points of a polygon crowd its middle", "core/cameras/thin_lens.h", "outward = sqrt(N(place - left))", "outward = N(place - left)",
+        "test_cameras", "Blades/Lens.*"),
+  entry(30, "negative lobes count as positive", "core/render/tile_renderer.cpp", "result_.radiance.at(i) * more - taken_away_",
+        "result_.radiance.at(i) * more + taken_away_", "test_render", "Filters.*"),
+  entry(30, "a panorama's rows are even in height", "core/cameras/panorama.cpp", "level * across + view.up * lift", "level + view.up * lift",
+        "test_cameras", "CameraRays.OfAPanorama*"),
 ];

@@ -12,7 +12,7 @@ export const optionFaults = [
   options(23, "an option that changes pixels is not in the key",
           '.help = "Seed of all random choices."}', '.help = "Seed of all random choices.",\n      .changes_pixels = false}',
           "test_app", "RenderOptions.AreInTheKeyIfTheyChangePixels"),
-  options(23, "the same moment of the motion has several keys", "all.time = scene.motion.moment(*all.time);", "",
+  options(23, "the same moment of the motion has several keys", "all.time = scene.motion.moment(*all.time, *all.shutter);", "",
           "test_app", "RenderOptions.ThatSayWhatTheSceneSays*"),
   options(24, "the scene's own settings come before the request's", "if (!option.given(all)) option.copy(otherwise, all);",
           "if (option.given(otherwise)) option.copy(otherwise, all);", "test_plan", "RenderOptions.OfARequestComeBefore*"),

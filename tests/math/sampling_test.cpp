@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -64,6 +67,34 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Stratification,
                                          Sequence{16, shuffled}, Sequence{64, shuffled},
                                          Sequence{4096, shuffled}));
 
+// Three dimensions of one stream: in every aligned block of 2^m samples the third alone has one number in
+// each interval, and together two points are in each box of volume 2^(1-m).
+TEST(Sampling, AThirdDimensionIsStratifiedWithTheOthers) {
+  test::covers("light-1");
+  constexpr std::uint32_t kCount = 64;
+  for (std::uint32_t stream = 0; stream < 32; ++stream)
+    for (std::uint32_t block = 0; block < 4; ++block)
+      for (std::uint32_t across = 1; across <= kCount / 2; across *= 2)
+        for (std::uint32_t down = 1; across * down <= kCount / 2; down *= 2) {
+          const std::uint32_t deep = kCount / 2 / across / down;
+          std::map<std::array<std::uint32_t, 3>, int> boxes;
+          std::set<std::uint32_t> alone;
+          for (std::uint32_t i = block * kCount; i < (block + 1) * kCount; ++i) {
+            const auto p = stratified_point(i, mix_bits(stream));
+            const float third = stratified_third(i, mix_bits(stream));
+            const auto cell = [](float x, std::uint32_t n) {
+              return static_cast<std::uint32_t>(x * static_cast<float>(n));
+            };
+            ++boxes[{cell(p.u, across), cell(p.v, down), cell(third, deep)}];
+            alone.insert(cell(third, kCount));
+          }
+          EXPECT_EQ(boxes.size(), kCount / 2);
+          EXPECT_TRUE(
+              std::all_of(boxes.begin(), boxes.end(), [](const auto& box) { return box.second == 2; }));
+          EXPECT_EQ(alone.size(), kCount);
+        }
+}
+
 TEST(Sampling, RandomBitsNeverReachOne) {
   test::covers("A33");
   for (std::uint32_t below = 0; below < 256; ++below) {
@@ -96,6 +127,8 @@ TEST(Sampling, LanesAreNumbers) {
       const auto alone = stratified_point(sample, static_cast<std::uint32_t>(streams[lane]));
       EXPECT_EQ(points.u[lane], alone.u);
       EXPECT_EQ(points.v[lane], alone.v);
+      EXPECT_EQ(stratified_third(sample, streams)[lane],
+                stratified_third(sample, static_cast<std::uint32_t>(streams[lane])));
     }
   }
 }
