@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Writes sky.hdr beside itself: an evening sky of 128 x 64 texels (equirectangular, Radiance HDR, flat RGBE) with
-// a sun, a band of cloud and dark ground.
+// Writes two evening skies beside itself, each 128 x 64 texels (equirectangular, Radiance HDR, flat RGBE) with a band of
+// cloud and dark ground: sky.hdr with a sun, dusk.hdr without.
 
 import {writeFileSync} from "node:fs";
 
@@ -13,7 +13,7 @@ const smooth = (from, to, x) => {
   return t * t * (3 - 2 * t);
 };
 
-function radiance(column, row) {
+function radiance(column, row, sun) {
   const down = (row + 0.5) / kHeight * Math.PI, turn = ((column + 0.5) / kWidth - 0.5) * 2 * Math.PI;
   const direction = [Math.sin(down) * Math.sin(turn), Math.cos(down), -Math.sin(down) * Math.cos(turn)];
   const [, height] = direction;
@@ -25,7 +25,7 @@ function radiance(column, row) {
   const cloud = smooth(0.55, 0.95, 0.5 + 0.5 * Math.sin(3 * turn + 5 * Math.sin(9 * height) + 1)) *
     smooth(0.16, 0.26, height) * smooth(0.5, 0.34, height);
   sky = mix(sky, [1.1, 0.72, 0.62], 0.6 * cloud);
-  return near > Math.cos(0.1) ? [150, 104, 56] : sky;
+  return sun && near > Math.cos(0.1) ? [150, 104, 56] : sky;
 }
 
 // Shared exponent: the largest channel has a mantissa of 128..255.
@@ -34,8 +34,10 @@ function rgbe(color) {
   return [...color.map((value) => Math.min(255, Math.floor(value * 2 ** (8 - exponent)))), exponent + 128];
 }
 
-const texels = [];
-for (let row = 0; row < kHeight; ++row)
-  for (let column = 0; column < kWidth; ++column) texels.push(...rgbe(radiance(column, row)));
 const header = `#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${kHeight} +X ${kWidth}\n`;
-writeFileSync(new URL("sky.hdr", import.meta.url), Buffer.concat([Buffer.from(header), Buffer.from(texels)]));
+for (const [name, sun] of [["sky.hdr", true], ["dusk.hdr", false]]) {
+  const texels = [];
+  for (let row = 0; row < kHeight; ++row)
+    for (let column = 0; column < kWidth; ++column) texels.push(...rgbe(radiance(column, row, sun)));
+  writeFileSync(new URL(name, import.meta.url), Buffer.concat([Buffer.from(header), Buffer.from(texels)]));
+}

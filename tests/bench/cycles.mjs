@@ -1,4 +1,4 @@
-// Cycles beside ours on the Cornell box: CPU time to the same error, by pictures that differ in the seed alone. Both are
+// Cycles beside ours: CPU time to the same error, by pictures that differ in the seed alone. Both are
 // unbiased, so that half the mean squared difference of two such pictures is the mean squared error of one; that they
 // are is printed too.
 
@@ -11,7 +11,11 @@ import { median, show_progress } from "./measure.mjs";
 import { block_means, mean_product } from "./picture.mjs";
 import { start_renderers } from "./renderers.mjs";
 
-const kScene = "scenes/cornell-box.json", kBounces = 8;
+const kScenes = [
+  { name: "cornell", title: "the Cornell box", file: "scenes/cornell-box.json" },
+  { name: "stones", title: "glass, metal and chalk under a picture of a sky", file: "scenes/image-sky/stones.json" },
+];
+const kBounces = 8;
 const kSize = 512, kPairs = 2, kLeastSamples = 4, kMostSamples = 256;
 const kBlocks = [1, 4, 32]; // sides in pixels: what smoothing or spreading errors does shows beyond one pixel
 const kTargets = [0.02, 0.01, 0.005], kReach = 3, kAim = 6; // root mean squared errors of a pixel
@@ -108,7 +112,7 @@ function print_errors(rows, pairs) {
 }
 
 // CPU seconds to the error `target / side` of blocks of that side, which independent pixels reach as soon as `target`.
-function ratio_row(pairs, rows, block, target) {
+function ratio_row(scene, pairs, rows, block, target) {
   const side = kBlocks[block], error = target / side;
   const seconds = Object.fromEntries(
     kRenderers.map((one) => [one, pairs.map((pair) => fit(pair[one].rows, block).seconds(error))]),
@@ -120,8 +124,8 @@ function ratio_row(pairs, rows, block, target) {
   });
   const where = side === 1 ? "a pixel" : `means of ${block_name(side)} pixels`;
   return {
-    name: `cycles-cornell-${target}${side === 1 ? "" : `-${block_name(side)}`}`,
-    what: `the Cornell box to a root mean squared error of ${error} in ${where}`,
+    name: `cycles-${scene.name}-${target}${side === 1 ? "" : `-${block_name(side)}`}`,
+    what: `${scene.title} to a root mean squared error of ${error} in ${where}`,
     cost: "CPU s",
     ratio: median(ratios),
     ratio_min: Math.min(...ratios),
@@ -148,7 +152,7 @@ function print_ratios(ratios) {
   console.log(`reach ${kReach}, aim ${kAim} each; blocks: to that error divided by their side`);
 }
 
-function draw(file, rows, size) {
+function draw(file, scene, rows, size) {
   const panels = kBlocks.map((side, block) => ({
     title: side === 1 ? "one pixel" : `means of ${block_name(side)} pixels`,
     x: "CPU seconds",
@@ -162,13 +166,13 @@ function draw(file, rows, size) {
       })),
     })),
   }));
-  const title = "The Cornell box: error against CPU time";
+  const title = `${scene.title[0].toUpperCase()}${scene.title.slice(1)}: error against CPU time`;
   const note = `${size}x${size}, ${kBounces} bounces, box filter, nothing clamped; further left and down is better`;
   writeFileSync(file, chart({ title, note, panels, columns: panels.length, names: kRenderers.map((one) => kNames[one]) }));
 }
 
-async function measure(pair_count, counts, size) {
-  const renderers = start_renderers(kScene, size), pairs = [], defaults = [];
+async function measure(scene, pair_count, counts, size) {
+  const renderers = start_renderers(scene.file, size), pairs = [], defaults = [];
   try {
     await two_of_each(renderers, { samples: 1, bounces: kBounces }, [1, 2]); // the first runs do not count
     for (let pair = 0; pair < pair_count; ++pair) {
@@ -189,32 +193,36 @@ function counts_to(most) {
   return counts;
 }
 
-async function compare_errors({ seeds = kPairs, samples = kMostSamples, size = kSize, charts }) {
+async function compare_errors(scene, { seeds = kPairs, samples = kMostSamples, size = kSize, charts }) {
   const counts = counts_to(samples);
   if (size % Math.max(...kBlocks) !== 0) throw new Error(`--size expects a multiple of ${Math.max(...kBlocks)}`);
-  const { pairs, defaults } = await measure(seeds, counts, size);
+  const { pairs, defaults } = await measure(scene, seeds, counts, size);
   const rows = { ours: pooled(pairs, "ours"), theirs: pooled(pairs, "theirs") };
-  console.log(`\nthe Cornell box, ${size}x${size}, ${kBounces} bounces, two threads: root mean squared error of linear R,`);
+  console.log(`\n${scene.title}, ${size}x${size}, ${kBounces} bounces, two threads: root mean squared error of linear R,`);
   console.log(`G and B, by pixel and by means of blocks; pairs of seeds: ${pairs.length}`);
   print_errors(rows, pairs);
-  const ratios = kBlocks.flatMap((_, block) => kTargets.map((target) => ratio_row(pairs, rows, block, target)));
+  const ratios = kBlocks.flatMap((_, block) => kTargets.map((target) => ratio_row(scene, pairs, rows, block, target)));
   print_ratios(ratios);
   const found = agreement(pairs, kBlocks);
   print_agreement(found, kBlocks.map(block_name));
   print_defaults(defaults, counts.at(-1), found, rows.theirs.at(-1));
   mkdirSync(charts, { recursive: true });
-  draw(`${charts}/cycles.svg`, rows, size);
-  console.log(`chart: ${charts}/cycles.svg`);
+  const chart_file = `${charts}/cycles-${scene.name}.svg`;
+  draw(chart_file, scene, rows, size);
+  console.log(`chart: ${chart_file}`);
   return ratios;
 }
 
 export const kCycles = {
   name: "cycles",
-  what: "CPU time to the same error of the Cornell box beside Cycles (Blender 3.4), and whether the two agree",
+  what: "CPU time to the same error beside Cycles (Blender 3.4), and whether the two agree",
   needs: ["blender", kOrrery],
   async run(options) {
     try {
-      return options.bounces ? await compare_path_lengths(kScene, options) : await compare_errors(options);
+      if (options.bounces) return await compare_path_lengths(kScenes[0].file, options);
+      const rows = [];
+      for (const scene of kScenes) rows.push(...(await compare_errors(scene, options)));
+      return rows;
     } catch (error) {
       console.log(`cycles failed: ${error.message}`);
       process.exitCode = 1;

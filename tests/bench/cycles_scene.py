@@ -1,15 +1,25 @@
-# Renders one of our scenes with Blender's Cycles, run by `blender -b --factory-startup -P FILE -- SCENE`. Meshes,
-# parallelograms, Lambert's surfaces and those that emit are all it knows. Each line of input is an order in JSON:
+# Renders one of our scenes with Blender's Cycles, run by `blender -b --factory-startup -P FILE -- SCENE`. It knows meshes,
+# parallelograms, an environment that is a picture, Lambert's surfaces, those that emit, smooth glass and metal that
+# reflects all light. Each line of input is an order in JSON:
 # samples, seed, bounces, size in pixels, threads, preset ("fair" or "defaults") and out, a file that ends with .exr. It
 # is answered by a line "rendered SECONDS": CPU time of all threads, scene conversion and writing included.
 
 import json
 import math
+import os
 import resource
 import sys
 
 import bpy
 import mathutils
+
+SHADERS = {
+    "emission": "ShaderNodeEmission",
+    "rough": "ShaderNodeBsdfDiffuse",
+    "lambert": "ShaderNodeBsdfDiffuse",
+    "metal": "ShaderNodeBsdfGlossy",
+    "glass": "ShaderNodeBsdfGlass",
+}
 
 
 def material_of(name, record):
@@ -17,14 +27,21 @@ def material_of(name, record):
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
+    shader = nodes.new(SHADERS["emission" if "emission" in record else record["type"]])
+    color = (1, 1, 1)
     if "emission" in record:
-        shader = nodes.new("ShaderNodeEmission")
         shader.inputs["Strength"].default_value = 1
         color = record["emission"]
+    elif record["type"] == "glass":
+        shader.distribution = "SHARP"
+        shader.inputs["IOR"].default_value = record["ior"]
+    elif record["type"] == "metal":
+        assert min(record["k"]) >= 1000
+        shader.distribution = "MULTI_GGX"
+        shader.inputs["Roughness"].default_value = record["roughness"]
     else:
-        shader = nodes.new("ShaderNodeBsdfDiffuse")
         shader.inputs["Roughness"].default_value = 0
-        color = record["kd"]
+        color = record["kd"] if "kd" in record else record["reflectance"]
     shader.inputs["Color"].default_value = (*color, 1)
     links.new(shader.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
     return material
@@ -52,7 +69,7 @@ def add_camera(scene, record):
     scene.camera = placed
 
 
-def convert(record):
+def convert(record, folder):
     scene = bpy.context.scene
     for placed in list(bpy.data.objects):
         bpy.data.objects.remove(placed)
@@ -67,7 +84,23 @@ def convert(record):
     scene.world = bpy.data.worlds.new("world")
     scene.world.use_nodes = True
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0, 0, 0, 1)
+    if "environment" in record:
+        surround(scene.world.node_tree, record["environment"], folder)
     return scene
+
+
+# Cycles has the middle of the picture toward +x and its top toward +z, we have them toward -z and +y.
+def surround(tree, record, folder):
+    nodes, links = tree.nodes, tree.links
+    picture = nodes.new("ShaderNodeTexEnvironment")
+    picture.image = bpy.data.images.load(os.path.join(folder, record["file"]))
+    mapping = nodes.new("ShaderNodeMapping")
+    turn = mathutils.Matrix.Rotation(math.radians(-record.get("rotation_degrees", 0)), 3, "Y")
+    axes = mathutils.Matrix(((0, 0, -1), (-1, 0, 0), (0, 1, 0)))
+    mapping.inputs["Rotation"].default_value = (axes @ turn).to_euler("XYZ")
+    links.new(nodes.new("ShaderNodeTexCoord").outputs["Generated"], mapping.inputs["Vector"])
+    links.new(mapping.outputs["Vector"], picture.inputs["Vector"])
+    links.new(picture.outputs["Color"], nodes["Background"].inputs["Color"])
 
 
 # "fair" is unbiased: nothing clamped, no light left out, no pixel stopped for its own noise. And it begins with sample
@@ -111,8 +144,9 @@ def render(scene, order):
 
 
 def main():
-    with open(sys.argv[sys.argv.index("--") + 1], encoding="utf-8") as file:
-        scene = convert(json.load(file))
+    path = os.path.abspath(sys.argv[sys.argv.index("--") + 1])
+    with open(path, encoding="utf-8") as file:
+        scene = convert(json.load(file), os.path.dirname(path))
     for line in sys.stdin:
         print("\nrendered", render(scene, json.loads(line)), flush=True)
 
