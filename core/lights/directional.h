@@ -19,6 +19,8 @@ struct Directional {
   static constexpr LightTraits kTraits = {.delta = false, .parallel = true};
   static Directional<double> read(Params& p);
 
+  LightBounds bounds() const { return {.strength = max_component(intensity), .parallel = true}; }
+
   Arrival<N> arrive(const Vec3<N>&) const { return {from, N(std::numeric_limits<T>::infinity()), intensity}; }
 
   MaskOf<N> extended() const { return height > N(T(0)); }

@@ -1,5 +1,6 @@
 #include "core/lights/emitters.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/math/bounds.h"
@@ -102,7 +103,33 @@ Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance) {
   return e;
 }
 
-double power_of(const Emitter<double>& emitter) { return emitter.area * max_component(emitter.radiance); }
+LightBounds bounds_of(const Emitter<double>& e) {
+  using orrery::length;
+  LightBounds bounds{.centre = e.at, .radius = e.length_a, .normal = e.normal};
+  double seen_area = e.area;
+  switch (static_cast<Patch::Kind>(e.kind)) {
+    case Patch::Kind::rectangle: {
+      const Vec3d a = e.a * e.length_a, b = e.b * e.length_b;
+      bounds.centre = e.at + (a + b) * 0.5;
+      bounds.radius = std::max(length(a + b), length(a - b)) / 2;
+      break;
+    }
+    case Patch::Kind::triangle: {
+      const Vec3d middle = (e.a + e.b) / 3.0;
+      bounds.centre = e.at + middle;
+      bounds.radius = std::max({length(middle), length(e.a - middle), length(e.b - middle)});
+      break;
+    }
+    case Patch::Kind::disk: bounds.radius = std::max(e.length_a, e.length_b); break;
+    case Patch::Kind::sphere:
+      bounds.normal = Vec3d(0);
+      seen_area /= 4;
+      break;
+  }
+  bounds.strength = 2 * max_component(e.radiance);
+  bounds.attenuation = {1, 0, 2 * std::numbers::pi / seen_area};
+  return bounds;
+}
 
 template <class T>
 LightKernelPtr<T> make_emitters(std::span<const Emitter<double>> emitters) {

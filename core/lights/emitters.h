@@ -13,7 +13,7 @@ Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance);
 template <class T>
 LightKernelPtr<T> make_emitters(std::span<const Emitter<double>> emitters);
 
-// Watts that one sends out, per pi, in its brightest channel.
-double power_of(const Emitter<double>& emitter);
+// What is seen of it from near is taken for a hemisphere full of its radiance, and from far for its area.
+LightBounds bounds_of(const Emitter<double>& emitter);
 
 }  // namespace orrery

@@ -11,6 +11,7 @@
 //   static Point<double> read(Params&);                in the .cpp, which registers the type
 //   Vec3<N> intensity;                                 at the source, or whole_intensity(), likewise
 //   RoundingLimit rounding() const;                    of a Point<double>, if it has one
+//   LightBounds bounds() const;                        of a Point<double>
 //   Arrival<N> arrive(const Vec3<N>& position) const;  what arrives at a surface point
 // and, if it may have an extent that paths see,
 //   MaskOf<N> extended() const;                        whether it has
@@ -104,6 +105,7 @@ class RecordLightSet final : public LightSet {
     else
       return record.intensity;
   }
+  LightBounds bounds(int index) const override { return records_[static_cast<std::size_t>(index)].bounds(); }
   RoundingLimit rounding(int index) const override {
     const Record<double>& record = records_[static_cast<std::size_t>(index)];
     if constexpr (requires { record.rounding(); })

@@ -20,6 +20,14 @@ struct Line {
 
   Vec3<N> whole_intensity() const { return intensity * extent; }
 
+  // Of the whole power from its middle, bounded by what arrives half its length away.
+  LightBounds bounds() const {
+    return {.centre = start + along * (extent / 2),
+            .radius = extent / 2,
+            .strength = max_component(intensity) * (4 / (kPi * extent)),
+            .attenuation = {1, 0, 4 / (extent * extent)}};
+  }
+
   // Of the whole power from its middle.
   Arrival<N> arrive(const Vec3<N>& position) const {
     const Vec3<N> line = start + along * (extent * T(0.5)) - position;

@@ -15,6 +15,12 @@ struct PointLight {
   static constexpr LightTraits kTraits = {.delta = true};
   static PointLight<double> read(Params& p);
 
+  LightBounds bounds() const {
+    return {.centre = position,
+            .strength = max_component(intensity),
+            .attenuation = {attenuation.c0, attenuation.c1, attenuation.c2}};
+  }
+
   Arrival<N> arrive(const Vec3<N>& at) const {
     using T = ScalarOf<N>;
     const Vec3<N> toward = position - at;

@@ -19,6 +19,13 @@ struct Spot {
 
   RoundingLimit rounding() const;
 
+  // Of the cone's inside, everywhere.
+  LightBounds bounds() const {
+    return {.centre = position,
+            .strength = max_component(intensity),
+            .attenuation = {attenuation.c0, attenuation.c1, attenuation.c2}};
+  }
+
   Arrival<N> arrive(const Vec3<N>& at) const {
     using T = ScalarOf<N>;
     const N zero(T(0));

@@ -86,6 +86,19 @@ struct LightTraits {
   bool parallel = false;  // the same direction everywhere
 };
 
+// How much of a light reaches a point, roughly, unshadowed: by which lights are chosen. A white surface that
+// faces the light d metres from the centre, in front of it, reads strength * min(1, 1 / (c0 + c1 d + c2
+// d^2)). A light that reaches a point at all has no estimate of 0 there.
+struct LightBounds {
+  Vec3d centre{};
+  double radius = 0;  // metres; a sphere about the centre holds the light
+  // Unit normal of a flat light, which shines on both sides with the cosine; 0 of one that shines everywhere.
+  Vec3d normal{};
+  double strength = 0;         // in the brightest channel
+  Vec3d attenuation{1, 0, 0};  // c0, c1, c2
+  bool parallel = false;       // infinitely far away
+};
+
 class LightSet {
  public:
   virtual ~LightSet() = default;
@@ -93,6 +106,7 @@ class LightSet {
   virtual int size() const = 0;
   virtual LightTraits traits() const = 0;
   virtual Vec3d intensity(int index) const = 0;  // at the source, per channel
+  virtual LightBounds bounds(int index) const = 0;
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
   // Whether sample_each() draws from an extent of the light that sample() takes for one point or direction.
   virtual bool extended(int /*index*/) const { return false; }

@@ -10,6 +10,8 @@ namespace orrery {
 
 template <class T>
 struct ModelGeometry;
+template <class T>
+class LightTree;
 
 // A scene in one number type, as it stands at one moment. Immutable once made.
 template <class T>
@@ -29,9 +31,10 @@ struct Geometry {
   std::vector<Vec3<T>> emission;  // by material: see Scene; empty if nothing in the scene emits
   // Primitives that emit and that light can be drawn from, all in one kernel: null if there are none.
   LightKernelPtr<T> emitters;
-  LightKernelPtr<T> environment;       // its light 0; null: the background is the same everywhere
-  std::vector<double> emitter_powers;  // by number within the kernel
   std::vector<IndexOf<T>> emitter_of;  // of each primitive: its number there, or -1
+  // The lights of the scene, then the emitters: null if there are none.
+  std::shared_ptr<const LightTree<T>> light_tree;
+  LightKernelPtr<T> environment;  // its light 0; null: the background is the same everywhere
   std::vector<IndexOf<T>> material_of;
   PrimitiveList<T> primitives;
   Vec3<T> ambient, background;

@@ -6,6 +6,7 @@
 #include "core/accelerators/moving_instances.h"
 #include "core/base/work_scope.h"
 #include "core/lights/emitters.h"
+#include "core/stages/light_tree.h"
 
 namespace orrery {
 namespace {
@@ -119,10 +120,11 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
 }
 
 // Surfaces that emit. Those within instances are met by chance alone, and so are those that move during the
-// exposure.
+// exposure. Returns bounds of the others.
 template <class T>
-void add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry) {
-  if (!scene.facts.materials.emits) return;
+std::vector<LightBounds> add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry) {
+  std::vector<LightBounds> bounds;
+  if (!scene.facts.materials.emits) return bounds;
   for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
   std::vector<Emitter<double>> emitters;
   geometry.emitter_of.assign(geometry.material_of.size(), -1);
@@ -145,11 +147,21 @@ void add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geo
       const Emitter<double> emitter = make_emitter(*patch, radiance);
       if (!(emitter.area > 0)) continue;
       geometry.emitter_of[primitive] = static_cast<IndexOf<T>>(emitters.size());
-      geometry.emitter_powers.push_back(power_of(emitter));
+      bounds.push_back(bounds_of(emitter));
       emitters.push_back(emitter);
     }
   }
   if (!emitters.empty()) geometry.emitters = make_emitters<T>(emitters);
+  return bounds;
+}
+
+template <class T>
+void add_light_tree(const Scene& scene, const std::vector<LightBounds>& emitters, Geometry<T>& geometry) {
+  std::vector<LightBounds> lights;
+  for (const LightPlace& light : scene.lights)
+    lights.push_back(scene.light_sets[light.set]->bounds(light.index));
+  lights.insert(lights.end(), emitters.begin(), emitters.end());
+  if (!lights.empty()) geometry.light_tree = std::make_shared<LightTree<T>>(lights);
 }
 
 }  // namespace
@@ -187,7 +199,7 @@ std::shared_ptr<const Geometry<T>> make_geometry(std::shared_ptr<const Scene> sc
   for (const auto& lights : scene->light_sets)
     geometry->lights.push_back(lights->size() > 0 ? lights->kernel(T()) : nullptr);
   if (scene->environment) geometry->environment = scene->environment->kernel(T());
-  add_emitters(*scene, exposure, *geometry);
+  add_light_tree(*scene, add_emitters(*scene, exposure, *geometry), *geometry);
   geometry->scene = std::move(scene);
   return geometry;
 }

@@ -1,5 +1,6 @@
 #include "core/stages/beyond.h"
 
+#include "core/stages/light_tree.h"
 #include "core/stages/power_heuristic.h"
 
 namespace orrery {
@@ -21,8 +22,9 @@ void Beyond<T>::add(const RayBatch<T>& rays, const HitBatch<T>& hits, const Grou
     if (any(missed_lanes(hits, i))) missed.add(i);
   if (missed.empty()) return;
   const N zero(T(0)), one(T(1));
-  for (const auto& [kernel, choice] : sources_) {
-    kernel->beyond(rays, choice, missed, found_, by_light_);
+  for (const Source& source : sources_) {
+    source.kernel->beyond(rays, source.choice, missed, found_, by_light_);
+    if (by_lobe && source.tree) weigh_choice(source, rays, missed, *by_lobe);
     for (const int i : missed) {
       N weight = one;
       if (by_lobe) {
@@ -32,6 +34,18 @@ void Beyond<T>::add(const RayBatch<T>& rays, const HitBatch<T>& hits, const Grou
       radiance.put(i, missed_lanes(hits, i), radiance.at(i) + found_.at(i) * weight);
     }
   }
+}
+
+template <class T>
+void Beyond<T>::weigh_choice(const Source& source, const RayBatch<T>& rays, const Groups& missed,
+                             const Array<T>& by_lobe) {
+  const N zero(T(0));
+  for (const int i : missed)
+    for (unsigned bits = bits_of(MaskOf<N>(by_lobe.at(i) > zero && by_light_.at(i) > zero)); bits != 0;
+         bits &= bits - 1) {
+      const int lane = i + std::countr_zero(bits);
+      by_light_[lane] *= source.tree->probability(rays.origin[lane], source.number);
+    }
 }
 
 template class Beyond<float>;

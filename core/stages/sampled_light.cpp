@@ -1,68 +1,38 @@
 #include "core/stages/sampled_light.h"
 
-#include <algorithm>
-#include <cstdint>
 #include <numeric>
 
 #include "core/stages/emission.h"
+#include "core/stages/light_tree.h"
 #include "core/stages/power_heuristic.h"
 
 namespace orrery {
-namespace {
-
-constexpr std::uint32_t kRandomNumbers = 1u << 24;  // that a light is chosen by
-
-// Shares of `numbers` random numbers: one half evenly, so that no light is forgotten where it is near, and
-// one half by power. Returns the first number beyond each light's own.
-std::vector<std::uint32_t> ends_of(const std::vector<double>& powers, std::uint32_t numbers) {
-  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
-  const double even = 1 / static_cast<double>(powers.size());
-  std::vector<std::uint32_t> ends;
-  double end = 0;
-  for (const double power : powers) {
-    end += sum > 0 ? (even + power / sum) / 2 : even;
-    ends.push_back(static_cast<std::uint32_t>(std::min(1.0, end) * numbers + 0.5));
-  }
-  ends.back() = numbers;
-  return ends;
-}
-
-}  // namespace
-
 template <class T>
 SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator,
                               const Plan& plan)
-    : geometry_(geometry), shadowed_(geometry, accelerator, plan) {
+    : geometry_(geometry),
+      tree_(geometry.light_tree.get()),
+      first_emitter_(geometry.scene->lights.size()),
+      shadowed_(geometry, accelerator, plan) {
   const Scene& scene = *geometry.scene;
-  std::vector<double> powers;
-  for (const LightPlace& light : scene.lights)
-    powers.push_back(max_component(scene.light_sets[light.set]->intensity(light.index)));
-  first_emitter_ = powers.size();
-  powers.insert(powers.end(), geometry.emitter_powers.begin(), geometry.emitter_powers.end());
-  const bool environment = scene.environment && scene.environment->sampled();
-  add_sources(powers.size() + environment);
-  if (environment) for_environment_ = powers.empty() ? kRandomNumbers : kRandomNumbers / 2;
-  if (!powers.empty()) end_ = ends_of(powers, kRandomNumbers - for_environment_);
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : end_) {
-    probability_.push_back(static_cast<T>((end - begin) / double{kRandomNumbers}));
-    begin = end;
-  }
-  if (environment) probability_.push_back(static_cast<T>(for_environment_ / double{kRandomNumbers}));
-  if (geometry.environment) beyond_.see(*geometry.environment, {0, environment ? probability_.back() : T(0)});
+  environment_ = scene.environment && scene.environment->sampled();
+  count_ = (tree_ ? tree_->size() : 0) + environment_;
+  add_sources();
+  share_ = environment_ && tree_ ? T(0.5) : T(1);
+  if (geometry.environment) beyond_.see(*geometry.environment, {0, environment_ ? share_ : T(0)});
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const auto& [set, index] = scene.lights[i];
     const LightSet& lights = *scene.light_sets[set];
     if (lights.extended(index) && lights.traits().parallel)
-      beyond_.see(*geometry.lights[set], {index, probability_[i]});
+      beyond_.see(*geometry.lights[set], {index, share_}, tree_, i);
   }
 }
 
 template <class T>
-void SampledLight<T>::add_sources(std::size_t lights) {
+void SampledLight<T>::add_sources() {
   const Scene& scene = *geometry_.scene;
   const auto add = [&](const LightKernel<T>* kernel) -> std::vector<IndexOf<T>>& {
-    return sources_.emplace_back(Source{kernel, std::vector<IndexOf<T>>(lights, -1)}).index;
+    return sources_.emplace_back(Source{kernel, std::vector<IndexOf<T>>(count_, -1)}).index;
   };
   for (std::size_t set = 0; set < geometry_.lights.size(); ++set) {
     if (!geometry_.lights[set]) continue;
@@ -71,15 +41,18 @@ void SampledLight<T>::add_sources(std::size_t lights) {
       if (scene.lights[i].set == set) index[i] = scene.lights[i].index;
   }
   if (geometry_.emitters) {
-    const auto first = add(geometry_.emitters.get()).begin() + static_cast<std::ptrdiff_t>(first_emitter_);
-    std::iota(first, first + static_cast<std::ptrdiff_t>(geometry_.emitter_powers.size()), 0);
+    std::vector<IndexOf<T>>& index = add(geometry_.emitters.get());
+    std::iota(index.begin() + static_cast<std::ptrdiff_t>(first_emitter_),
+              index.begin() + static_cast<std::ptrdiff_t>(tree_->size()), 0);
   }
-  if (scene.environment && scene.environment->sampled()) add(geometry_.environment.get()).back() = 0;
+  if (environment_) add(geometry_.environment.get()).back() = 0;
 }
 
+// The second random number goes on where the first one ends: a light of many has a small probability.
 template <class T>
-void SampledLight<T>::choose(const PathDraws<T>& draws, const Groups& groups) {
-  if (probability_.size() == 1) {
+void SampledLight<T>::choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
+                             const Groups& groups) {
+  if (count_ == 1) {
     for (const int i : groups) {
       chosen_.put(i, IndexLanes<T>(IndexOf<T>{0}));
       choices_.probability.put(i, N(T(1)));
@@ -87,16 +60,18 @@ void SampledLight<T>::choose(const PathDraws<T>& draws, const Groups& groups) {
     return;
   }
   for (const int i : groups) {
-    const N u = draws.two(SampleSet::light_choice, i).u;
-    for (int lane = 0; lane < kWidth<T>; ++lane) {
-      const auto number =
-          static_cast<std::uint32_t>(double{u[static_cast<std::size_t>(lane)]} * kRandomNumbers);
-      const auto light =
-          number < for_environment_
-              ? std::ssize(end_)
-              : std::upper_bound(end_.begin(), end_.end(), number - for_environment_) - end_.begin();
-      chosen_[i + lane] = static_cast<IndexOf<T>>(light);
-      choices_.probability[i + lane] = probability_[static_cast<std::size_t>(light)];
+    const auto point = draws.two(SampleSet::light_choice, i);
+    std::array<double, LightTree<T>::kPoints> u, of_others;
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      u[k] = double{point.u[k]} + double{point.v[k]} * 0x1p-24;
+      of_others[k] = !environment_ ? u[k] : u[k] < 0.5 ? 0 : 2 * u[k] - 1;
+    }
+    const auto choices = tree_->choose(surface.position.at(i), of_others);
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      const bool other = !environment_ || u[k] >= 0.5;
+      const int lane = i + static_cast<int>(k);
+      chosen_[lane] = static_cast<IndexOf<T>>(other ? choices.light[k] : count_ - 1);
+      choices_.probability[lane] = (other ? choices.probability[k] : T(1)) * share_;
     }
   }
 }
@@ -105,8 +80,8 @@ template <class T>
 void SampledLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws,
                           const SurfaceBatch<T>& surface, const Groups& groups, Vec3Array<T>& radiance,
                           TraceCounts& counts) {
-  if (groups.empty() || probability_.empty()) return;
-  choose(draws, groups);
+  if (groups.empty() || count_ == 0) return;
+  choose(draws, surface, groups);
   for (const Source& source : sources_) {
     for (const int i : groups)
       for (int lane = i; lane < i + kWidth<T>; ++lane)
@@ -135,7 +110,7 @@ void SampledLight<T>::add_emission(const PathBatch<T>& paths, const HitBatch<T>&
     if (!any(emits)) continue;
     emitting.add(i);
     by_light_.put(i, zero);
-    if (paths.depth > 0 && geometry_.emitters) note_emitters(hits, i, emits);
+    if (paths.depth > 0 && geometry_.emitters) note_emitters(paths.rays, hits, i, emits);
   }
   if (paths.depth > 0 && geometry_.emitters)
     geometry_.emitters->pdf(paths.rays, hits, choices_, emitting, by_light_);
@@ -147,14 +122,16 @@ void SampledLight<T>::add_emission(const PathBatch<T>& paths, const HitBatch<T>&
 }
 
 template <class T>
-void SampledLight<T>::note_emitters(const HitBatch<T>& hits, int i, const MaskOf<N>& emits) {
+void SampledLight<T>::note_emitters(const RayBatch<T>& rays, const HitBatch<T>& hits, int i,
+                                    const MaskOf<N>& emits) {
   for (int lane = i; lane < i + kWidth<T>; ++lane) {
     const bool mine = emits[static_cast<std::size_t>(lane - i)];
     const IndexOf<T> number =
         mine ? geometry_.emitter_of[static_cast<std::size_t>(hits.primitive[lane])] : IndexOf<T>(-1);
     choices_.index[lane] = number;
-    choices_.probability[lane] =
-        number < 0 ? T(0) : probability_[first_emitter_ + static_cast<std::size_t>(number)];
+    if (number < 0) continue;
+    const std::size_t light = first_emitter_ + static_cast<std::size_t>(number);
+    choices_.probability[lane] = tree_->probability(rays.origin[lane], light) * share_;
   }
 }
 

@@ -39,21 +39,18 @@ class SampledLight {
     const LightKernel<T>* kernel;
     std::vector<IndexOf<T>> index;  // within the kernel, by number of the light; -1: of another kernel
   };
-  void add_sources(std::size_t lights);
-  void choose(const PathDraws<T>& draws, const Groups& groups);
+  void add_sources();
+  void choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface, const Groups& groups);
   // Whom the lanes of `emits` of register i hit, as choices_.
-  void note_emitters(const HitBatch<T>& hits, int i, const MaskOf<N>& emits);
+  void note_emitters(const RayBatch<T>& rays, const HitBatch<T>& hits, int i, const MaskOf<N>& emits);
 
   const Geometry<T>& geometry_;
   std::vector<Source> sources_;
-  // Lights are numbered: those of the scene, the emitters, the environment if light is drawn from it. By
-  // number: the probability.
-  std::vector<T> probability_;
-  // The environment is chosen apart, by the first of the 2^24 random numbers; by number of any other light,
-  // the first of the rest that is beyond its own.
-  std::uint32_t for_environment_ = 0;
-  std::vector<std::uint32_t> end_;
-  std::size_t first_emitter_ = 0;
+  // Lights are numbered: those of the scene, the emitters, the environment if light is drawn from it.
+  const LightTree<T>* tree_;  // of all but the environment; null: there are no others
+  std::size_t count_, first_emitter_;
+  bool environment_;  // chosen apart: always if there are no others, half of the time else
+  T share_;           // the probability of choosing it, and that of choosing the others
   Beyond<T> beyond_;
   Array<IndexOf<T>> chosen_;  // number of the light
   LightChoices<T> choices_;
