@@ -65,6 +65,52 @@ TEST(Path, IrradianceOfASphereAndADisk) {
   EXPECT_NEAR(disk.mean, 0.25 / (4 + 0.25), 4 * disk.error() + 1e-9);
 }
 
+// Balls that send out 1: the floor reads the sum of (radius / distance)^2 times the cosine.
+Json with_balls(Json scene, const std::vector<Vec3d>& from_point, const Vec3d& point,
+                double share_of_distance, double& irradiance) {
+  for (const Vec3d& centre : from_point) {
+    irradiance += share_of_distance * share_of_distance * centre.y / length(centre);
+    scene["objects"].push_back({{"type", "sphere"},
+                                {"center", numbers(point + centre)},
+                                {"radius", share_of_distance * length(centre)},
+                                {"material", "lamp"}});
+  }
+  return scene;
+}
+const Json kWhiteFloor = scene_of(
+    "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
+    "{'materials': {'white': {'kd': 1}, 'lamp': {'type': 'rough', 'kd': 0, 'emission': [1, 1, 1]}}}");
+
+// Large ones, which are met by chance as often as they are drawn, with small ones about another place.
+TEST(Path, LampsNearAndFarAreWeighedWhereTheyAreSeenFrom) {
+  covers("light-17");
+  const Vec3d point(3, 0, 2);
+  for (const int small : {0, 24}) {
+    double expected = 0;
+    Json scene =
+        with_balls(kWhiteFloor, {Vec3d(0.2, 2, 0), Vec3d(12, 12, 2), Vec3d(-7, 9, 4)}, point, 0.3, expected);
+    std::vector<Vec3d> others;
+    for (int i = 0; i < small; ++i) others.push_back(Vec3d(-3 - 0.05 * i, 0.1, 2.5 - 0.2 * i));
+    scene = with_balls(scene, others, point, 0.01, expected);
+    const Estimate found = estimate(scene, point + Vec3d(30, 0.05, 0), point, 1);
+    EXPECT_NEAR(found.mean / expected, 1, 4 * found.error() / expected) << small;
+    EXPECT_LT(found.sd / expected, 0.5) << small;
+  }
+}
+
+TEST(Path, ASunBesideALampIsAsBrightAsAlone) {
+  covers("light-17");
+  const Vec3d point(3, 0, 2);
+  double expected = 0.1 * std::cos(0.5);
+  Json scene = with_balls(kWhiteFloor, {Vec3d(-1, 1.5, 0)}, point, 0.4, expected);
+  scene["lights"] = Json::array({{{"type", "directional"},
+                                  {"from", {std::sin(0.5), std::cos(0.5), 0}},
+                                  {"intensity", {0.1, 0.1, 0.1}},
+                                  {"angle_degrees", 60}}});
+  const Estimate found = estimate(scene, point + Vec3d(30, 0.05, 0), point, 1);
+  EXPECT_NEAR(found.mean / expected, 1, 4 * found.error() / expected);
+}
+
 // A lamp that reflects, alone in the dark: nothing but itself could light it, and it is flat or seen from
 // outside.
 TEST(Path, ConvexLampsDoNotLightThemselves) {
@@ -85,9 +131,9 @@ TEST(Path, ConvexLampsDoNotLightThemselves) {
   }
 }
 
-// A square of 80,000 triangles, each of which is chosen once in 80,000 times.
+// A square of 100,352 triangles, of which each vertex of a path draws one.
 TEST(Path, ManyEmittersAreAsBrightAsOne) {
-  constexpr int kSide = 200;
+  constexpr int kSide = 224;
   Json positions = Json::array(), indices = Json::array();
   for (int y = 0; y <= kSide; ++y)
     for (int x = 0; x <= kSide; ++x)
