@@ -30,7 +30,7 @@ struct RenderStats {
   double trace_ms = 0;               // wall clock
   double cpu_ms = 0;                 // of tracing, on all threads together
   std::uint64_t non_finite_pixels = 0;
-  SampledError error;  // of an even number of samples that were traced together
+  SampledError error;  // of an even number of samples, of which at least the second half was traced together
 };
 
 // A scene and a settled plan, ready to render.

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <vector>
 
 #include "core/base/work_scope.h"
+#include "core/model/technique.h"
 #include "core/render/renderer.h"
 
 namespace orrery {
@@ -12,6 +14,26 @@ void require_memory(std::size_t bytes) {
   interruption_point();
 }
 
+// An empty film of the plan.
+Film make_film(const Plan& plan, FilmStorage storage) {
+  std::span<const ChannelType* const> channels;
+  if (storage == FilmStorage::sums) channels = plan.channels;
+  require_memory(Film::bytes(plan.width, plan.height, storage, channels));
+  return Film(plan.width, plan.height, storage, channels);
+}
+
+// The tiles of a film, each with these samples of its pixels.
+std::vector<TileView> tiles_of(const Film& film, int first_sample, int samples) {
+  const TileGrid grid(film.width(), film.height());
+  std::vector<TileView> tiles;
+  tiles.reserve(static_cast<std::size_t>(grid.size()));
+  for (int i = 0; i < grid.size(); ++i) {
+    tiles.push_back(grid.at(i, samples));
+    tiles.back().first_sample = first_sample;
+  }
+  return tiles;
+}
+
 }  // namespace
 
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
@@ -19,16 +41,30 @@ RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, F
   RenderStats stats;
   stats.build_ms = plan.settle_ms();
   const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
-  std::span<const ChannelType* const> channels;
-  if (storage == FilmStorage::sums) channels = plan->channels;
-  require_memory(Film::bytes(plan->width, plan->height, storage, channels));
-  Film film(plan->width, plan->height, storage, channels);
-  const TileGrid grid(plan->width, plan->height);
-  std::vector<TileView> tiles;
-  tiles.reserve(static_cast<std::size_t>(grid.size()));
-  for (int i = 0; i < grid.size(); ++i) tiles.push_back(grid.at(i, plan->samples));
-  prepared->render(tiles, film, stats, control);
+  Film film = make_film(*plan, storage);
+  prepared->render(tiles_of(film, 0, plan->samples), film, stats, control);
   return {std::move(film), stats};
+}
+
+std::vector<int> progressive_samples(const Plan& plan) {
+  std::vector<int> samples;
+  const bool middle = plan.samples > 1 && !plan.technique->interreflects;
+  for (int n = plan.samples; n > (middle ? 1 : 0); n /= 2) samples.push_back(n);
+  std::reverse(samples.begin(), samples.end());
+  return samples;
+}
+
+ProgressiveRender::ProgressiveRender(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
+                                     std::stop_token stop)
+    : prepared_(threads_backend(pool)->prepare(scene, plan, stats_, stop)),
+      film_(make_film(*plan, FilmStorage::sums)) {
+  stats_.build_ms += plan.settle_ms();
+}
+
+void ProgressiveRender::refine(int samples, const RenderControl& control) {
+  stats_.error = {};
+  prepared_->render(tiles_of(film_, samples_, samples - samples_), film_, stats_, control);
+  samples_ = samples;
 }
 
 }  // namespace orrery

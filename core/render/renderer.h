@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "core/render/backend.h"
 
 namespace orrery {
@@ -13,5 +16,34 @@ struct RenderResult {
 // FilmStorage::sums alone. Throws Cancelled once control.stop is requested.
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control = {});
+
+// Samples a pixel after each pass of a progressive render. The last pass has all of the plan's; each before
+// it has half as many as the next, rounded down, so that both halves of an even number are there and tell its
+// error. A single sample that lies in the middle of its pixel is none of more, and then is no pass.
+std::vector<int> progressive_samples(const Plan& plan);
+
+// One frame whose samples are traced in passes. After each, the film is the one that all samples so far give
+// when they are traced at once. Scene and pool outlive it.
+class ProgressiveRender {
+ public:
+  // Makes the scene ready and takes the film's memory. Throws Cancelled once `stop` is requested.
+  ProgressiveRender(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
+                    std::stop_token stop);
+
+  // Traces what is missing to so many samples a pixel. Whatever it throws, such as Cancelled once
+  // control.stop is requested: the film is then worth nothing. REQUIRES: more samples than before, at most
+  // the plan's.
+  void refine(int samples, const RenderControl& control = {});
+
+  const Film& film() const { return film_; }
+  // Of all passes; the error is that of the film, where the last pass has at least doubled its samples.
+  const RenderStats& stats() const { return stats_; }
+
+ private:
+  RenderStats stats_;
+  const std::unique_ptr<Prepared> prepared_;
+  Film film_;
+  int samples_ = 0;
+};
 
 }  // namespace orrery

@@ -17,6 +17,7 @@ struct SampledError {
 
     double rmse() const { return values > 0 ? std::sqrt(squares / values) : 0; }
   };
+  int samples = 0;             // of a pixel, which it is the error of
   Sum pixel, block4, block32;  // blocks lie wholly in the picture
   // Of the tiles' mean squares: tiles are independent of each other, pixels of one may not be.
   double tiles = 0, tile_sum = 0, tile_squares = 0;
@@ -28,6 +29,7 @@ struct SampledError {
       to.squares += from.squares;
       to.values += from.values;
     };
+    samples = std::max(samples, other.samples);
     add_sum(pixel, other.pixel);
     add_sum(block4, other.block4);
     add_sum(block32, other.block32);

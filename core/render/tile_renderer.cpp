@@ -49,12 +49,13 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
   } else {
     sums_.samples = 0;
     if (tile.first_sample > 0) film.take(tile, sums_);
-    for (int sample = tile.first_sample; sample < tile.first_sample + tile.samples; ++sample) {
+    const int end = tile.first_sample + tile.samples;
+    for (int sample = tile.first_sample; sample < end; ++sample) {
+      if (2 * sample == end) first_half_ = sums_.radiance;
       if (!checkpoint.go_on() || !trace(tile, sample, checkpoint)) return false;
       add_sample();
-      if (tile.first_sample == 0 && 2 * (sample + 1) == tile.samples) first_half_ = sums_.radiance;
     }
-    if (tile.first_sample == 0 && tile.samples % 2 == 0) add_error(tile);
+    if (end % 2 == 0 && 2 * tile.first_sample <= end) add_error(tile, end);
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
   if (!cut_.empty()) add_cut(tile);
@@ -204,9 +205,10 @@ void TileRenderer<T>::add_cut(const TileView& tile) {
 }
 
 template <class T>
-void TileRenderer<T>::add_error(const TileView& tile) {
-  const double share = 1.0 / tile.samples;
+void TileRenderer<T>::add_error(const TileView& tile, int samples) {
+  const double share = 1.0 / samples;
   SampledError of_tile;
+  of_tile.samples = samples;
   for (std::size_t c = 0; c < 3; ++c) {
     double all = 0;
     for (int block = 0; block < kBatch; block += 16) {

@@ -40,7 +40,7 @@ class TileRenderer {
                      TileSamples& to) const;
   void add_sample();
   void add_cut(const TileView& tile);
-  void add_error(const TileView& tile);
+  void add_error(const TileView& tile, int samples);
   void put_single(const TileView& tile, Film& film);
 
   const Plan& plan_;
@@ -56,7 +56,7 @@ class TileRenderer {
   std::optional<PixelFilter> filter_;           // none: samples lie in their pixels evenly
   std::unique_ptr<TraceResult<T>> taken_away_;  // by its negative lobes; null if it has none
   TileSums sums_;
-  std::array<TileSums::Plane, 3> first_half_;  // of the radiance, after half of the samples
+  std::array<TileSums::Plane, 3> first_half_;  // of the radiance, after half of the tile's samples
   TileMeans means_;
   std::vector<double> cut_;  // sums by slot of this tile; empty as long as nothing was cut
   RenderStats stats_;

@@ -97,17 +97,17 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
   demand.sharers = sharers_.of(key);
   const auto start = Clock::now();
   const auto since = timer_.now();
-  const Pictures::Found found = pictures_.get(
-      key + std::to_string(static_cast<int>(format)),
-      {caller.gone, caller.client, demand.sharers, &admission_}, [&](const std::stop_token& nobody_waits) {
-        require_request_rays(scene.scene(), plan);
-        Picture picture;
-        Stage stage = Stage::queue;
-        watched({caller.client, nobody_waits}, since, stage, [&](const std::stop_token& stop) {
-          picture = make(scene, plan, key, format, demand, stop, timing, stage);
-        });
-        return picture;
-      });
+  const Pictures::Found found =
+      pictures_.get(picture_key(key, format), {caller.gone, caller.client, demand.sharers, &admission_},
+                    [&](const std::stop_token& nobody_waits) {
+                      require_request_rays(scene.scene(), plan);
+                      Picture picture;
+                      Stage stage = Stage::queue;
+                      watched({caller.client, nobody_waits}, since, stage, [&](const std::stop_token& stop) {
+                        picture = make(scene, plan, key, format, demand, stop, timing, stage);
+                      });
+                      return picture;
+                    });
   ++(found.made_here ? meters_.pictures_made : meters_.pictures_found);
   if (!found.made_here) timing.queue += milliseconds_since(start);
   return {found.value, found.made_here && !found.value->of_kept_film};
@@ -150,6 +150,14 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   picture.bytes.shrink_to_fit();  // it may be kept
   timing.encode = milliseconds_since(start);
   return picture;
+}
+
+std::unique_ptr<Refinement> App::refine(RefinementSpec spec) {
+  require_open();
+  auto refinement =
+      std::make_unique<Refinement>(std::move(spec), services_, pictures_, settings_.request_seconds);
+  if (!refinement->is_known()) require_request_rays(refinement->scene(), refinement->plan());
+  return refinement;
 }
 
 void App::require_request_rays(const Scene& scene, const Plan& plan) {

@@ -15,6 +15,7 @@
 #include "server/app/meters.h"
 #include "server/app/orbit_hub.h"
 #include "server/app/pictures.h"
+#include "server/app/refinement.h"
 #include "server/app/render_services.h"
 #include "server/app/scene_store.h"
 #include "server/app/settings.h"
@@ -71,6 +72,9 @@ class App {
   // in its turn, once for all who ask. Throws as read(), and TooManyRays instead of rendering it.
   Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Caller& caller, Timing& timing);
+
+  // Passes of a picture, to be asked for one by one. Throws Busy while draining, TooManyRays.
+  std::unique_ptr<Refinement> refine(RefinementSpec spec);
 
   // Throws TooManyRays for a picture that is expected to take more than one request may ask for.
   void require_request_rays(const Scene& scene, const Plan& plan);

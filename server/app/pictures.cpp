@@ -4,6 +4,10 @@ namespace orrery {
 
 std::size_t held_bytes(const Picture& picture) { return picture.bytes.capacity(); }
 
+std::string picture_key(const std::string& work, FileFormat format) {
+  return work + std::to_string(static_cast<int>(format));
+}
+
 std::size_t held_bytes(const RenderResult& rendered) {
   const Film& film = rendered.film;
   return Film::bytes(film.width(), film.height(), film.storage(), film.channels());

@@ -18,6 +18,8 @@ struct Picture {
   bool of_kept_film = false;           // nothing was rendered for it
 };
 std::size_t held_bytes(const Picture& picture);
+// By format and by `work`, the key of what it is a picture of.
+std::string picture_key(const std::string& work, FileFormat format);
 using Pictures = SingleFlight<Picture>;
 
 std::size_t held_bytes(const RenderResult& rendered);

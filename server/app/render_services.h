@@ -54,12 +54,18 @@ struct RenderServices {
     const SceneStore::Measured measured(scenes, scene);
     const SettledPlan settled = settle(scene, plan, control.stop);
     RenderResult result = render_frame(scene, settled, storage, pool, shared);
-    const std::uint64_t rays = result.stats.counts.rays.total();
-    ticket.set_cost(kLeastCost + ray_weight(scene.scene(), *settled) * static_cast<double>(rays));
-    estimator.learn(scene.scene(), *settled, rays);
-    meters.rays += rays;
-    meters.render.Observe((result.stats.build_ms + result.stats.trace_ms) / 1000);
+    count(ticket, scene.scene(), *settled, result.stats.counts.rays.total(),
+          result.stats.build_ms + result.stats.trace_ms);
     return result;
+  }
+
+  // Tells all who want to know it what the samples of that plan have cost.
+  void count(Admission::Ticket& ticket, const Scene& scene, const Plan& plan, std::uint64_t rays,
+             double ms) const {
+    ticket.set_cost(kLeastCost + ray_weight(scene, plan) * static_cast<double>(rays));
+    estimator.learn(scene, plan, rays);
+    meters.rays += rays;
+    meters.render.Observe(ms / 1000);
   }
 
  private:

@@ -73,6 +73,18 @@ class SingleFlight {
     }
   }
 
+  // The value called `key`, if it is kept.
+  ValuePtr find(const std::string& key) {
+    const auto kept = kept_.find(key);
+    return kept ? *kept : nullptr;
+  }
+  // Keeps a value that was made elsewhere, as get() would.
+  void keep(const std::string& key, const ValuePtr& value) {
+    constexpr std::size_t kBeside = 4096;  // what the allocator adds to a large block, and the entries here
+    const std::size_t bytes = kBeside + key.size() + held_bytes(*value);
+    if (bytes <= largest_) kept_.add(key, bytes, [&] { return value; });
+  }
+
   std::size_t bytes() const { return kept_.bytes(); }
   std::uint64_t evictions() const { return kept_.evictions(); }
   std::size_t largest() const { return largest_; }
@@ -129,12 +141,6 @@ class SingleFlight {
     }
     if (error) std::rethrow_exception(error);
     return {value, true};
-  }
-
-  void keep(const std::string& key, const ValuePtr& value) {
-    constexpr std::size_t kBeside = 4096;  // what the allocator adds to a large block, and the entries here
-    const std::size_t bytes = kBeside + key.size() + held_bytes(*value);
-    if (bytes <= largest_) kept_.add(key, bytes, [&] { return value; });
   }
 
   Lru<ValuePtr> kept_;

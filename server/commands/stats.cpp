@@ -1,7 +1,6 @@
 #include "server/commands/stats.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "core/model/technique.h"
 #include "core/plan/plan.h"
 #include "server/app/option_json.h"
+#include "server/app/told_error.h"
 
 namespace orrery {
 namespace {
@@ -60,16 +60,6 @@ void prediction_text(std::string& text, const Plan& plan, const TraceCounts& cou
        static_cast<unsigned long long>(proofs), share);
 }
 
-// In linear radiance; an interval of 95 %.
-ordered_json error_json(const SampledError& error) {
-  const auto [low, high] = error.interval();
-  ordered_json json = {{"rmse", error.pixel.rmse()}, {"rmse_low", low}};
-  json["rmse_high"] = std::isfinite(high) ? ordered_json(high) : ordered_json(nullptr);
-  json["rmse_4"] = error.block4.rmse();
-  json["rmse_32"] = error.block32.rmse();
-  return json;
-}
-
 }  // namespace
 
 ordered_json stats_json(const Plan& plan, const RunStats& stats) {
@@ -104,7 +94,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
                                  {"render_cpu_s", stats.render_cpu_s},
                                  {"cpu_s", process_cpu_ms() / 1000}};
   json.update(measured);
-  if (stats.render.error.known()) json["error"] = error_json(stats.render.error);
+  if (stats.render.error.known()) json["error"] = error_json(stats.render);
   return json;
 }
 

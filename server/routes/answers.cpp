@@ -6,6 +6,7 @@
 
 #include "core/params/suggest.h"
 #include "server/app/render_options.h"
+#include "server/app/told_error.h"
 #include "server/http/field_list.h"
 
 namespace orrery {
@@ -158,15 +159,6 @@ void set_warnings(Response& response, std::span<const Problem> warnings) {
   if (!text.empty()) response.set("Orrery-Warning", std::move(text));
 }
 
-// "0.0049; low=0.0046; high=0.0053; of-4=0.0014; of-32=0.0004"
-std::string error_text(const SampledError& error) {
-  const auto [low, high] = error.interval();
-  char text[160];
-  std::snprintf(text, sizeof text, "%.4g; low=%.4g; high=%.4g; of-4=%.3g; of-32=%.3g", error.pixel.rmse(),
-                low, high, error.block4.rmse(), error.block32.rmse());
-  return text;
-}
-
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing) {
   Response response = text_response(200, type, {rendered.picture, rendered.picture->bytes});
   std::string told = server_timing(timing);
@@ -187,8 +179,8 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
   } else {
     told += "kept;desc=\"made for another request\"";
   }
-  if (const SampledError& error = rendered.picture->stats.error; error.known())
-    response.set("X-RMSE", error_text(error));
+  if (const RenderStats& stats = rendered.picture->stats; stats.error.known())
+    response.set("X-RMSE", error_text(stats));
   response.set("Server-Timing", std::move(told));
   set_warnings(response, rendered.picture->warnings);
   return response;

@@ -8,14 +8,13 @@
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
 #include "server/routes/answers.h"
+#include "server/routes/picture_stream.h"
 
 // GET /v1/scenes/{id}/orbit: the frames of a turn of the camera, as they are rendered.
 namespace orrery {
 namespace {
 
 constexpr std::array<std::string_view, 4> kOwnParameters{"frames", "step", "time_step", "fps"};
-constexpr std::string_view kMultipart = "multipart/x-mixed-replace", kFrames = "application/x-orrery-frames";
-constexpr std::string_view kBoundary = "orrery-frame";
 
 // The number a parameter has, or `fallback`. Notes what is wrong with it.
 double number_of(const Request& request, std::string_view name, double min, double max, double fallback,
@@ -55,26 +54,19 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   return spec;
 }
 
-// What comes before the PNG: [length of the header, 4 bytes, big-endian][header, JSON].
-std::string frame_head(const OrbitFrame& frame, std::int64_t skipped) {
+nlohmann::ordered_json header_of(const OrbitFrame& frame, std::int64_t skipped) {
   const Frame& picture = frame.picture;
-  const std::string header = nlohmann::ordered_json{
-      {"frame", frame.frame},
-      {"azimuth_degrees", frame.orbit.azimuth_degrees},
-      {"elevation_degrees", frame.orbit.elevation_degrees},
-      {"distance", frame.orbit.distance},
-      {"time", frame.time},
-      {"width", frame.width},
-      {"height", frame.height},
-      {"render_ms", picture.stats.build_ms + picture.stats.trace_ms},
-      {"encode_ms", picture.encode_ms},
-      {"skipped", skipped},
-      {"rays", picture.stats.counts.rays.total()},
-      {"bytes",
-       picture.bytes.size()}}.dump();
-  std::string bytes;
-  for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(header.size() >> shift & 0xFF);
-  return bytes + header;
+  return {{"frame", frame.frame},
+          {"azimuth_degrees", frame.orbit.azimuth_degrees},
+          {"elevation_degrees", frame.orbit.elevation_degrees},
+          {"distance", frame.orbit.distance},
+          {"time", frame.time},
+          {"width", frame.width},
+          {"height", frame.height},
+          {"render_ms", picture.stats.build_ms + picture.stats.trace_ms},
+          {"encode_ms", picture.encode_ms},
+          {"skipped", skipped},
+          {"rays", picture.stats.counts.rays.total()}};
 }
 
 SharedBytes picture_of(const std::shared_ptr<const OrbitFrame>& frame) {
@@ -89,47 +81,21 @@ struct OrbitRequest {
   std::stop_token gone;
 };
 
-enum class Sent { whole, skipped, gone };
-
-// A frame for which there is no room among the answers is skipped, as if its viewer were slow.
-Sent send(Sink& sink, std::string_view head, const SharedBytes& picture, std::string_view end = {}) {
-  try {
-    return sink.write(head, picture, end) ? Sent::whole : Sent::gone;
-  } catch (const OverLimit&) {
-    return Sent::skipped;
-  }
-}
-
-void send_frames(const OrbitRequest& orbit, Sink& sink) {
-  for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone))
-    if (send(sink, frame_head(*frame, orbit.viewer->skipped()), picture_of(frame)) == Sent::gone) return;
-}
-
-// The boundary that ends a part goes with it: a browser shows a picture when it sees the next one.
-void send_parts(const OrbitRequest& orbit, Sink& sink) {
-  const std::string boundary = "\r\n--" + std::string(kBoundary);
-  if (!sink.write(boundary.substr(2) + "\r\n")) return;
-  bool ended = false;
-  for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone)) {
-    ended = orbit.viewer->at_end();
-    const std::string head =
-        "Content-Type: image/png\r\nContent-Length: " + std::to_string(frame->picture.bytes.size()) +
-        "\r\n\r\n";
-    const Sent sent = send(sink, head, picture_of(frame), boundary + (ended ? "--\r\n" : "\r\n"));
-    if (sent == Sent::gone) return;
-    ended = ended && sent == Sent::whole;
-  }
-  if (!ended) sink.write(boundary + "--\r\n");
+void send(const OrbitRequest& orbit, PictureWriter&& writer) {
+  for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone)) try {
+      const auto header = header_of(*frame, orbit.viewer->skipped());
+      if (!writer.write({.png = picture_of(frame), .header = header, .last = orbit.viewer->at_end()})) return;
+    } catch (const OverLimit&) {  // the frame is skipped, as if its viewer were slow
+    }
+  writer.end();
 }
 
 Response orbit(App& app, Request& request) {
   app.require_open();
   const OrbitSpec spec = read_orbit(app, request);
-  const bool multipart = negotiate(request, std::array{kMultipart, kFrames}) == kMultipart;
+  const StreamFormat format = negotiate_stream(request);
   Response response;
-  response.set("Content-Type", multipart ? std::string(kMultipart) + "; boundary=" + std::string(kBoundary)
-                                         : std::string(kFrames));
-  response.set("Cache-Control", "no-store").set("Vary", "Accept").set("X-Accel-Buffering", "no");
+  set_stream_headers(response, format);
   const Scene& scene = spec.scene->scene();
   const Plan first = make_plan(scene, spec.path.at(0));
   set_warnings(response, find_warnings(scene, first));
@@ -142,7 +108,7 @@ Response orbit(App& app, Request& request) {
   orbit.first = orbit.viewer->next(orbit.gone);  // what fails here has a status of its own
   if (!orbit.first && request.gone.stop_requested()) throw Cancelled("the client has gone");
   if (!orbit.first) throw Busy("The service ends", 5);
-  response.stream = [orbit, multipart](Sink& sink) { (multipart ? send_parts : send_frames)(orbit, sink); };
+  response.stream = [orbit, format](Sink& sink) { send(orbit, PictureWriter(sink, format)); };
   return response;
 }
 

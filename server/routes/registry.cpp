@@ -10,6 +10,7 @@ namespace orrery {
   add(assets)              \
   add(frame)               \
   add(orbit)               \
+  add(refinement)          \
   add(jobs)                \
   add(frame_jobs)          \
   add(charts)              \

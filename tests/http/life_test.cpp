@@ -78,6 +78,27 @@ TEST(ClientThatLeaves, EndsItsOrbit) {
   EXPECT_TRUE(daemon.wait_until_idle());
 }
 
+TEST(ClientThatLeaves, EndsItsRefinement) {
+  Daemon daemon(with_endless_pictures());
+  RawClient raw(daemon.port());
+  raw.send(get(post(daemon, small_scene()) + "/refinement?width=400&height=300&samples=4096"));
+  EXPECT_NE(raw.receive_some(), "");  // a pass has ended
+  ASSERT_TRUE(daemon.wait_until_working());
+  raw.close();
+  EXPECT_TRUE(daemon.wait_until_idle(5));
+  EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_given_up_total{stage=\"render\"} 1\n"),
+            std::string::npos);
+}
+
+TEST(ClientThatDoesNotRead, HoldsUpItsRefinementAlone) {
+  Daemon daemon(with_endless_pictures());
+  const RawClient raw(daemon.port(), 4096);
+  raw.send(get(post(daemon, small_scene()) + "/refinement?width=2048&height=2048&samples=4096"));
+  EXPECT_NE(raw.receive_some(), "");
+  EXPECT_TRUE(daemon.wait_until_idle());  // for 10 s and more there would be work
+  EXPECT_EQ(daemon.metric("orrery_renders_running"), 0);
+}
+
 // Bodies that come slowly, or never, do not fill the memory: they have a limit together.
 TEST(ClientsThatDawdle, ShareALimitOfBytes) {
   Daemon daemon({"--body-bytes", "1000000", "--asset-bytes", "1000000", "--bodies-bytes", "1500000"});

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/render/backend.h"
+
+// What a picture tells of its own error: RMSE of linear radiance, with what it took.
+namespace orrery {
+
+// {"rmse", "rmse_low", "rmse_high"} of a pixel and the ends of its interval of 95 %, of which the upper one
+// is null where one tile alone tells it; "rmse_4" and "rmse_32" of means of 4 x 4 and 32 x 32 pixels;
+// "samples" a pixel; "rays" traced. REQUIRES: stats.error.known().
+nlohmann::ordered_json error_json(const RenderStats& stats);
+
+// The same for a header: "0.0049; low=0.0046; high=0.0053; of-4=0.0014; of-32=0.0004; samples=16; rays=9000".
+// REQUIRES: stats.error.known().
+std::string error_text(const RenderStats& stats);
+
+}  // namespace orrery

@@ -1,0 +1,91 @@
+#include <nlohmann/json.hpp>
+
+#include "core/plan/plan.h"
+#include "core/plan/warnings.h"
+#include "server/app/app.h"
+#include "server/app/told_error.h"
+#include "server/routes/answers.h"
+#include "server/routes/picture_stream.h"
+
+// GET /v1/scenes/{id}/refinement: one picture, from few samples to all that are asked for, as passes of one
+// render: each is what frame.png gives for so many samples.
+namespace orrery {
+namespace {
+
+nlohmann::ordered_json header_of(const Refinement::Step& step, const Plan& plan) {
+  nlohmann::ordered_json header = {
+      {"samples", step.samples}, {"of", plan.samples},          {"width", plan.width},
+      {"height", plan.height},   {"render_ms", step.render_ms}, {"encode_ms", step.encode_ms},
+      {"rays", step.rays}};
+  if (step.picture->stats.error.known()) header["error"] = error_json(step.picture->stats);
+  return header;
+}
+
+Fields fields_of(const Refinement::Step& step) {
+  Fields fields{{"X-Samples", std::to_string(step.samples)}, {"X-Rays", std::to_string(step.rays)}};
+  if (step.picture->stats.error.known()) fields.emplace_back("X-RMSE", error_text(step.picture->stats));
+  return fields;
+}
+
+// What is sent of a refinement whose first picture is there.
+struct RefinementRequest {
+  std::shared_ptr<const void> place;
+  std::shared_ptr<Refinement> refinement;
+  std::optional<Refinement::Step> first;
+  std::stop_token gone;
+};
+
+// A picture for which there is no room among the answers is left out, but not the last one. False once the
+// client has gone.
+bool write(PictureWriter& writer, const Refinement& refinement, const Refinement::Step& step) {
+  const auto header = header_of(step, refinement.plan());
+  try {
+    return writer.write({.png = {step.picture, step.picture->bytes},
+                         .header = header,
+                         .fields = fields_of(step),
+                         .last = refinement.at_end()});
+  } catch (const OverLimit&) {
+    if (refinement.at_end()) throw;
+    return true;
+  }
+}
+
+void send(const RefinementRequest& request, PictureWriter&& writer) {
+  try {
+    for (auto step = request.first; step; step = request.refinement->next(request.gone))
+      if (!write(writer, *request.refinement, *step)) return;
+  } catch (const Cancelled&) {
+    return;  // the client has gone
+  }
+  writer.end();
+}
+
+Response refine(App& app, Request& request) {
+  app.require_open();
+  const auto scene = app.scenes().find(request.path_value("id"));
+  const RenderRequest wanted = read_query(request);
+  require_layers_kept(wanted, FileFormat::png);
+  const Plan plan = make_plan(scene->scene(), wanted);
+  const StreamFormat format = negotiate_stream(request);
+  Response response;
+  set_stream_headers(response, format);
+  set_warnings(response, find_warnings(scene->scene(), plan));
+  if (request.method == "HEAD") return response;
+  RefinementRequest refined{.place = app.streams().open(request.client),
+                            .refinement = app.refine({scene, wanted, plan, request.client}),
+                            .first = {},
+                            .gone = request.gone};
+  refined.first = refined.refinement->next(request.gone);  // what fails here has a status of its own
+  set_warnings(response, refined.first->picture->warnings);
+  response.stream = [refined, format](Sink& sink) { send(refined, PictureWriter(sink, format)); };
+  return response;
+}
+
+}  // namespace
+
+void add_refinement_routes(Router& router, App& app) {
+  router.add("GET", "/v1/scenes/{id}/refinement", Scope::read, LogLevel::info,
+             [&app](Request& request) { return refine(app, request); });
+}
+
+}  // namespace orrery

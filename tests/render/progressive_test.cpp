@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/model/technique.h"
+#include "tests/support/pictures.h"
+
+// Pictures whose samples are traced in passes.
+namespace orrery::test {
+namespace {
+
+RenderRequest of(int samples, const char* technique) {
+  RenderRequest request = size(70, 45);  // tiles that lie partly in the picture
+  request.samples = samples;
+  request.technique = technique;
+  return request;
+}
+
+// To the bit, with the error that they tell and the rays that they take. Where rays only look, each pass
+// looks through two corners of each pixel first.
+TEST(ProgressiveRender, GivesThePicturesOfItsSamplesAtOnce) {
+  for (const char* name : {"paper", "cornell-box", "open-shutter", "depth-of-field", "light-many"}) {
+    for (const char* technique : {"whitted", "path"}) {
+      const auto scene = load(sample(name));
+      const PreparedScene prepared(scene);
+      const SettledPlan plan = settle(prepared, make_plan(*scene, of(12, technique)));
+      ProgressiveRender progress(prepared, plan, shared_pool(), {});
+      std::uint64_t corners = 0;
+      for (const int samples : progressive_samples(*plan)) {
+        progress.refine(samples);
+        const Picture whole = render(scene, of(samples, technique));
+        const Image image = progress.film().image(PixelFormat::linear32);
+        for (int y = 0; y < whole.height; ++y)
+          for (int x = 0; x < whole.width; ++x)
+            ASSERT_EQ(image.linear(x, y), whole.at(x, y)) << name << " " << technique << " " << samples;
+        const SampledError &told = progress.stats().error, &expected = whole.stats.error;
+        EXPECT_EQ(told.known(), samples % 2 == 0);
+        EXPECT_EQ(told.samples, expected.samples);
+        EXPECT_NEAR(told.pixel.rmse(), expected.pixel.rmse(), 1e-12 * expected.pixel.rmse()) << name;
+        EXPECT_NEAR(told.block32.rmse(), expected.block32.rmse(), 1e-12 * expected.block32.rmse()) << name;
+        const std::uint64_t rays = progress.stats().counts.rays.camera,
+                            at_once = whole.stats.counts.rays.camera;
+        EXPECT_LE(rays, at_once + corners) << name << " " << technique << " " << samples;
+        if (plan->technique->interreflects) corners += 2 * image.bytes().size() / image.pixel_bytes();
+      }
+    }
+  }
+}
+
+TEST(ProgressiveRender, HasPassesThatAreHalvesOfTheNext) {
+  const auto scene = load(sample("paper"));
+  const auto passes = [&](int samples, const char* technique) {
+    return progressive_samples(make_plan(*scene, of(samples, technique)));
+  };
+  EXPECT_EQ(passes(64, "path"), (std::vector{1, 2, 4, 8, 16, 32, 64}));
+  EXPECT_EQ(passes(100, "path"), (std::vector{1, 3, 6, 12, 25, 50, 100}));
+  EXPECT_EQ(passes(64, "whitted"), (std::vector{2, 4, 8, 16, 32, 64}));
+  EXPECT_EQ(passes(3, "whitted"), (std::vector{3}));
+  EXPECT_EQ(passes(1, "whitted"), (std::vector{1}));
+}
+
+}  // namespace
+}  // namespace orrery::test
