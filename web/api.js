@@ -95,9 +95,10 @@ export async function get_frame(url, signal) {
   const response = await request(url, { signal });
   const { render: render_ms, encode: encode_ms } = server_timing(response.headers.get("Server-Timing"));
   const rays = Number(response.headers.get("X-Rays") ?? NaN);
+  const rmse = parseFloat(response.headers.get("X-RMSE") ?? "") || undefined;
   const warning = warning_of(response);
   try {
-    return { png: await response.blob(), stats: { render_ms, encode_ms, rays, warning } };
+    return { png: await response.blob(), stats: { render_ms, encode_ms, rays, rmse, warning } };
   } catch (error) {
     throw broken(error);
   }

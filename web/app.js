@@ -12,7 +12,7 @@ import { Options } from "./options.js";
 import { Player } from "./player.js";
 import { hide_problem, places_of, show_problem } from "./problem.js";
 import { show_progress } from "./progress.js";
-import { ladder, quality } from "./quality.js";
+import { quality, samples_at_rest } from "./quality.js";
 import { facts_of, SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
 import { picture_size } from "./size.js";
@@ -41,7 +41,7 @@ let pans = false;
 
 const player = new Player(camera, view, {
   picture: (purpose, level) => scene && picture(purpose, level, camera.view),
-  ladder: (at) => ({ pictures: scene ? pictures_at_rest(at) : [], asked: state.samples > 0 }),
+  at_rest: (at) => scene && { picture: picture_at_rest(at), asked: state.samples > 0 },
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
@@ -98,10 +98,9 @@ function picture(purpose, level, at) {
   return { id: scene.id, moves, ...at, ...size, technique: state.technique, samples };
 }
 
-function pictures_at_rest(at) {
-  const still = picture("still", 0, at);
-  const counts = ladder(state.samples, scene.samples, limits.samples);
-  return counts.map((samples) => ({ ...still, samples }));
+function picture_at_rest(at) {
+  const samples = samples_at_rest(state.samples, scene.samples, limits.samples);
+  return { ...picture("still", 0, at), samples };
 }
 
 function current_picture() {

@@ -1,10 +1,13 @@
 // The figures under the picture. Written at most four times a second: faster cannot be read.
 
 import { element } from "./problem.js";
+import { rounded } from "./progress.js";
 
-const kFields = ["fps", "render", "encode", "rays", "size", "skipped"];
+const kFields = ["fps", "render", "encode", "rays", "size", "skipped", "rmse"];
 const kRefreshMs = 250;
 const kWindowMs = 1500; // frames per second are counted over this long
+
+const kLabels = { rays: "rays/s", rmse: "RMSE" };
 
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
@@ -26,7 +29,7 @@ export class Hud {
       const field = (this.#fields[name] = element("dd", "–"));
       field.id = `hud-${name}`;
       const pair = element("div");
-      pair.append(element("dt", name === "rays" ? "rays/s" : name), field);
+      pair.append(element("dt", kLabels[name] ?? name), field);
       list.append(pair);
     }
   }
@@ -35,7 +38,8 @@ export class Hud {
   show(kind, figures) {
     const now = performance.now();
     this.#times = kind === "still" ? [] : [...this.#times.filter((time) => now - time < kWindowMs), now];
-    this.#figures = { ...this.#figures, skipped: kind === "stream" ? undefined : 0, ...figures };
+    const told = kind === "still" ? {} : { rmse: undefined };
+    this.#figures = { ...this.#figures, skipped: kind === "stream" ? undefined : 0, ...told, ...figures };
     clearTimeout(this.#timer);
     const wait = kind === "still" ? 0 : kRefreshMs - (now - this.#last_write);
     if (wait <= 0) this.#write();
@@ -49,7 +53,7 @@ export class Hud {
 
   #write() {
     this.#last_write = performance.now();
-    const { render_ms, encode_ms, rays, width, height, draft, skipped } = this.#figures;
+    const { render_ms, encode_ms, rays, width, height, draft, skipped, rmse, samples } = this.#figures;
     const first = this.#times[0];
     const rate = ((this.#times.length - 1) * 1000) / (this.#times.at(-1) - first);
     const texts = {
@@ -59,6 +63,7 @@ export class Hud {
       rays: rays > 0 && render_ms > 0 ? short.format((rays * 1000) / render_ms) : "–",
       size: `${width} × ${height}${draft ? ", draft" : ""}`,
       skipped: String(skipped ?? 0),
+      rmse: rmse > 0 ? `${rounded(rmse)}, ${samples} samples` : "–",
     };
     for (const [name, text] of Object.entries(texts)) this.#fields[name].textContent = text;
   }

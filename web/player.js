@@ -14,10 +14,9 @@ const kRestMs = 100; // without input for this long, the view counts as at rest
 const kRestartMs = 150; // changes of size or speed are gathered this long
 const kQuickMs = 60; // previews slower than this get a quarter of each side instead of a half
 
-// `on` has: picture(purpose, level) -> picture or null, ladder(view) -> {pictures, asked} of a view at rest, missing()
-// -> promise (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error),
-// progress(figures or null), stale() when another picture is due, settled() when the view no longer moves,
-// rested() when the picture is final.
+// `on` has: picture(purpose, level) -> picture or null, at_rest(view) -> {picture, asked} or null, missing() -> promise
+// (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error), progress(figures or null),
+// stale() when another picture is due, settled() when the view no longer moves, rested() when the picture is final.
 export class Player {
   speed = 20; // degrees per second
   stream_frames = 3600;
@@ -32,6 +31,7 @@ export class Player {
   #last_tick = 0;
   #work = null; // {kind, key, abort} of the stream or still being fetched
   #shown = ""; // address of the still on the canvas
+  #shown_samples = 0; // likewise
   #refiner = new Refiner();
   #preview_busy = false;
   #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
@@ -101,8 +101,14 @@ export class Player {
 
   // What to take along: the picture that is seen where the view rests, else the one that it will come to rest with.
   get picture() {
-    const { pictures, asked } = this.#on.ladder(this.#camera.goal);
-    return pictures.find((picture) => frame_url(picture) === this.#shown) ?? this.#refiner.last(pictures, asked);
+    const { picture, asked } = this.#on.at_rest(this.#camera.goal);
+    return this.#seen_of(picture) ?? this.#refiner.last(picture, asked);
+  }
+
+  // The picture on the canvas, if it is `picture` with however many samples.
+  #seen_of(picture) {
+    const seen = { ...picture, samples: this.#shown_samples };
+    return frame_url(seen) === this.#shown ? seen : null;
   }
 
   #show_tab(visible) {
@@ -147,20 +153,21 @@ export class Player {
   }
 
   #start_still() {
-    const { pictures, asked } = this.#on.ladder(this.#camera.view);
-    if (this.#playing) pictures.splice(1); // the orbit is only held for a moment
-    if (pictures.length === 0) return;
-    const key = frame_url(pictures.at(-1));
+    const rest = this.#on.at_rest(this.#camera.view);
+    if (!rest) return;
+    const picture = this.#playing ? { ...rest.picture, samples: 1 } : rest.picture; // an orbit is held for a moment
+    const key = frame_url(picture);
     if (this.#work?.kind === "still" && this.#work.key === key) return;
     this.#stop();
-    const at = pictures.findIndex((picture) => frame_url(picture) === this.#shown);
-    const { width, height, samples } = pictures[at] ?? {};
-    if (at >= 0) this.#on.stats("still", { width, height });
+    const { width, height, samples } = this.#seen_of(picture) ?? {};
+    if (samples) this.#on.stats("still", { width, height });
+    const shown = samples <= picture.samples ? samples : 0; // fewer may be wanted than there are
     this.#run("still", key, async (signal) => {
-      await this.#refiner.climb(pictures.slice(at + 1), { shown: samples ?? 0, asked }, signal, {
-        draw: (picture, bitmap, stats) => this.#draw(frame_url(picture), bitmap, picture, "still", stats),
-        progress: this.#on.progress,
-      });
+      if (shown < picture.samples)
+        await this.#refiner.climb(picture, { shown, asked: rest.asked }, signal, {
+          draw: (each, bitmap, stats) => this.#draw(frame_url(each), bitmap, each, "still", stats),
+          progress: this.#on.progress,
+        });
       this.#on.rested();
     });
   }
@@ -210,6 +217,7 @@ export class Player {
     const { width, height } = bitmap;
     this.#view.draw(bitmap, picture.fills, kind === "still" && this.#camera.damped);
     this.#shown = url;
+    this.#shown_samples = picture.samples;
     this.#reposts = 0;
     this.#backoff.reset();
     if (kind !== "still") this.#on.progress(null);

@@ -4,9 +4,14 @@ function duration(seconds) {
   return seconds < 60 ? `${Math.ceil(seconds)} s` : `${Math.round(seconds / 60)} min`;
 }
 
-// `shown` of `end` samples are on the canvas; `part` of the next picture is done, `seconds_left` till then.
-export function progress_text({ shown, end, part, seconds_left }) {
+// To two digits.
+export const rounded = (rmse) => String(Number(rmse.toPrecision(2)));
+
+// `shown` of `end` samples are on the canvas, with that root mean square error of a pixel, in linear radiance, if it is
+// known; `part` of the next picture is done, `seconds_left` till the end.
+export function progress_text({ shown, end, rmse, part, seconds_left }) {
   const words = end ? [`${shown} of ${end} samples`] : [];
+  if (rmse > 0) words.push(`RMSE ${rounded(rmse)}`);
   if (part !== undefined) words.push(`${Math.floor(100 * part)} %`);
   if (seconds_left > 0) words.push(`${part === undefined ? "about " : ""}${duration(seconds_left)} left`);
   return words.join(" · ");

@@ -5,13 +5,17 @@ const kPreviews = [{ part: 1 / 2 }, { part: 1 / 4 }];
 // For the frames of an orbit, each level coarser than the one before.
 export const kStreams = [{}, { samples: 1 }, { samples: 1, part: 1 / 2 }, { samples: 1, part: 1 / 4 }];
 
-const kLadder = [1, 4, 16, 64];
+const kUsualSamples = 64;
 
-// Samples of the pictures at rest, in turn: up to what the user has `chosen` (0: nothing), else up to the usual end
-// or what the scene asks for as its `own`.
-export function ladder(chosen, own, most) {
-  const end = Math.min(most, chosen || Math.max(own, kLadder.at(-1)));
-  return [...kLadder.filter((samples) => samples < end), end];
+// Samples of the picture at rest: what the user has `chosen` (0: nothing), else the usual number or what the scene asks
+// for as its `own`.
+export const samples_at_rest = (chosen, own, most) => Math.min(most, chosen || Math.max(own, kUsualSamples));
+
+// Samples after each pass of a picture of so many, as the service renders them: each has half of the next.
+export function passes(samples) {
+  const counts = [];
+  for (let count = samples; count > 0; count = Math.floor(count / 2)) counts.unshift(count);
+  return counts;
 }
 
 // {part, samples} for `purpose` "still", "preview" or "stream" at `level`. `part` is a factor of each side, `own` the

@@ -1,13 +1,16 @@
-// The pictures of a view at rest: one after the other, each with more samples than the one before.
+// The picture of a view at rest: one stream of pictures, each with about twice the samples of the one before.
 
-import { get_frame } from "./api.js";
+import { get_frame, request, warning_of } from "./api.js";
 import { render_job } from "./job.js";
-import { frame_url } from "./urls.js";
+import { passes } from "./quality.js";
+import { kFrameType, read_frames } from "./stream.js";
+import { frame_url, refinement_url } from "./urls.js";
 import { decode } from "./view.js";
 
-const kJobMs = 1500; // what takes longer is a job, whose progress is known
+const kJobMs = 1500; // what takes longer at one go is a job, whose progress is known
 const kLongestMs = 20_000; // finer pictures that nobody has asked for may take this long
 const kTickMs = 250;
+const kTooLong = new Set([422, 504]); // of what takes longer than a request may
 
 export class Refiner {
   #jobs = true; // false: the service takes none
@@ -26,48 +29,112 @@ export class Refiner {
   }
 
   // The picture that climb() ends with.
-  last(pictures, asked) {
-    const too_slow = (picture, at) => at > 0 && !asked && this.expected_ms(picture) > kLongestMs;
-    const end = pictures.findIndex(too_slow);
-    return pictures.at(end < 0 ? -1 : end - 1);
+  last(picture, asked) {
+    const counts = passes(picture.samples);
+    const end = counts.findIndex((samples, at) => at > 0 && !asked && this.#too_slow({ ...picture, samples }));
+    return { ...picture, samples: counts.at(end < 0 ? -1 : end - 1) };
   }
 
-  // Renders `pictures` in turn. `shown`: samples on the canvas, 0 where it shows another view; `asked`: the last one
-  // is wanted however long it takes. draw(picture, bitmap, stats) shows one; progress({shown, end, part,
-  // seconds_left}) hears how far the next is: without `part` the seconds are a guess.
-  async climb(pictures, { shown, asked }, signal, { draw, progress }) {
-    const end = pictures.at(-1)?.samples;
-    for (const picture of pictures) {
-      const expected = this.expected_ms(picture);
-      if (shown > 0 && !asked && expected > kLongestMs) return;
-      const tell = (figures) => progress({ shown, end, ...figures });
-      const start = performance.now();
-      const { png, stats } = await this.#render(picture, expected, signal, tell);
-      const bitmap = await decode(png);
-      if (signal.aborted) bitmap.close();
-      signal.throwIfAborted();
-      this.note(picture, stats.render_ms ?? performance.now() - start);
-      draw(picture, bitmap, stats);
-      shown = picture.samples;
+  // Renders `picture`, from few samples to all. `shown`: samples on the canvas, 0 where it shows another view; `asked`:
+  // all are wanted however long that takes. draw(picture, bitmap, stats) shows one on the way; progress({shown, end,
+  // rmse, part, seconds_left}) hears how far it is: without `part` the seconds are a guess.
+  async climb(picture, { shown, asked }, signal, on) {
+    const end = picture.samples;
+    const at = { shown, end };
+    const tell = (figures) => on.progress({ ...at, ...figures });
+    const draw = (bitmap, stats) => {
+      at.shown = stats.samples;
+      at.rmse = stats.rmse;
+      on.draw({ ...picture, samples: stats.samples }, bitmap, stats);
+    };
+    if (end > 1) {
+      try {
+        return await this.#stream(picture, { at, asked }, signal, { draw, tell });
+      } catch (error) {
+        const broke_off = error.status === 0 && at.shown > shown;
+        if (!kTooLong.has(error.status) && !broke_off) throw error;
+      }
+    }
+    // What is too much for one request goes on as a job, if it is wanted so much.
+    for (const samples of asked ? [1, end] : [1]) {
+      if (samples <= at.shown) continue;
+      const { bitmap, stats } = await this.#render({ ...picture, samples }, signal, tell);
+      draw(bitmap, stats);
     }
   }
 
-  async #render(picture, expected, signal, tell) {
+  #too_slow(picture) {
+    return this.expected_ms(picture) > kLongestMs;
+  }
+
+  async #stream(picture, { at, asked }, signal, { draw, tell }) {
+    const counts = passes(picture.samples);
+    const too_slow = (samples) => !asked && this.#too_slow({ ...picture, samples });
+    if (at.shown > 0 && too_slow(counts.find((samples) => samples > at.shown))) return;
+    let traced = 0;
+    const left = () => this.expected_ms({ ...picture, samples: picture.samples - traced });
+    const clock = ticking(left, tell);
+    try {
+      const response = await request(refinement_url(picture), { headers: { Accept: kFrameType }, signal });
+      const warning = warning_of(response);
+      for await (const { header, png } of read_frames(response.body)) {
+        const { samples, render_ms } = header;
+        if (render_ms > 0) this.note({ ...picture, samples: samples - traced }, render_ms);
+        traced = samples;
+        const stats = { ...header, rmse: header.error?.rmse, warning };
+        if (samples > at.shown) draw(await decode_unless(signal, png), stats);
+        clock.restart();
+        if (samples < picture.samples && too_slow(counts.find((count) => count > samples))) return;
+      }
+    } finally {
+      clock.stop();
+    }
+  }
+
+  // All samples of a picture at one go.
+  async #render(picture, signal, tell) {
+    const expected = this.expected_ms(picture);
+    const start = performance.now();
+    const { png, stats } = await this.#fetch(picture, expected, signal, tell);
+    const bitmap = await decode_unless(signal, png);
+    this.note(picture, stats.render_ms ?? performance.now() - start);
+    return { bitmap, stats: { ...stats, samples: picture.samples } };
+  }
+
+  async #fetch(picture, expected, signal, tell) {
     const slow = expected > kJobMs && this.#jobs;
     const frame = slow ? await render_job(picture, signal, tell) : null;
     if (frame) return frame;
-    const start = performance.now();
-    const tick = () => tell({ seconds_left: (expected - (performance.now() - start)) / 1000 });
-    const timer = setInterval(tick, kTickMs);
-    tick();
+    const clock = ticking(() => expected, tell);
     try {
       const plain = await get_frame(frame_url(picture), signal);
       if (slow) this.#jobs = false; // it knows the scene, so it was the job that it did not
       return plain;
     } finally {
-      clearInterval(timer);
+      clock.stop();
     }
   }
+}
+
+// Tells now and then how many seconds of `expected()` milliseconds are left since the last restart.
+function ticking(expected, tell) {
+  let start = performance.now();
+  const tick = () => tell({ seconds_left: (expected() - (performance.now() - start)) / 1000 });
+  const timer = setInterval(tick, kTickMs);
+  tick();
+  const restart = () => {
+    start = performance.now();
+    tick();
+  };
+  return { restart, stop: () => clearInterval(timer) };
+}
+
+// Throws AbortError once `signal` fires.
+async function decode_unless(signal, png) {
+  const bitmap = await decode(png);
+  if (signal.aborted) bitmap.close();
+  signal.throwIfAborted();
+  return bitmap;
 }
 
 const kind_of = ({ id, technique }) => `${id} ${technique}`;

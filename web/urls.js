@@ -33,6 +33,11 @@ export function frame_url(picture) {
   return `v1/scenes/${picture.id}/frame.png?${query_of(picture)}`;
 }
 
+// The same in passes.
+export function refinement_url(picture) {
+  return `v1/scenes/${picture.id}/refinement?${query_of(picture)}`;
+}
+
 // `time_step`: seconds of the scene's motion from frame to frame; 0 if nothing moves.
 export function orbit_url(picture, { frames, fps, step, time_step }) {
   const query = query_of(picture);

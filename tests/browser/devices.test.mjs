@@ -16,7 +16,15 @@ page_test(
   async (page) => {
     await rest(page);
     const outside = await page.evaluate(() => {
-      const long = { fps: "30.0", render: "12345 ms", encode: "1234 ms", rays: "999M", size: "1312 × 1312, draft", skipped: "999" };
+      const long = {
+        fps: "30.0",
+        render: "12345 ms",
+        encode: "1234 ms",
+        rays: "999M",
+        size: "1312 × 1312, draft",
+        skipped: "999",
+        rmse: "0.00012, 4096 samples",
+      };
       for (const [name, text] of Object.entries(long)) document.getElementById(`hud-${name}`).textContent = text;
       const { left, right } = document.querySelector(".frame").getBoundingClientRect();
       const boxes = [...document.querySelectorAll("#hud dt, #hud dd")].map((each) => each.getBoundingClientRect());

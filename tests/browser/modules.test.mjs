@@ -23,7 +23,7 @@ const { locate, offset_of, place_of } = await load("pointer.js");
 const { pretty } = await load("scenes.js");
 const { Pace } = await load("pace.js");
 const { progress_text } = await load("progress.js");
-const { ladder, quality } = await load("quality.js");
+const { passes, quality, samples_at_rest } = await load("quality.js");
 const { Refiner } = await load("refine.js");
 const { picture_size, within } = await load("size.js");
 const { format_hash, parse_hash } = await load("state.js");
@@ -417,31 +417,36 @@ test("the command takes a token from the environment", () => {
   assert.ok(!command.includes("secret"));
 });
 
-test("pictures at rest get finer up to what was chosen, or what the scene asks for", () => {
-  assert.deepEqual(ladder(0, 1, 4096), [1, 4, 16, 64]);
-  assert.deepEqual(ladder(0, 256, 4096), [1, 4, 16, 64, 256]);
-  assert.deepEqual(ladder(0, 1, 32), [1, 4, 16, 32]);
-  assert.deepEqual(ladder(16, 64, 4096), [1, 4, 16]);
-  assert.deepEqual(ladder(1, 64, 4096), [1]);
+test("the picture at rest has the samples that were chosen, or that the scene asks for", () => {
+  assert.equal(samples_at_rest(0, 1, 4096), 64);
+  assert.equal(samples_at_rest(0, 256, 4096), 256);
+  assert.equal(samples_at_rest(0, 1, 32), 32);
+  assert.equal(samples_at_rest(16, 64, 4096), 16);
+});
+
+test("passes are halves of the next", () => {
+  assert.deepEqual(passes(64), [1, 2, 4, 8, 16, 32, 64]);
+  assert.deepEqual(passes(100), [1, 3, 6, 12, 25, 50, 100]);
+  assert.deepEqual(passes(1), [1]);
 });
 
 test("the last picture is the finest one that takes no longer than it may, unless it was asked for", () => {
   const refiner = new Refiner();
-  const pictures = [1, 4, 16, 64].map((samples) => ({ id: "ab", technique: "", width: 10, height: 10, samples }));
-  const last = (asked = false) => refiner.last(pictures, asked)?.samples;
+  const picture = { id: "ab", technique: "", width: 10, height: 10, samples: 64 };
+  const last = (asked = false) => refiner.last(picture, asked).samples;
   assert.equal(last(), 64, "as long as nothing is known");
-  refiner.note(pictures[0], 400);
-  assert.equal(last(), 16);
+  refiner.note({ ...picture, samples: 1 }, 400);
+  assert.equal(last(), 32);
   assert.equal(last(true), 64);
-  refiner.note(pictures[0], 60_000);
+  refiner.note({ ...picture, samples: 1 }, 60_000);
   assert.equal(last(), 1);
-  assert.equal(refiner.last([], false), undefined);
 });
 
 test("progress says what was measured, and calls a guess a guess", () => {
   const at = { shown: 16, end: 64 };
   assert.equal(progress_text({ ...at, part: 0.439, seconds_left: 2.1 }), "16 of 64 samples · 43 % · 3 s left");
   assert.equal(progress_text({ ...at, part: 0.1 }), "16 of 64 samples · 10 %");
+  assert.equal(progress_text({ ...at, rmse: 0.01234, seconds_left: 2 }), "16 of 64 samples · RMSE 0.012 · about 2 s left");
   assert.equal(progress_text({ ...at, seconds_left: 2.1 }), "16 of 64 samples · about 3 s left");
   assert.equal(progress_text({ ...at, seconds_left: NaN }), "16 of 64 samples");
   assert.equal(progress_text({ ...at, seconds_left: -1 }), "16 of 64 samples", "a guess that came to nothing");

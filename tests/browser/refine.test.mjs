@@ -8,6 +8,7 @@ import {
   canvas_digest,
   drag,
   eventually,
+  hold_refinement,
   page_tests,
   rest,
   start_both,
@@ -18,102 +19,138 @@ const page_test = page_tests(browser, daemon);
 
 const kFull = 879; // pixels, the width of the stage in these tests' window
 const is_frame = (url) => url.pathname.endsWith("/frame.png");
-const samples_of = (url) => url.searchParams.get("samples");
+const is_refinement = (url) => url.pathname.endsWith("/refinement");
+const samples_of = (url) => Number(url.searchParams.get("samples"));
 
-// Passes pictures on as if a full one had taken `ms(samples)`, and notes the samples that full ones are asked with.
-async function watch(page, ms = () => 1) {
+// Passes pictures on as if a full one of one sample had taken `ms`, and notes the samples that full ones are asked with.
+async function watch(page, ms = 1) {
   const asked = [];
   await page.route(is_frame, async (route) => {
     const url = new URL(route.request().url());
     const width = Number(url.searchParams.get("width"));
     if (width > kFull / 2 + 1) asked.push(samples_of(url));
     const response = await route.fetch();
-    const dur = ms(Number(samples_of(url))) * (width / kFull) ** 2;
+    const dur = ms * samples_of(url) * (width / kFull) ** 2;
     const headers = { ...response.headers(), "server-timing": `render;dur=${dur}`, "cache-control": "no-store" };
     await route.fulfill({ response, headers });
   });
   return asked;
 }
 
+// Takes the stream of a refinement apart: [{header, bytes}] with all bytes of a frame.
+function frames_of(body) {
+  const frames = [];
+  for (let at = 0; at < body.length;) {
+    const png = at + 4 + body.readUInt32BE(at);
+    const header = JSON.parse(body.subarray(at + 4, png));
+    frames.push({ header, png: body.subarray(png, png + header.bytes) });
+    at = png + header.bytes;
+  }
+  return frames;
+}
+function body_of(frames) {
+  return Buffer.concat(
+    frames.flatMap(({ header, png }) => {
+      const text = Buffer.from(JSON.stringify(header));
+      const length = Buffer.alloc(4);
+      length.writeUInt32BE(text.length);
+      return [length, text, png];
+    }),
+  );
+}
+
+// Notes the refinements asked for, {samples, passes}, and passes them on as `change(frames)` would have them.
+async function watch_refinements(page, change = (frames) => frames) {
+  const asked = [];
+  await page.route(is_refinement, async (route) => {
+    const response = await route.fetch();
+    const frames = frames_of(await response.body());
+    asked.push({
+      samples: samples_of(new URL(route.request().url())),
+      passes: frames.map(({ header }) => header.samples),
+    });
+    await route.fulfill({ response, body: body_of(change(frames)) });
+  });
+  return asked;
+}
+
 const look_elsewhere = (page) => page.locator('[data-do="left"]').click();
 const still = { reducedMotion: "reduce" };
+const progress_texts = (page) =>
+  page.evaluateHandle(() => {
+    const bar = document.getElementById("busy");
+    const texts = [];
+    new MutationObserver(() => texts.push(bar.ariaValueText)).observe(bar, { attributes: true });
+    return texts;
+  });
 
 page_test(
-  "at rest the picture gets finer up to 64 samples, or to the number chosen",
+  "at rest the picture gets finer up to 64 samples, or to the number chosen, by one stream",
   "playing=0&samples=1",
   async (page) => {
-    const asked = await watch(page);
-    await page.reload(); // so that the page has measured nothing but what the test plays
     const coarse = await rest(page);
-    asked.length = 0;
+    const asked = await watch(page);
+    const refined = await watch_refinements(page);
+    const told = await progress_texts(page);
     await page.locator("#samples").selectOption("0");
-    await eventually("64 samples", async () => asked.includes("64"));
+    await eventually("64 samples", async () => refined.length === 1);
     assert.notEqual(await rest(page), coarse);
-    assert.deepEqual(asked, ["4", "16", "64"], "what is there already is not asked for again");
-    asked.length = 0;
+    assert.deepEqual(refined, [{ samples: 64, passes: [2, 4, 8, 16, 32, 64] }]);
+    assert.match(await page.locator("#hud-rmse").textContent(), /^0\.\d+, 64 samples$/);
+    const error_of = (text) => /^\d+ of 64 samples · RMSE ([\d.e-]+)/.exec(text)?.[1];
+    const errors = (await told.jsonValue()).map(error_of).filter(Boolean);
+    assert.ok(errors.length >= 5, errors.join());
+    assert.ok(Number(errors.at(-1)) < Number(errors[0]) / 4, `the error falls: ${errors}`);
     await page.locator("#samples").selectOption("16");
-    await eventually("16 samples", async () => asked.includes("16"));
+    await eventually("16 samples", async () => refined.length === 2);
     await rest(page);
-    assert.deepEqual(asked, ["1", "4", "16"]);
-    asked.length = 0;
+    assert.deepEqual(refined[1], { samples: 16, passes: [16] }, "the service has kept that pass");
     await look_elsewhere(page);
-    await eventually("16 samples", async () => asked.includes("16"));
+    await eventually("another view", async () => refined.length === 3);
     await rest(page);
-    assert.deepEqual(asked, ["1", "4", "16"]);
+    assert.deepEqual(refined[2], { samples: 16, passes: [2, 4, 8, 16] });
+    assert.deepEqual(asked, [], "nothing is rendered beside the stream");
   },
   still,
 );
 
 page_test(
   "finer pictures that would take too long are left out, unless they were asked for",
-  "playing=0&samples=1",
+  "playing=0&samples=1&az=50",
   async (page) => {
     await rest(page);
-    let jobs = 0;
-    await page.route("**/v1/jobs", (route) => ((jobs += 1), route.fulfill({ status: 404, body: "{}" })));
-    const asked = await watch(page, (samples) => 400 * samples);
-    await look_elsewhere(page);
-    await rest(page);
+    const slowly = (frames) =>
+      frames.map(({ header, png }, at) => {
+        const traced = header.samples - (frames[at - 1]?.header.samples ?? 0);
+        return { header: { ...header, render_ms: 400 * traced }, png };
+      });
+    const refined = await watch_refinements(page, slowly);
     await page.locator("#samples").selectOption("0");
-    await eventually("16 samples", async () => asked.includes("16"));
+    await eventually("a refinement", async () => refined.length === 1);
     await rest(page);
-    assert.deepEqual(asked, ["1", "4", "16"], "64 samples would take 25.6 s");
-    assert.equal(jobs, 1, "a service without jobs is not asked again");
+    assert.match(await page.locator("#hud-rmse").textContent(), /, 32 samples$/, "64 samples would take 25.6 s");
     await page.locator("#samples").selectOption("64");
-    await eventually("64 samples", async () => asked.includes("64"));
+    await eventually("64 samples", async () =>
+      / 64 samples$/.test(await page.locator("#hud-rmse").textContent()),
+    );
   },
-  { ...still, expected: /status of 404/ },
+  still,
 );
 
 page_test(
   "an input stops what is being refined, and an estimate calls itself one",
-  "playing=0&samples=1",
+  "playing=0&samples=1&az=60",
   async (page) => {
     await rest(page);
-    await page.route("**/v1/jobs", (route) => route.fulfill({ status: 404, body: "{}" }));
-    await watch(page, (samples) => 100 * samples);
-    const hanging = [];
-    await page.evaluate(() => {
-      const real_fetch = window.fetch;
-      window.signals = [];
-      window.fetch = (path, options) => {
-        if (options?.signal) window.signals.push(options.signal);
-        return real_fetch(path, options);
-      };
-    });
-    await page.route(
-      (url) => is_frame(url) && samples_of(url) === "64",
-      (route) => hanging.push(route.request()),
+    await watch_refinements(page, (frames) =>
+      frames.map(({ header, png }) => ({ header: { ...header, render_ms: 100 * header.samples }, png })),
     );
-    await look_elsewhere(page);
-    await rest(page);
-    const failed = page.waitForEvent("requestfailed", (request) => hanging.includes(request));
-    await page.locator("#samples").selectOption("0");
+    await hold_refinement(page, 16);
+    await page.locator("#samples").selectOption("64");
     const bar = page.getByRole("progressbar");
-    await eventually("an estimate", async () => {
-      const text = hanging.length > 0 && (await bar.getAttribute("aria-valuetext"));
-      return /^16 of 64 samples · about [1-9] s left$/.test(text);
-    });
+    await eventually("an estimate", async () =>
+      /^16 of 64 samples · RMSE 0\.\d+ · about \d+ s left$/.test((await bar.getAttribute("aria-valuetext")) ?? ""),
+    );
     assert.equal(await bar.getAttribute("aria-valuenow"), null, "nothing was measured");
     assert.equal(await page.locator("#progress").textContent(), await bar.getAttribute("aria-valuetext"));
     const stopped = await page.evaluate(() => {
@@ -121,11 +158,28 @@ page_test(
       return window.signals.at(-1).aborted;
     });
     assert.equal(stopped, true, "at once, not only when the view rests again");
-    await failed;
-    assert.equal(hanging.length, 1);
   },
-  { ...still, expected: /status of 404/ },
+  still,
 );
+
+page_test("figures of the error move nothing", "playing=0&samples=1", async (page) => {
+  await rest(page);
+  const box = () => page.locator("#stage").boundingBox();
+  for (const width of [1280, 1000, 900, 700, 390]) {
+    await page.setViewportSize({ width, height: 800 });
+    await page.locator("#samples").selectOption("1");
+    await rest(page);
+    const before = await box();
+    await page.locator("#samples").selectOption("4");
+    await eventually("an error", async () => /samples/.test(await page.locator("#hud-rmse").textContent()));
+    await rest(page);
+    assert.deepEqual(await box(), before, `${width} pixels`);
+  }
+});
+
+// Refuses refinements, as if they took longer than a request may.
+const refuse_refinements = (page) =>
+  page.route(is_refinement, (route) => route.fulfill({ status: 422, json: { title: "Too much", detail: "request_rays" } }));
 
 // Plays the service's jobs. Each runs until `finish()`; `told` sends an event to it.
 async function play_jobs(page) {
@@ -149,11 +203,12 @@ async function play_jobs(page) {
 }
 
 page_test(
-  "what takes long is a job, which says how far it is",
+  "what is too much for a stream is a job, which says how far it is",
   "playing=0&samples=1&az=30",
   async (page) => {
     const coarse = await rest(page);
-    await watch(page, (samples) => 100 * samples);
+    await watch(page, 400);
+    await refuse_refinements(page);
     const jobs = await play_jobs(page);
     jobs.events = [
       ["progress", { state: "running", tiles_done: 50, remaining_s: 40 }],
@@ -184,12 +239,12 @@ page_test(
     assert.ok(image.width > 600);
     assert.deepEqual(render, { samples: 16 });
     const texts = (await told.jsonValue()).map((pair) => pair.join(" "));
-    assert.ok(texts.includes("25 4 of 16 samples · 25 % · 40 s left"), texts.join("\n"));
-    assert.ok(texts.includes("43 4 of 16 samples · 43 % · 3 s left"), texts.join("\n"));
+    assert.ok(texts.includes("25 1 of 16 samples · 25 % · 40 s left"), texts.join("\n"));
+    assert.ok(texts.includes("43 1 of 16 samples · 43 % · 3 s left"), texts.join("\n"));
     assert.deepEqual(jobs.deleted, [], "a job that is done is not cancelled");
     assert.equal(await page.getByRole("progressbar").isVisible(), false);
   },
-  still,
+  { ...still, expected: /status of 422/ },
 );
 
 page_test(
@@ -197,7 +252,8 @@ page_test(
   "playing=0&samples=1",
   async (page) => {
     await rest(page);
-    await watch(page, (samples) => 400 * samples);
+    await watch(page, 1000);
+    await refuse_refinements(page);
     const jobs = await play_jobs(page);
     await page.route("**/v1/jobs/j1/events", () => {}); // never answers
     await look_elsewhere(page);
@@ -208,7 +264,7 @@ page_test(
     await eventually("its end", async () => jobs.deleted.length >= 1);
     assert.deepEqual(new Set(jobs.deleted), new Set(["DELETE"]));
   },
-  still,
+  { ...still, expected: /status of 422/ },
 );
 
 page_test(
@@ -216,7 +272,8 @@ page_test(
   "playing=0&samples=1",
   async (page) => {
     await rest(page);
-    await watch(page, (samples) => 400 * samples);
+    await watch(page, 1000);
+    await refuse_refinements(page);
     const jobs = await play_jobs(page);
     const error = { status: 500, title: "Out of luck", detail: "No light today.", request_id: "r77" };
     jobs.events = [["failed", { state: "failed", tiles_done: 3, error }]];
@@ -228,7 +285,7 @@ page_test(
     for (const text of ["Out of luck", "No light today.", "r77"]) assert.ok((await card.textContent()).includes(text));
     assert.deepEqual(jobs.deleted, []);
   },
-  still,
+  { ...still, expected: /status of 422/ },
 );
 
 page_test("finer pictures take over little by little", "playing=0&samples=1", async (page) => {

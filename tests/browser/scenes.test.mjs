@@ -270,7 +270,7 @@ daemon_test("the scene picked last stays, whatever is posted late", "scene=paper
 
 daemon_test("a forgotten scene that is posted late replaces no other", "scene=paper&playing=0&samples=1", async (page) => {
   await rest(page);
-  await page.route(/frame\.png.*samples=4/, (route) => route.fulfill({ status: 404, body: "{}" }), { times: 1 });
+  await page.route(/refinement.*samples=4/, (route) => route.fulfill({ status: 404, body: "{}" }), { times: 1 });
   await on_post(page, "The paper's scene", late);
   const again = page.waitForRequest((request) => request.postData()?.includes("The paper's scene"));
   await page.locator("#samples").selectOption("4");

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after } from "node:test";
-import { eventually, page_tests, rest, start_both } from "./support.mjs";
+import { eventually, hold_refinement, page_tests, rest, start_both } from "./support.mjs";
 
 const { daemon, browser } = await start_both(after);
 const page_test = page_tests(browser, daemon);
@@ -74,7 +74,7 @@ for (const [what, view, name, options] of [
 
 page_test("what is shown is downloaded while finer pictures are on their way", "playing=0&samples=1", async (page) => {
   await rest(page);
-  await page.route(/samples=16/, () => {}); // never answers
+  await hold_refinement(page, 4);
   await page.locator("#samples").selectOption("64");
   await eventually("4 samples", async () => samples_of(await link_of(page)) === "4");
   const { bytes } = await download(page);

@@ -184,6 +184,29 @@ export async function axe_violations(page) {
   return violations.map(({ id, nodes }) => `${id} at ${nodes.map(({ target }) => target)}`);
 }
 
+// From now on streams of passes hang after the one of so many samples; window.signals are those of all requests.
+export async function hold_refinement(page, samples) {
+  await page.evaluate((last) => {
+    const real_fetch = window.fetch;
+    window.signals = [];
+    window.fetch = async (path, options) => {
+      if (options?.signal) window.signals.push(options.signal);
+      const response = await real_fetch(path, options);
+      if (!String(path).includes("/refinement?")) return response;
+      const bytes = new Uint8Array(await response.arrayBuffer());
+      let at = 0;
+      for (let seen = 0; seen < last;) {
+        const length = new DataView(bytes.buffer).getUint32(at);
+        const header = JSON.parse(new TextDecoder().decode(bytes.subarray(at + 4, at + 4 + length)));
+        at += 4 + length + header.bytes;
+        seen = header.samples;
+      }
+      const body = new ReadableStream({ start: (stream) => stream.enqueue(bytes.subarray(0, at)) });
+      return new Response(body, { headers: response.headers });
+    };
+  }, samples);
+}
+
 // The middle of the stage, and its height.
 export async function middle(page) {
   const box = await page.locator("#stage").boundingBox();
