@@ -23,7 +23,11 @@ struct Directional {
 
   Arrival<N> arrive(const Vec3<N>&) const { return {from, N(std::numeric_limits<T>::infinity()), intensity}; }
 
-  MaskOf<N> extended() const { return height > N(T(0)); }
+  // A disc that is narrower than directions are rounded to is parallel light.
+  MaskOf<N> extended() const {
+    constexpr T kRounded = std::numeric_limits<T>::epsilon();
+    return height > N(kRounded * kRounded);
+  }
   // Evenly by solid angle.
   Drawn<N> draw(const Vec3<N>&, const N& u, const N& v) const {
     using std::sqrt;

@@ -9,7 +9,8 @@ CookTorrance<double> CookTorrance<N>::read(Params& p) {
   const Vec3d n = p.color("n", "Index of refraction of the facets, per channel.", Vec3d(1.5));
   const Vec3d k = p.color("k", "Extinction of the facets, per channel.", Vec3d(0));
   const Vec3d diffuse = p.coefficient("diffuse", "Share of light that leaves evenly.", Vec3d(0), 1);
-  const Vec3d specular = p.coefficient("specular", "Share of what facets mirror.", Vec3d(1), 1);
+  const Vec3d specular = p.coefficient(
+      "specular", "Share of what facets mirror; what `diffuse` leaves unless told.", Vec3d(1) - diffuse, 1);
   const double slope =
       p.number("slope", "Root mean square slope of the facets.", {.min = 0.01, .max = 1}, 0.3);
   const double most = max_component(diffuse + specular);

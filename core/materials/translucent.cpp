@@ -1,5 +1,7 @@
 #include "core/materials/translucent.h"
 
+#include <algorithm>
+
 #include "core/materials/material_set.h"
 #include "core/math/hemisphere.h"
 #include "core/params/params.h"
@@ -10,8 +12,11 @@ template <class N>
 Translucent<double> Translucent<N>::read(Params& p) {
   const Vec3d back =
       p.coefficient("reflectance", "Share of light that leaves on the side it came from.", Vec3d(0.4), 1);
-  const Vec3d on =
-      p.coefficient("transmittance", "Share of light that leaves on the far side.", Vec3d(0.4), 1);
+  const Vec3d left(std::min(0.4, 1 - back.x), std::min(0.4, 1 - back.y), std::min(0.4, 1 - back.z));
+  const Vec3d on = p.coefficient("transmittance",
+                                 "Share of light that leaves on the far side; unless told 0.4, or what "
+                                 "`reflectance` leaves if that is less.",
+                                 left, 1);
   const double most = max_component(back + on);
   if (most > 1)
     p.fail("transmittance", "expected a sum with reflectance of at most 1, got " + number_text(most));

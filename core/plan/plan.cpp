@@ -220,7 +220,7 @@ class Planner {
     plan_.filters = plan_.specular && used.filters;
     if (!plan_.specular) {
       plan_.max_depth = 0;
-      return decide("mirrored and refracted rays", "absent", "no material in use mirrors or refracts");
+      return decide("mirrored and refracted rays", "absent", "no smooth material in use mirrors or refracts");
     }
     if (!plan_.technique->secondary_rays) {
       plan_.max_depth = 0;

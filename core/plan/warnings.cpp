@@ -100,6 +100,7 @@ bool any_shapes(const Scene& scene, double time, const Visit& visit) {
 
 // False where more than kMostPrimitives would have to be looked at.
 bool nothing_in_view(const Scene& scene, const Plan& plan) {
+  if (plan.shutter > 0) return false;  // what comes into view meanwhile is not looked for
   const View view(plan);
   int seen = 0;
   return !any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
@@ -237,9 +238,10 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
     found.push_back({"/camera/eye", "the camera is inside an opaque shape that holds no light"});
   const Extreme& most = scene.facts.most_reflected;
   if (plan.technique->interreflects && most.value > kMostReflected)
-    found.push_back({most.where + "/material",
-                     "it sends on up to " + percents(most.value) +
-                         " of the light that it gets; plastic and metallic-roughness create none"});
+    found.push_back(
+        {most.where + "/material",
+         "it sends on up to " + percents(most.value) +
+             " of the light that it gets; plastic, and metallic-roughness that is not strict, create none"});
   if (empty) found.push_back({"/camera", "nothing is in view: the picture shows the background alone"});
   return found;
 }

@@ -61,13 +61,14 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
 }
 
 std::string explain_text(const Scene& scene, const Plan& plan) {
-  std::string text = std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels, " +
-                     std::to_string(plan.samples) + (plan.samples == 1 ? " sample" : " samples") +
-                     " each, of " + std::to_string(scene.object_count) +
-                     (scene.object_count == 1 ? " object" : " objects") + " in the light of " +
-                     std::to_string(scene.lights.size()) +
-                     (scene.facts.materials.emits ? " and of what emits: " : ": ") +
-                     std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "\n";
+  std::string text =
+      std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels, " +
+      std::to_string(plan.samples) + (plan.samples == 1 ? " sample" : " samples") + " each, of " +
+      std::to_string(scene.object_count) + (scene.object_count == 1 ? " object" : " objects") +
+      " in the light of " + std::to_string(scene.lights.size()) +
+      (scene.facts.materials.emits ? " and of what emits" : "") +
+      (scene.environment && plan.technique->interreflects ? " and of an environment" : "") + ": " +
+      std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "\n";
   std::size_t subject_width = 0, choice_width = 0;
   for (const Decision& d : plan.decisions) {
     subject_width = std::max(subject_width, d.subject.size());

@@ -164,6 +164,14 @@ TEST(LightTree, WeightsOfBothStrategiesSumToOne) {
   }
 }
 
+// A narrow sun has a density whose square no float holds.
+TEST(PowerHeuristic, HoldsWhereSquaresAreOutOfRange) {
+  EXPECT_EQ(power_heuristic(1e30f, 1.0f), 1.0f);
+  EXPECT_EQ(power_heuristic(1.0f, 1e30f), 0.0f);
+  EXPECT_EQ(power_heuristic(1e30f, 1e30f), 0.5f);
+  EXPECT_EQ(power_heuristic(1e-30f, 1e-30f), 0.5f);
+}
+
 // Nothing has a length of its own.
 TEST(LightTree, ChoosesTheSameAtAnyScale) {
   const auto lights = lights_of(300, any_light);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/lights/directional.h"
 #include "core/lights/registry.h"
 #include "tests/support/covers.h"
 #include "tests/support/lights.h"
@@ -120,6 +121,13 @@ TEST(Spot, BeamGoesWhereItPointsWhateverTheLengthOfThat) {
   light["direction"] = {0, 0, -1e-9};
   for (const double degrees : {0.0, 25.0, 35.0})
     EXPECT_EQ(in_beam(light, degrees).incident.x, in_beam(spot(20, 40), degrees).incident.x);
+}
+
+TEST(Directional, IsParallelIfNarrowerThanDirectionsAreRounded) {
+  const auto sun = [](float height) { return Directional<float>{Vec3f(0, 1, 0), Vec3f(1), height}; };
+  EXPECT_FALSE(sun(1e-20f).extended());
+  EXPECT_FALSE(sun(0).extended());
+  EXPECT_TRUE(sun(1e-5f).extended());
 }
 
 // Every registered light: unit directions, no light below 0 or above its intensity, float like double.
