@@ -13,6 +13,7 @@ struct Constant {
     return {p.color("radiance", "What a ray sees that meets nothing.", Vec3d(1))};
   }
   Vec3d constant() const { return Vec3d(everywhere); }
+  Vec3<N> most() const { return everywhere; }
   Vec3<N> radiance(const Vec3<N>&) const { return everywhere; }
 };
 

@@ -6,6 +6,7 @@
 // An environment that is a formula is one record, `template <class N> struct Gradient`, with
 //   static Gradient<double> read(Params&);               in the .cpp, which registers the type
 //   Vec3<N> radiance(const Vec3<N>& direction) const;    of a unit direction from the scene
+//   Vec3<N> most() const;                                the largest of it, per channel
 // and `read_formula<Gradient>` reads it. Light is not drawn from it: it varies so little that the directions
 // in which materials scatter find it as well.
 namespace orrery {
@@ -44,6 +45,7 @@ class FormulaEnvironment final : public Environment {
     if constexpr (requires { record_.constant(); }) return record_.constant();
     return std::nullopt;
   }
+  Vec3d most() const override { return record_.most(); }
   LightKernelPtr<float> kernel(float) const override {
     return std::make_unique<FormulaKernel<Record, float>>(record_);
   }

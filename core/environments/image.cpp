@@ -104,6 +104,7 @@ class ImageEnvironment final : public Environment {
  public:
   explicit ImageEnvironment(TurnedMap image) : image_(std::make_shared<const TurnedMap>(std::move(image))) {}
   bool sampled() const override { return image_->map.sampled() && image_->scale > 0; }
+  Vec3d most() const override { return image_->map.most() * image_->scale; }
   LightKernelPtr<float> kernel(float) const override { return std::make_unique<ImageKernel<float>>(image_); }
   LightKernelPtr<double> kernel(double) const override {
     return std::make_unique<ImageKernel<double>>(image_);

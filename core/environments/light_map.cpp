@@ -59,4 +59,11 @@ LightMap::LightMap(const Texels& picture, Weights weights)
   }
 }
 
+Vec3d LightMap::most() const {
+  Vec3d most(0);
+  for (const Texel& texel : texels_)
+    most = largest(most, Vec3d(double{texel.red}, double{texel.green}, double{texel.blue}));
+  return most;
+}
+
 }  // namespace orrery

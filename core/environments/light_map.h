@@ -65,6 +65,7 @@ class LightMap {
   };
   template <class T>
   Value<T> at(T x, T y) const;
+  Vec3d most() const;  // the largest radiance, per channel
   double density_factor() const {
     return table_.width() * (table_.height() / (2 * std::numbers::pi * std::numbers::pi));
   }

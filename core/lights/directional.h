@@ -21,6 +21,10 @@ struct Directional {
 
   LightBounds bounds() const { return {.strength = max_component(intensity), .parallel = true}; }
 
+  Vec3d most_at(double) const { return intensity * (2 / (2 - height)); }  // of a disc that is faced
+
+  Vec3d most_seen() const { return height > 0 ? intensity * (1 / (height * (2 - height))) : Vec3d(0); }
+
   Arrival<N> arrive(const Vec3<N>&) const { return {from, N(std::numeric_limits<T>::infinity()), intensity}; }
 
   // A disc that is narrower than directions are rounded to is parallel light.

@@ -12,11 +12,13 @@
 //   Vec3<N> intensity;                                 at the source, or whole_intensity(), likewise
 //   RoundingLimit rounding() const;                    of a Point<double>, if it has one
 //   LightBounds bounds() const;                        of a Point<double>
+//   Vec3d most_at(double distance) const;              likewise; see LightSet
 //   Arrival<N> arrive(const Vec3<N>& position) const;  what arrives at a surface point
 // and, if it may have an extent that paths see,
 //   MaskOf<N> extended() const;                        whether it has
 //   Drawn<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  from a point that u and v choose
-//   Seen<N> beyond(const Vec3<N>& direction) const;    if it is infinitely far away
+//   Seen<N> beyond(const Vec3<N>& direction) const;    if it is infinitely far away, and then
+//   Vec3d most_seen() const;                           of a Point<double>; see LightSet
 // and `make_light_set<Point>` is its factory.
 namespace orrery {
 
@@ -106,6 +108,14 @@ class RecordLightSet final : public LightSet {
       return record.intensity;
   }
   LightBounds bounds(int index) const override { return records_[static_cast<std::size_t>(index)].bounds(); }
+  Vec3d most_at(int index, double distance) const override {
+    return records_[static_cast<std::size_t>(index)].most_at(distance);
+  }
+  Vec3d most_seen(int index) const override {
+    if constexpr (requires(const Record<double>& record) { record.most_seen(); })
+      return records_[static_cast<std::size_t>(index)].most_seen();
+    return Vec3d(0);
+  }
   RoundingLimit rounding(int index) const override {
     const Record<double>& record = records_[static_cast<std::size_t>(index)];
     if constexpr (requires { record.rounding(); })

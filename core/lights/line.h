@@ -28,6 +28,13 @@ struct Line {
             .attenuation = {1, 0, 4 / (extent * extent)}};
   }
 
+  Vec3d most_at(double distance) const {
+    const auto of = [&](double watts) {
+      return watts > 0 ? watts * extent / (kPi * distance * distance) : 0;
+    };
+    return {of(intensity.x), of(intensity.y), of(intensity.z)};
+  }
+
   // Of the whole power from its middle.
   Arrival<N> arrive(const Vec3<N>& position) const {
     const Vec3<N> line = start + along * (extent * T(0.5)) - position;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/work_scope.h"
+#include "core/load/radiance_range.h"
 #include "core/load/spacing.h"
 
 namespace orrery {
@@ -71,6 +72,7 @@ void add_instances(const Scene& scene, SceneFacts& facts) {
       const Affined world_from_model = instance.world_from_model(time);
       take_larger(facts.magnitude, own.magnitude.value, where);
       take_smaller(facts.smallest_feature, own.smallest.value / stretch(inverse(world_from_model)), where);
+      facts.unbounded = facts.unbounded || own.has_unbounded;
       if (own.has_unbounded || !own.bounded.bounded()) continue;
       for (const Vec3d& corner : corners_of(own.bounded)) {
         take_larger(facts.magnitude, reach_of(instance, world_from_model, corner), where);
@@ -89,14 +91,19 @@ void add_lights(const Scene& scene, SceneFacts& facts) {
   }
 }
 
-// Of the materials that some primitive has.
-void add_materials(const Scene& scene, SceneFacts& facts) {
-  std::vector<std::int32_t> first_user;  // primitive, by material; -1: none
+// The first primitive that has each material; -1: none.
+std::vector<std::int32_t> find_first_users(const Scene& scene) {
+  std::vector<std::int32_t> first_user;
   for (std::size_t p = scene.material_of.size(); p-- > 0;) {
     const auto material = static_cast<std::size_t>(scene.material_of[p]);
     if (material >= first_user.size()) first_user.resize(material + 1, -1);
     first_user[material] = static_cast<std::int32_t>(p);
   }
+  return first_user;
+}
+
+// Of the materials that some primitive has.
+void add_materials(const Scene& scene, std::span<const std::int32_t> first_user, SceneFacts& facts) {
   std::size_t first = 0;
   for (const auto& set : scene.materials) {
     bool used = false;
@@ -132,13 +139,18 @@ SceneFacts gather_facts(const Scene& scene) {
   const Extents own(scene.shapes);
   facts.left_out = own.left_out;
   facts.bounds = own.bounded;
+  facts.unbounded = own.has_unbounded;
   if (own.magnitude.value > 0)
     facts.magnitude = {own.magnitude.value, pointer_to_object(scene, own.magnitude.primitive)};
   if (own.smallest.value < kInfinity)
     facts.smallest_feature = {own.smallest.value, pointer_to_object(scene, own.smallest.primitive)};
   add_instances(scene, facts);
   add_lights(scene, facts);
-  add_materials(scene, facts);
+  const std::vector<std::int32_t> first_user = find_first_users(scene);
+  add_materials(scene, first_user, facts);
+  std::vector<bool> used;
+  for (const std::int32_t primitive : first_user) used.push_back(primitive >= 0);
+  find_radiance_ranges(scene, used, facts);
   const Spacing spacing = measure_spacing(scene, facts);
   facts.layer_distance = spacing.layer_distance;
   facts.mirrors = spacing.mirrors;

@@ -35,6 +35,9 @@ struct Glass {
             .fields = {.travelled = is_rough && filters}};
   }
   double mirrored_share() const { return alpha > 0 ? 0 : body.f0; }
+  ReflectionLimits limits() const {
+    return alpha > 0 ? ReflectionLimits{} : ReflectionLimits{Vec3d(0), Vec3d(0), Vec3d(1), true};
+  }
 
   N rough() const { return alpha; }
   Vec3<N> from_everywhere() const {

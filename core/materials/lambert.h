@@ -12,6 +12,7 @@ struct Lambert {
 
   static Lambert<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true}; }
+  ReflectionLimits limits() const { return {reflectance, reflectance, reflectance}; }
 
   [[gnu::always_inline]] Vec3<N> pi_brdf(const N&, const N&, const N&) const { return reflectance; }
 };

@@ -11,6 +11,7 @@
 //   RoundingLimit rounding() const;             likewise, if it has one
 //   double mirrored_share() const;              likewise, if it mirrors: see MaterialSet
 //   double most_reflected() const;              likewise, if it may create energy
+//   ReflectionLimits limits() const;            likewise, if they are known
 // and its formulas; and a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
 namespace orrery {
 
@@ -71,6 +72,13 @@ class MaterialSetOf final : public MaterialSet {
       return record.most_reflected();
     else
       return 1;
+  }
+  ReflectionLimits limits(int index) const override {
+    const Record<double>& record = records_[static_cast<std::size_t>(index)];
+    if constexpr (requires { record.limits(); })
+      return record.limits();
+    else
+      return {};
   }
   MaterialKernelPtr<float> kernel(float, int first) const override {
     return std::make_unique<Kernel<float>>(std::span<const Record<double>>(records_), first);

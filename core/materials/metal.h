@@ -25,6 +25,10 @@ struct Metal {
   static Metal<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = alpha > 0, .mirrors = !(alpha > 0), .glossy = alpha > 0}; }
   double mirrored_share() const { return alpha > 0 ? 0 : max_component(f0); }
+  ReflectionLimits limits() const {
+    if (!(alpha > 0)) return {Vec3d(0), Vec3d(0), Vec3d(1), true};
+    return {f0, Vec3d(Ggx<double>{alpha}.most()) + multiple_scale, Vec3d(1), false};
+  }
 
   [[gnu::always_inline]] Vec3<N> reflectance(const N& cosine) const {
     return {fresnel_conductor(n.x, k.x, cosine), fresnel_conductor(n.y, k.y, cosine),

@@ -25,6 +25,13 @@ struct MetallicRoughness {
   static MetallicRoughness<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
   double most_reflected() const;
+  ReflectionLimits limits() const {
+    const double most = most_reflected();
+    return {f0 + base,
+            base + multiple / std::max(1 - albedo.mean, std::numeric_limits<double>::min()) +
+                Vec3d(Ggx<double>{alpha}.most()),
+            Vec3d(most)};
+  }
 
   N rough() const { return N(ScalarOf<N>(1)); }
   Vec3<N> from_everywhere() const { return f0 + base; }

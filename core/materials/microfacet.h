@@ -47,6 +47,10 @@ struct Ggx {
     return density * ScalarOf<N>(0.5) / (light.z * stretched(viewer.z) + viewer.z * stretched(light.z));
   }
 
+  // The most that pi times brdf() and the light's cosine may be: D is at most 1 / (pi alpha^2), and
+  // stretched() at least alpha.
+  N most() const { return ScalarOf<N>(0.5) / (alpha * alpha * alpha); }
+
   // Density per solid angle with which a ray is mirrored by visible_normal(): G1 D / (4 N.V).
   [[gnu::always_inline]] N pdf(const Vec3<N>& viewer, const N& density) const {
     return density * ScalarOf<N>(0.5) / (viewer.z + stretched(viewer.z));

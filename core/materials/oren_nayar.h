@@ -21,6 +21,10 @@ struct OrenNayar {
 
   static OrenNayar<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
+  // N.L s / t is at most 1, and grazing_loss() kFujii.
+  ReflectionLimits limits() const {
+    return {reflectance, reflectance * (single_scale * (1 + roughness)) + multiple_scale * (kFujii * kFujii)};
+  }
 
   // Fujii: A (1 + roughness s / t) with s = L.V - N.L N.V and t = max(N.L, N.V) where s > 0, else 1. An
   // interpolated normal may face away from the viewer, who then looks along the surface.

@@ -20,6 +20,9 @@ struct Plastic {
   static Plastic<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true, .mirrors = !(alpha > 0), .glossy = true}; }
   double mirrored_share() const { return alpha > 0 ? 0 : fresnel(1); }
+  ReflectionLimits limits() const {
+    return {base, alpha > 0 ? base + Vec3d(Ggx<double>{alpha}.most()) : base, Vec3d(1), !(alpha > 0)};
+  }
 
   N rough() const { return N(ScalarOf<N>(1)); }
   Vec3<N> from_everywhere() const { return base; }

@@ -16,6 +16,7 @@ struct Reflective {
   static Reflective<double> read(Params& p);
   MaterialTraits traits() const { return {.mirrors = true}; }
   double mirrored_share() const { return max_component(f0); }
+  ReflectionLimits limits() const { return {Vec3d(0), Vec3d(0), Vec3d(1), true}; }
 
   [[gnu::always_inline]] Vec3<N> reflectance(const N& cosine) const {
     const auto equations = exact > N(ScalarOf<N>(0));

@@ -19,6 +19,7 @@ struct Refractive {
   MaterialTraits traits() const {
     return {.mirrors = true, .transmits = true, .filters = log2_filter != Vec3<N>(N(0))};
   }
+  ReflectionLimits limits() const { return {Vec3d(0), Vec3d(0), Vec3d(1), true}; }
 
   struct Split {
     N reflectance;

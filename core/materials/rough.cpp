@@ -32,10 +32,10 @@ RoundingLimit Rough<N>::rounding() const {
 // Seen along the normal, where the highlight is whole: of an exponent s, Phong's sends on 2 / (s + 1) of its
 // coefficient, and the half vector's 8 (1 - 2^(-(s + 2) / 2)) / (s + 2).
 template <class N>
-double Rough<N>::most_reflected() const {
+ReflectionLimits Rough<N>::limits() const {
   const double s = shininess;
   const double highlight = phong > 0 ? 2 / (s + 1) : 8 * (1 - exp2_flushed(-(s + 2) / 2)) / (s + 2);
-  return max_component(diffuse + specular * highlight);
+  return {ambient, diffuse + specular, diffuse + specular * highlight};
 }
 
 namespace {

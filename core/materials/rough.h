@@ -16,7 +16,8 @@ struct Rough {
   static Rough<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true, .glossy = specular != Vec3<N>(N(0))}; }
   RoundingLimit rounding() const;
-  double most_reflected() const;
+  double most_reflected() const { return max_component(limits().albedo); }
+  ReflectionLimits limits() const;
 
   // Cosine that the highlight is a power of, 0 where there is none. Unit vectors: normal, toward the light,
   // toward the viewer, and half way between the two. The mirrored direction is R = 2 (N.L) N - L.

@@ -13,6 +13,10 @@ struct Translucent {
 
   static Translucent<double> read(Params& p);
   MaterialTraits traits() const { return {.lit = true, .transmits = true}; }
+  ReflectionLimits limits() const {
+    const Vec3d sum = reflectance + transmittance;
+    return {sum, sum, sum};
+  }
 };
 
 }  // namespace orrery

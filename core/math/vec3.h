@@ -92,6 +92,11 @@ template <class N>
   return a * (N(1) / length(a));
 }
 
+// The larger of each component.
+template <class N>
+[[gnu::always_inline]] inline Vec3<N> largest(const Vec3<N>& a, const Vec3<N>& b) {
+  return {max_first(a.x, b.x), max_first(a.y, b.y), max_first(a.z, b.z)};
+}
 template <class N>
 [[gnu::always_inline]] inline N max_component(const Vec3<N>& a) {
   using std::max;

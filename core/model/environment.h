@@ -16,6 +16,7 @@ class Environment {
   virtual ~Environment() = default;
   // The radiance, if it is the same from everywhere: then no kernel is made.
   virtual std::optional<Vec3d> constant() const { return std::nullopt; }
+  virtual Vec3d most() const = 0;  // the largest radiance from anywhere, per channel
   // Whether paths do better to draw directions toward it than to wait for them.
   virtual bool sampled() const { return false; }
   // It is light 0. Only beyond() and, if sampled(), sample_each() give light.

@@ -107,6 +107,11 @@ class LightSet {
   virtual LightTraits traits() const = 0;
   virtual Vec3d intensity(int index) const = 0;  // at the source, per channel
   virtual LightBounds bounds(int index) const = 0;
+  // The most that reaches points so many metres from the centre of the bounds, or more, taken for one point
+  // or direction, per channel: LightBatch::incident. Infinite where nothing limits it.
+  virtual Vec3d most_at(int index, double distance) const = 0;
+  // The largest radiance that rays which meet nothing may bring from it.
+  virtual Vec3d most_seen(int /*index*/) const { return Vec3d(0); }
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
   // Whether sample_each() draws from an extent of the light that sample() takes for one point or direction.
   virtual bool extended(int /*index*/) const { return false; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "core/model/draws.h"
@@ -87,6 +88,15 @@ struct MaterialTraits {
   }
 };
 
+// The most that a surface sends on, per channel, whatever the directions. Where it mirrors a share R besides,
+// `light` is what it sends on at R = 0, and at most 1 - R of that.
+struct ReflectionLimits {
+  Vec3d ambient{1.0};                                    // of ambient light
+  Vec3d light{std::numeric_limits<double>::infinity()};  // f_cos of MaterialKernel::evaluate()
+  Vec3d albedo{1.0};                                     // of light from everywhere
+  bool specular = false;                                 // it may mirror and refract everything
+};
+
 class MaterialSet {
  public:
   virtual ~MaterialSet() = default;
@@ -99,6 +109,7 @@ class MaterialSet {
   // Largest share of light that it sends on, over views and channels; above 1 it creates energy. To within a
   // hundredth; 1 of what keeps or loses energy by its formula.
   virtual double most_reflected(int /*index*/) const { return 1; }
+  virtual ReflectionLimits limits(int /*index*/) const { return {}; }
   // Kernels whose materials are numbered from `first`.
   virtual MaterialKernelPtr<float> kernel(float, int first) const = 0;
   virtual MaterialKernelPtr<double> kernel(double, int first) const = 0;

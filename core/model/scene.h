@@ -14,6 +14,7 @@
 #include "core/model/environment.h"
 #include "core/model/light.h"
 #include "core/model/material.h"
+#include "core/model/radiance_range.h"
 #include "core/model/render_settings.h"
 #include "core/model/rounding.h"
 #include "core/model/shape.h"
@@ -38,6 +39,10 @@ struct SceneFacts {
   MaterialTraits materials;  // of those that some object has
   std::size_t left_out = 0;  // primitives without area
   Boundsd bounds;            // of the bounded primitives
+  bool unbounded = false;    // whether there are others
+  // Of radiance that techniques without and with interreflection find.
+  RadianceRange tree_radiance, path_radiance;
+  Vec3d albedo;  // the largest share that a material in use sends on of light from everywhere
   // For the choice of the number type:
   Extreme magnitude{0,
                     ""};  // largest absolute coordinate, also of the points that place unbounded primitives
