@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math/exposure.h"
+#include "core/model/bound.h"
 #include "core/model/camera.h"
 #include "core/model/render_settings.h"
 
@@ -18,19 +19,6 @@ struct TechniqueType;
 
 inline constexpr const char* precision_name(bool double_precision) {
   return double_precision ? "double" : "float";
-}
-
-// How far a decision may take the picture from the one without it.
-struct Bound {
-  enum class Kind { exact, unknown };
-  Kind kind = Kind::exact;
-  // Largest and root-mean-square difference of a pixel's channel, in linear radiance; none if unknown.
-  std::optional<double> max = 0, rms = 0;
-
-  static Bound unknown() { return {Kind::unknown, std::nullopt, std::nullopt}; }
-};
-inline constexpr std::string_view name_of(Bound::Kind kind) {
-  return kind == Bound::Kind::exact ? "exact" : "unknown";
 }
 
 // One choice the plan made, for people to read.
@@ -53,6 +41,7 @@ struct Plan {
   double shutter = 0;           // seconds that the shutter is open from then on; 0: an instant
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
+  Vec3d cut_range;  // the most by which a ray that is not traced may change radiance; may be infinite
   std::uint64_t seed = 0;
   bool reorder = false;  // rays that are alike are asked for together
   Prediction prediction = Prediction::none;

@@ -15,7 +15,9 @@ namespace orrery {
 template <class T>
 struct TraceResult {
   Vec3Array<T> radiance;
-  Array<T> cut;  // weight of rays that were not traced, largest channel: the ledger of the depth limit
+  // The ledger of what was left out: the most by which it may change radiance, per channel. Of rays that were
+  // not traced the weight times Plan::cut_range.
+  Vec3Array<T> omitted;
   std::vector<ChannelBatch<T>> channels;  // of Plan::channels, in that order
 };
 

@@ -44,10 +44,14 @@ class Planner {
     choose_accelerator();
     choose_order();
     choose_prediction();
-    if (plan_.technique->interreflects)
+    const SceneFacts& facts = scene_.facts;
+    if (plan_.technique->interreflects) {
+      plan_.cut_range = facts.path_radiance.most_off(Vec3d(0));
       choose_paths();
-    else
+    } else {
+      plan_.cut_range = facts.tree_radiance.most_off(scene_.ambient);
       leave_out_for_trees();
+    }
     if (request_.full_model || plan_.technique->interreflects) return plan_;
     choose_lights();
     choose_specular();
@@ -211,7 +215,7 @@ class Planner {
            : plan_.shutter > 0 ? "paths of different times meet different scenes"
                                : "no path has a second vertex that receives light");
     decide("depth", std::to_string(plan_.max_depth), "as asked; what longer paths would bring is left out",
-           Bound::unknown());
+           cut_bound(std::pow(max_component(scene_.facts.albedo), plan_.max_depth)));
   }
 
   void choose_specular() {
@@ -234,8 +238,17 @@ class Planner {
       decide("depth", "1", "the only object is convex: its mirrored rays meet nothing");
     } else {
       decide("depth", std::to_string(plan_.max_depth), "as asked; deeper rays are replaced by ambient light",
-             Bound::unknown());
+             cut_bound(1));
     }
+    if (plan_.min_contribution > 0)
+      decide("least contribution", number_text(plan_.min_contribution),
+             "as asked; weaker rays are replaced by ambient light", cut_bound(1));
+  }
+
+  // Of rays that are not traced, before any is: of so much weight in all. The picture's ledger tells less.
+  Bound cut_bound(double weight) const {
+    const double most = weight * max_component(plan_.cut_range);
+    return Bound::proved(most, most);
   }
 
   // Whether `has(set, index)` for some light.

@@ -6,6 +6,7 @@
 
 #include "core/model/counts.h"
 #include "core/model/film.h"
+#include "core/render/omitted.h"
 #include "core/render/sampled_error.h"
 #include "core/render/worker_pool.h"
 #include "core/tuning/settle.h"
@@ -24,12 +25,12 @@ struct RenderControl {
 struct RenderStats {
   TraceCounts counts;
   const AcceleratorType* accelerator = nullptr;
-  double mean_cut = 0, max_cut = 0;  // weight of rays not traced, a pixel: mean and largest
-  AcceleratorFacts structure;        // what the rays were traced with
-  double build_ms = 0;               // making the scene ready, where it was not yet
-  double trace_ms = 0;               // wall clock
-  double cpu_ms = 0;                 // of tracing, on all threads together
+  AcceleratorFacts structure;  // what the rays were traced with
+  double build_ms = 0;         // making the scene ready, where it was not yet
+  double trace_ms = 0;         // wall clock
+  double cpu_ms = 0;           // of tracing, on all threads together
   std::uint64_t non_finite_pixels = 0;
+  Omitted omitted;
   SampledError error;  // of an even number of samples, of which at least the second half was traced together
 };
 

@@ -43,7 +43,7 @@ RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, F
   const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
   Film film = make_film(*plan, storage);
   prepared->render(tiles_of(film, 0, plan->samples), film, stats, control);
-  return {std::move(film), stats};
+  return {std::move(film), stats, certify(*plan, stats)};
 }
 
 std::vector<int> progressive_samples(const Plan& plan) {
@@ -63,7 +63,9 @@ ProgressiveRender::ProgressiveRender(const PreparedScene& scene, const SettledPl
 
 void ProgressiveRender::refine(int samples, const RenderControl& control) {
   stats_.error = {};
+  const Omitted before = std::exchange(stats_.omitted, {});
   prepared_->render(tiles_of(film_, samples_, samples - samples_), film_, stats_, control);
+  if (before.samples > 0) stats_.omitted.join(before);
   samples_ = samples;
 }
 

@@ -3,13 +3,14 @@
 #include <memory>
 #include <vector>
 
-#include "core/render/backend.h"
+#include "core/render/certificate.h"
 
 namespace orrery {
 
 struct RenderResult {
   Film film;
   RenderStats stats;
+  Certificate certificate = {};
 };
 
 // Renders one frame on the pool: every tile with all its samples. Channels of the plan are kept with

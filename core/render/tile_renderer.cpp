@@ -40,7 +40,7 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
 
 template <class T>
 bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint, Film& film) {
-  cut_.clear();
+  omitted_.clear();
   begin_looks(tile);
   if (places_samples_) find_streams(tile, SampleSet::pixel, pixel_streams_);
   if (plan_.samples == 1 && film.storage() != FilmStorage::sums) {
@@ -58,7 +58,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
     if (end % 2 == 0 && 2 * tile.first_sample <= end) add_error(tile, end);
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
-  if (!cut_.empty()) add_cut(tile);
+  add_omitted(tile);
   return true;
 }
 
@@ -71,8 +71,11 @@ bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& 
     take_away();
   }
   if (stats_.counts.cut_rays == cut_before) return true;
-  cut_.resize(kBatch);
-  for (std::size_t i = 0; i < kBatch; ++i) cut_[i] += static_cast<double>(result_.cut.values[i]);
+  const bool first = omitted_.empty();
+  omitted_.resize(3);
+  add(first, result_.omitted.x, omitted_[0]);
+  add(first, result_.omitted.y, omitted_[1]);
+  add(first, result_.omitted.z, omitted_[2]);
   return true;
 }
 
@@ -93,7 +96,7 @@ void TileRenderer<T>::take_away() {
   const N more(static_cast<T>(filter_->positive())), less(static_cast<T>(filter_->negative()));
   for (int i = 0; i < kBatch; i += kWidth<T>) {
     result_.radiance.put(i, result_.radiance.at(i) * more - taken_away_->radiance.at(i) * less);
-    result_.cut.put(i, result_.cut.at(i) * more + taken_away_->cut.at(i) * less);
+    result_.omitted.put(i, result_.omitted.at(i) * more + taken_away_->omitted.at(i) * less);
   }
 }
 
@@ -194,14 +197,14 @@ void TileRenderer<T>::add_sample() {
 }
 
 template <class T>
-void TileRenderer<T>::add_cut(const TileView& tile) {
-  for (int slot = 0; slot < kBatch; ++slot) {
-    const TilePixel p = tile_pixel(slot);
-    if (p.x >= tile.width || p.y >= tile.height) continue;
-    const double cut = cut_[static_cast<std::size_t>(slot)] / plan_.samples;
-    stats_.mean_cut += cut / (static_cast<double>(plan_.width) * plan_.height);
-    stats_.max_cut = std::max(stats_.max_cut, cut);
-  }
+void TileRenderer<T>::add_omitted(const TileView& tile) {
+  stats_.omitted.samples = tile.samples;
+  stats_.omitted.values += 3.0 * tile.width * tile.height;
+  for (const TileSums::Plane& channel : omitted_)
+    for (int slot = 0; slot < kBatch; ++slot) {
+      const TilePixel p = tile_pixel(slot);
+      if (p.x < tile.width && p.y < tile.height) stats_.omitted.add(channel[static_cast<std::size_t>(slot)]);
+    }
 }
 
 template <class T>
@@ -244,8 +247,7 @@ template <class T>
 void TileRenderer<T>::add_to(RenderStats& stats) const {
   stats.counts.add(stats_.counts);
   stats.error.add(stats_.error);
-  stats.mean_cut += stats_.mean_cut;
-  stats.max_cut = std::max(stats.max_cut, stats_.max_cut);
+  stats.omitted.add(stats_.omitted);
   stats.non_finite_pixels += stats_.non_finite_pixels;
 }
 

@@ -19,7 +19,7 @@ class TileRenderer {
   // Adds the tile's samples to the film. False once the work is to end: the tile is then left as it was.
   bool render(const TileView& tile, const Checkpoint& checkpoint, Film& film);
 
-  // Adds what the tiles so far took; mean_cut is a sum over them, by pixels of the picture.
+  // Adds what the tiles so far took.
   void add_to(RenderStats& stats) const;
 
  private:
@@ -39,7 +39,7 @@ class TileRenderer {
   void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, PixelFilter::Part part,
                      TileSamples& to) const;
   void add_sample();
-  void add_cut(const TileView& tile);
+  void add_omitted(const TileView& tile);
   void add_error(const TileView& tile, int samples);
   void put_single(const TileView& tile, Film& film);
 
@@ -58,7 +58,8 @@ class TileRenderer {
   TileSums sums_;
   std::array<TileSums::Plane, 3> first_half_;  // of the radiance, after half of the tile's samples
   TileMeans means_;
-  std::vector<double> cut_;  // sums by slot of this tile; empty as long as nothing was cut
+  // The ledger of this tile, sums by channel and slot; empty as long as nothing was left out.
+  std::vector<TileSums::Plane> omitted_;
   RenderStats stats_;
 };
 

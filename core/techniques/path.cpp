@@ -133,8 +133,7 @@ class Path final : public Wavefront<T> {
 
   // Light that longer paths would bring is left out: the ledger has what they could carry.
   void note_end(const Groups& met) {
-    for (const int i : met)
-      this->note_cut(i, surface_lanes(i), max_component(this->vertices_->paths->throughput.at(i)));
+    for (const int i : met) this->note_cut(i, surface_lanes(i), this->vertices_->paths->throughput.at(i));
   }
 
   static constexpr T kLeastChance = T(0.05);

@@ -46,7 +46,7 @@ template <class T>
 void SpecularTree<T>::cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
   auto& v = *this->vertices_;
   v.radiance.put(i, mask, v.radiance.at(i) + weight * Vec3<N>(this->geometry_.ambient));
-  this->note_cut(i, mask, max_component(v.paths->throughput.at(i) * weight));
+  this->note_cut(i, mask, v.paths->throughput.at(i) * weight);
 }
 
 template class SpecularTree<float>;

@@ -47,7 +47,7 @@ void Wavefront<T>::start(const RayBatch<T>& camera_rays) {
   if (plan_.shutter > 0) time_ = camera_rays.time;
   for (int i = 0; i < kBatch; ++i) camera->slot[i] = static_cast<IndexOf<T>>(i);
   for (const int i : all) {
-    out_->cut.put(i, N(T(0)));
+    out_->omitted.put(i, Vec3<N>(N(T(0))));
     camera->throughput.put(i, Vec3<N>(N(T(1))));
   }
   if (plan_.fields.footprint) {
@@ -134,10 +134,15 @@ void Wavefront<T>::spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction,
 }
 
 template <class T>
-void Wavefront<T>::note_cut(int i, const MaskOf<N>& mask, const N& lost) {
+void Wavefront<T>::note_cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
+  const Vec3<T> range(plan_.cut_range);
+  const auto product = [](T share, T most) { return share > 0 ? share * most : T(0); };  // not 0 infinities
   for (unsigned bits = bits_of(mask); bits != 0; bits &= bits - 1) {
-    const int lane = std::countr_zero(bits);
-    out_->cut[static_cast<int>(vertices_->paths->slot[i + lane])] += lost[static_cast<std::size_t>(lane)];
+    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+    const int slot = static_cast<int>(vertices_->paths->slot[i + static_cast<int>(lane)]);
+    const Vec3<T> most(product(weight.x[lane], range.x), product(weight.y[lane], range.y),
+                       product(weight.z[lane], range.z));
+    out_->omitted.set(slot, out_->omitted[slot] + most);
     ++counts_->cut_rays;
   }
 }

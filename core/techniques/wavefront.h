@@ -47,8 +47,8 @@ class Wavefront : public Tracer<T> {
                  const Vec3<N>& throughput);
   // The only one from there, and the density with which it was drawn.
   void spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput, const N& pdf);
-  // Enters rays that are not traced into the ledger, with `lost` of what they would have found.
-  void note_cut(int i, const MaskOf<N>& mask, const N& lost);
+  // Enters rays that are not traced into the ledger, by their weights.
+  void note_cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
 
   const Draws& batch_draws() const { return *draws_; }
   PathDraws<T> draws() const { return {*draws_, vertices_->paths->slot, vertices_->paths->depth}; }

@@ -142,6 +142,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   }
   Picture picture{.bytes = {},
                   .stats = stats,
+                  .certificate = film.value->certificate,
                   .warnings = find_warnings(scene.scene(), plan, stats.counts),
                   .of_kept_film = !film.made_here};
   stage = Stage::encode;

@@ -9,6 +9,7 @@
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
 #include "server/app/option_json.h"
+#include "server/app/told_error.h"
 
 namespace orrery {
 namespace {
@@ -19,11 +20,17 @@ std::uint64_t camera_rays(const Plan& plan) {
   return std::uint64_t(plan.width) * std::uint64_t(plan.height) * std::uint64_t(plan.samples);
 }
 
-nlohmann::ordered_json bound_json(const Bound& bound) {
-  nlohmann::ordered_json json = {{"kind", name_of(bound.kind)}};
-  if (bound.max) json["max"] = *bound.max;
-  if (bound.rms) json["rms"] = *bound.rms;
-  return json;
+// Nothing where nothing changes.
+std::string bound_note(const Bound& bound) {
+  if (bound.kind == Bound::Kind::exact) return "";
+  char text[96];
+  if (bound.kind == Bound::Kind::unknown)
+    std::snprintf(text, sizeof text, " [error unknown]");
+  else if (bound.max)
+    std::snprintf(text, sizeof text, " [error at most %.3g, %s]", *bound.max, name_of(bound.kind).data());
+  else
+    std::snprintf(text, sizeof text, " [RMS error %.3g, %s]", *bound.rms, name_of(bound.kind).data());
+  return text;
 }
 
 std::string padded(std::string text, std::size_t width) {
@@ -76,7 +83,7 @@ std::string explain_text(const Scene& scene, const Plan& plan) {
   }
   for (const Decision& d : plan.decisions)
     text += "  " + padded(d.subject, subject_width) + "  " + padded(d.choice, choice_width) + "  " +
-            d.reason + "\n";
+            d.reason + bound_note(d.bound) + "\n";
   for (const Problem& p : find_warnings(scene, plan)) text += "  warning: " + p.text() + "\n";
   return text;
 }

@@ -14,6 +14,7 @@ namespace orrery {
 struct Picture {
   std::string bytes;
   RenderStats stats;
+  Certificate certificate = {};
   std::vector<Problem> warnings = {};  // see find_warnings()
   bool of_kept_film = false;           // nothing was rendered for it
 };

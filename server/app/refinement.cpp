@@ -75,6 +75,7 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
   const auto start = Clock::now();
   Picture picture{.bytes = encode_film(progress_->film(), FileFormat::png),
                   .stats = stats,
+                  .certificate = certify(plan(), stats),
                   .warnings = find_warnings(scene, spec_.plan, stats.counts)};
   picture.bytes.shrink_to_fit();  // it may be kept
   step.encode_ms = milliseconds_since(start);

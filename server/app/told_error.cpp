@@ -30,4 +30,60 @@ std::string error_text(const RenderStats& stats) {
   return text;
 }
 
+namespace {
+
+ordered_json number_or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+std::string number_or_unknown(const std::optional<double>& value) {
+  char text[32] = "unknown";
+  if (value) std::snprintf(text, sizeof text, "%.3g", *value);
+  return text;
+}
+
+constexpr const char* kReference = "technique";
+constexpr const char* kSpace = "linear";
+
+}  // namespace
+
+ordered_json bound_json(const Bound& bound) {
+  return {
+      {"kind", name_of(bound.kind)}, {"rms", number_or_null(bound.rms)}, {"max", number_or_null(bound.max)}};
+}
+
+ordered_json certificate_json(const Certificate& certificate) {
+  ordered_json terms = ordered_json::array();
+  for (const Certificate::Term& term : certificate.terms) {
+    ordered_json& json =
+        terms.emplace_back(ordered_json{{"subject", term.subject}, {"bound", bound_json(term.bound)}});
+    if (!term.reason.empty()) json["reason"] = term.reason;
+  }
+  ordered_json json = {{"reference", kReference},
+                       {"space", kSpace},
+                       {"confidence", Certificate::kConfidence},
+                       {"terms", std::move(terms)},
+                       {"total", bound_json(certificate.total())},
+                       {"known", bound_json(certificate.known())}};
+  if (certificate.estimate) json["estimate"] = *certificate.estimate;
+  return json;
+}
+
+std::string bound_text(const Certificate& certificate) {
+  const Bound total = certificate.total();
+  std::string text = "rms=" + number_or_unknown(total.rms) + ";kind=" + std::string(name_of(total.kind)) +
+                     ";max=" + number_or_unknown(total.max);
+  if (total.kind == Bound::Kind::unknown) {
+    std::string because;
+    for (const Certificate::Term& term : certificate.terms)
+      if (term.bound.kind == Bound::Kind::unknown) because += (because.empty() ? "" : ", ") + term.subject;
+    const Bound known = certificate.known();
+    text += ";because=\"" + because + "\";known=" + number_or_unknown(known.rms) +
+            ";known-kind=" + std::string(name_of(known.kind)) + ";known-max=" + number_or_unknown(known.max);
+  }
+  if (certificate.estimate)
+    text += ";confidence=" + number_or_unknown(Certificate::kConfidence) +
+            ";estimate=" + number_or_unknown(certificate.estimate);
+  return text + ";reference=" + kReference + ";space=" + kSpace;
+}
+
 }  // namespace orrery

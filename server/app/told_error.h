@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "core/render/backend.h"
+#include "core/render/certificate.h"
 
 // What a picture tells of its own error: RMSE of linear radiance, with what it took.
 namespace orrery {
@@ -16,5 +16,17 @@ nlohmann::ordered_json error_json(const RenderStats& stats);
 // The same for a header: "0.0049; low=0.0046; high=0.0053; of-4=0.0014; of-32=0.0004; samples=16; rays=9000".
 // REQUIRES: stats.error.known().
 std::string error_text(const RenderStats& stats);
+
+// {"kind", "rms", "max"}, where null is what is not known.
+nlohmann::ordered_json bound_json(const Bound& bound);
+
+// {"reference", "space", "confidence", "terms": [{"subject", "bound", "reason"}], "total", "known",
+// "estimate"}: a reason where the bound is unknown, an estimate where samples tell one.
+nlohmann::ordered_json certificate_json(const Certificate& certificate);
+
+// The same for a header: "rms=0.0044;kind=estimated;max=unknown;confidence=0.95;estimate=0.0031;
+// reference=technique;space=linear"; where the kind is unknown, with because="precision, samples", and with
+// known, known-kind and known-max of what is known.
+std::string bound_text(const Certificate& certificate);
 
 }  // namespace orrery

@@ -59,6 +59,7 @@ int render(const RenderOptions& options) {
   bar.reset();
   stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   stats.render = result.stats;
+  stats.certificate = result.certificate;
   for (const Problem& p : find_warnings(scene.scene(), plan, result.stats.counts))
     std::cerr << "orrery: warning: " << p.text() << "\n";
   if (options.output) {

@@ -83,8 +83,6 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
                                  {"proposals", counts.accelerator.proposals},
                                  {"proofs", counts.accelerator.proofs},
                                  {"cut_rays", counts.cut_rays},
-                                 {"mean_cut", stats.render.mean_cut},
-                                 {"max_cut", stats.render.max_cut},
                                  {"non_finite_pixels", stats.render.non_finite_pixels},
                                  {"load_ms", stats.load_ms},
                                  {"build_ms", stats.render.build_ms},
@@ -95,6 +93,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
                                  {"cpu_s", process_cpu_ms() / 1000}};
   json.update(measured);
   if (stats.render.error.known()) json["error"] = error_json(stats.render);
+  json["certificate"] = certificate_json(stats.certificate);
   return json;
 }
 
@@ -115,13 +114,13 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
        static_cast<unsigned long long>(counts.accelerator.box_tests),
        static_cast<unsigned long long>(counts.accelerator.primitive_tests));
   if (plan.prediction != Prediction::none) prediction_text(text, plan, counts);
-  line(text, "%-12s %14llu rays, weight a pixel %.3g on average, %.3g at most", "cut",
-       static_cast<unsigned long long>(counts.cut_rays), stats.render.mean_cut, stats.render.max_cut);
+  line(text, "%-12s %14llu rays", "not traced", static_cast<unsigned long long>(counts.cut_rays));
   if (const SampledError& error = stats.render.error; error.known()) {
     const auto [low, high] = error.interval();
     line(text, "%-12s %14.4g RMSE of a pixel (95 %%: %.4g to %.4g), %.3g of 4 x 4, %.3g of 32 x 32", "error",
          error.pixel.rmse(), low, high, error.block4.rmse(), error.block32.rmse());
   }
+  line(text, "%-12s %s", "error bound", bound_text(stats.certificate).c_str());
   if (stats.render.non_finite_pixels > 0)
     line(text, "%-12s %14llu", "not finite", static_cast<unsigned long long>(stats.render.non_finite_pixels));
   line(text, "%-12s %11.1f ms loading", "time", stats.load_ms);

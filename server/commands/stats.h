@@ -14,6 +14,7 @@ struct RunStats {
   double load_ms = 0, encode_ms = 0;
   double render_cpu_s = 0;  // while rendering: building included, loading and encoding not
   RenderStats render;
+  Certificate certificate = {};
 };
 
 nlohmann::ordered_json stats_json(const Plan& plan, const RunStats& stats);

@@ -65,7 +65,8 @@ void allow_origin(const Request& request, const std::vector<std::string>& origin
   if (!is_listed(request, origins)) return;
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
   response.set("Access-Control-Expose-Headers",
-               "ETag, Location, Orrery-Scene-Id, Orrery-Warning, Retry-After, Server-Timing, X-Rays, X-RMSE, "
+               "ETag, Location, Orrery-Error-Bound, Orrery-Scene-Id, Orrery-Warning, Retry-After, "
+               "Server-Timing, X-Rays, X-RMSE, "
                "X-Request-ID");
 }
 

@@ -18,12 +18,14 @@ nlohmann::ordered_json header_of(const Refinement::Step& step, const Plan& plan)
       {"height", plan.height},   {"render_ms", step.render_ms}, {"encode_ms", step.encode_ms},
       {"rays", step.rays}};
   if (step.picture->stats.error.known()) header["error"] = error_json(step.picture->stats);
+  header["bound"] = certificate_json(step.picture->certificate);
   return header;
 }
 
 Fields fields_of(const Refinement::Step& step) {
   Fields fields{{"X-Samples", std::to_string(step.samples)}, {"X-Rays", std::to_string(step.rays)}};
   if (step.picture->stats.error.known()) fields.emplace_back("X-RMSE", error_text(step.picture->stats));
+  fields.emplace_back("Orrery-Error-Bound", bound_text(step.picture->certificate));
   return fields;
 }
 

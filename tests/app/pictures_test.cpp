@@ -16,7 +16,7 @@ namespace {
 
 const std::stop_token kStays;
 
-Picture picture(std::string bytes) { return {.bytes = std::move(bytes), .stats = {}}; }
+Picture picture(std::string bytes) { return {.bytes = std::move(bytes), .stats = {}, .certificate = {}}; }
 
 TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
   Pictures pictures(10'000);

@@ -7,6 +7,7 @@
 //   target   the GoogleTest executable, or a test script that needs neither the program nor a browser
 //   tests    patterns for --gtest_filter, or names of the script's tests; a test of each must fail
 
+import {certificateFaults} from "./certificates.mjs";
 import {gateFaults} from "./gate.mjs";
 import {imageFaults} from "./image.mjs";
 import {meshFaults} from "./meshes.mjs";
@@ -467,4 +468,5 @@ export const faults = [
   ...meshFaults, ...structureFaults, ...stageFaults,
   ...lightFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
   ...planFaults, ...roundingFaults, ...studyFaults, ...imageFaults, ...pageFaults, ...optionFaults,
+  ...certificateFaults,
 ];

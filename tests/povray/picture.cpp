@@ -47,7 +47,9 @@ void for_each_tile(const Plan& plan, float dx, float dy, const Visit& visit) {
 
 }  // namespace
 
-Samples render_shifted(const PreparedScene& scene, const Plan& plan, float dx, float dy) {
+Samples render_shifted(const PreparedScene& scene, const Plan& of_picture, float dx, float dy) {
+  Plan plan = of_picture;
+  plan.cut_range = Vec3d(1);  // the ledger is of weights then
   const TracerPtr<double> tracer = make_tracer(*plan.technique, world_of(scene, plan), plan);
   const auto result = std::make_unique<TraceResult<double>>();
   TraceCounts counts;
@@ -58,7 +60,7 @@ Samples render_shifted(const PreparedScene& scene, const Plan& plan, float dx, f
     const Vec3Array<double>& radiance = result->radiance;
     for (int slot = 0; slot < kBatch; ++slot) {
       put(samples.picture.pixels, slot, Vec3f(Vec3d(radiance.x[slot], radiance.y[slot], radiance.z[slot])));
-      put(samples.cut, slot, result->cut[slot] > 0);
+      put(samples.cut, slot, max_component(result->omitted[slot]) > 0);
     }
   });
   return samples;

@@ -44,6 +44,7 @@ Tracing::Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest reques
   request.precision = Precision::double_precision;
   request.slice = kBatch;
   plan_ = make_plan(*scene, request);
+  plan_.cut_range = Vec3d(1);  // the ledger is of weights then
   world_.geometry = make_geometry<double>(scene, *plan_.accelerator);
   auto recorder = std::make_unique<Recorder>(build(*plan_.accelerator, world_.geometry->primitives));
   recorder_ = recorder.get();
@@ -67,7 +68,7 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
   if (tracer_->looks()) tracer_->look(*batch, 1, *result, counts_);
   std::vector<Answer> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
-    answers.push_back({result->radiance[i], result->cut[i]});
+    answers.push_back({result->radiance[i], result->omitted[i], max_component(result->omitted[i])});
   return answers;
 }
 

@@ -15,7 +15,8 @@ namespace orrery::test {
 
 struct Answer {
   Vec3d radiance;
-  double cut;  // the ledger: weight of the rays that were not traced
+  Vec3d weights;  // the ledger: of the rays that were not traced
+  double cut;     // the largest of these
 };
 
 class Tracing {

@@ -1,0 +1,26 @@
+// Mistakes of what a picture tells of its error, as faults.mjs has them: fault 31.
+
+const entry = (about, file, from, to, ...tests) => ({ fault: 31, about, file, from, to, target: "test_render", tests });
+
+const kRange = "core/load/radiance_range.cpp", kWavefront = "core/techniques/wavefront.cpp";
+const kRandom = "Ledger.BoundsTheErrorOfRandomScenes";
+
+export const certificateFaults = [
+  entry("no highlight is brighter than its surface", "core/materials/rough.cpp", "diffuse + specular, diffuse", "diffuse, diffuse",
+        "RadianceRange.OfThePapersScene*", "RadianceRange.HoldsAllRadiance*"),
+  entry("nothing is brighter than 1", kRange, "shines + product(limits.light, light.of_points)", "Vec3d(1)",
+        "RadianceRange.OfThePapersScene*"),
+  entry("a lamp that mirrors is as bright as one that does not", kRange, "Vec3d(limits.specular ? 1 : 0)", "Vec3d(0)",
+        "RadianceRange.IsUnknown*"),
+  entry("what is not traced is taken for ambient light", "core/plan/plan.cpp", "facts.tree_radiance.most_off(scene_.ambient)",
+        "scene_.ambient", "Ledger.CountsASubstitute*", "Ledger.OfALightGuide*"),
+  entry("a substitute is never too bright", "core/model/radiance_range.h", "largest(most - substitute, substitute - least)",
+        "most - substitute", "Ledger.CountsASubstitute*"),
+  entry("the ledger has one channel", kWavefront, "product(weight.z[lane], range.z)", "T(0)", kRandom),
+  entry("the ledger has the largest ray instead of all", kWavefront, "out_->omitted[slot] + most", "largest(out_->omitted[slot], most)",
+        kRandom),
+  entry("a total is as strong as its strongest term", "core/model/bound.h", "std::max(kind, other.kind)", "std::min(kind, other.kind)",
+        "Certificate.IsAsWeak*"),
+  entry("the ledger of the last pass is that of the picture", "core/render/frame.cpp",
+        "if (before.samples > 0) stats_.omitted.join(before);", "", "Certificate.OfPasses*"),
+];

@@ -1,0 +1,260 @@
+#include "core/render/certificate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "tests/render/random_optics.h"
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+#include "tests/support/tracing.h"
+
+// What was left out of a picture, and the range within which all radiance lies.
+namespace orrery {
+namespace {
+
+using test::covers;
+using test::Json;
+using test::json;
+
+// SCENES_SEED chooses other scenes than the usual.
+test::Random scenes_seed() {
+  const char* const asked = std::getenv("SCENES_SEED");
+  return test::Random(asked ? std::strtoull(asked, nullptr, 10) : 1);
+}
+
+RenderRequest request(int max_depth, double min_contribution = 0) {
+  RenderRequest r;
+  r.technique = "whitted";
+  r.max_depth = max_depth;
+  r.min_contribution = min_contribution;
+  r.precision = Precision::double_precision;
+  r.width = r.height = kTileSide;
+  return r;
+}
+
+std::vector<Ray<double>> camera_rays(const Plan& plan) {
+  const auto rays = std::make_unique<RayBatch<double>>();
+  plan.camera->generate(plan.frame, plan.width, plan.height, TileView{0, 0, kTileSide, kTileSide},
+                        TileSamples::centres(), *rays);
+  std::vector<Ray<double>> found;
+  for (int i = 0; i < kBatch; ++i) found.push_back({rays->origin[i], rays->direction[i]});
+  return found;
+}
+
+Vec3d product(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+// Of one picture: how much larger the bound is than the error, or none where nothing was left out.
+struct Tightness {
+  std::vector<double> of_max, of_rms;
+};
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.at(values.size() / 2);
+}
+
+// The picture's values beside those of the full tree, whose own ledger counts as well.
+void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness& tightness) {
+  const auto loaded = test::load(scene);
+  const Plan plan = make_plan(*loaded, cut);
+  const std::vector<Ray<double>> rays = camera_rays(plan);
+  const auto planned = test::Tracing(loaded, cut).trace(rays);
+  const auto full = test::Tracing(loaded, request(20, 1e-5)).trace(rays);
+  double most_bound = 0, most_error = 0, bounds = 0, errors = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3d bound = product(planned[i].weights, plan.cut_range);
+    const Vec3d rest = product(full[i].weights, plan.cut_range);
+    const Vec3d error = abs(planned[i].radiance - full[i].radiance);
+    for (const auto channel : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+      ASSERT_LE(error.*channel, bound.*channel + rest.*channel + 1e-12) << scene.dump().substr(0, 2000);
+      most_bound = std::max(most_bound, bound.*channel);
+      most_error = std::max(most_error, error.*channel);
+      bounds += bound.*channel * bound.*channel;
+      errors += error.*channel * error.*channel;
+    }
+  }
+  if (most_error < 1e-4) return;
+  tightness.of_max.push_back(most_bound / most_error);
+  tightness.of_rms.push_back(std::sqrt(bounds / errors));
+}
+
+TEST(Ledger, BoundsTheErrorOfRandomScenes) {
+  covers("certificate-1");
+  test::Random random = scenes_seed();
+  Tightness depth, threshold;
+  for (int i = 0; i < 200; ++i) {
+    const Json scene = test::random_optics(random);
+    expect_within_bounds(scene, request(1 + i % 4), depth);
+    expect_within_bounds(scene, request(20, i % 2 == 0 ? 0.05 : 0.2), threshold);
+  }
+  for (const auto& [name, found] : {std::pair{"depth", depth}, {"threshold", threshold}}) {
+    ASSERT_GT(found.of_max.size(), 100u);
+    EXPECT_LE(median(found.of_max), 4) << name;
+    EXPECT_LE(median(found.of_rms), 5) << name;
+    RecordProperty(std::string(name) + "_max", std::to_string(median(found.of_max)));
+    RecordProperty(std::string(name) + "_rms", std::to_string(median(found.of_rms)));
+  }
+}
+
+TEST(RadianceRange, HoldsAllRadianceOfRandomScenes) {
+  covers("certificate-6");
+  test::Random random = scenes_seed();
+  for (int i = 0; i < 200; ++i) {
+    const auto scene = test::load(test::random_optics(random));
+    const RadianceRange& range = scene->facts.tree_radiance;
+    ASSERT_TRUE(range.finite());
+    const RenderRequest r = request(12);
+    for (const auto& [radiance, weights, cut] :
+         test::Tracing(scene, r).trace(camera_rays(make_plan(*scene, r))))
+      for (const auto channel : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+        // What is replaced by ambient light is no radiance of the scene.
+        ASSERT_LE(radiance.*channel, range.most.*channel + weights.*channel * scene->ambient.*channel + 1e-12)
+            << scene->canonical.substr(0, 2000);
+        ASSERT_GE(radiance.*channel, range.least.*channel) << scene->canonical.substr(0, 2000);
+      }
+  }
+}
+
+// Of plum: .3 of the ambient .4, and .3 and a highlight of 2 of the light's 2.
+TEST(RadianceRange, OfThePapersSceneIsThatByHand) {
+  covers("certificate-6");
+  const auto scene = test::load(test::sample("paper"));
+  EXPECT_NEAR(max_component(scene->facts.tree_radiance.most), 4.72, 1e-9);
+}
+
+TEST(RadianceRange, OfLightsFallsWithTheirDistance) {
+  const auto most = [](const char* lights) {
+    return test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}",
+                                     std::string("{'lights': [") + lights + "]}"))
+        ->facts.tree_radiance.most.x;
+  };
+  // The box is 9 m away, and white reflects all.
+  EXPECT_NEAR(most("{'type': 'point', 'position': [10, 0, 0], 'attenuation': [1, 0, 1]}"), 1.0 / 82, 1e-12);
+  EXPECT_NEAR(most("{'type': 'point', 'position': [10, 0, 0], 'attenuation': [1, 0, 0]}"), 1, 1e-12);
+  EXPECT_NEAR(most("{'type': 'directional', 'from': [1, 0, 0], 'intensity': [3, 3, 3]}"), 3, 1e-12);
+}
+
+// A mirror that shines, or whose ambient light it does not weaken, adds to itself from side to side.
+TEST(RadianceRange, IsUnknownWhereSpecularSurfacesShine) {
+  const auto finite = [](const char* material, const char* ambient) {
+    return test::load(test::scene_of(
+                          "{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'm'}",
+                          std::string("{'materials': {'m': ") + material + "}, 'ambient': " + ambient + "}"))
+        ->facts.tree_radiance.finite();
+  };
+  EXPECT_TRUE(finite("{'type': 'glass'}", "[1, 1, 1]"));
+  EXPECT_FALSE(finite("{'type': 'glass', 'emission': [1, 0, 0]}", "[1, 1, 1]"));
+  EXPECT_TRUE(finite("{'type': 'plastic', 'roughness': 0}", "[0, 0, 0]"));
+  EXPECT_FALSE(finite("{'type': 'plastic', 'roughness': 0}", "[1, 1, 1]"));
+  EXPECT_TRUE(finite("{'type': 'plastic', 'roughness': 0.5}", "[1, 1, 1]"));
+}
+
+// A lamp of radiance L in a closed room of albedo a: at most L / (1 - a) with its own albedo.
+TEST(RadianceRange, OfPathsIsTheSeries) {
+  const Json scene = test::scene_of(
+      "[{'type': 'box', 'min': [-2, -2, -2], 'max': [2, 2, 2], 'material': 'wall'},"
+      " {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5, 'material': 'lamp'}]",
+      "{'materials': {'wall': {'type': 'lambert', 'reflectance': 0.9},"
+      " 'lamp': {'type': 'lambert', 'reflectance': 0.5, 'emission': [3, 2, 1]}}, 'background': [1, 1, 1]}");
+  const Vec3d most = test::load(scene)->facts.path_radiance.most;
+  EXPECT_NEAR(most.x, 6, 1e-12);
+  EXPECT_NEAR(most.y, 4, 1e-12);
+  EXPECT_NEAR(most.z, 2, 1e-12);
+  Json mirror = scene;
+  mirror["materials"]["lamp"]["reflectance"] = 1;
+  EXPECT_FALSE(test::load(mirror)->facts.path_radiance.finite()) << "light may be mirrored for ever";
+}
+
+// Two mirrors of .95 that face each other, with a lit end far away that depth 5 does not reach: what is left
+// out is .95^6 of the range.
+TEST(Ledger, OfACorridorIsThatOfTheClosedForm) {
+  covers("certificate-3");
+  const double n = (1 + std::sqrt(.95)) / (1 - std::sqrt(.95));
+  const Json scene = test::scene_with(
+      json("[{'type': 'plane', 'point': [0, 0, -5], 'normal': [0, 0, 1], 'material': 'mirror'},"
+           " {'type': 'plane', 'point': [0, 0, 5], 'normal': [0, 0, -1], 'material': 'mirror'}]"),
+      Json{{"materials",
+            {{"mirror", {{"type", "reflective"}, {"n", {n, n, n}}, {"k", {0, 0, 0}}, {"fresnel", "exact"}}}}},
+           {"background", {1, 1, 1}},
+           {"camera",
+            {{"type", "perspective"}, {"eye", {0, 0, 4}}, {"look_at", {0, 0, 0}}, {"fov_degrees", 1}}}});
+  const test::Picture picture = test::render(scene, request(5));
+  const double left = std::pow(.95, 6);
+  EXPECT_GE(picture.stats.omitted.rms(), left * (1 - 1e-4));
+  EXPECT_LE(picture.stats.omitted.max(), 1.2 * left);
+}
+
+// A ray in a slab of glass beyond the critical angle never leaves: all of it is left out, and that is finite.
+TEST(Ledger, OfALightGuideIsTheWholeRange) {
+  covers("certificate-4");
+  const Json scene = test::scene_with(
+      json("[{'type': 'box', 'min': [-500, -1, -500], 'max': [500, 1, 500], 'material': 'glass'}]"),
+      Json{{"materials", {{"glass", {{"type", "refractive"}, {"ior", 1.5}, {"fresnel", "exact"}}}}},
+           {"background", {2, 1, 0}}});
+  const auto loaded = test::load(scene);
+  const Plan plan = make_plan(*loaded, request(8));
+  EXPECT_EQ(plan.cut_range, Vec3d(2, 1, 0));
+  const auto answer =
+      test::Tracing(loaded, request(8)).trace(Ray<double>{{0, 0, 0}, safe_normalize(Vec3d(1, 0.3, 0))});
+  EXPECT_EQ(answer.radiance, Vec3d(0));
+  EXPECT_NEAR(max_component(answer.weights), 1, 1e-12);
+}
+
+// Ambient light stands in for what would have been dark.
+TEST(Ledger, CountsASubstituteThatIsTooBright) {
+  const auto loaded = test::load(
+      test::scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'glass'}]"),
+                       Json{{"materials", {{"glass", {{"type", "refractive"}, {"ior", 1.5}}}}},
+                            {"ambient", {0.9, 0.9, 0.9}},
+                            {"background", {0.1, 0.5, 1}}}));
+  EXPECT_EQ(make_plan(*loaded, request(1)).cut_range, Vec3d(0.9, 0.9, 0.9));
+}
+
+TEST(Certificate, IsAsWeakAsItsWeakestTermAndStillTellsTheRest) {
+  const auto certificate_of = [](Json scene, const RenderRequest& r) {
+    const auto loaded = test::load(scene);
+    const PreparedScene prepared(loaded);
+    return render_frame(prepared, settle(prepared, make_plan(*loaded, r)), FilmStorage::linear32,
+                        test::shared_pool())
+        .certificate;
+  };
+  const Json glass = test::sample("material-refractive");
+  RenderRequest r = request(3);
+  r.samples = 1;
+  r.width = 2 * kTileSide;  // a tile alone tells no interval
+  const Certificate single = certificate_of(glass, r);
+  EXPECT_EQ(single.total().kind, Bound::Kind::unknown) << "one sample tells nothing";
+  EXPECT_FALSE(single.total().rms);
+  EXPECT_EQ(single.known().kind, Bound::Kind::proved);
+  EXPECT_GT(*single.known().max, *single.known().rms);
+  r.samples = 4;
+  const Certificate several = certificate_of(glass, r);
+  EXPECT_EQ(several.total().kind, Bound::Kind::estimated);
+  EXPECT_GT(*several.total().rms, *several.estimate) << "the ledger and the interval are added";
+  EXPECT_FALSE(several.total().max);
+  r.precision = Precision::single_precision;
+  EXPECT_EQ(certificate_of(glass, r).total().kind, Bound::Kind::unknown) << "nothing is known of float";
+}
+
+// Passes of one picture: their ledgers are of one, at most.
+TEST(Certificate, OfPassesBoundsThatOfTheWhole) {
+  const auto loaded = test::load(test::sample("material-refractive"));
+  RenderRequest r = request(2);
+  r.samples = 8;
+  const PreparedScene prepared(loaded);
+  const SettledPlan plan = settle(prepared, make_plan(*loaded, r));
+  const Omitted whole =
+      render_frame(prepared, plan, FilmStorage::linear32, test::shared_pool()).stats.omitted;
+  ProgressiveRender passes(prepared, plan, test::shared_pool(), {});
+  for (const int samples : {2, 4, 8}) passes.refine(samples);
+  const Omitted& joined = passes.stats().omitted;
+  EXPECT_EQ(joined.samples, 8);
+  EXPECT_NEAR(joined.mean(), whole.mean(), 1e-9);
+  EXPECT_GE(joined.rms(), whole.rms() * (1 - 1e-9));
+  EXPECT_LE(joined.rms(), 1.2 * whole.rms());
+  EXPECT_GE(joined.max(), whole.max() * (1 - 1e-9));
+}
+
+}  // namespace
+}  // namespace orrery
