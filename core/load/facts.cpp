@@ -5,6 +5,7 @@
 #include "core/base/work_scope.h"
 #include "core/load/radiance_range.h"
 #include "core/load/spacing.h"
+#include "core/model/object_pointer.h"
 
 namespace orrery {
 namespace {
@@ -126,13 +127,6 @@ void add_materials(const Scene& scene, std::span<const std::int32_t> first_user,
 }
 
 }  // namespace
-
-std::string pointer_to_object(const Scene& scene, int primitive) {
-  const int object = scene.object_runs[scene.object_run_of(primitive)].object;
-  const int resting = scene.object_count - static_cast<int>(scene.instances.size());
-  return object < resting ? "/objects/" + std::to_string(object)
-                          : "/instances/" + std::to_string(object - resting);
-}
 
 SceneFacts gather_facts(const Scene& scene) {
   SceneFacts facts;

@@ -8,7 +8,4 @@ namespace orrery {
 // and objects are numbered, its motion is known.
 SceneFacts gather_facts(const Scene& scene);
 
-// The JSON Pointer of the object or instance that a primitive belongs to.
-std::string pointer_to_object(const Scene& scene, int primitive);
-
 }  // namespace orrery

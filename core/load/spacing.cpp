@@ -7,10 +7,10 @@
 #include <set>
 
 #include "core/base/work_scope.h"
-#include "core/load/facts.h"
 #include "core/math/face_normal.h"
 #include "core/math/hemisphere.h"
 #include "core/model/batch.h"
+#include "core/model/object_pointer.h"
 
 namespace orrery {
 namespace {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/accelerators/instances.h"
+#include "core/model/object_pointer.h"
 #include "core/plan/plan.h"
 
 namespace orrery {
@@ -230,6 +231,45 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
   return enclosed;
 }
 
+// The first of kMostPrimitives that is smooth, so that light goes on from it in single directions; -1: none.
+int smooth_primitive(const Scene& scene) {
+  std::vector<char> smooth;  // by material
+  for (const auto& set : scene.materials) {
+    const MaterialTraits traits = set->traits();
+    for (int i = 0; i < set->size(); ++i)
+      smooth.push_back(traits.mirrors && (!traits.lit || set->mirrored_share(i) > 0));
+  }
+  const int last = std::min(scene.primitive_count(), kMostPrimitives);
+  for (int p = 0; p < last; ++p)
+    if (smooth[static_cast<std::size_t>(scene.material_of[static_cast<std::size_t>(p)])]) return p;
+  return -1;
+}
+
+// A light that no drawn direction can meet and a smooth surface: paths from the one by the other to a surface
+// that answers light have probability 0. `detail` is empty where there is no such pair.
+Problem lost_caustic(const Scene& scene, const Plan& plan) {
+  if (!plan.technique->interreflects || !scene.facts.materials.lit || plan.max_depth == 0) return {};
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const auto& [set, index] = scene.lights[i];
+    const LightSet& lights = *scene.light_sets[set];
+    const bool parallel = lights.traits().parallel;
+    if (lights.intensity(index) == Vec3d(0)) continue;
+    if (parallel ? lights.extended(index) : !lights.traits().delta) continue;
+    const int smooth = smooth_primitive(scene);
+    if (smooth < 0) return {};
+    char instead[96];
+    if (parallel)
+      std::snprintf(instead, sizeof instead, "an angle_degrees of 0.53, the sun's, would show it");
+    else
+      std::snprintf(instead, sizeof instead, "a sphere lamp of radius %.1g m in its place would show it",
+                    0.01 * (scene.facts.bounds.bounded() ? scene.facts.bounds.diagonal() : 1.0));
+    return {"/lights/" + std::to_string(i),
+            "what it throws on other surfaces by way of " + pointer_to_object(scene, smooth) +
+                ", which mirrors or refracts, is left out: it has no extent for paths to meet; " + instead};
+  }
+  return {};
+}
+
 std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) {
   std::vector<Problem> found;
   if (is_unlit(scene, plan))
@@ -242,6 +282,7 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
         {most.where + "/material",
          "it sends on up to " + percents(most.value) +
              " of the light that it gets; plastic, and metallic-roughness that is not strict, create none"});
+  if (Problem lost = lost_caustic(scene, plan); !lost.detail.empty()) found.push_back(std::move(lost));
   if (empty) found.push_back({"/camera", "nothing is in view: the picture shows the background alone"});
   return found;
 }

@@ -14,6 +14,7 @@ namespace orrery {
 //  - no light reaches any surface: no light source, no ambient light, no emission;
 //  - the camera is inside a closed opaque shape that holds no light and, where there is ambient light or
 //    emission, nothing else;
+//  - paths cannot find what a light without extent throws on other surfaces by way of a smooth one;
 //  - nothing is in view, because the boxes of all primitives are outside of what the camera sees.
 // Time: bounded, whatever the scene; of more than 20,000 primitives, or 8 shapes around the camera, it may
 // miss one.

@@ -4,6 +4,7 @@
 
 #include "core/load/load.h"
 #include "core/plan/plan.h"
+#include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
 // Pictures that show nothing useful are told; those of people who know what they do are not.
@@ -58,6 +59,47 @@ TEST(Warnings, TellWhoSendsOnMoreLightThanItGets) {
   EXPECT_EQ(warned(scene), "/objects/0/material ");
   scene["materials"]["white"]["strict"] = false;
   EXPECT_EQ(warned(scene), "");
+}
+
+// Light that has no extent reaches a floor by way of a smooth ball with probability 0.
+TEST(Warnings, NameLightsAndSmoothSurfacesThatPathsCannotConnect) {
+  covers("light-53");
+  const auto with = [](const char* light, const char* ball) {
+    Json scene =
+        lit("{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]}, {'type': 'sphere', 'center': "
+            "[0, 0, 0], 'radius': 0.5, 'material': 'ball'}",
+            {0, 0, 4}, light);
+    scene["materials"]["ball"] = json(ball);
+    scene["render"]["technique"] = "path";
+    return scene;
+  };
+  const char *lantern = "[{'type': 'point', 'position': [1, 3, 1]}]",
+             *spot = "[{'type': 'spot', 'position': [1, 3, 1], 'direction': [0, -1, 0]}]",
+             *line = "[{'type': 'line', 'from': [1, 3, 1], 'to': [2, 3, 1]}]",
+             *wide = "[{'type': 'directional', 'from': [1, 1, 1], 'angle_degrees': 1}]",
+             *dark = "[{'type': 'point', 'position': [1, 1, 1], 'intensity': [0, 0, 0]}]";
+  const char *mirror = "{'type': 'metal', 'name': 'silver', 'roughness': 0}",
+             *glass = "{'type': 'glass', 'roughness': 0}", *clear = "{'type': 'refractive', 'ior': 1.5}",
+             *coat = "{'type': 'plastic', 'roughness': 0}", *frosted = "{'type': 'glass', 'roughness': 0.3}";
+  for (const char* ball : {mirror, glass, clear, coat}) {
+    for (const char* light : {lantern, spot, line, kSun})
+      EXPECT_EQ(warned(with(light, ball)), "/lights/0 ") << light << ball;
+    for (const char* light : {wide, dark, "[]"})
+      EXPECT_EQ(warned(with(light, ball)).find("/lights/0"), std::string::npos) << light << ball;
+  }
+  EXPECT_EQ(warned(with(lantern, frosted)), "");
+  Json mixed = with(lantern, frosted);
+  mixed["materials"]["other"] = json(glass);
+  EXPECT_EQ(warned(mixed), "") << "nothing is made of it";
+  mixed["objects"][0]["material"] = "other";
+  mixed["materials"]["ball"] = json("{'type': 'lambert'}");
+  EXPECT_EQ(warned(mixed), "/lights/0 ");
+  mixed["render"]["technique"] = "whitted";
+  EXPECT_EQ(warned(mixed), "");
+  const auto scene = load(with("[{'type': 'point', 'position': [1, 3, 1]}]", glass));
+  const std::string detail = find_warnings(*scene, make_plan(*scene, {})).at(0).detail;
+  EXPECT_NE(detail.find("/objects/1"), std::string::npos) << detail;
+  EXPECT_NE(detail.find("a sphere lamp of radius 0.02 m"), std::string::npos) << detail;
 }
 
 TEST(Warnings, KnowThatAMirrorShowsTheBackground) {
