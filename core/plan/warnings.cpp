@@ -248,7 +248,7 @@ int smooth_primitive(const Scene& scene) {
 // A light that no drawn direction can meet and a smooth surface: paths from the one by the other to a surface
 // that answers light have probability 0. `detail` is empty where there is no such pair.
 Problem lost_caustic(const Scene& scene, const Plan& plan) {
-  if (!plan.technique->interreflects || !scene.facts.materials.lit || plan.max_depth == 0) return {};
+  if (!plan.technique->interreflects || !scene.facts.materials.lit || plan.max_depth < 2) return {};
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const auto& [set, index] = scene.lights[i];
     const LightSet& lights = *scene.light_sets[set];

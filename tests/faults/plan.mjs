@@ -29,6 +29,8 @@ export const planFaults = [
         "LeavesOutLightThatNothingAnswers"),
   entry("coloured glass weakens nothing", "plan_.specular && used.filters", "false",
         "LeavesOutMirroredAndRefractedRays"),
+  warning("paths are taken to meet lights without extent", "!lights.traits().delta) continue;", "true) continue;", "NameLights*"),
+  warning("rough glass is taken for smooth", "traits.mirrors && (!traits.lit || set->mirrored_share(i) > 0)", "traits.transmits || traits.mirrors", "NameLights*"),
   warning("a camera in a room with a lamp is warned of", "return rays_.t_max[0] > 0;", "return false;", "KnowThatARoomHasALamp"),
   warning("a camera in the corner of a ball's box is taken to be in the ball",
           "return met_.side[0] < 0;", "return true;",

@@ -94,6 +94,9 @@ TEST(Warnings, NameLightsAndSmoothSurfacesThatPathsCannotConnect) {
   mixed["objects"][0]["material"] = "other";
   mixed["materials"]["ball"] = json("{'type': 'lambert'}");
   EXPECT_EQ(warned(mixed), "/lights/0 ");
+  mixed["render"]["max_depth"] = 1;
+  EXPECT_EQ(warned(mixed), "") << "too short for any lamp";
+  mixed["render"].erase("max_depth");
   mixed["render"]["technique"] = "whitted";
   EXPECT_EQ(warned(mixed), "");
   const auto scene = load(with("[{'type': 'point', 'position': [1, 3, 1]}]", glass));
