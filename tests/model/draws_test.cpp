@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+
+#include "tests/support/covers.h"
 
 namespace orrery::test {
 namespace {
@@ -38,6 +41,30 @@ TEST(Draws, AreTheSameInFloatAndDouble) {
     EXPECT_EQ(a.u, b.u);
     EXPECT_EQ(a.v, b.v);
   }
+}
+
+// Numbers are the same whatever was drawn before: here all of some tiles and samples, and again from the last
+// to the first, by other objects.
+TEST(Draws, DoNotDependOnWhatWasDrawnBefore) {
+  covers("light-3");
+  constexpr int kTiles = 3, kSamples = 5, kDepths = 3;
+  const auto numbers_of = [](int tile, int sample, int depth, int slot) {
+    const Draws draws(5, TileView{kTileSide * tile, kTileSide, kTileSide, kTileSide}, sample);
+    const auto lobe = draw<double>(draws, SampleSet::lobe, depth, slot);
+    const auto lane = IndexLanes<double>(static_cast<IndexOf<double>>(slot));
+    return std::array{lobe.u, lobe.v, double{draws.third<double>(SampleSet::lens, depth, lane)[0]}};
+  };
+  std::vector<std::array<double, 3>> forward;
+  for (int tile = 0; tile < kTiles; ++tile)
+    for (int sample = 0; sample < kSamples; ++sample)
+      for (int depth = 0; depth < kDepths; ++depth)
+        for (int slot = 0; slot < kBatch; slot += 7) forward.push_back(numbers_of(tile, sample, depth, slot));
+  std::size_t left = forward.size();
+  for (int tile = kTiles; tile-- > 0;)
+    for (int sample = kSamples; sample-- > 0;)
+      for (int depth = kDepths; depth-- > 0;)
+        for (int slot = (kBatch - 1) / 7 * 7; slot >= 0; slot -= 7)
+          ASSERT_EQ(numbers_of(tile, sample, depth, slot), forward[--left]);
 }
 
 // Sets, depths and frames have sequences of their own: no two agree, and their correlation over the pixels of
