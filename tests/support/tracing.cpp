@@ -56,7 +56,7 @@ Tracing::~Tracing() = default;
 
 Answer Tracing::trace(const Ray<double>& ray) { return trace(std::vector<Ray<double>>{ray}).front(); }
 
-std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
+std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays, int sample) {
   assert(rays.size() <= static_cast<std::size_t>(kBatch));
   const auto batch = std::make_unique<RayBatch<double>>();
   const auto result = std::make_unique<TraceResult<double>>();
@@ -64,7 +64,7 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
   batch->count = kBatch;
   recorder_->generations.clear();
   recorder_->shadow.clear();
-  tracer_->trace(*batch, Draws(plan_.seed, TileView{0, 0, kTileSide, kTileSide}, 0), *result, counts_);
+  tracer_->trace(*batch, Draws(plan_.seed, TileView{0, 0, kTileSide, kTileSide}, sample), *result, counts_);
   if (tracer_->looks()) tracer_->look(*batch, 1, *result, counts_);
   std::vector<Answer> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
@@ -75,21 +75,42 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays) {
 const Tracing::Generations& Tracing::rays() const { return recorder_->generations; }
 const std::vector<Ray<double>>& Tracing::shadow_rays() const { return recorder_->shadow; }
 
+namespace {
+
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
-                  int max_depth) {
-  RenderRequest request;
+                  RenderRequest request, int samples) {
   request.technique = "path";
-  request.max_depth = max_depth;
   const std::vector<Ray<double>> rays(kBatch, Ray<double>{from, safe_normalize(toward - from)});
+  Tracing tracing(scene, request);
+  std::vector<double> means(kBatch);
+  for (int sample = 0; sample < samples; ++sample) {
+    const std::vector<Answer> answers = tracing.trace(rays, sample);
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] += answers[i].radiance.x / samples;
+  }
   double sum = 0, squares = 0;
-  for (const Answer& answer : Tracing(scene, request).trace(rays)) {
-    sum += answer.radiance.x / kBatch;
-    squares += answer.radiance.x * answer.radiance.x / kBatch;
+  for (const double mean : means) {
+    sum += mean / kBatch;
+    squares += mean * mean / kBatch;
   }
   return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
 }
+}  // namespace
+
+Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
+                  int max_depth) {
+  RenderRequest request;
+  request.max_depth = max_depth;
+  return estimate(scene, from, toward, request, 1);
+}
 Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth) {
   return estimate(load(scene), from, toward, max_depth);
+}
+Estimate estimate_alone(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
+                        int samples) {
+  RenderRequest request;
+  request.max_depth = max_depth;
+  request.reuse = 1;
+  return estimate(load(scene), from, toward, request, samples);
 }
 
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request) {

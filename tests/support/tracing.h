@@ -27,8 +27,8 @@ class Tracing {
   ~Tracing();
 
   Answer trace(const Ray<double>& ray);
-  // Up to kBatch rays at once, as a tile would be.
-  std::vector<Answer> trace(const std::vector<Ray<double>>& rays);
+  // Up to kBatch rays at once, as a tile would be, with the random numbers of one of its samples.
+  std::vector<Answer> trace(const std::vector<Ray<double>>& rays, int sample = 0);
 
   // The rays of the last trace by depth, shadow rays apart.
   using Generations = std::vector<std::vector<Ray<double>>>;
@@ -47,14 +47,16 @@ class Tracing {
 };
 
 struct Estimate {
-  double mean, sd;  // of one sample
+  double mean, sd;  // of one slot's samples together
   double error() const { return sd / std::sqrt(double{kBatch}); }
 };
-// Of the red light along one ray that `path` finds, from a batch of samples that are independent of each
-// other.
+// Of the red light along one ray that `path` finds, from the slots of a batch, which are independent of each
+// other unless their paths share what they find; the `samples` of a slot are stratified.
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
                   int max_depth);
 Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth);
+Estimate estimate_alone(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
+                        int samples);  // reuse 1
 
 // Radiance of every pixel in double precision, without the picture's rounding to float.
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request);
