@@ -1,0 +1,166 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+
+// Sums over samples, and how their error falls with the number of samples where pixels are stratified.
+namespace orrery::test {
+namespace {
+
+Json even_light(double radiance) {
+  Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 900], 'radius': 1}]");
+  scene["background"] = {radiance, radiance, radiance};
+  return scene;
+}
+
+struct Accumulator {
+  std::shared_ptr<const Scene> scene;
+  PreparedScene prepared;
+  SettledPlan plan;
+  RenderStats stats;
+  std::unique_ptr<Prepared> ready;
+  Film film;
+
+  explicit Accumulator(double radiance)
+      : scene(load(even_light(radiance))),
+        prepared(scene),
+        plan(settle(prepared, make_plan(*scene, request()))),
+        ready(threads_backend(shared_pool())->prepare(prepared, plan, stats, {})),
+        film(kSide, kSide, FilmStorage::sums) {}
+
+  static RenderRequest request() {
+    RenderRequest request = in_double(size(kSide, kSide));
+    request.technique = "path";
+    request.samples = 4096;
+    return request;
+  }
+  static constexpr int kSide = 4;
+  static TileView tile(int first_sample, int samples) {
+    return {
+        .x0 = 0, .y0 = 0, .width = kSide, .height = kSide, .first_sample = first_sample, .samples = samples};
+  }
+  void render(int first_sample, int samples) {
+    const TileView one = tile(first_sample, samples);
+    ready->render(std::span(&one, 1), film, stats, {});
+  }
+  // Mean of the first pixel.
+  double mean() const {
+    const auto sums = std::make_unique<TileSums>();
+    film.take(tile(0, 1), *sums);
+    return sums->radiance[0][0] / sums->samples;
+  }
+};
+
+// As many samples as a request may have, of a number that has no binary fraction: each addition errs by half
+// of a last place at most, all together by 4096 * 2^-53.
+TEST(Accumulation, OfTheMostSamplesKeepsAConstant) {
+  covers("light-10");
+  Accumulator accumulator(0.1);
+  accumulator.render(0, 1024);
+  accumulator.render(1024, 3072);
+  EXPECT_NEAR(accumulator.mean() / 0.1, 1, 1e-12);
+  EXPECT_EQ(accumulator.film.image(PixelFormat::linear32).linear(0, 0).x, 0.1f);
+}
+
+// What single precision no longer adds: one half to half of 10^8.
+TEST(Accumulation, GoesOnAtAHundredMillionSamples) {
+  covers("light-10");
+  constexpr int kAll = 100'000'000, kLast = 64;
+  ASSERT_EQ(float{kAll / 2} + 0.5f, float{kAll / 2});
+  Accumulator accumulator(0.5);
+  const auto sums = std::make_unique<TileSums>();
+  sums->samples = kAll - kLast;
+  for (TileSums::Plane& plane : sums->radiance) plane.fill(0.5 * sums->samples);
+  accumulator.film.put(Accumulator::tile(0, 1), *sums);
+  accumulator.render(kAll - kLast, kLast);
+  EXPECT_EQ(accumulator.mean(), 0.5);
+  EXPECT_EQ(accumulator.film.image(PixelFormat::linear32).linear(0, 0).x, 0.5f);
+}
+
+// Variance of a pixel's mean at `samples`, over pixels of pictures of several seeds.
+template <class Exact>
+double variance(const Json& scene, int width, int height, int samples, const Exact& exact) {
+  constexpr int kSeeds = 8;
+  const auto loaded = load(scene);
+  double squares = 0;
+  int count = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    RenderRequest request = in_double(size(width, height));
+    request.samples = samples;
+    request.seed = static_cast<std::uint64_t>(seed);
+    const Picture picture = render(loaded, request);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const double expected = exact(x, y);
+        if (!(expected > 0 && expected < 1)) continue;
+        squares += std::pow(double{picture.at(x, y).x} - expected, 2);
+        ++count;
+      }
+  }
+  return squares / count;
+}
+
+Json seen_from_above(Json scene, double height) {
+  scene["camera"] = {{"type", "orthographic"},
+                     {"eye", {0, 9, 0}},
+                     {"look_at", {0, 0, 0}},
+                     {"up", {0, 0, -1}},
+                     {"height", height}};
+  return scene;
+}
+
+// Mitchell, "Consequences of Stratified Sampling in Graphics" (SIGGRAPH 1996): where an edge crosses a pixel
+// the variance falls with the power 3/2 of the number of samples.
+TEST(Stratification, VarianceAtAnEdgeFallsWithThePower3Halves) {
+  covers("light-6");
+  constexpr int kWidth = 64, kHeight = 16;
+  constexpr double kSlope = 0.1871, kAt = 0.037;
+  // Of a picture of 64 by 16 pixels of 1 m: white below the line y = slope x + at.
+  Json scene =
+      seen_from_above(scene_of("[]", "{'ambient': [1, 1, 1], 'materials': {'white': {'ka': 1}}}"), kHeight);
+  scene["objects"] = Json::array(
+      {{{"type", "triangle"},
+        {"vertices", {{-100, 0, -(-100 * kSlope + kAt)}, {100, 0, -(100 * kSlope + kAt)}, {0, 0, 1000}}},
+        {"material", "white"}}});
+  const auto below = [](double t) { return t <= 0 ? 0 : t < 1 ? t * t / 2 : t - 0.5; };
+  const auto coverage = [&](int x, int y) {
+    const double bottom = kHeight / 2 - 1 - y, left = x - kWidth / 2;
+    return (below(kSlope * (left + 1) + kAt - bottom) - below(kSlope * left + kAt - bottom)) / kSlope;
+  };
+  const double few = variance(scene, kWidth, kHeight, 4, coverage),
+               many = variance(scene, kWidth, kHeight, 1024, coverage);
+  EXPECT_NEAR(std::log(many / few) / std::log(256), -1.5, 0.1);
+}
+
+// Radiance that is smooth over a pixel: with the power 2 by one random point in each cell, with nearly 3 by
+// scrambled nets (Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997: n^-3 log n).
+TEST(Stratification, VarianceOfASmoothPixelFallsFasterThanThePower2) {
+  covers("light-6");
+  constexpr int kSide = 8;
+  const Json scene = seen_from_above(
+      scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
+               "{'lights': [{'type': 'point', 'position': [0.3, 1.5, 0.4], 'attenuation': [0, 0, 1]}]}"),
+      4);
+  // By Gauss and Legendre's rule with five points in each direction.
+  const std::array<double, 5> at{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
+                                 0.9061798459386640},
+      weight{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+             0.2369268850561891};
+  const auto mean = [&](int x, int y) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 5; ++i)
+      for (std::size_t j = 0; j < 5; ++j) {
+        const Vec3d to =
+            Vec3d(0.3, 1.5, 0.4) - Vec3d((x + 0.5 + at[i] / 2) / 2 - 2, 0, (y + 0.5 + at[j] / 2) / 2 - 2);
+        sum += weight[i] * weight[j] / 4 * to.y / std::pow(dot(to, to), 1.5);
+      }
+    return sum;
+  };
+  const double few = variance(scene, kSide, kSide, 4, mean), many = variance(scene, kSide, kSide, 256, mean);
+  EXPECT_NEAR(std::log(many / few) / std::log(64), -2.95, 0.15);
+}
+
+}  // namespace
+}  // namespace orrery::test
