@@ -7,6 +7,7 @@
 
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
+#include "tests/support/sanitized.h"
 
 // The Cornell box: its data, and what paths of each length bring.
 namespace orrery::test {
@@ -252,6 +253,7 @@ double slope(const std::shared_ptr<const Scene>& box, int side, int max_depth, i
 // together. (In very small pictures most pixels have edges, and few pixels most of the error.)
 TEST(CornellBox, ErrorFallsFasterThanThatOfIndependentSamples) {
   covers("light-51");
+  if (kSanitized) GTEST_SKIP() << "twenty million paths";
   const auto box = load(sample("cornell-box"));
   EXPECT_LE(slope(box, 128, 1, 4, 256), -0.70);
   const double all = slope(box, 16, 9, 16, 4096);

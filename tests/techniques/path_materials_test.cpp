@@ -6,6 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/materials.h"
 #include "tests/support/pictures.h"
+#include "tests/support/tracing.h"
 
 // Materials of path tracing in scenes, against closed forms and sums over lamps.
 namespace orrery::test {
@@ -46,6 +47,26 @@ TEST(PathMaterials, GlassAmongEvenLightIsNotSeen) {
         {"type", "perspective"}, {"eye", {0, 0, 5}}, {"look_at", {0, 0, 0}}, {"fov_degrees", 20}};
     EXPECT_NEAR(mean_of(scene, 32, 64, 64), 1, 8e-3) << roughness;
   }
+}
+
+// A disk in the shadow of a ball of glass gets nothing from a point, and a caustic from a lamp in its place.
+TEST(PathMaterials, GlassFocusesLampsAndNotPoints) {
+  covers("light-53");
+  Json scene = scene_of(
+      "[{'type': 'disk', 'center': [0, -1, 0], 'normal': [0, 1, 0], 'radius': 0.5},"
+      " {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.7, 'material': 'glass'}]",
+      "{'lights': [{'type': 'point', 'position': [0, 3, 0], 'attenuation': [0, 0, 1]}],"
+      " 'materials': {'glass': {'type': 'glass'}, 'lamp': {'type': 'lambert', 'reflectance': 0}}}");
+  const Vec3d from(3, -0.5, 0), below(0, -1, 0);
+  EXPECT_EQ(estimate_alone(scene, from, below, 6, 16).mean, 0);
+  constexpr double kRadius = 0.3;
+  scene["lights"] = Json::array();
+  scene["materials"]["lamp"]["emission"] = Json(3, 1 / (kRadius * kRadius));  // as bright as the point
+  scene["objects"].push_back(
+      {{"type", "sphere"}, {"center", {0, 3, 0}}, {"radius", kRadius}, {"material", "lamp"}});
+  const Estimate found = estimate_alone(scene, from, below, 6, 64);
+  EXPECT_GT(found.mean, 2.0 / 16) << "twice what the lamp alone, 4 m above, would make it";
+  EXPECT_LT(found.error(), 0.05 * found.mean);
 }
 
 struct Lit {
