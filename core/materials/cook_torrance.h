@@ -19,10 +19,20 @@ struct CookTorrance {
   N chance;          // of drawing a facet
 
   static CookTorrance<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
+  MaterialTraits traits() const {
+    return {.lit = true, .glossy = true, .diffuse = true, .non_diffuse = true};
+  }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  Vec3<N> from_everywhere() const { return diffuse + specular * reflectance(N(ScalarOf<N>(1))); }
+  Vec3<N> from_everywhere(Lobes lobes) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    return diffuse * (with_diffuse(lobes) ? one : zero) +
+           specular * reflectance(one) * (with_non_diffuse(lobes) ? one : zero);
+  }
+  // The share of draws that facets get.
+  N facet_chance(Lobes lobes) const {
+    return lobes == Lobes::all ? chance : N(ScalarOf<N>(with_non_diffuse(lobes) ? 1 : 0));
+  }
   Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
   [[gnu::always_inline]] Vec3<N> reflectance(const N& cosine) const {
@@ -32,8 +42,8 @@ struct CookTorrance {
 
   // Beckmann's density of normals exp(-tan^2 / m^2) / (pi m^2 cos^4) and the masking of V-shaped grooves,
   // min(1, 2 H.N V.N / V.H, 2 H.N L.N / V.H).
-  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
-                                                const MaskOf<N>&) const {
+  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light, const MaskOf<N>&,
+                                                Lobes lobes) const {
     using T = ScalarOf<N>;
     using std::sqrt;
     constexpr T kPi = std::numbers::pi_v<T>, kLog2E = std::numbers::log2e_v<T>;
@@ -41,6 +51,9 @@ struct CookTorrance {
     const N zero(T(0)), one(T(1));
     const auto lit = light.z > zero;
     const N cosine = select(lit, light.z, one);
+    const N even = cosine * (one / kPi);
+    const Vec3<N> matt = with_diffuse(lobes) ? diffuse * cosine : Vec3<N>(zero);
+    if (!with_non_diffuse(lobes)) return {matt, select(lit, even, zero)};
     const Vec3<N> h(viewer.x + light.x, viewer.y + light.y, viewer.z + cosine);
     const N across = h.x * h.x + h.y * h.y, up2 = h.z * h.z, length2 = across + up2;
     const N exponent = across / (up2 * slope * slope) * (-kLog2E);
@@ -52,16 +65,18 @@ struct CookTorrance {
     const N groove = T(2) * up * min_first(viewer.z, cosine) / to_viewer;
     const N single = density * min_first(one, groove) * (kPi / T(4)) / viewer.z;
     const N drawn = density * up / (T(4) * to_viewer);
-    return {diffuse * cosine + specular * reflectance(min_first(one, to_viewer)) * single,
-            select(lit, N(chance * drawn + (one - chance) * cosine * (one / kPi)), zero)};
+    const N share = facet_chance(lobes);
+    return {matt + specular * reflectance(min_first(one, to_viewer)) * single,
+            select(lit, N(share * drawn + (one - share) * cosine * (one / kPi)), zero)};
   }
 
-  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, const LobeDraw<N>& draw) const {
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, Lobes lobes,
+                          const LobeDraw<N>& draw) const {
     using T = ScalarOf<N>;
     using std::sqrt;
     constexpr T kLn2 = std::numbers::ln2_v<T>;
     const N zero(T(0)), one(T(1));
-    const auto [mirrors, u] = draw.choose(chance);
+    const auto [mirrors, u] = draw.choose(facet_chance(lobes));
     const N tangent2 = max_first(zero, N(log2_normal(one - u) * (-kLn2) * slope * slope));
     const N up = one / sqrt(one + tangent2), across = sqrt(tangent2) * up;
     const auto [sine, cosine] = sine_cosine_turns(draw.v);

@@ -16,7 +16,7 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
   using N = Lanes<T>;
   using MaterialRecords<Record, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes, const Vec3<T>& ambient,
                Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
@@ -24,7 +24,7 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
     });
   }
 
-  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
                 Vec3Array<T>& f_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
@@ -40,7 +40,7 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
 
   // The weight f cos / pdf is pi f.
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const auto [u, v] = draws.two(SampleSet::lobe, i);

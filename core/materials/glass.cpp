@@ -59,14 +59,15 @@ class GlassKernel final : public LobeKernel<Glass, T> {
   using LobeKernel<Glass, T>::LobeKernel;
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& glass) {
       const auto [u, v] = draws.two(SampleSet::lobe, i);
       const auto rough = mine && glass.alpha > zero, smooth = mine && !rough;
       if (any(rough)) {
         const N side = draws.two(SampleSet::survival, i).v;
-        this->sample_rough(rays, surface, i, rough, glass, {u, v, side}, out);
+        this->sample_rough(rays, surface, i, rough, glass, lobes, {u, v, side}, out);
       }
       if (!any(smooth)) return;
       const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);

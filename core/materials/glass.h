@@ -32,6 +32,7 @@ struct Glass {
             .transmits = true,
             .filters = filters,
             .glossy = is_rough,
+            .non_diffuse = true,
             .fields = {.travelled = is_rough && filters}};
   }
   double mirrored_share() const { return alpha > 0 ? 0 : body.f0; }
@@ -40,7 +41,7 @@ struct Glass {
   }
 
   N rough() const { return alpha; }
-  Vec3<N> from_everywhere() const {
+  Vec3<N> from_everywhere(Lobes) const {
     const N one(ScalarOf<N>(1)), zero(ScalarOf<N>(0));
     return Vec3<N>(select(alpha > zero, one, zero));
   }
@@ -55,7 +56,7 @@ struct Glass {
 
   // The generalised half vector V + eta L, with eta the index of the light's side over the viewer's.
   [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
-                                                const MaskOf<N>& is_inside) const {
+                                                const MaskOf<N>& is_inside, Lobes) const {
     using T = ScalarOf<N>;
     using std::abs;
     constexpr T kPi = std::numbers::pi_v<T>;
@@ -87,7 +88,8 @@ struct Glass {
   }
 
   // A facet that the viewer sees mirrors or refracts, or light leaves in proportion to the cosine.
-  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>& is_inside, const LobeDraw<N>& draw) const {
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>& is_inside, Lobes,
+                          const LobeDraw<N>& draw) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));
     const N passed_viewer = one - choose(is_inside, inside, outside).at(min_first(one, viewer.z));

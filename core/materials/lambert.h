@@ -11,7 +11,7 @@ struct Lambert {
   Vec3<N> reflectance;
 
   static Lambert<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true}; }
+  MaterialTraits traits() const { return {.lit = true, .diffuse = true}; }
   ReflectionLimits limits() const { return {reflectance, reflectance, reflectance}; }
 
   [[gnu::always_inline]] Vec3<N> pi_brdf(const N&, const N&, const N&) const { return reflectance; }

@@ -52,27 +52,27 @@ template <class N>
 
 // Kernel of materials whose light depends on both directions. Beside what MaterialRecords asks for, a record
 // has, with directions of ShadingFrame and the viewer above the surface,
-//   N rough() const                                    0: nothing but what the derived kernel draws
-//   Vec3<N> from_everywhere() const                    what leaves of ambient light
-//   Scattered<N> scattered(viewer, light, inside)      light on either side of the surface
-//   DrawnDirection<N> drawn(viewer, inside, LobeDraw)  in proportion to the density of scattered()
-//   Vec3<N> passed(inside, travelled)                  what the body leaves of light that crossed it
+//   N rough() const                                           0: nothing but what the derived kernel draws
+//   Vec3<N> from_everywhere(lobes) const                      what leaves of ambient light
+//   Scattered<N> scattered(viewer, light, inside, lobes)      light on either side of the surface
+//   DrawnDirection<N> drawn(viewer, inside, lobes, LobeDraw)  in proportion to the density of scattered()
+//   Vec3<N> passed(inside, travelled)                         what the body leaves of light that crossed it
 template <template <class> class Record, class T>
 class LobeKernel : public MaterialRecords<Record, T> {
  public:
   using N = Lanes<T>;
   using MaterialRecords<Record, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes, const Vec3<T>& ambient,
                Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
-      radiance.put(i, mine, record.from_everywhere() * from_everywhere);
+      radiance.put(i, mine, record.from_everywhere(lobes) * from_everywhere);
     });
   }
 
   void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
-                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+                Lobes lobes, Vec3Array<T>& f_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const Vec3<N> geometric = surface.geometric.at(i), light = directions.light.at(i);
@@ -84,35 +84,37 @@ class LobeKernel : public MaterialRecords<Record, T> {
       pdf.put(i, mine, zero);
       if (!any(lit)) return;
       const auto inside = surface.side.at(i) < zero;
-      const auto scattered = record.scattered(local_viewer, local_light, inside);
+      const auto scattered = record.scattered(local_viewer, local_light, inside, lobes);
       f_cos.put(i, lit, scattered.f_cos * record.passed(inside, surface.travelled.at(i)));
       pdf.put(i, lit, scattered.pdf);
     });
   }
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const auto [u, v] = draws.two(SampleSet::lobe, i);
       const N side = draws.two(SampleSet::survival, i).v;
-      sample_rough(rays, surface, i, mine && record.rough() > zero, record, {u, v, side}, out);
+      sample_rough(rays, surface, i, mine && record.rough() > zero, record, lobes, {u, v, side}, out);
     });
   }
 
  protected:
-  // Sets `out` of these lanes to a draw of the record's lobes.
+  // Sets `out` of these lanes to a draw of these lobes of the record.
   void sample_rough(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, int i, const MaskOf<N>& mine,
-                    const Record<N>& record, const LobeDraw<N>& draw, ScatterBatch<T>& out) const {
+                    const Record<N>& record, Lobes lobes, const LobeDraw<N>& draw,
+                    ScatterBatch<T>& out) const {
     if (!any(mine)) return;
     const N zero(T(0));
     const Vec3<N> viewer = -rays.direction.at(i), geometric = surface.geometric.at(i);
     const auto inside = surface.side.at(i) < zero;
     const ShadingFrame<N> frame(surface.normal.at(i), geometric, viewer);
     const Vec3<N> local_viewer = frame.local(viewer);
-    const auto drawn = record.drawn(local_viewer, inside, draw);
+    const auto drawn = record.drawn(local_viewer, inside, lobes, draw);
     const Vec3<N> light = normalize(frame.world(drawn.direction)), local_light = frame.local(light);
-    const auto scattered = record.scattered(local_viewer, local_light, inside);
+    const auto scattered = record.scattered(local_viewer, local_light, inside, lobes);
     const auto leaves = mine && on_one_side(local_viewer, local_light, dot(geometric, light)) &&
                         (local_light.z < zero) == drawn.through && scattered.pdf > zero;
     constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel

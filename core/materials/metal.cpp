@@ -72,7 +72,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
   using N = Lanes<T>;
   using MaterialRecords<Metal, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes, const Vec3<T>& ambient,
                Vec3Array<T>& radiance) const override {
     const N zero(T(0)), one(T(1));
     const Vec3<N> from_everywhere(ambient);
@@ -81,7 +81,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     });
   }
 
-  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
                 Vec3Array<T>& f_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
@@ -102,7 +102,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
   // A microfacet that the viewer sees mirrors, or light leaves in proportion to the cosine: see
   // Metal::multiple_share().
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
       const Vec3<N> direction = rays.direction.at(i), viewer = -direction;

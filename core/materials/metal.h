@@ -23,7 +23,9 @@ struct Metal {
   Vec3<N> multiple_scale;  // F_ms / (1 - mean albedo)
 
   static Metal<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = alpha > 0, .mirrors = !(alpha > 0), .glossy = alpha > 0}; }
+  MaterialTraits traits() const {
+    return {.lit = alpha > 0, .mirrors = !(alpha > 0), .glossy = alpha > 0, .non_diffuse = true};
+  }
   double mirrored_share() const { return alpha > 0 ? 0 : max_component(f0); }
   ReflectionLimits limits() const {
     if (!(alpha > 0)) return {Vec3d(0), Vec3d(0), Vec3d(1), true};

@@ -23,7 +23,9 @@ struct MetallicRoughness {
   FacetAlbedo<N> grazing;  // of facets that mirror (1 - cos)^5
 
   static MetallicRoughness<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
+  MaterialTraits traits() const {
+    return {.lit = true, .glossy = true, .diffuse = true, .non_diffuse = true};
+  }
   double most_reflected() const;
   ReflectionLimits limits() const {
     const double most = most_reflected();
@@ -34,7 +36,12 @@ struct MetallicRoughness {
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  Vec3<N> from_everywhere() const { return f0 + base; }
+  Vec3<N> from_everywhere(Lobes lobes) const {
+    const Vec3<N> zero(N(ScalarOf<N>(0))), one(N(ScalarOf<N>(1)));
+    const Vec3<N> even = left({albedo.mean, f0 * (albedo.mean - grazing.mean) + Vec3<N>(grazing.mean)});
+    const Vec3<N> matt = base * select(strict > N(ScalarOf<N>(0)), one - f0, even * even);
+    return (with_non_diffuse(lobes) ? f0 : zero) + (with_diffuse(lobes) ? matt : zero);
+  }
   Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
   // Albedos at a cosine: of facets that mirror all, and of the facets themselves at once.
@@ -53,14 +60,16 @@ struct MetallicRoughness {
     const Vec3<N> rest = Vec3<N>(one) - a.once - multiple * (one - a.all);
     return {max_first(zero, rest.x), max_first(zero, rest.y), max_first(zero, rest.z)};
   }
-  [[gnu::always_inline]] N facet_chance(const Albedos& a) const {
-    const N one(ScalarOf<N>(1));
-    return lobe_chance(max_component(a.once),
-                       N(max_component(left(a) * base) + max_component(multiple) * (one - a.all)));
+  // The share of draws that facets get; the rest is in proportion to the cosine.
+  [[gnu::always_inline]] N facet_chance(const Albedos& a, Lobes lobes) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    if (!with_non_diffuse(lobes)) return zero;
+    const N matt = with_diffuse(lobes) ? N(max_component(left(a) * base)) : zero;
+    return lobe_chance(max_component(a.once), N(matt + max_component(multiple) * (one - a.all)));
   }
 
-  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
-                                                const MaskOf<N>&) const {
+  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light, const MaskOf<N>&,
+                                                Lobes lobes) const {
     using T = ScalarOf<N>;
     constexpr T kPi = std::numbers::pi_v<T>;
     const N zero(T(0)), one(T(1));
@@ -77,15 +86,18 @@ struct MetallicRoughness {
     const N spread = (one - seen.all) * (one - given.all) /
                      max_first(N(std::numeric_limits<T>::min()), N(one - albedo.mean));
     const N single = facets.brdf(viewer, light, half.density) * kPi;
-    const N chance = facet_chance(seen);
-    return {(base * passed_to_base + multiple * spread + fresnel * single) * cosine,
+    const N chance = facet_chance(seen, lobes);
+    const Vec3<N> matt = with_diffuse(lobes) ? base * passed_to_base : Vec3<N>(zero);
+    const N facets_count = with_non_diffuse(lobes) ? one : zero;
+    return {(matt + multiple * (spread * facets_count) + fresnel * (single * facets_count)) * cosine,
             select(lit, N(chance * facets.pdf(viewer, half.density) + (one - chance) * cosine * (one / kPi)),
                    zero)};
   }
 
-  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, const LobeDraw<N>& draw) const {
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, Lobes lobes,
+                          const LobeDraw<N>& draw) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
-    const auto [mirrors, u] = draw.choose(facet_chance(albedos(viewer.z)));
+    const auto [mirrors, u] = draw.choose(facet_chance(albedos(viewer.z), lobes));
     const Vec3<N> facet = Ggx<N>{alpha}.visible_normal(viewer, u, draw.v);
     return {
         select(mirrors, mirrored_about(viewer, facet), cosine_direction(Vec3<N>(zero, zero, one), u, draw.v)),

@@ -20,7 +20,7 @@ struct OrenNayar {
   Vec3<N> multiple_scale;  // of the product of two grazing_loss()
 
   static OrenNayar<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true, .glossy = true}; }
+  MaterialTraits traits() const { return {.lit = true, .glossy = true, .diffuse = true}; }
   // N.L s / t is at most 1, and grazing_loss() kFujii.
   ReflectionLimits limits() const {
     return {reflectance, reflectance * (single_scale * (1 + roughness)) + multiple_scale * (kFujii * kFujii)};

@@ -16,15 +16,15 @@ Plastic<double> Plastic<N>::read(Params& p) {
   const double roughness = p.number(
       "roughness", "Of the coat. 0: smooth, 1: the roughest. Its square is alpha of the distribution GGX.",
       {.min = 0, .max = 1}, 0.3);
-  Plastic<double> plastic{{}, ior, roughness * roughness, {}};
-  double mean;
+  Plastic<double> plastic{{}, ior, roughness * roughness, {}, 0};
   if (plastic.alpha < kLeastAlpha) {
     plastic.alpha = 0;
-    mean = mean_dielectric(1 / ior);
+    plastic.mean = mean_dielectric(1 / ior);
   } else {
     plastic.mirror = mirrored_albedo(plastic.alpha, [&](double cosine) { return plastic.fresnel(cosine); });
-    mean = plastic.mirror.mean;
+    plastic.mean = plastic.mirror.mean;
   }
+  const double mean = plastic.mean;
   const double leaves = (1 - mean) / (ior * ior);
   const auto base = [&](double rho) { return rho * leaves / (1 - rho * (1 - leaves)) / (1 - mean); };
   plastic.base = {base(reflectance.x), base(reflectance.y), base(reflectance.z)};
@@ -40,19 +40,20 @@ class PlasticKernel final : public LobeKernel<Plastic, T> {
   using LobeKernel<Plastic, T>::LobeKernel;
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              ScatterBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Plastic<N>& plastic) {
       const auto [u, v] = draws.two(SampleSet::lobe, i);
       const LobeDraw<N> draw{u, v, zero};
       const auto smooth = mine && !(plastic.alpha > zero);
-      if (!any(smooth)) return this->sample_rough(rays, surface, i, mine, plastic, draw, out);
+      if (!any(smooth)) return this->sample_rough(rays, surface, i, mine, plastic, lobes, draw, out);
       const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);
       const Vec3<N> geometric = surface.geometric.at(i);
       const N share = plastic.fresnel(dot(ShadingFrame<N>(normal, geometric, -direction).normal, -direction));
-      const N chance = select(smooth, plastic.coat_chance(share), zero);
+      const N chance = select(smooth, plastic.coat_chance(share, lobes), zero);
       const auto [coat, rest] = draw.choose(chance);
-      this->sample_rough(rays, surface, i, mine && !coat, plastic, {rest, v, zero}, out);
+      this->sample_rough(rays, surface, i, mine && !coat, plastic, lobes, {rest, v, zero}, out);
       out.direction.put(i, coat && mine, orrery::mirrored(direction, normal, geometric));
       out.weight.put(i, coat && mine, Vec3<N>(share / select(coat, chance, one)));
       out.pdf.put(i, coat && mine, zero);

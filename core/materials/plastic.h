@@ -16,16 +16,23 @@ struct Plastic {
   N ior;
   N alpha;                // of GGX; 0: smooth
   FacetAlbedo<N> mirror;  // of a rough coat
+  N mean;                 // share of even light from everywhere that the coat mirrors
 
   static Plastic<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true, .mirrors = !(alpha > 0), .glossy = true}; }
+  MaterialTraits traits() const {
+    return {.lit = true, .mirrors = !(alpha > 0), .glossy = true, .diffuse = true, .non_diffuse = true};
+  }
   double mirrored_share() const { return alpha > 0 ? 0 : fresnel(1); }
   ReflectionLimits limits() const {
     return {base, alpha > 0 ? base + Vec3d(Ggx<double>{alpha}.most()) : base, Vec3d(1), !(alpha > 0)};
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  Vec3<N> from_everywhere() const { return base; }
+  Vec3<N> from_everywhere(Lobes lobes) const {
+    const N zero(ScalarOf<N>(0)), leaves = N(ScalarOf<N>(1)) - mean;
+    return (with_diffuse(lobes) ? base * (leaves * leaves) : Vec3<N>(zero)) +
+           Vec3<N>(with_non_diffuse(lobes) ? mean : zero);
+  }
   Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
   [[gnu::always_inline]] N fresnel(const N& cosine) const {
@@ -40,23 +47,24 @@ struct Plastic {
     return select(facets, mirror.at(min_first(N(ScalarOf<N>(1)), cosine)), fresnel(cosine));
   }
   // The share of draws that the coat gets, where it mirrors this share.
-  [[gnu::always_inline]] N coat_chance(const N& mirrors) const {
+  [[gnu::always_inline]] N coat_chance(const N& mirrors, Lobes lobes) const {
+    if (lobes != Lobes::all) return N(ScalarOf<N>(with_non_diffuse(lobes) ? 1 : 0));
     return lobe_chance(mirrors, N((ScalarOf<N>(1) - mirrors) * max_component(base)));
   }
 
   // Without what a smooth coat mirrors.
-  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
-                                                const MaskOf<N>&) const {
+  [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light, const MaskOf<N>&,
+                                                Lobes lobes) const {
     using T = ScalarOf<N>;
     constexpr T kPi = std::numbers::pi_v<T>;
     const N zero(T(0)), one(T(1));
-    const N mirrors = mirrored(viewer.z), chance = coat_chance(mirrors);
+    const N mirrors = mirrored(viewer.z), chance = coat_chance(mirrors, lobes);
     const auto lit = light.z > zero;
     const N cosine = select(lit, light.z, one);
-    Scattered<N> found{base * ((one - mirrors) * (one - mirrored(cosine)) * cosine),
-                       (one - chance) * cosine * (one / kPi)};
+    Scattered<N> found{Vec3<N>(zero), (one - chance) * cosine * (one / kPi)};
+    if (with_diffuse(lobes)) found.f_cos = base * ((one - mirrors) * (one - mirrored(cosine)) * cosine);
     const auto facets = alpha > zero;
-    if (any(facets)) {
+    if (with_non_diffuse(lobes) && any(facets)) {
       const Ggx<N> coat{select(facets, alpha, one)};
       const auto half = coat.half(viewer, light);
       const N single = fresnel(half.length * T(0.5)) * coat.brdf(viewer, light, half.density) * cosine * kPi;
@@ -68,10 +76,11 @@ struct Plastic {
   }
 
   // REQUIRES: a smooth coat has had its share of the draws.
-  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, const LobeDraw<N>& draw) const {
+  DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>&, Lobes lobes,
+                          const LobeDraw<N>& draw) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     const auto facets = alpha > zero;
-    const N chance = select(facets, coat_chance(mirrored(viewer.z)), zero);
+    const N chance = select(facets, coat_chance(mirrored(viewer.z), lobes), zero);
     const auto [coat, u] = draw.choose(chance);
     const Vec3<N> facet = Ggx<N>{select(facets, alpha, one)}.visible_normal(viewer, u, draw.v);
     return {

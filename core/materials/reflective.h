@@ -14,7 +14,7 @@ struct Reflective {
   N exact;       // 1: Fresnel's equations, 0: Schlick's approximation
 
   static Reflective<double> read(Params& p);
-  MaterialTraits traits() const { return {.mirrors = true}; }
+  MaterialTraits traits() const { return {.mirrors = true, .non_diffuse = true}; }
   double mirrored_share() const { return max_component(f0); }
   ReflectionLimits limits() const { return {Vec3d(0), Vec3d(0), Vec3d(1), true}; }
 

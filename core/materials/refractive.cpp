@@ -38,7 +38,7 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
 
   // Mirrored with the probability of the reflectance, else refracted.
   void sample(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Refractive<N>& glass) {
       const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);

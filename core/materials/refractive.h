@@ -17,7 +17,7 @@ struct Refractive {
 
   static Refractive<double> read(Params& p);
   MaterialTraits traits() const {
-    return {.mirrors = true, .transmits = true, .filters = log2_filter != Vec3<N>(N(0))};
+    return {.mirrors = true, .transmits = true, .filters = log2_filter != Vec3<N>(N(0)), .non_diffuse = true};
   }
   ReflectionLimits limits() const { return {Vec3d(0), Vec3d(0), Vec3d(1), true}; }
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "core/materials/material_set.h"
+#include "core/materials/lobes.h"
 #include "core/math/hemisphere.h"
 #include "core/params/params.h"
 
@@ -18,7 +18,10 @@ Rough<double> Rough<N>::read(Params& p) {
   const double shininess = p.number("shininess", "Exponent of the highlight.", {.min = 0, .max = 1e6}, 20.0);
   const bool phong =
       p.choice("shading", "Model of the highlight.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
-  return {ka * cd, kd * cd, ks * cs, shininess, phong ? 1.0 : 0.0};
+  Rough<double> rough{ka * cd, kd * cd, ks * cs, shininess, phong ? 1.0 : 0.0, 0};
+  const bool alone = rough.diffuse == Vec3d(0) && rough.specular != Vec3d(0);
+  if (alone && shininess >= kLeastShininess) rough.chance = 1;
+  return rough;
 }
 
 // The power of a cosine that is off by some epsilon is off by a multiple of shininess times epsilon.
@@ -29,13 +32,17 @@ RoundingLimit Rough<N>::rounding() const {
   return {kMostError / shininess, "its highlight has an exponent of " + number_text(shininess)};
 }
 
-// Seen along the normal, where the highlight is whole: of an exponent s, Phong's sends on 2 / (s + 1) of its
-// coefficient, and the half vector's 8 (1 - 2^(-(s + 2) / 2)) / (s + 2).
+// Of an exponent s, Phong's sends on 2 / (s + 1) of its coefficient, and the half vector's
+// 8 (1 - 2^(-(s + 2) / 2)) / (s + 2).
+template <class N>
+double Rough<N>::highlight_albedo() const {
+  const double s = shininess;
+  return phong > 0 ? 2 / (s + 1) : 8 * (1 - exp2_flushed(-(s + 2) / 2)) / (s + 2);
+}
+
 template <class N>
 ReflectionLimits Rough<N>::limits() const {
-  const double s = shininess;
-  const double highlight = phong > 0 ? 2 / (s + 1) : 8 * (1 - exp2_flushed(-(s + 2) / 2)) / (s + 2);
-  return {ambient, diffuse + specular, diffuse + specular * highlight};
+  return {ambient, diffuse + specular, diffuse + specular * highlight_albedo()};
 }
 
 namespace {
@@ -46,9 +53,9 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
   using N = Lanes<T>;
   using MaterialRecords<Rough, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes, const Vec3<T>& ambient,
                Vec3Array<T>& radiance) const override {
-    const Vec3<N> from_everywhere(ambient);
+    const Vec3<N> from_everywhere(with_diffuse(lobes) ? ambient : Vec3<T>());
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
       radiance.put(i, mine, rough.ambient * from_everywhere);
     });
@@ -56,41 +63,49 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
 
   // No light reaches a side that faces away, neither diffuse nor as a highlight.
   void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
-                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+                Lobes lobes, Vec3Array<T>& f_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     const auto half_at = [&](int i) { return half_vector(directions.light.at(i), -directions.ray.at(i)); };
     const Vec3<N> first_half = half_at(*groups.begin());
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
       const Vec3<N> normal = surface.normal.at(i), toward = directions.light.at(i);
       const N cosine = dot(normal, toward);
-      const auto lit = mine && directions.reach.at(i) > zero && cosine > zero &&
-                       dot(surface.geometric.at(i), toward) > zero;
-      pdf.put(i, mine, select(lit, cosine_pdf(cosine), zero));
-      if (!any(lit)) return;
-      if (!any(lit && max_component(rough.specular) > zero))
+      auto lit = mine && directions.reach.at(i) > zero && cosine > zero &&
+                 dot(surface.geometric.at(i), toward) > zero;
+      const auto shines = max_component(rough.specular) > zero;
+      if (!with_diffuse(lobes)) lit = lit && shines;
+      if (!any(lit)) return pdf.put(i, mine, N(zero));
+      if (!with_non_diffuse(lobes) || !any(lit && shines)) {
+        pdf.put(i, mine, select(lit, cosine_pdf(cosine), zero));
         return f_cos.put(i, mine, rough.diffuse * cosine);
+      }
       const Vec3<N> viewer = -directions.ray.at(i);
       const Vec3<N> half = directions.constant_half ? first_half : half_at(i);
-      f_cos.put(i, mine, rough.reflected(normal, toward, viewer, half, cosine));
+      const auto scattered = rough.scattered(normal, toward, viewer, half, cosine, lobes);
+      f_cos.put(i, mine, scattered.f_cos);
+      pdf.put(i, mine, select(lit, scattered.pdf, zero));
     });
   }
 
-  // In proportion to the cosine.
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
       const auto [u, v] = draws.two(SampleSet::lobe, i);
       const Vec3<N> normal = surface.normal.at(i), viewer = -rays.direction.at(i);
-      const Vec3<N> direction = cosine_direction(normal, u, v);
+      const auto [shines, rest] = LobeDraw<N>{u, v, zero}.choose(rough.highlight_chance(lobes));
+      Vec3<N> direction = cosine_direction(normal, rest, v);
+      if (any(shines)) direction = select(shines, rough.drawn_highlight(normal, viewer, rest, v), direction);
       const N cosine = dot(normal, direction);
-      const auto leaves = cosine > zero && dot(surface.geometric.at(i), direction) > zero;
-      const N pdf = select(leaves, cosine_pdf(cosine), zero);
-      const Vec3<N> f_cos =
-          rough.reflected(normal, direction, viewer, half_vector(direction, viewer), cosine);
+      const auto scattered =
+          rough.scattered(normal, direction, viewer, half_vector(direction, viewer), cosine, lobes);
+      const auto leaves = cosine > zero && dot(surface.geometric.at(i), direction) > zero &&
+                          (!shines || dot(normal, viewer) > zero) && scattered.pdf > zero;
+      const N pdf = select(leaves, scattered.pdf, zero);
       out.direction.put(i, mine, direction);
       constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
-      out.weight.put(i, mine, f_cos * select(leaves, N(T(1) / (kPi * pdf)), zero));
+      out.weight.put(i, mine, scattered.f_cos * select(leaves, N(T(1) / (kPi * pdf)), zero));
       out.pdf.put(i, mine, pdf);
     });
   }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <numbers>
+
 #include "core/math/elementary.h"
+#include "core/math/hemisphere.h"
 #include "core/math/vec3.h"
 #include "core/model/material.h"
 
@@ -11,13 +14,21 @@ template <class N>
 struct Rough {
   Vec3<N> ambient, diffuse, specular;  // coefficient times colour
   N shininess;
-  N phong;  // 1: the mirrored light direction decides the highlight, 0: the half vector
+  N phong;   // 1: the mirrored light direction decides the highlight, 0: the half vector
+  N chance;  // of drawing the highlight, where all lobes are drawn: 1 if there is nothing else, or 0
 
   static Rough<double> read(Params& p);
-  MaterialTraits traits() const { return {.lit = true, .glossy = specular != Vec3<N>(N(0))}; }
+  MaterialTraits traits() const {
+    const Vec3<N> none(N(0));
+    return {.lit = true,
+            .glossy = specular != none,
+            .diffuse = diffuse != none || ambient != none,
+            .non_diffuse = specular != none};
+  }
   RoundingLimit rounding() const;
   double most_reflected() const { return max_component(limits().albedo); }
   ReflectionLimits limits() const;
+  double highlight_albedo() const;  // seen along the normal, where it is whole
 
   // Cosine that the highlight is a power of, 0 where there is none. Unit vectors: normal, toward the light,
   // toward the viewer, and half way between the two. The mirrored direction is R = 2 (N.L) N - L.
@@ -29,13 +40,56 @@ struct Rough {
     return min_first(N(T(1)), max_first(N(T(0)), c));
   }
 
-  // Share of light from `light` that leaves toward `viewer`, cosine included. REQUIRES: cosine = N.L > 0.
-  [[gnu::always_inline]] Vec3<N> reflected(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer,
-                                           const Vec3<N>& half, const N& cosine) const {
-    const N zero(ScalarOf<N>(0));
+  // A highlight that is hardly one is drawn in proportion to the cosine.
+  static constexpr double kLeastShininess = 1;
+  [[gnu::always_inline]] N highlight_chance(Lobes lobes) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
+    if (lobes == Lobes::all) return chance;
+    return with_non_diffuse(lobes) ? select(shininess >= N(ScalarOf<N>(kLeastShininess)), one, zero) : zero;
+  }
+
+  // Light from `light` that leaves toward `viewer`: f_cos with its cosine, and the density with which it is
+  // drawn.
+  struct Scattered {
+    Vec3<N> f_cos;
+    N pdf;
+  };
+  // REQUIRES: cosine = N.L > 0. The highlight is drawn as the power of the cosine to the mirrored viewer, or
+  // of the half vector to the normal, whose density per solid angle of the light is 1 / (4 V.H) of its own.
+  [[gnu::always_inline]] Scattered scattered(const Vec3<N>& normal, const Vec3<N>& light,
+                                             const Vec3<N>& viewer, const Vec3<N>& half, const N& cosine,
+                                             Lobes lobes) const {
+    using T = ScalarOf<N>;
+    constexpr T kPi = std::numbers::pi_v<T>;
+    const N zero(T(0)), one(T(1));
     const N base = highlight(normal, light, viewer, half, cosine);
     const N lobe = select(dot(normal, viewer) > zero, pow_unit(base, shininess), zero);
-    return diffuse * cosine + specular * lobe;
+    const Vec3<N> matt = with_diffuse(lobes) ? diffuse * cosine : Vec3<N>(zero);
+    Scattered found{with_non_diffuse(lobes) ? matt + specular * lobe : matt, cosine_pdf(cosine)};
+    const auto drawn = highlight_chance(lobes) > zero;
+    if (!any(drawn)) return found;
+    const N spread = select(phong > zero, one, N(T(4) * dot(half, viewer)));
+    const N density = lobe * (shininess + one) * (T(0.5) / kPi) / select(spread > zero, spread, one);
+    found.pdf = select(drawn, density, found.pdf);
+    return found;
+  }
+
+  // Inverse of that density over u and v in [0, 1). REQUIRES: N.V > 0.
+  [[gnu::always_inline]] Vec3<N> drawn_highlight(const Vec3<N>& normal, const Vec3<N>& viewer, const N& u,
+                                                 const N& v) const {
+    using T = ScalarOf<N>;
+    using std::sqrt;
+    const N zero(T(0)), one(T(1));
+    const N up = pow_unit(one - u, one / (shininess + one));
+    const N across = sqrt(max_first(zero, N(one - up * up)));
+    const auto [sine, cosine] = sine_cosine_turns(v);
+    const auto mirrored_about = [&](const Vec3<N>& axis) {
+      return axis * (T(2) * dot(axis, viewer)) - viewer;
+    };
+    const Vec3<N> axis = select(phong > zero, mirrored_about(normal), normal);
+    const Tangents<N> basis = tangents_of(axis);
+    const Vec3<N> direction = basis.first * (across * cosine) + basis.second * (across * sine) + axis * up;
+    return normalize(select(phong > zero, direction, mirrored_about(direction)));
   }
 };
 

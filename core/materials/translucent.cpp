@@ -32,16 +32,20 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
   using N = Lanes<T>;
   using MaterialRecords<Translucent, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, const Vec3<T>& ambient,
+  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes, const Vec3<T>& ambient,
                Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
-      radiance.put(i, mine, (sheet.reflectance + sheet.transmittance) * from_everywhere);
+      const Vec3<N> zero(N(T(0)));
+      radiance.put(i, mine,
+                   ((with_diffuse(lobes) ? sheet.reflectance : zero) +
+                    (with_non_diffuse(lobes) ? sheet.transmittance : zero)) *
+                       from_everywhere);
     });
   }
 
   void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
-                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+                Lobes lobes, Vec3Array<T>& f_cos, Array<T>& pdf) const override {
     using std::abs;
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
@@ -50,20 +54,22 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
       const auto lit =
           mine && directions.reach.at(i) > zero && cosine * dot(surface.geometric.at(i), light) > zero;
       const auto through = cosine < zero;
-      pdf.put(i, mine, select(lit, density(sheet, through, abs(cosine)), zero));
+      pdf.put(i, mine, select(lit, density(through, through_chance(sheet, lobes), abs(cosine)), zero));
       if (any(lit)) f_cos.put(i, mine, share(sheet, through) * abs(cosine));
     });
   }
 
   void sample(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              ScatterBatch<T>& out) const override {
     using std::abs;
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
       const auto [u, v] = draws.two(SampleSet::lobe, i);
-      const auto through = u < sheet.through;
-      const N chance = select(through, sheet.through, N(one - sheet.through));
-      const N rest = select(through, u, N(u - sheet.through)) / chance;
+      const N share_through = through_chance(sheet, lobes);
+      const auto through = u < share_through;
+      const N chance = select(through, share_through, N(one - share_through));
+      const N rest = select(through, u, N(u - share_through)) / chance;
       const Vec3<N> normal = surface.normal.at(i);
       const Vec3<N> light =
           cosine_direction(select(through, -normal, normal),
@@ -74,7 +80,7 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
       out.direction.put(i, mine, light);
       out.weight.put(i, mine, Vec3<N>(zero));
       out.weight.put(i, leaves, share(sheet, through) * (one / chance));
-      out.pdf.put(i, mine, select(leaves, density(sheet, through, abs(cosine)), zero));
+      out.pdf.put(i, mine, select(leaves, density(through, share_through, abs(cosine)), zero));
     });
   }
 
@@ -82,8 +88,12 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
   static Vec3<N> share(const Translucent<N>& sheet, const MaskOf<N>& through) {
     return select(through, sheet.transmittance, sheet.reflectance);
   }
-  static N density(const Translucent<N>& sheet, const MaskOf<N>& through, const N& cosine) {
-    return select(through, sheet.through, N(N(T(1)) - sheet.through)) * cosine_pdf(cosine);
+  // The share of draws that leave on the far side.
+  static N through_chance(const Translucent<N>& sheet, Lobes lobes) {
+    return lobes == Lobes::all ? sheet.through : N(T(with_non_diffuse(lobes) ? 1 : 0));
+  }
+  static N density(const MaskOf<N>& through, const N& through_chance, const N& cosine) {
+    return select(through, through_chance, N(N(T(1)) - through_chance)) * cosine_pdf(cosine);
   }
 };
 

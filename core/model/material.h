@@ -29,6 +29,12 @@ struct Directions {
   bool constant_half = false;  // both directions are the same for the whole batch
 };
 
+// Which lobes of a material are meant. Diffuse: light that leaves all over the side it came from, as
+// Lambert's law has it or nearly so. All others mirror or transmit, perfectly or not.
+enum class Lobes { all, diffuse, non_diffuse };
+constexpr bool with_diffuse(Lobes lobes) { return lobes != Lobes::non_diffuse; }
+constexpr bool with_non_diffuse(Lobes lobes) { return lobes != Lobes::diffuse; }
+
 // One direction drawn at each surface point.
 template <class T>
 struct ScatterBatch {
@@ -37,26 +43,27 @@ struct ScatterBatch {
   Array<T> pdf;            // density per solid angle; 0 of a direction that no other could be
 };
 
-// Const and free of state: any number of threads may call it at once.
+// Const and free of state: any number of threads may call it at once. `lobes` are at least one of those that
+// the traits of its materials have.
 template <class T>
 class MaterialKernel {
  public:
   virtual ~MaterialKernel() = default;
 
   // Sets `radiance` of the lanes with this material to what `ambient` light alone makes leave the surface.
-  virtual void ambient(const SurfaceBatch<T>&, const Groups&, const Vec3<T>& /*ambient*/,
+  virtual void ambient(const SurfaceBatch<T>&, const Groups&, Lobes, const Vec3<T>& /*ambient*/,
                        Vec3Array<T>& /*radiance*/) const {}
 
   // Light along `directions.light` that leaves toward the ray's origin: `f_cos` is the share per channel,
   // cosine included, times pi (a white Lambert surface: the cosine); `pdf` the density per solid angle with
   // which sample() draws that direction. Both are set for the lanes with this material alone; pdf is 0, and
   // f_cos undefined, where nothing is reflected.
-  virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const Groups&, Vec3Array<T>& /*f_cos*/,
-                        Array<T>& /*pdf*/) const {}
+  virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const Groups&, Lobes,
+                        Vec3Array<T>& /*f_cos*/, Array<T>& /*pdf*/) const {}
 
   // Draws one direction in which light may have come, for the lanes with this material.
   virtual void sample(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const PathDraws<T>&,
-                      const Groups&, ScatterBatch<T>&) const {}
+                      const Groups&, Lobes, ScatterBatch<T>&) const {}
 
   // All directions of a perfectly specular material, for the lanes with it.
   virtual void specular(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const Groups&,
@@ -67,13 +74,15 @@ template <class T>
 using MaterialKernelPtr = std::unique_ptr<MaterialKernel<T>>;
 
 struct MaterialTraits {
-  bool lit = false;        // answers light sources: `ambient` and `evaluate`
-  bool mirrors = false;    // `specular` may have reflectance
-  bool transmits = false;  // light passes through: `specular` may have transmittance, `evaluate` may answer
-                           // light from behind
-  bool filters = false;    // light may be weakened on its way through the body
-  bool glossy = false;     // some may look different from different sides, though they answer light sources
-  bool emits = false;      // some surface with it sends light out by itself
+  bool lit = false;          // answers light sources: `ambient` and `evaluate`
+  bool mirrors = false;      // `specular` may have reflectance
+  bool transmits = false;    // light passes through: `specular` may have transmittance, `evaluate` may answer
+                             // light from behind
+  bool filters = false;      // light may be weakened on its way through the body
+  bool glossy = false;       // some may look different from different sides, though they answer light sources
+  bool diffuse = false;      // some have a diffuse lobe
+  bool non_diffuse = false;  // some have another one
+  bool emits = false;        // some surface with it sends light out by itself
   SurfaceFields fields = {};  // that `evaluate` and `sample` read
 
   MaterialTraits& operator|=(const MaterialTraits& other) {
@@ -82,9 +91,16 @@ struct MaterialTraits {
     transmits |= other.transmits;
     filters |= other.filters;
     glossy |= other.glossy;
+    diffuse |= other.diffuse;
+    non_diffuse |= other.non_diffuse;
     emits |= other.emits;
     fields |= other.fields;
     return *this;
+  }
+
+  // Whether some may have one of these lobes.
+  bool has(Lobes lobes) const {
+    return lobes == Lobes::all || (lobes == Lobes::diffuse ? diffuse : non_diffuse);
   }
 };
 

@@ -7,8 +7,7 @@ void DirectLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws, c
                          const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts,
                          const Checkpoint& checkpoint) {
   if (groups.empty()) return;
-  for (const auto& m : geometry_.materials)
-    if (m.traits.lit) m.kernel->ambient(surface, groups, geometry_.ambient, radiance);
+  add_ambient(geometry_, surface, groups, Lobes::all, radiance);
   if (!plan_.direct_light) return;
   bool ends = false;
   lights_.for_each(

@@ -122,8 +122,8 @@ void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
     to.share.put(i, Vec3<N>(zero));
   }
   if (connected.empty()) return;
-  evaluate_materials(geometry_, {ray_, shadow_.direction, shadow_.t_max}, first_, connected, f_cos_,
-                     lobe_pdf_);
+  evaluate_materials(geometry_, {ray_, shadow_.direction, shadow_.t_max}, first_, connected, Lobes::all,
+                     f_cos_, lobe_pdf_);
   for (const int i : connected) {
     const N t = shadow_.t_max.at(i);
     const N cosine = -dot(shadow_.direction.at(i), toward_normal_.at(i));

@@ -2,17 +2,33 @@
 
 namespace orrery {
 
+template <class T>
+void ShadowedLight<T>::evaluate_diffuse(const Directions<T>& directions, const SurfaceBatch<T>& surface,
+                                        const Groups& groups) {
+  using N = Lanes<T>;
+  const N zero(T(0));
+  evaluate_materials(geometry_, directions, surface, groups, Lobes::diffuse, diffuse, diffuse_pdf);
+  for (const int i : groups) {
+    diffuse.put(i, !(diffuse_pdf.at(i) > zero), Vec3<N>(zero));
+    f_cos.put(i, !(pdf.at(i) > zero), Vec3<N>(zero));
+  }
+}
+
 // The light's direction decides on which side of the surface the shadow ray starts.
 template <class T>
 Groups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
                               bool constant_half, TraceCounts& counts) {
   using N = Lanes<T>;
   RayBatch<T>& shadow = light.shadow;
-  evaluate_materials(geometry_, {paths.rays.direction, shadow.direction, shadow.t_max, constant_half},
-                     surface, groups, f_cos, pdf);
+  const Directions<T> directions{paths.rays.direction, shadow.direction, shadow.t_max, constant_half};
+  evaluate_materials(geometry_, directions, surface, groups, apart_ ? Lobes::non_diffuse : Lobes::all, f_cos,
+                     pdf);
+  if (apart_) evaluate_diffuse(directions, surface, groups);
   Groups reached;
   for (const int i : groups) {
-    const auto lit = pdf.at(i) > N(T(0));
+    const N zero(T(0));
+    auto lit = pdf.at(i) > zero;
+    if (apart_) lit = lit || diffuse_pdf.at(i) > zero;
     shadow.t_max.put(i, !lit, N(T(-1)));
     if (!any(lit)) continue;
     reached.add(i);

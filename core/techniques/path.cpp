@@ -70,7 +70,7 @@ class Path final : public Wavefront<T> {
     sampled_light_.add(*paths, this->draws(), surface,
                        groups_with(geometry, surface, met, &MaterialTraits::lit), radiance, this->counts());
     for (const auto& m : geometry.materials)
-      m.kernel->sample(paths->rays, hits, surface, this->draws(), met, scatter_);
+      m.kernel->sample(paths->rays, hits, surface, this->draws(), met, Lobes::all, scatter_);
     for (const int i : met) go_on(i);
     if (reuse_ && paths->depth == 1)
       for (const int i : met) reuse_->keep_second(i, *paths, surface, even_lanes(i));

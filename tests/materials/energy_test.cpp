@@ -95,6 +95,7 @@ TEST(Plastic, OfAWhiteBaseReflectsAllLight) {
       for (const double cosine : kCosines)
         EXPECT_NEAR(mean_weight(white, seen_at(cosine)).x, 1, 3e-3)
             << roughness << " " << ior << " " << cosine;
+      EXPECT_NEAR(white.ambient().x, 1, 1e-12) << roughness << " " << ior;
     }
 }
 

@@ -59,7 +59,7 @@ TEST(RoughSampling, MeanWeightIsTheAlbedo) {
   for (int sample = 0; sample < kSamples; ++sample) {
     const Draws draws(1, TileView{0, 0, kTileSide, kTileSide}, sample);
     kernel->sample(drawn->rays, drawn->hits, drawn->surface, PathDraws<double>{draws, drawn->slot, 0},
-                   drawn->all, drawn->out);
+                   drawn->all, Lobes::all, drawn->out);
     for (int i = 0; i < kBatch; ++i) sum = sum + drawn->out.weight[i];
   }
   const Vec3d mean = sum / (kBatch * kSamples);
@@ -74,7 +74,7 @@ TEST(RoughSampling, MeanWeightIsTheAlbedo) {
       drawn->rays.origin.set(i, {r * std::cos(angle), r * std::sin(angle), z});
     }
     kernel->evaluate({drawn->rays.direction, drawn->rays.origin, drawn->reach}, drawn->surface,
-                     Groups::covering(0, kSteps, kWidth<double>), drawn->f_cos, drawn->pdf);
+                     Groups::covering(0, kSteps, kWidth<double>), Lobes::all, drawn->f_cos, drawn->pdf);
     for (int i = 0; i < kSteps; ++i)
       if (drawn->pdf[i] > 0) albedo = albedo + drawn->f_cos[i] * (2.0 / (kSteps * kSteps));
   }
@@ -88,9 +88,9 @@ TEST(RoughSampling, TellsTheDensityThatEvaluateTells) {
   const auto drawn = std::make_unique<Drawn>(kSlanted, 1.0);
   const Draws draws(3, TileView{32, 64, kTileSide, kTileSide}, 5);
   kernel->sample(drawn->rays, drawn->hits, drawn->surface, PathDraws<double>{draws, drawn->slot, 2},
-                 drawn->all, drawn->out);
+                 drawn->all, Lobes::all, drawn->out);
   kernel->evaluate({drawn->rays.direction, drawn->out.direction, drawn->reach}, drawn->surface, drawn->all,
-                   drawn->f_cos, drawn->pdf);
+                   Lobes::all, drawn->f_cos, drawn->pdf);
   double mean_cosine = 0;
   for (int i = 0; i < kBatch; ++i) {
     ASSERT_NEAR(length(drawn->out.direction[i]), 1, 1e-14);
@@ -110,7 +110,7 @@ TEST(RefractiveSampling, MirrorsInProportionToTheReflectance) {
   for (int sample = 0; sample < kSamples; ++sample) {
     const Draws draws(1, TileView{0, 0, kTileSide, kTileSide}, sample);
     kernel->sample(drawn->rays, drawn->hits, drawn->surface, PathDraws<double>{draws, drawn->slot, 0},
-                   drawn->all, drawn->out);
+                   drawn->all, Lobes::all, drawn->out);
     for (int i = 0; i < kBatch; ++i) {
       ASSERT_EQ(drawn->out.weight[i], Vec3d(1));
       ASSERT_EQ(drawn->out.pdf[i], 0);
@@ -125,7 +125,7 @@ TEST(ReflectiveSampling, IsTheMirroredRay) {
   const auto drawn = std::make_unique<Drawn>(kSlanted, 1.0);
   const Draws draws(1, TileView{0, 0, kTileSide, kTileSide}, 0);
   kernel->sample(drawn->rays, drawn->hits, drawn->surface, PathDraws<double>{draws, drawn->slot, 0},
-                 drawn->all, drawn->out);
+                 drawn->all, Lobes::all, drawn->out);
   EXPECT_NEAR(length(drawn->out.direction[7] - Vec3d(kSlanted.x, kSlanted.y, -kSlanted.z)), 0, 1e-15);
   EXPECT_GT(drawn->out.weight[7].x, 0.9);
 }

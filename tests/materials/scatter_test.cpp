@@ -75,7 +75,7 @@ struct Cells {
 
 // Integral over each cell of the density that the material tells. Facets of glass rougher than these have a
 // density that ends abruptly where they stand upright, which the grid of points does not resolve.
-Cells cells_of(const Probe<double>& material, const Case& point) {
+Cells cells_of(const Probe<double>& material, const Case& point, Lobes lobes = Lobes::all) {
   constexpr int kRows = kRings * kPointsAcross, kColumns = kSectors * kPointsAround;
   std::vector<Case> cases;
   std::vector<double> angle_share;
@@ -89,7 +89,7 @@ Cells cells_of(const Probe<double>& material, const Case& point) {
         angle_share.push_back(4 * std::numbers::pi * r / (kRows * kColumns));
       }
     }
-  const auto found = material.evaluated(cases);
+  const auto found = material.evaluated(cases, lobes);
   Cells cells;
   for (std::size_t i = 0; i < cases.size(); ++i)
     cells.mass[Cells::of(cases[i].light)] += found[i].pdf * angle_share[i];
@@ -266,6 +266,93 @@ TEST_P(Scattering, AMillionPointsGiveNumbers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, Scattering, testing::ValuesIn(kMaterials),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
+
+// Paint, whose highlight no law of nature bounds.
+const Material kPaints[] = {
+    {"Paint", "{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.5, 'shininess': 30}"},
+    {"PhongPaint",
+     "{'type': 'rough', 'kd': 0.5, 'ks': [0.1, 0.5, 0.2], 'shininess': 12, 'shading': 'phong'}"},
+    {"FaintHighlight", "{'type': 'rough', 'kd': 0.5, 'ks': 0.5, 'shininess': 0.5}"},
+    {"HighlightAlone", "{'type': 'rough', 'kd': 0, 'ks': 0.5, 'shininess': 100}"},
+};
+std::vector<Material> materials_and_paints() {
+  std::vector<Material> all(std::begin(kMaterials), std::end(kMaterials));
+  all.insert(all.end(), std::begin(kPaints), std::end(kPaints));
+  return all;
+}
+
+// Diffuse lobes and all others, each asked alone.
+class LobesOf : public testing::TestWithParam<Material> {
+ protected:
+  // Those that the material has.
+  std::vector<Lobes> parts() const {
+    std::vector<Lobes> found;
+    for (const Lobes lobes : {Lobes::diffuse, Lobes::non_diffuse})
+      if (material_.traits().has(lobes)) found.push_back(lobes);
+    return found;
+  }
+  const Probe<double> material_{GetParam().text};
+};
+
+TEST_P(LobesOf, AddUpToTheMaterial) {
+  Random random(5);
+  std::vector<Case> cases;
+  for (int i = 0; i < 10'000; ++i) {
+    Case c = seen_from(random.direction_above(Vec3d(0, 0, 1)), GetParam().side);
+    c.light = random.direction_above(c.normal);
+    if (GetParam().ior > 0 && random.below(2)) c.light.z = -c.light.z;
+    cases.push_back(c);
+  }
+  const auto whole = material_.evaluated(cases);
+  std::vector<Vec3d> sum(cases.size());
+  Vec3d ambient;
+  for (const Lobes lobes : parts()) {
+    const auto part = material_.evaluated(cases, lobes);
+    for (std::size_t i = 0; i < cases.size(); ++i) sum[i] = sum[i] + part[i].f_cos;
+    ambient = ambient + material_.ambient(lobes);
+  }
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    ASSERT_NEAR(length(sum[i] - whole[i].f_cos), 0, 1e-12 * (1 + length(sum[i])));
+  EXPECT_NEAR(length(ambient - material_.ambient()), 0, 1e-14);
+}
+
+// As Scattering has it for all lobes together; of paint these too. 48 tests.
+TEST_P(LobesOf, AreDrawnInProportionToTheirDensities) {
+  covers("light-24");
+  constexpr int kDraws = 200'000;
+  std::vector<Lobes> asked = parts();
+  if (std::string_view(GetParam().text).find("'rough'") != std::string_view::npos)
+    asked.push_back(Lobes::all);
+  for (const Lobes lobes : asked) {
+    const Case point = seen_from(viewer(2), GetParam().side);
+    const auto drawn = material_.sampled(point, kDraws, 2, lobes);
+    const double z = chi_square_deviations(cells_of(material_, point, lobes), drawn);
+    EXPECT_LT(z, 3.68) << static_cast<int>(lobes);
+    EXPECT_GT(z, -5) << static_cast<int>(lobes);
+  }
+}
+
+TEST_P(LobesOf, WeighDrawsByWhatTheyEvaluate) {
+  for (const Lobes lobes : parts()) {
+    const Case point = seen_from(viewer(2), GetParam().side);
+    std::vector<Case> cases;
+    const auto drawn = material_.sampled(point, 10'000, 3, lobes);
+    for (const auto& d : drawn) {
+      cases.push_back(point);
+      cases.back().light = d.direction;
+    }
+    const auto told = material_.evaluated(cases, lobes);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (drawn[i].pdf == 0) continue;
+      ASSERT_NEAR(drawn[i].pdf, told[i].pdf, 1e-13 * told[i].pdf);
+      const double scale = 1 / (std::numbers::pi * told[i].pdf);
+      ASSERT_NEAR(length(drawn[i].weight - told[i].f_cos * scale), 0, 1e-12 * (1 + length(drawn[i].weight)));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Materials, LobesOf, testing::ValuesIn(materials_and_paints()),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 // Paths may share what they find where a surface looks the same from everywhere.

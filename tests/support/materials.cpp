@@ -58,13 +58,15 @@ std::vector<Vec3<T>> Probe<T>::reflected(std::span<const Case> cases) const {
 }
 
 template <class T>
-std::vector<typename Probe<T>::Evaluated> Probe<T>::evaluated(std::span<const Case> cases) const {
+std::vector<typename Probe<T>::Evaluated> Probe<T>::evaluated(std::span<const Case> cases,
+                                                              Lobes lobes) const {
   const auto b = std::make_unique<Batches<T>>();
   std::vector<Evaluated> found;
   while (!cases.empty()) {
     const auto some = cases.first(std::min<std::size_t>(cases.size(), kBatch));
     fill<T>(some, *b);
-    kernel_->evaluate({b->rays.direction, b->light, b->reach}, b->surface, b->groups, b->f_cos, b->pdf);
+    kernel_->evaluate({b->rays.direction, b->light, b->reach}, b->surface, b->groups, lobes, b->f_cos,
+                      b->pdf);
     for (int i = 0; i < static_cast<int>(some.size()); ++i)
       found.push_back({b->pdf[i] > 0 ? b->f_cos[i] : Vec3<T>(), b->pdf[i]});
     cases = cases.subspan(some.size());
@@ -74,8 +76,8 @@ std::vector<typename Probe<T>::Evaluated> Probe<T>::evaluated(std::span<const Ca
 
 // Each batch has a seed, and each of its slots a pixel, of its own.
 template <class T>
-std::vector<typename Probe<T>::Sampled> Probe<T>::sampled(const Case& one, int count,
-                                                          std::uint64_t seed) const {
+std::vector<typename Probe<T>::Sampled> Probe<T>::sampled(const Case& one, int count, std::uint64_t seed,
+                                                          Lobes lobes) const {
   const auto b = std::make_unique<Batches<T>>();
   const std::vector<Case> cases(kBatch, one);
   fill<T>(cases, *b);
@@ -83,7 +85,8 @@ std::vector<typename Probe<T>::Sampled> Probe<T>::sampled(const Case& one, int c
   std::vector<Sampled> found;
   for (std::uint64_t batch = 0; static_cast<int>(found.size()) < count; ++batch) {
     const Draws draws((seed << 32) + batch, TileView{0, 0, kTileSide, kTileSide}, 0);
-    kernel_->sample(b->rays, b->hits, b->surface, PathDraws<T>{draws, b->slot, 0}, b->groups, b->scatter);
+    kernel_->sample(b->rays, b->hits, b->surface, PathDraws<T>{draws, b->slot, 0}, b->groups, lobes,
+                    b->scatter);
     for (int i = 0; i < kBatch && static_cast<int>(found.size()) < count; ++i)
       found.push_back({b->scatter.direction[i], b->scatter.weight[i], b->scatter.pdf[i]});
   }
@@ -107,11 +110,11 @@ std::vector<typename Probe<T>::Specular> Probe<T>::specular(std::span<const Case
 }
 
 template <class T>
-Vec3<T> Probe<T>::ambient() const {
+Vec3<T> Probe<T>::ambient(Lobes lobes) const {
   const auto b = std::make_unique<Batches<T>>();
   const Case one;
   fill<T>(std::span(&one, 1), *b);
-  kernel_->ambient(b->surface, b->groups, Vec3<T>(T(1)), b->radiance);
+  kernel_->ambient(b->surface, b->groups, lobes, Vec3<T>(T(1)), b->radiance);
   return b->radiance[0];
 }
 

@@ -45,19 +45,22 @@ class Probe {
     Vec3<T> f_cos;
     T pdf;
   };
-  std::vector<Evaluated> evaluated(std::span<const Case> cases) const;
-  Evaluated evaluated(const Case& one) const { return evaluated(std::span(&one, 1)).front(); }
+  std::vector<Evaluated> evaluated(std::span<const Case> cases, Lobes lobes = Lobes::all) const;
+  Evaluated evaluated(const Case& one, Lobes lobes = Lobes::all) const {
+    return evaluated(std::span(&one, 1), lobes).front();
+  }
   // Directions drawn at one surface point, independent of each other.
   struct Sampled {
     Vec3<T> direction, weight;
     T pdf;
   };
-  std::vector<Sampled> sampled(const Case& one, int count, std::uint64_t seed = 1) const;
+  std::vector<Sampled> sampled(const Case& one, int count, std::uint64_t seed = 1,
+                               Lobes lobes = Lobes::all) const;
   std::vector<Specular> specular(std::span<const Case> cases) const;
   Specular specular(const Case& one) const { return specular(std::span(&one, 1)).front(); }
   MaterialTraits traits() const;
   // What leaves under ambient light of 1.
-  Vec3<T> ambient() const;
+  Vec3<T> ambient(Lobes lobes = Lobes::all) const;
 
  private:
   std::shared_ptr<const Scene> scene_;
