@@ -59,6 +59,7 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
   Vec3d tree = most_beyond(scene), paths = tree;
   for (const LightPlace& place : scene.lights)
     paths = largest(paths, scene.light_sets[place.set]->most_seen(place.index));
+  Vec3d distributed = paths;
   std::size_t number = 0;
   for (const auto& set : scene.materials)
     for (int i = 0; i < set->size(); ++i, ++number) {
@@ -68,10 +69,12 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
       const Vec3d ambient = product(limits.ambient, scene.ambient), emission = scene.emission[number];
       const Vec3d shines = interreflected(emission + ambient, Vec3d(limits.specular ? 1 : 0));
       tree = largest(tree, shines + product(limits.light, light.of_points));
-      paths =
-          largest(paths, interreflected(emission + product(limits.light, light.of_extents), limits.albedo));
+      const Vec3d own = emission + product(limits.light, light.of_extents);
+      paths = largest(paths, interreflected(own, limits.albedo));
+      distributed = largest(distributed, interreflected(own + ambient, limits.albedo));
     }
   facts.tree_radiance = {Vec3d(0), tree};
+  facts.distributed_radiance = {Vec3d(0), distributed};
   facts.path_radiance = {Vec3d(0), paths};
 }
 

@@ -40,8 +40,7 @@ struct SceneFacts {
   std::size_t left_out = 0;  // primitives without area
   Boundsd bounds;            // of the bounded primitives
   bool unbounded = false;    // whether there are others
-  // Of radiance that techniques without and with interreflection find.
-  RadianceRange tree_radiance, path_radiance;
+  RadianceRange tree_radiance, distributed_radiance, path_radiance;  // that techniques find
   Vec3d albedo;  // the largest share that a material in use sends on of light from everywhere
   // For the choice of the number type:
   Extreme magnitude{0,

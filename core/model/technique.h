@@ -21,6 +21,8 @@ struct TraceResult {
   std::vector<ChannelBatch<T>> channels;  // of Plan::channels, in that order
 };
 
+inline constexpr int kMostLooks = 16;  // rays a sample that only look: see Tracer::looks()
+
 // How light is followed. One tracer belongs to one thread and is used again and again; it keeps its batches.
 template <class T>
 class Tracer {
@@ -47,11 +49,14 @@ using TracerPtr = std::unique_ptr<Tracer<T>>;
 struct TechniqueType {
   const char* name;
   const char* summary;
-  bool secondary_rays;  // follows mirrored and refracted rays
+  int max_depth;                // unless a request or a scene tells
+  bool secondary_rays = false;  // follows mirrored and refracted rays
+  // One light source and one direction a vertex are drawn: surfaces that emit and the environment are light
+  // sources, and lenses blur.
+  bool draws_light = false;
+  bool interreflects = false;  // diffuse surfaces light each other, in place of ambient light
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
-  bool interreflects =
-      false;  // surfaces light each other, those that emit are light sources, and lenses blur
 };
 
 template <template <class> class Derived, class T>

@@ -13,14 +13,18 @@ namespace {
 constexpr double kSpecularShare = 0.5;  // of the rays, where some material is specular
 
 // Seven of ten paths survive the roulette; each vertex sends one ray to a light source, and the first ones
-// are connected to those that others found. About two rays a sample look for what shines.
-double expected_path_rays(const Plan& plan) {
-  constexpr double kSurviving = 0.7;
-  constexpr double kLooks = 2;
-  double rays = 1 + kLooks + (plan.reuse - 1), share = 1;
+// are connected to those that others found. About two rays a sample look for what shines, and all that may
+// where lens or shutter blur. Where diffuse surfaces end paths, fewer go on.
+double expected_path_rays(const Scene& scene, const Plan& plan) {
+  const MaterialTraits& materials = scene.facts.materials;
+  const double surviving = plan.technique->interreflects || !materials.diffuse ? 0.7
+                           : materials.non_diffuse                             ? 0.7 * kSpecularShare
+                                                                               : 0;
+  const double looks = plan.lens || plan.shutter > 0 ? kMostLooks : 2;
+  double rays = 1 + looks + (plan.reuse - 1), share = 1;
   for (int depth = 1; depth <= plan.max_depth; ++depth) {
-    rays += share * (1 + kSurviving);
-    share *= kSurviving;
+    rays += share * (1 + surviving);
+    share *= surviving;
   }
   return double(plan.width) * plan.height * plan.samples * rays;
 }
@@ -50,7 +54,8 @@ double expected_tree_rays(const Scene& scene, const Plan& plan) {
 
 double expected_rays(const Scene& scene, const Plan& plan) {
   const double parts = plan.filtered && has_negative_lobes(*plan.asked.filter) ? 2 : 1;
-  return parts * (plan.technique->interreflects ? expected_path_rays(plan) : expected_tree_rays(scene, plan));
+  return parts *
+         (plan.technique->draws_light ? expected_path_rays(scene, plan) : expected_tree_rays(scene, plan));
 }
 
 double ray_weight(const Scene& scene, const Plan& plan) {

@@ -6,6 +6,7 @@
 #include "core/accelerators/registry.h"
 #include "core/channels/registry.h"
 #include "core/model/scene.h"
+#include "core/model/technique.h"
 #include "core/params/motion.h"
 #include "core/plan/limits.h"
 #include "core/techniques/registry.h"
@@ -88,9 +89,10 @@ constexpr std::array kOptions{
     O{.key = "max_depth",
       .short_name = "depth",
       .section = Section::render,
-      .kind = O::Integer<int>{&S::max_depth, 0, kMaxDepth, 5},
+      .kind = O::Integer<int>{&S::max_depth, 0, kMaxDepth, 5, &TechniqueType::max_depth},
       .placeholder = "N",
-      .help = "Deepest ray that is traced; camera rays have depth 0."},
+      .help = "Deepest ray that is traced; camera rays have depth 0. Unless told 5, of distributed 6, of "
+              "path 9."},
     O{.key = "min_contribution",
       .section = Section::render,
       .kind = O::Number{&S::min_contribution, {.min = 0, .max = 1}, 0},
@@ -266,6 +268,11 @@ std::string RenderOption::value_name() const {
   return text;
 }
 
+bool RenderOption::by_technique() const {
+  const auto* integer = std::get_if<O::Integer<int>>(&kind);
+  return integer && integer->by_technique;
+}
+
 RenderOption::Names RenderOption::choices() const {
   return std::visit([](const auto& of) { return choices_of(of); }, kind);
 }
@@ -299,7 +306,12 @@ const RenderSettings& default_settings() {
 }
 
 void RenderOption::read_scene(Params& p, RenderSettings& settings) const {
-  std::visit([&](const auto& of) { settings.*of.member = read(p, *this, of, true); }, kind);
+  std::visit(
+      [&](const auto& of) {
+        auto value = read(p, *this, of, !by_technique());
+        if (p.has(key) || !by_technique()) settings.*of.member = std::move(value);
+      },
+      kind);
 }
 
 void RenderOption::read_request(Params& p, RenderSettings& settings) const {
@@ -321,11 +333,31 @@ void read_request_options(Params& p, Section section, RenderSettings& settings) 
     if (option.section == section) option.read_request(p, settings);
 }
 
+namespace {
+
+// The defaults with this technique, or with the default one.
+RenderSettings defaults_of(const std::optional<std::string>& technique) {
+  RenderSettings defaults = default_settings();
+  for (const TechniqueType& type : technique_types())
+    if (technique == type.name)
+      for (const RenderOption& option : kOptions)
+        if (option.by_technique()) {
+          const auto& integer = std::get<O::Integer<int>>(option.kind);
+          defaults.*integer.member = type.*integer.by_technique;
+        }
+  return defaults;
+}
+
+}  // namespace
+
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked) {
   RenderSettings all = asked;
-  for (const RenderSettings& otherwise : {std::cref(scene.render), std::cref(default_settings())})
+  const auto complete = [&](const RenderSettings& otherwise) {
     for (const RenderOption& option : kOptions)
       if (!option.given(all)) option.copy(otherwise, all);
+  };
+  complete(scene.render);
+  complete(defaults_of(all.technique));
   all.time = scene.motion.moment(*all.time, *all.shutter);
   return all;
 }

@@ -18,6 +18,7 @@
 namespace orrery {
 
 struct Scene;
+struct TechniqueType;
 
 // The member of a request's JSON that an option stands in.
 enum class Section { camera, image, render };
@@ -34,6 +35,7 @@ struct RenderOption {
   struct Integer {
     Member<I> member;
     std::int64_t min, max, fallback;
+    int TechniqueType::*by_technique = nullptr;  // where each technique has a default of its own
   };
   struct Number {
     Member<double> member;
@@ -81,20 +83,23 @@ struct RenderOption {
   enum class Form { number, boolean, string, numbers, strings };
   Form form() const;
 
+  // Whether the default depends on the technique. It is in no schema then.
+  bool by_technique() const;
+
   bool given(const RenderSettings& settings) const;
   void copy(const RenderSettings& from, RenderSettings& to) const;  // a missing value too
   // The value as JSON text; equal texts for equal values only. REQUIRES: given(settings).
   std::string text(const RenderSettings& settings) const;
 
-  // Both check the value of `key` in the section `p`. In a scene, a missing one becomes the default; in a
-  // request, it leaves the member alone.
+  // Both check the value of `key` in the section `p`. In a scene, a missing one becomes the default, unless
+  // that depends on the technique; in a request, it leaves the member alone.
   void read_scene(Params& p, RenderSettings& settings) const;
   void read_request(Params& p, RenderSettings& settings) const;
 };
 
 std::span<const RenderOption> render_options();
 
-// Every option's default.
+// Every option's default, with the default technique.
 const RenderSettings& default_settings();
 
 // Read a section: of a scene, only what scenes may give. Ranges are checked here and nowhere else.

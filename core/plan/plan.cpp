@@ -45,14 +45,16 @@ class Planner {
     choose_order();
     choose_prediction();
     const SceneFacts& facts = scene_.facts;
-    if (plan_.technique->interreflects) {
-      plan_.cut_range = facts.path_radiance.most_off(Vec3d(0));
+    if (plan_.technique->draws_light) {
+      plan_.cut_range = plan_.technique->interreflects
+                            ? facts.path_radiance.most_off(Vec3d(0))
+                            : largest(facts.distributed_radiance.most_off(Vec3d(0)), scene_.ambient);
       choose_paths();
     } else {
       plan_.cut_range = facts.tree_radiance.most_off(scene_.ambient);
       leave_out_for_trees();
     }
-    if (request_.full_model || plan_.technique->interreflects) return plan_;
+    if (request_.full_model || plan_.technique->draws_light) return plan_;
     choose_lights();
     choose_specular();
     return plan_;
@@ -89,7 +91,7 @@ class Planner {
     if (!scene_.motion.within({plan_.time, plan_.time + asked}))
       return decide("shutter", "absent", "nothing moves while it is open");
     plan_.shutter = asked;
-    const bool all_at_once = plan_.samples == 1 && !plan_.technique->interreflects;
+    const bool all_at_once = plan_.samples == 1 && !plan_.technique->draws_light;
     decide("shutter", "open for " + seconds(asked),
            all_at_once ? "the only sample is taken in the middle of it; more are spread over it"
                        : "each sample is taken at a time of its own");
@@ -98,7 +100,7 @@ class Planner {
   void choose_filter() {
     const Filter filter = *plan_.asked.filter;
     if (!moves_samples(filter, *plan_.asked.filter_width)) return;
-    plan_.filtered = plan_.samples > 1 || plan_.technique->interreflects;
+    plan_.filtered = plan_.samples > 1 || plan_.technique->draws_light;
     if (plan_.filtered)
       decide("filter", std::string(name_of(filter)),
              has_negative_lobes(filter) ? "as asked; what it takes away has samples of its own" : "as asked");
@@ -124,7 +126,7 @@ class Planner {
       plan_.double_precision = asked == Precision::double_precision;
       return decide("precision", precision_name(plan_.double_precision), "as asked", rounding_bound());
     }
-    if (plan_.technique->interreflects && plan_.frame.aperture_radius > plan_.frame.focus_distance) {
+    if (plan_.technique->draws_light && plan_.frame.aperture_radius > plan_.frame.focus_distance) {
       plan_.double_precision = true;
       return decide("precision", "double", "rays leave the lens far from where they are sharp",
                     rounding_bound());
@@ -147,7 +149,7 @@ class Planner {
     }
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
-    plan_.try_accelerators = !few && count <= kMostToTry && !plan_.technique->interreflects;
+    plan_.try_accelerators = !few && count <= kMostToTry && !plan_.technique->draws_light;
     plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bvh");
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
@@ -189,7 +191,8 @@ class Planner {
 
   // What a scene may have that is seen along paths alone.
   void leave_out_for_trees() {
-    const std::string only = std::string(plan_.technique->name) + " does not follow such light; path does";
+    const std::string only =
+        std::string(plan_.technique->name) + " does not follow such light; distributed and path do";
     if (plan_.frame.aperture_radius > 0) decide("lens", "absent", only, Bound::unknown());
     if (scene_.facts.materials.emits)
       decide("light of surfaces that emit", "seen, lights nothing", only, Bound::unknown());
@@ -205,7 +208,27 @@ class Planner {
       decide("lens", "thin",
              "its aperture has a radius of " + number_text(plan_.frame.aperture_radius) + " m");
     plan_.min_contribution = 0;
-    if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
+    if (plan_.technique->interreflects) {
+      if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
+      choose_reuse();
+    } else if (scene_.facts.materials.diffuse) {
+      decide("light between diffuse surfaces",
+             scene_.ambient == Vec3d(0) ? "absent" : "ambient light instead",
+             std::string(plan_.technique->name) + " ends paths at diffuse surfaces; path follows them",
+             Bound::unknown());
+    }
+    decide("depth", std::to_string(plan_.max_depth),
+           depth_reason() + (plan_.technique->interreflects
+                                 ? "; what longer paths would bring is left out"
+                                 : "; ambient light stands for what longer paths would bring"),
+           cut_bound(std::pow(max_component(scene_.facts.albedo), plan_.max_depth)));
+  }
+
+  std::string depth_reason() const {
+    return request_.max_depth || scene_.render.max_depth ? "as asked" : "by default";
+  }
+
+  void choose_reuse() {
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
                          : 1;  // divides a tile
@@ -214,8 +237,6 @@ class Planner {
            : shares            ? "as asked"
            : plan_.shutter > 0 ? "paths of different times meet different scenes"
                                : "no path has a second vertex that receives light");
-    decide("depth", std::to_string(plan_.max_depth), "as asked; what longer paths would bring is left out",
-           cut_bound(std::pow(max_component(scene_.facts.albedo), plan_.max_depth)));
   }
 
   void choose_specular() {
@@ -237,8 +258,8 @@ class Planner {
       plan_.max_depth = 1;
       decide("depth", "1", "the only object is convex: its mirrored rays meet nothing");
     } else {
-      decide("depth", std::to_string(plan_.max_depth), "as asked; deeper rays are replaced by ambient light",
-             cut_bound(1));
+      decide("depth", std::to_string(plan_.max_depth),
+             depth_reason() + "; deeper rays are replaced by ambient light", cut_bound(1));
     }
     if (plan_.min_contribution > 0)
       decide("least contribution", number_text(plan_.min_contribution),

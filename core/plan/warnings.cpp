@@ -28,7 +28,7 @@ bool is_unlit(const Scene& scene, const Plan& plan) {
   const MaterialTraits& used = scene.facts.materials;
   const bool surrounded = scene.background != Vec3d(0) || scene.environment;
   const bool mirrors_something = plan.specular && plan.max_depth > 0 && surrounded;
-  const bool lit_from_around = plan.technique->interreflects && scene.environment;
+  const bool lit_from_around = plan.technique->draws_light && scene.environment;
   return !any_light_shines(scene) && scene.ambient == Vec3d(0) && !used.emits && !mirrors_something &&
          !lit_from_around;
 }
@@ -277,7 +277,7 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
   if (!plan.camera->parallel() && is_enclosed(scene, plan))
     found.push_back({"/camera/eye", "the camera is inside an opaque shape that holds no light"});
   const Extreme& most = scene.facts.most_reflected;
-  if (plan.technique->interreflects && most.value > kMostReflected)
+  if (plan.technique->draws_light && most.value > kMostReflected)
     found.push_back(
         {most.where + "/material",
          "it sends on up to " + percents(most.value) +

@@ -48,7 +48,7 @@ RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, F
 
 std::vector<int> progressive_samples(const Plan& plan) {
   std::vector<int> samples;
-  const bool middle = plan.samples > 1 && !plan.technique->interreflects;
+  const bool middle = plan.samples > 1 && !plan.technique->draws_light;
   for (int n = plan.samples; n > (middle ? 1 : 0); n /= 2) samples.push_back(n);
   std::reverse(samples.begin(), samples.end());
   return samples;

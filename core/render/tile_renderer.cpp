@@ -30,7 +30,7 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
 template <class T>
 TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
     : plan_(plan),
-      places_samples_(plan.samples > 1 || plan.technique->interreflects),
+      places_samples_(plan.samples > 1 || plan.technique->draws_light),
       tracer_(make_tracer(*plan.technique, world, plan)) {
   sums_.channels.resize(plan.channels.size());
   if (!plan.filtered) return;

@@ -49,7 +49,6 @@ class TileRenderer {
   // By slot: where the samples' places within this tile's pixels come from, and those of looks.
   Array<std::uint32_t> pixel_streams_, look_streams_;
   TileSamples samples_ = TileSamples::centres(), look_samples_ = TileSamples::centres();
-  static constexpr int kMostLooks = 16;
   int looks_ = 0;  // of this tile, a sample
   RayBatch<T> rays_;
   TraceResult<T> result_;

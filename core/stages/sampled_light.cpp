@@ -7,13 +7,32 @@
 #include "core/stages/power_heuristic.h"
 
 namespace orrery {
+namespace {
+
+// Whether rays may meet light that could not have been drawn: of surfaces that nothing is drawn from, or from
+// around. (Pictures of skies are drawn from where they are bright alone.)
+template <class T>
+bool has_light_beside_drawn(const Geometry<T>& geometry) {
+  if (geometry.environment || geometry.background != Vec3<T>()) return true;
+  for (std::size_t p = 0; p < geometry.emitter_of.size(); ++p) {
+    const IndexOf<T> material = geometry.material_of[p];
+    const bool emits = material >= 0 && geometry.emission[static_cast<std::size_t>(material)] != Vec3<T>();
+    if (emits && geometry.emitter_of[p] < 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 template <class T>
 SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator,
-                              const Plan& plan)
+                              const Plan& plan, Lobes drawn)
     : geometry_(geometry),
       tree_(geometry.light_tree.get()),
       first_emitter_(geometry.scene->lights.size()),
-      shadowed_(geometry, accelerator, plan) {
+      apart_(!with_diffuse(drawn)),
+      wants_diffuse_rays_(apart_ && has_light_beside_drawn(geometry)),
+      shadowed_(geometry, accelerator, plan, apart_) {
   const Scene& scene = *geometry.scene;
   environment_ = scene.environment && scene.environment->sampled();
   count_ = (tree_ ? tree_->size() : 0) + environment_;
@@ -93,8 +112,13 @@ void SampledLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws,
     const LightBatch<T>& light = shadowed_.light;
     const N by_light = light.pdf.at(i);
     const N weight = select(by_light > zero, power_heuristic(by_light, shadowed_.pdf.at(i)), one);
-    radiance.put(i, light.shadow.t_max.at(i) > zero,
-                 radiance.at(i) + light.incident.at(i) * shadowed_.f_cos.at(i) * weight);
+    Vec3<N> found = light.incident.at(i) * shadowed_.f_cos.at(i) * weight;
+    if (apart_) {
+      const N by_diffuse = wants_diffuse_rays_ ? shadowed_.diffuse_pdf.at(i) : zero;
+      found = found + light.incident.at(i) * shadowed_.diffuse.at(i) *
+                          select(by_light > zero, power_heuristic(by_light, by_diffuse), one);
+    }
+    radiance.put(i, light.shadow.t_max.at(i) > zero, radiance.at(i) + found);
   }
 }
 

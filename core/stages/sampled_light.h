@@ -11,8 +11,13 @@ namespace orrery {
 template <class T>
 class SampledLight {
  public:
-  // Geometry, accelerator and plan outlive it.
-  SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan);
+  // Geometry, accelerator and plan outlive it. `drawn`: the lobes by which rays may meet light as well, all
+  // or all but the diffuse ones; the light of others is weighted against rays of their own, if there are any.
+  SampledLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan, Lobes drawn);
+
+  // Whether diffuse lobes have to draw directions of their own, because they are not among those drawn and
+  // some light can not be drawn from, or not from all of it.
+  bool wants_diffuse_rays() const { return wants_diffuse_rays_; }
 
   // Adds what the light drawn for each surface point does to its radiance. `groups`: registers with a lane
   // whose material is lit.
@@ -51,6 +56,8 @@ class SampledLight {
   std::size_t count_, first_emitter_;
   bool environment_;  // chosen apart: always if there are no others, half of the time else
   T share_;           // the probability of choosing it, and that of choosing the others
+  bool apart_;        // diffuse lobes are not drawn
+  bool wants_diffuse_rays_;
   Beyond<T> beyond_;
   Array<IndexOf<T>> chosen_;  // number of the light
   LightChoices<T> choices_;

@@ -24,8 +24,11 @@ class Raycast final : public SpecularTree<T> {
 }  // namespace
 
 TechniqueType raycast_type() {
-  return {"raycast", "Camera and shadow rays alone (Appel 1968).", false, make_tracer_of<Raycast, float>,
-          make_tracer_of<Raycast, double>};
+  return {.name = "raycast",
+          .summary = "Camera and shadow rays alone (Appel 1968).",
+          .max_depth = 5,
+          .make_float = make_tracer_of<Raycast, float>,
+          .make_double = make_tracer_of<Raycast, double>};
 }
 
 }  // namespace orrery

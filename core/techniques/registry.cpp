@@ -9,6 +9,7 @@ namespace orrery {
 #define ORRERY_TECHNIQUES(add) \
   add(raycast)                 \
   add(whitted)                 \
+  add(distributed)             \
   add(path)
 // clang-format on
 

@@ -31,8 +31,12 @@ class Whitted final : public SpecularTree<T> {
 }  // namespace
 
 TechniqueType whitted_type() {
-  return {"whitted", "Mirrored and refracted rays as well (Whitted 1980).", true,
-          make_tracer_of<Whitted, float>, make_tracer_of<Whitted, double>};
+  return {.name = "whitted",
+          .summary = "Mirrored and refracted rays as well (Whitted 1980).",
+          .max_depth = 5,
+          .secondary_rays = true,
+          .make_float = make_tracer_of<Whitted, float>,
+          .make_double = make_tracer_of<Whitted, double>};
 }
 
 }  // namespace orrery

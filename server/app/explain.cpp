@@ -74,7 +74,7 @@ std::string explain_text(const Scene& scene, const Plan& plan) {
       std::to_string(scene.object_count) + (scene.object_count == 1 ? " object" : " objects") +
       " in the light of " + std::to_string(scene.lights.size()) +
       (scene.facts.materials.emits ? " and of what emits" : "") +
-      (scene.environment && plan.technique->interreflects ? " and of an environment" : "") + ": " +
+      (scene.environment && plan.technique->draws_light ? " and of an environment" : "") + ": " +
       std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "\n";
   std::size_t subject_width = 0, choice_width = 0;
   for (const Decision& d : plan.decisions) {

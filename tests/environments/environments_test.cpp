@@ -55,7 +55,7 @@ TEST(Gradient, IsSeenByEveryTechnique) {
   const Json scene = floor_under(
       {{"type", "gradient"}, {"zenith", {4, 1, 1}}, {"horizon", {2, 1, 1}}, {"ground", {0.5, 1, 1}}},
       tilted(0));
-  for (const char* technique : {"raycast", "whitted", "path"}) {
+  for (const char* technique : {"raycast", "whitted", "distributed", "path"}) {
     RenderRequest request;
     request.technique = technique;
     Tracing tracing(scene, request);

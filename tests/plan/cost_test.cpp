@@ -99,6 +99,17 @@ TEST(Cost, OfShadowsIsThatOfTheLitHalfWhereSomeThingsAreSpecular) {
   EXPECT_EQ(expected(load(scene), deep(2)), 1.75 * 1.5);
 }
 
+TEST(Cost, OfDistributedRaysEndsAtDiffuseSurfaces) {
+  RenderRequest request = deep(3);
+  request.technique = "distributed";
+  EXPECT_EQ(expected(balls("plaster", 1), request), 1 + 2 + 1) << "one shadow ray";
+  const double mirrors = 1 + 2 + 1.7 * (1 + 0.7 + 0.49);
+  EXPECT_NEAR(expected(balls("mirror", 1), request), mirrors, 1e-12);
+  request.technique = "path";
+  request.reuse = 1;
+  EXPECT_NEAR(expected(balls("plaster", 1), request), mirrors, 1e-12);
+}
+
 class CostOfSamples : public testing::TestWithParam<std::string> {};
 
 TEST_P(CostOfSamples, IsOfTheOrderOfWhatIsTraced) {

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/load/load.h"
 #include "core/params/json.h"
+#include "core/techniques/registry.h"
 #include "tests/support/pictures.h"
 
 // The table of render options, row by row.
@@ -93,7 +94,31 @@ TEST(RenderOptions, DefaultsAreAllowedAndAreWhatAnEmptySceneGets) {
     ASSERT_TRUE(option.given(default_settings())) << option.key;
     EXPECT_EQ(problem(option, value_of(option, default_settings())), "");
     EXPECT_EQ(option.text(settings), option.text(default_settings())) << option.key;
-    EXPECT_EQ(option.given(load(bare)->render), option.in_scene) << option.key;
+    EXPECT_EQ(option.given(load(bare)->render), option.in_scene && !option.by_technique()) << option.key;
+  }
+}
+
+// A request may change the technique of its scene: the depth that neither names is the technique's.
+TEST(RenderOptions, DepthIsThatOfTheTechniqueUnlessNamed) {
+  Json named = sample("paper"), unnamed = named;
+  named["render"]["max_depth"] = 4;
+  unnamed["render"].erase("max_depth");
+  for (const TechniqueType& type : technique_types()) {
+    RenderSettings asked;
+    asked.technique = type.name;
+    EXPECT_EQ(resolve(*load(unnamed), asked).max_depth, type.max_depth) << type.name;
+    EXPECT_EQ(resolve(*load(named), asked).max_depth, 4) << type.name;
+    unnamed["render"]["technique"] = type.name;
+    EXPECT_EQ(resolve(*load(unnamed), {}).max_depth, type.max_depth) << type.name;
+    asked.max_depth = 3;
+    EXPECT_EQ(resolve(*load(named), asked).max_depth, 3) << type.name;
+    const auto row = std::find_if(render_options().begin(), render_options().end(),
+                                  [](const RenderOption& option) { return option.key == "max_depth"; });
+    const std::string depth = std::to_string(type.max_depth);
+    const bool usual = type.max_depth == *default_settings().max_depth;
+    EXPECT_NE(row->help.find(usual ? "Unless told " + depth : std::string("of ") + type.name + " " + depth),
+              std::string_view::npos)
+        << type.name;
   }
 }
 

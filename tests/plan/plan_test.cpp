@@ -180,6 +180,32 @@ TEST(Plan, PredictsShadowsOnlyIfAsked) {
   EXPECT_EQ(plan_of(scene, request).prediction, Prediction::none);
 }
 
+TEST(Plan, DistributedRaysEndAtDiffuseSurfaces) {
+  const std::string subject = "light between diffuse surfaces";
+  RenderRequest request;
+  request.technique = "distributed";
+  const auto choice = [&](const Json& scene) -> std::string {
+    for (const Decision& decision : plan_of(scene, request).decisions)
+      if (decision.subject == subject) return decision.choice;
+    return "";
+  };
+  Json scene = scene_of_materials({kRough, kMirror});
+  scene["camera"]["aperture_radius"] = 0.1;
+  scene["camera"]["focus_distance"] = 4;
+  EXPECT_EQ(choice(scene), "absent");
+  const char* brushed = "{'type': 'metal', 'name': 'iron', 'roughness': 0.4}";
+  EXPECT_EQ(choice(scene_of_materials({kMirror, kGlass, brushed})), "") << "nothing is diffuse";
+  scene["ambient"] = {0.1, 0.1, 0.1};
+  EXPECT_EQ(choice(scene), "ambient light instead");
+  EXPECT_FALSE(decides(plan_of(scene, request), "ambient light"));
+  EXPECT_TRUE(plan_of(scene, request).lens);
+  EXPECT_EQ(plan_of(scene, request).reuse, 1);
+  request.technique = "path";
+  EXPECT_EQ(choice(scene), "");
+  EXPECT_TRUE(decides(plan_of(scene, request), "ambient light"));
+  EXPECT_GT(plan_of(scene, request).reuse, 1);
+}
+
 TEST(Plan, GivesAReasonForEveryDecision) {
   for (const std::string& name : sample_names())
     for (const Decision& decision : plan_of(sample(name)).decisions) {

@@ -26,7 +26,7 @@ TEST(Filters, AConstantPictureStaysConstant) {
       scene_of("[{'type': 'sphere', 'center': [0, 0, 900], 'radius': 1}]", "{'background': [0.7, 0.3, 1.7]}");
   for (const Filter filter : kAll)
     for (const int samples : {2, 4, 16, 64})
-      for (const char* technique : {"whitted", "path"}) {
+      for (const char* technique : {"whitted", "distributed", "path"}) {
         const Picture picture = render(scene, filtered(filter, samples, size(40, 24), technique));
         const float tolerance = filter == Filter::mitchell || filter == Filter::lanczos ? 1e-6f : 0;
         for (const Vec3f& pixel : picture.pixels) {

@@ -20,7 +20,7 @@ RenderRequest of(int samples, const char* technique) {
 // looks through two corners of each pixel first.
 TEST(ProgressiveRender, GivesThePicturesOfItsSamplesAtOnce) {
   for (const char* name : {"paper", "cornell-box", "open-shutter", "depth-of-field", "light-many"}) {
-    for (const char* technique : {"whitted", "path"}) {
+    for (const char* technique : {"whitted", "path", "distributed"}) {
       const auto scene = load(sample(name));
       const PreparedScene prepared(scene);
       const SettledPlan plan = settle(prepared, make_plan(*scene, of(12, technique)));
@@ -41,7 +41,7 @@ TEST(ProgressiveRender, GivesThePicturesOfItsSamplesAtOnce) {
         const std::uint64_t rays = progress.stats().counts.rays.camera,
                             at_once = whole.stats.counts.rays.camera;
         EXPECT_LE(rays, at_once + corners) << name << " " << technique << " " << samples;
-        if (plan->technique->interreflects) corners += 2 * image.bytes().size() / image.pixel_bytes();
+        if (plan->technique->draws_light) corners += 2 * image.bytes().size() / image.pixel_bytes();
       }
     }
   }

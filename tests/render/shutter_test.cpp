@@ -159,7 +159,7 @@ TEST(Shutter, ShadowsAreOfTheRaysTime) {
   scene["objects"] = {
       {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 0, 1}}, {"material", "white"}}};
   scene["lights"] = {{{"type", "directional"}, {"from", {0, 1, 1}}}};  // the shadow falls 5 m below the ball
-  for (const char* technique : {"whitted", "path"}) {
+  for (const char* technique : {"whitted", "distributed", "path"}) {
     RenderRequest request = open_for(1, 64, size(64, 64));
     request.technique = technique;
     request.max_depth = 1;
@@ -242,7 +242,7 @@ TEST(Shutter, ThatMeetsNoMotionChangesNothing) {
 TEST(Shutter, ShowsTheSameBytesHoweverItIsRendered) {
   const Json own = spinning();
   const auto scene = load(own);
-  for (const char* technique : {"whitted", "path"}) {
+  for (const char* technique : {"whitted", "distributed", "path"}) {
     RenderRequest request = size(48, 36);
     request.samples = 4;
     request.time = 1.2;

@@ -78,8 +78,7 @@ const std::vector<Ray<double>>& Tracing::shadow_rays() const { return recorder_-
 namespace {
 
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
-                  RenderRequest request, int samples) {
-  request.technique = "path";
+                  const RenderRequest& request, int samples) {
   const std::vector<Ray<double>> rays(kBatch, Ray<double>{from, safe_normalize(toward - from)});
   Tracing tracing(scene, request);
   std::vector<double> means(kBatch);
@@ -97,17 +96,20 @@ Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, 
 }  // namespace
 
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
-                  int max_depth) {
+                  int max_depth, const char* technique) {
   RenderRequest request;
+  request.technique = technique;
   request.max_depth = max_depth;
   return estimate(scene, from, toward, request, 1);
 }
-Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth) {
-  return estimate(load(scene), from, toward, max_depth);
+Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
+                  const char* technique) {
+  return estimate(load(scene), from, toward, max_depth, technique);
 }
 Estimate estimate_alone(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
                         int samples) {
   RenderRequest request;
+  request.technique = "path";
   request.max_depth = max_depth;
   request.reuse = 1;
   return estimate(load(scene), from, toward, request, samples);

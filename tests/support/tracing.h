@@ -50,13 +50,14 @@ struct Estimate {
   double mean, sd;  // of one slot's samples together
   double error() const { return sd / std::sqrt(double{kBatch}); }
 };
-// Of the red light along one ray that `path` finds, from the slots of a batch, which are independent of each
-// other unless their paths share what they find; the `samples` of a slot are stratified.
+// Of the red light along one ray that a technique finds, from the slots of a batch, which are independent of
+// each other unless their paths share what they find; the `samples` of a slot are stratified.
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
-                  int max_depth);
-Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth);
+                  int max_depth, const char* technique = "path");
+Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
+                  const char* technique = "path");
 Estimate estimate_alone(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
-                        int samples);  // reuse 1
+                        int samples);  // by paths, with reuse 1
 
 // Radiance of every pixel in double precision, without the picture's rounding to float.
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request);

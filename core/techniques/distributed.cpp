@@ -1,0 +1,29 @@
+#include "core/techniques/path_tracer.h"
+
+namespace orrery {
+namespace {
+
+// Cook, Porter, Carpenter, "Distributed Ray Tracing" (SIGGRAPH 1984): samples are distributed over lights,
+// lens, time and the directions of gloss and translucency, along one path each and no tree. Diffuse surfaces
+// end it.
+template <class T>
+class Distributed final : public PathTracer<T> {
+ public:
+  Distributed(const World<T>& world, const Plan& plan) : PathTracer<T>(world, plan, Lobes::non_diffuse) {}
+};
+
+}  // namespace
+
+// The depth of Whitted's trees, and the ray to a light source, which counts along a path.
+TechniqueType distributed_type() {
+  return {
+      .name = "distributed",
+      .summary = "Soft shadows, gloss, translucency, lens and shutter, by rays that are drawn (Cook 1984).",
+      .max_depth = 6,
+      .secondary_rays = true,
+      .draws_light = true,
+      .make_float = make_tracer_of<Distributed, float>,
+      .make_double = make_tracer_of<Distributed, double>};
+}
+
+}  // namespace orrery

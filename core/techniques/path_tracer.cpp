@@ -1,0 +1,137 @@
+#include "core/techniques/path_tracer.h"
+
+#include "core/stages/emission.h"
+#include "core/stages/lane_masks.h"
+#include "core/stages/shadowed_light.h"
+#include "core/stages/surfaces.h"
+
+namespace orrery {
+
+template <class T>
+PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followed)
+    : Wavefront<T>(world, plan),
+      followed_(followed),
+      sampled_light_(this->geometry_, this->accelerator_, this->plan_, followed),
+      looks_(!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
+             !sampled_light_.beyond().empty()) {
+  if (sampled_light_.wants_diffuse_rays())
+    diffuse_rays_ =
+        std::make_unique<DiffuseRays<T>>(this->geometry_, this->accelerator_, this->plan_, sampled_light_);
+  if (plan.reuse > 1)
+    reuse_ = std::make_unique<PathReuse<T>>(this->geometry_, this->accelerator_, this->plan_);
+}
+
+template <class T>
+void PathTracer<T>::look(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out, TraceCounts& counts) {
+  auto& v = *this->vertices_;
+  const Groups all = Groups::covering(0, kBatch, kWidth<T>);
+  counts.rays.camera += active_rays(camera_rays, all);
+  reset(camera_rays, all, v.hits);
+  this->accelerator_.closest(camera_rays, all, v.hits, counts.accelerator);
+  for (const int i : all) {
+    const auto missed =
+        mask_cast<N>(load_index<T>(v.hits.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
+    find_materials(this->geometry_, v.hits, i, v.surface);
+    Vec3<N> seen;
+    if (!this->geometry_.emission.empty()) seen = emission_at(this->geometry_, v.surface, i);
+    const Vec3<N> background(this->geometry_.background);
+    out.radiance.put(i, out.radiance.at(i) + select(missed, background, seen) * N(share));
+  }
+  if (sampled_light_.beyond().empty()) return;
+  for (const int i : all) v.radiance.put(i, Vec3<N>(N(T(0))));
+  sampled_light_.beyond().add(camera_rays, v.hits, all, nullptr, v.radiance);
+  for (const int i : all) out.radiance.put(i, out.radiance.at(i) + v.radiance.at(i) * N(share));
+}
+
+template <class T>
+void PathTracer<T>::shade(const Groups& groups, const Groups& met) {
+  auto& [paths, hits, surface, radiance] = *this->vertices_;
+  const Geometry<T>& geometry = this->geometry_;
+  const bool ends = paths->depth >= this->plan_.max_depth, looked = paths->depth == 0 && looks_;
+  if (looked)
+    for (const int i : groups) radiance.put(i, Vec3<N>(N(T(0))));  // look() finds what shines
+  if (!with_diffuse(followed_))
+    add_ambient(geometry, surface, met, ends ? Lobes::all : Lobes::diffuse, radiance);
+  if (!looked) add_what_shines(groups, met);
+  if (ends) return end(met);
+  sampled_light_.add(*paths, this->draws(), surface,
+                     groups_with(geometry, surface, met, &MaterialTraits::lit), radiance, this->counts());
+  if (diffuse_rays_) diffuse_rays_->add(*paths, hits, this->draws(), surface, met, radiance, this->counts());
+  scatter(met);
+  if (reuse_ && paths->depth == 1)
+    for (const int i : met) reuse_->keep_second(i, *paths, surface, even_lanes(i));
+}
+
+template <class T>
+void PathTracer<T>::add_what_shines(const Groups& groups, const Groups& met) {
+  auto& [paths, hits, surface, radiance] = *this->vertices_;
+  sampled_light_.add_beyond(*paths, hits, groups, radiance);
+  if (reuse_ && paths->depth == 1)
+    add_emission_alone(met);
+  else
+    sampled_light_.add_emission(*paths, hits, surface, met, radiance);
+}
+
+template <class T>
+void PathTracer<T>::add_emission_alone(const Groups& met) {
+  const auto& v = *this->vertices_;
+  for (const int i : met) emission_.put(i, Vec3<N>(N(T(0))));
+  sampled_light_.add_emission(*v.paths, v.hits, v.surface, met, emission_);
+  for (const int i : met)
+    for (int lane = i; lane < std::min(i + kWidth<T>, v.paths->rays.count); ++lane) {
+      const int slot = static_cast<int>(v.paths->slot[lane]);
+      Vec3Array<T>& sums = Wavefront<T>::sums(0);
+      sums.set(slot, sums[slot] + reuse_->weights()[slot] * emission_[lane]);
+    }
+}
+
+template <class T>
+MaskOf<Lanes<T>> PathTracer<T>::even_lanes(int i) const {
+  const SurfaceBatch<T>& surface = this->vertices_->surface;
+  return surface_lanes(i) && lanes_with(this->geometry_, surface, i, &MaterialTraits::lit) &&
+         !lanes_with(this->geometry_, surface, i, &MaterialTraits::glossy);
+}
+
+template <class T>
+void PathTracer<T>::scatter(const Groups& met) {
+  const auto& v = *this->vertices_;
+  if (!with_diffuse(followed_))
+    for (const int i : met) scatter_.weight.put(i, Vec3<N>(N(T(0))));  // of materials that are not followed
+  for (const auto& m : this->geometry_.materials)
+    if (m.traits.has(followed_))
+      m.kernel->sample(v.paths->rays, v.hits, v.surface, this->draws(), met, followed_, scatter_);
+  for (const int i : met) go_on(i);
+}
+
+template <class T>
+void PathTracer<T>::go_on(int i) {
+  const PathBatch<T>& paths = *this->vertices_->paths;
+  const N zero(T(0)), one(T(1));
+  Vec3<N> throughput = paths.throughput.at(i) * scatter_.weight.at(i);
+  N most = max_component(throughput);
+  auto alive = surface_lanes(i) && most > zero;
+  if (paths.depth == 0 && reuse_) {
+    reuse_->keep_first(
+        i, paths, this->vertices_->surface, scatter_, alive, alive && scatter_.pdf.at(i) > zero,
+        surface_lanes(i) && lanes_with(this->geometry_, this->vertices_->surface, i, &MaterialTraits::lit));
+    throughput = Vec3<N>(one);
+  }
+  if (paths.depth > 0) {
+    using std::sqrt;
+    constexpr T kLeastChance = T(0.05);
+    const N chance = min_first(one, max_first(N(kLeastChance), sqrt(select(alive, most, one))));
+    alive = alive && this->draws().two(SampleSet::survival, i).u < chance;
+    throughput = throughput * (one / chance);
+  }
+  if (any(alive)) this->spawn(i, alive, scatter_.direction.at(i), throughput, scatter_.pdf.at(i));
+}
+
+template <class T>
+void PathTracer<T>::end(const Groups& met) {
+  for (const int i : met) this->note_cut(i, surface_lanes(i), this->vertices_->paths->throughput.at(i));
+}
+
+template class PathTracer<float>;
+template class PathTracer<double>;
+
+}  // namespace orrery
