@@ -1,6 +1,6 @@
 // Mistakes of path tracing, as faults.mjs has them: fault 26 draws light or directions wrongly, 27 shares paths wrongly,
 // 28 tells another error than the picture has, 29 scatters other light at a surface than arrives, 30 opens the shutter, the
-// lens or a pixel's filter wrongly.
+// lens or a pixel's filter wrongly, 31 ends distributed rays wrongly.
 
 const entry = (fault, about, file, from, to, target, ...tests) => ({ fault, about, file, from, to, target, tests });
 
@@ -35,7 +35,7 @@ export const lightFaults = [
   entry(26, "a line is drawn from evenly by length", "core/lights/line.h", "select(apart, t, s)", "select(apart, N(s + u * extent), t)", "test_lights", "Line.Irradiance*"),
   entry(26, "a truncated JPEG is filled up", "core/pictures/picture.cpp", "!has_jpeg_end(bytes)", "has_jpeg_end({})",
         "test_pictures", "Pictures.Truncated*"),
-  entry(26, "paths that survive carry no more than before", "core/techniques/path.cpp", "throughput = throughput * (one / chance);", "",
+  entry(26, "paths that survive carry no more than before", "core/techniques/path_tracer.cpp", "throughput = throughput * (one / chance);", "",
         "test_techniques", "Rooms/PathFurnace.*"),
   entry(26, "roulette lets go on by the throughput, not its root", "core/techniques/path.cpp", "max_first(N(kLeastChance), sqrt(select(alive, most, one)))",
         "max_first(N(kLeastChance), N(sqrt(select(alive, most, one)) * sqrt(select(alive, most, one))))", "test_techniques", "ClosedRoom.Roulette*"),
@@ -89,4 +89,22 @@ export const lightFaults = [
         "result_.radiance.at(i) * more + taken_away_", "test_render", "Filters.*"),
   entry(30, "a panorama's rows are even in height", "core/cameras/panorama.cpp", "level * across + view.up * lift", "level + view.up * lift",
         "test_cameras", "CameraRays.OfAPanorama*"),
+  entry(31, "distributed rays follow diffuse lobes", "core/techniques/distributed.cpp", "PathTracer<T>(world, plan, Lobes::non_diffuse)",
+        "PathTracer<T>(world, plan, Lobes::all)", "test_techniques", "Distributed.LeavesOut*", "Rooms/DiffuseRoom.*"),
+  entry(31, "what is followed shows ambient light as well", "core/techniques/path_tracer.cpp", "ends ? Lobes::all : Lobes::diffuse", "Lobes::all",
+        "test_techniques", "Distributed.ACoatMirrors*", "Distributed.SheetsLet*"),
+  entry(31, "light on diffuse lobes is weighted against rays that there are not", "core/stages/sampled_light.cpp",
+        "wants_diffuse_rays_ ? shadowed_.diffuse_pdf.at(i) : zero", "shadowed_.diffuse_pdf.at(i)", "test_techniques", "Floors/SoftShadow.*", "Rooms/DiffuseRoom.*"),
+  entry(31, "lamps count once drawn and once met", "core/stages/sampled_light.cpp",
+        "wants_diffuse_rays_ ? shadowed_.diffuse_pdf.at(i) : zero", "zero", "test_techniques", "Distributed.LampsThatAreMet*"),
+  entry(31, "skies light what is followed alone", "core/stages/sampled_light.cpp",
+        "if (geometry.environment || geometry.background != Vec3<T>()) return true;", "", "test_techniques", "Distributed.SkiesLight*"),
+  entry(31, "a box that shines lights what is followed alone", "core/stages/sampled_light.cpp",
+        "if (emits && geometry.emitter_of[p] < 0) return true;", "(void)emits;", "test_techniques", "Rooms/DiffuseRoom.*"),
+  entry(31, "light goes back from a sheet that is followed", "core/materials/translucent.cpp", "N(T(with_non_diffuse(lobes) ? 1 : 0))",
+        "N(T(with_non_diffuse(lobes) ? 0 : 1))", "test_techniques", "Distributed.SheetsLet*"),
+  entry(31, "half vectors are as dense as their lights", "core/materials/rough.h", "N(T(4) * dot(half, viewer))", "N(T(4) + T(0) * dot(half, viewer))", "test_materials",
+        "Materials/LobesOf.AreDrawn*/Paint"),
+  entry(31, "the default depth is Whitted's", "core/plan/options.cpp", "= type.*integer.by_technique;", "= static_cast<int>(integer.fallback);",
+        "test_plan", "RenderOptions.DepthIs*"),
 ];

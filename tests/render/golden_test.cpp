@@ -61,7 +61,7 @@ TEST_P(Golden, PictureIsAsItWas) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden,
                          testing::Values("paper", "glass", "mirrors", "light-many", "material-reflective",
                                          "shape-mesh", "shape-infinite-cylinder", "instances", "orrery",
-                                         "flag"),
+                                         "flag", "technique-distributed"),
                          by_name);
 
 }  // namespace
