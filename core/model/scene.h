@@ -36,10 +36,10 @@ struct MirrorChain {
 
 // What the plan wants to know about a scene, computed once.
 struct SceneFacts {
-  MaterialTraits materials;  // of those that some object has
-  std::size_t left_out = 0;  // primitives without area
-  Boundsd bounds;            // of the bounded primitives
-  bool unbounded = false;    // whether there are others
+  MaterialTraits materials;                                          // of those that some object has
+  std::size_t left_out = 0;                                          // primitives without area
+  Boundsd bounds;                                                    // of the bounded primitives
+  bool unbounded = false;                                            // whether there are others
   RadianceRange tree_radiance, distributed_radiance, path_radiance;  // that techniques find
   Vec3d albedo;  // the largest share that a material in use sends on of light from everywhere
   // For the choice of the number type:

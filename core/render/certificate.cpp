@@ -12,7 +12,7 @@ Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   const Omitted& omitted = stats.omitted;
   if (!std::isfinite(omitted.max()))
     return {subject, Bound::unknown(), "nothing limits what they would find"};
-  if (plan.technique->interreflects) return {subject, Bound::estimated(omitted.rms())};
+  if (plan.technique->draws_light) return {subject, Bound::estimated(omitted.rms())};
   return {subject, Bound::proved(omitted.max(), omitted.rms())};
 }
 

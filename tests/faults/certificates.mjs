@@ -1,6 +1,6 @@
-// Mistakes of what a picture tells of its error, as faults.mjs has them: fault 31.
+// Mistakes of what a picture tells of its error, as faults.mjs has them: fault 32.
 
-const entry = (about, file, from, to, ...tests) => ({ fault: 31, about, file, from, to, target: "test_render", tests });
+const entry = (about, file, from, to, ...tests) => ({ fault: 32, about, file, from, to, target: "test_render", tests });
 
 const kRange = "core/load/radiance_range.cpp", kWavefront = "core/techniques/wavefront.cpp";
 const kRandom = "Ledger.BoundsTheErrorOfRandomScenes";
