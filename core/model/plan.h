@@ -41,6 +41,7 @@ struct Plan {
   double shutter = 0;           // seconds that the shutter is open from then on; 0: an instant
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
+  double clamp_indirect = 0;    // what second vertices bring to a sample is cut to it, per channel; 0: is not
   Vec3d cut_range;  // the most by which a ray that is not traced may change radiance; may be infinite
   std::uint64_t seed = 0;
   bool reorder = false;  // rays that are alike are asked for together

@@ -43,8 +43,9 @@ struct RenderSettings {
   std::optional<double> min_contribution;
   std::optional<int> samples;  // a pixel
   std::optional<Filter> filter;
-  std::optional<double> filter_width;  // pixels
-  std::optional<int> reuse;            // paths in a group
+  std::optional<double> filter_width;    // pixels
+  std::optional<int> reuse;              // paths in a group
+  std::optional<double> clamp_indirect;  // radiance; 0: none
   std::optional<std::string> accelerator;
   std::optional<Precision> precision;
   std::optional<std::uint64_t> seed;

@@ -18,6 +18,7 @@ struct TraceResult {
   // The ledger of what was left out: the most by which it may change radiance, per channel. Of rays that were
   // not traced the weight times Plan::cut_range.
   Vec3Array<T> omitted;
+  Vec3Array<T> clamped;                   // radiance that Plan::clamp_indirect took away, if that is above 0
   std::vector<ChannelBatch<T>> channels;  // of Plan::channels, in that order
 };
 

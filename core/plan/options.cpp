@@ -117,6 +117,13 @@ constexpr std::array kOptions{
       .kind = O::Integer<int>{&S::reuse, 1, kMaxReuse, 16},
       .placeholder = "N",
       .help = "Paths of a tile that share what they find, at most, down to a power of two; 1: none do."},
+    O{.key = "clamp_indirect",
+      .section = Section::render,
+      .kind = O::Number{&S::clamp_indirect, {.min = 0, .max = kMaxColor}, 0},
+      .placeholder = "RADIANCE",
+      .help =
+          "The most that light of more than one reflection may bring to a sample, per channel: less noise "
+          "and a bias, which is told. 0: no limit."},
     O{.key = "accelerator",
       .section = Section::render,
       .kind = O::Name{&S::accelerator, accelerator_names, "auto"},

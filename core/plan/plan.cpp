@@ -208,6 +208,10 @@ class Planner {
       decide("lens", "thin",
              "its aperture has a radius of " + number_text(plan_.frame.aperture_radius) + " m");
     plan_.min_contribution = 0;
+    plan_.clamp_indirect = *plan_.asked.clamp_indirect;
+    if (plan_.clamp_indirect > 0)
+      decide("clamp of indirect light", "at " + number_text(plan_.clamp_indirect),
+             "as asked; the picture tells what it took away", Bound::unknown());
     if (plan_.technique->interreflects) {
       if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
       choose_reuse();

@@ -6,7 +6,7 @@
 
 #include "core/model/counts.h"
 #include "core/model/film.h"
-#include "core/render/omitted.h"
+#include "core/render/clamped.h"
 #include "core/render/sampled_error.h"
 #include "core/render/worker_pool.h"
 #include "core/tuning/settle.h"
@@ -31,6 +31,7 @@ struct RenderStats {
   double cpu_ms = 0;           // of tracing, on all threads together
   std::uint64_t non_finite_pixels = 0;
   Omitted omitted;
+  Clamped clamped;
   SampledError error;  // of an even number of samples, of which at least the second half was traced together
 };
 

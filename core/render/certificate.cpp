@@ -46,6 +46,16 @@ Bound Certificate::known() const {
 Certificate certify(const Plan& plan, const RenderStats& stats) {
   Certificate found{{omitted_term(plan, stats), precision_term(plan), sampling_term(stats)}};
   if (stats.error.known()) found.estimate = stats.error.pixel.rmse();
+  if (plan.clamp_indirect > 0) {
+    found.terms.push_back({"clamp of indirect light", Bound::estimated(stats.clamped.pixels.rms())});
+    Certificate::Bias& bias = found.biases.emplace_back();
+    bias.option = "clamp_indirect";
+    bias.value = plan.clamp_indirect;
+    for (std::size_t c = 0; c < 3; ++c) {
+      bias.mean[c] = 0 - stats.clamped.mean(c);
+      bias.standard_error[c] = stats.clamped.standard_error(c);
+    }
+  }
   if (stats.non_finite_pixels > 0)
     found.terms.push_back({"values that are not finite", Bound::unknown(),
                            std::to_string(stats.non_finite_pixels) + " pixels have one"});

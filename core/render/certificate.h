@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,16 @@ struct Certificate {
   std::vector<Term> terms;
   // RMSE that the halves of the samples tell: of noise, so it is no part of a sum.
   std::optional<double> estimate = {};
+
+  // What an option takes away on purpose: the mean over the picture by which this run differs from the one
+  // without it, per channel, exactly; and the standard error of that as a bias, infinite where one tile
+  // tells.
+  struct Bias {
+    std::string option;
+    double value;
+    std::array<double, 3> mean, standard_error;
+  };
+  std::vector<Bias> biases = {};
 
   Bound total() const;  // as weak as the weakest term
   Bound known() const;  // of the terms that are not unknown

@@ -63,9 +63,13 @@ ProgressiveRender::ProgressiveRender(const PreparedScene& scene, const SettledPl
 
 void ProgressiveRender::refine(int samples, const RenderControl& control) {
   stats_.error = {};
-  const Omitted before = std::exchange(stats_.omitted, {});
+  const Omitted omitted_before = std::exchange(stats_.omitted, {});
+  const Clamped clamped_before = std::exchange(stats_.clamped, {});
   prepared_->render(tiles_of(film_, samples_, samples - samples_), film_, stats_, control);
-  if (before.samples > 0) stats_.omitted.join(before);
+  if (samples_ > 0) {
+    stats_.omitted.join(omitted_before);
+    stats_.clamped.join(clamped_before);
+  }
   samples_ = samples;
 }
 

@@ -17,6 +17,13 @@ void add(bool first, const Array<T>& value, TileSums::Plane& sum) {
     for (std::size_t i = 0; i < kBatch; ++i) sum[i] += static_cast<double>(value.values[i]);
 }
 
+template <class T, class Planes>
+void add_vector(bool first, const Vec3Array<T>& value, Planes& sums) {
+  add(first, value.x, sums[0]);
+  add(first, value.y, sums[1]);
+  add(first, value.z, sums[2]);
+}
+
 // Of what met something: elsewhere the value is not set.
 template <class T>
 void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, TileSums::Plane& sum) {
@@ -59,23 +66,24 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
   add_omitted(tile);
+  if (plan_.clamp_indirect > 0) add_clamped(tile);
   return true;
 }
 
 template <class T>
 bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& checkpoint) {
+  const bool is_first = sample == tile.first_sample;
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   if (!trace_part(tile, sample, PixelFilter::Part::positive, result_, checkpoint)) return false;
   if (taken_away_) {
     if (!trace_part(tile, sample, PixelFilter::Part::negative, *taken_away_, checkpoint)) return false;
     take_away();
   }
+  if (plan_.clamp_indirect > 0) add_vector(is_first, result_.clamped, clamped_);
   if (stats_.counts.cut_rays == cut_before) return true;
   const bool first = omitted_.empty();
   omitted_.resize(3);
-  add(first, result_.omitted.x, omitted_[0]);
-  add(first, result_.omitted.y, omitted_[1]);
-  add(first, result_.omitted.z, omitted_[2]);
+  add_vector(first, result_.omitted, omitted_);
   return true;
 }
 
@@ -96,6 +104,8 @@ void TileRenderer<T>::take_away() {
   const N more(static_cast<T>(filter_->positive())), less(static_cast<T>(filter_->negative()));
   for (int i = 0; i < kBatch; i += kWidth<T>) {
     result_.radiance.put(i, result_.radiance.at(i) * more - taken_away_->radiance.at(i) * less);
+    if (plan_.clamp_indirect > 0)
+      result_.clamped.put(i, result_.clamped.at(i) * more - taken_away_->clamped.at(i) * less);
     result_.omitted.put(i, result_.omitted.at(i) * more + taken_away_->omitted.at(i) * less);
   }
 }
@@ -180,9 +190,7 @@ void TileRenderer<T>::place_samples(std::uint32_t sample, const Array<std::uint3
 template <class T>
 void TileRenderer<T>::add_sample() {
   const bool first = sums_.samples == 0;
-  add(first, result_.radiance.x, sums_.radiance[0]);
-  add(first, result_.radiance.y, sums_.radiance[1]);
-  add(first, result_.radiance.z, sums_.radiance[2]);
+  add_vector(first, result_.radiance, sums_.radiance);
   for (std::size_t c = 0; c < plan_.channels.size(); ++c) {
     const ChannelType& type = *plan_.channels[c];
     if (type.mean == ChannelMean::first_sample && !first) continue;
@@ -205,6 +213,22 @@ void TileRenderer<T>::add_omitted(const TileView& tile) {
       const TilePixel p = tile_pixel(slot);
       if (p.x < tile.width && p.y < tile.height) stats_.omitted.add(channel[static_cast<std::size_t>(slot)]);
     }
+}
+
+template <class T>
+void TileRenderer<T>::add_clamped(const TileView& tile) {
+  stats_.clamped.pixels.samples = tile.samples;
+  stats_.clamped.pixels.values += 3.0 * tile.width * tile.height;
+  std::array<double, 3> sums{};
+  for (std::size_t c = 0; c < 3; ++c)
+    for (int slot = 0; slot < kBatch; ++slot) {
+      const TilePixel p = tile_pixel(slot);
+      if (p.x >= tile.width || p.y >= tile.height) continue;
+      const double away = clamped_[c][static_cast<std::size_t>(slot)];
+      sums[c] += away;
+      stats_.clamped.pixels.add(away);
+    }
+  stats_.clamped.add_tile(sums);
 }
 
 template <class T>
@@ -248,6 +272,7 @@ void TileRenderer<T>::add_to(RenderStats& stats) const {
   stats.counts.add(stats_.counts);
   stats.error.add(stats_.error);
   stats.omitted.add(stats_.omitted);
+  stats.clamped.add(stats_.clamped);
   stats.non_finite_pixels += stats_.non_finite_pixels;
 }
 

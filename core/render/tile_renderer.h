@@ -40,6 +40,7 @@ class TileRenderer {
                      TileSamples& to) const;
   void add_sample();
   void add_omitted(const TileView& tile);
+  void add_clamped(const TileView& tile);
   void add_error(const TileView& tile, int samples);
   void put_single(const TileView& tile, Film& film);
 
@@ -59,6 +60,7 @@ class TileRenderer {
   TileMeans means_;
   // The ledger of this tile, sums by channel and slot; empty as long as nothing was left out.
   std::vector<TileSums::Plane> omitted_;
+  std::array<TileSums::Plane, 3> clamped_;  // likewise; set if Plan::clamp_indirect is above 0
   RenderStats stats_;
 };
 

@@ -19,6 +19,7 @@ PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followe
         std::make_unique<DiffuseRays<T>>(this->geometry_, this->accelerator_, this->plan_, sampled_light_);
   if (plan.reuse > 1)
     reuse_ = std::make_unique<PathReuse<T>>(this->geometry_, this->accelerator_, this->plan_);
+  if (plan.clamp_indirect > 0) indirect_ = std::make_unique<Vec3Array<T>>();
 }
 
 template <class T>
@@ -63,25 +64,53 @@ void PathTracer<T>::shade(const Groups& groups, const Groups& met) {
 }
 
 template <class T>
-void PathTracer<T>::add_what_shines(const Groups& groups, const Groups& met) {
-  auto& [paths, hits, surface, radiance] = *this->vertices_;
-  sampled_light_.add_beyond(*paths, hits, groups, radiance);
-  if (reuse_ && paths->depth == 1)
-    add_emission_alone(met);
-  else
-    sampled_light_.add_emission(*paths, hits, surface, met, radiance);
+void PathTracer<T>::begin() {
+  if (reuse_) reuse_->begin(this->batch_draws());
+  if (!indirect_) return;
+  for (const int i : Groups::covering(0, kBatch, kWidth<T>)) indirect_->put(i, Vec3<N>(N(T(0))));
 }
 
 template <class T>
-void PathTracer<T>::add_emission_alone(const Groups& met) {
-  const auto& v = *this->vertices_;
-  for (const int i : met) emission_.put(i, Vec3<N>(N(T(0))));
-  sampled_light_.add_emission(*v.paths, v.hits, v.surface, met, emission_);
-  for (const int i : met)
-    for (int lane = i; lane < std::min(i + kWidth<T>, v.paths->rays.count); ++lane) {
-      const int slot = static_cast<int>(v.paths->slot[lane]);
-      Vec3Array<T>& sums = Wavefront<T>::sums(0);
-      sums.set(slot, sums[slot] + reuse_->weights()[slot] * emission_[lane]);
+bool PathTracer<T>::finish() {
+  if (reuse_ &&
+      !reuse_->finish(indirect_ ? *indirect_ : Wavefront<T>::sums(0), this->counts(), this->checkpoint()))
+    return false;
+  if (indirect_) add_clamped();
+  return true;
+}
+
+template <class T>
+void PathTracer<T>::add_clamped() {
+  const N most(static_cast<T>(this->plan_.clamp_indirect));
+  const auto kept = [&](const N& x) { return select(x > most, most, x); };  // NaN stays
+  Vec3Array<T>& radiance = Wavefront<T>::sums(0);
+  for (const int i : Groups::covering(0, kBatch, kWidth<T>)) {
+    const Vec3<N> all = indirect_->at(i), some(kept(all.x), kept(all.y), kept(all.z));
+    radiance.put(i, radiance.at(i) + some);
+    this->clamped().put(i, all - some);
+  }
+}
+
+template <class T>
+void PathTracer<T>::add_what_shines(const Groups& groups, const Groups& met) {
+  auto& [paths, hits, surface, radiance] = *this->vertices_;
+  const bool second = paths->depth == 1, apart = second && (reuse_ || indirect_);
+  if (apart)
+    for (const int i : groups) emission_.put(i, Vec3<N>(N(T(0))));
+  sampled_light_.add_beyond(*paths, hits, groups, second && indirect_ ? emission_ : radiance);
+  sampled_light_.add_emission(*paths, hits, surface, met, apart ? emission_ : radiance);
+  if (apart) add_emission_to_first(indirect_ ? groups : met);
+}
+
+template <class T>
+void PathTracer<T>::add_emission_to_first(const Groups& groups) {
+  const PathBatch<T>& paths = *this->vertices_->paths;
+  Vec3Array<T>& sums = Wavefront<T>::sums(0);
+  for (const int i : groups)
+    for (int lane = i; lane < std::min(i + kWidth<T>, paths.rays.count); ++lane) {
+      const int slot = static_cast<int>(paths.slot[lane]);
+      const Vec3<T> weight = reuse_ ? reuse_->weights()[slot] : paths.throughput[lane];
+      sums.set(slot, sums[slot] + weight * emission_[lane]);
     }
 }
 

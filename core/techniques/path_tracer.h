@@ -26,21 +26,20 @@ class PathTracer : public Wavefront<T> {
  private:
   using N = Lanes<T>;
 
-  void begin() final {
-    if (reuse_) reuse_->begin(this->batch_draws());
-  }
-  bool finish() final {
-    return !reuse_ || reuse_->finish(Wavefront<T>::sums(0), this->counts(), this->checkpoint());
-  }
+  void begin() final;
+  bool finish() final;
   Vec3Array<T>& sums(int depth) final {
-    return reuse_ && depth > 0 ? reuse_->suffixes() : Wavefront<T>::sums(depth);
+    if (depth > 0 && reuse_) return reuse_->suffixes();
+    return depth > 0 && indirect_ ? *indirect_ : Wavefront<T>::sums(depth);
   }
   void shade(const Groups& groups, const Groups& met) final;
 
   void add_what_shines(const Groups& groups, const Groups& met);
-  // What a second vertex sends out by itself is found from the first vertex by its light sources as well, and
-  // shared by nobody.
-  void add_emission_alone(const Groups& met);
+  // Adds emission_ at second vertices to the light of the first: it is found from there by light sources as
+  // well, shared by nobody, and not indirect.
+  void add_emission_to_first(const Groups& groups);
+  // Adds indirect light as far as Plan::clamp_indirect lets.
+  void add_clamped();
   // Draws directions, and sends on what goes along them.
   void scatter(const Groups& met);
   void go_on(int i);
@@ -60,6 +59,7 @@ class PathTracer : public Wavefront<T> {
   const bool looks_;
   std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null: there are none
   std::unique_ptr<PathReuse<T>> reuse_;           // null: paths share nothing
+  std::unique_ptr<Vec3Array<T>> indirect_;        // by slot; null: it is not clamped
   ScatterBatch<T> scatter_;
   Vec3Array<T> emission_;
 };

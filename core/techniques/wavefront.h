@@ -50,6 +50,9 @@ class Wavefront : public Tracer<T> {
   // Enters rays that are not traced into the ledger, by their weights.
   void note_cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
 
+  // Light that is taken away, by slot.
+  Vec3Array<T>& clamped() { return out_->clamped; }
+
   const Draws& batch_draws() const { return *draws_; }
   PathDraws<T> draws() const { return {*draws_, vertices_->paths->slot, vertices_->paths->depth}; }
   TraceCounts& counts() { return *counts_; }

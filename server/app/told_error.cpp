@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace orrery {
 
@@ -41,6 +42,10 @@ std::string number_or_unknown(const std::optional<double>& value) {
   return text;
 }
 
+std::optional<double> known(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 constexpr const char* kReference = "technique";
 constexpr const char* kSpace = "linear";
 
@@ -65,7 +70,30 @@ ordered_json certificate_json(const Certificate& certificate) {
                        {"total", bound_json(certificate.total())},
                        {"known", bound_json(certificate.known())}};
   if (certificate.estimate) json["estimate"] = *certificate.estimate;
+  for (const Certificate::Bias& bias : certificate.biases) {
+    ordered_json errors = ordered_json::array();
+    for (const double error : bias.standard_error) errors.push_back(number_or_null(known(error)));
+    json["biases"].push_back({{"option", bias.option},
+                              {"value", bias.value},
+                              {"mean", bias.mean},
+                              {"standard_error", std::move(errors)}});
+  }
   return json;
+}
+
+std::string bias_text(const Certificate& certificate) {
+  std::string text;
+  const auto add = [&](const std::array<double, 3>& channels) {
+    const char* before = "=";
+    for (const double value : channels) text += std::exchange(before, " ") + number_or_unknown(known(value));
+  };
+  for (const Certificate::Bias& bias : certificate.biases) {
+    text += (text.empty() ? "" : ", ") + bias.option + "=" + number_or_unknown(bias.value) + ";mean";
+    add(bias.mean);
+    text += ";error";
+    add(bias.standard_error);
+  }
+  return text;
 }
 
 std::string bound_text(const Certificate& certificate) {

@@ -21,12 +21,17 @@ std::string error_text(const RenderStats& stats);
 nlohmann::ordered_json bound_json(const Bound& bound);
 
 // {"reference", "space", "confidence", "terms": [{"subject", "bound", "reason"}], "total", "known",
-// "estimate"}: a reason where the bound is unknown, an estimate where samples tell one.
+// "estimate", "biases": [{"option", "value", "mean", "standard_error"}]}: a reason where the bound is
+// unknown, an estimate where samples tell one, biases where there are some.
 nlohmann::ordered_json certificate_json(const Certificate& certificate);
 
 // The same for a header: "rms=0.0044;kind=estimated;max=unknown;confidence=0.95;estimate=0.0031;
 // reference=technique;space=linear"; where the kind is unknown, with because="precision, samples", and with
 // known, known-kind and known-max of what is known.
 std::string bound_text(const Certificate& certificate);
+
+// Of each bias for a header: "clamp_indirect=10;mean=-0.0012 -0.001 -0.0008;error=0.0001 0.0001 0.0001", by
+// channel; empty if there is none.
+std::string bias_text(const Certificate& certificate);
 
 }  // namespace orrery

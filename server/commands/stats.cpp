@@ -121,6 +121,7 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
          error.pixel.rmse(), low, high, error.block4.rmse(), error.block32.rmse());
   }
   line(text, "%-12s %s", "error bound", bound_text(stats.certificate).c_str());
+  if (!stats.certificate.biases.empty()) line(text, "%-12s %s", "bias", bias_text(stats.certificate).c_str());
   if (stats.render.non_finite_pixels > 0)
     line(text, "%-12s %14llu", "not finite", static_cast<unsigned long long>(stats.render.non_finite_pixels));
   line(text, "%-12s %11.1f ms loading", "time", stats.load_ms);

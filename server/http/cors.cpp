@@ -66,7 +66,7 @@ void allow_origin(const Request& request, const std::vector<std::string>& origin
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
   response.set("Access-Control-Expose-Headers",
                "ETag, Location, Orrery-Error-Bound, Orrery-Scene-Id, Orrery-Warning, Retry-After, "
-               "Server-Timing, X-Rays, X-RMSE, "
+               "Server-Timing, X-Bias, X-Rays, X-RMSE, "
                "X-Request-ID");
 }
 

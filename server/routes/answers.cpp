@@ -182,6 +182,8 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
   if (const RenderStats& stats = rendered.picture->stats; stats.error.known())
     response.set("X-RMSE", error_text(stats));
   response.set("Orrery-Error-Bound", bound_text(rendered.picture->certificate));
+  if (std::string bias = bias_text(rendered.picture->certificate); !bias.empty())
+    response.set("X-Bias", std::move(bias));
   response.set("Server-Timing", std::move(told));
   set_warnings(response, rendered.picture->warnings);
   return response;

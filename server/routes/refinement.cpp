@@ -26,6 +26,8 @@ Fields fields_of(const Refinement::Step& step) {
   Fields fields{{"X-Samples", std::to_string(step.samples)}, {"X-Rays", std::to_string(step.rays)}};
   if (step.picture->stats.error.known()) fields.emplace_back("X-RMSE", error_text(step.picture->stats));
   fields.emplace_back("Orrery-Error-Bound", bound_text(step.picture->certificate));
+  if (std::string bias = bias_text(step.picture->certificate); !bias.empty())
+    fields.emplace_back("X-Bias", std::move(bias));
   return fields;
 }
 

@@ -19,8 +19,12 @@ export const certificateFaults = [
   entry("the ledger has one channel", kWavefront, "product(weight.z[lane], range.z)", "T(0)", kRandom),
   entry("the ledger has the largest ray instead of all", kWavefront, "out_->omitted[slot] + most", "largest(out_->omitted[slot], most)",
         kRandom),
+  entry("what is clamped goes without a word", "core/techniques/path_tracer.cpp", "this->clamped().put(i, all - some);",
+        "this->clamped().put(i, Vec3<N>(N(T(0))));", "Clamp.LedgerIs*"),
+  entry("lamps that a lobe meets are clamped", "core/techniques/path_tracer.cpp", "second && (reuse_ || indirect_)", "second && reuse_",
+        "Clamp.KeepsDirect*"),
   entry("a total is as strong as its strongest term", "core/model/bound.h", "std::max(kind, other.kind)", "std::min(kind, other.kind)",
         "Certificate.IsAsWeak*"),
   entry("the ledger of the last pass is that of the picture", "core/render/frame.cpp",
-        "if (before.samples > 0) stats_.omitted.join(before);", "", "Certificate.OfPasses*"),
+        "stats_.omitted.join(omitted_before);", "", "Certificate.OfPasses*"),
 ];

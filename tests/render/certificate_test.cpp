@@ -237,6 +237,55 @@ TEST(Certificate, IsAsWeakAsItsWeakestTermAndStillTellsTheRest) {
   EXPECT_EQ(certificate_of(glass, r).total().kind, Bound::Kind::unknown) << "nothing is known of float";
 }
 
+// The same samples with and without: what is taken away is the difference, in each channel.
+TEST(Clamp, LedgerIsWhatIsTakenAway) {
+  covers("light-50");
+  for (const char* name : {"cornell-box", "material-glass", "outdoors"})
+    for (const int reuse : {1, 16}) {
+      const auto loaded = test::load(test::sample(name));
+      RenderRequest r = request(6);
+      r.technique = "path";
+      r.width = r.height = 48;
+      r.samples = 4;
+      r.reuse = reuse;
+      const test::Picture all = test::render(loaded, r);
+      r.clamp_indirect = 0.3;
+      const test::Picture some = test::render(loaded, r);
+      const Clamped& away = some.stats.clamped;
+      EXPECT_GT(away.mean(0), 0) << name;
+      std::size_t c = 0;
+      for (float Vec3f::*channel : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
+        const double pixels = 48 * 48, whole = all.sum(channel) / pixels;
+        EXPECT_NEAR(whole - some.sum(channel) / pixels, away.mean(c), 1e-6 * whole) << name << reuse;
+        ++c;
+      }
+      r.clamp_indirect = 1e6;  // which nothing reaches
+      EXPECT_LE(largest_difference(all, test::render(loaded, r)), 1e-5 * 30) << name;
+    }
+}
+
+// A lamp, what it lights, and what a mirror shows of it are direct: only light of more reflections is
+// clamped.
+TEST(Clamp, KeepsDirectLight) {
+  const auto lit = test::load(test::scene_of(
+      "[{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'floor'},"
+      " {'type': 'rectangle', 'corner': [-1, 2, -1], 'a': [2, 0, 0], 'b': [0, 0, 2], 'material': 'lamp'}]",
+      "{'materials': {'floor': {'type': 'metal', 'name': 'iron', 'roughness': 0.4},"
+      " 'lamp': {'type': 'lambert', 'reflectance': 0, 'emission': [9, 9, 9]}}}"));
+  RenderRequest r = request(4);
+  r.technique = "path";
+  r.samples = 4;
+  for (const int reuse : {1, 16}) {
+    r.reuse = reuse;
+    r.clamp_indirect = 0;
+    const test::Picture all = test::render(lit, r);
+    r.clamp_indirect = 1e-6;
+    const test::Picture some = test::render(lit, r);
+    EXPECT_LE(largest_difference(all, some), 1e-5) << reuse;
+    EXPECT_EQ(some.stats.clamped.mean(0), 0) << reuse;
+  }
+}
+
 // Passes of one picture: their ledgers are of one, at most.
 TEST(Certificate, OfPassesBoundsThatOfTheWhole) {
   const auto loaded = test::load(test::sample("material-refractive"));
