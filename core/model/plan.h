@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +43,8 @@ struct Plan {
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
   double clamp_indirect = 0;    // what second vertices bring to a sample is cut to it, per channel; 0: is not
+  // Within which all samples of a pixel lie, as a difference, per channel; infinite if nothing limits them.
+  double sample_range = std::numeric_limits<double>::infinity();
   Vec3d cut_range;  // the most by which a ray that is not traced may change radiance; may be infinite
   std::uint64_t seed = 0;
   bool reorder = false;  // rays that are alike are asked for together

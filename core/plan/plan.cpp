@@ -52,6 +52,9 @@ class Planner {
       choose_paths();
     } else {
       plan_.cut_range = facts.tree_radiance.most_off(scene_.ambient);
+      const bool negative = plan_.filtered && has_negative_lobes(*plan_.asked.filter);
+      if (!negative)  // what is cut may leave ambient light
+        plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
       leave_out_for_trees();
     }
     if (request_.full_model || plan_.technique->draws_light) return plan_;

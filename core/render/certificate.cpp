@@ -21,11 +21,14 @@ Certificate::Term precision_term(const Plan& plan) {
   return {"precision", Bound::unknown(), "no ray was traced in double precision besides"};
 }
 
-Certificate::Term sampling_term(const RenderStats& stats) {
+// With means a and b of the halves, (a - b)^2 / 4 is on average at least the squared error of their mean; and
+// no difference is larger than the range.
+Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats) {
   const char* const subject = "samples";
   if (!stats.error.known()) return {subject, Bound::unknown(), "only an even number of them tells its error"};
-  const Bound bound = Bound::estimated(stats.error.interval().high);
-  return {subject, bound, bound.kind == Bound::Kind::unknown ? "one tile alone tells no interval" : ""};
+  if (stats.halves.count() == 0) return {subject, Bound::unknown(), "nothing limits what one may bring"};
+  const double mean = stats.halves.upper_mean(1 - Certificate::kConfidence);
+  return {subject, Bound::estimated(plan.sample_range * std::sqrt(mean) / 2)};
 }
 
 }  // namespace
@@ -44,7 +47,7 @@ Bound Certificate::known() const {
 }
 
 Certificate certify(const Plan& plan, const RenderStats& stats) {
-  Certificate found{{omitted_term(plan, stats), precision_term(plan), sampling_term(stats)}};
+  Certificate found{{omitted_term(plan, stats), precision_term(plan), sampling_term(plan, stats)}};
   if (stats.error.known()) found.estimate = stats.error.pixel.rmse();
   if (plan.clamp_indirect > 0) {
     found.terms.push_back({"clamp of indirect light", Bound::estimated(stats.clamped.pixels.rms())});

@@ -14,7 +14,7 @@ namespace orrery {
 // endlessly many samples over each pixel, by exact arithmetic. (Light that the technique does not follow at
 // all is no part of it.) In linear radiance.
 struct Certificate {
-  static constexpr double kConfidence = 0.95;  // of what is estimated: one-sided
+  static constexpr double kConfidence = 0.95;  // of what is estimated, over seeds
 
   struct Term {
     std::string subject;

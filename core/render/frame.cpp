@@ -63,6 +63,7 @@ ProgressiveRender::ProgressiveRender(const PreparedScene& scene, const SettledPl
 
 void ProgressiveRender::refine(int samples, const RenderControl& control) {
   stats_.error = {};
+  stats_.halves = {};
   const Omitted omitted_before = std::exchange(stats_.omitted, {});
   const Clamped clamped_before = std::exchange(stats_.clamped, {});
   prepared_->render(tiles_of(film_, samples_, samples - samples_), film_, stats_, control);

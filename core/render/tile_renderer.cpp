@@ -62,7 +62,10 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
       if (!checkpoint.go_on() || !trace(tile, sample, checkpoint)) return false;
       add_sample();
     }
-    if (end % 2 == 0 && 2 * tile.first_sample <= end) add_error(tile, end);
+    if (end % 2 == 0 && 2 * tile.first_sample <= end) {
+      add_error(tile, end);
+      if (std::isfinite(plan_.sample_range)) add_halves(tile, end);
+    }
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
   add_omitted(tile);
@@ -205,6 +208,21 @@ void TileRenderer<T>::add_sample() {
 }
 
 template <class T>
+void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
+  const double scale = 2.0 / (samples * std::max(plan_.sample_range, std::numeric_limits<double>::min()));
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    const TilePixel p = tile_pixel(static_cast<int>(i));
+    if (p.x >= tile.width || p.y >= tile.height) continue;
+    double squares = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * scale;
+      squares += difference * difference;
+    }
+    stats_.halves.add(squares / 3);
+  }
+}
+
+template <class T>
 void TileRenderer<T>::add_omitted(const TileView& tile) {
   stats_.omitted.samples = tile.samples;
   stats_.omitted.values += 3.0 * tile.width * tile.height;
@@ -271,6 +289,7 @@ template <class T>
 void TileRenderer<T>::add_to(RenderStats& stats) const {
   stats.counts.add(stats_.counts);
   stats.error.add(stats_.error);
+  stats.halves.add(stats_.halves);
   stats.omitted.add(stats_.omitted);
   stats.clamped.add(stats_.clamped);
   stats.non_finite_pixels += stats_.non_finite_pixels;

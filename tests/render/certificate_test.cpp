@@ -211,18 +211,79 @@ TEST(Ledger, CountsASubstituteThatIsTooBright) {
   EXPECT_EQ(make_plan(*loaded, request(1)).cut_range, Vec3d(0.9, 0.9, 0.9));
 }
 
-TEST(Certificate, IsAsWeakAsItsWeakestTermAndStillTellsTheRest) {
-  const auto certificate_of = [](Json scene, const RenderRequest& r) {
+RenderResult certified(const std::shared_ptr<const Scene>& scene, const RenderRequest& r) {
+  const PreparedScene prepared(scene);
+  return render_frame(prepared, settle(prepared, make_plan(*scene, r)), FilmStorage::linear32,
+                      test::shared_pool());
+}
+
+double rms_difference(const Image& a, const Image& b) {
+  double squares = 0;
+  for (std::size_t i = 0; i < a.values().size(); ++i)
+    squares += std::pow(double{a.values()[i]} - double{b.values()[i]}, 2);
+  return std::sqrt(squares / static_cast<double>(a.values().size()));
+}
+
+// Edges, highlights in glass, and dots that shine in one pixel of a hundred: over seeds the bound holds.
+TEST(Certificate, OfSamplesHoldsOverSeeds) {
+  covers("certificate-17");
+  Json dots = test::scene_with(json("[]"));
+  dots["materials"]["lamp"] = json("{'type': 'lambert', 'reflectance': 0, 'emission': [1, 1, 1]}");
+  for (int i = 0; i < 40; ++i)
+    dots["objects"].push_back({{"type", "sphere"},
+                               {"center", {(i % 8 - 3.5) * 0.4, (i / 8 - 2) * 0.5, 0}},
+                               {"radius", 0.025},
+                               {"material", "lamp"}});
+  for (const Json& scene : {test::sample("paper"), test::sample("glass"), dots}) {
     const auto loaded = test::load(scene);
-    const PreparedScene prepared(loaded);
-    return render_frame(prepared, settle(prepared, make_plan(*loaded, r)), FilmStorage::linear32,
-                        test::shared_pool())
-        .certificate;
+    RenderRequest r = request(5);
+    r.width = r.height = 64;
+    r.samples = 1024;
+    r.seed = 1000;
+    const Image truth = certified(loaded, r).film.image(PixelFormat::linear32);
+    int held = 0;
+    r.samples = 4;
+    for (r.seed = 0; *r.seed < 60; ++*r.seed) {
+      const RenderResult result = certified(loaded, r);
+      held +=
+          *result.certificate.total().rms >= rms_difference(result.film.image(PixelFormat::linear32), truth);
+    }
+    EXPECT_GE(held, 56) << scene["title"];
+  }
+}
+
+TEST(Certificate, OfSamplesIsNotFarAboveWhatTheyTell) {
+  RenderRequest r = request(5);
+  r.width = r.height = 64;
+  r.samples = 2;
+  const Certificate certificate = certified(test::load(test::sample("material-refractive")), r).certificate;
+  EXPECT_GT(*certificate.total().rms, *certificate.estimate);
+  EXPECT_LT(*certificate.total().rms, 1.5 * *certificate.estimate);
+}
+
+// Of an even picture no sample tells any error, and the certificate does not say that there is none.
+TEST(Certificate, NeverTellsAnErrorOfNothingFromSamples) {
+  covers("certificate-20");
+  const auto empty = test::load(
+      test::scene_of("{'type': 'sphere', 'center': [0, 0, 99], 'radius': 1}", "{'background': [2, 2, 2]}"));
+  RenderRequest r = request(5);
+  r.width = r.height = 64;
+  r.samples = 16;
+  const Certificate certificate = certified(empty, r).certificate;
+  EXPECT_EQ(certificate.estimate, 0);
+  EXPECT_EQ(certificate.total().kind, Bound::Kind::estimated);
+  EXPECT_GE(*certificate.total().rms, 2 * std::sqrt(std::log(20) / (64 * 64)) / 2);
+  r.technique = "path";  // a lamp that is drawn by its area may bring anything
+  EXPECT_EQ(certified(empty, r).certificate.total().kind, Bound::Kind::unknown);
+}
+
+TEST(Certificate, IsAsWeakAsItsWeakestTermAndStillTellsTheRest) {
+  const auto certificate_of = [](const Json& scene, const RenderRequest& r) {
+    return certified(test::load(scene), r).certificate;
   };
   const Json glass = test::sample("material-refractive");
   RenderRequest r = request(3);
   r.samples = 1;
-  r.width = 2 * kTileSide;  // a tile alone tells no interval
   const Certificate single = certificate_of(glass, r);
   EXPECT_EQ(single.total().kind, Bound::Kind::unknown) << "one sample tells nothing";
   EXPECT_FALSE(single.total().rms);

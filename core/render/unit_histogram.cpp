@@ -1,0 +1,75 @@
+#include "core/render/unit_histogram.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace orrery {
+
+// A double's bits from the second of its fraction on count quarters of powers of two, near enough: bins are
+// linear within an octave.
+void UnitHistogram::add(double value) {
+  constexpr int kBitsBelow = 50;
+  constexpr std::uint64_t kFirst = std::uint64_t{1023 - kOctaves} << 2;
+  const double x = value > 0 ? std::min(value, 1.0) : 0.0;
+  const std::uint64_t part = std::bit_cast<std::uint64_t>(x) >> kBitsBelow;
+  const std::size_t bin = part < kFirst ? 0 : std::min<std::uint64_t>(part - kFirst + 1, kBins - 1);
+  bins_[bin].count += 1;
+  bins_[bin].sum += x;
+  count_ += 1;
+}
+
+void UnitHistogram::add(const UnitHistogram& other) {
+  for (std::size_t i = 0; i < kBins; ++i) {
+    bins_[i].count += other.bins_[i].count;
+    bins_[i].sum += other.bins_[i].sum;
+  }
+  count_ += other.count_;
+}
+
+double UnitHistogram::low_of(std::size_t bin) {
+  if (bin == 0) return 0;
+  const auto part = static_cast<int>(bin) - 1;
+  return std::ldexp(1 + (part % kPartsOfOctave) / double{kPartsOfOctave}, part / kPartsOfOctave - kOctaves);
+}
+
+// The mean over bets of the product over values of 1 + bet (mean - value): a bet is a share of the most that
+// cannot ruin the gambler. Logarithms are concave, so within a bin the chord is below.
+bool UnitHistogram::rejects(double mean, double log_odds) const {
+  constexpr int kBets = 24;
+  std::array<double, kBets> wealth;
+  for (int j = 0; j < kBets; ++j) {
+    const double share = j == 0 ? 0.999 : std::exp2(-0.75 * j), bet = share / (1 - mean);
+    double sum = 0;
+    for (std::size_t i = 0; i < kBins; ++i) {
+      const Bin& bin = bins_[i];
+      if (bin.count == 0) continue;
+      const double low = low_of(i), high = i + 1 < kBins ? low_of(i + 1) : 1;
+      const double at_low = std::log1p(bet * (mean - low)), at_high = std::log1p(bet * (mean - high));
+      const double along = high > low ? (bin.sum - bin.count * low) / (high - low) : 0;
+      sum += bin.count * at_low + along * (at_high - at_low);
+    }
+    wealth[static_cast<std::size_t>(j)] = sum;
+  }
+  const double most = *std::max_element(wealth.begin(), wealth.end());
+  double all = 0;
+  for (const double w : wealth) all += std::exp(w - most);
+  return most + std::log(all / kBets) >= log_odds;
+}
+
+double UnitHistogram::upper_mean(double delta) const {
+  if (count_ == 0) return 1;
+  double sum = 0;
+  for (const Bin& bin : bins_) sum += bin.sum;
+  const double log_odds = -std::log(delta);
+  double kept = std::max(sum / count_, 1e-18), rejected = 1;  // by their logarithms: means may be tiny
+  if (!rejects(1 - 1e-12, log_odds)) return 1;
+  while (rejected / kept > 1.001) {
+    const double middle = std::sqrt(kept * rejected);
+    (middle < 1 && !rejects(middle, log_odds) ? kept : rejected) = middle;
+  }
+  return rejected;
+}
+
+}  // namespace orrery

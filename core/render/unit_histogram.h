@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace orrery {
+
+// Values in [0, 1], kept by size: how many, and their sum, in bins of a quarter of a power of two.
+class UnitHistogram {
+ public:
+  // Values outside of [0, 1] count as its ends.
+  void add(double value);
+  void add(const UnitHistogram& other);
+  double count() const { return count_; }
+
+  // At least the mean of what the values were drawn from, independently, with probability 1 - delta, whatever
+  // its distribution (Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting",
+  // JRSS B 2024): a gambler who bets that the mean is lower, with a mixture of fixed shares of his wealth,
+  // multiplies it by 1 / delta with that probability at most. Of values in a bin only the sum is known, and
+  // the least wealth that they may bring counts. 1 without values.
+  double upper_mean(double delta) const;
+
+ private:
+  static constexpr int kOctaves = 64, kPartsOfOctave = 4;
+  static constexpr std::size_t kBins = kOctaves * kPartsOfOctave + 1;  // the first is of what is smaller
+  struct Bin {
+    double count = 0, sum = 0;
+  };
+  static double low_of(std::size_t bin);
+  // Whether a gambler would believe that the mean is below `mean`.
+  bool rejects(double mean, double log_odds) const;
+
+  std::array<Bin, kBins> bins_{};
+  double count_ = 0;
+};
+
+}  // namespace orrery
