@@ -210,15 +210,16 @@ void TileRenderer<T>::add_sample() {
 template <class T>
 void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
   const double scale = 2.0 / (samples * std::max(plan_.sample_range, std::numeric_limits<double>::min()));
+  TileSums::Plane squares{};
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      const double difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * scale;
+      squares[i] += difference * difference;
+    }
+  const bool whole = tile.width == kTileSide && tile.height == kTileSide;
   for (std::size_t i = 0; i < kBatch; ++i) {
     const TilePixel p = tile_pixel(static_cast<int>(i));
-    if (p.x >= tile.width || p.y >= tile.height) continue;
-    double squares = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * scale;
-      squares += difference * difference;
-    }
-    stats_.halves.add(squares / 3);
+    if (whole || (p.x < tile.width && p.y < tile.height)) stats_.halves.add(squares[i] / 3);
   }
 }
 

@@ -9,7 +9,7 @@ namespace orrery {
 
 // A double's bits from the second of its fraction on count quarters of powers of two, near enough: bins are
 // linear within an octave.
-void UnitHistogram::add(double value) {
+void UnitHistogram::add_positive(double value) {
   constexpr int kBitsBelow = 50;
   constexpr std::uint64_t kFirst = std::uint64_t{1023 - kOctaves} << 2;
   const double x = value > 0 ? std::min(value, 1.0) : 0.0;
@@ -17,7 +17,6 @@ void UnitHistogram::add(double value) {
   const std::size_t bin = part < kFirst ? 0 : std::min<std::uint64_t>(part - kFirst + 1, kBins - 1);
   bins_[bin].count += 1;
   bins_[bin].sum += x;
-  count_ += 1;
 }
 
 void UnitHistogram::add(const UnitHistogram& other) {
@@ -25,7 +24,12 @@ void UnitHistogram::add(const UnitHistogram& other) {
     bins_[i].count += other.bins_[i].count;
     bins_[i].sum += other.bins_[i].sum;
   }
-  count_ += other.count_;
+}
+
+double UnitHistogram::count() const {
+  double all = 0;
+  for (const Bin& bin : bins_) all += bin.count;
+  return all;
 }
 
 double UnitHistogram::low_of(std::size_t bin) {
@@ -59,11 +63,12 @@ bool UnitHistogram::rejects(double mean, double log_odds) const {
 }
 
 double UnitHistogram::upper_mean(double delta) const {
-  if (count_ == 0) return 1;
+  const double values = count();
+  if (values == 0) return 1;
   double sum = 0;
   for (const Bin& bin : bins_) sum += bin.sum;
   const double log_odds = -std::log(delta);
-  double kept = std::max(sum / count_, 1e-18), rejected = 1;  // by their logarithms: means may be tiny
+  double kept = std::max(sum / values, 1e-18), rejected = 1;  // by their logarithms: means may be tiny
   if (!rejects(1 - 1e-12, log_odds)) return 1;
   while (rejected / kept > 1.001) {
     const double middle = std::sqrt(kept * rejected);

@@ -9,9 +9,14 @@ namespace orrery {
 class UnitHistogram {
  public:
   // Values outside of [0, 1] count as its ends.
-  void add(double value);
+  void add(double value) {
+    if (value == 0)
+      bins_[0].count += 1;
+    else
+      add_positive(value);
+  }
   void add(const UnitHistogram& other);
-  double count() const { return count_; }
+  double count() const;
 
   // At least the mean of what the values were drawn from, independently, with probability 1 - delta, whatever
   // its distribution (Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting",
@@ -26,12 +31,12 @@ class UnitHistogram {
   struct Bin {
     double count = 0, sum = 0;
   };
+  void add_positive(double value);
   static double low_of(std::size_t bin);
   // Whether a gambler would believe that the mean is below `mean`.
   bool rejects(double mean, double log_odds) const;
 
   std::array<Bin, kBins> bins_{};
-  double count_ = 0;
 };
 
 }  // namespace orrery
