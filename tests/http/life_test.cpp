@@ -82,8 +82,11 @@ TEST(ClientThatLeaves, EndsItsRefinement) {
   Daemon daemon(with_endless_pictures());
   RawClient raw(daemon.port());
   raw.send(get(post(daemon, small_scene()) + "/refinement?width=400&height=300&samples=4096"));
-  EXPECT_NE(raw.receive_some(), "");  // a pass has ended
-  ASSERT_TRUE(daemon.wait_until_working());
+  // The next pass has 128 samples a pixel: it is being traced when the client goes.
+  ASSERT_TRUE(test::eventually([&] {
+    return daemon.metric("orrery_cache_misses_total{cache=\"pictures\"}") >= 8 &&
+           daemon.metric("orrery_renders_running") == 1;
+  }));
   raw.close();
   EXPECT_TRUE(daemon.wait_until_idle(5));
   EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_given_up_total{stage=\"render\"} 1\n"),

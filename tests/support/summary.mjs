@@ -1,5 +1,6 @@
 // Reads <folder>/test-reports of each build folder given and prints which rows of the stability catalogue the
-// passed tests cover, then how many test cases passed, failed and were skipped. Exits with 1 on a failure.
+// passed tests cover, the test cases that failed with what they said, and how many test cases passed, failed
+// and were skipped. Exits with 1 on a failure.
 //
 // A ctest that is a GoogleTest executable counts its cases; any other counts as one. C++ tests name their
 // rows by RecordProperty("stability", "A1 A2"), scripts by printing a line "stability: A1 A2".
@@ -13,18 +14,31 @@ const total = {
   skipped: 0
 };
 const rows = new Set();
+const failures = [];
 
 const cases = (xml) => xml.split('<testcase ').slice(1);
 const attribute = (text, name) => text.match(new RegExp(`\\b${name}="([^"]*)"`))?.[1];
+const entities = {
+  lt: '<',
+  gt: '>',
+  quot: '"',
+  apos: '\'',
+  amp: '&',
+  '#x0A': ' ',
+  '#10': ' '
+};
+const plain = (text) => text.replace(/&([#\w]+);/g, (whole, name) => entities[name] ?? whole);
 const note = (text) => text.split(/\s+/).filter(Boolean).forEach((row) => rows.add(row));
 
 // Counts the cases of one GoogleTest report and says how many of them failed.
 function countGoogleTest(xml) {
   let failed = 0;
   for (const one of cases(xml)) {
-    if (one.includes('<failure'))
+    if (one.includes('<failure')) {
       ++failed;
-    else if (attribute(one, 'result') !== 'completed')
+      const said = plain(attribute(one.slice(one.indexOf('<failure')), 'message') ?? '');
+      failures.push(`${attribute(one, 'classname')}.${attribute(one, 'name')}: ${said.slice(0, 800)}`);
+    } else if (attribute(one, 'result') !== 'completed')
       ++total.skipped;
     else {
       ++total.passed;
@@ -46,7 +60,9 @@ for (const folder of process.argv.slice(2)) {
     const detail = join(reports, `test_${attribute(one, 'name')}.xml`);
     if (existsSync(detail)) {
       // A crash on the way out fails the executable though all of its cases passed.
-      if (countGoogleTest(readFileSync(detail, 'utf8')) === 0 && status === 'fail') ++total.failed;
+      if (countGoogleTest(readFileSync(detail, 'utf8')) > 0 || status !== 'fail') continue;
+      ++total.failed;
+      failures.push(`${attribute(one, 'name')}: the executable failed, not one of its cases`);
     } else if (status === 'run') {
       ++total.passed;
       for (const [, value] of one.matchAll(/(?:^|>)stability: ([\w ]*)/gm)) note(value);
@@ -54,11 +70,13 @@ for (const folder of process.argv.slice(2)) {
       ++total.skipped;
     } else {
       ++total.failed;
+      failures.push(attribute(one, 'name'));
     }
   }
 }
 
 const sorted = [...rows].sort(new Intl.Collator('en', {numeric: true}).compare);
 console.log(`stability rows covered (${sorted.length}): ${sorted.join(' ')}`);
+for (const failure of failures) console.log(`failed: ${failure}`);
 console.log(`${total.passed} passed, ${total.failed} failed, ${total.skipped} skipped`);
 process.exitCode = total.failed > 0 ? 1 : 0;
