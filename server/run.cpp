@@ -8,6 +8,7 @@
 #include "core/base/version.h"
 #include "core/math/instruction_level.h"
 #include "core/params/suggest.h"
+#include "core/render/renderer.h"
 #include "server/commands/commands.h"
 #include "server/commands/scene_file.h"
 
@@ -71,6 +72,8 @@ int run_chosen(const std::vector<Command>& commands) {
   } catch (const InputError& error) {
     for (const Problem& p : error.problems()) std::cerr << "orrery: " << p.text() << "\n";
     return kBadInput;
+  } catch (const BudgetMissed& error) {
+    return fail(kMissed, error.what());
   } catch (const Cancelled&) {
     return fail(kInterrupted, "interrupted");
   } catch (const std::exception& error) {

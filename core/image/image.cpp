@@ -111,6 +111,15 @@ Image srgb_of(const Image& linear) {
   return encoded;
 }
 
+double encode_srgb(double linear) {
+  const double x = linear > 0 ? std::min(linear, 1.0) : 0.0;
+  if (x <= 0.0031308) return 12.92 * x;
+  const double t = std::sqrt(std::sqrt(x));
+  double curve = kCurve.back();
+  for (std::size_t k = kCurve.size() - 1; k-- > 0;) curve = curve * t + double{kCurve[k]};
+  return curve;
+}
+
 float decode_srgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }

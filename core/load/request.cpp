@@ -10,6 +10,7 @@ std::string_view summary_of(Section section) {
     case Section::camera: return "Where on its orbit the camera stands.";
     case Section::image: return "Size of the picture.";
     case Section::render: return "How the picture is made.";
+    case Section::budget: return "How near the picture comes, and how soon.";
   }
   return "";
 }

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "core/base/work_scope.h"
+
 namespace orrery {
 namespace {
 
@@ -68,6 +70,15 @@ Film::Film(int width, int height, FilmStorage storage, std::span<const ChannelTy
     planes.weight.resize(pixels);
   }
   samples_.resize(static_cast<std::size_t>(TileGrid(width, height).size()));
+}
+
+Film Film::copy() const {
+  const MemoryCharge room(bytes(width_, height_, storage_, channels_));
+  Film other(width_, height_, storage_, channels_);
+  other.radiance_ = radiance_;
+  other.planes_ = planes_;
+  other.samples_ = samples_;
+  return other;
 }
 
 std::size_t Film::bytes(int width, int height, FilmStorage storage,

@@ -39,6 +39,9 @@ class Film {
   // Channels are kept with FilmStorage::sums alone. REQUIRES: none otherwise.
   Film(int width, int height, FilmStorage storage, std::span<const ChannelType* const> channels = {});
 
+  // Another with the same sums. REQUIRES: FilmStorage::sums.
+  Film copy() const;
+
   // Bytes that such a film takes.
   static std::size_t bytes(int width, int height, FilmStorage storage,
                            std::span<const ChannelType* const> channels);

@@ -43,7 +43,11 @@ struct Plan {
   int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
   double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
   double clamp_indirect = 0;    // what second vertices bring to a sample is cut to it, per channel; 0: is not
-  // Within which all samples of a pixel lie, as a difference, per channel; infinite if nothing limits them.
+  // Of the picture until whose error or time it is made: what is left to that.
+  bool free_samples = false, free_contribution = false;  // samples are then the most that may be traced
+  Space space = Space::linear;                           // that errors are told in
+  // Within which all samples of a pixel lie, as a difference, per channel, in that space; infinite if nothing
+  // limits them.
   double sample_range = std::numeric_limits<double>::infinity();
   Vec3d cut_range;  // the most by which a ray that is not traced may change radiance; may be infinite
   std::uint64_t seed = 0;

@@ -31,6 +31,16 @@ inline constexpr std::string_view name_of(Filter filter) {
   return kFilters[static_cast<std::size_t>(filter)];
 }
 
+// What errors are measured in, and the names: radiance, or what a screen shows of it, sRGB-encoded from 0 to
+// 1; automatic is what the file's format keeps.
+enum class Space { automatic, linear, display };
+inline constexpr std::array<std::string_view, 3> kSpaces{"auto", "linear", "display"};
+inline constexpr std::string_view name_of(Space space) { return kSpaces[static_cast<std::size_t>(space)]; }
+
+// What becomes of a picture that misses its budget, and the names: the best that was made, or an error.
+enum class OnMiss { best, fail };
+inline constexpr std::array<std::string_view, 2> kOnMisses{"best", "fail"};
+
 // Values of the render options, one member an option. The table in core/plan/options.h gives each its name,
 // range and default. A member without a value was not given.
 struct RenderSettings {
@@ -53,6 +63,10 @@ struct RenderSettings {
   std::optional<Prediction> prediction;
   std::optional<double> time, shutter;             // seconds
   std::optional<std::vector<std::string>> layers;  // film channels beside radiance
+  // Budgets of one picture. Errors are root-mean-square; 0: none.
+  std::optional<double> error, seconds;
+  std::optional<Space> space;
+  std::optional<OnMiss> on_miss;
 
   bool operator==(const RenderSettings&) const = default;
 };

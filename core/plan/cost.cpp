@@ -10,7 +10,13 @@
 namespace orrery {
 namespace {
 
+constexpr int kChosenSamples = 16;
 constexpr double kSpecularShare = 0.5;  // of the rays, where some material is specular
+
+double camera_rays_of(const Plan& plan) {
+  const int samples = plan.free_samples ? std::min(plan.samples, kChosenSamples) : plan.samples;
+  return double(plan.width) * plan.height * samples;
+}
 
 // Seven of ten paths survive the roulette; each vertex sends one ray to a light source, and the first ones
 // are connected to those that others found. About two rays a sample look for what shines, and all that may
@@ -26,7 +32,7 @@ double expected_path_rays(const Scene& scene, const Plan& plan) {
     rays += share * (1 + surviving);
     share *= surviving;
   }
-  return double(plan.width) * plan.height * plan.samples * rays;
+  return camera_rays_of(plan) * rays;
 }
 
 double expected_tree_rays(const Scene& scene, const Plan& plan) {
@@ -46,7 +52,7 @@ double expected_tree_rays(const Scene& scene, const Plan& plan) {
   }
   const bool shadows = plan.direct_light && plan.shadows;
   const double lit = shadows ? (branches ? 1 - kSpecularShare : 1) : 0;
-  const double camera_rays = double(plan.width) * plan.height * plan.samples;
+  const double camera_rays = camera_rays_of(plan);
   return camera_rays * tree * (1 + lit * static_cast<double>(scene.lights.size()));
 }
 

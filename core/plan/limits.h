@@ -13,6 +13,7 @@ inline constexpr double kMinSize = 1e-90;  // of a primitive, metres: products o
 inline constexpr int kMaxSamples = 4096;
 inline constexpr int kMaxDepth = kDeepestRay;
 inline constexpr int kMaxReuse = 64;
+inline constexpr double kMaxBudgetSeconds = 3600;
 inline constexpr int kMaxLights = 1024;
 inline constexpr int kMaxObjects = 1'000'000;
 inline constexpr std::size_t kMaxInstanced = 20'000'000;  // primitives in all instances

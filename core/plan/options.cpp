@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/accelerators/registry.h"
+#include "core/base/error.h"
 #include "core/channels/registry.h"
 #include "core/model/scene.h"
 #include "core/model/technique.h"
@@ -164,6 +165,33 @@ constexpr std::array kOptions{
       .kind = O::NameList{&S::layers, channel_names},
       .placeholder = "NAMES",
       .help = "What an EXR file holds beside the picture: channels of what camera rays meet first."},
+    O{.key = "error",
+      .section = Section::budget,
+      .kind = O::Number{&S::error, {.min = 0, .max = 1}, 0},
+      .placeholder = "RMS",
+      .help =
+          "Root-mean-square error that the picture is to have at most: samples, depth, least contribution "
+          "and precision are chosen for it unless they are given. 0: none is asked.",
+      .in_scene = false},
+    O{.key = "space",
+      .section = Section::budget,
+      .kind = O::Enumeration<Space>{&S::space, kSpaces},
+      .help = "What errors are told in: radiance, or what a screen shows, from 0 to 1; auto: with a budget "
+              "what the file keeps, else radiance.",
+      .in_scene = false},
+    O{.key = "seconds",
+      .section = Section::budget,
+      .kind = O::Number{&S::seconds, {.min = 0, .max = kMaxBudgetSeconds}, 0},
+      .placeholder = "SECONDS",
+      .help = "Time that the answer may take, all in all: as many samples are traced as fit, unless they are "
+              "given. 0: no limit.",
+      .in_scene = false},
+    O{.key = "on_miss",
+      .section = Section::budget,
+      .kind = O::Enumeration<OnMiss>{&S::on_miss, kOnMisses},
+      .help = "Whether a picture that misses its budget is the best that was made, or an error.",
+      .in_scene = false,
+      .changes_pixels = false},
 };
 
 // The default.
@@ -260,7 +288,7 @@ constexpr O::Form form_of(const auto&) { return O::Form::string; }
 }  // namespace
 
 std::string_view name_of(Section section) {
-  constexpr std::array<std::string_view, kSections.size()> kNames{"camera", "image", "render"};
+  constexpr std::array<std::string_view, kSections.size()> kNames{"camera", "image", "render", "budget"};
   return kNames[static_cast<std::size_t>(section)];
 }
 
@@ -357,8 +385,33 @@ RenderSettings defaults_of(const std::optional<std::string>& technique) {
 
 }  // namespace
 
+bool has_budget(const RenderSettings& settings) {
+  return settings.error.value_or(0) > 0 || settings.seconds.value_or(0) > 0;
+}
+
+void require_no_budget(const RenderSettings& settings, std::string_view what) {
+  if (has_budget(settings))
+    throw InputError(settings.error.value_or(0) > 0 ? "/budget/error" : "/budget/seconds",
+                     "expected none or 0: a budget is of one picture, not of " + std::string(what));
+}
+
+namespace {
+
+// Completes what a budget leaves free.
+void free_for_budget(RenderSettings& settings) {
+  if (!settings.samples) settings.samples = kMaxSamples;
+  const double error = settings.error.value_or(0);
+  if (error == 0) return;
+  if (!settings.max_depth) settings.max_depth = kMaxDepth;
+  if (!settings.min_contribution) settings.min_contribution = error / 16;
+  if (!settings.precision) settings.precision = Precision::double_precision;
+}
+
+}  // namespace
+
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked) {
   RenderSettings all = asked;
+  if (has_budget(all)) free_for_budget(all);
   const auto complete = [&](const RenderSettings& otherwise) {
     for (const RenderOption& option : kOptions)
       if (!option.given(all)) option.copy(otherwise, all);

@@ -21,8 +21,8 @@ struct Scene;
 struct TechniqueType;
 
 // The member of a request's JSON that an option stands in.
-enum class Section { camera, image, render };
-inline constexpr std::array kSections{Section::camera, Section::image, Section::render};
+enum class Section { camera, image, render, budget };
+inline constexpr std::array kSections{Section::camera, Section::image, Section::render, Section::budget};
 std::string_view name_of(Section section);
 
 struct RenderOption {
@@ -64,7 +64,8 @@ struct RenderOption {
     Names (*names)();
   };
   using Kind = std::variant<Integer<int>, Integer<std::uint64_t>, Number, Flag, Point, Name,
-                            Enumeration<Precision>, Enumeration<Prediction>, Enumeration<Filter>, NameList>;
+                            Enumeration<Precision>, Enumeration<Prediction>, Enumeration<Filter>,
+                            Enumeration<Space>, Enumeration<OnMiss>, NameList>;
 
   std::string_view key;  // the name: in JSON, in queries and, with hyphens after --, on command lines
   std::string_view short_name = {};  // also allowed in queries and on command lines; empty: none
@@ -106,8 +107,15 @@ const RenderSettings& default_settings();
 void read_scene_options(Params& p, Section section, RenderSettings& settings);
 void read_request_options(Params& p, Section section, RenderSettings& settings);
 
+// Whether a picture is to be made until its error or its time is as asked.
+bool has_budget(const RenderSettings& settings);
+// Throws InputError if so, where `what` cannot keep any.
+void require_no_budget(const RenderSettings& settings, std::string_view what);
+
 // Every option as asked or else as the scene says or else its default, the time held within the scene's
-// motion.
+// motion. A budget frees what is not asked, whatever the scene says: of samples there may then be as many as
+// any picture may have; where an error is asked, rays may be as deep as any, those of trees with 1/16 of it
+// as least contribution, in double precision.
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked);
 
 // REQUIRES: the options of the camera are given.

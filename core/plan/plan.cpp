@@ -57,6 +57,7 @@ class Planner {
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
       leave_out_for_trees();
     }
+    if (plan_.space == Space::display) plan_.sample_range = 1;
     if (request_.full_model || plan_.technique->draws_light) return plan_;
     choose_lights();
     choose_specular();
@@ -83,9 +84,25 @@ class Planner {
     plan_.min_contribution = *asked.min_contribution;
     plan_.seed = *asked.seed;
     plan_.slice = request_.slice / 16 * 16;
+    if (*asked.space == Space::display) plan_.space = Space::display;
     plan_.technique = find_type(technique_types(), *asked.technique);
     plan_.time = *asked.time;
+    take_budget();
     take_camera();
+  }
+
+  void take_budget() {
+    const RenderSettings& asked = plan_.asked;
+    if (!has_budget(asked)) return;
+    plan_.free_samples = !request_.samples;
+    plan_.free_contribution = *asked.error > 0 && !request_.min_contribution && !plan_.technique->draws_light;
+    if (*asked.error > 0)
+      decide("error", "at most " + number_text(*asked.error) + " RMS",
+             "as asked, of " + std::string(name_of(plan_.space)) +
+                 " values; samples are traced until they tell that it is so");
+    if (*asked.seconds > 0) decide("seconds", "at most " + seconds(*asked.seconds), "as asked");
+    if (plan_.free_samples)
+      decide("samples", "at most " + std::to_string(plan_.samples), "a budget chooses them");
   }
 
   void open_shutter() {
@@ -127,7 +144,11 @@ class Planner {
     const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
-      return decide("precision", precision_name(plan_.double_precision), "as asked", rounding_bound());
+      const bool chosen = !request_.precision && *plan_.asked.error > 0;
+      return decide(
+          "precision", precision_name(plan_.double_precision),
+          chosen ? "what float does to a picture is not bounded, and an error is asked" : "as asked",
+          rounding_bound());
     }
     if (plan_.technique->draws_light && plan_.frame.aperture_radius > plan_.frame.focus_distance) {
       plan_.double_precision = true;
@@ -232,6 +253,7 @@ class Planner {
   }
 
   std::string depth_reason() const {
+    if (*plan_.asked.error > 0 && !request_.max_depth) return "the most there may be, for the error asked";
     return request_.max_depth || scene_.render.max_depth ? "as asked" : "by default";
   }
 
@@ -270,7 +292,9 @@ class Planner {
     }
     if (plan_.min_contribution > 0)
       decide("least contribution", number_text(plan_.min_contribution),
-             "as asked; weaker rays are replaced by ambient light", cut_bound(1));
+             std::string(plan_.free_contribution ? "a share of the error asked" : "as asked") +
+                 "; weaker rays are replaced by ambient light",
+             cut_bound(1));
   }
 
   // Of rays that are not traced, before any is: of so much weight in all. The picture's ledger tells less.

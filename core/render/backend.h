@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <stop_token>
 
@@ -21,6 +22,11 @@ struct RenderControl {
   std::function<void(int done, int total)> progress = {};  // tiles; called from several threads at once
   bool background = false;                                 // others come first
   Pass* pass = nullptr;                                    // as for_each() takes it
+  // For budgets: seconds that the caller's client has waited, from any thread; those since the call if empty.
+  std::function<double()> used_s = {};
+  // What a budget may spend, whatever it says.
+  double most_rays = std::numeric_limits<double>::infinity();
+  double most_s = std::numeric_limits<double>::infinity();
 };
 
 struct RenderStats {

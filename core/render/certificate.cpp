@@ -1,9 +1,28 @@
 #include "core/render/certificate.h"
 
+#include "core/image/image.h"
 #include "core/model/technique.h"
 
 namespace orrery {
 namespace {
+
+// What a difference that is known in radiance may be on a screen: the curve e of sRGB is concave and 0 at 0,
+// so no two values differ by more than e of their difference; and the mean of e^2 is at most the concave
+// envelope of e^2 at the mean, a chord from 0 to where it touches and e^2 beyond.
+constexpr double kCurveError = 3e-6;
+double display_max(double max) { return std::min(1.0, encode_srgb(max) + kCurveError); }
+double display_rms(double mean) {
+  constexpr double kTouches = 0.0615, kSlope = 1.2304;
+  const double encoded = encode_srgb(mean);
+  return std::min(1.0, std::sqrt(mean < kTouches ? kSlope * mean : encoded * encoded) + kCurveError);
+}
+
+// Of what stats tell: estimated unless it may be told the largest difference.
+Bound bound_of(const Plan& plan, const Omitted& away, bool proved) {
+  const bool display = plan.space == Space::display;
+  const double rms = display ? display_rms(away.mean()) : away.rms();
+  return proved ? Bound::proved(display ? display_max(away.max()) : away.max(), rms) : Bound::estimated(rms);
+}
 
 // Rays that were not traced: what the ledger says. Weights of paths are those that were drawn.
 Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
@@ -12,8 +31,7 @@ Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   const Omitted& omitted = stats.omitted;
   if (!std::isfinite(omitted.max()))
     return {subject, Bound::unknown(), "nothing limits what they would find"};
-  if (plan.technique->draws_light) return {subject, Bound::estimated(omitted.rms())};
-  return {subject, Bound::proved(omitted.max(), omitted.rms())};
+  return {subject, bound_of(plan, omitted, !plan.technique->draws_light)};
 }
 
 Certificate::Term precision_term(const Plan& plan) {
@@ -23,12 +41,24 @@ Certificate::Term precision_term(const Plan& plan) {
 
 // With means a and b of the halves, (a - b)^2 / 4 is on average at least the squared error of their mean; and
 // no difference is larger than the range.
-Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats) {
-  const char* const subject = "samples";
+Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, double doubt) {
+  const char* const subject = Certificate::kSamples;
   if (!stats.error.known()) return {subject, Bound::unknown(), "only an even number of them tells its error"};
   if (stats.halves.count() == 0) return {subject, Bound::unknown(), "nothing limits what one may bring"};
-  const double mean = stats.halves.upper_mean(1 - Certificate::kConfidence);
-  return {subject, Bound::estimated(plan.sample_range * std::sqrt(mean) / 2)};
+  return {subject, Bound::estimated(plan.sample_range * std::sqrt(stats.halves.upper_mean(doubt)) / 2)};
+}
+
+// Codes of 8 bits lie by half of one at most beside what they stand for, evenly.
+Certificate::Term encoding_term() {
+  constexpr double kHalf = 0.5 / 255;
+  return {"codes of 8 bits", {Bound::Kind::estimated, kHalf, kHalf / std::sqrt(3.0)}};
+}
+
+// What halves that agree everywhere would prove of a picture of so many pixels.
+std::optional<double> least_provable(const Plan& plan, double doubt) {
+  if (!std::isfinite(plan.sample_range)) return {};
+  const double pixels = double(plan.width) * plan.height;
+  return plan.sample_range * std::sqrt(-std::expm1(std::log(doubt) / pixels)) / 2;
 }
 
 }  // namespace
@@ -46,11 +76,16 @@ Bound Certificate::known() const {
   return sum;
 }
 
-Certificate certify(const Plan& plan, const RenderStats& stats) {
-  Certificate found{{omitted_term(plan, stats), precision_term(plan), sampling_term(plan, stats)}};
-  if (stats.error.known()) found.estimate = stats.error.pixel.rmse();
+Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {
+  Certificate found{{omitted_term(plan, stats), precision_term(plan), sampling_term(plan, stats, doubt)}};
+  found.space = plan.space;
+  found.least_provable = least_provable(plan, doubt);
+  const bool display = plan.space == Space::display;
+  if (display) found.terms.push_back(encoding_term());
+  if (stats.error.known())
+    found.estimate = display ? std::sqrt(stats.halves.mean()) / 2 : stats.error.pixel.rmse();
   if (plan.clamp_indirect > 0) {
-    found.terms.push_back({"clamp of indirect light", Bound::estimated(stats.clamped.pixels.rms())});
+    found.terms.push_back({"clamp of indirect light", bound_of(plan, stats.clamped.pixels, false)});
     Certificate::Bias& bias = found.biases.emplace_back();
     bias.option = "clamp_indirect";
     bias.value = plan.clamp_indirect;

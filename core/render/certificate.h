@@ -12,9 +12,11 @@ namespace orrery {
 
 // How far a picture may be from the reference: the picture that its technique makes without cuts, of
 // endlessly many samples over each pixel, by exact arithmetic. (Light that the technique does not follow at
-// all is no part of it.) In linear radiance.
+// all is no part of it.) In the plan's space.
 struct Certificate {
   static constexpr double kConfidence = 0.95;  // of what is estimated, over seeds
+
+  static constexpr const char* kSamples = "samples";  // the subject of what they leave
 
   struct Term {
     std::string subject;
@@ -22,6 +24,9 @@ struct Certificate {
     std::string reason = {};  // why it is unknown
   };
   std::vector<Term> terms;
+  Space space = Space::linear;
+  // RMS below which no samples of a picture of that size can prove their error; none if no size can.
+  std::optional<double> least_provable = {};
   // RMSE that the halves of the samples tell: of noise, so it is no part of a sum.
   std::optional<double> estimate = {};
 
@@ -39,6 +44,8 @@ struct Certificate {
   Bound known() const;  // of the terms that are not unknown
 };
 
-Certificate certify(const Plan& plan, const RenderStats& stats);
+// `doubt` is the probability with which what is estimated may be wrong: less than 1 - kConfidence if others
+// are looked at, too.
+Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = 1 - Certificate::kConfidence);
 
 }  // namespace orrery

@@ -3,7 +3,8 @@
 
 #include "core/base/work_scope.h"
 #include "core/model/technique.h"
-#include "core/render/renderer.h"
+#include "core/plan/options.h"
+#include "core/render/budget.h"
 
 namespace orrery {
 namespace {
@@ -38,6 +39,7 @@ std::vector<TileView> tiles_of(const Film& film, int first_sample, int samples) 
 
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control) {
+  if (has_budget(plan->asked)) return render_within_budget(scene, plan, pool, control);
   RenderStats stats;
   stats.build_ms = plan.settle_ms();
   const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);

@@ -3,18 +3,44 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/error.h"
 #include "core/render/certificate.h"
 
 namespace orrery {
+
+// What became of the budget of a picture.
+struct BudgetOutcome {
+  double error = 0, seconds = 0;  // asked; 0: was not
+  RenderSettings settings;        // that give the picture again, without a budget
+  bool error_met = true, seconds_met = true;
+  double used_s = 0;                       // when the last pass ended
+  std::optional<double> least_error = {};  // that can be proved of a picture of that size
+  std::string reason;                      // of a miss, or empty
+
+  bool met() const { return error_met && seconds_met; }
+};
+
+class BudgetMissed : public Error {  // where that is to be an error
+ public:
+  BudgetMissed(BudgetOutcome outcome, const Certificate& certificate);
+  const BudgetOutcome& outcome() const { return outcome_; }
+  const Certificate& certificate() const { return certificate_; }
+
+ private:
+  BudgetOutcome outcome_;
+  Certificate certificate_;
+};
 
 struct RenderResult {
   Film film;
   RenderStats stats;
   Certificate certificate = {};
+  std::optional<BudgetOutcome> budget = {};
 };
 
-// Renders one frame on the pool: every tile with all its samples. Channels of the plan are kept with
-// FilmStorage::sums alone. Throws Cancelled once control.stop is requested.
+// Renders one frame on the pool: every tile with all its samples, or with as many as the plan's budget takes,
+// see render_within_budget(); throws BudgetMissed. Channels of the plan are kept with FilmStorage::sums
+// alone. Throws Cancelled once control.stop is requested.
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control = {});
 
@@ -37,6 +63,7 @@ class ProgressiveRender {
   void refine(int samples, const RenderControl& control = {});
 
   const Film& film() const { return film_; }
+  Film take_film() { return std::move(film_); }  // after the last pass
   // Of all passes; the error is that of the film, where the last pass has at least doubled its samples.
   const RenderStats& stats() const { return stats_; }
 

@@ -4,6 +4,7 @@
 
 #include "core/cameras/shutter.h"
 #include "core/cameras/thin_lens.h"
+#include "core/image/image.h"
 
 namespace orrery {
 namespace {
@@ -210,10 +211,14 @@ void TileRenderer<T>::add_sample() {
 template <class T>
 void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
   const double scale = 2.0 / (samples * std::max(plan_.sample_range, std::numeric_limits<double>::min()));
+  const double share = 2.0 / samples;  // of a half
+  const bool display = plan_.space == Space::display;
   TileSums::Plane squares{};
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < kBatch; ++i) {
-      const double difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * scale;
+      const double first = first_half_[c][i], second = sums_.radiance[c][i] - first;
+      const double difference =
+          display ? encode_srgb(first * share) - encode_srgb(second * share) : (first - second) * scale;
       squares[i] += difference * difference;
     }
   const bool whole = tile.width == kTileSide && tile.height == kTileSide;

@@ -32,6 +32,12 @@ double UnitHistogram::count() const {
   return all;
 }
 
+double UnitHistogram::mean() const {
+  double sum = 0;
+  for (const Bin& bin : bins_) sum += bin.sum;
+  return sum > 0 ? sum / count() : 0;
+}
+
 double UnitHistogram::low_of(std::size_t bin) {
   if (bin == 0) return 0;
   const auto part = static_cast<int>(bin) - 1;
@@ -65,10 +71,8 @@ bool UnitHistogram::rejects(double mean, double log_odds) const {
 double UnitHistogram::upper_mean(double delta) const {
   const double values = count();
   if (values == 0) return 1;
-  double sum = 0;
-  for (const Bin& bin : bins_) sum += bin.sum;
   const double log_odds = -std::log(delta);
-  double kept = std::max(sum / values, 1e-18), rejected = 1;  // by their logarithms: means may be tiny
+  double kept = std::max(mean(), 1e-18), rejected = 1;  // by their logarithms: means may be tiny
   if (!rejects(1 - 1e-12, log_odds)) return 1;
   while (rejected / kept > 1.001) {
     const double middle = std::sqrt(kept * rejected);

@@ -17,6 +17,7 @@ class UnitHistogram {
   }
   void add(const UnitHistogram& other);
   double count() const;
+  double mean() const;  // 0 without values
 
   // At least the mean of what the values were drawn from, independently, with probability 1 - delta, whatever
   // its distribution (Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting",

@@ -1,6 +1,7 @@
 #include "core/render/views.h"
 
 #include "core/base/error.h"
+#include "core/plan/options.h"
 
 namespace orrery {
 namespace {
@@ -32,6 +33,11 @@ FilmStorage storage_for(FileFormat format, const Plan& plan) {
 void require_layers_kept(const RenderRequest& request, FileFormat format) {
   if (format != FileFormat::exr && request.layers && !request.layers->empty())
     throw InputError("/render/layers", "expected none, as EXR is the only format that keeps layers");
+}
+
+void choose_space(RenderRequest& request, FileFormat format) {
+  const bool open = request.space.value_or(Space::automatic) == Space::automatic;
+  if (open && has_budget(request) && format != FileFormat::exr) request.space = Space::display;
 }
 
 std::string encode_film(const Film& film, FileFormat format, const PngOptions& png) {

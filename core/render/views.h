@@ -15,6 +15,10 @@ FilmStorage storage_for(FileFormat format, const Plan& plan);
 // Throws InputError where layers are asked for in a format that cannot keep them: EXR alone does.
 void require_layers_kept(const RenderRequest& request, FileFormat format);
 
+// Has a budget's error told in what the format keeps, where the request does not say: as a screen shows it of
+// PNG and JPEG, radiance of EXR.
+void choose_space(RenderRequest& request, FileFormat format);
+
 // A file that shows the film: PNG and JPEG its radiance as sRGB; EXR its radiance as R, G and B, and each
 // channel as a layer of its name ("normal.X"), all as 32-bit floats. The same film gives the same bytes.
 // Has interruption points. REQUIRES: the film keeps what storage_for() says, or more.

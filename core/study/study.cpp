@@ -7,6 +7,7 @@
 #include "core/model/accelerator.h"
 #include "core/model/technique.h"
 #include "core/plan/limits.h"
+#include "core/plan/options.h"
 #include "core/plan/plan.h"
 #include "core/techniques/registry.h"
 
@@ -64,6 +65,7 @@ void leave_out_same(std::vector<Point>& points) {
 }  // namespace
 
 Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent) : view_(view) {
+  require_no_budget(view, "a chart");
   const Plan plan = make_plan(scene, view);
   seed_ = plan.seed;
   require_chartable(view, plan);

@@ -14,6 +14,13 @@ class SettledPlan {
   const Plan* operator->() const { return &plan_; }
   double settle_ms() const { return settle_ms_; }  // that the decision took; 0 if it was known
 
+  // One that traces weaker rays, too, or fewer.
+  SettledPlan with_min_contribution(double weight) const {
+    SettledPlan other = *this;
+    other.plan_.min_contribution = weight;
+    return other;
+  }
+
  private:
   friend SettledPlan settle(const PreparedScene& scene, Plan plan, std::stop_token stop);
   SettledPlan(Plan plan, double settle_ms) : plan_(std::move(plan)), settle_ms_(settle_ms) {}

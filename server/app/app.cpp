@@ -13,6 +13,8 @@ namespace orrery {
 
 namespace {
 
+constexpr double kShareOfBudgets = 0.9;  // of the time of a request, so that the best that was made is told
+
 // A thread traces 15 to 80 million rays a second of the sample scenes.
 constexpr double kRaysAThreadSecond = 50e6;
 
@@ -97,24 +99,30 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
   demand.sharers = sharers_.of(key);
   const auto start = Clock::now();
   const auto since = timer_.now();
-  const Pictures::Found found =
-      pictures_.get(picture_key(key, format), {caller.gone, caller.client, demand.sharers, &admission_},
-                    [&](const std::stop_token& nobody_waits) {
-                      require_request_rays(scene.scene(), plan);
-                      Picture picture;
-                      Stage stage = Stage::queue;
-                      watched({caller.client, nobody_waits}, since, stage, [&](const std::stop_token& stop) {
-                        picture = make(scene, plan, key, format, demand, stop, timing, stage);
-                      });
-                      return picture;
-                    });
+  const auto make_picture = [&](const std::stop_token& nobody_waits) {
+    require_request_rays(scene.scene(), plan);
+    Picture picture;
+    Stage stage = Stage::queue;
+    watched({caller.client, nobody_waits}, since, stage, [&](const std::stop_token& stop) {
+      picture = make(scene, plan, key, format, demand, since, stop, timing, stage);
+    });
+    return picture;
+  };
+  if (*plan.asked.seconds > 0) {
+    const auto picture = std::make_shared<const Picture>(make_picture(caller.gone));
+    ++meters_.pictures_made;
+    return {picture, true};
+  }
+  const Pictures::Found found = pictures_.get(
+      picture_key(key, format), {caller.gone, caller.client, demand.sharers, &admission_}, make_picture);
   ++(found.made_here ? meters_.pictures_made : meters_.pictures_found);
   if (!found.made_here) timing.queue += milliseconds_since(start);
   return {found.value, found.made_here && !found.value->of_kept_film};
 }
 
 Picture App::make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-                  const Demand& demand, const std::stop_token& stop, Timing& timing, Stage& stage) {
+                  const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,
+                  Stage& stage) {
   std::optional<Admission::Ticket> ticket;
   const auto enter = [&](const Demand& asked, const std::stop_token& ends) {
     const auto start = Clock::now();
@@ -123,15 +131,25 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   };
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
   if (storage == FilmStorage::sums) require_layers_fit(plan, memory_.most());
-  const Films::Found film = films_.get(
-      key + std::to_string(static_cast<int>(storage)), {stop}, [&](const std::stop_token& nobody_waits) {
-        enter(demand, nobody_waits);
-        stage = Stage::render;
-        return WorkScope::current().memory->run(nobody_waits, [&] {
-          return services_.render(*ticket, scene, plan, storage,
-                                  {.stop = nobody_waits, .background = demand.lane == Lane::batch});
-        });
-      });
+  const double before_s = (timing.load + timing.plan + timing.queue) / 1000;
+  const RenderControl control{
+      .background = demand.lane == Lane::batch,
+      .used_s = [this, since,
+                 before_s] { return before_s + std::chrono::duration<double>(timer_.now() - since).count(); },
+      .most_rays = settings_.request_rays / ray_weight(scene.scene(), plan),
+      .most_s = kShareOfBudgets * static_cast<double>(settings_.request_seconds.count())};
+  const auto make_film = [&](const std::stop_token& nobody_waits) {
+    enter(demand, nobody_waits);
+    stage = Stage::render;
+    RenderControl stopped = control;
+    stopped.stop = nobody_waits;
+    return WorkScope::current().memory->run(
+        nobody_waits, [&] { return services_.render(*ticket, scene, plan, storage, stopped); });
+  };
+  const Films::Found film =
+      *plan.asked.seconds > 0
+          ? Films::Found{std::make_shared<const RenderResult>(make_film(stop)), true}
+          : films_.get(key + std::to_string(static_cast<int>(storage)), {stop}, make_film);
   const RenderStats& stats = film.value->stats;
   if (film.made_here) {
     timing.build = stats.build_ms;
@@ -144,6 +162,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
                   .stats = stats,
                   .certificate = film.value->certificate,
                   .warnings = find_warnings(scene.scene(), plan, stats.counts),
+                  .budget = film.value->budget,
                   .of_kept_film = !film.made_here};
   stage = Stage::encode;
   const auto start = Clock::now();

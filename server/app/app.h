@@ -69,7 +69,8 @@ class App {
   AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Caller& caller);
 
   // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded
-  // in its turn, once for all who ask. Throws as read(), and TooManyRays instead of rendering it.
+  // in its turn, once for all who ask. One with a budget of time, which counts from
+  // now, is made for each who asks. Throws as read(), BudgetMissed, and TooManyRays instead of rendering it.
   Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Caller& caller, Timing& timing);
 
@@ -99,9 +100,10 @@ class App {
   // counts from `since`. It takes memory of the caller's share.
   template <class Work>
   void watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work);
-  // Renders it, unless a film of it is kept, and encodes it.
+  // Renders it, unless a film of it is kept, and encodes it. The client has waited since `since`.
   Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-               const Demand& demand, const std::stop_token& stop, Timing& timing, Stage& stage);
+               const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,
+               Stage& stage);
 
   Timer& timer_;
   std::atomic<bool> retires_{false};

@@ -38,6 +38,14 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
+// What a request of the plan says: what a budget chooses is left to it.
+RenderSettings requested(const Plan& plan) {
+  RenderSettings settings = settings_of(plan);
+  if (plan.free_samples) settings.samples.reset();
+  if (plan.free_contribution) settings.min_contribution.reset();
+  return settings;
+}
+
 }  // namespace
 
 nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
@@ -53,6 +61,7 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
                          {"lights", scene.lights.size()}}},
                        {"image", section_json(settings, Section::image)}};
   json.update(section_json(settings, Section::render));
+  json["budget"] = section_json(settings, Section::budget);
   json["stages"] = {{"direct_light", plan.direct_light},
                     {"shadows", plan.shadows},
                     {"specular", plan.specular},
@@ -63,17 +72,17 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
   for (const Problem& p : find_warnings(scene, plan))
     json["warnings"].push_back({{"pointer", p.pointer}, {"detail", p.detail}});
   json["request"] = {{"scene_id", scene.id}};
-  json["request"].update(ordered_json::parse(to_json(settings)));
+  json["request"].update(ordered_json::parse(to_json(requested(plan))));
   return json;
 }
 
 std::string explain_text(const Scene& scene, const Plan& plan) {
   std::string text =
       std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels, " +
-      std::to_string(plan.samples) + (plan.samples == 1 ? " sample" : " samples") + " each, of " +
-      std::to_string(scene.object_count) + (scene.object_count == 1 ? " object" : " objects") +
-      " in the light of " + std::to_string(scene.lights.size()) +
-      (scene.facts.materials.emits ? " and of what emits" : "") +
+      (plan.free_samples ? "at most " : "") + std::to_string(plan.samples) +
+      (plan.samples == 1 ? " sample" : " samples") + " each, of " + std::to_string(scene.object_count) +
+      (scene.object_count == 1 ? " object" : " objects") + " in the light of " +
+      std::to_string(scene.lights.size()) + (scene.facts.materials.emits ? " and of what emits" : "") +
       (scene.environment && plan.technique->draws_light ? " and of an environment" : "") + ": " +
       std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "\n";
   std::size_t subject_width = 0, choice_width = 0;

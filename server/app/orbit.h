@@ -37,6 +37,7 @@ struct OrbitPath {
 
 // One turn in so many frames, and what is left of the scene's motion.
 inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int frames) {
+  require_no_budget(first, "an orbit");
   OrbitPath path{first, scene.motion, 360.0 / frames};
   static_cast<RenderSettings&>(path.first) = resolve(scene, first);
   path.step_seconds = (scene.motion.last - *path.first.time) / frames;

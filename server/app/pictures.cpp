@@ -1,8 +1,20 @@
 #include "server/app/pictures.h"
 
+#include <limits>
+
 namespace orrery {
 
-std::size_t held_bytes(const Picture& picture) { return picture.bytes.capacity(); }
+namespace {
+
+// What missed its budget is not kept: there may be more time another time.
+constexpr std::size_t kTooMany = std::numeric_limits<std::size_t>::max() / 2;
+bool missed(const std::optional<BudgetOutcome>& budget) { return budget && !budget->met(); }
+
+}  // namespace
+
+std::size_t held_bytes(const Picture& picture) {
+  return missed(picture.budget) ? kTooMany : picture.bytes.capacity();
+}
 
 std::string picture_key(const std::string& work, FileFormat format) {
   return work + std::to_string(static_cast<int>(format));
@@ -10,6 +22,7 @@ std::string picture_key(const std::string& work, FileFormat format) {
 
 std::size_t held_bytes(const RenderResult& rendered) {
   const Film& film = rendered.film;
+  if (missed(rendered.budget)) return kTooMany;
   return Film::bytes(film.width(), film.height(), film.storage(), film.channels());
 }
 

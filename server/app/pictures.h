@@ -16,7 +16,8 @@ struct Picture {
   RenderStats stats;
   Certificate certificate = {};
   std::vector<Problem> warnings = {};  // see find_warnings()
-  bool of_kept_film = false;           // nothing was rendered for it
+  std::optional<BudgetOutcome> budget = {};
+  bool of_kept_film = false;  // nothing was rendered for it
 };
 std::size_t held_bytes(const Picture& picture);
 // By format and by `work`, the key of what it is a picture of.

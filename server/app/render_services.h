@@ -54,7 +54,10 @@ struct RenderServices {
     const SceneStore::Measured measured(scenes, scene);
     const SettledPlan settled = settle(scene, plan, control.stop);
     RenderResult result = render_frame(scene, settled, storage, pool, shared);
-    count(ticket, scene.scene(), *settled, result.stats.counts.rays.total(),
+    Plan done = *settled;
+    if (result.budget) done.samples = *result.budget->settings.samples;
+    done.free_samples = false;
+    count(ticket, scene.scene(), done, result.stats.counts.rays.total(),
           result.stats.build_ms + result.stats.trace_ms);
     return result;
   }

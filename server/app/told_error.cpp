@@ -47,7 +47,6 @@ std::optional<double> known(double value) {
 }
 
 constexpr const char* kReference = "technique";
-constexpr const char* kSpace = "linear";
 
 }  // namespace
 
@@ -64,12 +63,13 @@ ordered_json certificate_json(const Certificate& certificate) {
     if (!term.reason.empty()) json["reason"] = term.reason;
   }
   ordered_json json = {{"reference", kReference},
-                       {"space", kSpace},
+                       {"space", name_of(certificate.space)},
                        {"confidence", Certificate::kConfidence},
                        {"terms", std::move(terms)},
                        {"total", bound_json(certificate.total())},
                        {"known", bound_json(certificate.known())}};
   if (certificate.estimate) json["estimate"] = *certificate.estimate;
+  if (certificate.least_provable) json["least_provable"] = *certificate.least_provable;
   for (const Certificate::Bias& bias : certificate.biases) {
     ordered_json errors = ordered_json::array();
     for (const double error : bias.standard_error) errors.push_back(number_or_null(known(error)));
@@ -111,7 +111,28 @@ std::string bound_text(const Certificate& certificate) {
   if (certificate.estimate)
     text += ";confidence=" + number_or_unknown(Certificate::kConfidence) +
             ";estimate=" + number_or_unknown(certificate.estimate);
-  return text + ";reference=" + kReference + ";space=" + kSpace;
+  return text + ";reference=" + kReference + ";space=" + std::string(name_of(certificate.space));
+}
+
+ordered_json budget_json(const BudgetOutcome& outcome) {
+  ordered_json json = {{"met", outcome.met()}};
+  if (outcome.error > 0) json.update({{"error", outcome.error}, {"error_met", outcome.error_met}});
+  if (outcome.seconds > 0) json.update({{"seconds", outcome.seconds}, {"seconds_met", outcome.seconds_met}});
+  json["used_s"] = outcome.used_s;
+  if (outcome.error > 0) json["reachable_error"] = number_or_null(outcome.least_error);
+  if (!outcome.reason.empty()) json["reason"] = outcome.reason;
+  return json;
+}
+
+std::string budget_text(const BudgetOutcome& outcome) {
+  std::string text = outcome.met() ? "met=?1" : "met=?0";
+  if (outcome.error > 0)
+    text += ";error=" + number_or_unknown(outcome.error) + ";error-met=?" + (outcome.error_met ? "1" : "0");
+  if (outcome.seconds > 0)
+    text += ";seconds=" + number_or_unknown(outcome.seconds) + ";seconds-met=?" +
+            (outcome.seconds_met ? "1" : "0") + ";used=" + number_or_unknown(outcome.used_s);
+  if (!outcome.reason.empty()) text += ";reason=\"" + outcome.reason + "\"";
+  return text;
 }
 
 }  // namespace orrery

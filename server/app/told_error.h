@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "core/render/certificate.h"
+#include "core/render/renderer.h"
 
 // What a picture tells of its own error: RMSE of linear radiance, with what it took.
 namespace orrery {
@@ -29,6 +29,13 @@ nlohmann::ordered_json certificate_json(const Certificate& certificate);
 // reference=technique;space=linear"; where the kind is unknown, with because="precision, samples", and with
 // known, known-kind and known-max of what is known.
 std::string bound_text(const Certificate& certificate);
+
+// {"met", "error", "error_met", "seconds", "seconds_met", "used_s", "reachable_error", "reason"}: what was
+// asked, the least error that can be proved, null if none can, and a reason where it was missed.
+nlohmann::ordered_json budget_json(const BudgetOutcome& outcome);
+
+// The same for a header: "met=?0;error=0.001;reason=\"...\"" or "met=?1;seconds=2;used=1.83".
+std::string budget_text(const BudgetOutcome& outcome);
 
 // Of each bias for a header: "clamp_indirect=10;mean=-0.0012 -0.001 -0.0008;error=0.0001 0.0001 0.0001", by
 // channel; empty if there is none.

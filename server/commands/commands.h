@@ -26,6 +26,6 @@ Command add_catalog(CLI::App& root);
 Command add_schema(CLI::App& root);
 
 // Exit statuses of the program.
-inline constexpr int kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 130;
+inline constexpr int kDone = 0, kFailed = 1, kBadInput = 2, kMissed = 3, kInterrupted = 130;
 
 }  // namespace orrery

@@ -21,6 +21,8 @@ Examples:
   orrery render scenes/glass.json -o glass.png --width 1920 --height 1080 --samples 16
   orrery render scenes/paper.json -o turned.exr --azimuth 30 --elevation 10 --distance 1.5
   orrery render scenes/paper.json --stats            renders, writes no picture
+  orrery render scenes/cornell-box.json -o box.png --error 0.02
+  orrery render scenes/cornell-box.json -o box.png --seconds 2
 )";
 
 struct RenderOptions {
@@ -30,17 +32,30 @@ struct RenderOptions {
   RenderFlags render;
 };
 
+// The plan that a budget came to.
+Plan made_plan(Plan plan, const std::optional<BudgetOutcome>& budget) {
+  if (!budget) return plan;
+  plan.asked = budget->settings;
+  plan.samples = *plan.asked.samples;
+  plan.min_contribution = *plan.asked.min_contribution;
+  return plan;
+}
+
 RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, FileFormat format,
-                                  WorkerPool& pool, const SignalWatch& signals, ProgressBar& bar) {
+                                  WorkerPool& pool, const SignalWatch& signals, Clock::time_point begin,
+                                  ProgressBar& bar) {
   bar.say("making " + std::to_string(scene.scene().primitive_count()) + " primitives ready");
-  return render_frame(
-      scene, settle(scene, plan, signals.interrupted()), storage_for(format, plan), pool,
-      {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar.update(done, total); }});
+  return render_frame(scene, settle(scene, plan, signals.interrupted()), storage_for(format, plan), pool,
+                      {.stop = signals.interrupted(),
+                       .progress = [&](int done, int total) { bar.update(done, total); },
+                       .used_s = [begin] { return milliseconds_since(begin) / 1000; }});
 }
 
 int render(const RenderOptions& options) {
+  const auto begin = Clock::now();
   const FileFormat format = options.output ? format_of(*options.output) : FileFormat::png;
-  const RenderRequest request = read_render_flags(options.render);
+  RenderRequest request = read_render_flags(options.render);
+  choose_space(request, format);
   if (options.output) require_layers_kept(request, format);
   if (options.output) require_writable(*options.output);
   RunStats stats;
@@ -50,18 +65,22 @@ int render(const RenderOptions& options) {
   const PreparedScene scene(load_scene_file(options.render.scene));
   stats.load_ms = milliseconds_since(start);
   const SignalWatch signals;  // after reading, which a signal ends as it would any program
-  const Plan plan = make_plan(scene.scene(), request);
+  Plan plan = make_plan(scene.scene(), request);
   WorkerPool pool(options.threads);
   stats.threads = pool.threads();
 
   const double cpu_before = process_cpu_ms();
-  const RenderResult result = render_with_progress(scene, plan, format, pool, signals, *bar);
+  const RenderResult result = render_with_progress(scene, plan, format, pool, signals, begin, *bar);
   bar.reset();
   stats.render_cpu_s = (process_cpu_ms() - cpu_before) / 1000;
   stats.render = result.stats;
   stats.certificate = result.certificate;
+  stats.budget = result.budget;
   for (const Problem& p : find_warnings(scene.scene(), plan, result.stats.counts))
     std::cerr << "orrery: warning: " << p.text() << "\n";
+  if (result.budget && !result.budget->met())
+    std::cerr << "orrery: warning: the budget is missed: " << result.budget->reason << "\n";
+  plan = made_plan(std::move(plan), result.budget);
   if (options.output) {
     start = Clock::now();
     const std::string bytes = encode_film(result.film, format);

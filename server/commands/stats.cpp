@@ -94,6 +94,7 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
   json.update(measured);
   if (stats.render.error.known()) json["error"] = error_json(stats.render);
   json["certificate"] = certificate_json(stats.certificate);
+  if (stats.budget) json["budget"] = budget_json(*stats.budget);
   return json;
 }
 
@@ -121,6 +122,7 @@ std::string stats_text(const Plan& plan, const RunStats& stats) {
          error.pixel.rmse(), low, high, error.block4.rmse(), error.block32.rmse());
   }
   line(text, "%-12s %s", "error bound", bound_text(stats.certificate).c_str());
+  if (stats.budget) line(text, "%-12s %s", "budget", budget_text(*stats.budget).c_str());
   if (!stats.certificate.biases.empty()) line(text, "%-12s %s", "bias", bias_text(stats.certificate).c_str());
   if (stats.render.non_finite_pixels > 0)
     line(text, "%-12s %14llu", "not finite", static_cast<unsigned long long>(stats.render.non_finite_pixels));

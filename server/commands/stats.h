@@ -15,6 +15,7 @@ struct RunStats {
   double render_cpu_s = 0;  // while rendering: building included, loading and encoding not
   RenderStats render;
   Certificate certificate = {};
+  std::optional<BudgetOutcome> budget = {};
 };
 
 nlohmann::ordered_json stats_json(const Plan& plan, const RunStats& stats);

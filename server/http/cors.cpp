@@ -65,9 +65,8 @@ void allow_origin(const Request& request, const std::vector<std::string>& origin
   if (!is_listed(request, origins)) return;
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
   response.set("Access-Control-Expose-Headers",
-               "ETag, Location, Orrery-Error-Bound, Orrery-Scene-Id, Orrery-Warning, Retry-After, "
-               "Server-Timing, X-Bias, X-Rays, X-RMSE, "
-               "X-Request-ID");
+               "Content-Location, ETag, Location, Orrery-Budget, Orrery-Error-Bound, Orrery-Scene-Id, "
+               "Orrery-Warning, Retry-After, Server-Timing, X-Bias, X-Rays, X-RMSE, X-Request-ID");
 }
 
 }  // namespace orrery

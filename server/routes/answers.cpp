@@ -189,6 +189,16 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
   return response;
 }
 
+void set_budget(Response& response, std::string_view type, const Scene& scene, const Picture& picture,
+                const std::string& prefix) {
+  if (!picture.budget) return;
+  response.set("Orrery-Budget", budget_text(*picture.budget));
+  if (type != "image/png") return;
+  const std::string query = query_of(scene, picture.budget->settings);
+  response.set("Content-Location",
+               prefix + "/v1/scenes/" + scene.id + "/frame.png" + (query.empty() ? "" : "?" + query));
+}
+
 Response json_answer(int status, const nlohmann::ordered_json& json) {
   return json_response(status, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }

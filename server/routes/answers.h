@@ -40,6 +40,11 @@ void set_warnings(Response& response, std::span<const Problem> warnings);
 // X-RMSE where its samples tell their error.
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);
 
+// Of a picture that was made to a budget: Orrery-Budget, what became of it; and of PNG Content-Location, the
+// address that gives the same bytes without it, below `prefix`.
+void set_budget(Response& response, std::string_view type, const Scene& scene, const Picture& picture,
+                const std::string& prefix);
+
 Response json_answer(int status, const nlohmann::ordered_json& json);
 
 }  // namespace orrery

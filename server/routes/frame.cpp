@@ -3,7 +3,8 @@
 #include "server/app/picture_key.h"
 #include "server/routes/answers.h"
 
-// GET /v1/scenes/{id}/frame.png: one picture, a pure function of its address.
+// GET /v1/scenes/{id}/frame.png: one picture, a pure function of its address unless that has a budget of
+// time.
 namespace orrery {
 namespace {
 
@@ -11,14 +12,17 @@ Response frame(App& app, Request& request) {
   const auto scene = app.scenes().find(request.path_value("id"));
   Timing timing;
   const auto start = Clock::now();
-  const RenderRequest wanted = read_query(request);
+  RenderRequest wanted = read_query(request);
   require_layers_kept(wanted, FileFormat::png);
+  choose_space(wanted, FileFormat::png);
   const Plan plan = make_plan(scene->scene(), wanted);
   timing.plan = milliseconds_since(start);
 
   Response response;
+  const bool timed = wanted.seconds.value_or(0) > 0;
   const std::string etag = etag_of(scene->scene(), wanted);
-  if (has_current(request, etag)) {
+  bool lasts = !timed;
+  if (lasts && has_current(request, etag)) {
     response.status = 304;
   } else if (request.method == "HEAD") {
     response.set("Content-Type", "image/png");
@@ -26,7 +30,11 @@ Response frame(App& app, Request& request) {
     const Rendered rendered = app.render(*scene, plan, work_key(scene->scene(), wanted), FileFormat::png,
                                          caller_of(request), timing);
     response = picture_response("image/png", rendered, timing);
+    set_budget(response, "image/png", scene->scene(), *rendered.picture, request.prefix);
+    // Another service may have more rays to spend.
+    if (const auto& budget = rendered.picture->budget; budget && !budget->met()) lasts = false;
   }
+  if (!lasts) return response.set("Cache-Control", "no-store");
   response.set("ETag", etag);
   response.set("Cache-Control", "public, max-age=31536000, immutable");
   return response;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app/admission.h"
+#include "server/app/told_error.h"
 #include "server/app/watch.h"
 
 namespace orrery {
@@ -53,6 +54,16 @@ Response malformed(const MalformedJson& error, std::string_view request_id) {
                  more);
 }
 
+// What could be had instead.
+Response missed(const BudgetMissed& error, std::string_view request_id) {
+  const BudgetOutcome& outcome = error.outcome();
+  ordered_json more = list_of({{outcome.error_met ? "/budget/seconds" : "/budget/error", outcome.reason}});
+  more["budget"] = budget_json(outcome);
+  more["certificate"] = certificate_json(error.certificate());
+  return respond(422, "The budget cannot be met", error.what(), request_id,
+                 "urn:orrery:problem:missed-budget", more);
+}
+
 Response invalid(const InputError& error, std::string_view request_id) {
   return respond(422, "The input cannot be used", error.what(), request_id,
                  "urn:orrery:problem:invalid-input", list_of(error.problems()));
@@ -76,6 +87,8 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
     return response;
   } catch (const InputError& e) {
     return invalid(e, request_id);
+  } catch (const BudgetMissed& e) {
+    return missed(e, request_id);
   } catch (const NotFound& e) {
     return respond(404, e.what(), request_id);
   } catch (const ClientBusy& e) {

@@ -27,14 +27,16 @@ Response render(App& app, Request& request) {
   constexpr std::array kTypes{kKinds[0].type, kKinds[1].type, kKinds[2].type};
   const std::string_view type = negotiate(request, kTypes);
   Timing timing;
-  const RenderOrder order = read_render_order(app, request, timing);
+  RenderOrder order = read_render_order(app, request, timing);
   require_layers_kept(order.request, format_of(type));
+  choose_space(order.request, format_of(type));
   const auto start = Clock::now();
   const Plan plan = make_plan(order.scene->scene(), order.request);
   timing.plan = milliseconds_since(start);
   const Rendered rendered = app.render(*order.scene, plan, work_key(order.scene->scene(), order.request),
                                        format_of(type), caller_of(request), timing);
   Response response = picture_response(type, rendered, timing);
+  set_budget(response, type, order.scene->scene(), *rendered.picture, request.prefix);
   response.set("Orrery-Scene-Id", order.scene->scene().id);
   response.set("Vary", "Accept");
   response.set("Cache-Control", "no-store");

@@ -93,6 +93,7 @@ TEST(RenderOptions, AreInTheKeyIfTheyChangePixels) {
   paths.technique = "path";
   const std::string plain = file_of(scene, {}), plain_paths = file_of(scene, paths);
   for (const RenderOption& option : render_options()) {
+    if (option.key == "space") continue;  // see below
     const std::vector<RenderRequest> others = std::visit(Others{own}, option.kind);
     ASSERT_FALSE(others.empty()) << option.key;
     bool changed = false;
@@ -110,6 +111,15 @@ TEST(RenderOptions, AreInTheKeyIfTheyChangePixels) {
     }
     EXPECT_EQ(changed, option.changes_pixels) << option.key << ": no other value shows in this scene";
   }
+}
+
+TEST(RenderOptions, SpaceIsInTheKeyAsErrorsDependOnIt) {
+  const auto scene = load(revealing_scene());
+  RenderRequest linear, display;
+  linear.error = display.error = 0.1;
+  display.space = Space::display;
+  EXPECT_NE(etag_of(*scene, linear), etag_of(*scene, display));
+  EXPECT_TRUE(file_of(scene, linear) != file_of(scene, display));
 }
 
 TEST(RenderOptions, ThatSayWhatTheSceneSaysGiveTheKeyOfTheScene) {

@@ -1,0 +1,240 @@
+#include "core/render/budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "core/base/clock.h"
+#include "core/base/error.h"
+#include "core/plan/plan.h"
+
+namespace orrery {
+namespace {
+
+constexpr double kNearLeast = 1.25;  // of the least that can be proved
+constexpr double kDeeper = 16;       // by which the least contribution is divided
+constexpr int kMostDeepenings = 3;
+constexpr double kSlower = 1.1;         // than the last pass may the next be
+constexpr double kLastPassReach = 4.4;  // of this many times the samples, more than one pass is left
+constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
+
+std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+class BudgetedRender {
+ public:
+  BudgetedRender(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
+                 const RenderControl& control)
+      : scene_(scene),
+        plan_(plan),
+        pool_(pool),
+        control_(control),
+        error_(*plan->asked.error),
+        seconds_(*plan->asked.seconds),
+        limit_s_(seconds_ > 0 ? std::min(seconds_, control.most_s) : control.most_s),
+        begin_(Clock::now()) {}
+
+  RenderResult render() {
+    if (fails_on_miss() && error_ > 0) require_provable();
+    while (!render_passes()) {
+      plan_ = plan_.with_min_contribution(plan_->min_contribution / kDeeper);
+      ++deepenings_;
+    }
+    BudgetOutcome told = outcome();
+    if (!told.met() && fails_on_miss()) throw BudgetMissed(std::move(told), certificate_);
+    return {std::move(*kept_), stats_, certificate_, std::move(told)};
+  }
+
+ private:
+  bool fails_on_miss() const { return *plan_->asked.on_miss == OnMiss::fail; }
+
+  // Before anything is rendered.
+  void require_provable() {
+    certificate_ = certify(*plan_, stats_, (1 - Certificate::kConfidence) / 2);
+    if (!is_provable()) throw BudgetMissed(outcome(), certificate_);
+  }
+
+  // Whether the clock may end it.
+  bool is_timed() const { return std::isfinite(limit_s_); }
+  double used_s() const { return control_.used_s ? control_.used_s() : milliseconds_since(begin_) / 1000; }
+  // When tracing must have ended.
+  double deadline_s() const {
+    const double pixels = double(plan_->width) * plan_->height;
+    return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
+  }
+
+  // False if weaker rays are to be traced, too.
+  bool render_passes() {
+    ProgressiveRender passes(scene_, plan_, pool_, control_.stop);
+    samples_ = 0;
+    for (int next = progressive_samples(*plan_).front(); next > 0; next = next_samples()) {
+      const double begin_s = used_s();
+      if (!trace(passes, next)) break;
+      pass_s_per_sample_ = (used_s() - begin_s) / (next - samples_);
+      samples_ = next;
+      look(passes);
+      if (is_too_coarse()) return false;
+      if (error_ > 0 && plan_->free_samples && is_near_enough()) break;
+    }
+    if (!kept_) kept_ = passes.take_film();
+    rays_before_ += stats_.counts.rays.total();
+    return true;
+  }
+
+  // False if time is up: then the film is that of the passes before.
+  bool trace(ProgressiveRender& passes, int samples) {
+    std::stop_source late;
+    const std::stop_callback forward(control_.stop, [&] { late.request_stop(); });
+    RenderControl control = control_;
+    control.stop = late.get_token();
+    const bool may_be_late = is_timed() && samples_ > 0;
+    if (may_be_late) {
+      kept_ = passes.film().copy();
+      control.progress = [&](int done, int total) {
+        if (used_s() > deadline_s()) late.request_stop();
+        if (control_.progress) control_.progress(done, total);
+      };
+    }
+    try {
+      passes.refine(samples, control);
+    } catch (const Cancelled&) {
+      if (control_.stop.stop_requested() || !may_be_late) throw;
+      reason_ = "time was up";
+      return false;
+    }
+    kept_.reset();
+    return true;
+  }
+
+  void look(const ProgressiveRender& passes) {
+    stats_ = passes.stats();
+    ended_s_ = used_s();
+    doubt_ = (1 - Certificate::kConfidence) * std::exp2(-std::max(1, ++looks_));
+    certificate_ = certify(*plan_, stats_, plan_->free_samples ? doubt_ : 1 - Certificate::kConfidence);
+  }
+
+  // Of all but the samples; none if unknown.
+  std::optional<double> rest() const {
+    Bound sum;
+    for (const Certificate::Term& term : certificate_.terms)
+      if (term.subject != Certificate::kSamples) sum = sum + term.bound;
+    return sum.rms;
+  }
+
+  double rest_known() const {
+    double sum = 0;
+    for (const Certificate::Term& term : certificate_.terms)
+      if (term.subject != Certificate::kSamples) sum += term.bound.rms.value_or(0);
+    return sum;
+  }
+
+  bool is_proved() const { return certificate_.total().rms && *certificate_.total().rms <= error_; }
+
+  bool is_provable() const { return least() && *least() <= error_; }
+
+  // Proved, or as near to what can be proved as is worth the samples: a smaller error never takes fewer.
+  bool is_near_enough() const {
+    if (!stats_.error.known()) return false;
+    const double estimate =
+        certificate_.least_provable ? *certificate_.estimate : stats_.error.interval().high;
+    if (estimate + rest_known() > error_) return false;
+    const auto& bound = certificate_.total().rms;
+    return !bound || *bound <= std::max(error_, kNearLeast * *least());
+  }
+
+  bool is_too_coarse() const {
+    return error_ > 0 && plan_->free_contribution && deepenings_ < kMostDeepenings && rest() &&
+           stats_.error.known() && certificate_.terms.front().bound.rms.value_or(0) > error_ / 2;
+  }
+
+  // After the pass that has ended; 0: none.
+  int next_samples() {
+    const int most = plan_->samples;
+    if (samples_ >= most) return 0;
+    int next = std::min(2 * samples_, most);
+    if (is_timed()) {
+      const double fit = samples_ + (deadline_s() - used_s()) / (kSlower * pass_s_per_sample_);
+      if (fit < next) {
+        reason_ = "more samples would not end in time";
+        return 0;
+      }
+      if (seconds_ > 0 && fit < most && fit < kLastPassReach * samples_) next = static_cast<int>(fit / 2) * 2;
+    }
+    const double rays = static_cast<double>(rays_before_ + stats_.counts.rays.total()) / samples_ * next;
+    if (rays <= control_.most_rays) return next;
+    reason_ = "twice as many samples would take " + rounded(rays) + " rays, more than the " +
+              rounded(control_.most_rays) + " that there may be";
+    return 0;
+  }
+
+  BudgetOutcome outcome() {
+    BudgetOutcome outcome;
+    outcome.error = error_;
+    outcome.seconds = seconds_;
+    outcome.least_error = least();
+    Plan used = *plan_;
+    used.asked.samples = samples_;
+    used.asked.min_contribution = plan_->min_contribution;
+    used.asked.error = used.asked.seconds = 0;
+    used.asked.on_miss = OnMiss::best;
+    used.asked.space = Space::automatic;
+    outcome.settings = settings_of(used);
+    outcome.used_s = ended_s_;
+    outcome.seconds_met = seconds_ == 0 || used_s() <= seconds_;
+    outcome.error_met = error_ == 0 || is_proved();
+    if (!outcome.met()) outcome.reason = reason();
+    return outcome;
+  }
+
+  std::string reason() const {
+    if (error_ == 0 || is_proved()) return "the first pass took longer";
+    for (const Certificate::Term& term : certificate_.terms)
+      if (term.subject != Certificate::kSamples && term.bound.kind == Bound::Kind::unknown)
+        return term.subject + ": " + term.reason;
+    if (!certificate_.least_provable) return "samples: nothing limits what one may bring";
+    if (*rest() > error_) return "all but the samples may be " + rounded(*rest());
+    if (!is_provable()) return "samples of that many pixels prove no less than " + rounded(*least());
+    return reason_.empty() ? "there may be no more samples" : reason_;
+  }
+
+  // The smallest error that can be proved; none if none can.
+  std::optional<double> least() const {
+    if (!rest() || !certificate_.least_provable) return {};
+    return *rest() + *certificate_.least_provable;
+  }
+
+  const PreparedScene& scene_;
+  SettledPlan plan_;
+  WorkerPool& pool_;
+  const RenderControl& control_;
+  const double error_, seconds_;  // 0: not asked
+  const double limit_s_;          // of time; may be infinite
+  const Clock::time_point begin_;
+  int deepenings_ = 0, looks_ = 0;
+  // Of the last pass that has ended.
+  int samples_ = 0;
+  double pass_s_per_sample_ = 0, ended_s_ = 0, doubt_ = 0;
+  RenderStats stats_;
+  Certificate certificate_;
+  std::uint64_t rays_before_ = 0;  // that were traced for nothing
+  std::optional<Film> kept_;       // while a pass may be given up
+  std::string reason_;             // why there was no further pass
+};
+
+}  // namespace
+
+BudgetMissed::BudgetMissed(BudgetOutcome outcome, const Certificate& certificate)
+    : Error("the budget is missed: " + outcome.reason),
+      outcome_(std::move(outcome)),
+      certificate_(certificate) {}
+
+RenderResult render_within_budget(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
+                                  const RenderControl& control) {
+  return BudgetedRender(scene, plan, pool, control).render();
+}
+
+}  // namespace orrery

@@ -1,0 +1,97 @@
+// Budgets of error and of time over HTTP.
+#include <cstdlib>
+
+#include "tests/http/daemon.h"
+
+namespace orrery {
+namespace {
+
+class PictureBudget : public HttpTest {
+ protected:
+  std::string path(const std::string& query) {
+    return "/v1/scenes/" + post_scene(small_scene().dump()) + "/frame.png?" + query;
+  }
+  httplib::Result get(const std::string& query) { return client_.Get(path(query)); }
+};
+
+bool has(const httplib::Result& result, const char* header, const char* text) {
+  return result->get_header_value(header).find(text) != std::string::npos;
+}
+
+TEST_F(PictureBudget, OfErrorIsAPureFunctionOfTheAddress) {
+  const auto first = get("error=0.2");
+  ASSERT_EQ(first->status, 200) << first->body.substr(0, 400);
+  EXPECT_TRUE(has(first, "Orrery-Budget", "met=?1;error=0.2;error-met=?1"));
+  EXPECT_TRUE(has(first, "Orrery-Error-Bound", "space=display"));
+  EXPECT_EQ(first->get_header_value("Cache-Control"), "public, max-age=31536000, immutable");
+  const std::string etag = first->get_header_value("ETag");
+  EXPECT_FALSE(etag.empty());
+  EXPECT_EQ(get_known(path("error=0.2"), etag)->status, 304);
+  EXPECT_TRUE(get("error=0.2&seed=1")->body != first->body);
+}
+
+TEST_F(PictureBudget, IsRepeatedByItsContentLocation) {
+  for (const char* query : {"error=0.2", "seconds=0.2", "seconds=0.05&technique=path", "error=0.5&depth=2",
+                            "error=0.3&pan=0.1,0,0&azimuth=20"}) {
+    const auto made = get(query);
+    ASSERT_EQ(made->status, 200) << query << made->body.substr(0, 400);
+    const std::string plain = made->get_header_value("Content-Location");
+    EXPECT_EQ(plain.find("seconds"), std::string::npos) << plain;
+    EXPECT_EQ(plain.find("error"), std::string::npos) << plain;
+    const auto again = client_.Get(plain);
+    ASSERT_TRUE(again) << plain;
+    EXPECT_TRUE(again->body == made->body) << query << " " << plain;
+    EXPECT_TRUE(again->get_header_value("Orrery-Budget").empty());
+  }
+}
+
+TEST_F(PictureBudget, OfTimeIsNotKept) {
+  const auto first = get("seconds=0.2");
+  EXPECT_EQ(first->get_header_value("Cache-Control"), "no-store");
+  EXPECT_TRUE(first->get_header_value("ETag").empty());
+  EXPECT_TRUE(has(first, "Orrery-Budget", "seconds=0.2;seconds-met=?1;used="));
+  EXPECT_FALSE(get("seconds=0.2")->get_header_value("X-Rays").empty()) << "made again";
+}
+
+TEST_F(PictureBudget, ThatIsMissedIsSaidOrFails) {
+  const auto best = get("error=0.001&seconds=0.3");
+  ASSERT_EQ(best->status, 200);
+  EXPECT_TRUE(has(best, "Orrery-Budget", "met=?0;error=0.001;error-met=?0"));
+  EXPECT_TRUE(has(best, "Orrery-Budget", "reason=\""));
+  const auto failed = get("error=0.001&on_miss=fail");
+  ASSERT_EQ(failed->status, 422);
+  const auto problem = nlohmann::json::parse(failed->body);
+  EXPECT_EQ(problem["type"], "urn:orrery:problem:missed-budget");
+  EXPECT_EQ(problem["errors"][0]["pointer"], "/budget/error");
+  EXPECT_GT(problem["budget"]["reachable_error"], 0.001);
+  EXPECT_EQ(problem["certificate"]["space"], "display");
+}
+
+TEST_F(PictureBudget, MayStandInABody) {
+  const auto render = [&](const nlohmann::json& budget, const char* type) {
+    const nlohmann::json body = {{"scene", small_scene()}, {"budget", budget}};
+    return client_.Post("/v1/render", {{"Accept", type}}, body.dump(), "application/json");
+  };
+  const auto png = render({{"error", 0.2}}, "image/png");
+  ASSERT_EQ(png->status, 200) << png->body.substr(0, 400);
+  EXPECT_TRUE(has(png, "Orrery-Budget", "met=?1"));
+  EXPECT_TRUE(client_.Get(png->get_header_value("Content-Location"))->body == png->body);
+  const auto exr = render({{"error", 0.2}}, "image/x-exr");
+  EXPECT_TRUE(has(exr, "Orrery-Error-Bound", "space=linear"));
+  EXPECT_TRUE(exr->get_header_value("Content-Location").empty()) << "that is a PNG";
+  EXPECT_EQ(render({{"error", -1}}, "image/png")->status, 422);
+  EXPECT_EQ(render({{"second", 1}}, "image/png")->status, 422);
+}
+
+TEST_F(PictureBudget, IsOfPicturesAlone) {
+  for (const char* what : {"orbit", "refinement"}) {
+    const auto result =
+        client_.Get("/v1/scenes/" + post_scene(small_scene().dump()) + "/" + what + "?error=0.1");
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->status, 422) << what;
+    EXPECT_NE(result->body.find("/budget/error"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace orrery

@@ -1,0 +1,275 @@
+// Budgets of error and of time: what is promised is kept, by the reference and by a clock that the test
+// moves.
+#include "core/render/budget.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
+#include "core/plan/options.h"
+#include "core/render/views.h"
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+#include "tests/support/random.h"
+
+namespace orrery {
+namespace {
+
+using test::covers;
+using test::Json;
+
+RenderResult made(const std::shared_ptr<const Scene>& scene, const RenderRequest& r,
+                  const RenderControl& control = {}) {
+  const PreparedScene prepared(scene);
+  return render_frame(prepared, settle(prepared, make_plan(*scene, r)), FilmStorage::linear32,
+                      test::shared_pool(), control);
+}
+
+RenderRequest square(int side) {
+  RenderRequest r;
+  r.width = r.height = side;
+  return r;
+}
+
+RenderRequest with_error(int side, double error, Space space) {
+  RenderRequest r = square(side);
+  r.error = error;
+  r.space = space;
+  return r;
+}
+
+// Of the picture that a budget made: its values and those of a reference, as the space has them.
+std::vector<double> values_of(const Film& film, Space space) {
+  std::vector<double> values;
+  if (space == Space::display) {
+    const Image image = film.image(PixelFormat::srgb8);
+    for (const std::byte b : image.bytes()) values.push_back(std::to_integer<int>(b) / 255.0);
+  } else {
+    const Image image = film.image(PixelFormat::linear32);
+    std::vector<float> floats(image.bytes().size() / sizeof(float));
+    std::memcpy(floats.data(), image.bytes().data(), image.bytes().size());
+    values.assign(floats.begin(), floats.end());
+  }
+  return values;
+}
+
+std::vector<double> truth_of(const std::shared_ptr<const Scene>& scene, RenderRequest r, int samples) {
+  r.samples = samples;
+  r.error = 0;
+  r.precision = Precision::double_precision;
+  r.max_depth = 32;
+  r.min_contribution = 1e-5;
+  r.seed = 4711;
+  return values_of(made(scene, r).film, Space::linear);
+}
+
+std::vector<double> in_space(std::vector<double> linear, Space space) {
+  if (space == Space::display)
+    for (double& value : linear) value = encode_srgb(value);
+  return linear;
+}
+
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+// Lamps that a pixel in a hundred sees, and light from a lamp that paths find by chance.
+Json dots() {
+  Json dots = test::scene_with(test::json("[]"));
+  dots["materials"]["lamp"] = test::json("{'type': 'lambert', 'reflectance': 0, 'emission': [1, 1, 1]}");
+  for (int i = 0; i < 40; ++i)
+    dots["objects"].push_back({{"type", "sphere"},
+                               {"center", {(i % 8 - 3.5) * 0.4, (i / 8 - 2) * 0.5, 0}},
+                               {"radius", 0.025},
+                               {"material", "lamp"}});
+  return dots;
+}
+
+// A smaller error never costs less, what is told to be met is met, and what is not has a reason.
+TEST(ErrorBudget, IsMetWhereItIsSaidToBe) {
+  covers("certificate-29 certificate-38");
+  for (const Json& json : {test::sample("paper"), test::sample("glass"), test::sample("material-metal"),
+                           test::sample("cornell-box"), test::sample("technique-distributed"), dots()}) {
+    const auto scene = test::load(json);
+    const auto linear = truth_of(scene, square(64), 512);
+    for (const Space space : {Space::display, Space::linear}) {
+      const auto truth = in_space(linear, space);
+      std::uint64_t cost = 0;
+      for (const double error : {0.2, 0.1, 0.05, 0.025}) {
+        const RenderResult result = made(scene, with_error(64, error, space));
+        ASSERT_TRUE(result.budget);
+        EXPECT_GE(result.stats.counts.rays.total(), cost) << json["title"] << " " << error;
+        cost = result.stats.counts.rays.total();
+        const double realised = rms_difference(values_of(result.film, space), truth);
+        EXPECT_EQ(result.budget->met(), result.budget->reason.empty());
+        if (result.budget->met()) {
+          EXPECT_LE(realised, error) << json["title"] << " " << name_of(space);
+          EXPECT_LE(*result.certificate.total().rms, error);
+        } else {  // what cannot be proved is made by the estimate
+          EXPECT_LE(realised, 1.1 * error) << json["title"] << " " << result.budget->reason;
+        }
+      }
+    }
+  }
+}
+
+// The decision looks at all pixels at once, so features that few samples meet are not darkened (deciding by
+// the pixel loses 84 % of them), and the promise is kept over seeds.
+TEST(ErrorBudget, HoldsOverSeeds) {
+  covers("light-48 certificate-25");
+  Json path = dots();
+  path["render"] = {{"technique", "path"}};
+  for (const Json& json : {test::sample("cornell-box"), path}) {
+    const auto scene = test::load(json);
+    const auto truth = truth_of(scene, square(48), 2048);
+    double true_mean = 0;
+    for (const double value : truth) true_mean += value;
+    for (const Space space : {Space::linear, Space::display}) {
+      const auto shown = in_space(truth, space);
+      int held = 0;
+      double mean = 0;
+      RenderRequest r = with_error(48, 0.05, space);
+      for (r.seed = 0; *r.seed < 100; ++*r.seed) {
+        const RenderResult result = made(scene, r);
+        held += rms_difference(values_of(result.film, space), shown) <= 1.1 * *r.error;
+        for (const double value : values_of(result.film, Space::linear)) mean += value / 100;
+      }
+      EXPECT_GE(held, 95) << json["title"] << " " << name_of(space);
+      EXPECT_NEAR(mean, true_mean, 0.01 * true_mean) << json["title"] << " " << name_of(space);
+    }
+  }
+}
+
+TEST(ErrorBudget, KeepsWhatTheRequestNames) {
+  covers("certificate-36");
+  const auto scene = test::load(test::sample("paper"));
+  RenderRequest r = with_error(64, 0.001, Space::display);
+  r.samples = 4;
+  const RenderResult four = made(scene, r);
+  EXPECT_EQ(four.budget->settings.samples, 4);
+  EXPECT_FALSE(four.budget->met());
+  r.error = 0.9;
+  EXPECT_EQ(made(scene, r).budget->settings.samples, 4) << "not less either";
+  r.samples.reset();
+  r.max_depth = 1;
+  r.precision = Precision::single_precision;
+  const RenderResult single = made(scene, r);
+  EXPECT_EQ(single.budget->settings.max_depth, 1);
+  EXPECT_FALSE(single.budget->met()) << "nothing bounds what float does";
+  EXPECT_NE(single.budget->reason.find("precision"), std::string::npos) << single.budget->reason;
+}
+
+TEST(ErrorBudget, NamesWhatCannotBeProved) {
+  covers("certificate-16 certificate-35");
+  const auto scene = test::load(test::sample("paper"));
+  RenderRequest r = with_error(64, 0.0005, Space::display);
+  EXPECT_NE(made(scene, r).budget->reason.find("all but the samples may be 0.00113"), std::string::npos)
+      << made(scene, r).budget->reason;
+  r.error = 0.004;  // 64 x 64 pixels prove no less than sqrt(ln 20 / 4096) / 2
+  EXPECT_NE(made(scene, r).budget->reason.find("prove no less than"), std::string::npos)
+      << made(scene, r).budget->reason;
+  r.on_miss = OnMiss::fail;
+  EXPECT_THROW(made(scene, r), BudgetMissed);
+  r.error = 0.1;
+  EXPECT_NO_THROW(made(scene, r));
+}
+
+TEST(ErrorBudget, StopsAtTheRaysThatThereMayBe) {
+  const auto scene = test::load(test::sample("cornell-box"));
+  const RenderResult result = made(scene, with_error(64, 0.03, Space::display), {.most_rays = 1e6});
+  EXPECT_FALSE(result.budget->met());
+  EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 1e6);
+  EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;
+}
+
+// Settings as a plan's give the same picture.
+void expect_repeated(const std::shared_ptr<const Scene>& scene, const RenderResult& result) {
+  RenderRequest plain;
+  static_cast<RenderSettings&>(plain) = result.budget->settings;
+  EXPECT_FALSE(has_budget(plain));
+  EXPECT_EQ(values_of(made(scene, plain).film, Space::linear), values_of(result.film, Space::linear));
+}
+
+TEST(ErrorBudget, IsRepeatedByItsSettings) {
+  for (const char* name : {"glass", "cornell-box"}) {
+    const auto scene = test::load(test::sample(name));
+    expect_repeated(scene, made(scene, with_error(64, 0.05, Space::display)));
+  }
+}
+
+// A clock that tiles move: each takes its cost, more or less, that of the last pass or twice as much, and one
+// stalls.
+struct FakeClock {
+  double now_s = 0, tile_s = 0.001;
+  int stalls_at = -1, tiles = 0;
+  test::Random random{1};
+  std::mutex mutex;
+
+  RenderControl control() {
+    return {.progress =
+                [this](int, int total) {
+                  const std::lock_guard lock(mutex);
+                  const int pass = tiles / total;
+                  const double cost = tile_s * std::exp2(std::max(0, pass - 1));
+                  now_s += cost * random.between(0.7, 1.3) * (tiles++ == stalls_at ? 5 : 1);
+                },
+            .used_s =
+                [this] {
+                  const std::lock_guard lock(mutex);
+                  return now_s;
+                }};
+  }
+};
+
+TEST(TimeBudget, EndsInTimeWithWholePasses) {
+  covers("certificate-30");
+  const auto scene = test::load(test::sample("paper"));
+  int in_time = 0;
+  for (int run = 0; run < 100; ++run) {
+    FakeClock clock;
+    clock.random = test::Random(static_cast<std::uint64_t>(run));
+    clock.stalls_at = run % 3 == 0 ? run : -1;
+    RenderRequest r = square(96);  // 9 tiles
+    r.seconds = 0.1 + 0.01 * run;
+    const RenderResult result = made(scene, r, clock.control());
+    const double tile_s = 1.3 * clock.tile_s * *result.budget->settings.samples / 2;
+    EXPECT_LE(clock.now_s, *r.seconds + 2 * 5 * tile_s) << "two tiles at once, of which one stalls";
+    EXPECT_EQ(result.budget->seconds_met, result.budget->used_s <= *r.seconds);
+    in_time += result.budget->seconds_met;
+    if (run % 10 == 0) expect_repeated(scene, result);
+  }
+  EXPECT_GE(in_time, 85) << "the others stall in their last tile";
+}
+
+TEST(TimeBudget, SaysThatTheFirstPassTookLonger) {
+  FakeClock clock;
+  RenderRequest r = square(96);
+  r.seconds = 0.002;
+  const RenderResult result = made(test::load(test::sample("paper")), r, clock.control());
+  EXPECT_FALSE(result.budget->seconds_met);
+  EXPECT_EQ(result.budget->reason, "the first pass took longer");
+  EXPECT_EQ(result.stats.counts.rays.camera, 2u * 96 * 96) << "and is whole";
+}
+
+// Of both budgets the first that is reached ends it.
+TEST(TimeBudget, EndsAnErrorBudgetToo) {
+  const auto scene = test::load(test::sample("paper"));
+  RenderRequest r = with_error(96, 0.5, Space::display);
+  r.seconds = 1000;
+  FakeClock quick;
+  EXPECT_TRUE(made(scene, r, quick.control()).budget->met());
+  EXPECT_LT(quick.now_s, 0.1);
+  r.error = 0.01;
+  r.seconds = 0.03;
+  FakeClock clock;
+  const RenderResult late = made(scene, r, clock.control());
+  EXPECT_TRUE(late.budget->seconds_met);
+  EXPECT_FALSE(late.budget->error_met);
+}
+
+}  // namespace
+}  // namespace orrery
