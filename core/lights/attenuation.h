@@ -7,15 +7,16 @@ namespace orrery {
 
 class Params;
 
-// Weakening with distance: f(d) = min(1 / (c0 + c1 d + c2 d^2), 1), in [0, 1] for every d >= 0.
+// Weakening with distance: f(d) = min(1 / (c0 + c1 d + c2 d^2), most). In [0, 1] for every d >= 0, unless a
+// physical light is asked for: then `most` is what keeps numbers finite.
 template <class N>
 struct Attenuation {
-  N c0, c1, c2;
+  N c0, c1, c2, most;
 
   N at(const N& distance) const {
     using T = ScalarOf<N>;
     const N denominator = c0 + distance * (c1 + distance * c2);
-    return min_first(N(T(1)), N(T(1) / denominator));
+    return min_first(most, N(T(1) / denominator));
   }
 };
 

@@ -131,7 +131,10 @@ class Planner {
   void take_camera() {
     plan_.fields |= scene_.facts.materials.fields;
     plan_.camera = scene_.camera;
-    if (auto turned = scene_.camera->with_fov(*plan_.asked.fov_degrees)) plan_.camera = std::move(turned);
+    if (auto turned = scene_.camera->with_fov(*plan_.asked.fov_degrees))
+      plan_.camera = std::move(turned);
+    else if (request_.fov_degrees)
+      decide("angle of view", "not as asked", "the camera of the scene has none");
     plan_.frame = frame_at(scene_.placement, *plan_.camera, orbit_of(plan_.asked));
     for (const std::string& name : *plan_.asked.layers) {
       plan_.channels.push_back(find_type(channel_types(), name));

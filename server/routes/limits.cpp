@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/params/motion.h"
+#include "core/pictures/picture.h"
 #include "core/plan/limits.h"
 #include "core/study/study.h"
 #include "server/app/option_json.h"
@@ -35,7 +36,9 @@ nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ord
                                  {"instanced_primitives", kMaxInstanced},
                                  {"motion_keys", kMaxKeys},
                                  {"mesh_vertices", MeshLimits{}.vertices},
-                                 {"mesh_triangles", MeshLimits{}.triangles}};
+                                 {"mesh_triangles", MeshLimits{}.triangles},
+                                 {"picture_side", PictureLimits{}.side},
+                                 {"picture_texels", PictureLimits{}.texels}};
   for (const Setting& limit : limits()) json[std::string(limit.name)] = std::stoll(limit.text(settings));
   json["work_bytes"] = work_bytes(settings);
   json["storage"] = "memory";  // of scenes, assets, pictures and jobs: they end with the service

@@ -47,6 +47,27 @@ TEST(Attenuation, IsTheFormulaCutAtOne) {
   EXPECT_EQ(weakened(Vec3d(0, 1, 0), 0.5), 1) << "never more than the light itself";
 }
 
+TEST(Attenuation, GrowsTowardAPhysicalPoint) {
+  for (const char* type : {"point", "spot"}) {
+    Json light = point_light(Vec3d(0, 0, 1));
+    light["type"] = type;
+    light["limited"] = false;
+    if (light["type"] == "spot") light["direction"] = {1, 0, 0};
+    const auto read = [&](double distance) {
+      return arrival<double>(light, Vec3d(distance, 0, 0)).incident.x;
+    };
+    EXPECT_NEAR(read(2), 0.25, 1e-15);
+    EXPECT_NEAR(read(0.1), 100, 1e-12);
+    EXPECT_NEAR(read(1e-4), 1e8, 1e-4);
+    for (const float distance : {1e-3f, 1e-10f, 1e-30f}) {
+      const float single = arrival<float>(light, Vec3f(distance, 0, 0)).incident.x;
+      EXPECT_TRUE(single >= 1e5f && single <= 1e12f) << single << " at " << distance;
+    }
+    light["limited"] = true;
+    EXPECT_EQ(read(0.1), 1);
+  }
+}
+
 TEST(Attenuation, StaysInTheUnitIntervalAtAnyDistance) {
   covers("B9 B10");
   for (const Vec3d& c : {Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1), Vec3d(0, 0, 1e12),

@@ -1,0 +1,114 @@
+// The mean square error of a picture of n samples is a / n + b^2, where b is its bias.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "tests/support/covers.h"
+#include "tests/support/pictures.h"
+
+namespace orrery {
+namespace {
+
+using test::covers;
+using test::Json;
+
+std::vector<double> values_of(const Film& film) {
+  const Image image = film.image(PixelFormat::linear32);
+  std::vector<float> floats(image.bytes().size() / sizeof(float));
+  std::memcpy(floats.data(), image.bytes().data(), image.bytes().size());
+  return {floats.begin(), floats.end()};
+}
+
+// Mean square errors after 8, 16, ... 512 samples: six doublings, against two references that are independent
+// of each other, whose own errors so cancel on average.
+std::vector<double> errors_of(const std::shared_ptr<const Scene>& scene, RenderRequest r,
+                              const std::array<std::vector<double>, 2>& truth) {
+  r.samples = 512;
+  const PreparedScene prepared(scene);
+  ProgressiveRender render(prepared, settle(prepared, make_plan(*scene, r)), test::shared_pool(), {});
+  std::vector<double> errors;
+  for (int n = 8; n <= *r.samples; n *= 2) {
+    render.refine(n);
+    const std::vector<double> values = values_of(render.film());
+    double sum = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      sum += (values[i] - truth[0][i]) * (values[i] - truth[1][i]);
+    errors.push_back(sum / static_cast<double>(values.size()));
+  }
+  return errors;
+}
+
+// b^2 of the fit in which errors of all n weigh alike, relatively: the slope of n times the error over n.
+double squared_bias(const std::vector<double>& errors) {
+  double sum_n = 0, sum_y = 0, sum_nn = 0, sum_ny = 0, n = 8;
+  for (const double error : errors) {
+    const double y = n * error;
+    sum_n += n;
+    sum_y += y;
+    sum_nn += n * n;
+    sum_ny += n * y;
+    n *= 2;
+  }
+  const auto count = static_cast<double>(errors.size());
+  return (count * sum_ny - sum_n * sum_y) / (count * sum_nn - sum_n * sum_n);
+}
+
+// How many standard errors of itself b^2 is above 0, over seeds. Samples that are nets make errors fall
+// faster than 1 / n, and it is then below.
+double standard_errors_above_nothing(const Json& json, const RenderRequest& r,
+                                     const RenderRequest& unbiased) {
+  constexpr int kSeeds = 8;
+  const auto scene = test::load(json);
+  std::array<std::vector<double>, 2> truth;
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    RenderRequest much = unbiased;
+    much.samples = 2048;
+    much.seed = 1000 + i;
+    const PreparedScene prepared(scene);
+    truth[i] = values_of(render_frame(prepared, settle(prepared, make_plan(*scene, much)),
+                                      FilmStorage::linear32, test::shared_pool())
+                             .film);
+  }
+  double sum = 0, squares = 0;
+  RenderRequest seeded = r;
+  for (seeded.seed = 0; *seeded.seed < kSeeds; ++*seeded.seed) {
+    const double found = squared_bias(errors_of(scene, seeded, truth));
+    sum += found;
+    squares += found * found;
+  }
+  const double mean = sum / kSeeds;
+  return mean / std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+}
+
+TEST(Convergence, LeavesNoBiasInAnyModeThatHasNone) {
+  covers("light-55");
+  struct Mode {
+    const char* name;
+    const char* scene;
+    void (*set)(RenderRequest&);
+  };
+  const Mode modes[] = {
+      {"reuse", "cornell-box", [](RenderRequest&) {}},
+      {"paths alone", "cornell-box", [](RenderRequest& r) { r.reuse = 1; }},
+      {"distributed", "technique-distributed", [](RenderRequest&) {}},
+      {"whitted", "glass", [](RenderRequest&) {}},
+      {"lens", "depth-of-field", [](RenderRequest&) {}},
+      {"shutter", "open-shutter", [](RenderRequest&) {}},
+      {"negative lobes", "cornell-box", [](RenderRequest& r) { r.filter = Filter::mitchell; }},
+  };
+  for (const Mode& mode : modes) {
+    RenderRequest r = test::size(16, 16);
+    mode.set(r);
+    EXPECT_LE(standard_errors_above_nothing(test::sample(mode.scene), r, r), 3) << mode.name;
+  }
+}
+
+TEST(Convergence, ShowsTheBiasOfAClamp) {
+  RenderRequest unbiased = test::size(16, 16), clamped = unbiased;
+  clamped.clamp_indirect = 0.1;
+  EXPECT_GT(standard_errors_above_nothing(test::sample("cornell-box"), clamped, unbiased), 3);
+}
+
+}  // namespace
+}  // namespace orrery
