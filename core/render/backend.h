@@ -8,8 +8,8 @@
 #include "core/model/counts.h"
 #include "core/model/film.h"
 #include "core/render/clamped.h"
+#include "core/render/halves.h"
 #include "core/render/sampled_error.h"
-#include "core/render/unit_histogram.h"
 #include "core/render/worker_pool.h"
 #include "core/tuning/settle.h"
 
@@ -39,9 +39,7 @@ struct RenderStats {
   std::uint64_t non_finite_pixels = 0;
   Omitted omitted;
   Clamped clamped;
-  // Of a pixel, the mean over channels of the squared difference of the halves, over that of
-  // Plan::sample_range; as error, and empty if nothing limits samples.
-  UnitHistogram halves;
+  Halves halves;       // over Plan::sample_range; empty if nothing limits samples
   SampledError error;  // of an even number of samples, of which at least the second half was traced together
 };
 

@@ -221,6 +221,7 @@ void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
           display ? encode_srgb(first * share) - encode_srgb(second * share) : (first - second) * scale;
       squares[i] += difference * difference;
     }
+  stats_.halves.begin_tile();
   const bool whole = tile.width == kTileSide && tile.height == kTileSide;
   for (std::size_t i = 0; i < kBatch; ++i) {
     const TilePixel p = tile_pixel(static_cast<int>(i));

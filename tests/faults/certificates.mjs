@@ -41,6 +41,10 @@ export const certificateFaults = [
   entry("halves are taken in radiance where a display is asked", "core/render/tile_renderer.cpp",
         "display ? encode_srgb(first * share) - encode_srgb(second * share) : (first - second) * scale",
         "(first - second) * scale", "ErrorBudget.HoldsOverSeeds", "ErrorBudget.IsMet*"),
+  entry("pixels that share what they find count as independent", "core/render/certificate.cpp",
+        "stats.halves.upper_mean(doubt, reused)", "stats.halves.upper_mean(doubt, false)", "Certificate.KnowsThat*"),
+  entry("nobody asks whether pixels err alike", "core/render/certificate.cpp", "if (!reused && pixels_are_alike(stats.error))",
+        "if (false)", "Certificate.KnowsThat*"),
   entry("codes of 8 bits are exact", "core/render/certificate.cpp", "if (display) found.terms.push_back(encoding_term());", "",
         "ErrorBudget.NamesWhat*"),
 ];

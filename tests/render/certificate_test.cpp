@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
+#include "core/image/image.h"
+#include "core/techniques/registry.h"
 #include "tests/render/random_optics.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
@@ -250,6 +253,118 @@ TEST(Certificate, OfSamplesHoldsOverSeeds) {
     }
     EXPECT_GE(held, 56) << scene["title"];
   }
+}
+
+double display_difference(const Image& a, const Image& b) {
+  double squares = 0;
+  for (std::size_t i = 0; i < a.values().size(); ++i)
+    squares += std::pow(encode_srgb(double{a.values()[i]}) - encode_srgb(double{b.values()[i]}), 2);
+  return std::sqrt(squares / static_cast<double>(a.values().size()));
+}
+
+// On a display paths have a range, too. Those that share what they find err together within a tile.
+TEST(Certificate, OfPathsHoldsOnADisplay) {
+  covers("certificate-17 certificate-18");
+  for (const char* name : {"cornell-box", "outdoors"}) {
+    const auto loaded = test::load(test::sample(name));
+    for (const int reuse : {1, 16}) {
+      RenderRequest r;
+      r.width = r.height = 64;
+      r.precision = Precision::double_precision;
+      r.space = Space::display;
+      r.max_depth = 12;
+      r.reuse = reuse;
+      r.samples = 512;
+      r.seed = 1000;
+      const Image truth = certified(loaded, r).film.image(PixelFormat::linear32);
+      int held = 0;
+      r.samples = 4;
+      for (r.seed = 0; *r.seed < 60; ++*r.seed) {
+        const RenderResult result = certified(loaded, r);
+        const double realised = display_difference(result.film.image(PixelFormat::linear32), truth);
+        held += *result.certificate.total().rms >= realised;
+        EXPECT_GE(*result.certificate.estimate, 0.9 * realised) << name << " " << reuse;
+      }
+      EXPECT_GE(held, 56) << name << " " << reuse;
+    }
+  }
+}
+
+TEST(Certificate, KnowsThatPixelsErrAlike) {
+  covers("certificate-22");
+  Plan plan;
+  plan.technique = &technique_types()[0];
+  plan.double_precision = true;
+  plan.sample_range = 1;
+  plan.width = plan.height = 128;
+  RenderStats stats;
+  test::Random random(1);
+  const auto kind_of = [&](double shared) {  // between pixels of a tile
+    stats = {};
+    for (int tile = 0; tile < 16; ++tile) {
+      stats.halves.begin_tile();
+      const double of_tile = random.between(-1, 1), scale = random.unit();
+      double sum = 0, squares = 0;
+      for (int pixel = 0; pixel < kBatch; ++pixel) {
+        const double error = scale * (shared * of_tile + (1 - shared) * random.between(-1, 1));
+        sum += error;
+        squares += error * error;
+        stats.halves.add(error * error);
+      }
+      stats.error.add({.samples = 4,
+                       .pixel = {3 * squares, 3.0 * kBatch},
+                       .block4 = {},
+                       .block32 = {3 * sum * sum / kBatch / kBatch, 3},
+                       .tiles = 1,
+                       .tile_sum = 0,
+                       .tile_squares = 0});
+    }
+    return certify(plan, stats).total().kind;
+  };
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(kind_of(0), Bound::Kind::estimated) << i;
+  EXPECT_EQ(kind_of(1), Bound::Kind::unknown);
+  EXPECT_EQ(kind_of(0.3), Bound::Kind::unknown);
+  plan.reuse = 16;  // where that is expected
+  EXPECT_EQ(kind_of(0.3), Bound::Kind::estimated);
+  plan.reuse = 1;
+  kind_of(0);
+  stats.error = {.samples = 4, .pixel = {1, 1}, .block4 = {}, .block32 = {}};
+  const double of_pixels = *certify(plan, stats).total().rms;
+  plan.reuse = 16;
+  EXPECT_GT(*certify(plan, stats).total().rms, 1.05 * of_pixels) << "16 tiles tell less than their pixels";
+}
+
+// All pixels of a tile err by the same.
+TEST(Halves, HoldWhereTilesAloneAreIndependent) {
+  test::Random random(1);
+  int held = 0, held_by_pixels = 0;
+  for (int run = 0; run < 1000; ++run) {
+    Halves halves;
+    for (int tile = 0; tile < 64; ++tile) {
+      halves.begin_tile();
+      const double value = random.unit();
+      for (int pixel = 0; pixel < 100; ++pixel) halves.add(value);
+    }
+    held += halves.upper_mean(0.05, true) >= 0.5;
+    held_by_pixels += halves.upper_mean(0.05, false) >= 0.5;
+  }
+  EXPECT_GE(held, 930);
+  EXPECT_LT(held_by_pixels, 800);
+}
+
+// Tables of Student's distribution.
+TEST(StudentQuantile, IsAsInTables) {
+  for (const auto& [degrees, t] : {std::pair{1, 12.7062},
+                                   {2, 4.30265},
+                                   {3, 3.18245},
+                                   {4, 2.77645},
+                                   {10, 2.22814},
+                                   {31, 2.03951},
+                                   {120, 1.97993},
+                                   {200, 1.97190},
+                                   {100'000, 1.97190}})
+    EXPECT_NEAR(student_quantile(0.025, degrees), t, 1e-4 * t) << degrees;
+  EXPECT_NEAR(student_quantile(0.05, 5), 2.01505, 1e-4);
 }
 
 TEST(Certificate, OfSamplesIsNotFarAboveWhatTheyTell) {

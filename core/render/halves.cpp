@@ -1,0 +1,64 @@
+#include "core/render/halves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace orrery {
+namespace {
+
+// Probability that a variable of Student's distribution lies farther than t above 0.
+double student_tail(double t, int degrees) {
+  const double angle = std::atan(t / std::sqrt(double(degrees)));
+  const double sine = std::sin(angle), cosine = std::cos(angle), square = cosine * cosine;
+  const bool odd = degrees % 2 == 1;
+  double term = odd ? cosine : 1, sum = degrees > 1 ? term : 0;
+  for (int k = odd ? 3 : 2; k < degrees - 1; k += 2) {
+    term *= square * (k - 1) / k;
+    sum += term;
+  }
+  const double within = odd ? (angle + sine * sum) * 2 / std::numbers::pi : sine * sum;
+  return (1 - within) / 2;
+}
+
+}  // namespace
+
+double student_quantile(double tail, int degrees) {
+  const int capped = std::min(degrees, 200);
+  double low = 0, high = 1;
+  while (student_tail(high, capped) > tail) high *= 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (student_tail(middle, capped) > tail ? low : high) = middle;
+  }
+  return high;
+}
+
+void Halves::begin_tile() {
+  sum_ += tile_;
+  squares_ += tile_ * tile_;
+  tile_ = 0;
+  ++tiles_;
+}
+
+void Halves::add(const Halves& other) {
+  pixels_.add(other.pixels_);
+  sum_ += other.sum_ + other.tile_;
+  squares_ += other.squares_ + other.tile_ * other.tile_;
+  tiles_ += other.tiles_;
+}
+
+double Halves::upper_mean(double doubt, bool tiles_alone_are_independent) const {
+  const double of_pixels = pixels_.upper_mean(doubt);
+  return tiles_alone_are_independent ? std::max(of_pixels, upper_mean_of_tiles(doubt)) : of_pixels;
+}
+
+double Halves::upper_mean_of_tiles(double doubt) const {
+  if (tiles_ < 2) return 1;
+  const double sum = sum_ + tile_, squares = squares_ + tile_ * tile_;
+  const double variance = std::max(0.0, squares - sum * sum / tiles_) / (tiles_ - 1);
+  const double t = student_quantile(doubt, static_cast<int>(tiles_) - 1);
+  return std::min(1.0, (sum + t * std::sqrt(tiles_ * variance)) / pixels_.count());
+}
+
+}  // namespace orrery

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/render/unit_histogram.h"
+
+namespace orrery {
+
+// How the two halves of the samples differ: of each pixel the mean over channels of the squared difference,
+// over that of what samples may differ by, so in [0, 1].
+class Halves {
+ public:
+  // Those of one tile begin, and are then added.
+  void begin_tile();
+  void add(double value) {
+    pixels_.add(value);
+    tile_ += value;
+  }
+  void add(const Halves& other);  // of other tiles; after the last pixel
+
+  bool known() const { return pixels_.count() > 0; }
+  double mean() const { return pixels_.mean(); }
+  // At least the mean of what they were drawn from, with probability 1 - doubt: of pixels that are
+  // independent whatever they are drawn from, see UnitHistogram. Where those of a tile depend on each other,
+  // at least what tiles tell by Student's t as well, of which there must be two, else 1.
+  double upper_mean(double doubt, bool tiles_alone_are_independent) const;
+
+ private:
+  double upper_mean_of_tiles(double doubt) const;
+
+  UnitHistogram pixels_;
+  double tile_ = 0;                           // sum over the tile that has begun
+  double tiles_ = 0, sum_ = 0, squares_ = 0;  // of sums over a tile, without that one
+};
+
+// t for which a variable of Student's distribution with so many degrees of freedom is larger with probability
+// `tail` (Abramowitz and Stegun, "Handbook of mathematical functions", 26.7.3 and 26.7.4). Of more than 200
+// degrees that of 200, which is 1 % more than at the limit. REQUIRES: degrees >= 1; tail in (0, 0.5).
+double student_quantile(double tail, int degrees);
+
+}  // namespace orrery
