@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -46,7 +47,7 @@ struct Plan {
   // Of the picture until whose error or time it is made: what is left to that.
   bool free_samples = false, free_contribution = false;  // samples are then the most that may be traced
   Space space = Space::linear;                           // that errors are told in
-  // Within which all samples of a pixel lie, as a difference, per channel, in that space; infinite if nothing
+  // Within which all samples of a pixel lie, as a difference, per channel, in radiance; infinite if nothing
   // limits them.
   double sample_range = std::numeric_limits<double>::infinity();
   Vec3d cut_range;  // the most by which a ray that is not traced may change radiance; may be infinite
@@ -66,6 +67,13 @@ struct Plan {
   bool constant_half = false;  // with parallel viewer and light, the half vector is computed once a batch
   int slice = 256;             // rays that pass through the stages together; changes no result
   std::vector<Decision> decisions;
+
+  // By how much the halves of a pixel's samples may differ in the space of errors.
+  double halves_range() const { return space == Space::display ? 1 : sample_range; }
+  // By how much one of them may exceed what a display shows when one sample of so many in all is bright.
+  double beyond_range(int in_all) const {
+    return space == Space::display ? std::max(0.0, 2 * sample_range / in_all - 1) : 0;
+  }
 
   Exposure exposure() const { return {time, time + shutter}; }
 };

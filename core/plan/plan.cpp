@@ -8,6 +8,7 @@
 #include "core/accelerators/registry.h"
 #include "core/cameras/pixel_filter.h"
 #include "core/channels/registry.h"
+#include "core/image/image.h"
 #include "core/plan/options.h"
 #include "core/plan/rounding.h"
 #include "core/techniques/registry.h"
@@ -57,7 +58,6 @@ class Planner {
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
       leave_out_for_trees();
     }
-    if (plan_.space == Space::display) plan_.sample_range = 1;
     if (request_.full_model || plan_.technique->draws_light) return plan_;
     choose_lights();
     choose_specular();
@@ -302,7 +302,8 @@ class Planner {
 
   // Of rays that are not traced, before any is: of so much weight in all. The picture's ledger tells less.
   Bound cut_bound(double weight) const {
-    const double most = weight * max_component(plan_.cut_range);
+    const double radiance = weight * max_component(plan_.cut_range);
+    const double most = plan_.space == Space::display ? encode_srgb(radiance) : radiance;
     return Bound::proved(most, most);
   }
 
@@ -347,6 +348,7 @@ RenderSettings settings_of(const Plan& plan) {
   settings.accelerator = plan.accelerator->name;
   settings.precision = plan.double_precision ? Precision::double_precision : Precision::single_precision;
   settings.max_depth = plan.max_depth;
+  settings.min_contribution = plan.min_contribution;
   return settings;
 }
 

@@ -12,8 +12,9 @@
 namespace orrery {
 namespace {
 
-constexpr double kNearLeast = 1.25;  // of the least that can be proved
-constexpr double kDeeper = 16;       // by which the least contribution is divided
+constexpr double kNearLeast = 1.25;     // of the least that can be proved
+constexpr double kShareOfCuts = 0.125;  // of the error, that what is not traced may take
+constexpr double kDeeper = 16;          // by which the least contribution is divided
 constexpr int kMostDeepenings = 3;
 constexpr double kSlower = 1.1;         // than the last pass may the next be
 constexpr double kLastPassReach = 4.4;  // of this many times the samples, more than one pass is left
@@ -42,8 +43,10 @@ class BudgetedRender {
     if (fails_on_miss() && error_ > 0) require_provable();
     while (!render_passes()) {
       plan_ = plan_.with_min_contribution(plan_->min_contribution / kDeeper);
+      lost_.add(stats_.counts);
       ++deepenings_;
     }
+    stats_.counts.add(lost_);  // it was traced, too
     BudgetOutcome told = outcome();
     if (!told.met() && fails_on_miss()) throw BudgetMissed(std::move(told), certificate_);
     return {std::move(*kept_), stats_, certificate_, std::move(told)};
@@ -70,7 +73,7 @@ class BudgetedRender {
   // False if weaker rays are to be traced, too.
   bool render_passes() {
     ProgressiveRender passes(scene_, plan_, pool_, control_.stop);
-    samples_ = 0;
+    samples_ = looks_ = 0;
     for (int next = progressive_samples(*plan_).front(); next > 0; next = next_samples()) {
       const double begin_s = used_s();
       if (!trace(passes, next)) break;
@@ -78,10 +81,9 @@ class BudgetedRender {
       samples_ = next;
       look(passes);
       if (is_too_coarse()) return false;
-      if (error_ > 0 && plan_->free_samples && is_near_enough()) break;
+      if (error_ > 0 && (is_hopeless() || (plan_->free_samples && is_near_enough()))) break;
     }
     if (!kept_) kept_ = passes.take_film();
-    rays_before_ += stats_.counts.rays.total();
     return true;
   }
 
@@ -138,17 +140,22 @@ class BudgetedRender {
 
   // Proved, or as near to what can be proved as is worth the samples: a smaller error never takes fewer.
   bool is_near_enough() const {
-    if (!stats_.error.known()) return false;
-    const double estimate =
-        certificate_.least_provable ? *certificate_.estimate : stats_.error.interval().high;
-    if (estimate + rest_known() > error_) return false;
+    const SampledError& error = stats_.error;
+    if (!error.known()) return false;
+    const double estimate = certificate_.least_provable ? *certificate_.estimate
+                            : error.tiles < 2           ? error.pixel.rmse()
+                                                        : error.interval().high;
+    if (estimate > std::max(error_ - rest_known(), error_ / 2)) return false;
     const auto& bound = certificate_.total().rms;
     return !bound || *bound <= std::max(error_, kNearLeast * *least());
   }
 
+  // Where a miss is an error, and no samples would help.
+  bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
+
   bool is_too_coarse() const {
-    return error_ > 0 && plan_->free_contribution && deepenings_ < kMostDeepenings && rest() &&
-           stats_.error.known() && certificate_.terms.front().bound.rms.value_or(0) > error_ / 2;
+    return error_ > 0 && plan_->free_contribution && deepenings_ < kMostDeepenings &&
+           certificate_.terms.front().bound.rms.value_or(0) > kShareOfCuts * error_;
   }
 
   // After the pass that has ended; 0: none.
@@ -164,7 +171,7 @@ class BudgetedRender {
       }
       if (seconds_ > 0 && fit < most && fit < kLastPassReach * samples_) next = static_cast<int>(fit / 2) * 2;
     }
-    const double rays = static_cast<double>(rays_before_ + stats_.counts.rays.total()) / samples_ * next;
+    const double rays = static_cast<double>(stats_.counts.rays.total()) / samples_ * next;
     if (rays <= control_.most_rays) return next;
     reason_ = "twice as many samples would take " + rounded(rays) + " rays, more than the " +
               rounded(control_.most_rays) + " that there may be";
@@ -178,7 +185,6 @@ class BudgetedRender {
     outcome.least_error = least();
     Plan used = *plan_;
     used.asked.samples = samples_;
-    used.asked.min_contribution = plan_->min_contribution;
     used.asked.error = used.asked.seconds = 0;
     used.asked.on_miss = OnMiss::best;
     used.asked.space = Space::automatic;
@@ -195,10 +201,14 @@ class BudgetedRender {
     for (const Certificate::Term& term : certificate_.terms)
       if (term.subject != Certificate::kSamples && term.bound.kind == Bound::Kind::unknown)
         return term.subject + ": " + term.reason;
+    if (samples_ > 0 && !stats_.error.known()) return "samples: only an even number of them tells its error";
     if (!certificate_.least_provable) return "samples: nothing limits what one may bring";
     if (*rest() > error_) return "all but the samples may be " + rounded(*rest());
     if (!is_provable()) return "samples of that many pixels prove no less than " + rounded(*least());
-    return reason_.empty() ? "there may be no more samples" : reason_;
+    if (!reason_.empty()) return reason_;
+    const bool near = *certificate_.total().rms <= kNearLeast * *least();
+    return near ? "more samples would hardly prove less, at least " + rounded(*least())
+                : "there may be no more samples";
   }
 
   // The smallest error that can be proved; none if none can.
@@ -220,12 +230,19 @@ class BudgetedRender {
   double pass_s_per_sample_ = 0, ended_s_ = 0, doubt_ = 0;
   RenderStats stats_;
   Certificate certificate_;
-  std::uint64_t rays_before_ = 0;  // that were traced for nothing
-  std::optional<Film> kept_;       // while a pass may be given up
-  std::string reason_;             // why there was no further pass
+  TraceCounts lost_;          // of passes that cut too much
+  std::optional<Film> kept_;  // while a pass may be given up
+  std::string reason_;        // why there was no further pass
 };
 
 }  // namespace
+
+void BudgetOutcome::end_at(double seconds_used) {
+  used_s = seconds_used;
+  if (seconds == 0 || seconds_used <= seconds || !seconds_met) return;
+  seconds_met = false;
+  reason = (reason.empty() ? "" : reason + "; ") + "the file took longer to encode than there was time";
+}
 
 BudgetMissed::BudgetMissed(BudgetOutcome outcome, const Certificate& certificate)
     : Error("the budget is missed: " + outcome.reason),

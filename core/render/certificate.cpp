@@ -48,7 +48,9 @@ bool pixels_are_alike(const SampledError& error) {
 }
 
 // With means a and b of the halves, (a - b)^2 / 4 is on average at least the squared error of their mean; and
-// no difference is larger than the range.
+// no difference is larger than the range. On a display bright values that few samples meet are cut, and what
+// the others would show of them is missing: about as much light as one half met and the other did not. (Where
+// one sample more is too little to be cut, it shows in the difference.)
 Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, double doubt) {
   const char* const subject = Certificate::kSamples;
   if (!stats.error.known()) return {subject, Bound::unknown(), "only an even number of them tells its error"};
@@ -56,8 +58,10 @@ Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, doub
   const bool reused = plan.reuse > 1;
   if (!reused && pixels_are_alike(stats.error))
     return {subject, Bound::unknown(), "pixels of a tile err alike, as if they had one source of chance"};
-  const double mean = stats.halves.upper_mean(doubt, reused);
-  return {subject, Bound::estimated(plan.sample_range * std::sqrt(mean) / 2)};
+  const double beyond = plan.beyond_range(stats.error.samples), part = beyond > 0 ? doubt / 2 : doubt;
+  const double seen = plan.halves_range() * std::sqrt(stats.halves.upper_mean(part, reused)) / 2;
+  if (beyond == 0) return {subject, Bound::estimated(seen)};
+  return {subject, Bound::estimated(seen + display_rms(stats.halves.upper_beyond(part, beyond)))};
 }
 
 // Codes of 8 bits lie by half of one at most beside what they stand for, evenly.
@@ -66,14 +70,13 @@ Certificate::Term encoding_term() {
   return {"codes of 8 bits", {Bound::Kind::estimated, kHalf, kHalf / std::sqrt(3.0)}};
 }
 
-// What halves that agree everywhere would prove of a picture of so many pixels.
-std::optional<double> least_provable(const Plan& plan, double doubt) {
-  if (!std::isfinite(plan.sample_range)) return {};
-  const double pixels = double(plan.width) * plan.height;
-  return plan.sample_range * std::sqrt(-std::expm1(std::log(doubt) / pixels)) / 2;
-}
-
 }  // namespace
+
+std::optional<double> least_provable(const Plan& plan, double doubt) {
+  if (!std::isfinite(plan.halves_range())) return {};
+  const double pixels = double(plan.width) * plan.height;
+  return plan.halves_range() * std::sqrt(-std::expm1(std::log(doubt) / pixels)) / 2;
+}
 
 Bound Certificate::total() const {
   Bound sum;

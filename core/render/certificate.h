@@ -44,6 +44,10 @@ struct Certificate {
   Bound known() const;  // of the terms that are not unknown
 };
 
+// RMS that halves of a picture of that size would prove if they agreed everywhere: the least that samples can
+// prove, of the plan's technique alone. None where nothing limits a sample.
+std::optional<double> least_provable(const Plan& plan, double doubt = 1 - Certificate::kConfidence);
+
 // `doubt` is the probability with which what is estimated may be wrong: less than 1 - kConfidence if others
 // are looked at, too.
 Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = 1 - Certificate::kConfidence);

@@ -43,6 +43,8 @@ void Halves::begin_tile() {
 
 void Halves::add(const Halves& other) {
   pixels_.add(other.pixels_);
+  beyond_.add(other.beyond_);
+  beyond_sum_ += other.beyond_sum_;
   sum_ += other.sum_ + other.tile_;
   squares_ += other.squares_ + other.tile_ * other.tile_;
   tiles_ += other.tiles_;
@@ -51,6 +53,11 @@ void Halves::add(const Halves& other) {
 double Halves::upper_mean(double doubt, bool tiles_alone_are_independent) const {
   const double of_pixels = pixels_.upper_mean(doubt);
   return tiles_alone_are_independent ? std::max(of_pixels, upper_mean_of_tiles(doubt)) : of_pixels;
+}
+
+double Halves::upper_beyond(double doubt, double most) const {
+  if (most == 0) return 0;
+  return std::isfinite(most) ? most * beyond_.upper_mean(doubt) : beyond_sum_ / beyond_.count();
 }
 
 double Halves::upper_mean_of_tiles(double doubt) const {

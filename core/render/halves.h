@@ -5,7 +5,8 @@
 namespace orrery {
 
 // How the two halves of the samples differ: of each pixel the mean over channels of the squared difference,
-// over that of what samples may differ by, so in [0, 1].
+// over that of what samples may differ by, so in [0, 1]. On a display, also how much brighter one half is
+// than any that is shown, in radiance, where the other one is not.
 class Halves {
  public:
   // Those of one tile begin, and are then added.
@@ -13,6 +14,11 @@ class Halves {
   void add(double value) {
     pixels_.add(value);
     tile_ += value;
+  }
+  // `most` that it may be, perhaps infinite.
+  void add_beyond(double value, double most) {
+    beyond_.add(value / most);
+    beyond_sum_ += value;
   }
   void add(const Halves& other);  // of other tiles; after the last pixel
 
@@ -22,11 +28,14 @@ class Halves {
   // independent whatever they are drawn from, see UnitHistogram. Where those of a tile depend on each other,
   // at least what tiles tell by Student's t as well, of which there must be two, else 1.
   double upper_mean(double doubt, bool tiles_alone_are_independent) const;
+  // Likewise of what is beyond, of independent pixels; where it may be infinitely much, what was met.
+  double upper_beyond(double doubt, double most) const;
 
  private:
   double upper_mean_of_tiles(double doubt) const;
 
-  UnitHistogram pixels_;
+  UnitHistogram pixels_, beyond_;
+  double beyond_sum_ = 0;
   double tile_ = 0;                           // sum over the tile that has begun
   double tiles_ = 0, sum_ = 0, squares_ = 0;  // of sums over a tile, without that one
 };

@@ -18,6 +18,8 @@ struct BudgetOutcome {
   std::string reason;                      // of a miss, or empty
 
   bool met() const { return error_met && seconds_met; }
+  // What is done after rendering counts as well: that much time has been used when all is done.
+  void end_at(double seconds_used);
 };
 
 class BudgetMissed : public Error {  // where that is to be an error

@@ -33,6 +33,16 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
     if (weight.values[i] > 0) sum[i] += static_cast<double>(value.values[i]);
 }
 
+// Calls visit(slot) for each pixel of the tile.
+template <class Visit>
+void for_each_slot(const TileView& tile, const Visit& visit) {
+  const bool whole = tile.width == kTileSide && tile.height == kTileSide;
+  for (int slot = 0; slot < kBatch; ++slot) {
+    const TilePixel p = tile_pixel(slot);
+    if (whole || (p.x < tile.width && p.y < tile.height)) visit(static_cast<std::size_t>(slot));
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -65,7 +75,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
     }
     if (end % 2 == 0 && 2 * tile.first_sample <= end) {
       add_error(tile, end);
-      if (std::isfinite(plan_.sample_range)) add_halves(tile, end);
+      if (std::isfinite(plan_.halves_range())) add_halves(tile, end);
     }
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
@@ -210,23 +220,39 @@ void TileRenderer<T>::add_sample() {
 
 template <class T>
 void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
+  if (plan_.space == Space::display) return add_display_halves(tile, samples);
   const double scale = 2.0 / (samples * std::max(plan_.sample_range, std::numeric_limits<double>::min()));
-  const double share = 2.0 / samples;  // of a half
-  const bool display = plan_.space == Space::display;
   TileSums::Plane squares{};
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < kBatch; ++i) {
-      const double first = first_half_[c][i], second = sums_.radiance[c][i] - first;
-      const double difference =
-          display ? encode_srgb(first * share) - encode_srgb(second * share) : (first - second) * scale;
+      const double difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * scale;
       squares[i] += difference * difference;
     }
   stats_.halves.begin_tile();
-  const bool whole = tile.width == kTileSide && tile.height == kTileSide;
-  for (std::size_t i = 0; i < kBatch; ++i) {
-    const TilePixel p = tile_pixel(static_cast<int>(i));
-    if (whole || (p.x < tile.width && p.y < tile.height)) stats_.halves.add(squares[i] / 3);
-  }
+  for_each_slot(tile, [&](std::size_t i) { stats_.halves.add(squares[i] / 3); });
+}
+
+// The curve of sRGB is concave: halves that differ make their mean darker than what it is the mean of, and
+// two halves together less so than one alone. That difference stands for the bias of both.
+template <class T>
+void TileRenderer<T>::add_display_halves(const TileView& tile, int samples) {
+  constexpr double kOfBias = 16;  // with the fourth of the squared difference: twice the bias
+  const double share = 2.0 / samples, most = plan_.beyond_range(samples);
+  stats_.halves.begin_tile();
+  for_each_slot(tile, [&](std::size_t i) {
+    double squares = 0, beyond = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double first = first_half_[c][i] * share, second = sums_.radiance[c][i] * share - first;
+      const double shown_first = encode_srgb(first), shown_second = encode_srgb(second);
+      const double difference = shown_first - shown_second;
+      const double bias = encode_srgb((first + second) / 2) - (shown_first + shown_second) / 2;
+      squares += difference * difference + kOfBias * bias * bias;
+      const auto [less, more] = std::minmax(first, second);
+      if (less < 1 && more > 1) beyond += more - 1;
+    }
+    stats_.halves.add(std::min(1.0, squares / 3));
+    if (most > 0) stats_.halves.add_beyond(std::min(beyond / 3, most), most);
+  });
 }
 
 template <class T>

@@ -43,6 +43,7 @@ class TileRenderer {
   void add_clamped(const TileView& tile);
   void add_error(const TileView& tile, int samples);
   void add_halves(const TileView& tile, int samples);
+  void add_display_halves(const TileView& tile, int samples);
   void put_single(const TileView& tile, Film& film);
 
   const Plan& plan_;

@@ -36,6 +36,9 @@ void require_layers_kept(const RenderRequest& request, FileFormat format) {
 }
 
 void choose_space(RenderRequest& request, FileFormat format) {
+  if (format == FileFormat::jpeg && request.error.value_or(0) > 0)
+    throw InputError("/budget/error",
+                     "expected none, as what JPEG leaves out has no bound; PNG and EXR keep one");
   const bool open = request.space.value_or(Space::automatic) == Space::automatic;
   if (open && has_budget(request) && format != FileFormat::exr) request.space = Space::display;
 }

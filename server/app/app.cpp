@@ -169,6 +169,11 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   picture.bytes = encode_film(film.value->film, format);
   picture.bytes.shrink_to_fit();  // it may be kept
   timing.encode = milliseconds_since(start);
+  if (picture.budget) {
+    picture.budget->end_at(control.used_s());
+    if (!picture.budget->met() && *plan.asked.on_miss == OnMiss::fail)
+      throw BudgetMissed(*picture.budget, picture.certificate);
+  }
   return picture;
 }
 

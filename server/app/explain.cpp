@@ -8,6 +8,7 @@
 #include "core/plan/options.h"
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
+#include "core/render/certificate.h"
 #include "server/app/option_json.h"
 #include "server/app/told_error.h"
 
@@ -66,6 +67,7 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
                     {"shadows", plan.shadows},
                     {"specular", plan.specular},
                     {"filters", plan.filters}};
+  if (const auto least = least_provable(plan)) json["least_provable"] = *least;
   json["camera_rays"] = camera_rays(plan);
   json["decisions"] = std::move(decisions);
   json["warnings"] = ordered_json::array();
@@ -93,6 +95,13 @@ std::string explain_text(const Scene& scene, const Plan& plan) {
   for (const Decision& d : plan.decisions)
     text += "  " + padded(d.subject, subject_width) + "  " + padded(d.choice, choice_width) + "  " +
             d.reason + bound_note(d.bound) + "\n";
+  if (const auto least = least_provable(plan)) {
+    char line[96];
+    std::snprintf(line, sizeof line,
+                  "  samples of so many pixels prove an RMS error of %.3g at least, in %s values\n", *least,
+                  name_of(plan.space).data());
+    text += line;
+  }
   for (const Problem& p : find_warnings(scene, plan)) text += "  warning: " + p.text() + "\n";
   return text;
 }

@@ -32,6 +32,8 @@ struct RenderOptions {
   RenderFlags render;
 };
 
+bool is_missed(const std::optional<BudgetOutcome>& budget) { return budget && !budget->met(); }
+
 // The plan that a budget came to.
 Plan made_plan(Plan plan, const std::optional<BudgetOutcome>& budget) {
   if (!budget) return plan;
@@ -78,15 +80,18 @@ int render(const RenderOptions& options) {
   stats.budget = result.budget;
   for (const Problem& p : find_warnings(scene.scene(), plan, result.stats.counts))
     std::cerr << "orrery: warning: " << p.text() << "\n";
-  if (result.budget && !result.budget->met())
-    std::cerr << "orrery: warning: the budget is missed: " << result.budget->reason << "\n";
   plan = made_plan(std::move(plan), result.budget);
   if (options.output) {
     start = Clock::now();
     const std::string bytes = encode_film(result.film, format);
     stats.encode_ms = milliseconds_since(start);
+    if (stats.budget) stats.budget->end_at(milliseconds_since(begin) / 1000);
+    if (is_missed(stats.budget) && request.on_miss == OnMiss::fail)
+      throw BudgetMissed(*stats.budget, stats.certificate);
     write_file(*options.output, bytes);
   }
+  if (is_missed(stats.budget))
+    std::cerr << "orrery: warning: the budget is missed: " << stats.budget->reason << "\n";
   if (options.stats == "json")
     std::cout << stats_json(plan, stats).dump() << "\n";
   else if (!options.stats.empty() || !options.output)

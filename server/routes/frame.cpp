@@ -22,10 +22,13 @@ Response frame(App& app, Request& request) {
   const bool timed = wanted.seconds.value_or(0) > 0;
   const std::string etag = etag_of(scene->scene(), wanted);
   bool lasts = !timed;
-  if (lasts && has_current(request, etag)) {
+  // Whether a budget is met is known once it is made, or by who has what was made.
+  const bool named = !has_budget(wanted) || request.header("If-None-Match") != "*";
+  if (lasts && named && has_current(request, etag)) {
     response.status = 304;
   } else if (request.method == "HEAD") {
     response.set("Content-Type", "image/png");
+    lasts = lasts && !has_budget(wanted);
   } else {
     const Rendered rendered = app.render(*scene, plan, work_key(scene->scene(), wanted), FileFormat::png,
                                          caller_of(request), timing);

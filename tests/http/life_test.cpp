@@ -96,7 +96,7 @@ TEST(ClientThatLeaves, EndsItsRefinement) {
 TEST(ClientThatDoesNotRead, HoldsUpItsRefinementAlone) {
   Daemon daemon(with_endless_pictures());
   const RawClient raw(daemon.port(), 4096);
-  raw.send(get(post(daemon, small_scene()) + "/refinement?width=2048&height=2048&samples=4096"));
+  raw.send(get(post(daemon, small_scene()) + "/refinement?width=1024&height=1024&samples=4096"));
   EXPECT_NE(raw.receive_some(), "");
   EXPECT_TRUE(daemon.wait_until_idle());  // for 10 s and more there would be work
   EXPECT_EQ(daemon.metric("orrery_renders_running"), 0);

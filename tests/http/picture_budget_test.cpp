@@ -67,6 +67,19 @@ TEST_F(PictureBudget, ThatIsMissedIsSaidOrFails) {
   EXPECT_EQ(problem["certificate"]["space"], "display");
 }
 
+// Whether it is met is known once it is made.
+TEST_F(PictureBudget, IsNotPromisedByHead) {
+  const auto head = client_.Head(path("error=0.001&on_miss=fail"));
+  EXPECT_TRUE(head->get_header_value("ETag").empty());
+  EXPECT_EQ(head->get_header_value("Cache-Control"), "no-store");
+  EXPECT_EQ(get_known(path("error=0.001&on_miss=fail"), "*")->status, 422);
+}
+
+TEST_F(PictureBudget, OfTimeCountsEncoding) {
+  const auto large = get("seconds=0.02&width=2048&height=2048");
+  EXPECT_TRUE(has(large, "Orrery-Budget", "met=?0;seconds=0.02;seconds-met=?0"));
+}
+
 TEST_F(PictureBudget, MayStandInABody) {
   const auto render = [&](const nlohmann::json& budget, const char* type) {
     const nlohmann::json body = {{"scene", small_scene()}, {"budget", budget}};
