@@ -105,6 +105,7 @@ class BudgetedRender {
       passes.refine(samples, control);
     } catch (const Cancelled&) {
       if (control_.stop.stop_requested() || !may_be_late) throw;
+      gave_up_ = true;
       reason_ = "time was up";
       return false;
     }
@@ -114,7 +115,6 @@ class BudgetedRender {
 
   void look(const ProgressiveRender& passes) {
     stats_ = passes.stats();
-    ended_s_ = used_s();
     doubt_ = (1 - Certificate::kConfidence) * std::exp2(-std::max(1, ++looks_));
     certificate_ = certify(*plan_, stats_, plan_->free_samples ? doubt_ : 1 - Certificate::kConfidence);
   }
@@ -189,15 +189,15 @@ class BudgetedRender {
     used.asked.on_miss = OnMiss::best;
     used.asked.space = Space::automatic;
     outcome.settings = settings_of(used);
-    outcome.used_s = ended_s_;
-    outcome.seconds_met = seconds_ == 0 || used_s() <= seconds_;
+    outcome.used_s = used_s();
+    outcome.seconds_met = seconds_ == 0 || outcome.used_s <= seconds_;
     outcome.error_met = error_ == 0 || is_proved();
     if (!outcome.met()) outcome.reason = reason();
     return outcome;
   }
 
   std::string reason() const {
-    if (error_ == 0 || is_proved()) return "the first pass took longer";
+    if (error_ == 0 || is_proved()) return late_reason();
     for (const Certificate::Term& term : certificate_.terms)
       if (term.subject != Certificate::kSamples && term.bound.kind == Bound::Kind::unknown)
         return term.subject + ": " + term.reason;
@@ -209,6 +209,12 @@ class BudgetedRender {
     const bool near = *certificate_.total().rms <= kNearLeast * *least();
     return near ? "more samples would hardly prove less, at least " + rounded(*least())
                 : "there may be no more samples";
+  }
+
+  std::string late_reason() const {
+    if (gave_up_) return "a pass took longer than the one before, and ending it took too long";
+    const bool first = samples_ == progressive_samples(*plan_).front();
+    return std::string(first ? "the first" : "the last") + " pass took longer";
   }
 
   // The smallest error that can be proved; none if none can.
@@ -225,9 +231,10 @@ class BudgetedRender {
   const double limit_s_;          // of time; may be infinite
   const Clock::time_point begin_;
   int deepenings_ = 0, looks_ = 0;
+  bool gave_up_ = false;  // a pass
   // Of the last pass that has ended.
   int samples_ = 0;
-  double pass_s_per_sample_ = 0, ended_s_ = 0, doubt_ = 0;
+  double pass_s_per_sample_ = 0, doubt_ = 0;
   RenderStats stats_;
   Certificate certificate_;
   TraceCounts lost_;          // of passes that cut too much

@@ -13,7 +13,7 @@ struct BudgetOutcome {
   double error = 0, seconds = 0;  // asked; 0: was not
   RenderSettings settings;        // that give the picture again, without a budget
   bool error_met = true, seconds_met = true;
-  double used_s = 0;                       // when the last pass ended
+  double used_s = 0;                       // by the client's clock, in the end
   std::optional<double> least_error = {};  // that can be proved of a picture of that size
   std::string reason;                      // of a miss, or empty
 

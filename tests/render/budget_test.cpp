@@ -144,33 +144,40 @@ TEST(ErrorBudget, HoldsOverSeeds) {
   }
 }
 
+Json stars(double radius, double emission) {
+  Json scene = test::scene_with(test::json("[]"));
+  scene["materials"]["star"] = {
+      {"type", "lambert"}, {"reflectance", 0}, {"emission", {emission, emission, emission}}};
+  test::Random random(1);
+  for (int i = 0; i < 600; ++i)
+    scene["objects"].push_back({{"type", "sphere"},
+                                {"center", {random.between(-1.5, 1.5), random.between(-1.5, 1.5), 0}},
+                                {"radius", radius},
+                                {"material", "star"}});
+  return scene;
+}
+
 // Light that is far brighter than a display shows: where one sample meets it and others do not, the mean of
 // few is cut or dark, and halves agree about that.
 TEST(ErrorBudget, IsNotDeceivedByWhatADisplayCuts) {
   covers("certificate-19");
   Json sky = test::sample("shape-sphere");
   sky["background"] = {30, 30, 30};
-  Json stars = test::scene_with(test::json("[]"));
-  stars["materials"]["star"] = test::json("{'type': 'lambert', 'reflectance': 0, 'emission': [60, 60, 60]}");
-  test::Random random(1);
-  for (int i = 0; i < 600; ++i)
-    stars["objects"].push_back({{"type", "sphere"},
-                                {"center", {random.between(-1.5, 1.5), random.between(-1.5, 1.5), 0}},
-                                {"radius", 0.006},
-                                {"material", "star"}});
-  for (const Json& json : {sky, stars}) {
+  // Of tiny stars the truth is that of larger ones that send as much.
+  const std::pair<Json, Json> scenes_and_truths[] = {
+      {sky, sky}, {stars(0.006, 60), stars(0.006, 60)}, {stars(0.0003, 24'000), stars(0.006, 60)}};
+  for (const auto& [json, true_json] : scenes_and_truths) {
     const auto scene = test::load(json);
     RenderRequest r = with_error(64, 0.05, Space::display);
     r.filter = Filter::gaussian;
     RenderRequest much = square(64);
     much.filter = r.filter;
-    const auto truth = in_space(truth_of(scene, much, 2048), Space::display);
+    const auto truth = in_space(truth_of(test::load(true_json), much, 2048), Space::display);
     for (r.seed = 0; *r.seed < 6; ++*r.seed) {
       const RenderResult result = made(scene, r);
       const double realised = rms_difference(values_of(result.film, Space::display), truth);
       EXPECT_TRUE(!result.budget->met() || realised <= *r.error) << realised;
-      EXPECT_LE(realised, *result.certificate.total().rms)
-          << json["objects"].size() << " objects, " << *result.budget->settings.samples << " samples";
+      EXPECT_LE(realised, *result.certificate.total().rms) << *result.budget->settings.samples << " samples";
     }
   }
 }
@@ -258,11 +265,12 @@ TEST(ErrorBudget, IsRepeatedByItsSettings) {
   }
 }
 
-// A clock that tiles move: each takes its cost, more or less, that of the last pass or twice as much, and one
-// stalls.
+// A clock that tiles move: each takes its cost, more or less, that of the last pass or twice as much, and
+// some stall.
 struct FakeClock {
   double now_s = 0, tile_s = 0.001;
-  int stalls_at = -1, tiles = 0;
+  double share_of_stalls = 0;
+  int tiles = 0;
   test::Random random{1};
   std::mutex mutex;
 
@@ -272,7 +280,8 @@ struct FakeClock {
                   const std::lock_guard lock(mutex);
                   const int pass = tiles / total;
                   const double cost = tile_s * std::exp2(std::max(0, pass - 1));
-                  now_s += cost * random.between(0.7, 1.3) * (tiles++ == stalls_at ? 5 : 1);
+                  now_s += cost * random.between(0.7, 1.3) * (random.unit() < share_of_stalls ? 5 : 1);
+                  ++tiles;
                 },
             .used_s =
                 [this] {
@@ -289,7 +298,7 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
   for (int run = 0; run < 100; ++run) {
     FakeClock clock;
     clock.random = test::Random(static_cast<std::uint64_t>(run));
-    clock.stalls_at = run % 3 == 0 ? run : -1;
+    clock.share_of_stalls = run % 3 == 0 ? 0.1 : 0;
     RenderRequest r = square(96);  // 9 tiles
     r.seconds = 0.1 + 0.01 * run;
     const RenderResult result = made(scene, r, clock.control());
@@ -297,9 +306,9 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
     EXPECT_LE(clock.now_s, *r.seconds + 2 * 5 * tile_s) << "two tiles at once, of which one stalls";
     EXPECT_EQ(result.budget->seconds_met, result.budget->used_s <= *r.seconds);
     in_time += result.budget->seconds_met;
-    if (run % 10 == 0) expect_repeated(scene, result);
+    if (run % 3 == 0) expect_repeated(scene, result);  // where tiles stall
   }
-  EXPECT_GE(in_time, 85) << "the others stall in their last tile";
+  EXPECT_GE(in_time, 80) << "the others stall in their last tile";
 }
 
 TEST(TimeBudget, SaysThatTheFirstPassTookLonger) {
