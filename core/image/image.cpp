@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "core/math/lanes.h"
 
@@ -22,15 +23,23 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;
 constexpr std::array kCurve = {-0.059739011f, 0.14195826f,  1.3545726f,  -0.82528002f,
                                0.62100228f,   -0.29424764f, 0.061734308f};
 
+template <class N>
+[[gnu::always_inline]] inline N srgb_curve(const N& x) {
+  using std::sqrt;
+  const N t = sqrt(sqrt(x));
+  N curve = kCurve.back();
+  [&]<std::size_t... k>(std::index_sequence<k...>) {  // unrolled
+    ((curve = curve * t + kCurve[kCurve.size() - 2 - k]), ...);
+  }
+  (std::make_index_sequence<kCurve.size() - 1>());
+  return curve;
+}
+
 // Codes 0..255 nearest to the sRGB curve over lanes of linear values; NaN gives 0.
 [[gnu::always_inline]] inline IndexLanes<float> srgb_codes(const Lanes<float>& linear) {
   using N = Lanes<float>;
   const N x = min_first(N(1.0f), max_first(N(0.0f), linear));
-  const N t = sqrt(sqrt(x));
-  N curve = kCurve.back();
-#pragma GCC unroll 8
-  for (std::size_t k = kCurve.size() - 1; k-- > 0;) curve = curve * t + kCurve[k];
-  const N encoded = select(x <= N(0.0031308f), x * 12.92f, curve);
+  const N encoded = select(x <= N(0.0031308f), x * 12.92f, srgb_curve(x));
   return stdx::static_simd_cast<IndexLanes<float>>(encoded * 255.0f + 0.5f);
 }
 
@@ -113,11 +122,7 @@ Image srgb_of(const Image& linear) {
 
 double encode_srgb(double linear) {
   const double x = linear > 0 ? std::min(linear, 1.0) : 0.0;
-  if (x <= 0.0031308) return 12.92 * x;
-  const double t = std::sqrt(std::sqrt(x));
-  double curve = kCurve.back();
-  for (std::size_t k = kCurve.size() - 1; k-- > 0;) curve = curve * t + double{kCurve[k]};
-  return curve;
+  return x <= 0.0031308 ? 12.92 * x : srgb_curve(x);
 }
 
 float decode_srgb(float encoded) {

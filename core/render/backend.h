@@ -39,7 +39,7 @@ struct RenderStats {
   std::uint64_t non_finite_pixels = 0;
   Omitted omitted;
   Clamped clamped;
-  Halves halves;       // over Plan::sample_range; empty if nothing limits samples
+  Halves halves;       // over Plan::halves_range(); empty if nothing limits samples
   SampledError error;  // of an even number of samples, of which at least the second half was traced together
 };
 

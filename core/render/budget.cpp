@@ -48,7 +48,7 @@ class BudgetedRender {
     }
     stats_.counts.add(lost_);  // it was traced, too
     BudgetOutcome told = outcome();
-    if (!told.met() && fails_on_miss()) throw BudgetMissed(std::move(told), certificate_);
+    require_met(told, certificate_);
     return {std::move(*kept_), stats_, certificate_, std::move(told)};
   }
 
@@ -57,8 +57,13 @@ class BudgetedRender {
 
   // Before anything is rendered.
   void require_provable() {
-    certificate_ = certify(*plan_, stats_, (1 - Certificate::kConfidence) / 2);
+    certificate_ = certify(*plan_, stats_, doubt_of_look(1));
     if (!is_provable()) throw BudgetMissed(outcome(), certificate_);
+  }
+
+  // Of one that may end it, from 1 on; the last one alone counts where the samples are given.
+  double doubt_of_look(int look) const {
+    return Certificate::kDoubt * (plan_->free_samples ? std::exp2(-look) : 1);
   }
 
   // Whether the clock may end it.
@@ -115,23 +120,20 @@ class BudgetedRender {
 
   void look(const ProgressiveRender& passes) {
     stats_ = passes.stats();
-    doubt_ = (1 - Certificate::kConfidence) * std::exp2(-std::max(1, ++looks_));
-    certificate_ = certify(*plan_, stats_, plan_->free_samples ? doubt_ : 1 - Certificate::kConfidence);
+    certificate_ = certify(*plan_, stats_, doubt_of_look(++looks_));
   }
 
+  static bool is_beside_samples(const Certificate::Term& term) {
+    return term.subject != Certificate::kSamples;
+  }
   // Of all but the samples; none if unknown.
-  std::optional<double> rest() const {
-    Bound sum;
-    for (const Certificate::Term& term : certificate_.terms)
-      if (term.subject != Certificate::kSamples) sum = sum + term.bound;
-    return sum.rms;
-  }
-
+  std::optional<double> rest() const { return certificate_.total_of(is_beside_samples).rms; }
   double rest_known() const {
-    double sum = 0;
-    for (const Certificate::Term& term : certificate_.terms)
-      if (term.subject != Certificate::kSamples) sum += term.bound.rms.value_or(0);
-    return sum;
+    return *certificate_
+                .total_of([](const Certificate::Term& term) {
+                  return is_beside_samples(term) && term.bound.kind != Bound::Kind::unknown;
+                })
+                .rms;
   }
 
   bool is_proved() const { return certificate_.total().rms && *certificate_.total().rms <= error_; }
@@ -182,6 +184,7 @@ class BudgetedRender {
     BudgetOutcome outcome;
     outcome.error = error_;
     outcome.seconds = seconds_;
+    outcome.on_miss = *plan_->asked.on_miss;
     outcome.least_error = least();
     Plan used = *plan_;
     used.asked.samples = samples_;
@@ -234,7 +237,7 @@ class BudgetedRender {
   bool gave_up_ = false;  // a pass
   // Of the last pass that has ended.
   int samples_ = 0;
-  double pass_s_per_sample_ = 0, doubt_ = 0;
+  double pass_s_per_sample_ = 0;
   RenderStats stats_;
   Certificate certificate_;
   TraceCounts lost_;          // of passes that cut too much
@@ -249,6 +252,10 @@ void BudgetOutcome::end_at(double seconds_used) {
   if (seconds == 0 || seconds_used <= seconds || !seconds_met) return;
   seconds_met = false;
   reason = (reason.empty() ? "" : reason + "; ") + "the file took longer to encode than there was time";
+}
+
+void require_met(const BudgetOutcome& outcome, const Certificate& certificate) {
+  if (!outcome.met() && outcome.on_miss == OnMiss::fail) throw BudgetMissed(outcome, certificate);
 }
 
 BudgetMissed::BudgetMissed(BudgetOutcome outcome, const Certificate& certificate)

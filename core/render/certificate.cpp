@@ -79,16 +79,11 @@ std::optional<double> least_provable(const Plan& plan, double doubt) {
 }
 
 Bound Certificate::total() const {
-  Bound sum;
-  for (const Term& term : terms) sum = sum + term.bound;
-  return sum;
+  return total_of([](const Term&) { return true; });
 }
 
 Bound Certificate::known() const {
-  Bound sum;
-  for (const Term& term : terms)
-    if (term.bound.kind != Bound::Kind::unknown) sum = sum + term.bound;
-  return sum;
+  return total_of([](const Term& term) { return term.bound.kind != Bound::Kind::unknown; });
 }
 
 Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {

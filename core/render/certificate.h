@@ -14,7 +14,7 @@ namespace orrery {
 // endlessly many samples over each pixel, by exact arithmetic. (Light that the technique does not follow at
 // all is no part of it.) In the plan's space.
 struct Certificate {
-  static constexpr double kConfidence = 0.95;  // of what is estimated, over seeds
+  static constexpr double kConfidence = 0.95, kDoubt = 1 - kConfidence;  // of what is estimated, over seeds
 
   static constexpr const char* kSamples = "samples";  // the subject of what they leave
 
@@ -42,14 +42,22 @@ struct Certificate {
 
   Bound total() const;  // as weak as the weakest term
   Bound known() const;  // of the terms that are not unknown
+  // Of the terms that keep(term) says.
+  template <class Keep>
+  Bound total_of(const Keep& keep) const {
+    Bound sum;
+    for (const Term& term : terms)
+      if (keep(term)) sum = sum + term.bound;
+    return sum;
+  }
 };
 
 // RMS that halves of a picture of that size would prove if they agreed everywhere: the least that samples can
 // prove, of the plan's technique alone. None where nothing limits a sample.
-std::optional<double> least_provable(const Plan& plan, double doubt = 1 - Certificate::kConfidence);
+std::optional<double> least_provable(const Plan& plan, double doubt = Certificate::kDoubt);
 
-// `doubt` is the probability with which what is estimated may be wrong: less than 1 - kConfidence if others
+// `doubt` is the probability with which what is estimated may be wrong: less than kDoubt if others
 // are looked at, too.
-Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = 1 - Certificate::kConfidence);
+Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = Certificate::kDoubt);
 
 }  // namespace orrery

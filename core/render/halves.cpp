@@ -34,19 +34,12 @@ double student_quantile(double tail, int degrees) {
   return high;
 }
 
-void Halves::begin_tile() {
-  sum_ += tile_;
-  squares_ += tile_ * tile_;
-  tile_ = 0;
-  ++tiles_;
-}
-
 void Halves::add(const Halves& other) {
   pixels_.add(other.pixels_);
   beyond_.add(other.beyond_);
   beyond_sum_ += other.beyond_sum_;
-  sum_ += other.sum_ + other.tile_;
-  squares_ += other.squares_ + other.tile_ * other.tile_;
+  sum_ += other.sum_;
+  squares_ += other.squares_;
   tiles_ += other.tiles_;
 }
 
@@ -62,10 +55,9 @@ double Halves::upper_beyond(double doubt, double most) const {
 
 double Halves::upper_mean_of_tiles(double doubt) const {
   if (tiles_ < 2) return 1;
-  const double sum = sum_ + tile_, squares = squares_ + tile_ * tile_;
-  const double variance = std::max(0.0, squares - sum * sum / tiles_) / (tiles_ - 1);
+  const double variance = std::max(0.0, squares_ - sum_ * sum_ / tiles_) / (tiles_ - 1);
   const double t = student_quantile(doubt, static_cast<int>(tiles_) - 1);
-  return std::min(1.0, (sum + t * std::sqrt(tiles_ * variance)) / pixels_.count());
+  return std::min(1.0, (sum_ + t * std::sqrt(tiles_ * variance)) / pixels_.count());
 }
 
 }  // namespace orrery

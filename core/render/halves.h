@@ -9,18 +9,19 @@ namespace orrery {
 // than any that is shown, in radiance, where the other one is not.
 class Halves {
  public:
-  // Those of one tile begin, and are then added.
-  void begin_tile();
-  void add(double value) {
-    pixels_.add(value);
-    tile_ += value;
+  void add(double value) { pixels_.add(value); }
+  // The sum over a tile of what was added.
+  void add_tile(double sum) {
+    sum_ += sum;
+    squares_ += sum * sum;
+    ++tiles_;
   }
   // `most` that it may be, perhaps infinite.
   void add_beyond(double value, double most) {
     beyond_.add(value / most);
     beyond_sum_ += value;
   }
-  void add(const Halves& other);  // of other tiles; after the last pixel
+  void add(const Halves& other);  // of other tiles
 
   bool known() const { return pixels_.count() > 0; }
   double mean() const { return pixels_.mean(); }
@@ -36,8 +37,7 @@ class Halves {
 
   UnitHistogram pixels_, beyond_;
   double beyond_sum_ = 0;
-  double tile_ = 0;                           // sum over the tile that has begun
-  double tiles_ = 0, sum_ = 0, squares_ = 0;  // of sums over a tile, without that one
+  double tiles_ = 0, sum_ = 0, squares_ = 0;  // of sums over a tile
 };
 
 // t for which a variable of Student's distribution with so many degrees of freedom is larger with probability

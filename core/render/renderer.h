@@ -11,7 +11,8 @@ namespace orrery {
 // What became of the budget of a picture.
 struct BudgetOutcome {
   double error = 0, seconds = 0;  // asked; 0: was not
-  RenderSettings settings;        // that give the picture again, without a budget
+  OnMiss on_miss = OnMiss::best;
+  RenderSettings settings;  // that give the picture again, without a budget
   bool error_met = true, seconds_met = true;
   double used_s = 0;                       // by the client's clock, in the end
   std::optional<double> least_error = {};  // that can be proved of a picture of that size
@@ -32,6 +33,10 @@ class BudgetMissed : public Error {  // where that is to be an error
   BudgetOutcome outcome_;
   Certificate certificate_;
 };
+
+inline bool is_missed(const std::optional<BudgetOutcome>& budget) { return budget && !budget->met(); }
+// Throws BudgetMissed if it was missed and that is to be an error.
+void require_met(const BudgetOutcome& outcome, const Certificate& certificate);
 
 struct RenderResult {
   Film film;

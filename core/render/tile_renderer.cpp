@@ -228,8 +228,12 @@ void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
       const double difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * scale;
       squares[i] += difference * difference;
     }
-  stats_.halves.begin_tile();
-  for_each_slot(tile, [&](std::size_t i) { stats_.halves.add(squares[i] / 3); });
+  double sum = 0;
+  for_each_slot(tile, [&](std::size_t i) {
+    stats_.halves.add(squares[i] / 3);
+    sum += squares[i] / 3;
+  });
+  stats_.halves.add_tile(sum);
 }
 
 // The curve of sRGB is concave: halves that differ make their mean darker than what it is the mean of, and
@@ -238,7 +242,7 @@ template <class T>
 void TileRenderer<T>::add_display_halves(const TileView& tile, int samples) {
   constexpr double kOfBias = 16;  // with the fourth of the squared difference: twice the bias
   const double share = 2.0 / samples, most = plan_.beyond_range(samples);
-  stats_.halves.begin_tile();
+  double sum = 0;
   for_each_slot(tile, [&](std::size_t i) {
     double squares = 0, beyond = 0;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -250,9 +254,12 @@ void TileRenderer<T>::add_display_halves(const TileView& tile, int samples) {
       const auto [less, more] = std::minmax(first, second);
       if (less < 1 && more > 1) beyond += more - 1;
     }
-    stats_.halves.add(std::min(1.0, squares / 3));
+    const double value = std::min(1.0, squares / 3);
+    stats_.halves.add(value);
+    sum += value;
     if (most > 0) stats_.halves.add_beyond(std::min(beyond / 3, most), most);
   });
+  stats_.halves.add_tile(sum);
 }
 
 template <class T>
@@ -260,10 +267,7 @@ void TileRenderer<T>::add_omitted(const TileView& tile) {
   stats_.omitted.samples = tile.samples;
   stats_.omitted.values += 3.0 * tile.width * tile.height;
   for (const TileSums::Plane& channel : omitted_)
-    for (int slot = 0; slot < kBatch; ++slot) {
-      const TilePixel p = tile_pixel(slot);
-      if (p.x < tile.width && p.y < tile.height) stats_.omitted.add(channel[static_cast<std::size_t>(slot)]);
-    }
+    for_each_slot(tile, [&](std::size_t i) { stats_.omitted.add(channel[i]); });
 }
 
 template <class T>
@@ -272,13 +276,10 @@ void TileRenderer<T>::add_clamped(const TileView& tile) {
   stats_.clamped.pixels.values += 3.0 * tile.width * tile.height;
   std::array<double, 3> sums{};
   for (std::size_t c = 0; c < 3; ++c)
-    for (int slot = 0; slot < kBatch; ++slot) {
-      const TilePixel p = tile_pixel(slot);
-      if (p.x >= tile.width || p.y >= tile.height) continue;
-      const double away = clamped_[c][static_cast<std::size_t>(slot)];
-      sums[c] += away;
-      stats_.clamped.pixels.add(away);
-    }
+    for_each_slot(tile, [&](std::size_t i) {
+      sums[c] += clamped_[c][i];
+      stats_.clamped.pixels.add(clamped_[c][i]);
+    });
   stats_.clamped.add_tile(sums);
 }
 

@@ -171,8 +171,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   timing.encode = milliseconds_since(start);
   if (picture.budget) {
     picture.budget->end_at(control.used_s());
-    if (!picture.budget->met() && *plan.asked.on_miss == OnMiss::fail)
-      throw BudgetMissed(*picture.budget, picture.certificate);
+    require_met(*picture.budget, picture.certificate);
   }
   return picture;
 }

@@ -69,8 +69,8 @@ class App {
   AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Caller& caller);
 
   // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded
-  // in its turn, once for all who ask. One with a budget of time, which counts from
-  // now, is made for each who asks. Throws as read(), BudgetMissed, and TooManyRays instead of rendering it.
+  // in its turn, once for all who ask; one with a budget of time, which counts from now, for each. Throws as
+  // read(), BudgetMissed, and TooManyRays instead of rendering it.
   Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Caller& caller, Timing& timing);
 

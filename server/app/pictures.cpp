@@ -8,12 +8,11 @@ namespace {
 
 // What missed its budget is not kept: there may be more time another time.
 constexpr std::size_t kTooMany = std::numeric_limits<std::size_t>::max() / 2;
-bool missed(const std::optional<BudgetOutcome>& budget) { return budget && !budget->met(); }
 
 }  // namespace
 
 std::size_t held_bytes(const Picture& picture) {
-  return missed(picture.budget) ? kTooMany : picture.bytes.capacity();
+  return is_missed(picture.budget) ? kTooMany : picture.bytes.capacity();
 }
 
 std::string picture_key(const std::string& work, FileFormat format) {
@@ -22,7 +21,7 @@ std::string picture_key(const std::string& work, FileFormat format) {
 
 std::size_t held_bytes(const RenderResult& rendered) {
   const Film& film = rendered.film;
-  if (missed(rendered.budget)) return kTooMany;
+  if (is_missed(rendered.budget)) return kTooMany;
   return Film::bytes(film.width(), film.height(), film.storage(), film.channels());
 }
 

@@ -32,8 +32,6 @@ struct RenderOptions {
   RenderFlags render;
 };
 
-bool is_missed(const std::optional<BudgetOutcome>& budget) { return budget && !budget->met(); }
-
 // The plan that a budget came to.
 Plan made_plan(Plan plan, const std::optional<BudgetOutcome>& budget) {
   if (!budget) return plan;
@@ -85,9 +83,10 @@ int render(const RenderOptions& options) {
     start = Clock::now();
     const std::string bytes = encode_film(result.film, format);
     stats.encode_ms = milliseconds_since(start);
-    if (stats.budget) stats.budget->end_at(milliseconds_since(begin) / 1000);
-    if (is_missed(stats.budget) && request.on_miss == OnMiss::fail)
-      throw BudgetMissed(*stats.budget, stats.certificate);
+    if (stats.budget) {
+      stats.budget->end_at(milliseconds_since(begin) / 1000);
+      require_met(*stats.budget, stats.certificate);
+    }
     write_file(*options.output, bytes);
   }
   if (is_missed(stats.budget))

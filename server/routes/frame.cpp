@@ -19,9 +19,8 @@ Response frame(App& app, Request& request) {
   timing.plan = milliseconds_since(start);
 
   Response response;
-  const bool timed = wanted.seconds.value_or(0) > 0;
   const std::string etag = etag_of(scene->scene(), wanted);
-  bool lasts = !timed;
+  bool lasts = wanted.seconds.value_or(0) == 0;
   // Whether a budget is met is known once it is made, or by who has what was made.
   const bool named = !has_budget(wanted) || request.header("If-None-Match") != "*";
   if (lasts && named && has_current(request, etag)) {
@@ -35,7 +34,7 @@ Response frame(App& app, Request& request) {
     response = picture_response("image/png", rendered, timing);
     set_budget(response, "image/png", scene->scene(), *rendered.picture, request.prefix);
     // Another service may have more rays to spend.
-    if (const auto& budget = rendered.picture->budget; budget && !budget->met()) lasts = false;
+    lasts = lasts && !is_missed(rendered.picture->budget);
   }
   if (!lasts) return response.set("Cache-Control", "no-store");
   response.set("ETag", etag);

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <mutex>
 
 #include "core/plan/options.h"
@@ -19,13 +18,8 @@ namespace {
 
 using test::covers;
 using test::Json;
-
-RenderResult made(const std::shared_ptr<const Scene>& scene, const RenderRequest& r,
-                  const RenderControl& control = {}) {
-  const PreparedScene prepared(scene);
-  return render_frame(prepared, settle(prepared, make_plan(*scene, r)), FilmStorage::linear32,
-                      test::shared_pool(), control);
-}
+using test::rendered;
+using test::rms_difference;
 
 RenderRequest square(int side) {
   RenderRequest r;
@@ -40,18 +34,12 @@ RenderRequest with_error(int side, double error, Space space) {
   return r;
 }
 
-// Of the picture that a budget made: its values and those of a reference, as the space has them.
+// Of a picture as its file has them: in display space those of a PNG.
 std::vector<double> values_of(const Film& film, Space space) {
+  if (space != Space::display) return test::linear_values(film);
   std::vector<double> values;
-  if (space == Space::display) {
-    const Image image = film.image(PixelFormat::srgb8);
-    for (const std::byte b : image.bytes()) values.push_back(std::to_integer<int>(b) / 255.0);
-  } else {
-    const Image image = film.image(PixelFormat::linear32);
-    std::vector<float> floats(image.bytes().size() / sizeof(float));
-    std::memcpy(floats.data(), image.bytes().data(), image.bytes().size());
-    values.assign(floats.begin(), floats.end());
-  }
+  const Image image = film.image(PixelFormat::srgb8);
+  for (const std::byte b : image.bytes()) values.push_back(std::to_integer<int>(b) / 255.0);
   return values;
 }
 
@@ -62,19 +50,11 @@ std::vector<double> truth_of(const std::shared_ptr<const Scene>& scene, RenderRe
   r.max_depth = 32;
   r.min_contribution = 1e-5;
   r.seed = 4711;
-  return values_of(made(scene, r).film, Space::linear);
+  return values_of(rendered(scene, r).film, Space::linear);
 }
 
-std::vector<double> in_space(std::vector<double> linear, Space space) {
-  if (space == Space::display)
-    for (double& value : linear) value = encode_srgb(value);
-  return linear;
-}
-
-double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum / static_cast<double>(a.size()));
+std::vector<double> in_space(const std::vector<double>& linear, Space space) {
+  return space == Space::display ? test::shown(linear) : linear;
 }
 
 // Lamps that a pixel in a hundred sees, and light from a lamp that paths find by chance.
@@ -100,7 +80,7 @@ TEST(ErrorBudget, IsMetWhereItIsSaidToBe) {
       const auto truth = in_space(linear, space);
       std::uint64_t cost = 0;
       for (const double error : {0.2, 0.1, 0.05, 0.025}) {
-        const RenderResult result = made(scene, with_error(64, error, space));
+        const RenderResult result = rendered(scene, with_error(64, error, space));
         ASSERT_TRUE(result.budget);
         EXPECT_GE(result.stats.counts.rays.total(), cost) << json["title"] << " " << error;
         cost = result.stats.counts.rays.total();
@@ -134,7 +114,7 @@ TEST(ErrorBudget, HoldsOverSeeds) {
       double mean = 0;
       RenderRequest r = with_error(48, 0.05, space);
       for (r.seed = 0; *r.seed < 100; ++*r.seed) {
-        const RenderResult result = made(scene, r);
+        const RenderResult result = rendered(scene, r);
         held += rms_difference(values_of(result.film, space), shown) <= 1.1 * *r.error;
         for (const double value : values_of(result.film, Space::linear)) mean += value / 100;
       }
@@ -174,7 +154,7 @@ TEST(ErrorBudget, IsNotDeceivedByWhatADisplayCuts) {
     much.filter = r.filter;
     const auto truth = in_space(truth_of(test::load(true_json), much, 2048), Space::display);
     for (r.seed = 0; *r.seed < 6; ++*r.seed) {
-      const RenderResult result = made(scene, r);
+      const RenderResult result = rendered(scene, r);
       const double realised = rms_difference(values_of(result.film, Space::display), truth);
       EXPECT_TRUE(!result.budget->met() || realised <= *r.error) << realised;
       EXPECT_LE(realised, *result.certificate.total().rms) << *result.budget->settings.samples << " samples";
@@ -186,19 +166,19 @@ TEST(ErrorBudget, IsNotDeceivedByWhatADisplayCuts) {
 TEST(ErrorBudget, TracesWeakerRaysRatherThanMiss) {
   const auto scene = test::load(test::sample("glass"));
   for (const double error : {0.057, 0.05, 0.045, 0.042}) {
-    const RenderResult result = made(scene, with_error(64, error, Space::display));
+    const RenderResult result = rendered(scene, with_error(64, error, Space::display));
     EXPECT_TRUE(result.budget->met()) << error << " " << result.budget->reason;
   }
   RenderRequest r = with_error(64, 0.06, Space::display);
-  const RenderResult hopeless = made(test::load(test::sample("material-glass")), r);
+  const RenderResult hopeless = rendered(test::load(test::sample("material-glass")), r);
   EXPECT_LE(*hopeless.budget->settings.samples, 1024) << "no sample would help";
   r.on_miss = OnMiss::fail;
-  EXPECT_THROW(made(test::load(test::sample("material-glass")), r), BudgetMissed);
+  EXPECT_THROW(rendered(test::load(test::sample("material-glass")), r), BudgetMissed);
 }
 
 TEST(ErrorBudget, EndsForPathsOfOneTile) {
   const auto scene = test::load(test::sample("cornell-box"));
-  EXPECT_LE(*made(scene, with_error(32, 0.5, Space::linear)).budget->settings.samples, 16);
+  EXPECT_LE(*rendered(scene, with_error(32, 0.5, Space::linear)).budget->settings.samples, 16);
 }
 
 TEST(ErrorBudget, IsRefusedForJpeg) {
@@ -213,15 +193,15 @@ TEST(ErrorBudget, KeepsWhatTheRequestNames) {
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = with_error(64, 0.001, Space::display);
   r.samples = 4;
-  const RenderResult four = made(scene, r);
+  const RenderResult four = rendered(scene, r);
   EXPECT_EQ(four.budget->settings.samples, 4);
   EXPECT_FALSE(four.budget->met());
   r.error = 0.9;
-  EXPECT_EQ(made(scene, r).budget->settings.samples, 4) << "not less either";
+  EXPECT_EQ(rendered(scene, r).budget->settings.samples, 4) << "not less either";
   r.samples.reset();
   r.max_depth = 1;
   r.precision = Precision::single_precision;
-  const RenderResult single = made(scene, r);
+  const RenderResult single = rendered(scene, r);
   EXPECT_EQ(single.budget->settings.max_depth, 1);
   EXPECT_FALSE(single.budget->met()) << "nothing bounds what float does";
   EXPECT_NE(single.budget->reason.find("precision"), std::string::npos) << single.budget->reason;
@@ -231,20 +211,20 @@ TEST(ErrorBudget, NamesWhatCannotBeProved) {
   covers("certificate-16 certificate-35");
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = with_error(64, 0.0005, Space::display);
-  EXPECT_NE(made(scene, r).budget->reason.find("all but the samples may be 0.00113"), std::string::npos)
-      << made(scene, r).budget->reason;
+  EXPECT_NE(rendered(scene, r).budget->reason.find("all but the samples may be 0.00113"), std::string::npos)
+      << rendered(scene, r).budget->reason;
   r.error = 0.004;  // 64 x 64 pixels prove no less than sqrt(ln 20 / 4096) / 2
-  EXPECT_NE(made(scene, r).budget->reason.find("prove no less than"), std::string::npos)
-      << made(scene, r).budget->reason;
+  EXPECT_NE(rendered(scene, r).budget->reason.find("prove no less than"), std::string::npos)
+      << rendered(scene, r).budget->reason;
   r.on_miss = OnMiss::fail;
-  EXPECT_THROW(made(scene, r), BudgetMissed);
+  EXPECT_THROW(rendered(scene, r), BudgetMissed);
   r.error = 0.2;
-  EXPECT_NO_THROW(made(scene, r));
+  EXPECT_NO_THROW(rendered(scene, r));
 }
 
 TEST(ErrorBudget, StopsAtTheRaysThatThereMayBe) {
   const auto scene = test::load(test::sample("cornell-box"));
-  const RenderResult result = made(scene, with_error(64, 0.03, Space::display), {.most_rays = 1e6});
+  const RenderResult result = rendered(scene, with_error(64, 0.03, Space::display), {.most_rays = 1e6});
   EXPECT_FALSE(result.budget->met());
   EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 1e6);
   EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;
@@ -255,13 +235,13 @@ void expect_repeated(const std::shared_ptr<const Scene>& scene, const RenderResu
   RenderRequest plain;
   static_cast<RenderSettings&>(plain) = result.budget->settings;
   EXPECT_FALSE(has_budget(plain));
-  EXPECT_EQ(values_of(made(scene, plain).film, Space::linear), values_of(result.film, Space::linear));
+  EXPECT_EQ(values_of(rendered(scene, plain).film, Space::linear), values_of(result.film, Space::linear));
 }
 
 TEST(ErrorBudget, IsRepeatedByItsSettings) {
   for (const char* name : {"glass", "cornell-box"}) {
     const auto scene = test::load(test::sample(name));
-    expect_repeated(scene, made(scene, with_error(64, 0.05, Space::display)));
+    expect_repeated(scene, rendered(scene, with_error(64, 0.05, Space::display)));
   }
 }
 
@@ -301,7 +281,7 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
     clock.share_of_stalls = run % 3 == 0 ? 0.1 : 0;
     RenderRequest r = square(96);  // 9 tiles
     r.seconds = 0.1 + 0.01 * run;
-    const RenderResult result = made(scene, r, clock.control());
+    const RenderResult result = rendered(scene, r, clock.control());
     const double tile_s = 1.3 * clock.tile_s * *result.budget->settings.samples / 2;
     EXPECT_LE(clock.now_s, *r.seconds + 2 * 5 * tile_s) << "two tiles at once, of which one stalls";
     EXPECT_EQ(result.budget->seconds_met, result.budget->used_s <= *r.seconds);
@@ -315,7 +295,7 @@ TEST(TimeBudget, SaysThatTheFirstPassTookLonger) {
   FakeClock clock;
   RenderRequest r = square(96);
   r.seconds = 0.002;
-  const RenderResult result = made(test::load(test::sample("paper")), r, clock.control());
+  const RenderResult result = rendered(test::load(test::sample("paper")), r, clock.control());
   EXPECT_FALSE(result.budget->seconds_met);
   EXPECT_EQ(result.budget->reason, "the first pass took longer");
   EXPECT_EQ(result.stats.counts.rays.camera, 2u * 96 * 96) << "and is whole";
@@ -327,12 +307,12 @@ TEST(TimeBudget, EndsAnErrorBudgetToo) {
   RenderRequest r = with_error(96, 0.5, Space::display);
   r.seconds = 1000;
   FakeClock quick;
-  EXPECT_TRUE(made(scene, r, quick.control()).budget->met());
+  EXPECT_TRUE(rendered(scene, r, quick.control()).budget->met());
   EXPECT_LT(quick.now_s, 0.1);
   r.error = 0.01;
   r.seconds = 0.03;
   FakeClock clock;
-  const RenderResult late = made(scene, r, clock.control());
+  const RenderResult late = rendered(scene, r, clock.control());
   EXPECT_TRUE(late.budget->seconds_met);
   EXPECT_FALSE(late.budget->error_met);
 }

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
@@ -12,13 +11,6 @@ namespace {
 
 using test::covers;
 using test::Json;
-
-std::vector<double> values_of(const Film& film) {
-  const Image image = film.image(PixelFormat::linear32);
-  std::vector<float> floats(image.bytes().size() / sizeof(float));
-  std::memcpy(floats.data(), image.bytes().data(), image.bytes().size());
-  return {floats.begin(), floats.end()};
-}
 
 // Mean square errors after 8, 16, ... 512 samples: six doublings, against two references that are independent
 // of each other, whose own errors so cancel on average.
@@ -30,7 +22,7 @@ std::vector<double> errors_of(const std::shared_ptr<const Scene>& scene, RenderR
   std::vector<double> errors;
   for (int n = 8; n <= *r.samples; n *= 2) {
     render.refine(n);
-    const std::vector<double> values = values_of(render.film());
+    const std::vector<double> values = test::linear_values(render.film());
     double sum = 0;
     for (std::size_t i = 0; i < values.size(); ++i)
       sum += (values[i] - truth[0][i]) * (values[i] - truth[1][i]);
@@ -65,10 +57,7 @@ double standard_errors_above_nothing(const Json& json, const RenderRequest& r,
     RenderRequest much = unbiased;
     much.samples = 2048;
     much.seed = 1000 + i;
-    const PreparedScene prepared(scene);
-    truth[i] = values_of(render_frame(prepared, settle(prepared, make_plan(*scene, much)),
-                                      FilmStorage::linear32, test::shared_pool())
-                             .film);
+    truth[i] = test::linear_values(test::rendered(scene, much).film);
   }
   double sum = 0, squares = 0;
   RenderRequest seeded = r;

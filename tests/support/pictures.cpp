@@ -13,6 +13,13 @@ double distance(const Vec3f& a, const Vec3f& b) {
   return std::isfinite(d.x + d.y + d.z) ? max_component(d) : std::numeric_limits<double>::infinity();
 }
 
+RenderResult rendered_by(WorkerPool& pool, const std::shared_ptr<const Scene>& scene,
+                         const RenderRequest& request, const RenderControl& control) {
+  const PreparedScene prepared(scene);
+  return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::linear32, pool,
+                      control);
+}
+
 }  // namespace
 
 double Picture::sum(float Vec3f::*channel) const {
@@ -37,17 +44,35 @@ Picture render(const Json& scene, const RenderRequest& request, int threads) {
 }
 
 Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request, int threads) {
-  const PreparedScene prepared(scene);
-  const Plan plan = make_plan(*scene, request);
   std::unique_ptr<WorkerPool> own;
   if (threads > 0) own = std::make_unique<WorkerPool>(threads);
-  const RenderResult result =
-      render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, own ? *own : shared_pool());
-  Picture picture{plan.width, plan.height, {}, result.stats};
-  picture.pixels.resize(static_cast<std::size_t>(plan.width * plan.height));
+  const RenderResult result = rendered_by(own ? *own : shared_pool(), scene, request, {});
+  Picture picture{result.film.width(), result.film.height(), {}, result.stats};
+  picture.pixels.resize(static_cast<std::size_t>(picture.width * picture.height));
   const Image image = result.film.image(PixelFormat::linear32);
   std::memcpy(static_cast<void*>(picture.pixels.data()), image.bytes().data(), image.bytes().size());
   return picture;
+}
+
+RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request,
+                      const RenderControl& control) {
+  return rendered_by(shared_pool(), scene, request, control);
+}
+
+std::vector<double> linear_values(const Film& film) {
+  const Image image = film.image(PixelFormat::linear32);
+  return {image.values().begin(), image.values().end()};
+}
+
+std::vector<double> shown(std::vector<double> linear) {
+  for (double& value : linear) value = encode_srgb(value);
+  return linear;
+}
+
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(squares / static_cast<double>(a.size()));
 }
 
 double largest_difference(const Picture& a, const Picture& b) {

@@ -25,6 +25,15 @@ struct Picture {
 Picture render(const Json& scene, const RenderRequest& request = {}, int threads = 0);
 Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {}, int threads = 0);
 
+// What a plan of the scene renders on the shared pool: linear, unless a budget has sums kept.
+RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {},
+                      const RenderControl& control = {});
+// Values of all pixels and channels, in linear radiance. REQUIRES: as Film::image() of linear32.
+std::vector<double> linear_values(const Film& film);
+// As a display shows them, before they are rounded to codes.
+std::vector<double> shown(std::vector<double> linear);
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b);
+
 // The pool that tests share.
 WorkerPool& shared_pool();
 
