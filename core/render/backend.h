@@ -21,7 +21,8 @@ struct RenderControl {
   std::stop_token stop = {};                               // a stop request ends it with Cancelled
   std::function<void(int done, int total)> progress = {};  // tiles; called from several threads at once
   bool background = false;                                 // others come first
-  Pass* pass = nullptr;                                    // as for_each() takes it
+  bool spread = false;   // any first part of the tiles that are rendered lies all over the picture
+  Pass* pass = nullptr;  // as for_each() takes it
   // For budgets: seconds that the caller's client has waited, from any thread; those since the call if empty.
   std::function<double()> used_s = {};
   // What a budget may spend, whatever it says.

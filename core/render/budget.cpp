@@ -1,6 +1,7 @@
 #include "core/render/budget.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -18,6 +19,8 @@ constexpr double kDeeper = 16;          // by which the least contribution is di
 constexpr int kMostDeepenings = 3;
 constexpr double kSlower = 1.1;         // than the last pass may the next be
 constexpr double kLastPassReach = 4.4;  // of this many times the samples, more than one pass is left
+constexpr int kSeenTiles = 16;          // of the first pass, before its time is foretold
+constexpr double kSurelyLate = 1.5;     // times the time that there is
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 std::string rounded(double value) {
@@ -40,7 +43,8 @@ class BudgetedRender {
         begin_(Clock::now()) {}
 
   RenderResult render() {
-    if (fails_on_miss() && error_ > 0) require_provable();
+    certificate_ = certify(*plan_, stats_, doubt_of_look(1));  // of nothing so far
+    if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), certificate_);
     while (!render_passes()) {
       plan_ = plan_.with_min_contribution(plan_->min_contribution / kDeeper);
       lost_.add(stats_.counts);
@@ -54,12 +58,6 @@ class BudgetedRender {
 
  private:
   bool fails_on_miss() const { return *plan_->asked.on_miss == OnMiss::fail; }
-
-  // Before anything is rendered.
-  void require_provable() {
-    certificate_ = certify(*plan_, stats_, doubt_of_look(1));
-    if (!is_provable()) throw BudgetMissed(outcome(), certificate_);
-  }
 
   // Of one that may end it, from 1 on; the last one alone counts where the samples are given.
   double doubt_of_look(int look) const {
@@ -92,29 +90,40 @@ class BudgetedRender {
     return true;
   }
 
-  // False if time is up: then the film is that of the passes before.
+  // False if time is up: then the film is that of the passes before. Without any, that is a miss.
   bool trace(ProgressiveRender& passes, int samples) {
     std::stop_source late;
     const std::stop_callback forward(control_.stop, [&] { late.request_stop(); });
     RenderControl control = control_;
     control.stop = late.get_token();
-    const bool may_be_late = is_timed() && samples_ > 0;
-    if (may_be_late) {
-      kept_ = passes.film().copy();
-      control.progress = [&](int done, int total) {
-        if (used_s() > deadline_s()) late.request_stop();
-        if (control_.progress) control_.progress(done, total);
-      };
-    }
+    const bool is_first = samples_ == 0;
+    if (is_timed() && !is_first) kept_ = passes.film().copy();
+    control.spread = is_first;
+    control.progress = [&, begin_s = used_s()](int done, int total) {
+      if (is_first ? fails_on_miss() && is_surely_late(begin_s, done, total) : used_s() > deadline_s())
+        late.request_stop();
+      if (control_.progress) control_.progress(done, total);
+    };
     try {
       passes.refine(samples, control);
     } catch (const Cancelled&) {
-      if (control_.stop.stop_requested() || !may_be_late) throw;
+      if (control_.stop.stop_requested()) throw;
+      if (is_first) throw BudgetMissed(outcome(), certificate_);
       gave_up_ = true;
       reason_ = "time was up";
       return false;
     }
     kept_.reset();
+    return true;
+  }
+
+  // Of the first pass, after so many of its tiles, which lie all over the picture.
+  bool is_surely_late(double begin_s, int done, int total) {
+    const double now_s = used_s();
+    if (seconds_ == 0 || done == total) return false;
+    const double end_s = begin_s + (now_s - begin_s) * total / done;
+    if (now_s <= seconds_ && (done < kSeenTiles || end_s <= kSurelyLate * seconds_)) return false;
+    least_s_ = end_s;
     return true;
   }
 
@@ -193,14 +202,15 @@ class BudgetedRender {
     used.asked.space = Space::automatic;
     outcome.settings = settings_of(used);
     outcome.used_s = used_s();
-    outcome.seconds_met = seconds_ == 0 || outcome.used_s <= seconds_;
+    if (least_s_ > 0) outcome.least_s = least_s_;
+    outcome.seconds_met = seconds_ == 0 || (outcome.used_s <= seconds_ && !outcome.least_s);
     outcome.error_met = error_ == 0 || is_proved();
     if (!outcome.met()) outcome.reason = reason();
     return outcome;
   }
 
   std::string reason() const {
-    if (error_ == 0 || is_proved()) return late_reason();
+    if (least_s_ > 0 || error_ == 0 || is_proved()) return late_reason();
     for (const Certificate::Term& term : certificate_.terms)
       if (term.subject != Certificate::kSamples && term.bound.kind == Bound::Kind::unknown)
         return term.subject + ": " + term.reason;
@@ -215,6 +225,7 @@ class BudgetedRender {
   }
 
   std::string late_reason() const {
+    if (least_s_ > 0) return "the first pass would take about " + rounded(least_s_) + " s";
     if (gave_up_) return "a pass took longer than the one before, and ending it took too long";
     const bool first = samples_ == progressive_samples(*plan_).front();
     return std::string(first ? "the first" : "the last") + " pass took longer";
@@ -234,7 +245,8 @@ class BudgetedRender {
   const double limit_s_;          // of time; may be infinite
   const Clock::time_point begin_;
   int deepenings_ = 0, looks_ = 0;
-  bool gave_up_ = false;  // a pass
+  bool gave_up_ = false;               // a pass
+  std::atomic<double> least_s_ = 0.0;  // until the first pass would have ended, if it was given up
   // Of the last pass that has ended.
   int samples_ = 0;
   double pass_s_per_sample_ = 0;

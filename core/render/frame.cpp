@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "core/base/work_scope.h"
@@ -35,6 +36,17 @@ std::vector<TileView> tiles_of(const Film& film, int first_sample, int samples) 
   return tiles;
 }
 
+// In an order in which any first part of them lies all over the picture: by steps of the golden ratio.
+std::vector<TileView> spread(const std::vector<TileView>& tiles) {
+  const std::size_t size = tiles.size();
+  auto step = static_cast<std::size_t>(0.618 * static_cast<double>(size));
+  while (std::gcd(step, size) != 1) ++step;
+  std::vector<TileView> order;
+  order.reserve(size);
+  for (std::size_t i = 0; i < size; ++i) order.push_back(tiles[i * step % size]);
+  return order;
+}
+
 }  // namespace
 
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
@@ -68,7 +80,8 @@ void ProgressiveRender::refine(int samples, const RenderControl& control) {
   stats_.halves = {};
   const Omitted omitted_before = std::exchange(stats_.omitted, {});
   const Clamped clamped_before = std::exchange(stats_.clamped, {});
-  prepared_->render(tiles_of(film_, samples_, samples - samples_), film_, stats_, control);
+  const std::vector<TileView> tiles = tiles_of(film_, samples_, samples - samples_);
+  prepared_->render(control.spread ? spread(tiles) : tiles, film_, stats_, control);
   if (samples_ > 0) {
     stats_.omitted.join(omitted_before);
     stats_.clamped.join(clamped_before);

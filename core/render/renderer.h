@@ -16,6 +16,7 @@ struct BudgetOutcome {
   bool error_met = true, seconds_met = true;
   double used_s = 0;                       // by the client's clock, in the end
   std::optional<double> least_error = {};  // that can be proved of a picture of that size
+  std::optional<double> least_s = {};      // that the least picture would take, if it was given up for that
   std::string reason;                      // of a miss, or empty
 
   bool met() const { return error_met && seconds_met; }

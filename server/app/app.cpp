@@ -120,18 +120,36 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
   return {found.value, found.made_here && !found.value->of_kept_film};
 }
 
+Admission::Ticket App::enter_in_time(const Demand& demand, Clock::time_point since, double seconds,
+                                     double used_s, const std::stop_token& ends) {
+  if (seconds == 0) return admission_.enter(demand, ends);
+  std::stop_source late;
+  const std::stop_callback forward(ends, [&] { late.request_stop(); });
+  const auto alarm = timer_.at(
+      since + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds - used_s)),
+      [&] { late.request_stop(); });
+  try {
+    return admission_.enter(demand, late.get_token());
+  } catch (const Cancelled&) {
+    if (ends.stop_requested()) throw;
+    throw OverLimit(
+        "Others have had the service for all of the " + number_text(seconds) + " s that the picture may take",
+        seconds, "renders");
+  }
+}
+
 Picture App::make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,
                   Stage& stage) {
   std::optional<Admission::Ticket> ticket;
+  const double before_s = (timing.load + timing.plan + timing.queue) / 1000;
   const auto enter = [&](const Demand& asked, const std::stop_token& ends) {
     const auto start = Clock::now();
-    ticket.emplace(admission_.enter(asked, ends));
+    ticket.emplace(enter_in_time(asked, since, *plan.asked.seconds, before_s, ends));
     timing.queue += milliseconds_since(start);
   };
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
   if (storage == FilmStorage::sums) require_layers_fit(plan, memory_.most());
-  const double before_s = (timing.load + timing.plan + timing.queue) / 1000;
   const RenderControl control{
       .background = demand.lane == Lane::batch,
       .used_s = [this, since,

@@ -100,6 +100,10 @@ class App {
   // counts from `since`. It takes memory of the caller's share.
   template <class Work>
   void watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work);
+  // A turn; throws OverLimit once it cannot come within so many seconds, of which some were used before
+  // `since`. 0: whenever it comes.
+  Admission::Ticket enter_in_time(const Demand& demand, Clock::time_point since, double seconds,
+                                  double used_s, const std::stop_token& ends);
   // Renders it, unless a film of it is kept, and encodes it. The client has waited since `since`.
   Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,

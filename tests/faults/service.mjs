@@ -66,6 +66,8 @@ export const serviceFaults = [
         "test_app", "RayEstimator.LearnsForTheScene*"),
   entry(20, "pictures that cannot end in time are begun", "server/app/app.cpp",
         "require_request_rays(scene.scene(), plan);", "", "test_http", "RenderThatTakesTooLong.*"),
+  entry(20, "a budget of time waits for a turn for ever", "server/app/app.cpp", "if (seconds == 0) return", "if (seconds >= 0) return",
+        "test_http", "PictureBudgetOfTime.IsRefused*"),
   entry(20, "orbits that cannot end in time are begun", "server/routes/orbit.cpp",
         "app.require_request_rays(scene, first);", "", "test_http", "RenderThatTakesTooLong.IsRefused*"),
   pictures("each makes its own", "if (first) return make_for_all", "if (true) return make_for_all",

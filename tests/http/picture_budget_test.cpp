@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "tests/http/daemon.h"
+#include "tests/support/covers.h"
 
 namespace orrery {
 namespace {
@@ -43,6 +44,45 @@ TEST_F(PictureBudget, IsRepeatedByItsContentLocation) {
     EXPECT_TRUE(again->body == made->body) << query << " " << plain;
     EXPECT_TRUE(again->get_header_value("Orrery-Budget").empty());
   }
+}
+
+// Also by another daemon, of other threads.
+TEST_F(PictureBudget, IsRepeatedByAnotherDaemon) {
+  test::covers("certificate-31 certificate-32");
+  Daemon other({"--threads", "3"});
+  httplib::Client there = other.client();
+  const std::string scene = path("");
+  ASSERT_EQ(there.Post("/v1/scenes", small_scene().dump(), "application/json")->status, 201);
+  for (int seed = 0; seed < 50; ++seed) {
+    const auto made = client_.Get(scene + "seconds=0.03&width=64&height=48&seed=" + std::to_string(seed));
+    ASSERT_EQ(made->status, 200) << made->body.substr(0, 400);
+    const std::string plain = made->get_header_value("Content-Location");
+    EXPECT_TRUE(client_.Get(plain)->body == made->body) << plain;
+    const auto again = there.Get(plain);
+    ASSERT_EQ(again->status, 200) << plain;
+    EXPECT_TRUE(again->body == made->body) << plain;
+  }
+  const auto here = client_.Get(scene + "error=0.1");
+  const auto also = there.Get(scene + "error=0.1");
+  EXPECT_TRUE(here->body == also->body);
+  for (const char* header : {"ETag", "Content-Location", "Orrery-Error-Bound", "Orrery-Budget"})
+    EXPECT_EQ(here->get_header_value(header), also->get_header_value(header)) << header;
+}
+
+// Rather than answered late.
+TEST(PictureBudgetOfTime, IsRefusedWhereOthersHaveTheService) {
+  test::covers("certificate-37");
+  Daemon daemon(with_endless_pictures({"--renders", "1"}));
+  httplib::Client client = daemon.client();
+  const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
+  const std::string frame = posted->get_header_value("Location") + "/frame.png";
+  const RawClient endless(daemon.port());
+  endless.send("GET " + frame + "?width=4096&height=4096&samples=4096 HTTP/1.1\r\nHost: x\r\n\r\n");
+  ASSERT_TRUE(daemon.wait_until_working());
+  const auto refused = client.Get(frame + "?seconds=0.02");
+  const auto problem = expect_problem(refused, 503);
+  EXPECT_FALSE(refused->get_header_value("Retry-After").empty());
+  EXPECT_NE(problem["detail"].get<std::string>().find("0.02 s"), std::string::npos);
 }
 
 TEST_F(PictureBudget, OfTimeIsNotKept) {

@@ -176,6 +176,48 @@ TEST(ErrorBudget, TracesWeakerRaysRatherThanMiss) {
   EXPECT_THROW(rendered(test::load(test::sample("material-glass")), r), BudgetMissed);
 }
 
+// Two small mirrors that see each other, in a corner: what they leave out is found wherever it is, and
+// traced, or told as missed where that may not be.
+TEST(ErrorBudget, FindsWhatOneCornerLeavesOut) {
+  covers("certificate-34");
+  const auto scene = test::load(
+      test::scene_of("[{'type': 'sphere', 'center': [0.32, 0.42, 0], 'radius': 0.03, 'material': 'mirror'},"
+                     " {'type': 'sphere', 'center': [0.39, 0.42, 0], 'radius': 0.03, 'material': 'mirror'}]",
+                     "{'materials': {'mirror': {'type': 'reflective', 'n': [1, 1, 1], 'k': [9, 9, 9]}},"
+                     " 'background': [1, 1, 1]}"));
+  RenderRequest r = with_error(128, 0.004, Space::linear);
+  r.max_depth = 1;
+  r.min_contribution = 0;
+  r.samples = 2;
+  const RenderResult cut = rendered(scene, r);
+  const auto& left_out = cut.certificate.terms.front();
+  EXPECT_GT(left_out.bound.max.value(), 0.1) << "some pixels lack much";
+  EXPECT_LT(left_out.bound.rms.value(), 0.02) << "most lack nothing";
+  EXPECT_FALSE(cut.budget->error_met);
+  r.max_depth.reset();
+  const RenderResult whole = rendered(scene, r);
+  EXPECT_LT(whole.certificate.terms.front().bound.rms.value_or(0), left_out.bound.rms.value() / 4);
+}
+
+// Half of the light is mirrored and half is refracted at each of eight sheets: each of the rays has 1/256,
+// and where none of them may be traced, all of the light is missing.
+TEST(ErrorBudget, CountsManyWeakRays) {
+  covers("certificate-5");
+  Json sheets = Json::array();
+  for (int i = 0; i < 8; ++i)
+    sheets.push_back(
+        {{"type", "sphere"}, {"center", {0, 0, -0.3 * i}}, {"radius", 0.9}, {"material", "half"}});
+  const auto scene = test::load(test::scene_with(
+      sheets,
+      test::json("{'materials': {'half': {'type': 'refractive', 'ior': 1.5}}, 'background': [1, 1, 1]}")));
+  RenderRequest r = with_error(64, 0.002, Space::linear);
+  r.min_contribution = 1.0 / 16;
+  const RenderResult result = rendered(scene, r);
+  ASSERT_GT(result.stats.counts.cut_rays, 0u);
+  EXPECT_GT(result.certificate.terms.front().bound.max.value(), 1.0 / 16) << "more than the weight of one";
+  EXPECT_FALSE(result.budget->error_met);
+}
+
 TEST(ErrorBudget, EndsForPathsOfOneTile) {
   const auto scene = test::load(test::sample("cornell-box"));
   EXPECT_LE(*rendered(scene, with_error(32, 0.5, Space::linear)).budget->settings.samples, 16);
@@ -299,6 +341,28 @@ TEST(TimeBudget, SaysThatTheFirstPassTookLonger) {
   EXPECT_FALSE(result.budget->seconds_met);
   EXPECT_EQ(result.budget->reason, "the first pass took longer");
   EXPECT_EQ(result.stats.counts.rays.camera, 2u * 96 * 96) << "and is whole";
+}
+
+// Before it is rendered where that would take much too long, as its first tiles tell.
+TEST(TimeBudget, FailsAsSoonAsItIsSurelyMissed) {
+  covers("certificate-35");
+  FakeClock clock;
+  RenderRequest r = square(1024);  // 1024 tiles
+  r.seconds = 0.5;
+  r.on_miss = OnMiss::fail;
+  try {
+    rendered(test::load(test::sample("paper")), r, clock.control());
+    FAIL() << "expected BudgetMissed";
+  } catch (const BudgetMissed& missed) {
+    EXPECT_FALSE(missed.outcome().seconds_met);
+    EXPECT_NEAR(*missed.outcome().least_s, 1.024, 0.2);
+    EXPECT_NE(std::string(missed.what()).find("the first pass would take about"), std::string::npos);
+    EXPECT_FALSE(missed.certificate().total().rms) << "nothing is known of a picture that was not made";
+  }
+  EXPECT_LE(clock.tiles, 16 + 2) << "of those that two threads have begun";
+  FakeClock in_time;
+  r.seconds = 2;
+  EXPECT_TRUE(rendered(test::load(test::sample("paper")), r, in_time.control()).budget->met());
 }
 
 // Of both budgets the first that is reached ends it.
