@@ -51,6 +51,7 @@ struct Plan {
   // limits them.
   double sample_range = std::numeric_limits<double>::infinity();
   Vec3d cut_range;  // the most by which a ray that is not traced may change radiance; may be infinite
+  View view = View::picture;
   std::uint64_t seed = 0;
   bool reorder = false;  // rays that are alike are asked for together
   Prediction prediction = Prediction::none;

@@ -41,6 +41,10 @@ inline constexpr std::string_view name_of(Space space) { return kSpaces[static_c
 enum class OnMiss { best, fail };
 inline constexpr std::array<std::string_view, 2> kOnMisses{"best", "fail"};
 
+// What is shown, and the names: the picture, or how far each of its pixels may be off.
+enum class View { picture, bound };
+inline constexpr std::array<std::string_view, 2> kViews{"picture", "bound"};
+
 // Values of the render options, one member an option. The table in core/plan/options.h gives each its name,
 // range and default. A member without a value was not given.
 struct RenderSettings {
@@ -63,6 +67,7 @@ struct RenderSettings {
   std::optional<Prediction> prediction;
   std::optional<double> time, shutter;             // seconds
   std::optional<std::vector<std::string>> layers;  // film channels beside radiance
+  std::optional<View> view;
   // Budgets of one picture. Errors are root-mean-square; 0: none.
   std::optional<double> error, seconds;
   std::optional<Space> space;

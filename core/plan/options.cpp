@@ -165,6 +165,12 @@ constexpr std::array kOptions{
       .kind = O::NameList{&S::layers, channel_names},
       .placeholder = "NAMES",
       .help = "What an EXR file holds beside the picture: channels of what camera rays meet first."},
+    O{.key = "view",
+      .section = Section::render,
+      .kind = O::Enumeration<View>{&S::view, kViews},
+      .help = "What is shown: the picture, or as colours how far each pixel may be off: what was left out at "
+              "most, and half of what its samples' halves differ by.",
+      .in_scene = false},
     O{.key = "error",
       .section = Section::budget,
       .kind = O::Number{&S::error, {.min = 0, .max = 1}, 0},
@@ -393,6 +399,11 @@ void require_no_budget(const RenderSettings& settings, std::string_view what) {
   if (has_budget(settings))
     throw InputError(settings.error.value_or(0) > 0 ? "/budget/error" : "/budget/seconds",
                      "expected none or 0: a budget is of one picture, not of " + std::string(what));
+}
+
+void require_picture(const RenderSettings& settings, std::string_view what) {
+  if (settings.view.value_or(View::picture) != View::picture)
+    throw InputError("/render/view", "expected picture: " + std::string(what) + " shows nothing else");
 }
 
 namespace {

@@ -65,7 +65,7 @@ struct RenderOption {
   };
   using Kind = std::variant<Integer<int>, Integer<std::uint64_t>, Number, Flag, Point, Name,
                             Enumeration<Precision>, Enumeration<Prediction>, Enumeration<Filter>,
-                            Enumeration<Space>, Enumeration<OnMiss>, NameList>;
+                            Enumeration<Space>, Enumeration<OnMiss>, Enumeration<View>, NameList>;
 
   std::string_view key;  // the name: in JSON, in queries and, with hyphens after --, on command lines
   std::string_view short_name = {};  // also allowed in queries and on command lines; empty: none
@@ -111,6 +111,8 @@ void read_request_options(Params& p, Section section, RenderSettings& settings);
 bool has_budget(const RenderSettings& settings);
 // Throws InputError if so, where `what` cannot keep any.
 void require_no_budget(const RenderSettings& settings, std::string_view what);
+// Throws InputError if another view is asked for, where `what` has the picture's alone.
+void require_picture(const RenderSettings& settings, std::string_view what);
 
 // Every option as asked or else as the scene says or else its default, the time held within the scene's
 // motion. A budget frees what is not asked, whatever the scene says: of samples there may then be as many as

@@ -83,6 +83,7 @@ class Planner {
     plan_.max_depth = *asked.max_depth;
     plan_.min_contribution = *asked.min_contribution;
     plan_.seed = *asked.seed;
+    plan_.view = *asked.view;
     plan_.slice = request_.slice / 16 * 16;
     if (*asked.space == Space::display) plan_.space = Space::display;
     plan_.technique = find_type(technique_types(), *asked.technique);
@@ -94,6 +95,7 @@ class Planner {
   void take_budget() {
     const RenderSettings& asked = plan_.asked;
     if (!has_budget(asked)) return;
+    require_picture(asked, "a budget");
     plan_.free_samples = !request_.samples;
     plan_.free_contribution = *asked.error > 0 && !request_.min_contribution && !plan_.technique->draws_light;
     if (*asked.error > 0)

@@ -5,6 +5,7 @@
 #include "core/cameras/shutter.h"
 #include "core/cameras/thin_lens.h"
 #include "core/image/image.h"
+#include "core/render/color_scale.h"
 
 namespace orrery {
 namespace {
@@ -61,7 +62,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
   omitted_.clear();
   begin_looks(tile);
   if (places_samples_) find_streams(tile, SampleSet::pixel, pixel_streams_);
-  if (plan_.samples == 1 && film.storage() != FilmStorage::sums) {
+  if (plan_.samples == 1 && film.storage() != FilmStorage::sums && plan_.view == View::picture) {
     if (!trace(tile, 0, checkpoint)) return false;
     put_single(tile, film);
   } else {
@@ -77,6 +78,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
       add_error(tile, end);
       if (std::isfinite(plan_.halves_range())) add_halves(tile, end);
     }
+    if (plan_.view == View::bound) show_bound(tile);
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
   add_omitted(tile);
@@ -230,6 +232,7 @@ void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
     }
   double sum = 0;
   for_each_slot(tile, [&](std::size_t i) {
+    if (!std::isfinite(squares[i])) return;  // which is told besides
     stats_.halves.add(squares[i] / 3);
     sum += squares[i] / 3;
   });
@@ -254,12 +257,29 @@ void TileRenderer<T>::add_display_halves(const TileView& tile, int samples) {
       const auto [less, more] = std::minmax(first, second);
       if (less < 1 && more > 1) beyond += more - 1;
     }
+    if (!std::isfinite(squares + beyond)) return;  // which is told besides
     const double value = std::min(1.0, squares / 3);
     stats_.halves.add(value);
     sum += value;
     if (most > 0) stats_.halves.add_beyond(std::min(beyond / 3, most), most);
   });
   stats_.halves.add_tile(sum);
+}
+
+template <class T>
+void TileRenderer<T>::show_bound(const TileView& tile) {
+  const double samples = sums_.samples;
+  const bool halves = sums_.samples % 2 == 0;
+  for_each_slot(tile, [&](std::size_t i) {
+    double squares = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double left_out = omitted_.empty() ? 0 : omitted_[c][i];
+      const double noise = halves ? std::fabs(2 * first_half_[c][i] - sums_.radiance[c][i]) : 0;
+      squares += (left_out + noise) * (left_out + noise);
+    }
+    const Vec3d color = color_of_error(std::sqrt(squares / 3) / samples);
+    for (std::size_t c = 0; c < 3; ++c) sums_.radiance[c][i] = color[c] * samples;
+  });
 }
 
 template <class T>
@@ -298,6 +318,7 @@ void TileRenderer<T>::add_error(const TileView& tile, int samples) {
         if (p.x >= tile.width || p.y >= tile.height) continue;
         const auto i = static_cast<std::size_t>(slot);
         const double half_difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * share;
+        if (!std::isfinite(half_difference)) continue;  // which is told besides
         of_tile.pixel.squares += half_difference * half_difference;
         sum += half_difference;
         ++inside;
@@ -312,6 +333,7 @@ void TileRenderer<T>::add_error(const TileView& tile, int samples) {
     of_tile.block32.squares += all * all / (double{kBatch} * kBatch);
     of_tile.block32.values += 1;
   }
+  if (of_tile.pixel.values == 0) return;  // none is finite
   const double mean_square = of_tile.pixel.squares / of_tile.pixel.values;
   of_tile.tiles = 1;
   of_tile.tile_sum = mean_square;

@@ -45,6 +45,8 @@ class TileRenderer {
   void add_halves(const TileView& tile, int samples);
   void add_display_halves(const TileView& tile, int samples);
   void put_single(const TileView& tile, Film& film);
+  // Puts colours in the place of the radiance.
+  void show_bound(const TileView& tile);
 
   const Plan& plan_;
   const bool places_samples_;  // elsewhere than at the pixels' centres

@@ -66,6 +66,7 @@ void leave_out_same(std::vector<Point>& points) {
 
 Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent) : view_(view) {
   require_no_budget(view, "a chart");
+  require_picture(view, "a chart");
   const Plan plan = make_plan(scene, view);
   seed_ = plan.seed;
   require_chartable(view, plan);

@@ -70,6 +70,7 @@ Response refine(App& app, Request& request) {
   const RenderRequest wanted = read_query(request);
   require_layers_kept(wanted, FileFormat::png);
   require_no_budget(wanted, "a refinement");
+  require_picture(wanted, "a refinement");
   const Plan plan = make_plan(scene->scene(), wanted);
   const StreamFormat format = negotiate_stream(request);
   Response response;

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "tests/render/random_optics.h"
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
+#include "tests/support/random.h"
 
 // The error that a picture tells of itself.
 namespace orrery::test {
@@ -45,6 +47,48 @@ TEST(SampledError, IsTheErrorOfThePicture) {
     EXPECT_LT(low, pictures[0].stats.error.pixel.rmse());
     EXPECT_GT(high, pictures[0].stats.error.pixel.rmse());
   }
+}
+
+// What pictures of one scene differ by tells the same, of any scene: or less, where halves tell too much, as
+// of edges, up to 1.6 times, and of what is smooth, up to 4 times.
+TEST(SampledError, AgreesWithOtherSeeds) {
+  covers("certificate-27");
+  Random random(27);
+  int told = 0, near = 0;
+  for (int k = 0; k < 30; ++k) {
+    const auto scene = load(random_optics(random));
+    double squares = 0, halves = 0;
+    for (const std::uint64_t pair : {0, 1}) {
+      const Picture a = render(scene, of(96, 16, 1, 2 * pair)),
+                    b = render(scene, of(96, 16, 1, 2 * pair + 1));
+      for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const Vec3f d = a.pixels[i] - b.pixels[i];
+        squares += double{dot(d, d)} / static_cast<double>(12 * a.pixels.size());
+      }
+      for (const Picture* p : {&a, &b}) halves += std::pow(p->stats.error.pixel.rmse(), 2) / 4;
+    }
+    if (squares == 0) continue;  // black pictures
+    ++told;
+    EXPECT_GT(std::sqrt(halves / squares), 0.97) << k;
+    EXPECT_LT(std::sqrt(halves / squares), 4) << k;
+    near += std::sqrt(halves / squares) < 1.6;
+  }
+  EXPECT_GE(told, 25);
+  EXPECT_GE(near, told - 2);
+}
+
+// It is told besides that there are some.
+TEST(SampledError, LeavesOutWhatIsNotFinite) {
+  covers("certificate-28");
+  const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"));
+  const Plan plan = make_plan(*scene, of(32, 2, 1, 0));
+  RenderStats stats;
+  stats.error.samples = 2;
+  stats.error.pixel = {.squares = 1, .values = 100};
+  stats.non_finite_pixels = 3;
+  const Certificate certificate = certify(plan, stats);
+  EXPECT_EQ(certificate.total().kind, Bound::Kind::unknown);
+  EXPECT_EQ(certificate.terms.back().reason, "3 pixels have one");
 }
 
 TEST(SampledError, IsToldOfEvenCountsAlone) {
