@@ -55,7 +55,8 @@ struct TechniqueType {
   // One light source and one direction a vertex are drawn: surfaces that emit and the environment are light
   // sources, and lenses blur.
   bool draws_light = false;
-  bool interreflects = false;  // diffuse surfaces light each other, in place of ambient light
+  bool interreflects = false;                  // diffuse surfaces light each other, in place of ambient light
+  std::vector<const char*> not_followed = {};  // kinds of light that its pictures lack, whatever the scene
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
 };

@@ -39,6 +39,8 @@ struct Certificate {
     std::array<double, 3> mean, standard_error;
   };
   std::vector<Bias> biases = {};
+  // Kinds of light that the technique does not follow: beside these, the reference is all light there is.
+  std::vector<const char*> not_followed = {};
 
   Bound total() const;  // as weak as the weakest term
   Bound known() const;  // of the terms that are not unknown

@@ -22,6 +22,7 @@ TechniqueType distributed_type() {
       .max_depth = 6,
       .secondary_rays = true,
       .draws_light = true,
+      .not_followed = {"interreflection", "caustics"},
       .make_float = make_tracer_of<Distributed, float>,
       .make_double = make_tracer_of<Distributed, double>};
 }

@@ -27,6 +27,7 @@ TechniqueType raycast_type() {
   return {.name = "raycast",
           .summary = "Camera and shadow rays alone (Appel 1968).",
           .max_depth = 5,
+          .not_followed = {"reflections", "refractions", "soft shadows", "interreflection", "caustics"},
           .make_float = make_tracer_of<Raycast, float>,
           .make_double = make_tracer_of<Raycast, double>};
 }

@@ -35,6 +35,7 @@ TechniqueType whitted_type() {
           .summary = "Mirrored and refracted rays as well (Whitted 1980).",
           .max_depth = 5,
           .secondary_rays = true,
+          .not_followed = {"soft shadows", "interreflection", "caustics"},
           .make_float = make_tracer_of<Whitted, float>,
           .make_double = make_tracer_of<Whitted, double>};
 }

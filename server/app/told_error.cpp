@@ -68,6 +68,9 @@ ordered_json certificate_json(const Certificate& certificate) {
                        {"terms", std::move(terms)},
                        {"total", bound_json(certificate.total())},
                        {"known", bound_json(certificate.known())}};
+  json["light"] =
+      certificate.not_followed.empty() ? bound_json(certificate.total()) : bound_json(Bound::unknown());
+  if (!certificate.not_followed.empty()) json["light"]["because"] = certificate.not_followed;
   if (certificate.estimate) json["estimate"] = *certificate.estimate;
   if (certificate.least_provable) json["least_provable"] = *certificate.least_provable;
   for (const Certificate::Bias& bias : certificate.biases) {
@@ -120,6 +123,7 @@ ordered_json budget_json(const BudgetOutcome& outcome) {
   if (outcome.seconds > 0) json.update({{"seconds", outcome.seconds}, {"seconds_met", outcome.seconds_met}});
   json["used_s"] = outcome.used_s;
   if (outcome.error > 0) json["reachable_error"] = number_or_null(outcome.least_error);
+  if (outcome.least_s) json["least_seconds"] = *outcome.least_s;
   if (!outcome.reason.empty()) json["reason"] = outcome.reason;
   return json;
 }

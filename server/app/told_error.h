@@ -20,9 +20,10 @@ std::string error_text(const RenderStats& stats);
 // {"kind", "rms", "max"}, where null is what is not known.
 nlohmann::ordered_json bound_json(const Bound& bound);
 
-// {"reference", "space", "confidence", "terms": [{"subject", "bound", "reason"}], "total", "known",
+// {"reference", "space", "confidence", "terms": [{"subject", "bound", "reason"}], "total", "known", "light",
 // "estimate", "biases": [{"option", "value", "mean", "standard_error"}]}: a reason where the bound is
-// unknown, an estimate where samples tell one, biases where there are some.
+// unknown, an estimate where samples tell one, biases where there are some. Against all light that there is,
+// `light` is the total, or unknown because of kinds of light that the technique does not follow.
 nlohmann::ordered_json certificate_json(const Certificate& certificate);
 
 // The same for a header: "rms=0.0044;kind=estimated;max=unknown;confidence=0.95;estimate=0.0031;
@@ -30,8 +31,9 @@ nlohmann::ordered_json certificate_json(const Certificate& certificate);
 // known, known-kind and known-max of what is known.
 std::string bound_text(const Certificate& certificate);
 
-// {"met", "error", "error_met", "seconds", "seconds_met", "used_s", "reachable_error", "reason"}: what was
-// asked, the least error that can be proved, null if none can, and a reason where it was missed.
+// {"met", "error", "error_met", "seconds", "seconds_met", "used_s", "reachable_error", "least_seconds",
+// "reason"}: what was asked, the least error that can be proved, null if none can, the time that the least
+// picture would take where it was given up for that, and a reason where it was missed.
 nlohmann::ordered_json budget_json(const BudgetOutcome& outcome);
 
 // The same for a header: "met=?0;error=0.001;reason=\"...\"" or "met=?1;seconds=2;used=1.83".

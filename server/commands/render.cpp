@@ -27,7 +27,7 @@ Examples:
 
 struct RenderOptions {
   std::string stats;
-  std::optional<std::string> output;
+  std::optional<std::string> output, certificate;
   int threads = 0;
   RenderFlags render;
 };
@@ -58,6 +58,7 @@ int render(const RenderOptions& options) {
   choose_space(request, format);
   if (options.output) require_layers_kept(request, format);
   if (options.output) require_writable(*options.output);
+  if (options.certificate) require_writable(*options.certificate);
   RunStats stats;
   auto start = Clock::now();
   std::optional<ProgressBar> bar(std::in_place, "tiles");
@@ -91,6 +92,8 @@ int render(const RenderOptions& options) {
   }
   if (is_missed(stats.budget))
     std::cerr << "orrery: warning: the budget is missed: " << stats.budget->reason << "\n";
+  if (options.certificate)
+    write_file(*options.certificate, certificate_file_json(scene.scene(), plan, stats).dump(2) + "\n");
   if (options.stats == "json")
     std::cout << stats_json(plan, stats).dump() << "\n";
   else if (!options.stats.empty() || !options.output)
@@ -106,6 +109,10 @@ Command add_render(CLI::App& root) {
   app->footer(kRenderExamples);
   app->add_option("-o,--output", options->output, "The picture; its ending chooses PNG, JPEG or EXR")
       ->type_name("FILE.{png,jpg,exr}");
+  app->add_option(
+         "--certificate", options->certificate,
+         "Where the error that is promised is written to as JSON, with the plan that gives the picture again")
+      ->type_name("FILE");
   app->add_flag("--stats{text}", options->stats,
                 "Print what was traced and what it took; --stats=json for programs")
       ->check(CLI::IsMember({"text", "json"}));

@@ -11,6 +11,7 @@
 #include "core/model/technique.h"
 #include "core/plan/plan.h"
 #include "server/app/option_json.h"
+#include "server/app/render_options.h"
 #include "server/app/told_error.h"
 
 namespace orrery {
@@ -94,6 +95,16 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
   json.update(measured);
   if (stats.render.error.known()) json["error"] = error_json(stats.render);
   json["certificate"] = certificate_json(stats.certificate);
+  if (stats.budget) json["budget"] = budget_json(*stats.budget);
+  return json;
+}
+
+ordered_json certificate_file_json(const Scene& scene, const Plan& plan, const RunStats& stats) {
+  ordered_json json = {{"version", 1},
+                       {"scene", scene.id},
+                       {"plan", query_of(scene, settings_of(plan))},
+                       {"certificate", certificate_json(stats.certificate)},
+                       {"cost", {{"rays", stats.render.counts.rays.total()}, {"cpu_s", stats.render_cpu_s}}}};
   if (stats.budget) json["budget"] = budget_json(*stats.budget);
   return json;
 }

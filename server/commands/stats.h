@@ -19,6 +19,9 @@ struct RunStats {
 };
 
 nlohmann::ordered_json stats_json(const Plan& plan, const RunStats& stats);
+// {"version", "scene", "plan", "certificate", "cost", "budget"}: the scene's id, a query that gives the
+// picture again, what is promised of it, what it took, and what became of its budget, if it had one.
+nlohmann::ordered_json certificate_file_json(const Scene& scene, const Plan& plan, const RunStats& stats);
 std::string stats_text(const Plan& plan, const RunStats& stats);
 
 }  // namespace orrery
