@@ -9,8 +9,9 @@ namespace orrery {
 
 // How far something may take a picture from the one without it.
 struct Bound {
-  // What the numbers rest on, the strongest first: nothing changes; no picture differs by more; samples tell.
-  enum class Kind { exact, proved, estimated, unknown };
+  // What the numbers rest on, the strongest first: nothing changes; no picture differs by more; pixels that
+  // were drawn at random tell, of any picture; samples tell.
+  enum class Kind { exact, proved, audited, estimated, unknown };
   Kind kind = Kind::exact;
   // Largest and root-mean-square difference of a pixel's channel, in linear radiance; none if unknown.
   std::optional<double> max = 0, rms = 0;
@@ -20,6 +21,8 @@ struct Bound {
   static Bound proved(double max, double rms) {
     return std::isfinite(max) && std::isfinite(rms) ? Bound{Kind::proved, max, rms} : unknown();
   }
+  // Of some pixels, which tell nothing of the largest difference.
+  static Bound audited(double rms) { return {Kind::audited, std::nullopt, rms}; }
   // Of samples, which tell nothing of the largest difference.
   static Bound estimated(double rms) {
     return std::isfinite(rms) ? Bound{Kind::estimated, std::nullopt, rms} : unknown();
@@ -34,7 +37,8 @@ struct Bound {
   }
 };
 
-inline constexpr std::array<std::string_view, 4> kBoundKinds{"exact", "proved", "estimated", "unknown"};
+inline constexpr std::array<std::string_view, 5> kBoundKinds{"exact", "proved", "audited", "estimated",
+                                                             "unknown"};
 inline constexpr std::string_view name_of(Bound::Kind kind) {
   return kBoundKinds[static_cast<std::size_t>(kind)];
 }
