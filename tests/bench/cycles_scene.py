@@ -106,12 +106,13 @@ def surround(tree, record, folder):
 # "fair" is unbiased: nothing clamped, no light left out, no pixel stopped for its own noise. And it begins with sample
 # number N of N: Cycles sends sample 0 of every pixel through the centre, not where the filter says, which would be an
 # error of 1/N of the edges in each picture, the same for every seed; samples N to 2N - 1 are as well stratified.
-# "defaults" has all five as Blender has them. Neither denoises, both take our pixel filter and path length.
-def choose_preset(cycles, preset, samples):
+# "defaults" has all five as Blender has them. A threshold stops pixels for their own noise, whatever the preset. Neither
+# denoises, both take our pixel filter and path length.
+def choose_preset(cycles, preset, samples, threshold):
     fair = preset == "fair"
     cycles.sample_offset = samples if fair else 0
-    cycles.use_adaptive_sampling = not fair
-    cycles.adaptive_threshold = 0.01
+    cycles.use_adaptive_sampling = not fair or threshold is not None
+    cycles.adaptive_threshold = threshold or 0.01
     cycles.sample_clamp_direct = 0
     cycles.sample_clamp_indirect = 0 if fair else 10
     cycles.light_sampling_threshold = 0 if fair else 0.01
@@ -130,7 +131,7 @@ def render(scene, order):
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = order["bounces"]
     cycles.transmission_bounces = order["bounces"]
     cycles.use_auto_tile = False
-    choose_preset(cycles, order["preset"], order["samples"])
+    choose_preset(cycles, order["preset"], order["samples"], order.get("threshold"))
     settings.resolution_x = settings.resolution_y = order["size"]
     settings.resolution_percentage = 100
     settings.threads_mode, settings.threads = "FIXED", order["threads"]

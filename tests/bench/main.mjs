@@ -5,6 +5,7 @@ import { loadavg } from "node:os";
 import { exists_program, kOrrery } from "./command.mjs";
 import { kCancel } from "./cancel.mjs";
 import { kCycles } from "./cycles.mjs";
+import { kCyclesThreshold } from "./cycles_threshold.mjs";
 import { kDrag } from "./drag.mjs";
 import { kEmbree } from "./embree.mjs";
 import { kFlakeVsPovray } from "./flake_vs_povray.mjs";
@@ -23,7 +24,7 @@ import { kReports as kStructureReports } from "./structures.mjs";
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kStages, ...kMotion];
 
-const kReports = [kEmbree, kCycles, ...kStructureReports, kCancel, kDrag, kSlowClients];
+const kReports = [kEmbree, kCycles, kCyclesThreshold, ...kStructureReports, kCancel, kDrag, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too

@@ -24,7 +24,7 @@ function start_blender(scene) {
       const { value, done } = await lines.next();
       if (done) throw new Error(`blender ended with ${await ended}`);
       const answer = value.match(kAnswer);
-      if (answer) return Number(answer[1]);
+      if (answer) return { cpu_s: Number(answer[1]) };
     }
   };
   const stop = async () => {
@@ -34,24 +34,27 @@ function start_blender(scene) {
   return { render, stop };
 }
 
-function render_ours(scene, { samples, seed, bounces, size, out }) {
-  const options = { width: size, height: size, depth: bounces + 1, samples, seed, threads: kThreads };
+function render_ours(scene, { samples, error, seed, bounces, size, out }) {
+  const goal = error ? { error, space: "display" } : { samples };
+  const options = { width: size, height: size, depth: bounces + 1, ...goal, seed, threads: kThreads };
   const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]);
   const done = spawnSync(kOrrery, ["render", scene, ...words, "--stats=json", "-o", out], { encoding: "utf8" });
   if (done.status !== 0) throw new Error(`${kOrrery} ended with ${done.status}: ${done.stderr}`);
-  return JSON.parse(done.stdout).render_cpu_s;
+  const told = JSON.parse(done.stdout);
+  return { cpu_s: told.render_cpu_s, told };
 }
 
 // Returns {ours(order), theirs(order), stop()}. An order is {samples, seed, bounces, preset}; bounces counts the
-// reflections before the last light, so that 0 is direct light; preset is "fair" or "defaults" and concerns Cycles. Its
-// answer is {cpu_s, picture}: processor seconds of all threads, building included, and the picture.
+// reflections before the last light, so that 0 is direct light; preset is "fair" or "defaults" and concerns Cycles, as a
+// noise threshold does; of ours an error on a display may be asked in place of samples. Its answer is {cpu_s, picture}:
+// processor seconds of all threads, building included, and the picture; ours has what was told of it besides.
 export function start_renderers(scene, size) {
   const folder = mkdtempSync(join(tmpdir(), "renderers-"));
   const out = join(folder, "picture.exr");
   const blender = start_blender(scene);
   const render = async (by, order) => {
-    const cpu_s = await by({ preset: "fair", ...order, size, threads: kThreads, out });
-    return { cpu_s, picture: read_exr(out) };
+    const cost = await by({ preset: "fair", ...order, size, threads: kThreads, out });
+    return { ...cost, picture: read_exr(out) };
   };
   return {
     ours: (order) => render((full) => render_ours(scene, full), order),
