@@ -1,10 +1,12 @@
 // Wires the page together: the URL hash is its state, the player shows it, the controls change it.
 
+import { attach_accuracy } from "./accuracy.js";
 import { get_json, post_scene } from "./api.js";
 import { persist, wake_all } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
 import { attach_controls, kZoomStep, step } from "./controls.js";
 import { Editor } from "./editor.js";
+import { options_of } from "./front.js";
 import { Gallery } from "./gallery.js";
 import { attach_hint } from "./hint.js";
 import { Hud } from "./hud.js";
@@ -18,6 +20,7 @@ import { attach_curl, attach_download } from "./share.js";
 import { picture_size } from "./size.js";
 import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
 import { attach_tabs } from "./tabs.js";
+import { frame_url } from "./urls.js";
 import { View } from "./view.js";
 
 const kSaveMs = 1000; // the hash follows the view this often; browsers refuse much faster
@@ -41,11 +44,12 @@ let pans = false;
 
 const player = new Player(camera, view, {
   picture: (purpose, level) => scene && picture(purpose, level, camera.view),
-  at_rest: (at) => scene && { picture: picture_at_rest(at), asked: state.samples > 0 },
+  at_rest: (at) => scene && { picture: picture_at_rest(at), asked: state.samples > 0 || state.plan !== "" },
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
     show_warning(figures.warning);
+    if (kind === "still" && figures.bound) accuracy.tell(figures, state);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
     hide_fail();
@@ -60,6 +64,16 @@ const player = new Player(camera, view, {
     stage.dataset.shows = "still";
     refresh_download();
   },
+});
+
+const accuracy = attach_accuracy({
+  picture: () => {
+    const { technique } = state;
+    return scene && { ...picture("still", 0, camera.view, { technique, samples: 0, more: "" }), samples: undefined };
+  },
+  seen: () => frame_url(player.picture),
+  pause: () => state.playing && set_playing(false),
+  set: (settings) => change(settings),
 });
 
 const editor = new Editor(
@@ -83,8 +97,14 @@ const editor = new Editor(
   post_scene,
 );
 
-function picture(purpose, level, at) {
-  const { part, samples } = quality(purpose, level, { ...state, own: scene.samples });
+// What the user, or the plan in the link, has chosen.
+function chosen() {
+  return state.plan ? options_of(state.plan) : { technique: state.technique, samples: state.samples, more: "" };
+}
+
+function picture(purpose, level, at, { technique, samples: own_samples, more } = chosen()) {
+  const asked = state.plan ? 0 : own_samples; // a plan's samples are for the picture at rest
+  const { part, samples } = quality(purpose, level, { samples: asked, size: state.size, own: scene.samples });
   const size = picture_size({
     mode: state.size,
     purpose,
@@ -95,11 +115,13 @@ function picture(purpose, level, at) {
     limits,
   });
   const moves = Boolean(scene.motion);
-  return { id: scene.id, moves, ...at, ...size, technique: state.technique, samples };
+  return { id: scene.id, moves, ...at, ...size, technique, samples, more };
 }
 
 function picture_at_rest(at) {
-  const samples = samples_at_rest(state.samples, scene.samples, limits.samples);
+  const { seconds, error } = state;
+  if (seconds || error) return { ...picture("still", 0, at), samples: state.samples, own: scene.samples, seconds, error };
+  const samples = samples_at_rest(chosen().samples, scene.samples, limits.samples);
   return { ...picture("still", 0, at), samples };
 }
 
@@ -151,6 +173,8 @@ function show_scene(opened, at) {
   options?.show(state, opened);
   document.title = `${opened.title} · orrery`;
   stage.setAttribute("aria-label", `${opened.title}, orbit view`);
+  accuracy.show();
+  accuracy.leave();
   refresh_download();
   player.invalidate();
   player.refresh();
@@ -212,6 +236,7 @@ function show_settings() {
   $("speed").value = state.speed;
   $("speed-text").textContent = `${state.speed}°/s`;
   options?.show(state, scene);
+  accuracy.mark(state);
 }
 
 function set_playing(playing) {
@@ -221,12 +246,18 @@ function set_playing(playing) {
   save_now();
 }
 
-function set_option(key, value) {
+const set_option = (key, value) => change({ ...(key !== "size" && { plan: "" }), [key]: value });
+
+// What the user has chosen anew.
+function change(settings) {
   save_now();
-  state[key] = value;
+  Object.assign(state, settings);
+  show_settings();
   if (!scene) return;
   history.pushState(null, "", current_hash());
   hide_fail();
+  accuracy.leave();
+  accuracy.show();
   player.refresh();
 }
 
@@ -244,8 +275,12 @@ const others = [
 
 // A refusal may name a setting that came with the link: then every way out drops that.
 function fail_to_render(error) {
-  const names = { technique: "technique", samples: "samples", width: "size", height: "size" };
-  const refused = places_of(error).map(({ pointer }) => names[pointer?.split("/").at(-1)]);
+  const budgets = { seconds: "seconds", error: "error" };
+  const names = { technique: "technique", samples: "samples", width: "size", height: "size", ...budgets };
+  const of_plan = new URLSearchParams(state.plan);
+  const refused = places_of(error)
+    .map(({ pointer }) => pointer?.split("/").at(-1))
+    .map((key) => (of_plan.has(key) ? "plan" : names[key]));
   const wrong = refused.filter((name) => name && state[name] !== kDefaults[name]);
   if (wrong.length === 0) return fail(error);
   const drop = () => {
@@ -256,6 +291,9 @@ function fail_to_render(error) {
     technique: "Use the scene’s own technique",
     samples: "Choose samples automatically",
     size: "Fit the window",
+    plan: "Drop the plan",
+    seconds: "Drop the budget",
+    error: "Drop the budget",
   };
   const again = [usual[wrong[0]], () => (drop(), hide_fail(), save_now(), player.refresh())];
   fail(error, [again, ...others.map(([label, act]) => [label, () => (drop(), act())])]);
@@ -275,6 +313,7 @@ function show_waiting(error, seconds) {
 
 function moved() {
   $("hint").hidden = true;
+  accuracy.leave();
   player.input();
 }
 

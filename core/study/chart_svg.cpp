@@ -14,7 +14,9 @@ constexpr const char* kInk = "#222222";
 constexpr const char* kFaint = "#dddddd";
 constexpr const char* kBelowFloor = "#999999";
 // Colours that the colour-blind tell apart (Okabe and Ito, 2008).
-constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
+// The last ones repeat their hues darker, for ladders of many depths.
+constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00",
+                             "#000000", "#00466e", "#7d3700", "#00543d", "#84446a", "#7a5400"};
 
 template <class... Values>
 std::string print(const char* format, Values... values) {
@@ -219,20 +221,22 @@ class Drawing {
   void draw_legend() {
     double y = kTop + 12;
     const double x = kRight + 28;
-    const Configuration* before = nullptr;
     for (const Point& p : chart_.points) {
-      if (before && line_name(*before) == line_name(p.configuration)) continue;
-      before = &p.configuration;
-      text_ +=
-          mark(x, y - 4, p.configuration.double_precision, Standing::front, color_of(p.configuration), "");
-      text_ += words(x + 16, y, line_name(p.configuration));
+      const Configuration& c = p.configuration;
+      const auto same_model = [&](const Point& q) {
+        return q.configuration.technique == c.technique && q.configuration.max_depth == c.max_depth;
+      };
+      if (&*std::find_if(chart_.points.begin(), chart_.points.end(), same_model) != &p) continue;
+      text_ += mark(x, y - 4, false, Standing::front, color_of(c), "");
+      text_ += words(x + 16, y, c.technique + " " + std::to_string(c.max_depth));
       y += 22;
     }
-    for (const char* note : {"technique and ray depth", "", "filled: no other is faster",
-                             "and nearer; half filled: rounds", "differ too much to tell; beside",
-                             "it, the samples a pixel", "", "grey: nearer than the", "reference can tell"}) {
-      text_ += words(x - 6, y + 8, note, "fill=\"#666666\" font-size=\"11\"");
-      y += 16;
+    for (const char* note :
+         {"technique and ray depth", "square, dashed: double", "", "filled: no other is faster and",
+          "nearer; half filled: the rounds", "differ too much to tell; beside", "it, the samples a pixel", "",
+          "grey: nearer than the", "reference can tell"}) {
+      text_ += words(x - 6, y + 4, note, "fill=\"#666666\" font-size=\"11\"");
+      y += *note ? 15 : 7;
     }
   }
 
