@@ -8,7 +8,7 @@ import { Tradeoff } from "./tradeoff.js";
 const $ = (id) => document.getElementById(id);
 
 // `on` has: picture() -> the picture at rest without plan and budget, or null; seen() -> the address of the one on the
-// stage; pause(); set({plan, seconds, error}), of which one is given. Returns {show(), leave(), mark(state),
+// stage, or null; pause(); set({plan, seconds, error}), of which one is given. Returns {show(), leave(), mark(state),
 // tell(figures, state)}.
 export function attach_accuracy(on) {
   const overlay = new Overlay($("overlay"));

@@ -2,22 +2,21 @@
 
 import { attach_accuracy } from "./accuracy.js";
 import { get_json, post_scene } from "./api.js";
+import { picture_at_rest, picture_for, picture_to_chart } from "./asked.js";
 import { persist, wake_all } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
 import { attach_controls, kZoomStep, step } from "./controls.js";
 import { Editor } from "./editor.js";
-import { options_of } from "./front.js";
 import { Gallery } from "./gallery.js";
 import { attach_hint } from "./hint.js";
 import { Hud } from "./hud.js";
 import { Options } from "./options.js";
 import { Player } from "./player.js";
-import { hide_problem, places_of, show_problem } from "./problem.js";
+import { hide_problem, show_problem } from "./problem.js";
 import { show_progress } from "./progress.js";
-import { quality, samples_at_rest } from "./quality.js";
+import { refused_of } from "./refusal.js";
 import { facts_of, SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
-import { picture_size } from "./size.js";
 import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
 import { attach_tabs } from "./tabs.js";
 import { frame_url } from "./urls.js";
@@ -41,10 +40,11 @@ let options = null;
 let opening = 0; // counts scene changes, so that a slow answer to an old one is dropped
 let save_timer = 0;
 let pans = false;
+const page = () => ({ state, scene, view, limits });
 
 const player = new Player(camera, view, {
-  picture: (purpose, level) => scene && picture(purpose, level, camera.view),
-  at_rest: (at) => scene && { picture: picture_at_rest(at), asked: state.samples > 0 || state.plan !== "" },
+  picture: (purpose, level) => scene && picture_for(page(), purpose, level, camera.view),
+  at_rest: (at) => scene && { picture: picture_at_rest(page(), at), asked: state.samples > 0 || state.plan !== "" },
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
@@ -67,11 +67,8 @@ const player = new Player(camera, view, {
 });
 
 const accuracy = attach_accuracy({
-  picture: () => {
-    const { technique } = state;
-    return scene && { ...picture("still", 0, camera.view, { technique, samples: 0, more: "" }), samples: undefined };
-  },
-  seen: () => frame_url(player.picture),
+  picture: () => scene && picture_to_chart(page(), camera.view),
+  seen: () => scene && frame_url(player.picture),
   pause: () => state.playing && set_playing(false),
   set: (settings) => change(settings),
 });
@@ -96,34 +93,6 @@ const editor = new Editor(
   },
   post_scene,
 );
-
-// What the user, or the plan in the link, has chosen.
-function chosen() {
-  return state.plan ? options_of(state.plan) : { technique: state.technique, samples: state.samples, more: "" };
-}
-
-function picture(purpose, level, at, { technique, samples: own_samples, more } = chosen()) {
-  const asked = state.plan ? 0 : own_samples; // a plan's samples are for the picture at rest
-  const { part, samples } = quality(purpose, level, { samples: asked, size: state.size, own: scene.samples });
-  const size = picture_size({
-    mode: state.size,
-    purpose,
-    part,
-    box: view.box,
-    pixel_ratio: devicePixelRatio,
-    scene,
-    limits,
-  });
-  const moves = Boolean(scene.motion);
-  return { id: scene.id, moves, ...at, ...size, technique, samples, more };
-}
-
-function picture_at_rest(at) {
-  const { seconds, error } = state;
-  if (seconds || error) return { ...picture("still", 0, at), samples: state.samples, own: scene.samples, seconds, error };
-  const samples = samples_at_rest(chosen().samples, scene.samples, limits.samples);
-  return { ...picture("still", 0, at), samples };
-}
 
 function current_picture() {
   if (!scene) return null;
@@ -273,29 +242,15 @@ const others = [
   ["Paste a scene", () => (select_tab("tab-json"), $("text").focus())],
 ];
 
-// A refusal may name a setting that came with the link: then every way out drops that.
+// Where a setting of the link is refused, every way out drops that.
 function fail_to_render(error) {
-  const budgets = { seconds: "seconds", error: "error" };
-  const names = { technique: "technique", samples: "samples", width: "size", height: "size", ...budgets };
-  const of_plan = new URLSearchParams(state.plan);
-  const refused = places_of(error)
-    .map(({ pointer }) => pointer?.split("/").at(-1))
-    .map((key) => (of_plan.has(key) ? "plan" : names[key]));
-  const wrong = refused.filter((name) => name && state[name] !== kDefaults[name]);
-  if (wrong.length === 0) return fail(error);
+  const refused = refused_of(error, state);
+  if (!refused) return fail(error);
   const drop = () => {
-    for (const name of wrong) state[name] = kDefaults[name];
+    Object.assign(state, refused.settings);
     show_settings();
   };
-  const usual = {
-    technique: "Use the scene’s own technique",
-    samples: "Choose samples automatically",
-    size: "Fit the window",
-    plan: "Drop the plan",
-    seconds: "Drop the budget",
-    error: "Drop the budget",
-  };
-  const again = [usual[wrong[0]], () => (drop(), hide_fail(), save_now(), player.refresh())];
+  const again = [refused.label, () => (drop(), hide_fail(), save_now(), player.refresh())];
   fail(error, [again, ...others.map(([label, act]) => [label, () => (drop(), act())])]);
 }
 
@@ -330,7 +285,7 @@ const moves = {
 // By pixels on the stage: what lies at the target's distance keeps under the pointer.
 function pan(right, up) {
   if (!scene) return;
-  const { width, height, fov } = picture("still", 0, camera.view);
+  const { width, height, fov } = picture_for(page(), "still", 0, camera.view);
   const shown_height = Math.min(view.box.height, (view.box.width * height) / width);
   camera.pan(right / shown_height, up / shown_height, fov);
   moved();

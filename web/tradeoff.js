@@ -22,11 +22,12 @@ export class Tradeoff {
   #chart = null;
   #stops = [];
   #at = -1; // the stop that is chosen
+  #was = null; // address of what was over the stage before something else was held there
   #work = null; // AbortController of the chart being made
   #fetching = new AbortController();
 
   // `parts`: elements by name. `on` has: picture() -> the picture at rest or null, without plan and budget; seen() ->
-  // the address of the one on the stage; pause(), use(plan), chart(drawing, points) and say(text).
+  // the address of the one on the stage, or null; pause(), use(plan), chart(drawing, points) and say(text).
   constructor(parts, overlay, on) {
     this.#parts = parts;
     this.#overlay = overlay;
@@ -37,7 +38,7 @@ export class Tradeoff {
     parts.slider.addEventListener("change", () => this.#settle());
     parts.use.addEventListener("click", () => this.#at >= 0 && on.use(plan_of(this.#point)));
     new Hold(parts.reference, "r", (held) => this.#hold(held, this.#reference()));
-    new Hold(parts.bound, "e", (held) => this.#hold(held, bound_of(this.#address() ?? on.seen())));
+    new Hold(parts.bound, "e", (held) => this.#hold(held, this.#bound()));
     this.#show_parts();
   }
 
@@ -181,6 +182,12 @@ export class Tradeoff {
     return this.#chart && this.#in_view(this.#chart.reference.picture);
   }
 
+  // Of the stop, or of what the stage shows.
+  #bound() {
+    const address = this.#address() ?? this.#on.seen();
+    return address && bound_of(address);
+  }
+
   #fetch_all() {
     this.#fetching.abort();
     this.#fetching = new AbortController();
@@ -204,14 +211,13 @@ export class Tradeoff {
       if (this.#was) this.#see(this.#was);
       else this.#overlay.hide();
     } else if (!address) {
-      this.#on.say("There is no reference before a chart is made.");
+      this.#on.say("There is nothing to compare with before a chart is made.");
     } else {
       this.#was = this.#overlay.shown ? this.#address() : null;
       this.#on.pause();
       this.#see(address);
     }
   }
-  #was = null;
 
   #say(text, alarms = false) {
     const { note } = this.#parts;

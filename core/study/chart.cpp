@@ -18,6 +18,13 @@ std::vector<double> values_of(const Point& point, const Value& value) {
 double rmse_of(const Measurement& s) { return s.difference.rmse; }
 double cpu_ms_of(const Measurement& s) { return s.cpu_ms; }
 
+// Of what is never negative.
+std::optional<Interval> interval_of(const std::vector<double>& values) {
+  auto interval = mean_interval(values);
+  if (interval) interval->low = std::max(0.0, interval->low);
+  return interval;
+}
+
 }  // namespace
 
 double Point::rmse() const {
@@ -42,8 +49,8 @@ double Point::rays() const {
   return mean([](const Measurement& s) { return s.rays; });
 }
 
-std::optional<Interval> Point::rmse_interval() const { return mean_interval(values_of(*this, rmse_of)); }
-std::optional<Interval> Point::cpu_ms_interval() const { return mean_interval(values_of(*this, cpu_ms_of)); }
+std::optional<Interval> Point::rmse_interval() const { return interval_of(values_of(*this, rmse_of)); }
+std::optional<Interval> Point::cpu_ms_interval() const { return interval_of(values_of(*this, cpu_ms_of)); }
 
 double Point::most_rmse() const {
   const auto interval = rmse_interval();

@@ -60,10 +60,9 @@ ordered_json figures_json(const Point& point, double cheapest_ms) {
 // Of a picture whose CPU time is the point's; an interval where the rounds tell one.
 ordered_json full_size_json(const Chart& chart, const Point& point) {
   const auto interval = point.cpu_ms_interval();
-  const auto seconds = [&](double cpu_ms) { return std::max(0.0, chart.full_seconds(cpu_ms)); };
-  return {{"seconds", seconds(point.cpu_ms())},
-          {"low", interval ? ordered_json(seconds(interval->low)) : ordered_json()},
-          {"high", interval ? ordered_json(seconds(interval->high)) : ordered_json()}};
+  return {{"seconds", chart.full_seconds(point.cpu_ms())},
+          {"low", interval ? ordered_json(chart.full_seconds(interval->low)) : ordered_json()},
+          {"high", interval ? ordered_json(chart.full_seconds(interval->high)) : ordered_json()}};
 }
 
 ordered_json points_json(const Chart& chart, const std::string& prefix) {

@@ -72,7 +72,7 @@ void print_recommendations(const Chart& chart) {
               chart.threads, chart.size.width, chart.size.height);
   for (const Recommendation& r : recommendations(chart)) {
     const Point& point = chart.points[r.point];
-    const auto ms = [&](double cpu_ms) { return std::max(0.0, 1000 * chart.full_seconds(cpu_ms)); };
+    const auto ms = [&](double cpu_ms) { return 1000 * chart.full_seconds(cpu_ms); };
     const auto interval = point.cpu_ms_interval();
     char span[64] = "one round";
     if (interval) std::snprintf(span, sizeof span, "%.3g to %.3g", ms(interval->low), ms(interval->high));

@@ -100,6 +100,7 @@ TEST(Point, HasIntervalsOfItsMeans) {
   EXPECT_NEAR(p.rmse_interval()->low, 0.3 - 0.1 * half, 0.002);
   EXPECT_NEAR(p.rmse_interval()->high, 0.3 + 0.1 * half, 0.002);
   EXPECT_EQ(p.most_rmse(), p.rmse_interval()->high);
+  EXPECT_EQ(point({{1, 0.3}, {9, 0.3}}).cpu_ms_interval()->low, 0) << "no mean is negative";
   const Point same = point({{5, 0.3}, {5, 0.3}});
   EXPECT_NEAR(same.rmse_interval()->high - same.rmse_interval()->low, 0, 1e-12);
 }
