@@ -97,8 +97,12 @@ export async function get_frame(url, signal) {
   const rays = Number(response.headers.get("X-Rays") ?? NaN);
   const rmse = parseFloat(response.headers.get("X-RMSE") ?? "") || undefined;
   const warning = warning_of(response);
+  const bound = response.headers.get("Orrery-Error-Bound");
+  const budget = response.headers.get("Orrery-Budget");
+  const location = response.headers.get("Content-Location") ?? undefined;
   try {
-    return { png: await response.blob(), stats: { render_ms, encode_ms, rays, rmse, warning } };
+    const png = await response.blob();
+    return { png, stats: { render_ms, encode_ms, rays, rmse, warning, bound, budget, location } };
   } catch (error) {
     throw broken(error);
   }

@@ -1,6 +1,8 @@
 // Wires the page together: the URL hash is its state, the player shows it, the controls change it.
 
+import { attach_accuracy } from "./accuracy.js";
 import { get_json, post_scene } from "./api.js";
+import { picture_at_rest, picture_for, picture_to_chart } from "./asked.js";
 import { persist, wake_all } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
 import { attach_controls, kZoomStep, step } from "./controls.js";
@@ -10,14 +12,14 @@ import { attach_hint } from "./hint.js";
 import { Hud } from "./hud.js";
 import { Options } from "./options.js";
 import { Player } from "./player.js";
-import { hide_problem, places_of, show_problem } from "./problem.js";
+import { hide_problem, show_problem } from "./problem.js";
 import { show_progress } from "./progress.js";
-import { quality, samples_at_rest } from "./quality.js";
+import { refused_of } from "./refusal.js";
 import { facts_of, SceneLibrary } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
-import { picture_size } from "./size.js";
 import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
 import { attach_tabs } from "./tabs.js";
+import { frame_url } from "./urls.js";
 import { View } from "./view.js";
 
 const kSaveMs = 1000; // the hash follows the view this often; browsers refuse much faster
@@ -38,14 +40,16 @@ let options = null;
 let opening = 0; // counts scene changes, so that a slow answer to an old one is dropped
 let save_timer = 0;
 let pans = false;
+const page = () => ({ state, scene, view, limits });
 
 const player = new Player(camera, view, {
-  picture: (purpose, level) => scene && picture(purpose, level, camera.view),
-  at_rest: (at) => scene && { picture: picture_at_rest(at), asked: state.samples > 0 },
+  picture: (purpose, level) => scene && picture_for(page(), purpose, level, camera.view),
+  at_rest: (at) => scene && { picture: picture_at_rest(page(), at), asked: state.samples > 0 || state.plan !== "" },
   missing: () => post_again(),
   stats: (kind, figures) => {
     hud.show(kind, figures);
     show_warning(figures.warning);
+    if (kind === "still" && figures.bound) accuracy.tell(figures, state);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
     hide_fail();
@@ -60,6 +64,13 @@ const player = new Player(camera, view, {
     stage.dataset.shows = "still";
     refresh_download();
   },
+});
+
+const accuracy = attach_accuracy({
+  picture: () => scene && picture_to_chart(page(), camera.view),
+  seen: () => scene && frame_url(player.picture),
+  pause: () => state.playing && set_playing(false),
+  set: (settings) => change(settings),
 });
 
 const editor = new Editor(
@@ -82,26 +93,6 @@ const editor = new Editor(
   },
   post_scene,
 );
-
-function picture(purpose, level, at) {
-  const { part, samples } = quality(purpose, level, { ...state, own: scene.samples });
-  const size = picture_size({
-    mode: state.size,
-    purpose,
-    part,
-    box: view.box,
-    pixel_ratio: devicePixelRatio,
-    scene,
-    limits,
-  });
-  const moves = Boolean(scene.motion);
-  return { id: scene.id, moves, ...at, ...size, technique: state.technique, samples };
-}
-
-function picture_at_rest(at) {
-  const samples = samples_at_rest(state.samples, scene.samples, limits.samples);
-  return { ...picture("still", 0, at), samples };
-}
 
 function current_picture() {
   if (!scene) return null;
@@ -151,6 +142,8 @@ function show_scene(opened, at) {
   options?.show(state, opened);
   document.title = `${opened.title} · orrery`;
   stage.setAttribute("aria-label", `${opened.title}, orbit view`);
+  accuracy.show();
+  accuracy.leave();
   refresh_download();
   player.invalidate();
   player.refresh();
@@ -212,6 +205,7 @@ function show_settings() {
   $("speed").value = state.speed;
   $("speed-text").textContent = `${state.speed}°/s`;
   options?.show(state, scene);
+  accuracy.mark(state);
 }
 
 function set_playing(playing) {
@@ -221,12 +215,18 @@ function set_playing(playing) {
   save_now();
 }
 
-function set_option(key, value) {
+const set_option = (key, value) => change({ ...(key !== "size" && { plan: "" }), [key]: value });
+
+// What the user has chosen anew.
+function change(settings) {
   save_now();
-  state[key] = value;
+  Object.assign(state, settings);
+  show_settings();
   if (!scene) return;
   history.pushState(null, "", current_hash());
   hide_fail();
+  accuracy.leave();
+  accuracy.show();
   player.refresh();
 }
 
@@ -242,22 +242,15 @@ const others = [
   ["Paste a scene", () => (select_tab("tab-json"), $("text").focus())],
 ];
 
-// A refusal may name a setting that came with the link: then every way out drops that.
+// Where a setting of the link is refused, every way out drops that.
 function fail_to_render(error) {
-  const names = { technique: "technique", samples: "samples", width: "size", height: "size" };
-  const refused = places_of(error).map(({ pointer }) => names[pointer?.split("/").at(-1)]);
-  const wrong = refused.filter((name) => name && state[name] !== kDefaults[name]);
-  if (wrong.length === 0) return fail(error);
+  const refused = refused_of(error, state);
+  if (!refused) return fail(error);
   const drop = () => {
-    for (const name of wrong) state[name] = kDefaults[name];
+    Object.assign(state, refused.settings);
     show_settings();
   };
-  const usual = {
-    technique: "Use the scene’s own technique",
-    samples: "Choose samples automatically",
-    size: "Fit the window",
-  };
-  const again = [usual[wrong[0]], () => (drop(), hide_fail(), save_now(), player.refresh())];
+  const again = [refused.label, () => (drop(), hide_fail(), save_now(), player.refresh())];
   fail(error, [again, ...others.map(([label, act]) => [label, () => (drop(), act())])]);
 }
 
@@ -275,6 +268,7 @@ function show_waiting(error, seconds) {
 
 function moved() {
   $("hint").hidden = true;
+  accuracy.leave();
   player.input();
 }
 
@@ -291,7 +285,7 @@ const moves = {
 // By pixels on the stage: what lies at the target's distance keeps under the pointer.
 function pan(right, up) {
   if (!scene) return;
-  const { width, height, fov } = picture("still", 0, camera.view);
+  const { width, height, fov } = picture_for(page(), "still", 0, camera.view);
   const shown_height = Math.min(view.box.height, (view.box.width * height) / width);
   camera.pan(right / shown_height, up / shown_height, fov);
   moved();

@@ -1,24 +1,42 @@
-// One picture as a job of the service: its progress is measured there, tile by tile.
+// Pictures and charts as jobs of the service: their progress is measured there, tile by tile.
 
-import { ApiError, get_frame, no_answer, post_json, request } from "./api.js";
+import { ApiError, get_frame, get_json, get_text, no_answer, post_json, request } from "./api.js";
 import { chunks } from "./stream.js";
-import { job_body } from "./urls.js";
+import { chart_body, job_body } from "./urls.js";
 
 // Returns {png, stats}, or null where the service takes no jobs. `tell({part, seconds_left})` hears how far it is.
 // The job is cancelled unless it ended. Throws ApiError, or AbortError once `signal` fires.
 export async function render_job(picture, signal, tell) {
-  const address = await post_job(picture);
+  const address = await post_job("v1/jobs", job_body(picture));
   if (!address) return null;
+  const job = await follow_job(address, signal, tell);
+  const { png, stats } = await get_frame(`${address}/frames/0.png`, signal);
+  return { png, stats: { ...stats, render_ms: stats.render_ms ?? 1000 * job.elapsed_s } };
+}
+
+// Charts speed against accuracy of a picture: {chart, drawing}, as JSON and SVG; else as above. `picture` is of the
+// size that times are predicted for; pictures of it are rendered `width` pixels wide.
+export async function make_chart(picture, extent, signal, tell) {
+  const address = await post_job(`v1/scenes/${picture.id}/charts`, chart_body(picture, extent));
+  if (!address) return null;
+  const job = await follow_job(address, signal, tell);
+  const [chart, drawing] = await Promise.all([
+    get_json(job.chart.replace(/svg$/, "json")),
+    get_text(job.chart),
+  ]);
+  return { chart, drawing };
+}
+
+// Follows a job to its end; returns what is told of it then.
+async function follow_job(address, signal, tell) {
   let over = false;
   try {
     signal.throwIfAborted();
     for await (const job of job_states(`${address}/events`, signal)) {
       over = !["waiting", "running"].includes(job.state);
-      if (over && job.state !== "done") throw new ApiError(job.error ?? { title: `The picture was ${job.state}` });
+      if (over && job.state !== "done") throw new ApiError(job.error ?? { title: `The job was ${job.state}` });
       if (job.tiles > 0) tell({ part: job.tiles_done / job.tiles, seconds_left: job.remaining_s });
-      if (!over) continue;
-      const { png, stats } = await get_frame(`${address}/frames/0.png`, signal);
-      return { png, stats: { ...stats, render_ms: stats.render_ms ?? 1000 * job.elapsed_s } };
+      if (over) return job;
     }
     throw no_answer("The job's events broke off.");
   } finally {
@@ -27,11 +45,11 @@ export async function render_job(picture, signal, tell) {
 }
 
 // Not to be aborted: only its answer names the job that is then to be cancelled.
-async function post_job(picture) {
+async function post_job(path, body) {
   try {
-    return `v1/jobs/${(await post_json("v1/jobs", JSON.stringify(job_body(picture)))).id}`;
+    return `v1/jobs/${(await post_json(path, JSON.stringify(body))).id}`;
   } catch (error) {
-    if ([403, 404, 405].includes(error.status)) return null;
+    if ([403, 405].includes(error.status) || (path === "v1/jobs" && error.status === 404)) return null;
     throw error;
   }
 }

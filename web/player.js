@@ -32,6 +32,7 @@ export class Player {
   #work = null; // {kind, key, abort} of the stream or still being fetched
   #shown = ""; // address of the still on the canvas
   #shown_samples = 0; // likewise
+  #shown_location; // likewise: the address that gives it again, where a budget has made it
   #refiner = new Refiner();
   #preview_busy = false;
   #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
@@ -102,7 +103,9 @@ export class Player {
   // What to take along: the picture that is seen where the view rests, else the one that it will come to rest with.
   get picture() {
     const { picture, asked } = this.#on.at_rest(this.#camera.goal);
-    return this.#seen_of(picture) ?? this.#refiner.last(picture, asked);
+    const seen = this.#seen_of(picture);
+    if (seen) return { ...seen, location: this.#shown_location };
+    return keeps_budget(picture) ? picture : this.#refiner.last(picture, asked);
   }
 
   // The picture on the canvas, if it is `picture` with however many samples.
@@ -155,7 +158,8 @@ export class Player {
   #start_still() {
     const rest = this.#on.at_rest(this.#camera.view);
     if (!rest) return;
-    const picture = this.#playing ? { ...rest.picture, samples: 1 } : rest.picture; // an orbit is held for a moment
+    // An orbit is held for a moment.
+    const picture = this.#playing ? { ...rest.picture, samples: 1, seconds: 0, error: 0 } : rest.picture;
     const key = frame_url(picture);
     if (this.#work?.kind === "still" && this.#work.key === key) return;
     this.#stop();
@@ -163,13 +167,26 @@ export class Player {
     if (samples) this.#on.stats("still", { width, height });
     const shown = samples <= picture.samples ? samples : 0; // fewer may be wanted than there are
     this.#run("still", key, async (signal) => {
-      if (shown < picture.samples)
+      if (keeps_budget(picture)) await this.#keep_budget(picture, signal);
+      else if (shown < picture.samples)
         await this.#refiner.climb(picture, { shown, asked: rest.asked }, signal, {
           draw: (each, bitmap, stats) => this.#draw(frame_url(each), bitmap, each, "still", stats),
           progress: this.#on.progress,
         });
       this.#on.rested();
     });
+  }
+
+  // One picture of as many samples as its budget takes.
+  async #keep_budget(picture, signal) {
+    if (this.#shown === frame_url(picture)) return;
+    const { png, stats } = await get_frame(frame_url(picture), signal);
+    const bitmap = await decode(png);
+    if (signal.aborted) return bitmap.close();
+    const plan = new URLSearchParams(stats.location?.split("?")[1]);
+    const samples = Number(plan.get("samples") ?? picture.own); // which a plan may leave to the scene
+    this.#draw(frame_url(picture), bitmap, picture, "still", { ...stats, samples });
+    this.#shown_location = stats.location;
   }
 
   #start_stream() {
@@ -218,6 +235,7 @@ export class Player {
     this.#view.draw(bitmap, picture.fills, kind === "still" && this.#camera.damped);
     this.#shown = url;
     this.#shown_samples = picture.samples;
+    this.#shown_location = undefined;
     this.#reposts = 0;
     this.#backoff.reset();
     if (kind !== "still") this.#on.progress(null);
@@ -262,3 +280,5 @@ export class Player {
     this.#timer = setTimeout(() => this.refresh(), 1000 * seconds);
   }
 }
+
+const keeps_budget = ({ seconds, error }) => Boolean(seconds || error);

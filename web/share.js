@@ -15,7 +15,8 @@ export function attach_download(link, current, failed) {
     const { width, height, samples } = now.picture;
     link.href = frame_url(now.picture);
     link.download = file_name(now.name, now.picture);
-    link.title = `Download this view as PNG: ${width} × ${height}, ${samples} ${samples === 1 ? "sample" : "samples"}`;
+    const count = samples > 0 ? `, ${samples} ${samples === 1 ? "sample" : "samples"}` : "";
+    link.title = `Download this view as PNG: ${width} × ${height}${count}`;
   };
   for (const event of ["pointerdown", "pointerenter", "focus", "click", "contextmenu"]) {
     link.addEventListener(event, refresh);

@@ -15,9 +15,13 @@ export const kDefaults = Object.freeze({
   technique: "",
   samples: 0,
   size: "fit",
+  plan: "", // options of frame.png beside the view and the size, as a chart's point has them
+  seconds: 0, // budgets; 0: none
+  error: 0,
 });
 export const kFastest = 120; // degrees per second
 const kFarthestPan = 1e12; // what the service takes
+const kLongestSeconds = 60;
 const kAlways = ["scene", "az", "el", "dist", "speed", "playing"];
 
 // Reads a hash such as "#scene=paper&az=30"; whatever is missing or makes no sense gets its default.
@@ -42,6 +46,9 @@ export function parse_hash(hash) {
     technique: word("technique", /^[\w-]{1,40}$/),
     samples: Math.round(number("samples", 0, 65536)),
     size: kModes.includes(size) || fixed_size(size) ? size : kDefaults.size,
+    plan: word("plan", /^(?=.{3,400}$)[\w-]+=[\w.-]+(&[\w-]+=[\w.-]+)*$/),
+    seconds: number("seconds", 0, kLongestSeconds),
+    error: number("error", 0, 1),
   };
 }
 
@@ -58,6 +65,9 @@ export function format_hash(state) {
     technique: state.technique,
     samples: state.samples,
     size: state.size,
+    plan: state.plan,
+    seconds: state.seconds,
+    error: state.error,
   };
   const query = new URLSearchParams();
   for (const [key, value] of Object.entries(texts)) {

@@ -2,8 +2,9 @@
 // have equal addresses and come from the browser's cache.
 
 // A picture is {id, azimuth, elevation, distance, pan, width, height}, {moves, time} of a scene in which something
-// moves, and optionally {fov, technique, samples}.
-function query_of(picture) {
+// moves, and optionally {fov, technique, samples}, `more` options as a query, budgets {seconds, error}, and the
+// {location} that gives the picture again which a budget has made.
+export function query_of(picture) {
   const query = new URLSearchParams({
     azimuth: round(picture.azimuth, 2),
     elevation: round(picture.elevation, 2),
@@ -17,6 +18,8 @@ function query_of(picture) {
   if (picture.fov) query.set("fov", round(picture.fov, 3));
   if (picture.technique) query.set("technique", picture.technique);
   if (picture.samples) query.set("samples", picture.samples);
+  for (const [key, text] of new URLSearchParams(picture.more)) query.set(key, text);
+  for (const budget of ["seconds", "error"]) if (picture[budget]) query.set(budget, picture[budget]);
   return query;
 }
 
@@ -30,7 +33,7 @@ export function round(value, digits) {
 }
 
 export function frame_url(picture) {
-  return `v1/scenes/${picture.id}/frame.png?${query_of(picture)}`;
+  return picture.location ?? `v1/scenes/${picture.id}/frame.png?${query_of(picture)}`;
 }
 
 // The same in passes.
@@ -52,6 +55,7 @@ export function orbit_url(picture, { frames, fps, step, time_step }) {
 export function job_body(picture) {
   const { azimuth, elevation, distance, fov, width, height, samples, time } = numbers_of(query_of(picture));
   const { technique, pan } = Object.fromEntries(query_of(picture));
+  const more = [...new URLSearchParams(picture.more)].map(([key, text]) => [key, text === "" || isNaN(text) ? text : Number(text)]);
   return {
     scene_id: picture.id,
     camera: {
@@ -62,8 +66,14 @@ export function job_body(picture) {
       fov_degrees: fov,
     },
     image: { width, height },
-    render: { samples, technique, time },
+    render: { samples, technique, time, ...Object.fromEntries(more) },
   };
+}
+
+// What POST v1/scenes/{id}/charts takes for it; `extent`: {samples, rounds, width}.
+export function chart_body(picture, extent) {
+  const { camera, image, render } = job_body({ ...picture, samples: undefined, more: undefined });
+  return { camera, image, render: { ...render, samples: undefined }, chart: extent };
 }
 
 const numbers_of = (query) => Object.fromEntries([...query].map(([key, text]) => [key, Number(text)]));

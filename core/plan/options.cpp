@@ -450,4 +450,19 @@ std::string to_json(const RenderSettings& settings) {
   return "{" + text + "}";
 }
 
+std::string query_of(const Scene& scene, const RenderSettings& settings) {
+  RenderSettings technique;
+  technique.technique = settings.technique;
+  const RenderSettings usual = resolve(scene, technique), default_technique = resolve(scene, {});
+  std::string query;
+  for (const RenderOption& option : render_options()) {
+    const RenderSettings& otherwise = option.key == "technique" ? default_technique : usual;
+    std::string text = option.text(settings);
+    if (text == option.text(otherwise)) continue;
+    std::erase_if(text, [](char c) { return c == '"' || c == '[' || c == ']'; });
+    query += (query.empty() ? "" : "&") + std::string(option.key) + "=" + text;
+  }
+  return query;
+}
+
 }  // namespace orrery

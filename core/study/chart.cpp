@@ -1,10 +1,31 @@
 #include "core/study/chart.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace orrery {
+namespace {
+
+template <class Value>
+std::vector<double> values_of(const Point& point, const Value& value) {
+  std::vector<double> all;
+  for (const Measurement& s : point.rounds) all.push_back(value(s));
+  return all;
+}
+
+double rmse_of(const Measurement& s) { return s.difference.rmse; }
+double cpu_ms_of(const Measurement& s) { return s.cpu_ms; }
+
+// Of what is never negative.
+std::optional<Interval> interval_of(const std::vector<double>& values) {
+  auto interval = mean_interval(values);
+  if (interval) interval->low = std::max(0.0, interval->low);
+  return interval;
+}
+
+}  // namespace
 
 double Point::rmse() const {
   return std::sqrt(mean([](const Measurement& s) { return s.difference.rmse * s.difference.rmse; }));
@@ -12,7 +33,7 @@ double Point::rmse() const {
 
 double Point::rmse_sd() const {
   if (rounds.size() < 2) return 0;
-  const double middle = mean([](const Measurement& s) { return s.difference.rmse; });
+  const double middle = mean(rmse_of);
   double squares = 0;
   for (const Measurement& s : rounds) squares += (s.difference.rmse - middle) * (s.difference.rmse - middle);
   return std::sqrt(squares / static_cast<double>(rounds.size() - 1));
@@ -22,16 +43,22 @@ double Point::psnr_db() const {
   return -10 * std::log10(mean([](const Measurement& s) { return s.difference.cut_mse; }));
 }
 
-double Point::cpu_ms() const {
-  std::vector<double> times;
-  for (const Measurement& s : rounds) times.push_back(s.cpu_ms);
-  std::sort(times.begin(), times.end());
-  const std::size_t half = times.size() / 2;
-  return times.size() % 2 == 1 ? times[half] : (times[half - 1] + times[half]) / 2;
-}
+double Point::cpu_ms() const { return mean(cpu_ms_of); }
 
 double Point::rays() const {
   return mean([](const Measurement& s) { return s.rays; });
+}
+
+std::optional<Interval> Point::rmse_interval() const { return interval_of(values_of(*this, rmse_of)); }
+std::optional<Interval> Point::cpu_ms_interval() const { return interval_of(values_of(*this, cpu_ms_of)); }
+
+double Point::most_rmse() const {
+  const auto interval = rmse_interval();
+  return interval ? interval->high : rmse();
+}
+
+PictureSize narrowed(const PictureSize& size, int width) {
+  return {width, std::max(1, static_cast<int>(std::lround(double(size.height) * width / size.width)))};
 }
 
 double Chart::cheapest_ms() const {
@@ -40,18 +67,85 @@ double Chart::cheapest_ms() const {
   return cheapest;
 }
 
-void mark_front(std::vector<Point>& points) {
+std::vector<std::size_t> Chart::front() const {
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].on_front()) all.push_back(i);
+  std::stable_sort(all.begin(), all.end(),
+                   [&](std::size_t a, std::size_t b) { return points[a].cpu_ms() < points[b].cpu_ms(); });
+  return all;
+}
+
+double Chart::full_seconds(double cpu_ms) const {
+  const double pixels = double(size.width) * size.height, rendered = double(measured.width) * measured.height;
+  return cpu_ms / 1000 * (pixels / rendered) / threads;
+}
+
+namespace {
+
+// Of the mean over the rounds that both points have of what difference(a, b) makes of two; of one round that
+// value alone.
+template <class Difference>
+Interval compared(const Point& a, const Point& b, const Difference& difference) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < std::min(a.rounds.size(), b.rounds.size()); ++i)
+    values.push_back(difference(a.rounds[i], b.rounds[i]));
+  return mean_interval(values).value_or(Interval{values.front(), values.front()});
+}
+
+Interval extra_ms(const Point& point, const Point& other) {
+  return compared(point, other,
+                  [](const Measurement& a, const Measurement& b) { return a.cpu_ms - b.cpu_ms; });
+}
+
+// Below 0 where the point is nearer.
+Interval extra_rmse(const Point& point, const Point& other, double floor) {
   constexpr double kNearer = 0.99;
-  std::vector<Point*> by_time;
+  return compared(point, other, [&](const Measurement& a, const Measurement& b) {
+    return std::max(rmse_of(a), floor) - kNearer * std::max(rmse_of(b), floor);
+  });
+}
+
+bool is_beaten(const Point& point, const Point& other, double floor) {
+  return extra_ms(point, other).low > 0 && extra_rmse(point, other, floor).low >= 0;
+}
+
+bool is_better_in_one(const Point& point, const Point& other, double floor) {
+  return extra_ms(point, other).high < 0 || extra_rmse(point, other, floor).high < 0;
+}
+
+}  // namespace
+
+void mark_front(std::vector<Point>& points, double floor) {
+  std::vector<Point*> by_time, front;
   for (Point& p : points) by_time.push_back(&p);
   std::stable_sort(by_time.begin(), by_time.end(), [](const Point* a, const Point* b) {
     return std::pair(a->cpu_ms(), a->rmse()) < std::pair(b->cpu_ms(), b->rmse());
   });
-  double nearest = std::numeric_limits<double>::infinity();
   for (Point* p : by_time) {
-    p->on_front = p->rmse() < nearest * kNearer;
-    if (p->on_front) nearest = p->rmse();
+    p->standing = Standing::beaten;
+    if (std::none_of(front.begin(), front.end(), [&](const Point* q) { return is_beaten(*p, *q, floor); }))
+      front.push_back(p);
   }
+  for (Point* p : front) {
+    const bool sure = std::all_of(front.begin(), front.end(),
+                                  [&](const Point* q) { return p == q || is_better_in_one(*p, *q, floor); });
+    p->standing = sure ? Standing::front : Standing::undecided;
+  }
+}
+
+std::vector<Recommendation> recommendations(const Chart& chart) {
+  constexpr std::array kErrors{0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002, 0.0001};
+  const std::vector<std::size_t> front = chart.front();
+  std::vector<Recommendation> all;
+  for (const double error : kErrors) {
+    const auto found = std::find_if(front.begin(), front.end(),
+                                    [&](std::size_t i) { return chart.points[i].most_rmse() < error; });
+    if (found == front.end()) break;
+    if (!all.empty() && all.back().point == *found) all.pop_back();
+    all.push_back({error, *found});
+  }
+  return all;
 }
 
 std::string line_name(const Configuration& configuration) {

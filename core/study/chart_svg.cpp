@@ -12,8 +12,11 @@ constexpr double kChartWidth = 860, kChartHeight = 520, kLeft = 84, kRight = 620
                  kZeroLane = 30;
 constexpr const char* kInk = "#222222";
 constexpr const char* kFaint = "#dddddd";
+constexpr const char* kBelowFloor = "#999999";
 // Colours that the colour-blind tell apart (Okabe and Ito, 2008).
-constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"};
+// The last ones repeat their hues darker, for ladders of many depths.
+constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00",
+                             "#000000", "#00466e", "#7d3700", "#00543d", "#84446a", "#7a5400"};
 
 template <class... Values>
 std::string print(const char* format, Values... values) {
@@ -107,7 +110,7 @@ class Drawing {
     text_ += words(kLeft, 30, shortened(name()), "font-size=\"18\" font-weight=\"bold\"");
     text_ += words(kLeft, 52,
                    print("%d x %d pixels; error against %s depth %d in double precision, %d samples",
-                         chart_.width, chart_.height, chart_.reference.technique.c_str(),
+                         chart_.measured.width, chart_.measured.height, chart_.reference.technique.c_str(),
                          chart_.reference.max_depth, chart_.reference.samples));
     draw_axes();
     draw_floor();
@@ -165,25 +168,41 @@ class Drawing {
         path += print("%.1f,%.1f ", x_of(chart_.points[i]), y_of(chart_.points[i]));
       text_ += "<polyline points=\"" + path + "\" fill=\"none\" stroke=\"" + color + "\"" +
                (configuration.double_precision ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
-      for (std::size_t i = from; i < to; ++i) draw_mark(chart_.points[i], color);
+      for (std::size_t i = from; i < to; ++i) draw_mark(i, color);
     }
   }
 
-  void draw_mark(const Point& p, const char* color) {
+  void draw_mark(std::size_t index, const char* color) {
+    const Point& p = chart_.points[index];
     const double x = x_of(p), y = y_of(p);
-    text_ += mark(x, y, p.configuration.double_precision, p.on_front ? color : "#ffffff", color,
-                  print("%s, %d samples: %.3g ms, RMSE %.3g", line_name(p.configuration).c_str(),
-                        p.configuration.samples, p.cpu_ms(), p.rmse()));
-    if (p.on_front) text_ += words(x + 8, y - 7, std::to_string(p.configuration.samples), "font-size=\"11\"");
+    const bool below = p.rmse() < chart_.reference_rmse;
+    std::string told = print("%s, %d samples: %.3g ms, RMSE %.3g", line_name(p.configuration).c_str(),
+                             p.configuration.samples, p.cpu_ms(), p.rmse());
+    if (const auto error = p.rmse_interval())
+      told += print(" (95 %%: %.3g to %.3g)", error->low, error->high);
+    if (p.standing == Standing::undecided) told += ", perhaps on the front";
+    if (below) told += ", less than the reference is off";
+    text_ += print("<g id=\"point-%zu\">", index) +
+             mark(x, y, p.configuration.double_precision, p.standing, below ? kBelowFloor : color, told) +
+             "</g>\n";
+    if (p.on_front())
+      text_ += words(x + 8, y - 7, std::to_string(p.configuration.samples), "font-size=\"11\"");
   }
 
-  static std::string mark(double x, double y, bool square, const char* fill, const char* stroke,
+  // Filled on the front, half filled where that is undecided.
+  static std::string mark(double x, double y, bool square, Standing standing, const char* color,
                           const std::string& told) {
-    const std::string style = print("fill=\"%s\" stroke=\"%s\" stroke-width=\"2\"", fill, stroke);
-    return (square ? print("<rect x=\"%.1f\" y=\"%.1f\" width=\"9\" height=\"9\" %s>", x - 4.5, y - 4.5,
-                           style.c_str())
-                   : print("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" %s>", x, y, style.c_str())) +
-           "<title>" + escaped(told) + "</title>" + (square ? "</rect>\n" : "</circle>\n");
+    const std::string style = print("fill=\"%s\" stroke=\"%s\" stroke-width=\"2\"",
+                                    standing == Standing::front ? color : "#ffffff", color);
+    const std::string whole = square
+                                  ? print("<rect x=\"%.1f\" y=\"%.1f\" width=\"9\" height=\"9\" %s>", x - 4.5,
+                                          y - 4.5, style.c_str())
+                                  : print("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" %s>", x, y, style.c_str());
+    std::string half;
+    if (standing == Standing::undecided)
+      half = square ? print("<path d=\"M%.1f %.1fh-4.5v9h4.5z\" fill=\"%s\"/>", x, y - 4.5, color)
+                    : print("<path d=\"M%.1f %.1fa5 5 0 0 0 0 10z\" fill=\"%s\"/>", x, y - 5, color);
+    return whole + "<title>" + escaped(told) + "</title>" + (square ? "</rect>" : "</circle>") + half;
   }
 
   // One for each technique and depth.
@@ -202,19 +221,22 @@ class Drawing {
   void draw_legend() {
     double y = kTop + 12;
     const double x = kRight + 28;
-    const Configuration* before = nullptr;
     for (const Point& p : chart_.points) {
-      if (before && line_name(*before) == line_name(p.configuration)) continue;
-      before = &p.configuration;
-      text_ += mark(x, y - 4, p.configuration.double_precision, color_of(p.configuration),
-                    color_of(p.configuration), "");
-      text_ += words(x + 16, y, line_name(p.configuration));
+      const Configuration& c = p.configuration;
+      const auto same_model = [&](const Point& q) {
+        return q.configuration.technique == c.technique && q.configuration.max_depth == c.max_depth;
+      };
+      if (&*std::find_if(chart_.points.begin(), chart_.points.end(), same_model) != &p) continue;
+      text_ += mark(x, y - 4, false, Standing::front, color_of(c), "");
+      text_ += words(x + 16, y, c.technique + " " + std::to_string(c.max_depth));
       y += 22;
     }
-    for (const char* note : {"technique and ray depth", "", "filled: no other is faster",
-                             "and nearer; beside it, the", "samples a pixel"}) {
-      text_ += words(x - 6, y + 8, note, "fill=\"#666666\" font-size=\"11\"");
-      y += 16;
+    for (const char* note :
+         {"technique and ray depth", "square, dashed: double", "", "filled: no other is faster and",
+          "nearer; half filled: the rounds", "differ too much to tell; beside", "it, the samples a pixel", "",
+          "grey: nearer than the", "reference can tell"}) {
+      text_ += words(x - 6, y + 4, note, "fill=\"#666666\" font-size=\"11\"");
+      y += *note ? 15 : 7;
     }
   }
 

@@ -9,37 +9,42 @@
 #include "core/plan/limits.h"
 #include "core/plan/options.h"
 #include "core/plan/plan.h"
+#include "core/study/ssim.h"
 #include "core/techniques/registry.h"
 
 namespace orrery {
 namespace {
 
-constexpr int kReferences = 2;   // pictures that make the reference
 constexpr int kMoreSamples = 4;  // of the reference, than the highest configuration has
+constexpr int kFirstRounds = 2;  // of every point; fewer tell no interval
 constexpr double kClockStep_ms = 1e-6;
 constexpr int kStep = 4;  // from configuration to configuration
 static_assert(kMostChartSamples * kMoreSamples <= kMaxSamples);
 
-void require_chartable(const RenderRequest& view, const Plan& plan) {
+void require_chartable(const RenderRequest& view, const PictureSize& measured) {
   std::vector<Problem> problems;
   if (view.samples) problems.push_back({"/render/samples", "a chart varies this itself"});
   if (view.precision) problems.push_back({"/render/precision", "a chart varies this itself"});
   if (view.layers && !view.layers->empty()) problems.push_back({"/render/layers", "a chart keeps no layers"});
-  const std::int64_t pixels = std::int64_t{plan.width} * plan.height;
+  const std::int64_t pixels = std::int64_t{measured.width} * measured.height;
   if (pixels > kMostChartPixels)
     problems.push_back({"/image", "expected at most " + std::to_string(kMostChartPixels) +
                                       " pixels for a chart (chart_pixels), got " + std::to_string(pixels)});
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-// The models that are no more than the plan's, the simplest first.
+// The models that are no more than the plan's, the simplest first: techniques at their usual depths, then the
+// plan's own, ever deeper.
 std::vector<Configuration> models_up_to(const Plan& plan) {
   const Configuration whole{.technique = plan.technique->name, .max_depth = plan.max_depth};
   std::vector<Configuration> models;
   if (plan.specular && plan.technique->secondary_rays) {
-    for (const TechniqueType& type : technique_types())
-      if (!type.secondary_rays) models.push_back({.technique = type.name, .max_depth = 0});
-    for (const int depth : {1, 2})
+    for (const TechniqueType& type : technique_types()) {
+      if (type.name == whole.technique) break;  // the others model more
+      const int depth = type.secondary_rays ? std::min(type.max_depth, plan.max_depth) : 0;
+      models.push_back({.technique = type.name, .max_depth = depth});
+    }
+    for (const int depth : {1, 2, 3, 4, 6, 8, 12, 16, 24})
       if (depth < plan.max_depth) models.push_back({.technique = whole.technique, .max_depth = depth});
   }
   models.push_back(whole);
@@ -53,29 +58,34 @@ bool same_work(const Point& a, const Point& b) {
   return configuration(a) == configuration(b) && a.rays() == b.rays() && a.rmse() == b.rmse();
 }
 
-// Configurations that turned out to do what a simpler model does: the scene has no deeper rays.
-void leave_out_same(std::vector<Point>& points) {
-  std::vector<Point> different;
-  for (Point& p : points)
-    if (std::none_of(different.begin(), different.end(), [&](const Point& q) { return same_work(p, q); }))
-      different.push_back(std::move(p));
-  points = std::move(different);
+// By point, whether it turned out to do what a simpler model does: the scene has no deeper rays.
+std::vector<bool> find_same(const std::vector<Point>& points) {
+  std::vector<bool> same(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < i && !same[i]; ++j) same[i] = !same[j] && same_work(points[i], points[j]);
+  return same;
 }
 
 }  // namespace
 
-Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent) : view_(view) {
+Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent)
+    : scene_(scene), view_(view) {
   require_no_budget(view, "a chart");
   require_picture(view, "a chart");
   const Plan plan = make_plan(scene, view);
   seed_ = plan.seed;
-  require_chartable(view, plan);
+  chart_.size = chart_.measured = {plan.width, plan.height};
+  if (extent.width > 0 && extent.width < plan.width) chart_.measured = narrowed(chart_.size, extent.width);
+  require_chartable(view, chart_.measured);
+  view_.width = chart_.measured.width;
+  view_.height = chart_.measured.height;
   chart_.scene_id = scene.id;
   chart_.title = scene.title;
-  chart_.width = plan.width;
-  chart_.height = plan.height;
+  chart_.rounds = extent.rounds;
+  chart_.threads = extent.threads;
   add_configurations(plan, extent.samples);
-  pictures_ = kReferences + extent.rounds * static_cast<int>(chart_.points.size());
+  for (int round = 0; round < extent.rounds; ++round)
+    for (std::size_t i = 0; i < chart_.points.size(); ++i) turns_.push_back({i, round});
   chart_.reference = {plan.technique->name, plan.max_depth, true,
                       chart_.points.back().configuration.samples * kMoreSamples};
 }
@@ -85,22 +95,23 @@ void Study::add_configurations(const Plan& plan, int most_samples) {
     for (const bool doubles : {false, true}) {
       configuration.double_precision = doubles;
       for (configuration.samples = 1; configuration.samples <= most_samples; configuration.samples *= kStep)
-        chart_.points.push_back({.configuration = configuration, .rounds = {}, .accelerator = {}});
+        chart_.points.push_back({.configuration = configuration,
+                                 .rounds = {},
+                                 .accelerator = {},
+                                 .plan = {},
+                                 .picture_plan = {}});
     }
   }
 }
 
-std::size_t Study::place_of(int number) const {
-  return static_cast<std::size_t>(number - kReferences) % chart_.points.size();
-}
-
 RenderRequest Study::request(int number) const {
   assert(number >= 0 && number < pictures());
-  const bool is_reference = number < kReferences;
-  const Configuration& configuration =
-      is_reference ? chart_.reference : chart_.points[place_of(number)].configuration;
-  const int rounds_before = (number - kReferences) / static_cast<int>(chart_.points.size());
-  const int seed_step = is_reference ? number : kReferences + rounds_before;
+  if (number < kReferences) return request(chart_.reference, number);
+  const Turn& turn = turns_[static_cast<std::size_t>(number - kReferences)];
+  return request(chart_.points[turn.point].configuration, kReferences + turn.round);
+}
+
+RenderRequest Study::request(const Configuration& configuration, int seed_step) const {
   RenderRequest request = view_;
   request.technique = configuration.technique;
   request.max_depth = configuration.max_depth;
@@ -111,11 +122,22 @@ RenderRequest Study::request(int number) const {
   return request;
 }
 
+std::string Study::plan_of(RenderRequest request, const char* accelerator, const PictureSize& size) const {
+  request.width = size.width;
+  request.height = size.height;
+  request.accelerator = accelerator;
+  return query_of(scene_, settings_of(make_plan(scene_, request)));
+}
+
 void Study::add_reference(const RenderResult& rendered) {
   const Image image = rendered.film.image(PixelFormat::linear32);
   const auto values = image.values();
   if (added_ == 0) {
     reference_.assign(values.begin(), values.end());
+    const char* accelerator = rendered.stats.accelerator->name;
+    chart_.reference_plan = plan_of(request(0), accelerator, chart_.size);
+    chart_.reference_picture_plan =
+        plan_of(request(0), accelerator, narrowed(chart_.size, std::min(kPictureWidth, chart_.size.width)));
     return;
   }
   chart_.reference_rmse = difference(values, reference_).rmse / kReferences;
@@ -124,22 +146,56 @@ void Study::add_reference(const RenderResult& rendered) {
     reference_[i] = static_cast<float>((double(reference_[i]) + double(values[i])) / kReferences);
 }
 
+void Study::add_round(Point& point, const RenderResult& rendered) {
+  if (point.rounds.empty()) {
+    point.accelerator = rendered.stats.accelerator->name;
+    point.certificate = rendered.certificate;
+    const RenderRequest made = request_of(point);
+    const PictureSize picture = narrowed(chart_.size, std::min(kPictureWidth, chart_.size.width));
+    point.plan = plan_of(made, rendered.stats.accelerator->name, chart_.size);
+    point.picture_plan = plan_of(made, rendered.stats.accelerator->name, picture);
+  }
+  const Image image = rendered.film.image(PixelFormat::linear32);
+  point.rounds.push_back({.difference = difference(image.values(), reference_),
+                          .ssim = ssim(image.values(), reference_, image.width()),
+                          .cpu_ms = std::max(rendered.stats.cpu_ms, kClockStep_ms),
+                          .rays = double(rendered.stats.counts.rays.total())});
+}
+
 void Study::add(const RenderResult& rendered) {
   assert(!complete());
   if (added_ < kReferences) {
     add_reference(rendered);
-  } else {
-    Point& point = chart_.points[place_of(added_)];
-    point.accelerator = rendered.stats.accelerator->name;
-    point.rounds.push_back(
-        {.difference = difference(rendered.film.image(PixelFormat::linear32).values(), reference_),
-         .cpu_ms = std::max(rendered.stats.cpu_ms, kClockStep_ms),
-         .rays = double(rendered.stats.counts.rays.total())});
+    ++added_;
+    return;
   }
-  if (++added_ < pictures()) return;
+  const auto taken = static_cast<std::size_t>(added_ - kReferences);
+  const Turn turn = turns_[taken];
+  add_round(chart_.points[turn.point], rendered);
+  ++added_;
+  if (taken + 1 == turns_.size() || turns_[taken + 1].round != turn.round) end_round(turn.round);
+}
+
+// Takes away the turns that tell nothing more.
+void Study::end_round(int round) {
+  if (round == 0) same_ = find_same(chart_.points);
+  std::vector<Point> different;
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < chart_.points.size(); ++i) {
+    if (same_[i]) continue;
+    different.push_back(chart_.points[i]);
+    numbers.push_back(i);
+  }
+  mark_front(different, chart_.reference_rmse);
+  std::vector<bool> over = same_;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (round + 1 >= kFirstRounds && !different[i].on_front()) over[numbers[i]] = true;
+  const auto next = turns_.begin() + (added_ - kReferences);
+  turns_.erase(std::remove_if(next, turns_.end(), [&](const Turn& turn) { return over[turn.point]; }),
+               turns_.end());
+  if (!complete()) return;
   reference_ = {};
-  leave_out_same(chart_.points);
-  mark_front(chart_.points);
+  chart_.points = std::move(different);
 }
 
 }  // namespace orrery

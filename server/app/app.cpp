@@ -19,6 +19,7 @@ constexpr double kShareOfBudgets = 0.9;  // of the time of a request, so that th
 constexpr double kRaysAThreadSecond = 50e6;
 
 Settings decided(Settings settings, const WorkerPool& pool) {
+  settings.threads = pool.threads();
   if (settings.renders == 0) settings.renders = 2 * pool.threads();
   if (settings.request_rays == 0)
     settings.request_rays =

@@ -6,6 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/params/params.h"
+#include "core/plan/limits.h"
+#include "server/app/flag_name.h"
+#include "server/app/frame_path.h"
+#include "server/app/told_error.h"
 
 namespace orrery {
 namespace {
@@ -19,12 +23,21 @@ ordered_json configuration_json(const Configuration& configuration) {
           {"samples", configuration.samples}};
 }
 
-ordered_json point_json(const Point& point, double cheapest_ms) {
+ordered_json size_json(const PictureSize& size) { return {{"width", size.width}, {"height", size.height}}; }
+
+ordered_json interval_json(const std::optional<Interval>& interval) {
+  if (!interval) return nullptr;
+  return {{"low", interval->low}, {"high", interval->high}};
+}
+
+// What is one number or word: the columns of the table.
+ordered_json figures_json(const Point& point, double cheapest_ms) {
   const auto mean = [&](double Difference::*value) {
     return point.mean([&](const Measurement& s) { return s.difference.*value; });
   };
   ordered_json json = configuration_json(point.configuration);
   json["accelerator"] = point.accelerator;
+  json["rounds"] = point.rounds.size();
   json["cpu_ms"] = point.cpu_ms();
   json["times_cheapest"] = point.cpu_ms() / cheapest_ms;
   json["rays"] = point.rays();
@@ -36,21 +49,56 @@ ordered_json point_json(const Point& point, double cheapest_ms) {
   json["bias"] = mean(&Difference::bias);
   const double psnr_db = point.psnr_db();
   json["psnr_db"] = std::isfinite(psnr_db) ? ordered_json(psnr_db) : ordered_json();
+  json["ssim"] = point.mean([](const Measurement& s) { return s.ssim; });
   json["non_finite"] = point.mean([](const Measurement& s) { return double(s.difference.non_finite); });
-  json["on_front"] = point.on_front;
+  json["on_front"] = point.on_front();
+  json["undecided"] = point.standing == Standing::undecided;
+  json["plan"] = point.plan;
   return json;
 }
 
-ordered_json points_json(const Chart& chart) {
+// Of a picture whose CPU time is the point's; an interval where the rounds tell one.
+ordered_json full_size_json(const Chart& chart, const Point& point) {
+  const auto interval = point.cpu_ms_interval();
+  return {{"seconds", chart.full_seconds(point.cpu_ms())},
+          {"low", interval ? ordered_json(chart.full_seconds(interval->low)) : ordered_json()},
+          {"high", interval ? ordered_json(chart.full_seconds(interval->high)) : ordered_json()}};
+}
+
+ordered_json points_json(const Chart& chart, const std::string& prefix) {
   ordered_json points = ordered_json::array();
   const double cheapest_ms = chart.cheapest_ms();
-  for (const Point& point : chart.points) points.push_back(point_json(point, cheapest_ms));
+  for (const Point& point : chart.points) {
+    ordered_json json = figures_json(point, cheapest_ms);
+    json["interval"] = point.rounds.size() < 2
+                           ? ordered_json()
+                           : ordered_json{{"rmse", interval_json(point.rmse_interval())},
+                                          {"cpu_ms", interval_json(point.cpu_ms_interval())}};
+    json["certificate"] = certificate_json(*point.certificate);
+    json["picture"] = frame_path(prefix, chart.scene_id, point.picture_plan);
+    json["full_size"] = full_size_json(chart, point);
+    points.push_back(std::move(json));
+  }
   return points;
 }
 
-// A line of names, then one for each point; nothing between the commas for null. RFC 4180.
-std::string csv_of(const Chart& chart) {
-  const ordered_json points = points_json(chart);
+ordered_json recommendations_json(const Chart& chart) {
+  ordered_json all = ordered_json::array();
+  for (const Recommendation& r : recommendations(chart)) {
+    const Point& point = chart.points[r.point];
+    all.push_back({{"error", r.error},
+                   {"point", r.point},
+                   {"flags", flags_of_plan(point.plan)},
+                   {"full_size", full_size_json(chart, point)}});
+  }
+  return all;
+}
+
+// A line of names, then one for each point; nothing between the commas for null. RFC 4180: a plan with commas
+// has quotes.
+std::string csv_of(const Chart& chart, const std::string&) {
+  ordered_json points = ordered_json::array();
+  for (const Point& point : chart.points) points.push_back(figures_json(point, chart.cheapest_ms()));
   std::string text;
   const auto add_line = [&](const auto& text_of) {
     for (const auto& member : points.front().items()) text += text_of(member.key()) + ",";
@@ -61,25 +109,36 @@ std::string csv_of(const Chart& chart) {
     add_line([&](const std::string& name) {
       const ordered_json& value = point.at(name);
       if (value.is_null()) return std::string();
-      return value.is_string() ? value.get<std::string>() : value.dump();
+      if (!value.is_string()) return value.dump();
+      const std::string word = value.get<std::string>();
+      return word.find(',') == std::string::npos ? word : "\"" + word + "\"";
     });
   return text;
 }
 
-std::string json_of(const Chart& chart) {
+std::string json_of(const Chart& chart, const std::string& prefix) {
   ordered_json reference = configuration_json(chart.reference);
   reference["cpu_ms"] = chart.reference_cpu_ms;
   reference["rmse"] = chart.reference_rmse;
+  reference["plan"] = chart.reference_plan;
+  reference["picture"] = frame_path(prefix, chart.scene_id, chart.reference_picture_plan);
   const ordered_json json = {{"scene", {{"id", chart.scene_id}, {"title", chart.title}}},
-                             {"image", {{"width", chart.width}, {"height", chart.height}}},
-                             {"rounds", chart.points.front().rounds.size()},
+                             {"image", size_json(chart.size)},
+                             {"measured", size_json(chart.measured)},
+                             {"threads", chart.threads},
+                             {"rounds", chart.rounds},
                              {"reference", std::move(reference)},
+                             {"noise_floor", chart.reference_rmse},
                              {"cheapest_ms", chart.cheapest_ms()},
-                             {"points", points_json(chart)}};
+                             {"front", chart.front()},
+                             {"recommendations", recommendations_json(chart)},
+                             {"points", points_json(chart, prefix)}};
   return json.dump(2) + "\n";
 }
 
-constexpr std::array kForms{ChartForm{".svg", "image/svg+xml", svg_of},
+std::string drawing_of(const Chart& chart, const std::string&) { return svg_of(chart); }
+
+constexpr std::array kForms{ChartForm{".svg", "image/svg+xml", drawing_of},
                             ChartForm{".csv", "text/csv; charset=utf-8", csv_of},
                             ChartForm{".json", "application/json", json_of}};
 
@@ -90,7 +149,25 @@ void read_extent(Params& p, Study::Extent& extent) {
       static_cast<int>(p.integer("samples", "Of the highest configuration: 1, 4, 16, ... up to it.", 1,
                                  kMostChartSamples, extent.samples));
   extent.rounds = static_cast<int>(p.integer(
-      "rounds", "Pictures of each configuration, with different seeds.", 1, kMostChartRounds, extent.rounds));
+      "rounds", "Pictures of each configuration, with different seeds: two, and more of what is not beaten.",
+      1, kMostChartRounds, extent.rounds));
+  extent.width = static_cast<int>(p.integer(
+      "width",
+      "Of the pictures that are rendered, which have the picture's proportions; missing or more: its own.", 1,
+      kMaxImageSide, derived(std::int64_t{0})));
+}
+
+std::string flags_of_plan(const std::string& plan) {
+  std::string flags;
+  for (std::size_t begin = 0, end; begin < plan.size(); begin = end + 1) {
+    end = std::min(plan.find('&', begin), plan.size());
+    const std::string pair = plan.substr(begin, end - begin);
+    const std::size_t equals = pair.find('=');
+    const std::string name = pair.substr(0, equals);
+    if (name == "seed") continue;
+    flags += (flags.empty() ? "" : " ") + flag_of(name) + " " + pair.substr(equals + 1);
+  }
+  return flags;
 }
 
 const ChartForm* chart_form_of(std::string_view name) {

@@ -20,6 +20,7 @@ Job::Job(std::string id, JobSpec spec, const RenderServices& services, std::chro
       limit_(limit),
       room_(std::move(room)),
       memory_(services.memory.open(spec_.client)),
+      steps_(work().steps()),
       thread_([this] { run(); }) {}
 
 Job::~Job() {
@@ -77,8 +78,17 @@ double Job::rays_of_all() const {
 RenderResult Job::render(int step, const Watch& watch) {
   RenderResult rendered =
       services_.once_there_is_memory(watch.stop(), [&] { return try_render(step, watch); });
-  spec_.work->add(rendered);
+  take(step, rendered);
   return rendered;
+}
+
+void Job::take(int step, const RenderResult& rendered) {
+  spec_.work->add(rendered);
+  const int steps = work().steps();
+  const double rays = step + 1 < steps && steps < steps_ ? rays_of_all() : rays_;
+  const std::lock_guard lock(mutex_);
+  steps_ = steps;
+  rays_ = rays;
 }
 
 RenderResult Job::try_render(int step, const Watch& watch) {
@@ -158,9 +168,9 @@ JobStatus Job::wait(int steps, std::optional<std::int64_t> tiles, Clock::time_po
 
 JobStatus Job::status_locked() const {
   JobStatus status{.state = state_,
-                   .steps = work().steps(),
+                   .steps = steps_,
                    .steps_done = steps_done_,
-                   .tiles = work().steps() * tiles_a_step_,
+                   .tiles = steps_ * tiles_a_step_,
                    .tiles_done = tiles_done_,
                    .elapsed_s = 0,
                    .remaining_s = {},

@@ -73,6 +73,7 @@ class Job {
  private:
   void run();
   Plan plan(int step) const;
+  void take(int step, const RenderResult& rendered);
   double rays_of_all() const;  // expected of all steps, by their plans alone: their proportions stay
   RenderResult render(int step, const Watch& watch);
   RenderResult try_render(int step, const Watch& watch);  // throws OverLimit where memory is short now
@@ -89,7 +90,7 @@ class Job {
   std::stop_source cancelled_;
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable_any changed_;
-  int steps_done_ = 0;
+  int steps_, steps_done_ = 0;
   std::size_t bytes_ = 0;
   JobState state_ = JobState::waiting;
   std::exception_ptr error_;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,21 +15,23 @@ namespace orrery {
 struct JobResult {
   std::string name;       // what errors call it: "Frame 3"
   std::string_view type;  // "image/png"
-  int after;              // steps of the job, the first ones, that make it
-  // Its bytes. REQUIRES: the job's status has said that so many steps are done.
-  std::function<std::string()> write;
+  // Steps of the job, the first ones, that make it; none: all.
+  std::optional<int> after;
+  // Its bytes, with links below `prefix`. REQUIRES: the job's status has said that so many steps are done.
+  std::function<std::string(const std::string& prefix)> write;
 };
 
 // What a job does: renders pictures of a scene, one a step, and makes files of them. A kind of job is a class
-// of its own, which stands with its routes in a file of server/routes/. Job calls request(), storage() and
-// add() on its thread, encode() and keep() on those of the pool; the rest is safe from any thread.
+// of its own, which stands with its routes in a file of server/routes/. Job calls steps(), request(),
+// storage() and add() on its thread, encode() and keep() on those of the pool; the rest is safe from any
+// thread.
 class JobWork {
  public:
   virtual ~JobWork() = default;
 
-  // Pictures to render; at least 1, always the same.
+  // Pictures to render, at least 1 and as many as were added. It may become smaller when one is added.
   virtual int steps() const = 0;
-  // How the picture 0 <= step < steps() is rendered.
+  // How the picture 0 <= step < steps() is rendered. REQUIRES: not all were added.
   virtual RenderRequest request(int step) const = 0;
   virtual FilmStorage storage() const = 0;
 

@@ -73,21 +73,6 @@ std::vector<std::string_view> render_option_names() {
   return names;
 }
 
-std::string query_of(const Scene& scene, const RenderSettings& settings) {
-  RenderSettings technique;
-  technique.technique = settings.technique;
-  const RenderSettings usual = resolve(scene, technique), default_technique = resolve(scene, {});
-  std::string query;
-  for (const RenderOption& option : render_options()) {
-    const RenderSettings& otherwise = option.key == "technique" ? default_technique : usual;
-    std::string text = option.text(settings);
-    if (text == option.text(otherwise)) continue;
-    std::erase_if(text, [](char c) { return c == '"' || c == '[' || c == ']'; });
-    query += (query.empty() ? "" : "&") + std::string(option.key) + "=" + text;
-  }
-  return query;
-}
-
 RenderRequest read_option_texts(std::span<const OptionText> texts) {
   nlohmann::json request = nlohmann::json::object();
   for (const OptionText& text : texts)

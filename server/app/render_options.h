@@ -26,8 +26,4 @@ struct OptionText {
 // Lists have commas between their values. Throws InputError, as read_request() but with the names given.
 RenderRequest read_option_texts(std::span<const OptionText> texts);
 
-// A query that gives those of the settings, all of which are given, that the scene does not give itself:
-// "max_depth=12&samples=16", or "".
-std::string query_of(const Scene& scene, const RenderSettings& settings);
-
 }  // namespace orrery

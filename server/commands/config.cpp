@@ -10,7 +10,7 @@
 
 #include "core/params/json.h"
 #include "core/params/suggest.h"
-#include "server/commands/flag_name.h"
+#include "server/app/flag_name.h"
 #include "server/commands/scene_file.h"
 
 namespace orrery {

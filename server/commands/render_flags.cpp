@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 
 #include "core/model/batch.h"
+#include "server/app/flag_name.h"
 #include "server/app/render_options.h"
-#include "server/commands/flag_name.h"
 
 namespace orrery {
 namespace {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/params/suggest.h"
+#include "server/app/frame_path.h"
 #include "server/app/render_options.h"
 #include "server/app/told_error.h"
 #include "server/http/field_list.h"
@@ -194,9 +195,7 @@ void set_budget(Response& response, std::string_view type, const Scene& scene, c
   if (!picture.budget) return;
   response.set("Orrery-Budget", budget_text(*picture.budget));
   if (type != "image/png") return;
-  const std::string query = query_of(scene, picture.budget->settings);
-  response.set("Content-Location",
-               prefix + "/v1/scenes/" + scene.id + "/frame.png" + (query.empty() ? "" : "?" + query));
+  response.set("Content-Location", frame_path(prefix, scene.id, query_of(scene, picture.budget->settings)));
 }
 
 Response json_answer(int status, const nlohmann::ordered_json& json) {

@@ -33,7 +33,8 @@ class ChartWork final : public JobWork {
     const ChartForm* form = chart_form_of(path);
     if (!form || path != folder() + job_id + std::string(form->ending))
       throw NotFound("The job makes the chart " + job_id + ".svg, .csv and .json");
-    return {"The chart", form->type, steps(), [this, form] { return form->write(study_.chart()); }};
+    return {"The chart", form->type, std::nullopt,
+            [this, form](const std::string& prefix) { return form->write(study_.chart(), prefix); }};
   }
 
  private:
@@ -50,6 +51,7 @@ struct ChartOrder {
 ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
   const std::string body = std::move(request.body);
   ChartOrder order;
+  order.extent.threads = app.settings().threads;
   app.read(body.size(), caller_of(request), timing, [&](const AssetSource&) {
     const Document document = parse_document(body.empty() ? "{}" : body);
     for (const char* key : {"scene", "scene_id"})
@@ -64,7 +66,8 @@ ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
 // All that a chart depends on: also what changes no picture, but its time.
 std::string canonical_chart(const Scene& scene, const ChartOrder& order) {
   return "chart " + scene.id + " " + canonical_work(scene, order.view) + " " +
-         std::to_string(order.extent.samples) + " " + std::to_string(order.extent.rounds);
+         std::to_string(order.extent.samples) + " " + std::to_string(order.extent.rounds) + " " +
+         std::to_string(order.extent.width);
 }
 
 Response start_chart(App& app, Request& request) {

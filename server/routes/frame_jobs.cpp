@@ -38,8 +38,9 @@ class FrameWork final : public JobWork {
       const std::string_view name = path.substr(begin.size());
       const auto number = number_in<int>(name.substr(0, name.find('.')));
       if (number && name == std::to_string(*number) + ".png" && *number >= 0 && *number < steps())
-        return {"Frame " + std::to_string(*number), "image/png", *number + 1,
-                [this, step = *number] { return files_[static_cast<std::size_t>(step)]; }};
+        return {
+            "Frame " + std::to_string(*number), "image/png", *number + 1,
+            [this, step = *number](const std::string&) { return files_[static_cast<std::size_t>(step)]; }};
     }
     throw NotFound("The job has " + begin + "0.png to " + std::to_string(steps() - 1) + ".png");
   }

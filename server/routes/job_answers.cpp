@@ -51,13 +51,13 @@ Response job_result(App& app, const Request& request, const std::string& job_id)
   const auto job = app.jobs().find(job_id);
   const JobResult result = job->work().result(job_id, request.path);
   const JobStatus status = job->status();
-  if (status.steps_done < result.after)
+  if (status.steps_done < result.after.value_or(status.steps))
     throw HttpError(409, result.name + " is not made: " + std::to_string(status.steps_done) + " of " +
                              std::to_string(status.steps) + " pictures are, and the job is " +
                              std::string(name_of(status.state)));
   const std::string etag = "\"" + job_id + request.path.substr(request.path.rfind('/')) + "\"";
   Response response{.status = 304};
-  if (!has_current(request, etag)) response = text_response(200, result.type, result.write());
+  if (!has_current(request, etag)) response = text_response(200, result.type, result.write(request.prefix));
   response.set("ETag", etag);
   response.set("Cache-Control", "private, max-age=31536000, immutable");
   return response;

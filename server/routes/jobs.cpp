@@ -72,7 +72,7 @@ Response get_events(App& app, Request& request) {
     seen = number_in<int>(*last).value_or(-1);
     if (seen < 0) throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
   }
-  if (seen > job->work().steps()) return {.status = 204};  // it has seen the end: no need to come again
+  if (seen > job->status().steps) return {.status = 204};  // it has seen the end: no need to come again
   Response response;
   response.set("Content-Type", "text/event-stream");
   response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <future>
 #include <nlohmann/json.hpp>
 
@@ -19,13 +20,14 @@ using std::chrono::milliseconds, std::chrono::seconds;
 
 constexpr seconds kRunTime{100}, kKept{50};
 
-// Tiny pictures of a ball. `then` is called on the job's thread after each of them.
+// Tiny pictures of a ball. `then` is called on the job's thread after each of them. After `enough` pictures
+// no more are wanted.
 class FakeWork final : public JobWork {
  public:
-  FakeWork(int steps, std::size_t bytes, std::function<void(int)> then)
-      : steps_(steps), bytes_(bytes), then_(std::move(then)) {}
+  FakeWork(int steps, std::size_t bytes, std::function<void(int)> then, int enough = 1 << 20)
+      : steps_(steps), enough_(enough), bytes_(bytes), then_(std::move(then)) {}
 
-  int steps() const override { return steps_; }
+  int steps() const override { return added_ < enough_ ? steps_ : std::max(enough_, added_); }
   RenderRequest request(int) const override { return test::size(8, 8); }
   FilmStorage storage() const override { return FilmStorage::srgb8; }
   void add(const RenderResult&) override { then_(added_++); }
@@ -36,7 +38,7 @@ class FakeWork final : public JobWork {
   JobResult result(const std::string&, std::string_view) const override { throw NotFound("none"); }
 
  private:
-  const int steps_;
+  const int steps_, enough_;
   const std::size_t bytes_;
   const std::function<void(int)> then_;
   int added_ = 0, kept_ = 0;
@@ -108,6 +110,18 @@ TEST_F(JobsTest, EndBeforeTheirTimeIsUp) {
   EXPECT_EQ(status.steps_done, 3);
   EXPECT_EQ(status.tiles_done, status.tiles);
   EXPECT_DOUBLE_EQ(status.elapsed_s, 99.998);
+}
+
+TEST_F(JobsTest, EndAsSoonAsTheirWorkWantsNoMore) {
+  auto work = std::make_unique<FakeWork>(
+      9, bytes_a_step_, [](int) {}, 4);
+  const auto job = jobs().start({scene_, std::move(work), "a"}, "", "").job;
+  EXPECT_EQ(job->status().steps % 5, 4) << "9 at first, 4 in the end";
+  const JobStatus status = end_of(job);
+  EXPECT_EQ(status.state, JobState::done) << error_of(status);
+  EXPECT_EQ(status.steps, 4);
+  EXPECT_EQ(status.steps_done, 4);
+  EXPECT_EQ(status.tiles_done, status.tiles);
 }
 
 TEST_F(JobsTest, FailWhenTheirTimeIsUp) {

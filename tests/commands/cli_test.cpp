@@ -239,6 +239,25 @@ TEST_F(CommandLine, ChartWritesWhatTheEndingSays) {
   EXPECT_EQ(run(few + file("C.SVG")).status, 0);
 }
 
+TEST_F(CommandLine, ChartTellsFlagsAndWritesThePicturesOfItsFront) {
+  const std::string scene = write("s.json", kScene);
+  const Outcome told = run("chart " + scene + " --chart-samples 4 --chart-width 24 --rounds 2 -o " +
+                           file("c.json") + " --pictures " + file("pictures"));
+  ASSERT_EQ(told.status, 0) << told.err;
+  const auto chart = nlohmann::json::parse(bytes_of(file("c.json")));
+  std::size_t pictures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(file("pictures")))
+    pictures += entry.path().extension() == ".png";
+  EXPECT_EQ(pictures, chart.at("front").size());
+  EXPECT_NE(told.out.find("error < "), std::string::npos) << told.out;
+  for (const auto& each : chart.at("recommendations")) {
+    const std::string flags = each.at("flags");
+    EXPECT_NE(told.out.find(flags), std::string::npos) << told.out;
+    EXPECT_EQ(run("render " + scene + " -o " + file("again.png") + " " + flags).status, 0) << flags;
+  }
+  EXPECT_EQ(run("chart " + scene + " -o " + file("c.json") + " --pictures " + file("c.json/in")).status, 1);
+}
+
 TEST_F(CommandLine, OrbitWritesNumberedFrames) {
   const std::string scene = write("s.json", kScene);
   ASSERT_EQ(run("orbit " + scene + " --frames 3 --step 90 -o " + file("f-%03d.png")).status, 0);

@@ -4,6 +4,8 @@ const entry = (about, file, from, to, ...tests) => ({
   fault: 26, about, file: `web/${file}`, from, to, target: "tests/browser/modules.test.mjs", tests,
 });
 
+const of_accuracy = (...fields) => ({ ...entry(...fields), target: "tests/browser/front.test.mjs" });
+
 export const pageFaults = [
   entry("lengths in a stream are read in the machine's byte order", "stream.js", "getUint32(0)", "getUint32(0, true)",
         "frames come out whole however the bytes are cut"),
@@ -38,4 +40,13 @@ export const pageFaults = [
         "an orbit gets finer again after a slow moment, and stays so"),
   entry("a picture may be promised that is never refined to", "refine.js", "at > 0 && !asked && ", "false && ",
         "the last picture is the finest one that takes no longer than it may, unless it was asked for"),
+  of_accuracy("a missed budget is said to be met", "bound.js", "if (budget.met) return", "if (budget.met !== undefined) return",
+              "a missed budget says why, and that it was missed"),
+  of_accuracy("what is unknown is an empty field", "bound.js", "return `error unknown, because of ${because}; ${rest}`;", 'return "";',
+              "what a picture tells of its error is put into words"),
+  of_accuracy("a link forgets the plan", "state.js", "    plan: state.plan,\n", "", "a link keeps a plan without its view and size"),
+  of_accuracy("a link's plan turns the view back", "front.js", "for (const key of kOfView) query.delete(key);", "",
+              "a link keeps a plan without its view and size"),
+  of_accuracy("the slider's stops go back and forth", "front.js", "if (error >= kNearer * nearest) continue;", "",
+              "stops are what costs more and is nearer, by the logarithm of the cost"),
 ];

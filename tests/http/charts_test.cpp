@@ -35,9 +35,10 @@ Cells cells(const std::string& csv) {
 // What the table of these points is to be.
 Cells cells(const json& points) {
   Cells all(1);
-  for (const std::string name : {"technique", "max_depth", "precision", "samples", "accelerator", "cpu_ms",
-                                 "times_cheapest", "rays", "rmse", "rmse_sd", "relative_mse", "mean_absolute",
-                                 "largest", "bias", "psnr_db", "non_finite", "on_front"})
+  for (const std::string name :
+       {"technique",      "max_depth", "precision", "samples",    "accelerator",  "rounds",        "cpu_ms",
+        "times_cheapest", "rays",      "rmse",      "rmse_sd",    "relative_mse", "mean_absolute", "largest",
+        "bias",           "psnr_db",   "ssim",      "non_finite", "on_front",     "undecided",     "plan"})
     all.front().push_back(name);
   for (const json& point : points) {
     all.emplace_back();
@@ -94,6 +95,76 @@ TEST_F(ChartTest, CanBeHadAsDrawingTableAndNumbers) {
   EXPECT_NE(drawing->get_header_value("ETag"), table->get_header_value("ETag"));
 }
 
+TEST_F(ChartTest, PointsTellPlanPictureIntervalAndCertificate) {
+  const json job = start(ends_on("whitted"));
+  const json chart = json::parse(client_.Get(made(job) + ".json")->body);
+  EXPECT_EQ(chart.at("noise_floor"), chart.at("reference").at("rmse"));
+  EXPECT_GE(chart.at("threads"), 1);
+  double cost = 0;
+  for (const std::size_t i : chart.at("front")) {
+    const json& point = chart.at("points").at(i);
+    EXPECT_TRUE(point.at("on_front"));
+    EXPECT_GE(point.at("cpu_ms"), cost);
+    cost = point.at("cpu_ms");
+  }
+  for (const json& point : chart.at("points")) {
+    const json &interval = point.at("interval").at("rmse"), &full = point.at("full_size");
+    EXPECT_LE(interval.at("low"), point.at("rmse").get<double>() + 1e-12);
+    EXPECT_GE(interval.at("high"), point.at("rmse").get<double>() - 1e-12);
+    EXPECT_LE(full.at("low"), full.at("seconds"));
+    EXPECT_GE(full.at("high"), full.at("seconds"));
+    EXPECT_NEAR(full.at("seconds").get<double>(),
+                point.at("cpu_ms").get<double>() / 1000 / chart.at("threads").get<double>(), 1e-9);
+    EXPECT_GT(point.at("ssim"), 0.3);
+    // The picture is 16 pixels wide, so that both addresses are of the same one.
+    const auto picture = client_.Get(point.at("picture").get<std::string>());
+    ASSERT_EQ(picture->status, 200) << picture->body;
+    EXPECT_TRUE(client_.Get(scene_ + "/frame.png?" + point.at("plan").get<std::string>())->body ==
+                picture->body);
+    EXPECT_NE(picture->get_header_value("Cache-Control").find("immutable"), std::string::npos);
+    EXPECT_EQ(point.at("certificate").at("space"), "linear");
+    const std::string kind = point.at("certificate").at("total").at("kind");
+    EXPECT_NE(picture->get_header_value("Orrery-Error-Bound").find("kind=" + kind), std::string::npos);
+  }
+  EXPECT_EQ(client_.Get(chart.at("reference").at("picture").get<std::string>())->status, 200);
+  for (const json& told : chart.at("recommendations")) {
+    const json& point = chart.at("points").at(told.at("point").get<std::size_t>());
+    EXPECT_LT(point.at("interval").at("rmse").at("high"), told.at("error"));
+    EXPECT_NE(told.at("flags").get<std::string>().find("--precision"), std::string::npos) << told;
+  }
+}
+
+TEST_F(ChartTest, MeasuresSmallerPicturesAndPredictsTheOneThatIsAsked) {
+  json asked = ends_on("whitted");
+  asked["image"] = {{"width", 1600}, {"height", 1200}};
+  asked["chart"] = {{"samples", 1}, {"rounds", 1}, {"width", 16}};
+  const json chart = json::parse(client_.Get(made(start(asked)) + ".json")->body);
+  EXPECT_EQ(chart.at("image").at("width"), 1600);
+  EXPECT_EQ(chart.at("measured"), json({{"width", 16}, {"height", 12}}));
+  const json& point = chart.at("points").at(0);
+  EXPECT_TRUE(point.at("interval").is_null());
+  EXPECT_TRUE(point.at("full_size").at("low").is_null());
+  EXPECT_NEAR(point.at("full_size").at("seconds").get<double>(),
+              point.at("cpu_ms").get<double>() / 1000 * 1e4 / chart.at("threads").get<double>(), 1e-6);
+  EXPECT_NE(point.at("plan").get<std::string>().find("width=1600"), std::string::npos);
+  EXPECT_NE(point.at("picture").get<std::string>().find("width=320&height=240"), std::string::npos)
+      << point.at("picture");
+}
+
+TEST_F(ChartTest, HasLinksBelowTheProxysPath) {
+  Daemon daemon({"--path-prefix", "/render"});
+  const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), kJson);
+  const std::string scene = posted->get_header_value("Location");
+  const json job =
+      json::parse(daemon.client().Post(scene + "/charts", ends_on("raycast").dump(), kJson)->body);
+  daemon.client().Get(job.at("events").get<std::string>());
+  const std::string drawing = job.at("chart");
+  const auto told = daemon.client().Get(drawing.substr(0, drawing.size() - 3) + "json");
+  const std::string picture = json::parse(told->body).at("points").at(0).at("picture");
+  EXPECT_EQ(picture.rfind("/render/v1/scenes/", 0), 0U) << picture;
+  EXPECT_EQ(daemon.client().Get(picture)->status, 200);
+}
+
 TEST_F(ChartTest, KeepsNoPictures) {
   Daemon daemon({"--job-bytes", "1"});
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), kJson);
@@ -148,6 +219,7 @@ TEST_F(ChartTest, WrongInputIsRefusedAtItsPlace) {
   EXPECT_EQ(pointer({{"chart", {{"samples", 0}}}}), "/chart/samples");
   EXPECT_EQ(pointer({{"chart", {{"samples", 1025}}}}), "/chart/samples");
   EXPECT_EQ(pointer({{"chart", {{"rounds", 17}}}}), "/chart/rounds");
+  EXPECT_EQ(pointer({{"chart", {{"width", 0}}}}), "/chart/width");
   EXPECT_EQ(pointer({{"chart", {{"round", 1}}}}), "/chart");
   EXPECT_EQ(pointer({{"render", {{"samples", 4}}}}), "/render/samples");
   EXPECT_EQ(pointer({{"render", {{"precision", "float"}}}}), "/render/precision");

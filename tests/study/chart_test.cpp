@@ -4,49 +4,83 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 
 // What is made of measurements: front, table, drawing.
 namespace orrery::test {
 namespace {
 
-Point point(double cpu_ms, double rmse, int samples = 1) {
-  Measurement sighting;
-  sighting.cpu_ms = cpu_ms;
-  sighting.difference.rmse = rmse;
-  return {.configuration = {.technique = "whitted", .max_depth = 5, .samples = samples},
-          .rounds = {sighting},
-          .accelerator = "bvh"};
+struct Round {
+  double cpu_ms, rmse;
+};
+
+Point point(const std::vector<Round>& rounds, int samples = 1) {
+  Point made{.configuration = {.technique = "whitted", .max_depth = 5, .samples = samples},
+             .rounds = {},
+             .accelerator = "bvh",
+             .plan = {},
+             .picture_plan = {}};
+  for (const Round& round : rounds) {
+    Measurement measured;
+    measured.cpu_ms = round.cpu_ms;
+    measured.difference.rmse = round.rmse;
+    made.rounds.push_back(measured);
+  }
+  return made;
+}
+Point point(double cpu_ms, double rmse, int samples = 1) { return point({{cpu_ms, rmse}}, samples); }
+
+std::vector<Standing> front_of(std::vector<Point> points, double floor = 0) {
+  mark_front(points, floor);
+  std::vector<Standing> standings;
+  for (const Point& p : points) standings.push_back(p.standing);
+  return standings;
 }
 
-std::vector<bool> front_of(std::vector<Point> points) {
-  mark_front(points);
-  std::vector<bool> front;
-  for (const Point& p : points) front.push_back(p.on_front);
-  return front;
-}
+using testing::ElementsAre;
+using enum Standing;
 
 TEST(Front, HoldsWhatNothingBeatsInBoth) {
-  using testing::ElementsAre;
-  EXPECT_THAT(front_of({point(1, 0.5), point(2, 0.1), point(3, 0.2)}), ElementsAre(true, true, false));
-  EXPECT_THAT(front_of({point(1, 0.1), point(1, 0.2)}), ElementsAre(true, false));
-  EXPECT_THAT(front_of({point(1, 0.1), point(1, 0.1)}), ElementsAre(true, false));
-  EXPECT_THAT(front_of({point(3, 0.2), point(2, 0.1), point(1, 0.5)}), ElementsAre(false, true, true));
-  EXPECT_THAT(front_of({point(1, 0), point(2, 0)}), ElementsAre(true, false));
+  EXPECT_THAT(front_of({point(1, 0.5), point(2, 0.1), point(3, 0.2)}), ElementsAre(front, front, beaten));
+  EXPECT_THAT(front_of({point(3, 0.2), point(2, 0.1), point(1, 0.5)}), ElementsAre(beaten, front, front));
+  EXPECT_THAT(front_of({point(1, 0), point(2, 0)}), ElementsAre(front, beaten));
 }
 
 TEST(Front, TakesAOnePercentSmallerErrorForNoSmaller) {
-  EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995)}), testing::ElementsAre(true, false));
-  EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0985)}), testing::ElementsAre(true, true));
+  EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995)}), ElementsAre(front, beaten));
+  EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0985)}), ElementsAre(front, front));
   EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995), point(3, 0.0989)}),
-              testing::ElementsAre(true, false, true));
+              ElementsAre(front, beaten, front));
+}
+
+TEST(Front, TakesErrorsBelowTheFloorForTheFloor) {
+  EXPECT_THAT(front_of({point(1, 0.01), point(2, 0.002), point(3, 0.001)}), ElementsAre(front, front, front));
+  EXPECT_THAT(front_of({point(1, 0.01), point(2, 0.002), point(3, 0.001)}, 0.002),
+              ElementsAre(front, front, beaten));
+}
+
+TEST(Front, LeavesUndecidedWhatRoundsCannotTell) {
+  const Point quick = point({{1, 0.1}, {1.01, 0.1}, {0.99, 0.1}});
+  EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.13}, {1.9, 0.12}})}), ElementsAre(front, beaten));
+  // Perhaps nearer, perhaps not.
+  EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.07}, {1.9, 0.15}})}), ElementsAre(front, undecided));
+  // Farther off, perhaps faster.
+  EXPECT_THAT(front_of({quick, point({{0.5, 0.2}, {2.9, 0.2}, {1.1, 0.2}})}), ElementsAre(front, undecided));
+  EXPECT_THAT(front_of({point(1, 0.1), point(1, 0.1)}), ElementsAre(undecided, undecided));
+}
+
+TEST(Front, ComparesPointsRoundByRound) {
+  // The rounds differ much more than the points, which the same seeds and the same load shift alike.
+  EXPECT_THAT(
+      front_of({point({{1, 0.10}, {2, 0.20}, {3, 0.15}}), point({{1.5, 0.10}, {2.5, 0.20}, {3.5, 0.15}})}),
+      ElementsAre(front, beaten));
 }
 
 TEST(Point, SumsUpItsRounds) {
   Point p = point(5, 0.3);
   p.rounds.push_back(point(100, 0.4).rounds[0]);
-  EXPECT_DOUBLE_EQ(p.cpu_ms(), 52.5);
   p.rounds.push_back(point(6, 0).rounds[0]);
-  EXPECT_DOUBLE_EQ(p.cpu_ms(), 6);
+  EXPECT_DOUBLE_EQ(p.cpu_ms(), 37);
   EXPECT_DOUBLE_EQ(p.rmse(), std::sqrt((0.09 + 0.16) / 3));
   EXPECT_NEAR(p.rmse_sd(), 0.20816659994661327, 1e-12);  // of 0.3, 0.4, 0
   EXPECT_EQ(point(5, 0.3).rmse_sd(), 0);
@@ -55,17 +89,75 @@ TEST(Point, SumsUpItsRounds) {
   EXPECT_NEAR(p.psnr_db(), 20, 1e-12);
 }
 
+// Student's t of two degrees of freedom is 4.302652730 at 0.975.
+TEST(Point, HasIntervalsOfItsMeans) {
+  EXPECT_FALSE(point(5, 0.3).rmse_interval());
+  EXPECT_EQ(point(5, 0.3).most_rmse(), 0.3);
+  const Point p = point({{5, 0.3}, {7, 0.4}, {6, 0.2}});
+  const double half = 4.302652730 / std::sqrt(3);
+  EXPECT_NEAR(p.cpu_ms_interval()->low, 6 - half, 0.02);
+  EXPECT_NEAR(p.cpu_ms_interval()->high, 6 + half, 0.02);
+  EXPECT_NEAR(p.rmse_interval()->low, 0.3 - 0.1 * half, 0.002);
+  EXPECT_NEAR(p.rmse_interval()->high, 0.3 + 0.1 * half, 0.002);
+  EXPECT_EQ(p.most_rmse(), p.rmse_interval()->high);
+  EXPECT_EQ(point({{1, 0.3}, {9, 0.3}}).cpu_ms_interval()->low, 0) << "no mean is negative";
+  const Point same = point({{5, 0.3}, {5, 0.3}});
+  EXPECT_NEAR(same.rmse_interval()->high - same.rmse_interval()->low, 0, 1e-12);
+}
+
+// Normal values: their mean is inside as often as is said, whatever their number.
+TEST(Point, IntervalsHoldTheMeanThatTheyPromise) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(0.3, 0.05);
+  for (const std::size_t rounds : {2U, 3U, 8U}) {
+    int inside = 0;
+    constexpr int kTrials = 4000;
+    for (int i = 0; i < kTrials; ++i) {
+      std::vector<double> values(rounds);
+      for (double& value : values) value = normal(random);
+      const Interval interval = *mean_interval(values);
+      inside += interval.low <= 0.3 && 0.3 <= interval.high;
+    }
+    EXPECT_NEAR(inside / double(kTrials), 0.95, 0.012) << rounds;
+  }
+}
+
 Chart chart() {
   Chart chart;
   chart.title = "a <b> & \"c\"\n\x01\xEF\xBF\xBF";
-  chart.width = 30;
-  chart.height = 20;
+  chart.size = {60, 40};
+  chart.measured = {30, 20};
   chart.reference = {"whitted", 5, true, 64};
   chart.reference_rmse = 0.001;
   for (const int samples : {1, 4, 16}) chart.points.push_back(point(2.0 * samples, 0.1 / samples, samples));
   chart.points.push_back(point(40, 0, 64));
-  mark_front(chart.points);
+  mark_front(chart.points, chart.reference_rmse);
   return chart;
+}
+
+TEST(Chart, ListsItsFrontByCost) {
+  Chart mixed = chart();
+  std::swap(mixed.points[0], mixed.points[2]);
+  EXPECT_THAT(mixed.front(), ElementsAre(2, 1, 0, 3));
+}
+
+TEST(Chart, PredictsTheFullSizeByPixelsAndThreads) {
+  Chart quartered = chart();
+  EXPECT_DOUBLE_EQ(quartered.full_seconds(500), 2);
+  quartered.threads = 8;
+  EXPECT_DOUBLE_EQ(quartered.full_seconds(500), 0.25);
+  EXPECT_EQ(narrowed({1000, 3}, 10).height, 1);
+  EXPECT_EQ(narrowed({640, 480}, 320).height, 240);
+}
+
+TEST(Chart, RecommendsTheCheapestPointBelowEachError) {
+  Chart all = chart();  // errors of 0.1, 0.025, 0.00625 and 0
+  const auto found = recommendations(all);
+  std::vector<std::pair<double, std::size_t>> pairs;
+  for (const Recommendation& r : found) pairs.emplace_back(r.error, r.point);
+  EXPECT_THAT(pairs, ElementsAre(std::pair(0.05, 1), std::pair(0.01, 2), std::pair(0.0001, 3)));
+  all.points[1] = point({{8, 0.02}, {8, 0.2}, {8, 0.02}}, 4);  // its interval reaches far beyond 0.05
+  EXPECT_EQ(recommendations(all).front().point, 2U);
 }
 
 // Element names in the order in which they open; fails where they do not close in turn.
@@ -106,6 +198,21 @@ TEST(Drawing, IsMadeOfFewAndEqualPointsToo) {
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf"), std::string::npos);
   }
+}
+
+TEST(Drawing, FillsHalfOfWhatIsUndecidedAndGreysWhatTheReferenceCannotTell) {
+  using testing::HasSubstr;
+  using testing::Not;
+  Chart unsure = chart();
+  EXPECT_THAT(svg_of(unsure), Not(HasSubstr("perhaps on the front")));
+  unsure.points[1].standing = undecided;
+  const std::string svg = svg_of(unsure);
+  const std::string mark = svg.substr(svg.find("<g id=\"point-1\">"), svg.find("</g>", svg.find("point-1")));
+  EXPECT_THAT(mark, HasSubstr("fill=\"#ffffff\""));
+  EXPECT_THAT(mark, HasSubstr("perhaps on the front"));
+  EXPECT_THAT(mark, HasSubstr("a5 5 0 0 0 0 10z"));
+  EXPECT_THAT(svg, HasSubstr("less than the reference is off"));
+  EXPECT_THAT(svg, HasSubstr("fill=\"#999999\""));
 }
 
 TEST(Drawing, ShowsNoDifferenceAsZero) {

@@ -1,0 +1,56 @@
+// Wires what tells of speed and accuracy to the page: the chart and its slider, budgets, and the picture's own error.
+
+import { attach_budgets, told_of } from "./budget.js";
+import { ChartDialog } from "./chart_dialog.js";
+import { Overlay } from "./overlay.js";
+import { Tradeoff } from "./tradeoff.js";
+
+const $ = (id) => document.getElementById(id);
+
+// `on` has: picture() -> the picture at rest without plan and budget, or null; seen() -> the address of the one on the
+// stage, or null; pause(); set({plan, seconds, error}), of which one is given. Returns {show(), leave(), mark(state),
+// tell(figures, state)}.
+export function attach_accuracy(on) {
+  const overlay = new Overlay($("overlay"));
+  const dialog = new ChartDialog($("chart"), $("show-chart"), (index) => tradeoff.choose(index));
+  const parts = {
+    make: $("make-chart"),
+    progress: $("chart-progress"),
+    part: $("chart-part"),
+    stops: $("stops"),
+    slider: $("stop"),
+    ticks: $("stop-ticks"),
+    reference: $("reference"),
+    bound: $("bound"),
+    use: $("use-plan"),
+    line: $("stop-line"),
+    note: $("stop-note"),
+  };
+  const tradeoff = new Tradeoff(parts, overlay, {
+    picture: on.picture,
+    seen: on.seen,
+    pause: on.pause,
+    use: (plan) => on.set({ plan, seconds: 0, error: 0 }),
+    chart: (drawing, points) => dialog.show(drawing, points),
+    say: (text) => ($("announcement").textContent = text),
+  });
+  const mark_budgets = attach_budgets(document.querySelectorAll("#budgets button"), (budget) =>
+    on.set({ plan: "", ...budget }),
+  );
+  $("drop-plan").addEventListener("click", () => on.set({ plan: "", seconds: 0, error: 0 }));
+  return {
+    show: () => tradeoff.show(on.picture()),
+    leave: () => tradeoff.leave(),
+    mark: (state) => {
+      mark_budgets(state);
+      $("drop-plan").hidden = !state.plan;
+      if (!state.plan && !state.seconds && !state.error) say({ missed: false, text: "" });
+    },
+    tell: (figures, state) => say(told_of(figures, state)),
+  };
+}
+
+function say({ missed, text }) {
+  $("told").textContent = $("told").title = text;
+  $("told").classList.toggle("missed", missed);
+}

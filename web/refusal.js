@@ -1,0 +1,33 @@
+// A refusal may name a setting that came with the link.
+
+import { places_of } from "./problem.js";
+import { kDefaults } from "./state.js";
+
+const kSettings = {
+  technique: "technique",
+  samples: "samples",
+  width: "size",
+  height: "size",
+  seconds: "seconds",
+  error: "error",
+};
+const kWaysOut = {
+  technique: "Use the scene’s own technique",
+  samples: "Choose samples automatically",
+  size: "Fit the window",
+  plan: "Drop the plan",
+  seconds: "Drop the budget",
+  error: "Drop the budget",
+};
+
+// What of the state is refused: {settings, label}, the usual values to set instead and what that does in words; null
+// where it is something else.
+export function refused_of(error, state) {
+  const of_plan = new URLSearchParams(state.plan);
+  const names = places_of(error)
+    .map(({ pointer }) => pointer?.split("/").at(-1))
+    .map((key) => (of_plan.has(key) ? "plan" : kSettings[key]))
+    .filter((name) => name && state[name] !== kDefaults[name]);
+  if (names.length === 0) return null;
+  return { settings: Object.fromEntries(names.map((name) => [name, kDefaults[name]])), label: kWaysOut[names[0]] };
+}

@@ -1,0 +1,234 @@
+// Speed against accuracy of the scene at hand: a chart once it is asked for, then a slider from the fastest picture
+// to the nearest, with the pictures of its stops over the stage.
+
+import { is_abort } from "./api.js";
+import { bound_words, fields_of } from "./bound.js";
+import { at_view, bound_of, plan_of, stop_at, stops_of } from "./front.js";
+import { Hold } from "./hold.js";
+import { make_chart } from "./job.js";
+import { progress_text } from "./progress.js";
+import { frame_url, query_of } from "./urls.js";
+
+const kExtent = { samples: 16, rounds: 3, width: 200 }; // of a chart: some seconds, of paths a minute
+const kOffer = "How much nearer to the truth could this view be, or how much quicker? A chart tries many ways to make it.";
+const kSlider = 1000; // steps of the range, which is finer than its stops
+
+export class Tradeoff {
+  #parts;
+  #overlay;
+  #on;
+  #kind = ""; // scene and options that the chart holds for
+  #view = ""; // that it was measured in
+  #chart = null;
+  #stops = [];
+  #at = -1; // the stop that is chosen
+  #was = null; // address of what was over the stage before something else was held there
+  #work = null; // AbortController of the chart being made
+  #fetching = new AbortController();
+
+  // `parts`: elements by name. `on` has: picture() -> the picture at rest or null, without plan and budget; seen() ->
+  // the address of the one on the stage, or null; pause(), use(plan), chart(drawing, points) and say(text).
+  constructor(parts, overlay, on) {
+    this.#parts = parts;
+    this.#overlay = overlay;
+    this.#on = on;
+    parts.make.addEventListener("click", () => (this.#work ? this.#work.abort() : this.#make()));
+    parts.slider.addEventListener("input", () => this.#slide(Number(parts.slider.value) / kSlider));
+    parts.slider.addEventListener("keydown", (event) => this.#key(event));
+    parts.slider.addEventListener("change", () => this.#settle());
+    parts.use.addEventListener("click", () => this.#at >= 0 && on.use(plan_of(this.#point)));
+    new Hold(parts.reference, "r", (held) => this.#hold(held, this.#reference()));
+    new Hold(parts.bound, "e", (held) => this.#hold(held, this.#bound()));
+    this.#show_parts();
+  }
+
+  // Another scene, or other options: the chart is of no use any more.
+  show(picture) {
+    const kind = picture ? `${picture.id} ${picture.technique}` : "";
+    if (kind === this.#kind) return;
+    this.#kind = kind;
+    this.#work?.abort();
+    this.#drop();
+  }
+
+  // The stage is to be seen.
+  leave() {
+    this.#overlay.hide();
+  }
+
+  // Chooses the stop of the chart's point with this number.
+  choose(index) {
+    const at = this.#stops.findIndex(({ point }) => point === this.#chart.points[index]);
+    if (at >= 0) this.#go(at);
+  }
+
+  get #point() {
+    return this.#stops[this.#at].point;
+  }
+
+  async #make() {
+    this.#on.pause();
+    const picture = this.#on.picture();
+    if (!picture) return;
+    const { progress, part } = this.#parts;
+    this.#work = new AbortController();
+    this.#show_parts();
+    const tell = (figures) => {
+      progress.value = figures.part ?? 0;
+      part.textContent = progress_text(figures);
+    };
+    tell({});
+    try {
+      const made = await make_chart(picture, kExtent, this.#work.signal, tell);
+      if (made) this.#take(made, picture);
+      else this.#say("This service makes no charts.", true);
+    } catch (error) {
+      if (!is_abort(error)) this.#say(`No chart: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
+    } finally {
+      this.#work = null;
+      this.#show_parts();
+    }
+  }
+
+  #take({ chart, drawing }, picture) {
+    this.#drop();
+    this.#chart = chart;
+    this.#view = view_of(picture);
+    this.#stops = stops_of(chart);
+    this.#parts.ticks.replaceChildren(
+      ...this.#stops.map(({ place }) => new Option("", String(Math.round(place * kSlider)))),
+    );
+    const selectable = this.#stops.map(({ point, line }) => ({ index: chart.points.indexOf(point), line }));
+    this.#on.chart(drawing, selectable);
+    this.#show_parts();
+    this.#go(this.#stops.length - 1);
+    this.#parts.slider.focus();
+  }
+
+  #drop() {
+    this.#fetching.abort();
+    this.#overlay.clear();
+    this.#chart = null;
+    this.#stops = [];
+    this.#at = -1;
+    this.#say("");
+    this.#show_parts();
+  }
+
+  #show_parts() {
+    const { make, stops, progress, part, reference } = this.#parts;
+    make.hidden = Boolean(this.#chart);
+    make.textContent = this.#work ? "Cancel the chart" : "Chart speed against accuracy";
+    progress.hidden = part.hidden = !this.#work;
+    stops.hidden = reference.hidden = !this.#chart;
+  }
+
+  #slide(place) {
+    const at = stop_at(this.#stops, place);
+    if (at === this.#at && this.#overlay.shown) return;
+    this.#go(at, place);
+  }
+
+  // The thumb rests on its stop.
+  #settle() {
+    if (this.#at >= 0) this.#parts.slider.value = Math.round(this.#stops[this.#at].place * kSlider);
+  }
+
+  #key(event) {
+    const last = this.#stops.length - 1;
+    const to = {
+      ArrowLeft: this.#at - 1,
+      ArrowDown: this.#at - 1,
+      PageDown: this.#at - 1,
+      ArrowRight: this.#at + 1,
+      ArrowUp: this.#at + 1,
+      PageUp: this.#at + 1,
+      Home: 0,
+      End: last,
+    }[event.key];
+    if (to === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
+    event.preventDefault();
+    this.#go(Math.min(last, Math.max(0, to)));
+  }
+
+  #go(at, place) {
+    this.#at = at;
+    const { line } = this.#stops[at];
+    const { slider, line: told } = this.#parts;
+    if (place === undefined) this.#settle();
+    slider.ariaValueText = line;
+    told.textContent = line;
+    this.#on.pause();
+    const elsewhere = this.#elsewhere ? "Measured in another view. " : "";
+    this.#say(`${elsewhere}The picture alone tells: ${bound_words(fields_of(this.#point.certificate))}`);
+    this.#see(this.#address());
+    this.#fetch_all();
+  }
+
+  get #elsewhere() {
+    return this.#view !== view_of(this.#on.picture());
+  }
+
+  // Of a point's picture in the view at hand.
+  #in_view(address) {
+    return this.#elsewhere ? at_view(address, query_of(this.#on.picture())) : address;
+  }
+
+  #address() {
+    return this.#at >= 0 ? this.#in_view(this.#point.picture) : null;
+  }
+
+  #reference() {
+    return this.#chart && this.#in_view(this.#chart.reference.picture);
+  }
+
+  // Of the stop, or of what the stage shows.
+  #bound() {
+    const address = this.#address() ?? this.#on.seen();
+    return address && bound_of(address);
+  }
+
+  #fetch_all() {
+    this.#fetching.abort();
+    this.#fetching = new AbortController();
+    const away = (at) => Math.abs(at - this.#at);
+    const near = this.#stops.map((_, at) => at).sort((a, b) => away(a) - away(b));
+    const addresses = near.map((at) => this.#in_view(this.#stops[at].point.picture));
+    this.#overlay.prefetch(addresses, this.#fetching.signal);
+  }
+
+  async #see(address) {
+    try {
+      await this.#overlay.show(address);
+    } catch (error) {
+      this.#say(`The picture cannot be shown: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
+    }
+  }
+
+  // While it is held a picture lies over the stage; then what was there before.
+  #hold(held, address) {
+    if (!held) {
+      if (this.#was) this.#see(this.#was);
+      else this.#overlay.hide();
+    } else if (!address) {
+      this.#on.say("There is nothing to compare with before a chart is made.");
+    } else {
+      this.#was = this.#overlay.shown ? this.#address() : null;
+      this.#on.pause();
+      this.#see(address);
+    }
+  }
+
+  #say(text, alarms = false) {
+    const { note } = this.#parts;
+    note.textContent = text;
+    note.classList.toggle("missed", alarms);
+    if (!this.#chart) this.#parts.line.textContent = kOffer;
+  }
+}
+
+// The view of a picture, as an address says it.
+function view_of(picture) {
+  const { width, height, technique, samples, more, ...view } = picture;
+  return frame_url(view);
+}
