@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/load/load.h"
 #include "core/stability/pictures.h"
 #include "core/stability/row.h"
 

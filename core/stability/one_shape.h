@@ -1,9 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "core/load/load.h"
 #include "core/model/shape.h"

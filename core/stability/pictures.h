@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/load/load.h"
+#include "core/plan/request.h"
 #include "core/render/renderer.h"
 
 namespace orrery {

@@ -1,4 +1,4 @@
-#include <cmath>
+#include <vector>
 
 #include "core/stability/one_shape.h"
 #include "core/stability/row.h"
@@ -10,8 +10,8 @@ namespace {
 
 const Vec3d kNormal = safe_normalize(Vec3d(1, 2, 3));
 
-// Whether a ray from o + t d, the hit as it is computed, meets the plane again beyond a fixed epsilon of
-// 1e-4 (Whitted's remedy as most books print it).
+// Whether a ray from o + t d, the hit as it is computed, meets the plane again beyond a fixed epsilon of 1e-4
+// (as introductions have it: Shirley, "Ray Tracing in One Weekend", takes 1e-3).
 bool meets_again(const Ray<float>& ray, const Vec3f& at, const Vec3f& normal, const Vec3f& direction) {
   const float t = dot(at - ray.origin, normal) / dot(ray.direction, normal);
   const Vec3f hit = ray.at(t);

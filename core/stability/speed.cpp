@@ -5,6 +5,7 @@
 
 #include "core/accelerators/registry.h"
 #include "core/base/clock.h"
+#include "core/load/load.h"
 #include "core/shapes/triangle_hit.h"
 #include "core/stability/ball_mesh.h"
 #include "core/stability/moller_trumbore.h"

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/load/load.h"
 #include "core/stability/pictures.h"
 #include "core/stability/row.h"
 

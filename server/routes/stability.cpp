@@ -9,7 +9,8 @@
 namespace orrery {
 namespace {
 
-// The same for every request of this build: measured for the first, a third of a second on one thread, and kept.
+// The same for every request of this build: measured for the first, a third of a second on one thread, and
+// kept.
 const nlohmann::ordered_json& measured_once() {
   static const nlohmann::ordered_json json = [] {
     const WorkScope nobody({});  // whose request is the first is chance
