@@ -15,8 +15,8 @@
 namespace orrery {
 namespace {
 
-constexpr auto kCommands = {add_serve, add_render, add_orbit,   add_check,  add_explain,
-                            add_chart, add_audit,  add_catalog, add_schema, add_token};
+constexpr auto kCommands = {add_serve, add_render,  add_orbit,  add_check,     add_explain, add_chart,
+                            add_audit, add_catalog, add_schema, add_stability, add_token};
 
 constexpr const char* kProgramExamples = R"(
 Examples:

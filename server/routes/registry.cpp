@@ -18,6 +18,7 @@ namespace orrery {
   add(explain)             \
   add(catalog)             \
   add(limits)              \
+  add(stability)           \
   add(health)              \
   add(schema)              \
   add(openapi)             \

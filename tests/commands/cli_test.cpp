@@ -203,11 +203,29 @@ TEST_F(CommandLine, WhatIsNoSceneFileIsRefused) {
 
 TEST_F(CommandLine, EveryCommandExplainsItself) {
   EXPECT_EQ(run("--help").status, 0);
-  for (const char* command : {"serve", "render", "orbit", "check", "explain", "chart"}) {
+  for (const char* command : {"serve", "render", "orbit", "check", "explain", "chart", "stability"}) {
     const Outcome help = run(std::string(command) + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos) << command;
   }
+}
+
+TEST_F(CommandLine, StabilityIsToldAsTextJsonAndDocs) {
+  const Outcome text = run("stability"), json = run("stability --json");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.out.rfind("A1 ", 0), 0u) << text.out;
+  const auto rows = nlohmann::json::parse(json.out).at("rows");
+  const std::string count = std::to_string(rows.size());
+  EXPECT_NE(text.out.find(count + " of " + count + " rows keep their bounds\n"), std::string::npos)
+      << text.out;
+  fs::create_directory(folder_ / "pictures");
+  EXPECT_EQ(run("stability --docs " + folder_.string()).status, 0);
+  EXPECT_NE(bytes_of(file("stability.md")).find("(pictures/stability-far-sphere.svg)"), std::string::npos);
+  EXPECT_EQ(bytes_of(folder_ / "pictures/stability-far-sphere.svg").rfind("<svg ", 0), 0u);
+  for (const char* wrong :
+       {"--json --docs .", "--svg a.svg", "--rounds 9", "--speed --json", "--speed --rounds 6"})
+    EXPECT_EQ(run(std::string("stability ") + wrong).status, 2) << wrong;
+  EXPECT_EQ(run("stability --docs " + file("none")).status, 1);
 }
 
 // Without the format ffmpeg keeps every pixel's colour (4:4:4), which browsers do not play; with it, sides

@@ -16,6 +16,7 @@ import {pageFaults} from "./page.mjs";
 import {planFaults} from "./plan.mjs";
 import {roundingFaults} from "./rounding.mjs";
 import {serviceFaults} from "./service.mjs";
+import {stabilityFaults} from "./stability.mjs";
 import {stageFaults} from "./stages.mjs";
 import {lightFaults} from "./light.mjs";
 import {optionFaults} from "./options.mjs";
@@ -468,5 +469,5 @@ export const faults = [
   ...meshFaults, ...structureFaults, ...stageFaults,
   ...lightFaults, ...motionFaults, ...gateFaults, ...serviceFaults,
   ...planFaults, ...roundingFaults, ...studyFaults, ...imageFaults, ...pageFaults, ...optionFaults,
-  ...certificateFaults,
+  ...certificateFaults, ...stabilityFaults,
 ];

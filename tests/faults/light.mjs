@@ -6,7 +6,7 @@ const entry = (fault, about, file, from, to, target, ...tests) => ({ fault, abou
 
 export const lightFaults = [
   entry(26, "dimensions of one sample come in one order", "core/math/sampling.h", "scramble_reversed<Bits>(Bits(reverse_bits(sample)), order)",
-        "Bits(reverse_bits(sample)) + order * 0u", "test_math", "Sampling.TwoStreams*"),
+        "Bits(reverse_bits(sample)) + order * 0u", "test_stability", "Rows/Stability.*/light_2"),
   entry(26, "light that is met by chance counts in full", "core/stages/sampled_light.cpp",
         "select(by_lobe > zero && by_light > zero, power_heuristic(by_lobe, by_light), one)", "one", "test_techniques",
         "Path.IrradianceOf*", "Rooms/PathFurnace.*"),

@@ -54,6 +54,13 @@ TEST_F(Info, LimitsArePublished) {
   EXPECT_EQ(limits.at("chart_pixels"), 1048576);
 }
 
+TEST_F(Info, StabilityIsMeasuredAndHolds) {
+  const auto stability = get_json("/v1/stability");
+  EXPECT_EQ(stability.at("holds"), true);
+  EXPECT_GE(stability.at("rows").size(), 14u);
+  EXPECT_EQ(get_json("/v1/stability"), stability);
+}
+
 TEST_F(Info, SchemaIsServedWithAnETag) {
   const auto schema = client_.Get("/schemas/scene.json");
   ASSERT_TRUE(schema);

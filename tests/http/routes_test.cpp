@@ -58,7 +58,7 @@ TEST_F(Routes, AskForTheScopesThatTheyAreFor) {
   for (const char* path :
        {"/v1/scenes/a", "/v1/scenes/a/frame.png", "/v1/scenes/a/orbit", "/v1/scenes/a/refinement",
         "/v1/scenes/a/explain", "/v1/scenes/a/charts/b.svg", "/v1/jobs/a", "/v1/jobs/a/events",
-        "/v1/jobs/a/frames/0.png", "/v1/assets/a", "/v1/catalog", "/v1/limits"})
+        "/v1/jobs/a/frames/0.png", "/v1/assets/a", "/v1/catalog", "/v1/limits", "/v1/stability"})
     for (const char* method : {"GET", "HEAD"}) EXPECT_EQ(find(method, path).scope, Scope::read) << path;
   for (const char* path :
        {"/", "/app.js", "/scenes/paper.json", "/openapi.json", "/schemas/scene.json", "/healthz", "/readyz"})

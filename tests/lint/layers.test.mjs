@@ -19,9 +19,10 @@ const kFloors = [
   ["core/tuning"],
   ["core/render"],
   ["core/study"],
+  ["core/stability"],
   ["server"],
 ];
-const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques"];
+const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques", "core/stability"];
 const kGenerated = ["core/base/version.h"];  // lies in the build folder
 const kMaxLines = 500;
 const kTextFolders = [".ci", "core", "docker", "docs", "packaging", "scenes", "script", "server", "tests", "web"];
@@ -139,14 +140,14 @@ function judgeCycles(includes, complain) {
   for (const path of includes.keys()) visit(path, []);
 }
 
-// A system core/shapes/sphere.cpp defines sphere_type() (or sphere_channel()) and is listed if registry.cpp
+// A system core/shapes/sphere.cpp defines sphere_type() (or _channel(), _row()) and is listed if registry.cpp
 // names sphere, make_sphere or sphere_<word>. Another .cpp is what several systems of the room share, and has
 // a header of its own.
 function judgeRegistries(contents, complain) {
   for (const path of contents.keys()) {
     if (!path.endsWith(".cpp") || !kRegisteredRooms.includes(dirname(path))) continue;
     const name = basename(path, ".cpp");
-    const system = new RegExp(`\\b${name}_(?:type|channel)\\(\\)`).test(contents.get(path));
+    const system = new RegExp(`\\b${name}_(?:type|channel|row)\\(\\)`).test(contents.get(path));
     if (name === "registry" || (!system && contents.has(`${dirname(path)}/${name}.h`))) continue;
     const registry = contents.get(`${dirname(path)}/registry.cpp`) ?? "";
     const code = registry.replace(/\/\/.*|\/\*[^]*?\*\/|^\s*#.*/gm, "");

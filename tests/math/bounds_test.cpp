@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/stability/corner_ray.h"
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
@@ -11,69 +12,8 @@
 namespace orrery {
 namespace {
 
-template <class N>
-struct BoxTest {
-  Vec3<N> lo, hi, origin, direction;
-
-  // The same from 0, where the margin for the origin's rounding hides nothing. REQUIRES: differences are
-  // exact.
-  void start_from_zero() {
-    lo = lo - origin;
-    hi = hi - origin;
-    origin = {};
-  }
-
-  MaskOf<N> enters_it() const {
-    using T = ScalarOf<N>;
-    return enters(BoxRay<N>(origin, direction), lo, hi, N(std::numeric_limits<T>::infinity()));
-  }
-};
-
-// The textbook form: near and far planes by min and max, no padding.
 template <class T>
-bool naive(const BoxTest<T>& b) {
-  T near = 0, far = std::numeric_limits<T>::infinity();
-  const auto slab = [&](T lo, T hi, T o, T d) {
-    const T t0 = (lo - o) * (1 / d), t1 = (hi - o) * (1 / d);
-    near = std::max(near, std::min(t0, t1));
-    far = std::min(far, std::max(t0, t1));
-  };
-  slab(b.lo.x, b.hi.x, b.origin.x, b.direction.x);
-  slab(b.lo.y, b.hi.y, b.origin.y, b.direction.y);
-  slab(b.lo.z, b.hi.z, b.origin.z, b.direction.z);
-  return near <= far;
-}
-
-template <class T>
-class Slabs : public testing::Test {
- public:
-  // A ray that meets a corner of a box exactly, at a t that is a power of two: all numbers are whole
-  // multiples of one unit and leave a bit free, so that corner - origin is exact. The box has no extent along
-  // one axis.
-  static BoxTest<T> ray_through_a_corner(test::Random& random, T unit) {
-    constexpr int kBits = std::numeric_limits<T>::digits - 2;
-    const auto whole = [&](std::int64_t below) {
-      return static_cast<T>(random.bits() % static_cast<std::uint64_t>(below));
-    };
-    const auto place = [&] {
-      return (whole(std::int64_t{1} << kBits) - static_cast<T>(std::int64_t{1} << (kBits - 1))) * unit;
-    };
-    const auto extent = [&] { return (T(1) + whole(4096)) * unit; };
-    BoxTest<T> b;
-    b.lo = {place(), place(), place()};
-    b.hi = {b.lo.x + extent(), b.lo.y + extent(), b.lo.z + extent()};
-    const int flat = random.below(3);
-    if (flat == 0) b.hi.x = b.lo.x;
-    if (flat == 1) b.hi.y = b.lo.y;
-    if (flat == 2) b.hi.z = b.lo.z;
-    const Vec3<T> corner(random.below(2) ? b.lo.x : b.hi.x, random.below(2) ? b.lo.y : b.hi.y,
-                         random.below(2) ? b.lo.z : b.hi.z);
-    b.origin = {place(), place(), place()};
-    b.direction = (corner - b.origin) * std::ldexp(T(1), -random.below(61));
-    b.start_from_zero();
-    return b;
-  }
-};
+class Slabs : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Slabs, Scalars);
 
@@ -81,17 +21,14 @@ TYPED_TEST(Slabs, LoseNoneOfAMillionRaysThroughCorners) {
   using T = TypeParam;
   test::covers("A27");
   test::Random random(7);
-  int lost = 0, lost_by_the_textbook = 0;
+  int lost = 0;
   constexpr int kRays = 1'000'000;
   for (int i = 0; i < kRays; ++i) {
     const T unit =
         std::ldexp(T(1), 1 - std::numeric_limits<T>::digits + random.below(21));  // coordinates 1 .. 1e6
-    const BoxTest<T> b = this->ray_through_a_corner(random, unit);
-    lost += !b.enters_it();
-    lost_by_the_textbook += !naive(b);
+    lost += !ray_through_a_corner(random, unit).enters_it();
   }
   EXPECT_EQ(lost, 0);
-  EXPECT_GT(lost_by_the_textbook, kRays / 20) << "these rays are too easy to prove anything";
 }
 
 TYPED_TEST(Slabs, KeepTheRayThatTheTextbookLoses) {
@@ -148,7 +85,7 @@ TYPED_TEST(Slabs, LanesEqualScalarsToTheBit) {
     BoxTest<N> lanes;
     std::array<BoxTest<T>, N::size()> each;
     for (std::size_t lane = 0; lane < N::size(); ++lane) {
-      each[lane] = this->ray_through_a_corner(random, T(1));
+      each[lane] = ray_through_a_corner(random, T(1));
       each[lane].direction = each[lane].direction + Vec3<T>(random.direction());
       if (random.below(4) == 0) each[lane].direction.y = -T(0);
       const auto set = [&](Vec3<N> BoxTest<N>::*to, const Vec3<T>& v) {

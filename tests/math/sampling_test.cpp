@@ -133,22 +133,6 @@ TEST(Sampling, LanesAreNumbers) {
   }
 }
 
-// Dimensions of one integral that come from two streams: the share of samples in which both are below a half
-// is a quarter, with the error of independent numbers. In one order for all streams it would be 0 or a half.
-TEST(Sampling, TwoStreamsFillTheirProduct) {
-  test::covers("light-2");
-  constexpr int kPixels = 64, kSamples = 256;
-  double squares = 0;
-  for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
-    int both = 0;
-    for (std::uint32_t sample = 0; sample < kSamples; ++sample)
-      both += stratified_point(sample, combine_bits(1, pixel)).u < 0.5f &&
-              stratified_point(sample, combine_bits(2, pixel)).u < 0.5f;
-    squares += std::pow(double{1} * both / kSamples - 0.25, 2) / kPixels;
-  }
-  EXPECT_LT(std::sqrt(squares), 0.03);
-}
-
 // Root-mean-square error over 64 streams of an integral's estimate from the first `count` samples.
 template <class F>
 double rms_error(const F& f, double exact, int count) {

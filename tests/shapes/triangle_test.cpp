@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/math/face_normal.h"
+#include "core/stability/ball_mesh.h"
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 #include "tests/support/rays.h"
@@ -11,69 +12,25 @@
 namespace orrery::test {
 namespace {
 
-// A sphere of 24 x 48 facets, with the triangles around each vertex and each edge.
-struct BallMesh {
-  static constexpr int kRings = 24, kSectors = 48;
-  std::vector<Vec3d> positions;
-  std::vector<std::array<int, 3>> triangles;
-
-  BallMesh(double radius, const Vec3d& center) {
-    positions.push_back(center + Vec3d(0, 0, radius));
-    for (int ring = 1; ring < kRings; ++ring)
-      for (int sector = 0; sector < kSectors; ++sector) {
-        const double theta = std::numbers::pi * ring / kRings, phi = 2 * std::numbers::pi * sector / kSectors;
-        positions.push_back(center + Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                           std::cos(theta)) *
-                                         radius);
-      }
-    positions.push_back(center - Vec3d(0, 0, radius));
-    const int last = static_cast<int>(positions.size()) - 1;
-    const auto at = [](int ring, int sector) { return 1 + (ring - 1) * kSectors + sector % kSectors; };
-    for (int sector = 0; sector < kSectors; ++sector) {
-      triangles.push_back({0, at(1, sector), at(1, sector + 1)});
-      triangles.push_back({last, at(kRings - 1, sector + 1), at(kRings - 1, sector)});
-      for (int ring = 1; ring + 1 < kRings; ++ring) {
-        triangles.push_back({at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1)});
-        triangles.push_back({at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1)});
-      }
-    }
-  }
-
-  Json scene() const {
-    Json mesh{{"type", "mesh"}, {"positions", Json::array()}, {"indices", Json::array()}};
-    for (const Vec3d& p : positions) mesh["positions"].push_back(numbers(p));
-    for (const auto& t : triangles) mesh["indices"].push_back(t);
-    return scene_with(mesh);
-  }
-  std::vector<int> around(int vertex) const {
-    std::vector<int> found;
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      if (std::find(triangles[t].begin(), triangles[t].end(), vertex) != triangles[t].end())
-        found.push_back(static_cast<int>(t));
-    return found;
-  }
-};
+Json scene_of(const BallMesh& ball) {
+  Json mesh{{"type", "mesh"}, {"positions", Json::array()}, {"indices", Json::array()}};
+  for (const Vec3d& p : ball.positions) mesh["positions"].push_back(numbers(p));
+  for (const auto& t : ball.triangles) mesh["indices"].push_back(t);
+  return scene_with(mesh);
+}
 
 // How many of the rays from within the ball, aimed at vertices and at the middles of edges, meet none of the
 // triangles there: each triangle around either end of the edge is tried, so a hit of any neighbour counts.
 template <class T>
 int leaks_of(const Vec3d& center, int rays_at_each) {
   const BallMesh mesh(2, center);
-  const Target<T> shape(mesh.scene());
+  const Target<T> shape(scene_of(mesh));
   Random random(7);
   int leaks = 0;
   for (int vertex = 0; vertex < static_cast<int>(mesh.positions.size()); ++vertex) {
     const std::vector<int> fan = mesh.around(vertex);
     Rays<T> rays;
-    for (int i = 0; i < rays_at_each; ++i) {
-      const auto& triangle = mesh.triangles[static_cast<std::size_t>(
-          fan[static_cast<std::size_t>(random.below(static_cast<int>(fan.size())))])];
-      const int other = triangle[static_cast<std::size_t>(random.below(3))];  // may be the vertex itself
-      const Vec3<T> a(mesh.positions[static_cast<std::size_t>(vertex)]),
-          b(mesh.positions[static_cast<std::size_t>(other)]);
-      const Vec3<T> origin(center + random.in_cube(0.57));
-      rays.push_back({origin, (a + b) * T(0.5) - origin});
-    }
+    for (int i = 0; i < rays_at_each; ++i) rays.push_back(mesh.ray_at<T>(vertex, fan, center, random));
     for (const auto& hit : shape.closest(rays, fan)) leaks += !hit.met();
   }
   return leaks;

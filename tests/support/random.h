@@ -1,28 +1,16 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 
-#include "core/math/vec3.h"
+#include "core/stability/split_mix.h"
 
 namespace orrery::test {
 
-// A stream of random numbers, the same on every machine (SplitMix64: Steele, Lea, Flood, "Fast splittable
-// pseudorandom number generators", 2014).
-class Random {
+class Random : public SplitMix {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
+  using SplitMix::SplitMix;
 
-  std::uint64_t bits() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
-  double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // in [0, 1)
-  double between(double low, double high) { return low + (high - low) * unit(); }
-  int below(int count) { return static_cast<int>(bits() % static_cast<std::uint64_t>(count)); }
   // Every power of ten between the two is as likely as any other.
   double magnitude(double low, double high) { return low * std::pow(high / low, unit()); }
 
@@ -35,10 +23,6 @@ class Random {
     const Vec3d d = direction();
     return dot(d, normal) < 0 ? -d : d;
   }
-  Vec3d in_cube(double half) { return {between(-half, half), between(-half, half), between(-half, half)}; }
-
- private:
-  std::uint64_t state_;
 };
 
 // Some unit vector at right angles to `v`.

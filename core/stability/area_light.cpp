@@ -1,0 +1,69 @@
+#include <cmath>
+
+#include "core/lights/emitters.h"
+#include "core/stability/row.h"
+
+namespace orrery {
+namespace {
+
+// Standard deviation over mean of what estimate(u, v) gives over an even grid of n x n points.
+template <class Estimate>
+double relative_deviation(int n, const Estimate& estimate) {
+  double sum = 0, squares = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double value = estimate((i + 0.5) / n, (j + 0.5) / n);
+      sum += value;
+      squares += value * value;
+    }
+  const double mean = sum / n / n;
+  return std::sqrt(std::max(0.0, squares / n / n - mean * mean)) / mean;
+}
+
+// A square of side 1, `height` above its middle on a surface that faces it.
+StabilityFigures deviations(double height) {
+  const auto light = make_emitter(
+      {Patch::Kind::rectangle, Vec3d(-0.5, height, -0.5), Vec3d(1, 0, 0), Vec3d(0, 0, 1)}, Vec3d(1));
+  const double by_area = relative_deviation(1000, [&](double u, double v) {
+    const double x = u - 0.5, z = v - 0.5, d2 = x * x + z * z + height * height;
+    return height * height / (d2 * d2);  // both cosines over the square of the distance
+  });
+  const double ours = relative_deviation(200, [&](double u, double v) {
+    const auto drawn = light.draw(Vec3d(), u, v);
+    return drawn.pdf > 0 ? normalize(drawn.point).y / drawn.pdf : 0;
+  });
+  return {by_area, ours};
+}
+
+StabilityFigures measure() {
+  LineChart chart{"area-light",
+                  "Noise of a sample of a square light of side 1 m",
+                  "height above its middle, m",
+                  "standard deviation over mean",
+                  true,
+                  true,
+                  {{"by area", {}}, {"by solid angle", {}}}};
+  for (const double height : {0.01, 0.03, 0.1, 0.3, 1.0}) {
+    const StabilityFigures at = deviations(height);
+    chart.series[0].points.push_back({height, at.known});
+    chart.series[1].points.push_back({height, at.ours});
+  }
+  return {chart.series[0].points[0].second, chart.series[1].points[0].second, std::move(chart)};
+}
+
+}  // namespace
+
+StabilityRow area_light_row() {
+  return {"B16",
+          "Square light at one centimetre",
+          "light of a square of 1 m on a point 1 cm before its middle: standard deviation of a sample over "
+          "the mean",
+          "1",
+          "points drawn evenly by area (Cook, Porter, Carpenter 1984)",
+          25,
+          "points drawn evenly by solid angle (Urena, Fajardo, King 2013)",
+          1,
+          measure};
+}
+
+}  // namespace orrery

@@ -1,0 +1,76 @@
+#include <cmath>
+
+#include "core/shapes/sphere.h"
+#include "core/stability/row.h"
+#include "core/stability/split_mix.h"
+
+namespace orrery {
+namespace {
+
+constexpr int kRays = 20'000;
+
+// Whether b^2 - 4 a c has roots (Glassner, "An Introduction to Ray Tracing", 1989, chapter 2). The sphere is
+// that of radius 1 about 0.
+bool textbook_meets(const Ray<float>& ray) {
+  const float a = dot(ray.direction, ray.direction), b = 2 * dot(ray.origin, ray.direction);
+  const float c = dot(ray.origin, ray.origin) - 1;
+  return b * b - 4 * a * c >= 0;
+}
+
+// Whether a ray meets the sphere: it passes the centre at less than 1, in double.
+bool meets(const Ray<float>& ray) {
+  const Vec3d o(ray.origin), d(ray.direction);
+  const Vec3d closest = o - d * (dot(o, d) / dot(d, d));
+  return dot(closest, closest) <= 1;
+}
+
+// Shares of rays that are decided wrongly, of those that start so many radii away and pass the centre at up
+// to 1.2 of them, in %.
+StabilityFigures wrong_from(double distance) {
+  const Ball<float> ball{Vec3f(), 1};
+  SplitMix random(1);
+  int known = 0, ours = 0;
+  for (int i = 0; i < kRays; ++i) {
+    const Vec3d direction = direction_from(random), other = direction_from(random);
+    const Vec3d across = safe_normalize(cross(direction, other));
+    const Ray<float> ray{Vec3f(across * random.between(0, 1.2) - direction * distance), Vec3f(direction)};
+    const bool met = meets(ray);
+    known += textbook_meets(ray) != met;
+    ours += std::isfinite(ball.distance(ray)) != met;
+  }
+  return {100.0 * known / kRays, 100.0 * ours / kRays};
+}
+
+StabilityFigures measure() {
+  LineChart chart{"far-sphere",
+                  "Rays that meet or miss a sphere wrongly, in float",
+                  "distance, radii",
+                  "rays decided wrongly, %",
+                  true,
+                  true,
+                  {{"textbook", {}}, {"perpendicular residue", {}}}};
+  for (const double distance : {1e1, 1e2, 1e3, 1e4, 1e5, 1e6}) {
+    const StabilityFigures wrong = wrong_from(distance);
+    chart.series[0].points.push_back({distance, wrong.known});
+    chart.series[1].points.push_back({distance, wrong.ours});
+  }
+  StabilityFigures figures = wrong_from(1e4);
+  figures.chart = std::move(chart);
+  return figures;
+}
+
+}  // namespace
+
+StabilityRow far_sphere_row() {
+  return {"A1",
+          "Sphere from afar",
+          "whether rays meet a sphere that is 10,000 radii away, in float: rays decided wrongly",
+          "%",
+          "discriminant b^2 - 4 a c (Glassner 1989)",
+          20,
+          "discriminant from the part of the origin perpendicular to the ray (Haines and others 2019)",
+          0.02,
+          measure};
+}
+
+}  // namespace orrery

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/load/load.h"
+#include "core/model/shape.h"
+
+namespace orrery {
+
+// One object of a scene, asked by its kernel as stages ask it.
+template <class T>
+class OneShape {
+ public:
+  // `object` as JSON, of a material "m".
+  explicit OneShape(const std::string& object)
+      : scene_(load_scene(
+            R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]},
+                              "materials": {"m": {"type": "rough"}}, "objects": [)" +
+            object + "]}")) {
+    for (const auto& set : scene_->shapes)
+      if (set->size() > 0) kernel_ = set->kernel(T(), 0);
+  }
+
+  // What stages know of the places where the rays meet it. REQUIRES: at most kBatch rays, and all meet it.
+  void meet(std::span<const Ray<T>> rays) {
+    batch_->count = static_cast<int>(rays.size());
+    for (int i = 0; i < kBatchRoom; ++i)
+      batch_->set(i, rays[static_cast<std::size_t>(std::min(i, batch_->count - 1))],
+                  std::numeric_limits<T>::infinity());
+    groups_ = Groups::covering(0, batch_->count, kWidth<T>);
+    search();
+    kernel_->surface(*batch_, *hits_, groups_, *surface_);
+  }
+  const SurfaceBatch<T>& surface() const { return *surface_; }
+
+  // How many of the rays that leave there along these directions, one a place, meet it again.
+  int met_again(std::span<const Vec3<T>> directions) {
+    const int count = batch_->count;
+    for (int i = 0; i < kBatchRoom; ++i)
+      batch_->direction.set(i, directions[static_cast<std::size_t>(std::min(i, count - 1))]);
+    for (const int i : groups_) batch_->origin.put(i, surface_->origin_toward(i, batch_->direction.at(i)));
+    search();
+    int met = 0;
+    for (int i = 0; i < count; ++i) met += hits_->primitive[i] != kNoPrimitive;
+    return met;
+  }
+
+ private:
+  void search() {
+    hits_->t.values = batch_->t_max.values;
+    hits_->primitive.values.fill(kNoPrimitive);
+    AcceleratorCounts counts;
+    kernel_->closest(0, *batch_, groups_, *hits_, counts);
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  ShapeKernelPtr<T> kernel_;
+  std::unique_ptr<RayBatch<T>> batch_ = std::make_unique<RayBatch<T>>();
+  std::unique_ptr<HitBatch<T>> hits_ = std::make_unique<HitBatch<T>>();
+  std::unique_ptr<SurfaceBatch<T>> surface_ = std::make_unique<SurfaceBatch<T>>();
+  Groups groups_;
+};
+
+}  // namespace orrery

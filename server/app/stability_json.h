@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+
+#include "core/stability/row.h"
+
+namespace orrery {
+
+// {"rows": [{"id", "name", "quantity", "unit", "known": {...}, "ours": {...}, "holds"}], "holds": of all}
+nlohmann::ordered_json stability_json(std::span<const StabilityResult> results);
+
+}  // namespace orrery

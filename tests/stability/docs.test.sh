@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# docs/stability.md and its pictures are what this build measures.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+program=${TEST_ORRERY:-build/orrery}
+folder=$(mktemp -d)
+trap 'rm -r "$folder"' EXIT
+mkdir "$folder/pictures"
+"$program" stability --docs "$folder"
+compare() {
+  diff -u "docs/$1" "$folder/$1" && return
+  echo "docs/$1 is not what this build measures. To write it anew: $program stability --docs docs" >&2
+  exit 1
+}
+compare stability.md
+for picture in "$folder"/pictures/*.svg docs/pictures/stability-*.svg; do compare "pictures/$(basename "$picture")"; done

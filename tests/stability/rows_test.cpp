@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/stability/line_chart.h"
+#include "core/stability/registry.h"
+#include "core/stability/report.h"
+#include "tests/support/covers.h"
+
+namespace orrery::test {
+namespace {
+
+class Stability : public testing::TestWithParam<std::string> {};
+
+// The known method fails by as much as is said of it, and this program's keeps its bound.
+TEST_P(Stability, KnownMethodFailsAndOursKeepsItsBound) {
+  const StabilityRow& row = stability_row(GetParam().c_str());
+  covers(row.id);
+  const StabilityFigures figures = row.measure();
+  ASSERT_TRUE(std::isfinite(figures.known) && std::isfinite(figures.ours));
+  EXPECT_GE(figures.known, row.known_at_least) << row.known;
+  EXPECT_LE(figures.ours, row.ours_at_most) << row.ours;
+  EXPECT_GE(figures.ours, 0);
+  EXPECT_LT(row.ours_at_most, row.known_at_least) << "a bound that the known method keeps tells nothing";
+}
+
+std::vector<std::string> all_ids() {
+  std::vector<std::string> ids;
+  for (const StabilityRow& row : stability_rows()) ids.push_back(row.id);
+  return ids;
+}
+INSTANTIATE_TEST_SUITE_P(Rows, Stability, testing::ValuesIn(all_ids()), by_name);
+
+TEST(StabilityRows, HaveNamesOfTheirOwn) {
+  const auto ids = all_ids();
+  EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), ids.size());
+  EXPECT_THROW(stability_row("none"), std::out_of_range);
+}
+
+// Rows are pure functions.
+TEST(StabilityRows, MeasureTheSameAgain) {
+  for (const StabilityRow& row : stability_rows()) {
+    const StabilityFigures once = row.measure(), again = row.measure();
+    EXPECT_EQ(once.known, again.known) << row.id;
+    EXPECT_EQ(once.ours, again.ours) << row.id;
+  }
+}
+
+StabilityResult example(double ours, double at_most) {
+  return {{"A0", "Example", "lengths of a | b", "m", "known method", 1, "our method", at_most, nullptr},
+          {2.5, ours}};
+}
+
+TEST(StabilityReport, SaysWhatIsNotKept) {
+  const StabilityResult good = example(0, 1e-9), bad = example(2e-9, 1e-9);
+  EXPECT_TRUE(good.holds());
+  EXPECT_FALSE(bad.holds());
+  EXPECT_NE(stability_text(std::span(&good, 1)).find("1 of 1 rows keep"), std::string::npos);
+  EXPECT_NE(stability_text(std::span(&bad, 1)).find("DOES NOT KEEP 1e-09 m"), std::string::npos);
+  EXPECT_NE(stability_markdown(std::span(&bad, 1)).find("| 2e-09 m | 1e-09 m, **not kept** |"),
+            std::string::npos);
+  EXPECT_NE(stability_markdown(std::span(&good, 1)).find("lengths of a \\| b | known method | 2.5 m |"),
+            std::string::npos);
+}
+
+TEST(StabilityReport, FiguresHaveTwoDigitsAndAUnit) {
+  EXPECT_EQ(figure_text(0, "m"), "0 m");
+  EXPECT_EQ(figure_text(28.6, "%"), "29 %");
+  EXPECT_EQ(figure_text(128, "of 256"), "128 of 256");
+  EXPECT_EQ(figure_text(2.34e-7, "1"), "2.3e-07");
+}
+
+// The two lines of a logarithmic chart of which one is 0 everywhere: it runs in the lane below the axis.
+TEST(StabilityChart, ShowsZerosBelowALogarithmicAxis) {
+  LineChart chart{"example", "a < b", "x", "y", true, true, {{"known", {}}, {"ours", {}}}};
+  for (const double x : {1.0, 10.0, 100.0}) {
+    chart.series[0].points.push_back({x, x / 10});
+    chart.series[1].points.push_back({x, 0});
+  }
+  const std::string svg = svg_of(chart);
+  EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
+  EXPECT_NE(svg.find("points=\"84.0,266.0 262.0,157.0 440.0,48.0 \""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("points=\"84.0,283.3 262.0,283.3 440.0,283.3 \""), std::string::npos) << svg;
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+TEST(StabilityChart, HasRoomForAllThatIsWritten) {
+  for (const StabilityResult& result : measure_stability()) {
+    const auto& chart = result.figures.chart;
+    if (!chart) continue;
+    EXPECT_LE(chart->title.size(), 65u) << chart->title;
+    for (const auto& series : chart->series) EXPECT_LE(series.name.size(), 28u) << series.name;
+  }
+}
+
+}  // namespace
+}  // namespace orrery::test
