@@ -7,6 +7,7 @@
 #include "core/stability/line_chart.h"
 #include "core/stability/registry.h"
 #include "core/stability/report.h"
+#include "core/stability/speed.h"
 #include "tests/support/covers.h"
 
 namespace orrery::test {
@@ -93,6 +94,17 @@ TEST(StabilityChart, HasRoomForAllThatIsWritten) {
     EXPECT_LE(chart->title.size(), 65u) << chart->title;
     for (const auto& series : chart->series) EXPECT_LE(series.name.size(), 28u) << series.name;
   }
+}
+
+// Bars are as long as what a method takes, of 350 for the slowest of all groups.
+TEST(SpeedChart, HasABarForEachMethod) {
+  const std::vector<SpeedGroup> groups{
+      {"Number type", {{"double", 1, "reference"}, {"float", 0.5, "RMS 1e-4"}}},
+      {"Structure", {{"list", 1, "reference"}, {"boxes", 2, "RMS 0"}}}};
+  EXPECT_NE(speed_text(groups).find("  float                0.50  RMS 1e-4\n"), std::string::npos);
+  const std::string svg = svg_of(groups);
+  for (const char* bar : {"width=\"175.0\"", "width=\"87.5\"", "width=\"350.0\"", "0.50; RMS 1e-4"})
+    EXPECT_NE(svg.find(bar), std::string::npos) << bar;
 }
 
 }  // namespace
