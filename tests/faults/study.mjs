@@ -17,6 +17,8 @@ export const studyFaults = [
   entry("noise makes a front", "chart.cpp", "kNearer = 0.99", "kNearer = 1", "Front.TakesAOnePercentSmallerErrorForNoSmaller"),
   entry("rounds that shift alike count as noise", "chart.cpp", "values.push_back(difference(a.rounds[i], b.rounds[i]));",
         "values.push_back(difference(a.rounds[i], b.rounds[b.rounds.size() - 1 - i]));", "Front.ComparesPointsRoundByRound"),
+  entry("what is beaten beyond the intervals stays on the front", "chart.cpp", "return is_apart(*p, q);", "return false && is_apart(*p, q);",
+        "Front.HoldsNothingThatIsBeatenBeyondTheIntervals"),
   entry("errors that the reference cannot tell make a front", "chart.cpp", "std::max(rmse_of(a), floor)", "rmse_of(a)",
         "Front.TakesErrorsBelowTheFloorForTheFloor"),
   entry("an interval is that of one round", "interval.cpp", "std::sqrt(squares / (count - 1) / count)",
