@@ -110,6 +110,15 @@ bool is_beaten(const Point& point, const Point& other, double floor) {
   return extra_ms(point, other).low > 0 && extra_rmse(point, other, floor).low >= 0;
 }
 
+// Beyond the intervals of their own means: also where they share too few rounds to be compared by.
+bool is_apart(const Point& point, const Point& other) {
+  const auto beyond = [](const std::optional<Interval>& worse, const std::optional<Interval>& better) {
+    return worse && better && worse->low > better->high;
+  };
+  return beyond(point.rmse_interval(), other.rmse_interval()) &&
+         beyond(point.cpu_ms_interval(), other.cpu_ms_interval());
+}
+
 bool is_better_in_one(const Point& point, const Point& other, double floor) {
   return extra_ms(point, other).high < 0 || extra_rmse(point, other, floor).high < 0;
 }
@@ -124,8 +133,10 @@ void mark_front(std::vector<Point>& points, double floor) {
   });
   for (Point* p : by_time) {
     p->standing = Standing::beaten;
-    if (std::none_of(front.begin(), front.end(), [&](const Point* q) { return is_beaten(*p, *q, floor); }))
-      front.push_back(p);
+    const bool beaten =
+        std::any_of(front.begin(), front.end(), [&](const Point* q) { return is_beaten(*p, *q, floor); }) ||
+        std::any_of(points.begin(), points.end(), [&](const Point& q) { return is_apart(*p, q); });
+    if (!beaten) front.push_back(p);
   }
   for (Point* p : front) {
     const bool sure = std::all_of(front.begin(), front.end(),

@@ -76,6 +76,13 @@ TEST(Front, ComparesPointsRoundByRound) {
       ElementsAre(front, beaten));
 }
 
+// The two rounds that both have tell nothing; all rounds of each do.
+TEST(Front, HoldsNothingThatIsBeatenBeyondTheIntervals) {
+  const Point slow =
+      point({{20, 0.2}, {4, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}});
+  EXPECT_THAT(front_of({point({{1, 0.1}, {1.01, 0.1}}), slow}), ElementsAre(front, beaten));
+}
+
 TEST(Point, SumsUpItsRounds) {
   Point p = point(5, 0.3);
   p.rounds.push_back(point(100, 0.4).rounds[0]);
