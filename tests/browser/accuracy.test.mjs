@@ -198,6 +198,7 @@ page_test(
     await page.route("**/*view=bound*", (route) => route.fulfill({ status: 303, headers: { Location: point } }));
     await page.keyboard.down("e");
     await eventually("the bound", async () => (await shown(page))?.endsWith("view=bound"));
+    assert.ok(await page.locator("#scale").isVisible(), "its colours have a scale");
     await page.keyboard.up("e");
     await eventually("the point again", async () => (await shown(page)) === point);
   },
