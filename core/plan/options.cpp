@@ -403,7 +403,8 @@ void require_no_budget(const RenderSettings& settings, std::string_view what) {
 
 void require_picture(const RenderSettings& settings, std::string_view what) {
   if (settings.view.value_or(View::picture) != View::picture)
-    throw InputError("/render/view", "expected picture: " + std::string(what) + " shows nothing else");
+    throw InputError("/render/view",
+                     "expected picture, got bound: " + std::string(what) + " is of the picture itself");
 }
 
 namespace {
@@ -456,6 +457,7 @@ std::string query_of(const Scene& scene, const RenderSettings& settings) {
   const RenderSettings usual = resolve(scene, technique), default_technique = resolve(scene, {});
   std::string query;
   for (const RenderOption& option : render_options()) {
+    if (!option.changes_pixels) continue;
     const RenderSettings& otherwise = option.key == "technique" ? default_technique : usual;
     std::string text = option.text(settings);
     if (text == option.text(otherwise)) continue;

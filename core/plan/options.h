@@ -127,8 +127,8 @@ Orbit orbit_of(const RenderSettings& settings);
 // without empty members. Reading it gives the same settings.
 std::string to_json(const RenderSettings& settings);
 
-// A query that gives those of the settings, all of which are given, that the scene does not give itself:
-// "max_depth=12&samples=16", or "".
+// A query that gives those of the settings, all of which are given, that the scene does not give itself and
+// that change pixels: "max_depth=12&samples=16", or "". Its picture has the same bytes.
 std::string query_of(const Scene& scene, const RenderSettings& settings);
 
 }  // namespace orrery

@@ -289,6 +289,10 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
 
 }  // namespace
 
+bool loses_caustics(const Scene& scene, const Plan& plan) {
+  return !lost_caustic(scene, plan).detail.empty();
+}
+
 std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan) {
   return warnings(scene, plan, nothing_in_view(scene, plan));
 }

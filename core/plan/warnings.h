@@ -23,4 +23,7 @@ std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan);
 // Likewise of a picture for which so much was traced: whether anything is in view is then known exactly.
 std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan, const TraceCounts& traced);
 
+// Whether paths cannot find what a light without extent throws on other surfaces by way of a smooth one.
+bool loses_caustics(const Scene& scene, const Plan& plan);
+
 }  // namespace orrery

@@ -9,6 +9,7 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/plan/plan.h"
+#include "core/render/lost_light.h"
 
 namespace orrery {
 namespace {
@@ -51,6 +52,7 @@ class BudgetedRender {
       ++deepenings_;
     }
     stats_.counts.add(lost_);  // it was traced, too
+    name_lost_light(scene_.scene(), *plan_, certificate_);
     BudgetOutcome told = outcome();
     require_met(told, certificate_);
     return {std::move(*kept_), stats_, certificate_, std::move(told)};
@@ -122,8 +124,10 @@ class BudgetedRender {
     const double now_s = used_s();
     if (seconds_ == 0 || done == total) return false;
     const double end_s = begin_s + (now_s - begin_s) * total / done;
-    if (now_s <= seconds_ && (done < kSeenTiles || end_s <= kSurelyLate * seconds_)) return false;
-    least_s_ = end_s;
+    const bool foretold = done >= kSeenTiles && end_s > kSurelyLate * seconds_;
+    if (now_s <= seconds_ && !foretold) return false;
+    is_late_ = true;
+    if (done >= kSeenTiles) least_s_ = end_s;
     return true;
   }
 
@@ -203,14 +207,14 @@ class BudgetedRender {
     outcome.settings = settings_of(used);
     outcome.used_s = used_s();
     if (least_s_ > 0) outcome.least_s = least_s_;
-    outcome.seconds_met = seconds_ == 0 || (outcome.used_s <= seconds_ && !outcome.least_s);
+    outcome.seconds_met = seconds_ == 0 || (outcome.used_s <= seconds_ && !is_late_);
     outcome.error_met = error_ == 0 || is_proved();
     if (!outcome.met()) outcome.reason = reason();
     return outcome;
   }
 
   std::string reason() const {
-    if (least_s_ > 0 || error_ == 0 || is_proved()) return late_reason();
+    if (is_late_ || error_ == 0 || is_proved()) return late_reason();
     for (const Certificate::Term& term : certificate_.terms)
       if (term.subject != Certificate::kSamples && term.bound.kind == Bound::Kind::unknown)
         return term.subject + ": " + term.reason;
@@ -226,6 +230,7 @@ class BudgetedRender {
 
   std::string late_reason() const {
     if (least_s_ > 0) return "the first pass would take about " + rounded(least_s_) + " s";
+    if (is_late_) return "time was up in the first pass";
     if (gave_up_) return "a pass took longer than the one before, and ending it took too long";
     const bool first = samples_ == progressive_samples(*plan_).front();
     return std::string(first ? "the first" : "the last") + " pass took longer";
@@ -246,6 +251,7 @@ class BudgetedRender {
   const Clock::time_point begin_;
   int deepenings_ = 0, looks_ = 0;
   bool gave_up_ = false;               // a pass
+  std::atomic<bool> is_late_ = false;  // the first pass, and was given up
   std::atomic<double> least_s_ = 0.0;  // until the first pass would have ended, if it was given up
   // Of the last pass that has ended.
   int samples_ = 0;

@@ -73,6 +73,8 @@ Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, 
             WorkerPool& pool, const RenderControl& control) {
   require_no_budget(asked, "an audit");
   require_picture(asked, "an audit");
+  if (asked.layers && !asked.layers->empty())
+    throw InputError("/render/layers", "expected none: an audit keeps no layers");
   RenderRequest alone = asked;
   alone.reuse = 1;
   const Plan plan = make_plan(scene.scene(), alone);

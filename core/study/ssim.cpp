@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "core/image/image.h"
@@ -25,14 +26,23 @@ Plane luma_of(std::span<const float> linear) {
 constexpr int kReach = 5;  // pixels to each side
 constexpr double kDeviation = 1.5;
 
+// Of neighbours so many pixels away.
+std::array<double, kReach + 1> weights_by_distance() {
+  std::array<double, kReach + 1> weights;
+  for (int i = 0; i <= kReach; ++i)
+    weights[static_cast<std::size_t>(i)] = std::exp(-i * i / (2 * kDeviation * kDeviation));
+  return weights;
+}
+
 // Weighted means along lines of `count` values, `step` apart, that begin at multiples of `next`.
 Plane smoothed_along(const Plane& plane, int count, std::size_t step, std::size_t lines, std::size_t next) {
+  const auto by_distance = weights_by_distance();
   Plane smoothed(plane.size());
   for (std::size_t line = 0; line < lines; ++line) {
     for (int at = 0; at < count; ++at) {
       double sum = 0, weights = 0;
       for (int i = std::max(0, at - kReach); i <= std::min(count - 1, at + kReach); ++i) {
-        const double weight = std::exp(-(i - at) * (i - at) / (2 * kDeviation * kDeviation));
+        const double weight = by_distance[static_cast<std::size_t>(std::abs(i - at))];
         sum += weight * plane[line * next + static_cast<std::size_t>(i) * step];
         weights += weight;
       }

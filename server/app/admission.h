@@ -89,6 +89,7 @@ class Admission {
     Ticket(Ticket&& other) noexcept;
     ~Ticket();
     void set_cost(double rays);
+    void set_stop(std::stop_token stop) { stop_ = std::move(stop); }  // of waiting once it is renewed
 
     bool expired() const override;
     void renew() override;  // throws Cancelled

@@ -130,7 +130,9 @@ Admission::Ticket App::enter_in_time(const Demand& demand, Clock::time_point sin
       since + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds - used_s)),
       [&] { late.request_stop(); });
   try {
-    return admission_.enter(demand, late.get_token());
+    Admission::Ticket ticket = admission_.enter(demand, late.get_token());
+    ticket.set_stop(ends);
+    return ticket;
   } catch (const Cancelled&) {
     if (ends.stop_requested()) throw;
     throw OverLimit(

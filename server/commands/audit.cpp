@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "core/plan/limits.h"
 #include "core/plan/plan.h"
 #include "core/study/audit.h"
 #include "server/app/told_error.h"
@@ -58,14 +59,23 @@ std::string audit_text(const Audit& found, const Plan& plan) {
   return text;
 }
 
+Audit audit_of(const PreparedScene& scene, const AuditOptions& options, const RenderRequest& request,
+               WorkerPool& pool, const RenderControl& control) {
+  try {
+    return audit(scene, request, options.pixels, options.draw, pool, control);
+  } catch (const InputError& error) {
+    throw with_flag_names(error);
+  }
+}
+
 int run_audit(const AuditOptions& options) {
   const RenderRequest request = read_render_flags(options.render);
   const PreparedScene scene(load_scene_file(options.render.scene));
   const SignalWatch signals;
   WorkerPool pool(options.threads);
   std::optional<ProgressBar> bar(std::in_place, "pixels");
-  const Audit found = audit(
-      scene, request, options.pixels, options.draw, pool,
+  const Audit found = audit_of(
+      scene, options, request, pool,
       {.stop = signals.interrupted(), .progress = [&](int done, int total) { bar->update(done, total); }});
   bar.reset();
   const Plan plan = make_plan(scene.scene(), request);
@@ -81,9 +91,12 @@ Command add_audit(CLI::App& root) {
   app->footer(kAuditExamples);
   app->add_option("--pixels", options->pixels, "How many are drawn")
       ->type_name("N")
-      ->check(CLI::Range(1, kMostAuditPixels))
+      ->check(CLI::Range(1, kMostAuditPixels).description(""))
       ->capture_default_str();
-  app->add_option("--draw", options->draw, "Seed of the drawing")->type_name("N")->capture_default_str();
+  app->add_option("--draw", options->draw, "Seed of the drawing")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{kMaxSeed}).description(""))
+      ->type_name("N")
+      ->capture_default_str();
   app->add_flag("--json", options->json, "Print JSON");
   add_threads_flag(*app, options->threads);
   add_render_flags(*app, options->render);

@@ -90,6 +90,9 @@ int chart(ChartOptions options) {
   if (!options.pictures.empty()) {
     std::error_code failed;
     std::filesystem::create_directories(options.pictures, failed);
+    if (!std::filesystem::is_directory(options.pictures, failed))
+      throw FileError("cannot write to " + options.pictures +
+                      " (--pictures): it is no folder, nor can be made one");
     require_writable((std::filesystem::path(options.pictures) / "0.png").string());
   }
   std::optional<ProgressBar> bar(std::in_place, "pictures");

@@ -58,7 +58,12 @@ int render(const RenderOptions& options) {
   choose_space(request, format);
   if (options.output) require_layers_kept(request, format);
   if (options.output) require_writable(*options.output);
-  if (options.certificate) require_writable(*options.certificate);
+  if (options.certificate) {
+    if (options.certificate == options.output)
+      throw InputError("--certificate",
+                       "expected another file than that of --output, got " + *options.certificate);
+    require_writable(*options.certificate);
+  }
   RunStats stats;
   auto start = Clock::now();
   std::optional<ProgressBar> bar(std::in_place, "tiles");

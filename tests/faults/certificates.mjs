@@ -59,6 +59,7 @@ export const certificateFaults = [
         "Audit.SeesWhatOneSample*"),
   entry("what an audit met is all there is", "core/study/audit.cpp", "range * std::sqrt(shares.upper_mean(Certificate::kDoubt))",
         "found.rms", "Audit.BoundsTheShare*"),
+  entry("paths find all light", "core/render/lost_light.cpp", "if (loses_caustics(scene, plan))", "if (false)", "LostLight.*"),
   entry("codes of 8 bits are exact", "core/render/certificate.cpp", "if (display) found.terms.push_back(encoding_term());", "",
         "ErrorBudget.NamesWhat*"),
 ];

@@ -120,6 +120,9 @@ TEST(Audit, RefusesWhatItDoesNotKeep) {
   r.error.reset();
   r.view = View::bound;
   EXPECT_THROW(audited(sample("paper"), r, 1), InputError);
+  r.view.reset();
+  r.layers = std::vector<std::string>{"depth"};
+  EXPECT_THROW(audited(sample("paper"), r, 1), InputError);
 }
 
 }  // namespace

@@ -360,6 +360,15 @@ TEST(TimeBudget, FailsAsSoonAsItIsSurelyMissed) {
     EXPECT_FALSE(missed.certificate().total().rms) << "nothing is known of a picture that was not made";
   }
   EXPECT_LE(clock.tiles, 16 + 2) << "of those that two threads have begun";
+  FakeClock slow;
+  slow.tile_s = 1;
+  try {
+    rendered(test::load(test::sample("paper")), r, slow.control());
+    FAIL() << "expected BudgetMissed";
+  } catch (const BudgetMissed& missed) {
+    EXPECT_FALSE(missed.outcome().seconds_met);
+    EXPECT_FALSE(missed.outcome().least_s) << "a few tiles tell nothing";
+  }
   FakeClock in_time;
   r.seconds = 2;
   EXPECT_TRUE(rendered(test::load(test::sample("paper")), r, in_time.control()).budget->met());
