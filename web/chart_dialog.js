@@ -32,6 +32,7 @@ export class ChartDialog {
       mark.setAttribute("role", "button");
       mark.setAttribute("tabindex", "0");
       mark.setAttribute("aria-label", line);
+      mark.parentNode.append(mark); // over the others, and in the order of cost for the keyboard
     }
   }
 

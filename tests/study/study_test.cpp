@@ -12,6 +12,7 @@
 #include "core/params/json.h"
 #include "core/plan/limits.h"
 #include "core/plan/options.h"
+#include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
 // The ladder of ways to make a picture, and what is measured on it.
@@ -264,6 +265,7 @@ TEST(Study, MeasuresSmallerPicturesOfTheOneThatIsAsked) {
 // Points of several charts, rendered anew from their plans with seeds that the charts did not use: the mean
 // of their errors is inside the interval that the chart's few rounds promise.
 TEST(Study, IntervalsHoldTheErrorsOfOtherSeeds) {
+  test::covers("certificate-39");
   constexpr int kSeeds = 24;
   int points = 0, inside = 0;
   for (const char* name : {"glass", "cornell-box", "mirrors", "paper"}) {
