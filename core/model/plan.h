@@ -36,6 +36,7 @@ struct Plan {
   CameraFrame frame;
   std::shared_ptr<const Camera> camera;
   const TechniqueType* technique = nullptr;
+  std::vector<const char*> not_followed;  // kinds of light that the technique does not find in this scene
   const AcceleratorType* accelerator = nullptr;
   bool try_accelerators = false;  // for few primitives: others may be cheaper, see settle()
   bool double_precision = false;

@@ -11,6 +11,7 @@
 #include "core/image/image.h"
 #include "core/plan/options.h"
 #include "core/plan/rounding.h"
+#include "core/plan/warnings.h"
 #include "core/techniques/registry.h"
 
 namespace orrery {
@@ -88,6 +89,8 @@ class Planner {
     if (*asked.space == Space::display) plan_.space = Space::display;
     plan_.technique = find_type(technique_types(), *asked.technique);
     plan_.time = *asked.time;
+    plan_.not_followed = plan_.technique->not_followed;
+    if (loses_caustics(scene_, plan_)) plan_.not_followed.push_back("caustics of lights without extent");
     take_budget();
     take_camera();
   }

@@ -9,7 +9,6 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/plan/plan.h"
-#include "core/render/lost_light.h"
 
 namespace orrery {
 namespace {
@@ -52,7 +51,6 @@ class BudgetedRender {
       ++deepenings_;
     }
     stats_.counts.add(lost_);  // it was traced, too
-    name_lost_light(scene_.scene(), *plan_, certificate_);
     BudgetOutcome told = outcome();
     require_met(told, certificate_);
     return {std::move(*kept_), stats_, certificate_, std::move(told)};
@@ -100,9 +98,9 @@ class BudgetedRender {
     control.stop = late.get_token();
     const bool is_first = samples_ == 0;
     if (is_timed() && !is_first) kept_ = passes.film().copy();
-    control.spread = is_first;
+    control.spread = is_first && seconds_ > 0 && fails_on_miss();
     control.progress = [&, begin_s = used_s()](int done, int total) {
-      if (is_first ? fails_on_miss() && is_surely_late(begin_s, done, total) : used_s() > deadline_s())
+      if (is_first ? control.spread && is_surely_late(begin_s, done, total) : used_s() > deadline_s())
         late.request_stop();
       if (control_.progress) control_.progress(done, total);
     };
@@ -122,7 +120,7 @@ class BudgetedRender {
   // Of the first pass, after so many of its tiles, which lie all over the picture.
   bool is_surely_late(double begin_s, int done, int total) {
     const double now_s = used_s();
-    if (seconds_ == 0 || done == total) return false;
+    if (done == total) return false;
     const double end_s = begin_s + (now_s - begin_s) * total / done;
     const bool foretold = done >= kSeenTiles && end_s > kSurelyLate * seconds_;
     if (now_s <= seconds_ && !foretold) return false;

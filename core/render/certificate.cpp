@@ -89,7 +89,7 @@ Bound Certificate::known() const {
 Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {
   Certificate found{{omitted_term(plan, stats), precision_term(plan), sampling_term(plan, stats, doubt)}};
   found.space = plan.space;
-  found.not_followed = plan.technique->not_followed;
+  found.not_followed = plan.not_followed;
   found.least_provable = least_provable(plan, doubt);
   const bool display = plan.space == Space::display;
   if (display) found.terms.push_back(encoding_term());

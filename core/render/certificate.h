@@ -39,7 +39,7 @@ struct Certificate {
     std::array<double, 3> mean, standard_error;
   };
   std::vector<Bias> biases = {};
-  // Kinds of light that the technique does not follow: beside these, the reference is all light there is.
+  // Plan::not_followed: beside these, the reference is all light there is.
   std::vector<const char*> not_followed = {};
 
   Bound total() const;  // as weak as the weakest term

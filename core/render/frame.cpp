@@ -6,7 +6,6 @@
 #include "core/model/technique.h"
 #include "core/plan/options.h"
 #include "core/render/budget.h"
-#include "core/render/lost_light.h"
 
 namespace orrery {
 namespace {
@@ -58,9 +57,7 @@ RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, F
   const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
   Film film = make_film(*plan, storage);
   prepared->render(tiles_of(film, 0, plan->samples), film, stats, control);
-  Certificate certificate = certify(*plan, stats);
-  name_lost_light(scene.scene(), *plan, certificate);
-  return {std::move(film), stats, std::move(certificate)};
+  return {std::move(film), stats, certify(*plan, stats)};
 }
 
 std::vector<int> progressive_samples(const Plan& plan) {

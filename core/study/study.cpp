@@ -122,11 +122,14 @@ RenderRequest Study::request(const Configuration& configuration, int seed_step) 
   return request;
 }
 
-std::string Study::plan_of(RenderRequest request, const char* accelerator, const PictureSize& size) const {
-  request.width = size.width;
-  request.height = size.height;
-  request.accelerator = accelerator;
-  return query_of(scene_, settings_of(make_plan(scene_, request)));
+Study::Plans Study::plans_of(const RenderRequest& request) const {
+  const auto plan_at = [&](const PictureSize& size) {
+    RenderRequest sized = request;
+    sized.width = size.width;
+    sized.height = size.height;
+    return query_of(scene_, settings_of(make_plan(scene_, sized)));
+  };
+  return {plan_at(chart_.size), plan_at(narrowed(chart_.size, std::min(kPictureWidth, chart_.size.width)))};
 }
 
 void Study::add_reference(const RenderResult& rendered) {
@@ -134,10 +137,9 @@ void Study::add_reference(const RenderResult& rendered) {
   const auto values = image.values();
   if (added_ == 0) {
     reference_.assign(values.begin(), values.end());
-    const char* accelerator = rendered.stats.accelerator->name;
-    chart_.reference_plan = plan_of(request(0), accelerator, chart_.size);
-    chart_.reference_picture_plan =
-        plan_of(request(0), accelerator, narrowed(chart_.size, std::min(kPictureWidth, chart_.size.width)));
+    Plans plans = plans_of(request(0));
+    chart_.reference_plan = std::move(plans.whole);
+    chart_.reference_picture_plan = std::move(plans.picture);
     return;
   }
   chart_.reference_rmse = difference(values, reference_).rmse / kReferences;
@@ -150,10 +152,9 @@ void Study::add_round(Point& point, const RenderResult& rendered) {
   if (point.rounds.empty()) {
     point.accelerator = rendered.stats.accelerator->name;
     point.certificate = rendered.certificate;
-    const RenderRequest made = request_of(point);
-    const PictureSize picture = narrowed(chart_.size, std::min(kPictureWidth, chart_.size.width));
-    point.plan = plan_of(made, rendered.stats.accelerator->name, chart_.size);
-    point.picture_plan = plan_of(made, rendered.stats.accelerator->name, picture);
+    Plans plans = plans_of(request_of(point));
+    point.plan = std::move(plans.whole);
+    point.picture_plan = std::move(plans.picture);
   }
   const Image image = rendered.film.image(PixelFormat::linear32);
   point.rounds.push_back({.difference = difference(image.values(), reference_),

@@ -56,7 +56,11 @@ class Study {
 
   void add_configurations(const Plan& plan, int most_samples);
   RenderRequest request(const Configuration& configuration, int seed_step) const;
-  std::string plan_of(RenderRequest request, const char* accelerator, const PictureSize& size) const;
+  // Queries of that picture, at the size that was asked and at most kPictureWidth wide.
+  struct Plans {
+    std::string whole, picture;
+  };
+  Plans plans_of(const RenderRequest& request) const;
   void add_reference(const RenderResult& rendered);
   void add_round(Point& point, const RenderResult& rendered);
   void end_round(int round);

@@ -4,7 +4,6 @@
 
 #include "core/base/clock.h"
 #include "core/plan/warnings.h"
-#include "core/render/lost_light.h"
 #include "core/render/views.h"
 #include "server/app/picture_key.h"
 #include "server/app/watch.h"
@@ -74,11 +73,9 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
   services_.count(ticket, scene, pass, step.rays, step.render_ms);
   stage = Stage::encode;
   const auto start = Clock::now();
-  Certificate certificate = certify(plan(), stats);
-  name_lost_light(scene, plan(), certificate);
   Picture picture{.bytes = encode_film(progress_->film(), FileFormat::png),
                   .stats = stats,
-                  .certificate = std::move(certificate),
+                  .certificate = certify(plan(), stats),
                   .warnings = find_warnings(scene, spec_.plan, stats.counts)};
   picture.bytes.shrink_to_fit();  // it may be kept
   step.encode_ms = milliseconds_since(start);

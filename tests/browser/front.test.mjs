@@ -2,18 +2,9 @@
 // What the page makes of a chart and of what a picture tells of its error: modules that need no browser.
 
 import assert from "node:assert/strict";
-import { cpSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
-import { after, test } from "node:test";
-import { kRoot, near } from "./support.mjs";
-
-// A copy that says it is made of modules: Node asks for that, a browser does not.
-const copy = mkdtempSync(join(tmpdir(), "orrery-web-"));
-cpSync(join(kRoot, "web"), copy, { recursive: true });
-writeFileSync(join(copy, "package.json"), '{"type": "module"}');
-after(() => rmSync(copy, { recursive: true }));
-const load = (name) => import(join(copy, name));
+import { test } from "node:test";
+import { near } from "./support.mjs";
+import { load } from "./web_modules.mjs";
 
 const { bound_words, budget_words, fields_of, parameters_of } = await load("bound.js");
 const { at_view, duration, line_of, options_of, plan_of, stop_at, stops_of } = await load("front.js");

@@ -2,18 +2,9 @@
 // The page's modules that need no browser, one by one.
 
 import assert from "node:assert/strict";
-import { cpSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
-import { after, test } from "node:test";
-import { kRoot, near } from "./support.mjs";
-
-// A copy that says it is made of modules: Node asks for that, a browser does not.
-const copy = mkdtempSync(join(tmpdir(), "orrery-web-"));
-cpSync(join(kRoot, "web"), copy, { recursive: true });
-writeFileSync(join(copy, "package.json"), '{"type": "module"}');
-after(() => rmSync(copy, { recursive: true }));
-const load = (name) => import(join(copy, name));
+import { test } from "node:test";
+import { near } from "./support.mjs";
+import { load } from "./web_modules.mjs";
 
 const { server_timing } = await load("api.js");
 const { persist, wake_all } = await load("backoff.js");

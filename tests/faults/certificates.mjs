@@ -49,7 +49,7 @@ export const certificateFaults = [
         "ErrorBudget.IsNotDeceived*"),
   entry("nobody asks whether pixels err alike", "core/render/certificate.cpp", "if (!reused && pixels_are_alike(stats.error))",
         "if (false)", "Certificate.KnowsThat*"),
-  entry("a picture that will be late is rendered to the end", "core/render/budget.cpp", "fails_on_miss() && is_surely_late",
+  entry("a picture that will be late is rendered to the end", "core/render/budget.cpp", "control.spread && is_surely_late",
         "false && is_surely_late", "TimeBudget.FailsAsSoon*"),
   entry("what was left out has no colour", "core/render/tile_renderer.cpp", "omitted_.empty() ? 0 : omitted_[c][i]",
         "omitted_.empty() ? 0 : 0 * omitted_[c][i]", "BoundView.HasTheColourOfWhat*"),
@@ -59,7 +59,7 @@ export const certificateFaults = [
         "Audit.SeesWhatOneSample*"),
   entry("what an audit met is all there is", "core/study/audit.cpp", "range * std::sqrt(shares.upper_mean(Certificate::kDoubt))",
         "found.rms", "Audit.BoundsTheShare*"),
-  entry("paths find all light", "core/render/lost_light.cpp", "if (loses_caustics(scene, plan))", "if (false)", "LostLight.*"),
+  entry("paths find all light", "core/plan/plan.cpp", "if (loses_caustics(scene_, plan_))", "if (false)", "LostLight.*"),
   entry("codes of 8 bits are exact", "core/render/certificate.cpp", "if (display) found.terms.push_back(encoding_term());", "",
         "ErrorBudget.NamesWhat*"),
 ];

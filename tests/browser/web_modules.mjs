@@ -1,0 +1,15 @@
+// The page's modules for tests that need no browser.
+
+import { cpSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after } from "node:test";
+import { kRoot } from "./support.mjs";
+
+// A copy that says it is made of modules: Node asks for that, a browser does not.
+const copy = mkdtempSync(join(tmpdir(), "orrery-web-"));
+cpSync(join(kRoot, "web"), copy, { recursive: true });
+writeFileSync(join(copy, "package.json"), '{"type": "module"}');
+after(() => rmSync(copy, { recursive: true }));
+
+export const load = (name) => import(join(copy, name));
