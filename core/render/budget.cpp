@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/plan/plan.h"
 
 namespace orrery {
@@ -22,12 +22,6 @@ constexpr double kLastPassReach = 4.4;  // of this many times the samples, more 
 constexpr int kSeenTiles = 16;          // of the first pass, before its time is foretold
 constexpr double kSurelyLate = 1.5;     // times the time that there is
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
-
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 class BudgetedRender {
  public:

@@ -13,8 +13,6 @@ namespace orrery {
 
 namespace {
 
-constexpr double kShareOfBudgets = 0.9;  // of the time of a request, so that the best that was made is told
-
 // A thread traces 15 to 80 million rays a second of the sample scenes.
 constexpr double kRaysAThreadSecond = 50e6;
 

@@ -85,7 +85,8 @@ RenderResult Job::render(int step, const Watch& watch) {
 void Job::take(int step, const RenderResult& rendered) {
   spec_.work->add(rendered);
   const int steps = work().steps();
-  const double rays = step + 1 < steps && steps < steps_ ? rays_of_all() : rays_;
+  const bool changed = steps < steps_ || step == 0;  // which may settle how the others are made
+  const double rays = step + 1 < steps && changed ? rays_of_all() : rays_;
   const std::lock_guard lock(mutex_);
   steps_ = steps;
   rays_ = rays;
@@ -104,19 +105,29 @@ RenderResult Job::try_render(int step, const Watch& watch) {
     if (rays_ == 0) rays_ = rays_of_all();
     state_ = JobState::running;
   }
-  const auto progress = [this, step, rays = expected_rays(scene, asked)](int done, int total) {
-    const std::lock_guard lock(mutex_);
-    tiles_a_step_ = total;
-    const std::int64_t tiles = std::int64_t{step} * total + done;
-    if (tiles <= tiles_done_) return;  // done before, when there was no memory for the others
-    rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / total;
-    tiles_done_ = tiles;
-    changed_.notify_all();
-  };
-  return memory_->run(watch.stop(), [&] {
-    return services_.render(ticket, *spec_.scene, asked, work().storage(),
-                            {.stop = watch.stop(), .progress = progress, .background = true});
-  });
+  RenderControl control{.stop = watch.stop(),
+                        .background = true,
+                        .most_s = kShareOfBudgets * static_cast<double>(limit_.count())};
+  const bool has_passes = has_budget(asked.asked);  // how many is not known: it counts when it ends
+  if (!has_passes)
+    control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int total) {
+      count(step, done, total, rays);
+    };
+  RenderResult rendered = memory_->run(
+      watch.stop(), [&] { return services_.render(ticket, *spec_.scene, asked, work().storage(), control); });
+  const int tiles = TileGrid(asked.width, asked.height).size();
+  if (has_passes) count(step, tiles, tiles, static_cast<double>(rendered.stats.counts.rays.total()));
+  return rendered;
+}
+
+void Job::count(int step, int done, int total, double rays) {
+  const std::lock_guard lock(mutex_);
+  tiles_a_step_ = total;
+  const std::int64_t tiles = std::int64_t{step} * total + done;
+  if (tiles <= tiles_done_) return;  // done before, when there was no memory for the others
+  rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / total;
+  tiles_done_ = tiles;
+  changed_.notify_all();
 }
 
 void Job::keep(int step, Frame&& frame) {

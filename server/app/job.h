@@ -77,6 +77,8 @@ class Job {
   double rays_of_all() const;  // expected of all steps, by their plans alone: their proportions stay
   RenderResult render(int step, const Watch& watch);
   RenderResult try_render(int step, const Watch& watch);  // throws OverLimit where memory is short now
+  // So many tiles of a step, which takes so many rays in all, are done.
+  void count(int step, int done, int total, double rays);
   void keep(int step, Frame&& frame);
   void end(std::exception_ptr error);
   JobStatus status_locked() const;

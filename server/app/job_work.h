@@ -46,6 +46,9 @@ class JobWork {
   // Members that point to the files, of what is told about the job `job_id`, and about a step that is done.
   virtual nlohmann::ordered_json links(const std::string& job_id) const = 0;
   virtual nlohmann::ordered_json links_of_step(const std::string& job_id, int step) const = 0;
+  // What else is told about the job, of which so many steps are done, and about a step that is.
+  virtual nlohmann::ordered_json told(int steps_done) const = 0;
+  virtual nlohmann::ordered_json told_of_step(int step) const = 0;
   // The file whose address has this path, where the job is `job_id`. Throws NotFound for paths of none.
   virtual JobResult result(const std::string& job_id, std::string_view path) const = 0;
 };

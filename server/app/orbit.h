@@ -19,7 +19,7 @@ inline constexpr double kLongestStep_s = 3600;  // of the motion, from frame to 
 
 // A turn of the camera about a scene, while what moves in it moves, again and again.
 struct OrbitPath {
-  RenderRequest first;      // frame; every option is given
+  RenderRequest first;      // frame; every option is given, but with a budget only what it does not choose
   TimeSpan motion;          // of the scene
   double step_degrees = 3;  // of azimuth, from frame to frame
   double step_seconds = 0;  // of the motion, likewise
@@ -33,13 +33,21 @@ struct OrbitPath {
   double azimuth_degrees(std::int64_t frame) const {
     return *first.azimuth_degrees + static_cast<double>(frame) * step_degrees;
   }
+  // Every other frame is made by the settings that made the first one. Errors stay in their space.
+  void go_on_as(const RenderSettings& settings) {
+    const std::optional<Space> space = first.space;
+    static_cast<RenderSettings&>(first) = settings;
+    first.space = space;
+  }
 };
 
 // One turn in so many frames, and what is left of the scene's motion.
 inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int frames) {
-  require_no_budget(first, "an orbit");
   OrbitPath path{first, scene.motion, 360.0 / frames};
-  static_cast<RenderSettings&>(path.first) = resolve(scene, first);
+  const RenderSettings all = resolve(scene, first);
+  if (!has_budget(first)) static_cast<RenderSettings&>(path.first) = all;
+  path.first.azimuth_degrees = all.azimuth_degrees;
+  path.first.time = all.time;
   path.step_seconds = (scene.motion.last - *path.first.time) / frames;
   return path;
 }

@@ -13,6 +13,9 @@
 
 namespace orrery {
 
+// Of the time that work may take: what budgets may, so that the best that was made is told.
+inline constexpr double kShareOfBudgets = 0.9;
+
 // Services that all renders share. They must outlive every render that uses them.
 struct RenderServices {
   WorkerPool& pool;

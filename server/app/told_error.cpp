@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/base/number.h"
+
 namespace orrery {
 
 using nlohmann::ordered_json;
@@ -37,9 +39,7 @@ ordered_json number_or_null(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 std::string number_or_unknown(const std::optional<double>& value) {
-  char text[32] = "unknown";
-  if (value) std::snprintf(text, sizeof text, "%.3g", *value);
-  return text;
+  return value ? rounded(*value) : "unknown";
 }
 
 std::optional<double> known(double value) {

@@ -2,8 +2,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/number.h"
 #include "core/plan/plan.h"
-#include "server/app/orbit.h"
+#include "server/app/orbit_budget.h"
 #include "server/app/pipeline.h"
 #include "server/commands/commands.h"
 #include "server/commands/frame_names.h"
@@ -22,6 +23,7 @@ Examples:
   orrery orbit scenes/paper.json --frames 120 -o frame-%04d.png
   orrery orbit scenes/paper.json --frames 45 --step 2 --elevation 20 -o turn-%d.jpg
   orrery orbit scenes/paper.json --frames 240 --discard       how fast? renders and encodes, keeps nothing
+  orrery orbit scenes/glass.json --error 0.02 -o frame-%04d.png       as many samples as the first frame needs
 
 Turns the camera once about the scene, or by --step from frame to frame, while what moves in it moves. A film of
 the frames that every browser plays, its sides made even:
@@ -104,9 +106,10 @@ class Turn {
       : options_(options),
         names_(options.discard ? "frame-%d.png" : options.output),
         format_(format_of(names_.of(0))),
-        first_(read_render_flags(options.render)),
+        first_(read_first(options.render, format_)),
         scene_(load_scene_file(options.render.scene)),
         path_(full_turn(scene_.scene(), first_, options.frames)),
+        budget_(options.frames),
         pool_(options.threads) {
     if (options.step_given->count() > 0) path_.step_degrees = options.step;
     if (options.time_step_given->count() > 0) path_.step_seconds = options.time_step;
@@ -141,12 +144,22 @@ class Turn {
     return totals;
   }
 
+  // Null without one.
+  nlohmann::ordered_json budget() const { return budget_.json(options_.frames); }
+
  private:
+  static RenderRequest read_first(const RenderFlags& flags, FileFormat format) {
+    RenderRequest first = read_render_flags(flags);
+    choose_space(first, format);
+    return first;
+  }
   RenderResult render(std::int64_t frame) {
     const std::stop_token stop = signals_.interrupted();
     const Plan plan = make_plan(scene_.scene(), path_.at(frame));
-    return render_frame(scene_, settle(scene_, plan, stop), storage_for(format_, plan), pool_,
-                        {.stop = stop});
+    RenderResult rendered =
+        render_frame(scene_, settle(scene_, plan, stop), storage_for(format_, plan), pool_, {.stop = stop});
+    budget_.add(scene_.scene(), rendered, path_);
+    return rendered;
   }
 
   const OrbitOptions& options_;
@@ -155,19 +168,38 @@ class Turn {
   RenderRequest first_;
   PreparedScene scene_;
   OrbitPath path_;
+  OrbitBudget budget_;
   SignalWatch signals_;  // after reading the scene, before the pool, whose threads leave the signals to it
   WorkerPool pool_;
 };
+
+std::string budget_line(const nlohmann::ordered_json& budget, int frames) {
+  const auto& largest = budget["largest_bound"];
+  std::string text = "met by " + budget["frames_met"].dump() + " of " + std::to_string(frames) +
+                     " frames, which may be off by " +
+                     (largest.is_null() ? "an unknown error" : rounded(largest.get<double>()));
+  if (budget.contains("reason")) text += "; the first one: " + budget["reason"].get<std::string>();
+  return text;
+}
 
 int orbit(const OrbitOptions& options) {
   if (options.output.empty() && !options.discard)
     throw InputError("--output", "expected a name for the frames such as frame-%04d.png, or --discard");
   Turn turn(options);
   const Totals totals = turn.run();
-  if (options.stats == "json")
-    std::cout << json_of(totals, turn.threads()).dump() << "\n";
-  else if (options.discard || !options.stats.empty())
+  const nlohmann::ordered_json budget = turn.budget();
+  if (!budget.is_null() && budget["frames_met"] < options.frames)
+    std::cerr << "orrery: warning: the budget is missed: " << budget_line(budget, options.frames) << "\n";
+  if (options.stats == "json") {
+    nlohmann::ordered_json json = json_of(totals, turn.threads());
+    if (!budget.is_null()) json["budget"] = budget;
+    std::cout << json.dump() << "\n";
+  } else if (options.discard || !options.stats.empty()) {
     print(totals, turn.threads());
+    if (!budget.is_null())
+      std::cout << "budget: " << budget_line(budget, options.frames)
+                << "\nmade as the first frame: " << budget["plan"].get<std::string>() << "\n";
+  }
   return kDone;
 }
 

@@ -2,7 +2,7 @@
 
 #include "core/base/number.h"
 #include "core/params/params.h"
-#include "server/app/orbit.h"
+#include "server/app/orbit_budget.h"
 #include "server/app/picture_key.h"
 #include "server/routes/job_answers.h"
 #include "server/routes/render_order.h"
@@ -16,11 +16,15 @@ using nlohmann::ordered_json;
 // The frames of an orbit, or one picture, each a PNG file.
 class FrameWork final : public JobWork {
  public:
-  FrameWork(const OrbitPath& path, int frames) : path_(path), files_(static_cast<std::size_t>(frames)) {}
+  FrameWork(const std::shared_ptr<const PreparedScene>& scene, const OrbitPath& path, int frames)
+      : scene_(scene), path_(path), budget_(frames), files_(static_cast<std::size_t>(frames)) {}
 
   int steps() const override { return static_cast<int>(files_.size()); }
   RenderRequest request(int step) const override { return path_.at(step); }
   FilmStorage storage() const override { return FilmStorage::srgb8; }
+  void add(const RenderResult& rendered) override {
+    if (const auto scene = scene_.lock()) budget_.add(scene->scene(), rendered, path_);
+  }
   std::string encode(const Film& film) const override { return encode_film(film, FileFormat::png); }
   void keep(int step, std::string&& encoded) override {
     files_[static_cast<std::size_t>(step)] = std::move(encoded);
@@ -32,6 +36,13 @@ class FrameWork final : public JobWork {
   ordered_json links_of_step(const std::string& job_id, int step) const override {
     return {{"href", folder(job_id) + std::to_string(step) + ".png"}};
   }
+  ordered_json told(int steps_done) const override {
+    ordered_json told = ordered_json::object();
+    if (steps_done == 0) return told;
+    if (ordered_json budget = budget_.json(steps_done); !budget.is_null()) told["budget"] = std::move(budget);
+    return told;
+  }
+  ordered_json told_of_step(int step) const override { return {{"bound", budget_.bound_json(step)}}; }
   JobResult result(const std::string& job_id, std::string_view path) const override {
     const std::string begin = folder(job_id);
     if (path.starts_with(begin)) {
@@ -48,7 +59,9 @@ class FrameWork final : public JobWork {
  private:
   static std::string folder(const std::string& job_id) { return job_path(job_id) + "/frames/"; }
 
-  const OrbitPath path_;
+  const std::weak_ptr<const PreparedScene> scene_;  // the job's, while it renders
+  OrbitPath path_;
+  OrbitBudget budget_;
   std::vector<std::string> files_;  // by step; empty before it is done
 };
 
@@ -63,7 +76,7 @@ FrameOrder read_frame_order(App& app, Request& request, Timing& timing) {
   double step_degrees = 0;
   std::optional<double> time_step_s;
   bool orbits = false;
-  const RenderOrder order = read_render_order(app, request, timing, [&](Params& p) {
+  RenderOrder order = read_render_order(app, request, timing, [&](Params& p) {
     orbits = p.has("orbit");
     p.optional_object("orbit", "A turn of the camera; missing: one picture.", [&](Params& o) {
       const std::int64_t most = app.settings().orbit_frames;
@@ -77,6 +90,7 @@ FrameOrder read_frame_order(App& app, Request& request, Timing& timing) {
     });
   });
   require_layers_kept(order.request, FileFormat::png);
+  choose_space(order.request, FileFormat::png);
   frames.scene = order.scene;
   frames.path = full_turn(order.scene->scene(), order.request, frames.frames);
   frames.path.step_degrees = step_degrees;
@@ -90,7 +104,8 @@ Response start_frames(App& app, Request& request) {
   app.require_open();
   Timing timing;
   const FrameOrder order = read_frame_order(app, request, timing);
-  JobSpec spec{order.scene, std::make_unique<FrameWork>(order.path, order.frames), request.client};
+  JobSpec spec{order.scene, std::make_unique<FrameWork>(order.scene, order.path, order.frames),
+               request.client};
   return start_job(app, request, std::move(spec),
                    canonical_orbit(order.scene->scene(), order.path, order.frames), timing);
 }

@@ -27,6 +27,7 @@ ordered_json job_json(const Job& job, const JobStatus& status, const std::string
                        {"elapsed_s", milli(status.elapsed_s)},
                        {"events", prefix + job_path(job.id()) + "/events"}};
   json.update(with_prefix(job.work().links(job.id()), prefix));
+  json.update(job.work().told(status.steps_done));
   if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
   if (status.error)
     json["error"] = ordered_json::parse(std::string_view(problem_response(status.error, job.id()).body));

@@ -59,6 +59,7 @@ struct Events {
     ordered_json json = job_json(*job, status, prefix);
     json["frame"] = seen;
     json.update(with_prefix(job->work().links_of_step(job->id(), seen), prefix));
+    json.update(job->work().told_of_step(seen));
     return event("frame", seen + 1, json);
   }
 };

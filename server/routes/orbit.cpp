@@ -38,6 +38,7 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   const Scene& scene = spec.scene->scene();
   const RenderRequest first = read_query(request, kOwnParameters);
   require_layers_kept(first, FileFormat::png);
+  require_no_budget(first, "an orbit that is watched");
   std::vector<Problem> problems;
   const double frames = number_of(request, "frames", 1, app.settings().orbit_frames, 120, problems);
   if (frames != std::floor(frames)) problems.push_back({"/frames", "expected a whole number"});

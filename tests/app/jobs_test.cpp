@@ -35,6 +35,8 @@ class FakeWork final : public JobWork {
   void keep(int step, std::string&&) override { EXPECT_EQ(step, kept_++); }
   ordered_json links(const std::string&) const override { return {}; }
   ordered_json links_of_step(const std::string&, int) const override { return {}; }
+  ordered_json told(int) const override { return {}; }
+  ordered_json told_of_step(int) const override { return {}; }
   JobResult result(const std::string&, std::string_view) const override { throw NotFound("none"); }
 
  private:

@@ -288,6 +288,17 @@ TEST_F(CommandLine, OrbitWritesNumberedFrames) {
     EXPECT_EQ(run("orbit " + scene + " --frames 1 -o " + file(pattern)).status, 2) << pattern;
 }
 
+TEST_F(CommandLine, OrbitKeepsToABudget) {
+  const std::string orbit = "orbit " + write("s.json", kScene) + " --frames 3 --discard --stats=json ";
+  const auto budget = nlohmann::json::parse(run(orbit + "--error 0.2").out).at("budget");
+  EXPECT_EQ(budget.at("frames_met"), 3);
+  EXPECT_LE(budget.at("largest_bound"), 0.2);
+  const Outcome missed = run(orbit + "--error 0.0001 --samples 2");
+  EXPECT_EQ(missed.status, 0);
+  EXPECT_NE(missed.err.find("the budget is missed: met by 0 of 3 frames"), std::string::npos) << missed.err;
+  EXPECT_EQ(run(orbit + "--error 0.0001 --samples 2 --on-miss fail").status, 3);
+}
+
 TEST_F(CommandLine, OrbitPlaysTheMotion) {
   auto moving = nlohmann::json::parse(kScene);
   moving["models"]["ball"]["objects"] = moving["objects"];

@@ -9,6 +9,11 @@ const pictures = (...rest) => entry(20, rest[0], "server/app/single_flight.h", r
 const scenes = (...rest) => entry(20, rest[0], "server/app/scene_store.cpp", rest[1], rest[2], "test_app", ...rest.slice(3));
 
 export const serviceFaults = [
+  entry(21, "all frames of an orbit keep to its budget", "server/app/orbit_budget.cpp",
+        "return bound(frame).rms && *bound(frame).rms <= of_first_->error;", "return true;", "test_commands",
+        "CommandLine.OrbitKeepsToABudget"),
+  entry(21, "the frames of an orbit lose the space of its budget", "server/app/orbit.h", "first.space = space;", "", "test_http",
+        "JobTest.OrbitKeepsToABudget"),
   admission("work starts in the order in which it came", "!(rank(work) < rank(*best))", "true",
             "Admission.ClientsShareByCost*", "Admission.InteractiveWorkGoesFirst*"),
   admission("batch work starves", "const bool batch_starves = running_batch_ == 0 && latest_ != Lane::batch;", "const bool batch_starves = false;",

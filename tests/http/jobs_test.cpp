@@ -134,6 +134,41 @@ TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
   expect_problem(client_.Get(job_path(job) + "/frames/0.jpg"), 404);
 }
 
+// The first frame chooses the plan, which gives all of them.
+TEST_F(JobTest, OrbitKeepsToABudget) {
+  const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", {{"error", 0.2}}}});
+  const auto told = events(job);
+  ASSERT_EQ(told.back().name, "done");
+  const json budget = told.back().data.at("budget");
+  EXPECT_EQ(budget.at("met"), true);
+  EXPECT_EQ(budget.at("frames_met"), 4);
+  EXPECT_LE(budget.at("largest_bound"), 0.2);
+  EXPECT_EQ(told.back().data.at("tiles_done"), told.back().data.at("tiles"));
+  double largest = 0;
+  for (const Event& event : told)
+    if (event.name == "frame") {
+      EXPECT_EQ(event.data.at("bound").at("space"), "display");
+      largest = std::max(largest, event.data.at("bound").at("rms").get<double>());
+    }
+  EXPECT_EQ(budget.at("largest_bound"), largest);
+  const std::string plan = budget.at("plan");
+  EXPECT_EQ(plan.find("error"), std::string::npos) << plan;
+  const std::string scene = "/v1/scenes/" + post_scene(small_scene().dump()) + "/frame.png?" + plan;
+  for (int i = 0; i < 4; ++i) {
+    const auto frame = client_.Get(job_path(job) + "/frames/" + std::to_string(i) + ".png");
+    EXPECT_EQ(frame->body, client_.Get(scene + "&azimuth=" + std::to_string(30 * i))->body) << i;
+  }
+}
+
+TEST_F(JobTest, FailsWhereABudgetThatIsMissedIsAnError) {
+  const json budget = {{"error", 1e-5}, {"on_miss", "fail"}};
+  const auto told = events(start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", budget}}));
+  ASSERT_EQ(told.back().name, "failed");
+  const json error = told.back().data.at("error");
+  EXPECT_EQ(error.at("type"), "urn:orrery:problem:missed-budget");
+  EXPECT_EQ(told.back().data.at("frames_done"), 0);
+}
+
 TEST_F(JobTest, WhoComesBackMissesNoEvent) {
   const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}});
   const auto all = events(job);

@@ -1,0 +1,55 @@
+#include "server/app/orbit_budget.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/number.h"
+#include "server/app/told_error.h"
+
+namespace orrery {
+
+void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& path) {
+  const int number = next_++;
+  bounds_[static_cast<std::size_t>(number)] = frame.certificate.total();
+  spaces_[static_cast<std::size_t>(number)] = frame.certificate.space;
+  if (frame.budget) {
+    of_first_ = frame.budget;
+    plan_ = query_of(scene, frame.budget->settings);
+    return path.go_on_as(frame.budget->settings);
+  }
+  if (!of_first_ || met(number)) return;
+  BudgetOutcome missed = *of_first_;
+  missed.error_met = false;
+  missed.reason = "frame " + std::to_string(number) + ": of what the first one took it may be off by " +
+                  (bound(number).rms ? rounded(*bound(number).rms) : "an unknown error");
+  require_met(missed, frame.certificate);
+}
+
+nlohmann::ordered_json OrbitBudget::bound_json(int frame) const {
+  nlohmann::ordered_json json = orrery::bound_json(bound(frame));
+  json["space"] = name_of(spaces_[static_cast<std::size_t>(frame)]);
+  return json;
+}
+
+bool OrbitBudget::met(int frame) const {
+  if (frame == 0 || of_first_->error == 0) return of_first_->met();
+  return bound(frame).rms && *bound(frame).rms <= of_first_->error;
+}
+
+nlohmann::ordered_json OrbitBudget::json(int frames) const {
+  if (!of_first_) return nullptr;
+  nlohmann::ordered_json json = budget_json(*of_first_);
+  json["plan"] = plan_;
+  int frames_met = 0;
+  std::optional<double> largest = 0;
+  for (int i = 0; i < frames; ++i) {
+    frames_met += met(i);
+    const auto& rms = bound(i).rms;
+    largest = largest && rms ? std::optional(std::max(*largest, *rms)) : std::nullopt;
+  }
+  json["frames_met"] = frames_met;
+  json["largest_bound"] = largest ? nlohmann::ordered_json(*largest) : nlohmann::ordered_json(nullptr);
+  return json;
+}
+
+}  // namespace orrery
