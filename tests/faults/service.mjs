@@ -12,7 +12,7 @@ export const serviceFaults = [
   entry(21, "all frames of an orbit keep to its budget", "server/app/orbit_budget.cpp",
         "return bound(frame).rms && *bound(frame).rms <= of_first_->error;", "return true;", "test_commands",
         "CommandLine.OrbitKeepsToABudget"),
-  entry(21, "the frames of an orbit lose the space of its budget", "server/app/orbit.h", "first.space = space;", "", "test_http",
+  entry(21, "the frames of an orbit lose the space of its budget", "server/app/orbit.h", "space = first.space;", "space;", "test_http",
         "JobTest.OrbitKeepsToABudget"),
   admission("work starts in the order in which it came", "!(rank(work) < rank(*best))", "true",
             "Admission.ClientsShareByCost*", "Admission.InteractiveWorkGoesFirst*"),
