@@ -14,7 +14,8 @@ constexpr int kChosenSamples = 16;
 constexpr double kSpecularShare = 0.5;  // of the rays, where some material is specular
 
 double camera_rays_of(const Plan& plan) {
-  const int samples = plan.free_samples ? std::min(plan.samples, kChosenSamples) : plan.samples;
+  const bool may_end_early = plan.free_samples || plan.asked.seconds.value_or(0) > 0;
+  const int samples = may_end_early ? std::min(plan.samples, kChosenSamples) : plan.samples;
   return double(plan.width) * plan.height * samples;
 }
 

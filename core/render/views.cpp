@@ -40,7 +40,7 @@ void choose_space(RenderRequest& request, FileFormat format) {
     throw InputError("/budget/error",
                      "expected none, as what JPEG leaves out has no bound; PNG and EXR keep one");
   const bool open = request.space.value_or(Space::automatic) == Space::automatic;
-  if (open && has_budget(request) && format != FileFormat::exr) request.space = Space::display;
+  if (open && has_budget(request) && format == FileFormat::png) request.space = Space::display;
 }
 
 std::string encode_film(const Film& film, FileFormat format, const PngOptions& png) {

@@ -40,6 +40,8 @@ void write_docs(const std::string& folder, std::span<const StabilityResult> resu
 }
 
 int speed(const StabilityOptions& options) {
+  if (!options.svg.empty() && !options.svg.ends_with(".svg"))
+    throw InputError("--svg", "expected a name that ends with .svg, got " + options.svg.substr(0, 40));
   if (!options.svg.empty()) require_writable(options.svg);
   std::optional<ProgressBar> bar(std::in_place, "rounds");
   const std::vector<SpeedGroup> groups =
