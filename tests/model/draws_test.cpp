@@ -88,5 +88,30 @@ TEST(Draws, OfOtherSetsDepthsAndFramesAreOthers) {
     }
 }
 
+// Of 256 samples a quarter lies in the lower half of both sets, as if samples were independent: where two
+// sequences have one order, the deviation over pixels is .25 for ever.
+TEST(Draws, OfTwoSetsOfAPixelFillTheirProduct) {
+  covers("light-2");
+  constexpr int kSamples = 256, kPixels = 64;
+  const std::array sets{SampleSet::pixel, SampleSet::light, SampleSet::lobe, SampleSet::lens};
+  for (const SampleSet a : sets)
+    for (const SampleSet b : sets) {
+      if (a == b) continue;
+      double sum = 0, squares = 0;
+      for (int pixel = 0; pixel < kPixels; ++pixel) {
+        int both = 0;
+        for (int sample = 0; sample < kSamples; ++sample) {
+          const Draws draws(1, TileView{0, 0, kTileSide, kTileSide}, sample);
+          both += draw<double>(draws, a, 0, pixel).u < 0.5 && draw<double>(draws, b, 0, pixel).u < 0.5;
+        }
+        const double share = static_cast<double>(both) / kSamples;
+        sum += share / kPixels;
+        squares += share * share / kPixels;
+      }
+      EXPECT_NEAR(sum, 0.25, 0.01);
+      EXPECT_LE(std::sqrt(squares - sum * sum), 0.03);
+    }
+}
+
 }  // namespace
 }  // namespace orrery::test
