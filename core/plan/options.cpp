@@ -409,13 +409,16 @@ void require_picture(const RenderSettings& settings, std::string_view what) {
 
 namespace {
 
+// From where an error asks for less: the same for all, so that a smaller one never comes to more.
+constexpr double kMostContribution = 1.0 / 16;
+
 // Completes what a budget leaves free.
 void free_for_budget(RenderSettings& settings) {
   if (!settings.samples) settings.samples = kMaxSamples;
   const double error = settings.error.value_or(0);
   if (error == 0) return;
   if (!settings.max_depth) settings.max_depth = kMaxDepth;
-  if (!settings.min_contribution) settings.min_contribution = error / 16;
+  if (!settings.min_contribution) settings.min_contribution = kMostContribution;
   if (!settings.precision) settings.precision = Precision::double_precision;
 }
 

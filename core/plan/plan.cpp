@@ -299,8 +299,9 @@ class Planner {
              depth_reason() + "; deeper rays are replaced by ambient light", cut_bound(1));
     }
     if (plan_.min_contribution > 0)
-      decide("least contribution", number_text(plan_.min_contribution),
-             std::string(plan_.free_contribution ? "a share of the error asked" : "as asked") +
+      decide("least contribution",
+             (plan_.free_contribution ? "at most " : "") + number_text(plan_.min_contribution),
+             std::string(plan_.free_contribution ? "the error asked chooses it" : "as asked") +
                  "; weaker rays are replaced by ambient light",
              cut_bound(1));
   }

@@ -3,20 +3,25 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/plan/plan.h"
+#include "core/render/pilot.h"
 
 namespace orrery {
 namespace {
 
 constexpr double kNearLeast = 1.25;     // of the least that can be proved
-constexpr double kShareOfCuts = 0.125;  // of the error, that what is not traced may take
-constexpr double kDeeper = 16;          // by which the least contribution is divided
-constexpr int kMostDeepenings = 3;
+// Of the error, what rays that are not traced may take, and may seem to a pilot, which sees few of them.
+constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
+// By which the least contribution is divided, after a pilot and after a pass, and how often.
+constexpr double kStep = 4, kStepOfPass = 16;
+constexpr int kMostPilots = 10, kMostDeepenings = 3;
+constexpr double kWorthIt = 0.9;        // of what is left out: more of it left by a step is not worth it
 constexpr double kSlower = 1.1;         // than the last pass may the next be
 constexpr double kLastPassReach = 4.4;  // of this many times the samples, more than one pass is left
 constexpr int kSeenTiles = 16;          // of the first pass, before its time is foretold
@@ -39,8 +44,9 @@ class BudgetedRender {
   RenderResult render() {
     certificate_ = certify(*plan_, stats_, doubt_of_look(1));  // of nothing so far
     if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), certificate_);
-    while (!render_passes()) {
-      plan_ = plan_.with_min_contribution(plan_->min_contribution / kDeeper);
+    if (plan_->free_contribution && plan_->max_depth > 0) choose_contribution();
+    while (!render_passes()) {  // what a pilot did not see
+      plan_ = plan_.with_min_contribution(plan_->min_contribution / kStepOfPass);
       lost_.add(stats_.counts);
       ++deepenings_;
     }
@@ -65,6 +71,28 @@ class BudgetedRender {
   double deadline_s() const {
     const double pixels = double(plan_->width) * plan_->height;
     return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
+  }
+
+  // By pilots: the largest with which rays that are not traced take little of the error, or hardly less with
+  // a smaller one, as depth leaves them out.
+  void choose_contribution() {
+    SettledPlan tried = plan_;
+    double before = std::numeric_limits<double>::infinity();
+    for (int pilots = 0; pilots < kMostPilots; ++pilots) {
+      const RenderStats pilot = trace_pilot(scene_, tried, 1, pool_, control_);
+      lost_.add(pilot.counts);
+      const double left = share_of_cuts(certify(*tried, pilot));
+      is_too_deep_ = left > kWorthIt * before;
+      if (is_too_deep_) return;
+      plan_ = tried;
+      if (left <= kShareOfPilot * error_) return;
+      before = left;
+      tried = tried.with_min_contribution(tried->min_contribution / kStep);
+    }
+  }
+
+  static double share_of_cuts(const Certificate& certificate) {
+    return certificate.terms.front().bound.rms.value_or(0);
   }
 
   // False if weaker rays are to be traced, too.
@@ -161,8 +189,8 @@ class BudgetedRender {
   bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
 
   bool is_too_coarse() const {
-    return error_ > 0 && plan_->free_contribution && deepenings_ < kMostDeepenings &&
-           certificate_.terms.front().bound.rms.value_or(0) > kShareOfCuts * error_;
+    return error_ > 0 && plan_->free_contribution && !is_too_deep_ && deepenings_ < kMostDeepenings &&
+           share_of_cuts(certificate_) > kShareOfCuts * error_;
   }
 
   // After the pass that has ended; 0: none.
@@ -241,6 +269,7 @@ class BudgetedRender {
   const double error_, seconds_;  // 0: not asked
   const double limit_s_;          // of time; may be infinite
   const Clock::time_point begin_;
+  bool is_too_deep_ = false;  // what is not traced, for a least contribution to change it
   int deepenings_ = 0, looks_ = 0;
   bool gave_up_ = false;               // a pass
   std::atomic<bool> is_late_ = false;  // the first pass, and was given up
@@ -250,7 +279,7 @@ class BudgetedRender {
   double pass_s_per_sample_ = 0;
   RenderStats stats_;
   Certificate certificate_;
-  TraceCounts lost_;          // of passes that cut too much
+  TraceCounts lost_;          // of pilots, and passes that cut too much
   std::optional<Film> kept_;  // while a pass may be given up
   std::string reason_;        // why there was no further pass
 };

@@ -8,11 +8,11 @@ namespace orrery {
 // the error asked or the next pass would not end in time. Only whole passes count. The film keeps sums and is
 // the one that the outcome's settings give.
 //  - Error: what is decided depends on the picture alone, not on clocks. The looks share the certificate's
-//    doubt: the k-th has 2^-k of it. Where rays that are not traced take more than an eighth of the error,
-//    and the least contribution is free, a sixteenth of it is tried, three times at most. Where nothing can
-//    be proved, as of samples without a range, the picture is made until the estimate is as asked; where a
-//    picture of that size proves less, also until the bound is within a quarter of that. Both count as
-//    missed.
+//    doubt: the k-th has 2^-k of it. Where the least contribution is free, pilots choose it, so that rays
+//    that are not traced take an eighth of the error; where a pass tells that they take more, a sixteenth of
+//    it is tried, three times at most. Where nothing can be proved, as of samples without a range, the
+//    picture is made until the estimate is as asked; where a picture of that size proves less, also until
+//    the bound is within a quarter of that. Both count as missed.
 //  - Seconds: a pass is begun if it ends in time at the pace of the one before and a tenth more. The last may
 //    have any even number of samples. One that takes longer all the same is given up, but not the first.
 // Throws Cancelled once control.stop is requested. REQUIRES: has_budget(plan->asked).

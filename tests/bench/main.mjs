@@ -3,6 +3,7 @@
 import { writeFileSync } from "node:fs";
 import { loadavg } from "node:os";
 import { exists_program, kOrrery } from "./command.mjs";
+import { kBudgets } from "./budgets.mjs";
 import { kCancel } from "./cancel.mjs";
 import { kCycles } from "./cycles.mjs";
 import { kCyclesThreshold } from "./cycles_threshold.mjs";
@@ -24,7 +25,7 @@ import { kReports as kStructureReports } from "./structures.mjs";
 // makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kStages, ...kMotion];
 
-const kReports = [kEmbree, kCycles, kCyclesThreshold, ...kStructureReports, kCancel, kDrag, kSlowClients];
+const kReports = [kEmbree, kCycles, kCyclesThreshold, kBudgets, ...kStructureReports, kCancel, kDrag, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
 const kQuietLoad = 0.3; // above it others work on this machine too

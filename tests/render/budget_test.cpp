@@ -97,6 +97,18 @@ TEST(ErrorBudget, IsMetWhereItIsSaidToBe) {
   }
 }
 
+// Nearly all that is traced is in the picture: pilots, not passes, find out which rays may be left out.
+TEST(ErrorBudget, TracesLittleMoreThanThePicture) {
+  for (const char* name : {"paper", "glass", "mirrors"}) {
+    const auto scene = test::load(test::sample(name));
+    const RenderResult result = rendered(scene, with_error(96, 0.07, Space::display));
+    RenderRequest plain;
+    static_cast<RenderSettings&>(plain) = result.budget->settings;
+    const auto needed = static_cast<double>(rendered(scene, plain).stats.counts.rays.total());
+    EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 1.25 * needed) << name;
+  }
+}
+
 // The decision looks at all pixels at once, so features that few samples meet are not darkened (deciding by
 // the pixel loses 84 % of them), and the promise is kept over seeds.
 TEST(ErrorBudget, HoldsOverSeeds) {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/render/backend.h"
+
+namespace orrery {
+
+// Traces so many samples of one block of 4 x 4 pixels in each tile, somewhere in it, or of several in those
+// of a small picture: 1/64 of it or 1024 pixels, from all over it. Returns what that tells; the picture
+// itself is forgotten. Depends on scene and plan alone. Throws Cancelled once control.stop is requested.
+RenderStats trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
+                        const RenderControl& control);
+
+}  // namespace orrery
