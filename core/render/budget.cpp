@@ -15,7 +15,7 @@
 namespace orrery {
 namespace {
 
-constexpr double kNearLeast = 1.25;     // of the least that can be proved
+constexpr double kNearLeast = 1.25;  // of the least that can be proved
 // Of the error, what rays that are not traced may take, and may seem to a pilot, which sees few of them.
 constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
 // By which the least contribution is divided, after a pilot and after a pass, and how often.
