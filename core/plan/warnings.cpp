@@ -7,6 +7,7 @@
 
 #include "core/accelerators/instances.h"
 #include "core/model/object_pointer.h"
+#include "core/model/technique.h"
 #include "core/plan/plan.h"
 
 namespace orrery {

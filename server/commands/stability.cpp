@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/base/error.h"
 #include "core/stability/line_chart.h"
 #include "core/stability/registry.h"
 #include "core/stability/report.h"
