@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/plan/cost.h"
+#include "core/plan/options.h"
 #include "core/plan/plan.h"
 #include "server/app/pipeline.h"
 
