@@ -47,10 +47,13 @@ class BudgetedRender {
     if (plan_->free_contribution && plan_->max_depth > 0) choose_contribution();
     while (!render_passes()) {  // what a pilot did not see
       plan_ = plan_.with_min_contribution(plan_->min_contribution / kStepOfPass);
-      lost_.add(stats_.counts);
+      lose(stats_);
       ++deepenings_;
     }
-    stats_.counts.add(lost_);  // it was traced, too
+    stats_.counts.add(lost_.counts);  // it was traced, too
+    stats_.build_ms += lost_.build_ms;
+    stats_.trace_ms += lost_.trace_ms;
+    stats_.cpu_ms += lost_.cpu_ms;
     BudgetOutcome told = outcome();
     require_met(told, certificate_);
     return {std::move(*kept_), stats_, certificate_, std::move(told)};
@@ -80,7 +83,8 @@ class BudgetedRender {
     double before = std::numeric_limits<double>::infinity();
     for (int pilots = 0; pilots < kMostPilots; ++pilots) {
       const RenderStats pilot = trace_pilot(scene_, tried, 1, pool_, control_);
-      lost_.add(pilot.counts);
+      lose(pilot);
+      lost_.build_ms += pilot.build_ms;  // of what the passes find ready
       const double left = share_of_cuts(certify(*tried, pilot));
       is_too_deep_ = left > kWorthIt * before;
       if (is_too_deep_) return;
@@ -89,6 +93,13 @@ class BudgetedRender {
       before = left;
       tried = tried.with_min_contribution(tried->min_contribution / kStep);
     }
+  }
+
+  // What was traced and is not in the picture.
+  void lose(const RenderStats& traced) {
+    lost_.counts.add(traced.counts);
+    lost_.trace_ms += traced.trace_ms;
+    lost_.cpu_ms += traced.cpu_ms;
   }
 
   static double share_of_cuts(const Certificate& certificate) {
@@ -279,7 +290,7 @@ class BudgetedRender {
   double pass_s_per_sample_ = 0;
   RenderStats stats_;
   Certificate certificate_;
-  TraceCounts lost_;          // of pilots, and passes that cut too much
+  RenderStats lost_;          // of pilots, and passes that cut too much
   std::optional<Film> kept_;  // while a pass may be given up
   std::string reason_;        // why there was no further pass
 };

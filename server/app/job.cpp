@@ -86,7 +86,7 @@ RenderResult Job::render(int step, const Watch& watch) {
 void Job::take(int step, const RenderResult& rendered) {
   spec_.work->add(rendered);
   const int steps = work().steps();
-  const bool changed = steps < steps_ || step == 0;  // which may settle how the others are made
+  const bool changed = steps < steps_ || rendered.budget;  // which settles how the others are made
   const double rays = step + 1 < steps && changed ? rays_of_all() : rays_;
   const std::lock_guard lock(mutex_);
   steps_ = steps;

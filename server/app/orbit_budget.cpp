@@ -10,8 +10,7 @@ namespace orrery {
 
 void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& path) {
   const int number = next_++;
-  bounds_[static_cast<std::size_t>(number)] = frame.certificate.total();
-  spaces_[static_cast<std::size_t>(number)] = frame.certificate.space;
+  frames_[static_cast<std::size_t>(number)] = {frame.certificate.total(), frame.certificate.space};
   if (frame.budget) {
     of_first_ = frame.budget;
     plan_ = query_of(scene, frame.budget->settings);
@@ -21,19 +20,19 @@ void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& 
   BudgetOutcome missed = *of_first_;
   missed.error_met = false;
   missed.reason = "frame " + std::to_string(number) + ": of what the first one took it may be off by " +
-                  (bound(number).rms ? rounded(*bound(number).rms) : "an unknown error");
+                  (at(number).bound.rms ? rounded(*at(number).bound.rms) : "an unknown error");
   require_met(missed, frame.certificate);
 }
 
 nlohmann::ordered_json OrbitBudget::bound_json(int frame) const {
-  nlohmann::ordered_json json = orrery::bound_json(bound(frame));
-  json["space"] = name_of(spaces_[static_cast<std::size_t>(frame)]);
+  nlohmann::ordered_json json = orrery::bound_json(at(frame).bound);
+  json["space"] = name_of(at(frame).space);
   return json;
 }
 
 bool OrbitBudget::met(int frame) const {
   if (frame == 0 || of_first_->error == 0) return of_first_->met();
-  return bound(frame).rms && *bound(frame).rms <= of_first_->error;
+  return at(frame).bound.rms && *at(frame).bound.rms <= of_first_->error;
 }
 
 nlohmann::ordered_json OrbitBudget::json(int frames) const {
@@ -44,7 +43,7 @@ nlohmann::ordered_json OrbitBudget::json(int frames) const {
   std::optional<double> largest = 0;
   for (int i = 0; i < frames; ++i) {
     frames_met += met(i);
-    const auto& rms = bound(i).rms;
+    const auto& rms = at(i).bound.rms;
     largest = largest && rms ? std::optional(std::max(*largest, *rms)) : std::nullopt;
   }
   json["frames_met"] = frames_met;

@@ -13,7 +13,7 @@ namespace orrery {
 // it, and all others of what that one took, so that quality does not change from frame to frame.
 class OrbitBudget {
  public:
-  explicit OrbitBudget(int frames) : bounds_(static_cast<std::size_t>(frames)), spaces_(bounds_.size()) {}
+  explicit OrbitBudget(int frames) : frames_(static_cast<std::size_t>(frames)) {}
 
   // Takes the next frame of the path. After the first one it goes on without a budget. Throws BudgetMissed
   // where the frame may be farther off than is asked and that is to be an error.
@@ -29,10 +29,13 @@ class OrbitBudget {
   nlohmann::ordered_json json(int frames) const;
 
  private:
-  const Bound& bound(int frame) const { return bounds_[static_cast<std::size_t>(frame)]; }
+  struct Frame {
+    Bound bound;
+    Space space = Space::linear;  // that it is in
+  };
+  const Frame& at(int frame) const { return frames_[static_cast<std::size_t>(frame)]; }
 
-  std::vector<Bound> bounds_;
-  std::vector<Space> spaces_;  // that they are in
+  std::vector<Frame> frames_;
   int next_ = 0;
   std::optional<BudgetOutcome> of_first_;
   std::string plan_;  // of all others, as a query

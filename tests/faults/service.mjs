@@ -10,7 +10,7 @@ const scenes = (...rest) => entry(20, rest[0], "server/app/scene_store.cpp", res
 
 export const serviceFaults = [
   entry(21, "all frames of an orbit keep to its budget", "server/app/orbit_budget.cpp",
-        "return bound(frame).rms && *bound(frame).rms <= of_first_->error;", "return true;", "test_commands",
+        "return at(frame).bound.rms && *at(frame).bound.rms <= of_first_->error;", "return true;", "test_commands",
         "CommandLine.OrbitKeepsToABudget"),
   entry(21, "the frames of an orbit lose the space of its budget", "server/app/orbit.h", "space = first.space;", "space;", "test_http",
         "JobTest.OrbitKeepsToABudget"),

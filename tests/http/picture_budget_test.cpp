@@ -134,6 +134,7 @@ TEST_F(PictureBudget, MayStandInABody) {
   const auto exr = render({{"error", 0.2}}, "image/x-exr");
   EXPECT_TRUE(has(exr, "Orrery-Error-Bound", "space=linear"));
   EXPECT_TRUE(exr->get_header_value("Content-Location").empty()) << "that is a PNG";
+  EXPECT_TRUE(has(render({{"seconds", 0.2}}, "image/jpeg"), "Orrery-Error-Bound", "space=linear"));
   EXPECT_EQ(render({{"error", -1}}, "image/png")->status, 422);
   EXPECT_EQ(render({{"second", 1}}, "image/png")->status, 422);
 }

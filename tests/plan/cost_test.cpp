@@ -85,6 +85,16 @@ TEST(Cost, OfGlassIsCutByTheLeastContribution) {
   EXPECT_EQ(expected(balls("glass", 0), request), 1 + 2 * 0.5 + 4 * 0.25 + 4 * 0.125 + 4 * 0.0625);
 }
 
+// Time may end a picture before the samples that are named, an error does not.
+TEST(Cost, OfATimeBudgetIsNotThatOfAllItsSamples) {
+  RenderRequest request = deep(0);
+  request.samples = 4096;
+  request.error = 0.01;
+  EXPECT_EQ(expected(balls("glass", 0), request), 4096 / 2);
+  request.seconds = 1;
+  EXPECT_LT(expected(balls("glass", 0), request), 4096 / 2);
+}
+
 TEST(Cost, OfATechniqueWithoutSecondaryRaysHasNoLevels) {
   RenderRequest request = deep(5);
   request.technique = "raycast";
