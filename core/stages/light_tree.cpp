@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/base/prefetch.h"
 #include "core/base/work_scope.h"
 
 namespace orrery {
@@ -221,7 +222,7 @@ struct LightTree<T>::Builder {
 // Down the tree, with what is left of a random number.
 template <class T>
 struct LightTree<T>::Descent {
-  double u;
+  double u = 0;
   double probability = 1;
 
   // Returns the target of the member that u chooses. As u is below 1, so is u * sum below the sum.
@@ -285,21 +286,29 @@ typename LightTree<T>::Choices LightTree<T>::choose(const Vec3<Lanes<T>>& positi
     importance[i] = member.importance(positions);
   }
   Choices choices;
-  for (std::size_t point = 0; point < kPoints; ++point) {
-    Weights weights;
-    for (std::size_t i = 0; i < root.count; ++i) weights[i] = importance[i][point];
-    Descent descent{u[point]};
-    std::int32_t target = descent.step(root, weights, sum_of(root, weights));
-    if (target >= 0) {
-      const Vec3<T> at{positions.x[point], positions.y[point], positions.z[point]};
-      while (target >= 0) {
-        const Node& node = nodes_[static_cast<std::size_t>(target)];
-        const double sum = weigh(node, at, weights);
-        target = descent.step(node, weights, sum);
-      }
-    }
+  std::array<Descent, kPoints> descents;
+  std::array<std::int32_t, kPoints> targets;
+  Weights weights;
+  // The node that it comes to is fetched while the other points take their steps.
+  const auto step = [&](std::size_t point, const Node& node, double sum) {
+    const std::int32_t target = targets[point] = descents[point].step(node, weights, sum);
+    if (target >= 0) return prefetch_lines(nodes_[static_cast<std::size_t>(target)]);
     choices.light[point] = static_cast<std::size_t>(~target);
-    choices.probability[point] = static_cast<T>(descent.probability);
+    choices.probability[point] = static_cast<T>(descents[point].probability);
+  };
+  for (std::size_t point = 0; point < kPoints; ++point) {
+    for (std::size_t i = 0; i < root.count; ++i) weights[i] = importance[i][point];
+    descents[point] = {u[point]};
+    step(point, root, sum_of(root, weights));
+  }
+  for (bool going = true; going;) {
+    going = false;
+    for (std::size_t point = 0; point < kPoints; ++point) {
+      if (targets[point] < 0) continue;
+      const Node& node = nodes_[static_cast<std::size_t>(targets[point])];
+      step(point, node, weigh(node, {positions.x[point], positions.y[point], positions.z[point]}, weights));
+      going = true;
+    }
   }
   return choices;
 }
