@@ -189,8 +189,9 @@ constexpr std::array kOptions{
       .section = Section::budget,
       .kind = O::Number{&S::seconds, {.min = 0, .max = kMaxBudgetSeconds}, 0},
       .placeholder = "SECONDS",
-      .help = "Time that the answer may take, all in all: as many samples are traced as fit, unless they are "
-              "given. 0: no limit.",
+      .help =
+          "Time that the answer may take, all in all, or the first picture of an orbit: as many samples are "
+          "traced as fit, unless they are given. 0: no limit.",
       .in_scene = false},
     O{.key = "on_miss",
       .section = Section::budget,

@@ -353,7 +353,8 @@ RenderSettings settings_of(const Plan& plan) {
   RenderSettings settings = plan.asked;
   settings.accelerator = plan.accelerator->name;
   settings.precision = plan.double_precision ? Precision::double_precision : Precision::single_precision;
-  settings.max_depth = plan.max_depth;
+  // Less than was asked may hold for this view alone.
+  settings.max_depth = plan.max_depth == 0 ? 0 : *plan.asked.max_depth;
   settings.min_contribution = plan.min_contribution;
   return settings;
 }

@@ -21,11 +21,12 @@ constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
 // By which the least contribution is divided, after a pilot and after a pass, and how often.
 constexpr double kStep = 4, kStepOfPass = 16;
 constexpr int kMostPilots = 10, kMostDeepenings = 3;
-constexpr double kWorthIt = 0.9;        // of what is left out: more of it left by a step is not worth it
-constexpr double kSlower = 1.1;         // than the last pass may the next be
-constexpr double kLastPassReach = 4.4;  // of this many times the samples, more than one pass is left
-constexpr int kSeenTiles = 16;          // of the first pass, before its time is foretold
-constexpr double kSurelyLate = 1.5;     // times the time that there is
+constexpr double kHeavy = 10;            // times the least contribution: of rays that depth leaves out
+constexpr double kShareOfPilots = 0.25;  // of the time that there is
+constexpr double kSlower = 1.1;          // than the last pass may the next be
+constexpr double kLastPassReach = 4.4;   // of this many times the samples, more than one pass is left
+constexpr int kSeenTiles = 16;           // of the first pass, before its time is foretold
+constexpr double kSurelyLate = 1.5;      // times the time that there is
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 class BudgetedRender {
@@ -47,7 +48,6 @@ class BudgetedRender {
     if (plan_->free_contribution && plan_->max_depth > 0) choose_contribution();
     while (!render_passes()) {  // what a pilot did not see
       plan_ = plan_.with_min_contribution(plan_->min_contribution / kStepOfPass);
-      lose(stats_);
       ++deepenings_;
     }
     stats_.counts.add(lost_.counts);  // it was traced, too
@@ -76,23 +76,27 @@ class BudgetedRender {
     return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
   }
 
-  // By pilots: the largest with which rays that are not traced take little of the error, or hardly less with
-  // a smaller one, as depth leaves them out.
+  // By pilots: the largest with which rays that are not traced take little of the error, or mostly those do
+  // that depth leaves out.
   void choose_contribution() {
-    SettledPlan tried = plan_;
-    double before = std::numeric_limits<double>::infinity();
-    for (int pilots = 0; pilots < kMostPilots; ++pilots) {
-      const RenderStats pilot = trace_pilot(scene_, tried, 1, pool_, control_);
+    for (int pilots = 1;; ++pilots) {
+      const RenderStats pilot = trace_pilot(scene_, plan_, 1, pool_, control_);
       lose(pilot);
       lost_.build_ms += pilot.build_ms;  // of what the passes find ready
-      const double left = share_of_cuts(certify(*tried, pilot));
-      is_too_deep_ = left > kWorthIt * before;
-      if (is_too_deep_) return;
-      plan_ = tried;
-      if (left <= kShareOfPilot * error_) return;
-      before = left;
-      tried = tried.with_min_contribution(tried->min_contribution / kStep);
+      const bool late = seconds_ > 0 && used_s() > kShareOfPilots * seconds_;
+      if (pilots == kMostPilots || late || are_too_deep(pilot) ||
+          share_of_cuts(certify(*plan_, pilot)) <= kShareOfPilot * error_)
+        return;
+      plan_ = plan_.with_min_contribution(plan_->min_contribution / kStep);
     }
+  }
+
+  // Whether what was left out is nearly all of rays that a smaller least contribution would not trace either:
+  // too weak ones have less than that each.
+  bool are_too_deep(const RenderStats& stats) const {
+    const auto& [x, y, z] = plan_->cut_range;
+    const double least = plan_->min_contribution * (x + y + z);
+    return stats.omitted.sum >= kHeavy * least * static_cast<double>(stats.counts.cut_rays);
   }
 
   // What was traced and is not in the picture.
@@ -113,14 +117,32 @@ class BudgetedRender {
     for (int next = progressive_samples(*plan_).front(); next > 0; next = next_samples()) {
       const double begin_s = used_s();
       if (!trace(passes, next)) break;
+      if (before_) lose(before_->stats);
+      before_.reset();
       pass_s_per_sample_ = (used_s() - begin_s) / (next - samples_);
       samples_ = next;
       look(passes);
-      if (is_too_coarse()) return false;
+      if (is_too_coarse()) {
+        before_.emplace(Made{plan_, passes.take_film(), stats_, certificate_, samples_});
+        return false;
+      }
       if (error_ > 0 && (is_hopeless() || (plan_->free_samples && is_near_enough()))) break;
     }
-    if (!kept_) kept_ = passes.take_film();
+    if (samples_ == 0) {
+      go_back();
+    } else if (!kept_) {
+      kept_ = passes.take_film();
+    }
     return true;
+  }
+
+  // To the picture without the weaker rays, as there was no time for them.
+  void go_back() {
+    plan_ = before_->plan;
+    kept_ = std::move(before_->film);
+    stats_ = before_->stats;
+    certificate_ = before_->certificate;
+    samples_ = before_->samples;
   }
 
   // False if time is up: then the film is that of the passes before. Without any, that is a miss.
@@ -129,8 +151,8 @@ class BudgetedRender {
     const std::stop_callback forward(control_.stop, [&] { late.request_stop(); });
     RenderControl control = control_;
     control.stop = late.get_token();
-    const bool is_first = samples_ == 0;
-    if (is_timed() && !is_first) kept_ = passes.film().copy();
+    if (is_timed() && samples_ > 0) kept_ = passes.film().copy();
+    const bool is_first = samples_ == 0 && !before_;
     control.spread = is_first && seconds_ > 0 && fails_on_miss();
     control.progress = [&, begin_s = used_s()](int done, int total) {
       if (is_first ? control.spread && is_surely_late(begin_s, done, total) : used_s() > deadline_s())
@@ -200,8 +222,10 @@ class BudgetedRender {
   bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
 
   bool is_too_coarse() const {
-    return error_ > 0 && plan_->free_contribution && !is_too_deep_ && deepenings_ < kMostDeepenings &&
-           share_of_cuts(certificate_) > kShareOfCuts * error_;
+    if (error_ == 0 || !plan_->free_contribution || deepenings_ == kMostDeepenings) return false;
+    const double first_pass_s = pass_s_per_sample_ * progressive_samples(*plan_).front();
+    if (seconds_ > 0 && used_s() + kSlower * first_pass_s > deadline_s()) return false;
+    return !is_proved() && share_of_cuts(certificate_) > kShareOfCuts * error_ && !are_too_deep(stats_);
   }
 
   // After the pass that has ended; 0: none.
@@ -280,7 +304,6 @@ class BudgetedRender {
   const double error_, seconds_;  // 0: not asked
   const double limit_s_;          // of time; may be infinite
   const Clock::time_point begin_;
-  bool is_too_deep_ = false;  // what is not traced, for a least contribution to change it
   int deepenings_ = 0, looks_ = 0;
   bool gave_up_ = false;               // a pass
   std::atomic<bool> is_late_ = false;  // the first pass, and was given up
@@ -290,9 +313,17 @@ class BudgetedRender {
   double pass_s_per_sample_ = 0;
   RenderStats stats_;
   Certificate certificate_;
-  RenderStats lost_;          // of pilots, and passes that cut too much
-  std::optional<Film> kept_;  // while a pass may be given up
-  std::string reason_;        // why there was no further pass
+  RenderStats lost_;  // of pilots, and passes that cut too much
+  struct Made {
+    SettledPlan plan;
+    Film film;
+    RenderStats stats;
+    Certificate certificate;
+    int samples;
+  };
+  std::optional<Made> before_;  // with fewer rays, until one pass with more has ended
+  std::optional<Film> kept_;    // while a pass may be given up
+  std::string reason_;          // why there was no further pass
 };
 
 }  // namespace

@@ -20,8 +20,9 @@ double display_rms(double mean) {
 // Of what stats tell: estimated unless it may be told the largest difference.
 Bound bound_of(const Plan& plan, const Omitted& away, bool proved) {
   const bool display = plan.space == Space::display;
-  const double rms = display ? display_rms(away.mean()) : away.rms();
-  return proved ? Bound::proved(display ? display_max(away.max()) : away.max(), rms) : Bound::estimated(rms);
+  const double max = display ? display_max(away.max()) : away.max();
+  const double rms = display ? std::min(max, display_rms(away.mean())) : away.rms();
+  return proved ? Bound::proved(max, rms) : Bound::estimated(rms);
 }
 
 // Rays that were not traced: what the ledger says. Weights of paths are those that were drawn.

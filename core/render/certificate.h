@@ -50,6 +50,9 @@ struct Certificate {
     Bound sum;
     for (const Term& term : terms)
       if (keep(term)) sum = sum + term.bound;
+    if (space == Space::display)  // no two values differ by more than 1
+      for (std::optional<double>* most : {&sum.max, &sum.rms})
+        if (*most) *most = std::min(1.0, **most);
     return sum;
   }
 };

@@ -100,30 +100,35 @@ RenderResult Job::try_render(int step, const Watch& watch) {
   demand.lane = Lane::batch;
   auto ticket = services_.admission.enter_again(demand, watch.stop());
   memory_->settle(0);  // gives back what the steps before had
+  const int tiles = TileGrid(asked.width, asked.height).size();
   {
     const std::lock_guard lock(mutex_);
     if (!started_) started_ = services_.timer.now();
     if (rays_ == 0) rays_ = rays_of_all();
+    tiles_a_step_ = tiles;
     state_ = JobState::running;
   }
+  // Others take as long as the one that a budget makes.
   RenderControl control{.stop = watch.stop(),
                         .background = true,
-                        .most_s = kShareOfBudgets * static_cast<double>(limit_.count())};
-  const bool has_passes = has_budget(asked.asked);  // how many is not known: it counts when it ends
+                        .most_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
+  const bool has_passes = has_budget(asked.asked);  // how many is not known
   if (!has_passes)
     control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int total) {
       count(step, done, total, rays);
     };
   RenderResult rendered = memory_->run(
       watch.stop(), [&] { return services_.render(ticket, *spec_.scene, asked, work().storage(), control); });
-  const int tiles = TileGrid(asked.width, asked.height).size();
-  if (has_passes) count(step, tiles, tiles, static_cast<double>(rendered.stats.counts.rays.total()));
+  if (has_passes) {  // counts when it ends, as much as the others will, and not what it took to choose that
+    RenderRequest made;
+    static_cast<RenderSettings&>(made) = rendered.budget->settings;
+    count(step, tiles, tiles, expected_rays(scene, make_plan(scene, made)));
+  }
   return rendered;
 }
 
 void Job::count(int step, int done, int total, double rays) {
   const std::lock_guard lock(mutex_);
-  tiles_a_step_ = total;
   const std::int64_t tiles = std::int64_t{step} * total + done;
   if (tiles <= tiles_done_) return;  // done before, when there was no memory for the others
   rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / total;

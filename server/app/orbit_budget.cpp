@@ -16,7 +16,7 @@ void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& 
     plan_ = query_of(scene, frame.budget->settings);
     return path.go_on_as(frame.budget->settings);
   }
-  if (!of_first_ || met(number)) return;
+  if (!of_first_ || of_first_->error == 0 || keeps_error(number)) return;
   BudgetOutcome missed = *of_first_;
   missed.error_met = false;
   missed.reason = "frame " + std::to_string(number) + ": of what the first one took it may be off by " +
@@ -30,8 +30,7 @@ nlohmann::ordered_json OrbitBudget::bound_json(int frame) const {
   return json;
 }
 
-bool OrbitBudget::met(int frame) const {
-  if (frame == 0 || of_first_->error == 0) return of_first_->met();
+bool OrbitBudget::keeps_error(int frame) const {
   return at(frame).bound.rms && *at(frame).bound.rms <= of_first_->error;
 }
 
@@ -42,11 +41,12 @@ nlohmann::ordered_json OrbitBudget::json(int frames) const {
   int frames_met = 0;
   std::optional<double> largest = 0;
   for (int i = 0; i < frames; ++i) {
-    frames_met += met(i);
+    frames_met += keeps_error(i);
     const auto& rms = at(i).bound.rms;
     largest = largest && rms ? std::optional(std::max(*largest, *rms)) : std::nullopt;
   }
-  json["frames_met"] = frames_met;
+  json["frames_met"] =
+      of_first_->error > 0 ? nlohmann::ordered_json(frames_met) : nlohmann::ordered_json(nullptr);
   json["largest_bound"] = largest ? nlohmann::ordered_json(*largest) : nlohmann::ordered_json(nullptr);
   return json;
 }

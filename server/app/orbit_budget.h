@@ -22,10 +22,9 @@ class OrbitBudget {
   // REQUIRES of all below: the frame, or so many, were added.
   // {"kind", "rms", "max", "space"}.
   nlohmann::ordered_json bound_json(int frame) const;
-  bool met(int frame) const;
   // What budget_json() tells of the first frame, and {"plan", "frames_met", "largest_bound"}: the query of
-  // that plan, frames whose bound is at most the error asked, and the largest RMS of any bound, null if one
-  // has none. Null without a budget.
+  // that plan, frames whose bound is at most the error asked, null if none was, and the largest RMS of any
+  // bound, null if one has none. Null without a budget.
   nlohmann::ordered_json json(int frames) const;
 
  private:
@@ -34,6 +33,7 @@ class OrbitBudget {
     Space space = Space::linear;  // that it is in
   };
   const Frame& at(int frame) const { return frames_[static_cast<std::size_t>(frame)]; }
+  bool keeps_error(int frame) const;
 
   std::vector<Frame> frames_;
   int next_ = 0;

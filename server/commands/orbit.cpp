@@ -174,12 +174,16 @@ class Turn {
 };
 
 std::string budget_line(const nlohmann::ordered_json& budget, int frames) {
-  const auto& largest = budget["largest_bound"];
-  std::string text = "met by " + budget["frames_met"].dump() + " of " + std::to_string(frames) +
-                     " frames, which may be off by " +
-                     (largest.is_null() ? "an unknown error" : rounded(largest.get<double>()));
+  const auto &largest = budget["largest_bound"], &met = budget["frames_met"];
+  std::string text = met.is_null() ? "" : "kept by " + met.dump() + " of ";
+  text += std::to_string(frames) + " frames, which may be off by " +
+          (largest.is_null() ? "an unknown error" : rounded(largest.get<double>()));
   if (budget.contains("reason")) text += "; the first one: " + budget["reason"].get<std::string>();
   return text;
+}
+
+bool is_missed(const nlohmann::ordered_json& budget, int frames) {
+  return !budget["met"] || (!budget["frames_met"].is_null() && budget["frames_met"] < frames);
 }
 
 int orbit(const OrbitOptions& options) {
@@ -188,7 +192,7 @@ int orbit(const OrbitOptions& options) {
   Turn turn(options);
   const Totals totals = turn.run();
   const nlohmann::ordered_json budget = turn.budget();
-  if (!budget.is_null() && budget["frames_met"] < options.frames)
+  if (!budget.is_null() && is_missed(budget, options.frames))
     std::cerr << "orrery: warning: the budget is missed: " << budget_line(budget, options.frames) << "\n";
   if (options.stats == "json") {
     nlohmann::ordered_json json = json_of(totals, turn.threads());

@@ -26,11 +26,15 @@ class FakeWork final : public JobWork {
  public:
   FakeWork(int steps, std::size_t bytes, std::function<void(int)> then, int enough = 1 << 20)
       : steps_(steps), enough_(enough), bytes_(bytes), then_(std::move(then)) {}
+  void keep_first_to(double error) { request_.error = error; }
 
   int steps() const override { return added_ < enough_ ? steps_ : std::max(enough_, added_); }
-  RenderRequest request(int) const override { return test::size(8, 8); }
+  RenderRequest request(int) const override { return request_; }
   FilmStorage storage() const override { return FilmStorage::srgb8; }
-  void add(const RenderResult&) override { then_(added_++); }
+  void add(const RenderResult& rendered) override {
+    if (rendered.budget) static_cast<RenderSettings&>(request_) = rendered.budget->settings;
+    then_(added_++);
+  }
   std::string encode(const Film&) const override { return std::string(bytes_, 'x'); }
   void keep(int step, std::string&&) override { EXPECT_EQ(step, kept_++); }
   ordered_json links(const std::string&) const override { return {}; }
@@ -43,6 +47,7 @@ class FakeWork final : public JobWork {
   const int steps_, enough_;
   const std::size_t bytes_;
   const std::function<void(int)> then_;
+  RenderRequest request_ = test::size(8, 8);
   int added_ = 0, kept_ = 0;
 };
 
@@ -161,6 +166,24 @@ TEST_F(JobsTest, TellHowLongTheRestWillTake) {
   EXPECT_DOUBLE_EQ(status.elapsed_s, 10);
   EXPECT_DOUBLE_EQ(status.remaining_s.value_or(-1), 30);
   EXPECT_FALSE(end_of(job).remaining_s);
+}
+
+// What a budget traces for the first picture alone tells nothing of the others.
+TEST_F(JobsTest, TellHowLongTheRestWillTakeWithABudget) {
+  std::promise<JobPtr> started;
+  std::promise<JobStatus> told;
+  auto work = std::make_unique<FakeWork>(4, bytes_a_step_, [&](int step) {
+    timer_.advance(seconds(10));
+    if (step == 1) told.set_value(started.get_future().get()->status());
+  });
+  work->keep_first_to(0.5);
+  const auto job = jobs().start({scene_, std::move(work), "a"}, "", "").job;
+  started.set_value(job);
+  const JobStatus status = told.get_future().get();
+  EXPECT_DOUBLE_EQ(status.elapsed_s, 20);
+  EXPECT_DOUBLE_EQ(status.remaining_s.value_or(-1), 20);
+  EXPECT_EQ(status.tiles_done, 2);
+  EXPECT_EQ(end_of(job).tiles_done, 4);
 }
 
 TEST_F(JobsTest, AreAtMostSoManyAtOnceAndHalfOfThemOneClients) {

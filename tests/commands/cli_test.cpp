@@ -293,9 +293,15 @@ TEST_F(CommandLine, OrbitKeepsToABudget) {
   const auto budget = nlohmann::json::parse(run(orbit + "--error 0.2").out).at("budget");
   EXPECT_EQ(budget.at("frames_met"), 3);
   EXPECT_LE(budget.at("largest_bound"), 0.2);
+  const auto late = nlohmann::json::parse(run(orbit + "--error 0.5 --seconds 0.000001").out).at("budget");
+  EXPECT_EQ(late.at("met"), false);
+  EXPECT_EQ(late.at("frames_met"), 3) << "of the error";
+  const auto in_time = nlohmann::json::parse(run(orbit + "--seconds 60 --samples 2").out).at("budget");
+  EXPECT_EQ(in_time.at("met"), true);
+  EXPECT_EQ(in_time.at("frames_met"), nullptr);
   const Outcome missed = run(orbit + "--error 0.0001 --samples 2");
   EXPECT_EQ(missed.status, 0);
-  EXPECT_NE(missed.err.find("the budget is missed: met by 0 of 3 frames"), std::string::npos) << missed.err;
+  EXPECT_NE(missed.err.find("the budget is missed: kept by 0 of 3 frames"), std::string::npos) << missed.err;
   EXPECT_EQ(run(orbit + "--error 0.0001 --samples 2 --on-miss fail").status, 3);
 }
 

@@ -188,6 +188,19 @@ TEST(ErrorBudget, TracesWeakerRaysRatherThanMiss) {
   EXPECT_THROW(rendered(test::load(test::sample("material-glass")), r), BudgetMissed);
 }
 
+// Between two walls of glass that is not entered rays have weights of 0.02, 0.0004 and 0.000008: there are
+// least contributions that leave out as much as one four times as large.
+TEST(ErrorBudget, GoesOnWhereALevelOfWeightsEnds) {
+  const auto scene = test::load(test::scene_of(
+      "[{'type': 'plane', 'point': [0, 0, -1], 'normal': [0, 0, 1], 'material': 'wall'},"
+      " {'type': 'plane', 'point': [0, 0, 6], 'normal': [0, 0, -1], 'material': 'wall'}]",
+      "{'materials': {'wall': {'type': 'reflective', 'n': [1.33, 1.33, 1.33], 'k': [0, 0, 0]}},"
+      " 'background': [1, 1, 1]}"));
+  const RenderResult result = rendered(scene, with_error(64, 0.001, Space::linear));
+  EXPECT_LT(*result.budget->settings.min_contribution, 0.0004);
+  EXPECT_LE(*result.certificate.terms.front().bound.rms, 0.001 / 8);
+}
+
 // Two small mirrors that see each other, in a corner: what they leave out is found wherever it is, and
 // traced, or told as missed where that may not be.
 TEST(ErrorBudget, FindsWhatOneCornerLeavesOut) {
@@ -384,6 +397,28 @@ TEST(TimeBudget, FailsAsSoonAsItIsSurelyMissed) {
   FakeClock in_time;
   r.seconds = 2;
   EXPECT_TRUE(rendered(test::load(test::sample("paper")), r, in_time.control()).budget->met());
+}
+
+// Weaker rays, which a pilot did not see, begin anew: where that does not end in time, what was made without
+// them is the picture.
+TEST(TimeBudget, GoesBackToWhatWasMade) {
+  const auto scene = test::load(
+      test::scene_of("[{'type': 'sphere', 'center': [0.32, 0.42, 0], 'radius': 0.02, 'material': 'mirror'},"
+                     " {'type': 'sphere', 'center': [0.365, 0.42, 0], 'radius': 0.02, 'material': 'mirror'}]",
+                     "{'materials': {'mirror': {'type': 'reflective', 'n': [1, 1, 1], 'k': [1.3, 1.3, 1.3]}},"
+                     " 'background': [1, 1, 1]}"));
+  const RenderRequest r = with_error(256, 0.0002, Space::linear);
+  FakeClock clock;
+  RenderControl control = clock.control();
+  control.most_s = 0.1;  // a pass takes 0.064
+  const RenderResult late = rendered(scene, r, control);
+  EXPECT_LT(clock.now_s, 0.1);
+  EXPECT_GT(clock.tiles, 64) << "another pass began";
+  EXPECT_EQ(late.budget->settings.samples, 2);
+  EXPECT_EQ(late.stats.error.samples, 2);
+  expect_repeated(scene, late);
+  const RenderResult whole = rendered(scene, r);
+  EXPECT_LT(*whole.budget->settings.min_contribution, *late.budget->settings.min_contribution);
 }
 
 // Of both budgets the first that is reached ends it.

@@ -315,6 +315,28 @@ TEST(Certificate, KnowsThatPixelsErrAlike) {
   EXPECT_GT(*certify(plan, stats).total().rms, 1.05 * of_pixels) << "16 tiles tell less than their pixels";
 }
 
+// No root of a mean square is larger than the largest, and no two values of a display differ by more than 1.
+TEST(Certificate, OfADisplayIsNoMoreThanItsLargestDifference) {
+  RenderRequest r = request(32, 0.5);
+  r.space = Space::display;
+  const auto scene = test::load(test::sample("mirrors"));
+  RenderStats stats;
+  stats.counts.cut_rays = 1;
+  const auto rms_of = [&](double b) {
+    stats.omitted = {.sum = b, .squares = b * b, .largest = b, .values = 1, .samples = 1};
+    const Bound bound = certify(make_plan(*scene, r), stats).terms.front().bound;
+    EXPECT_LE(*bound.rms, *bound.max) << b;
+    return *bound.rms;
+  };
+  EXPECT_LT(rms_of(0.001), 0.0130) << "the root of what a mean of it may be is larger";
+  EXPECT_EQ(rms_of(3), 1);
+  Certificate both{{{"a", Bound::proved(0.9, 0.8)}, {"b", Bound::proved(0.4, 0.3)}}, Space::display};
+  EXPECT_EQ(both.total().max, 1);
+  EXPECT_EQ(both.total().rms, 1);
+  both.space = Space::linear;
+  EXPECT_EQ(both.total().max, 1.3);
+}
+
 // All pixels of a tile err by the same.
 TEST(Halves, HoldWhereTilesAloneAreIndependent) {
   test::Random random(1);
