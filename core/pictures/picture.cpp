@@ -64,6 +64,21 @@ bool has_jpeg_end(std::string_view bytes) {
   return at < bytes.size() && bytes.find("\xff\xd9"sv, at) != std::string_view::npos;
 }
 
+// Whether the chunks of a PNG file, each of a length, a type, so many bytes and a checksum, lead to the last
+// one within the file: OpenImageIO loses memory where libpng asks it for bytes beyond the end.
+bool has_png_end(std::string_view bytes) {
+  constexpr std::size_t kSignature = 8, kFrame = 12;
+  std::size_t at = kSignature;
+  while (bytes.size() - at >= kFrame) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length * 256 + static_cast<unsigned char>(bytes[at + i]);
+    if (length > bytes.size() - at - kFrame) return false;
+    if (bytes.substr(at + 4, 4) == "IEND") return true;
+    at += kFrame + length;
+  }
+  return false;
+}
+
 // IEC 61966-2-1.
 float linear_of_srgb(float encoded) {
   const double x = std::clamp(double{encoded}, 0.0, 1.0);
@@ -105,8 +120,9 @@ PictureFormat picture_format(std::string_view bytes) {
 
 Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
   const PictureFormat format = picture_format(bytes);
-  if (format == PictureFormat::jpeg && !has_jpeg_end(bytes))
-    throw InputError("", "JPEG: the picture is damaged: it has no end");
+  if ((format == PictureFormat::jpeg && !has_jpeg_end(bytes)) ||
+      (format == PictureFormat::png && !has_png_end(bytes)))
+    throw InputError("", name_of(format) + std::string(": the picture is damaged: it has no end"));
   Texels picture;
   std::string problem;
   decoder()(bytes, format, limits, is_stopped, picture, problem);

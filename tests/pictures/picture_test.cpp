@@ -83,6 +83,8 @@ TEST(Pictures, TruncatedFilesAreRefused) {
           std::max<std::size_t>(12, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
       EXPECT_NE(refusal(whole.substr(0, kept)), "accepted") << whole.substr(1, 3) << " " << share;
     }
+  for (std::size_t kept = 8; kept < png.size(); ++kept)
+    ASSERT_EQ(refusal(png.substr(0, kept)), "PNG: the picture is damaged: it has no end") << kept;
 }
 
 // Sizes that a header states are held against the limits before anything is decoded.
