@@ -79,6 +79,12 @@ bool has_png_end(std::string_view bytes) {
   return false;
 }
 
+// False where a file ends too early for its decoder to notice, or to end well.
+bool has_end(std::string_view bytes, PictureFormat format) {
+  if (format == PictureFormat::png) return has_png_end(bytes);
+  return format != PictureFormat::jpeg || has_jpeg_end(bytes);
+}
+
 // IEC 61966-2-1.
 float linear_of_srgb(float encoded) {
   const double x = std::clamp(double{encoded}, 0.0, 1.0);
@@ -120,12 +126,12 @@ PictureFormat picture_format(std::string_view bytes) {
 
 Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
   const PictureFormat format = picture_format(bytes);
-  if ((format == PictureFormat::jpeg && !has_jpeg_end(bytes)) ||
-      (format == PictureFormat::png && !has_png_end(bytes)))
-    throw InputError("", name_of(format) + std::string(": the picture is damaged: it has no end"));
   Texels picture;
-  std::string problem;
-  decoder()(bytes, format, limits, is_stopped, picture, problem);
+  std::string problem = "the picture is damaged: it has no end";
+  if (has_end(bytes, format)) {
+    problem.clear();
+    decoder()(bytes, format, limits, is_stopped, picture, problem);
+  }
   interruption_point();
   if (!problem.empty()) throw InputError("", name_of(format) + (": " + problem));
   if (format == PictureFormat::png || format == PictureFormat::jpeg)

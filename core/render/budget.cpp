@@ -21,7 +21,7 @@ constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
 // By which the least contribution is divided, after a pilot and after a pass, and how often.
 constexpr double kStep = 4, kStepOfPass = 16;
 constexpr int kMostPilots = 10, kMostDeepenings = 3;
-constexpr double kHeavy = 10;            // times the least contribution: of rays that depth leaves out
+constexpr double kHeavy = 10;            // times the least contribution a ray weighs that is surely too deep
 constexpr double kShareOfPilots = 0.25;  // of the time that there is
 constexpr double kSlower = 1.1;          // than the last pass may the next be
 constexpr double kLastPassReach = 4.4;   // of this many times the samples, more than one pass is left

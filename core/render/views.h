@@ -15,9 +15,8 @@ FilmStorage storage_for(FileFormat format, const Plan& plan);
 // Throws InputError where layers are asked for in a format that cannot keep them: EXR alone does.
 void require_layers_kept(const RenderRequest& request, FileFormat format);
 
-// Has a budget's error told in what the format keeps, where the request does not say: what a
-// screen shows of PNG, else radiance. Throws InputError where an error is asked of JPEG: what that leaves out
-// has no bound.
+// Has a budget's error told in what the format keeps, where the request does not say: what a screen shows of
+// PNG, else radiance. Throws InputError where an error is asked of JPEG: what that leaves out has no bound.
 void choose_space(RenderRequest& request, FileFormat format);
 
 // A file that shows the film: PNG and JPEG its radiance as sRGB; EXR its radiance as R, G and B, and each

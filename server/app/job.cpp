@@ -114,24 +114,24 @@ RenderResult Job::try_render(int step, const Watch& watch) {
                         .most_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
   const bool has_passes = has_budget(asked.asked);  // how many is not known
   if (!has_passes)
-    control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int total) {
-      count(step, done, total, rays);
+    control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int) {
+      count(step, done, rays);
     };
   RenderResult rendered = memory_->run(
       watch.stop(), [&] { return services_.render(ticket, *spec_.scene, asked, work().storage(), control); });
   if (has_passes) {  // counts when it ends, as much as the others will, and not what it took to choose that
     RenderRequest made;
     static_cast<RenderSettings&>(made) = rendered.budget->settings;
-    count(step, tiles, tiles, expected_rays(scene, make_plan(scene, made)));
+    count(step, tiles, expected_rays(scene, make_plan(scene, made)));
   }
   return rendered;
 }
 
-void Job::count(int step, int done, int total, double rays) {
+void Job::count(int step, std::int64_t done, double rays) {
   const std::lock_guard lock(mutex_);
-  const std::int64_t tiles = std::int64_t{step} * total + done;
+  const std::int64_t tiles = step * tiles_a_step_ + done;
   if (tiles <= tiles_done_) return;  // done before, when there was no memory for the others
-  rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / total;
+  rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / static_cast<double>(tiles_a_step_);
   tiles_done_ = tiles;
   changed_.notify_all();
 }

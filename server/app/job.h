@@ -78,7 +78,7 @@ class Job {
   RenderResult render(int step, const Watch& watch);
   RenderResult try_render(int step, const Watch& watch);  // throws OverLimit where memory is short now
   // So many tiles of a step, which takes so many rays in all, are done.
-  void count(int step, int done, int total, double rays);
+  void count(int step, std::int64_t done, double rays);
   void keep(int step, Frame&& frame);
   void end(std::exception_ptr error);
   JobStatus status_locked() const;
