@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <new>
-#include <utility>
 
+#include "core/image/srgb.h"
 #include "core/math/lanes.h"
 
 namespace orrery {
@@ -18,29 +17,9 @@ namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
-// 1.055 x^(1/2.4) - 0.055 over x^(1/4), for x from 0.0031308 to 1: interpolated at Chebyshev points; the
-// error is below 0.0006 of a code.
-constexpr std::array kCurve = {-0.059739011f, 0.14195826f,  1.3545726f,  -0.82528002f,
-                               0.62100228f,   -0.29424764f, 0.061734308f};
-
-template <class N>
-[[gnu::always_inline]] inline N srgb_curve(const N& x) {
-  using std::sqrt;
-  const N t = sqrt(sqrt(x));
-  N curve = kCurve.back();
-  [&]<std::size_t... k>(std::index_sequence<k...>) {  // unrolled
-    ((curve = curve * t + kCurve[kCurve.size() - 2 - k]), ...);
-  }
-  (std::make_index_sequence<kCurve.size() - 1>());
-  return curve;
-}
-
 // Codes 0..255 nearest to the sRGB curve over lanes of linear values; NaN gives 0.
 [[gnu::always_inline]] inline IndexLanes<float> srgb_codes(const Lanes<float>& linear) {
-  using N = Lanes<float>;
-  const N x = min_first(N(1.0f), max_first(N(0.0f), linear));
-  const N encoded = select(x <= N(0.0031308f), x * 12.92f, srgb_curve(x));
-  return stdx::static_simd_cast<IndexLanes<float>>(encoded * 255.0f + 0.5f);
+  return stdx::static_simd_cast<IndexLanes<float>>(encode_srgb(linear) * 255.0f + 0.5f);
 }
 
 }  // namespace
@@ -118,15 +97,6 @@ Image srgb_of(const Image& linear) {
       encoded.set_row(x, y, count, row[0].data(), row[1].data(), row[2].data());
     }
   return encoded;
-}
-
-double encode_srgb(double linear) {
-  const double x = linear > 0 ? std::min(linear, 1.0) : 0.0;
-  return x <= 0.0031308 ? 12.92 * x : srgb_curve(x);
-}
-
-float decode_srgb(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
 }  // namespace orrery

@@ -57,10 +57,4 @@ class Image {
 // The same picture for the eye. REQUIRES: linear32.
 Image srgb_of(const Image& linear);
 
-// Linear value of an sRGB code / 255, both in [0, 1] (IEC 61966-2-1).
-float decode_srgb(float encoded);
-
-// From [0, 1] to [0, 1], within 3e-6; what is beyond counts as the end, and what is no number as 0.
-double encode_srgb(double linear);
-
 }  // namespace orrery

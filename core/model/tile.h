@@ -26,7 +26,19 @@ struct TileView {
   int width, height;        // pixels of the tile that lie within the picture, 1..kTileSide
   std::uint64_t frame = 0;  // of an animation: pictures of different frames have different samples
   int first_sample = 0, samples = 1;
+
+  // Whether it lies within the picture with all its pixels.
+  bool is_whole() const { return width == kTileSide && height == kTileSide; }
 };
+
+// Calls visit(slot) for each pixel of the tile that lies within the picture.
+template <class Visit>
+void for_each_slot(const TileView& tile, const Visit& visit) {
+  for (int slot = 0; slot < kBatch; ++slot) {
+    const TilePixel p = tile_pixel(slot);
+    if (tile.is_whole() || (p.x < tile.width && p.y < tile.height)) visit(static_cast<std::size_t>(slot));
+  }
+}
 
 // The tiles of a picture, row by row.
 class TileGrid {

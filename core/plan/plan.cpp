@@ -8,7 +8,7 @@
 #include "core/accelerators/registry.h"
 #include "core/cameras/pixel_filter.h"
 #include "core/channels/registry.h"
-#include "core/image/image.h"
+#include "core/image/srgb.h"
 #include "core/plan/options.h"
 #include "core/plan/rounding.h"
 #include "core/plan/warnings.h"

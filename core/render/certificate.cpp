@@ -1,6 +1,6 @@
 #include "core/render/certificate.h"
 
-#include "core/image/image.h"
+#include "core/image/srgb.h"
 #include "core/model/technique.h"
 
 namespace orrery {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/image/image.h"
+#include "core/image/srgb.h"
 
 namespace orrery {
 

@@ -4,7 +4,6 @@
 
 #include "core/cameras/shutter.h"
 #include "core/cameras/thin_lens.h"
-#include "core/image/image.h"
 #include "core/render/color_scale.h"
 
 namespace orrery {
@@ -32,16 +31,6 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
   if (first) sum.fill(0.0);
   for (std::size_t i = 0; i < kBatch; ++i)
     if (weight.values[i] > 0) sum[i] += static_cast<double>(value.values[i]);
-}
-
-// Calls visit(slot) for each pixel of the tile.
-template <class Visit>
-void for_each_slot(const TileView& tile, const Visit& visit) {
-  const bool whole = tile.width == kTileSide && tile.height == kTileSide;
-  for (int slot = 0; slot < kBatch; ++slot) {
-    const TilePixel p = tile_pixel(slot);
-    if (whole || (p.x < tile.width && p.y < tile.height)) visit(static_cast<std::size_t>(slot));
-  }
 }
 
 }  // namespace
@@ -74,10 +63,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
       if (!checkpoint.go_on() || !trace(tile, sample, checkpoint)) return false;
       add_sample();
     }
-    if (end % 2 == 0 && 2 * tile.first_sample <= end) {
-      add_error(tile, end);
-      if (std::isfinite(plan_.halves_range())) add_halves(tile, end);
-    }
+    if (end % 2 == 0 && 2 * tile.first_sample <= end) add_error({tile, first_half_, sums_.radiance, end});
     if (plan_.view == View::bound) show_bound(tile);
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
@@ -221,49 +207,13 @@ void TileRenderer<T>::add_sample() {
 }
 
 template <class T>
-void TileRenderer<T>::add_halves(const TileView& tile, int samples) {
-  if (plan_.space == Space::display) return add_display_halves(tile, samples);
-  const double scale = 2.0 / (samples * std::max(plan_.sample_range, std::numeric_limits<double>::min()));
-  TileSums::Plane squares{};
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < kBatch; ++i) {
-      const double difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * scale;
-      squares[i] += difference * difference;
-    }
-  double sum = 0;
-  for_each_slot(tile, [&](std::size_t i) {
-    if (!std::isfinite(squares[i])) return;  // which is told besides
-    stats_.halves.add(squares[i] / 3);
-    sum += squares[i] / 3;
-  });
-  stats_.halves.add_tile(sum);
-}
-
-// The curve of sRGB is concave: halves that differ make their mean darker than what it is the mean of, and
-// two halves together less so than one alone. That difference stands for the bias of both.
-template <class T>
-void TileRenderer<T>::add_display_halves(const TileView& tile, int samples) {
-  constexpr double kOfBias = 16;  // with the fourth of the squared difference: twice the bias
-  const double share = 2.0 / samples, most = plan_.beyond_range(samples);
-  double sum = 0;
-  for_each_slot(tile, [&](std::size_t i) {
-    double squares = 0, beyond = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double first = first_half_[c][i] * share, second = sums_.radiance[c][i] * share - first;
-      const double shown_first = encode_srgb(first), shown_second = encode_srgb(second);
-      const double difference = shown_first - shown_second;
-      const double bias = encode_srgb((first + second) / 2) - (shown_first + shown_second) / 2;
-      squares += difference * difference + kOfBias * bias * bias;
-      const auto [less, more] = std::minmax(first, second);
-      if (less < 1 && more > 1) beyond += more - 1;
-    }
-    if (!std::isfinite(squares + beyond)) return;  // which is told besides
-    const double value = std::min(1.0, squares / 3);
-    stats_.halves.add(value);
-    sum += value;
-    if (most > 0) stats_.halves.add_beyond(std::min(beyond / 3, most), most);
-  });
-  stats_.halves.add_tile(sum);
+void TileRenderer<T>::add_error(const TileHalves& halves) {
+  stats_.error.add(halves.error());
+  if (!std::isfinite(plan_.halves_range())) return;
+  if (plan_.space == Space::display)
+    halves.add_displayed_to(stats_.halves, plan_);
+  else
+    halves.add_to(stats_.halves, plan_);
 }
 
 template <class T>
@@ -301,44 +251,6 @@ void TileRenderer<T>::add_clamped(const TileView& tile) {
       stats_.clamped.pixels.add(clamped_[c][i]);
     });
   stats_.clamped.add_tile(sums);
-}
-
-template <class T>
-void TileRenderer<T>::add_error(const TileView& tile, int samples) {
-  const double share = 1.0 / samples;
-  SampledError of_tile;
-  of_tile.samples = samples;
-  for (std::size_t c = 0; c < 3; ++c) {
-    double all = 0;
-    for (int block = 0; block < kBatch; block += 16) {
-      double sum = 0;
-      int inside = 0;
-      for (int slot = block; slot < block + 16; ++slot) {
-        const TilePixel p = tile_pixel(slot);
-        if (p.x >= tile.width || p.y >= tile.height) continue;
-        const auto i = static_cast<std::size_t>(slot);
-        const double half_difference = (2 * first_half_[c][i] - sums_.radiance[c][i]) * share;
-        if (!std::isfinite(half_difference)) continue;  // which is told besides
-        of_tile.pixel.squares += half_difference * half_difference;
-        sum += half_difference;
-        ++inside;
-      }
-      of_tile.pixel.values += inside;
-      all += sum;
-      if (inside < 16) continue;
-      of_tile.block4.squares += sum * sum / 256;
-      of_tile.block4.values += 1;
-    }
-    if (tile.width < kTileSide || tile.height < kTileSide) continue;
-    of_tile.block32.squares += all * all / (double{kBatch} * kBatch);
-    of_tile.block32.values += 1;
-  }
-  if (of_tile.pixel.values == 0) return;  // none is finite
-  const double mean_square = of_tile.pixel.squares / of_tile.pixel.values;
-  of_tile.tiles = 1;
-  of_tile.tile_sum = mean_square;
-  of_tile.tile_squares = mean_square * mean_square;
-  stats_.error.add(of_tile);
 }
 
 template <class T>

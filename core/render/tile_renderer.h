@@ -6,6 +6,7 @@
 #include "core/cameras/pixel_filter.h"
 #include "core/model/technique.h"
 #include "core/render/backend.h"
+#include "core/render/tile_halves.h"
 
 namespace orrery {
 
@@ -41,9 +42,7 @@ class TileRenderer {
   void add_sample();
   void add_omitted(const TileView& tile);
   void add_clamped(const TileView& tile);
-  void add_error(const TileView& tile, int samples);
-  void add_halves(const TileView& tile, int samples);
-  void add_display_halves(const TileView& tile, int samples);
+  void add_error(const TileHalves& halves);
   void put_single(const TileView& tile, Film& film);
   // Puts colours in the place of the radiance.
   void show_bound(const TileView& tile);

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "core/image/srgb.h"
 #include "core/model/technique.h"
 #include "core/plan/limits.h"
 #include "core/plan/options.h"

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "core/image/image.h"
+#include "core/image/srgb.h"
 
 namespace orrery {
 namespace {

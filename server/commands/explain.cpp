@@ -3,7 +3,6 @@
 
 #include "core/plan/plan.h"
 #include "core/render/renderer.h"
-#include "core/render/views.h"
 #include "server/app/explain.h"
 #include "server/commands/commands.h"
 #include "server/commands/render_flags.h"
@@ -27,8 +26,7 @@ struct ExplainOptions {
 };
 
 int explain(const ExplainOptions& options) {
-  RenderRequest request = read_render_flags(options.render);
-  choose_space(request, FileFormat::png);
+  const RenderRequest request = read_picture_flags(options.render, std::nullopt);
   const PreparedScene prepared(load_scene_file(options.render.scene));
   const Scene& scene = prepared.scene();
   const SettledPlan plan = settle(prepared, make_plan(scene, request));

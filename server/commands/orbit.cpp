@@ -106,7 +106,7 @@ class Turn {
       : options_(options),
         names_(options.discard ? "frame-%d.png" : options.output),
         format_(format_of(names_.of(0))),
-        first_(read_first(options.render, format_)),
+        first_(read_picture_flags(options.render, format_)),
         scene_(load_scene_file(options.render.scene)),
         path_(full_turn(scene_.scene(), first_, options.frames)),
         budget_(options.frames),
@@ -114,7 +114,6 @@ class Turn {
     if (options.step_given->count() > 0) path_.step_degrees = options.step;
     if (options.time_step_given->count() > 0) path_.step_seconds = options.time_step;
     require_range(path_, options.frames, "--step");
-    require_layers_kept(first_, format_);
     if (!options.discard) require_writable(names_.of(0));
   }
 
@@ -148,11 +147,6 @@ class Turn {
   nlohmann::ordered_json budget() const { return budget_.json(options_.frames); }
 
  private:
-  static RenderRequest read_first(const RenderFlags& flags, FileFormat format) {
-    RenderRequest first = read_render_flags(flags);
-    choose_space(first, format);
-    return first;
-  }
   RenderResult render(std::int64_t frame) {
     const std::stop_token stop = signals_.interrupted();
     const Plan plan = make_plan(scene_.scene(), path_.at(frame));

@@ -53,10 +53,10 @@ RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, 
 
 int render(const RenderOptions& options) {
   const auto begin = Clock::now();
-  const FileFormat format = options.output ? format_of(*options.output) : FileFormat::png;
-  RenderRequest request = read_render_flags(options.render);
-  choose_space(request, format);
-  if (options.output) require_layers_kept(request, format);
+  std::optional<FileFormat> kept;
+  if (options.output) kept = format_of(*options.output);
+  const FileFormat format = kept.value_or(FileFormat::png);
+  const RenderRequest request = read_picture_flags(options.render, kept);
   if (options.output) require_writable(*options.output);
   if (options.certificate) {
     if (options.certificate == options.output)

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/model/batch.h"
+#include "core/render/views.h"
 #include "server/app/flag_name.h"
 #include "server/app/render_options.h"
 
@@ -58,6 +59,17 @@ RenderRequest read_render_flags(const RenderFlags& flags) {
   RenderRequest request = read_option_texts(texts);
   request.full_model = flags.full_model;
   request.slice = flags.slice;
+  return request;
+}
+
+RenderRequest read_picture_flags(const RenderFlags& flags, std::optional<FileFormat> format) {
+  RenderRequest request = read_render_flags(flags);
+  try {
+    choose_space(request, format.value_or(FileFormat::png));
+    if (format) require_layers_kept(request, *format);
+  } catch (const InputError& error) {
+    throw with_flag_names(error);
+  }
   return request;
 }
 

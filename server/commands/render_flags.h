@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/image/files.h"
 #include "core/plan/request.h"
 
 namespace CLI {
@@ -27,6 +29,8 @@ void add_threads_flag(CLI::App& app, int& threads);
 
 // Throws InputError with the names of the flags.
 RenderRequest read_render_flags(const RenderFlags& flags);
+// Likewise, of a picture for a file of this format; none: that is not kept.
+RenderRequest read_picture_flags(const RenderFlags& flags, std::optional<FileFormat> format);
 // The same problems, with the names of flags in place of pointers to options.
 InputError with_flag_names(const InputError& error);
 

@@ -146,7 +146,7 @@ TEST_F(CommandLine, LayersAreRefusedByFormatsThatKeepNone) {
   EXPECT_EQ(run("render " + scene + " --layers depth -o " + file("a.exr")).status, 0);
   const Outcome png = run("render " + scene + " --layers depth -o " + file("a.png"));
   EXPECT_EQ(png.status, 2);
-  EXPECT_NE(png.err.find("/render/layers: "), std::string::npos) << png.err;
+  EXPECT_NE(png.err.find("--layers: "), std::string::npos) << png.err;
   EXPECT_EQ(run("orbit " + scene + " --frames 2 --layers depth -o " + file("a-%d.png")).status, 2);
 }
 
@@ -303,6 +303,16 @@ TEST_F(CommandLine, OrbitKeepsToABudget) {
   EXPECT_EQ(missed.status, 0);
   EXPECT_NE(missed.err.find("the budget is missed: kept by 0 of 3 frames"), std::string::npos) << missed.err;
   EXPECT_EQ(run(orbit + "--error 0.0001 --samples 2 --on-miss fail").status, 3);
+}
+
+TEST_F(CommandLine, BudgetsOfFilesWithoutABoundNameTheFlag) {
+  const std::string scene = write("s.json", kScene);
+  for (const std::string command : {"render ", "orbit --frames 2 "}) {
+    const Outcome jpeg = run(command + scene + " --error 0.1 -o " + file("a-%d.jpg"));
+    EXPECT_EQ(jpeg.status, 2) << command;
+    EXPECT_NE(jpeg.err.find("--error: expected none, as what JPEG leaves out"), std::string::npos)
+        << jpeg.err;
+  }
 }
 
 TEST_F(CommandLine, OrbitPlaysTheMotion) {

@@ -3,6 +3,7 @@
 # levels than the machine's are forced through the loader's tunables; a build of one level compares the rest.
 set -euo pipefail
 orrery=${TEST_ORRERY:-build/levels/orrery}
+size=${TEST_SIZE:---width 150 --height 110}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -26,10 +27,10 @@ fi
 failed=0
 for scene in scenes/*.json; do
   render() { # NAME TUNABLES OPTIONS...
-    GLIBC_TUNABLES=$2 "$orrery" render "$scene" --width 150 --height 110 "${@:3}" -o "$scratch/$1.png" 2>/dev/null
+    GLIBC_TUNABLES=$2 "$orrery" render "$scene" $size "${@:3}" -o "$scratch/$1.png" 2>/dev/null
     cmp -s "$scratch/first.png" "$scratch/$1.png" || { echo "$scene: $1 differs"; failed=1; }
   }
-  "$orrery" render "$scene" --width 150 --height 110 --threads 1 -o "$scratch/first.png" 2>/dev/null
+  "$orrery" render "$scene" $size --threads 1 -o "$scratch/first.png" 2>/dev/null
   render threads-2 "" --threads 2
   render threads-8 "" --threads 8
   render slice-64 "" --threads 1 --slice 64

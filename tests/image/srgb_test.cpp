@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/image/srgb.h"
 #include "tests/support/random.h"
 
 namespace orrery {

@@ -4,6 +4,7 @@
 
 #include "core/plan/plan.h"
 #include "tests/support/pictures.h"
+#include "tests/support/sanitized.h"
 
 // What pictures are expected to cost, against the sums of the branching process by hand and against what is
 // traced.
@@ -124,7 +125,8 @@ class CostOfSamples : public testing::TestWithParam<std::string> {};
 
 TEST_P(CostOfSamples, IsOfTheOrderOfWhatIsTraced) {
   const auto scene = load(sample(GetParam()));
-  const RenderRequest request = size(160, 120);
+  RenderRequest request = size(160, 120);
+  if (kSanitized) request.samples = 2;
   const double traced = static_cast<double>(render(scene, request).stats.counts.rays.total());
   const double share = expected_rays(*scene, make_plan(*scene, request)) / traced;
   RecordProperty("expected_over_traced", std::to_string(share));

@@ -10,6 +10,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
+#include "tests/support/sanitized.h"
 
 // The number type that the plan chooses, against double precision: what float would get visibly wrong is
 // rendered in double, and the plan says what needs it.
@@ -100,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, HardForFloat, testing::ValuesIn(hard_scenes()),
 TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
   for (const std::string& name : sample_names()) {
     Json scene = sample(name);
-    scene["image"] = {{"width", 96}, {"height", 72}};
+    scene["image"] = {{"width", kSanitized ? 32 : 96}, {"height", kSanitized ? 24 : 72}};
     const auto loaded = load(scene);
     EXPECT_FALSE(make_plan(*loaded, {}).double_precision) << name;
     EXPECT_LE(error_of_choice(loaded), kMostError) << name;

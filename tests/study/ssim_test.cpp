@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/image/image.h"
+#include "core/image/srgb.h"
 
 // Structural similarity, against closed forms.
 namespace orrery::test {

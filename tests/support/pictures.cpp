@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "core/image/srgb.h"
+
 namespace orrery::test {
 namespace {
 
