@@ -36,7 +36,7 @@ export const certificateFaults = [
         "return mean(); double kept = 0, rejected = 1;", "UpperMean.OfNothing*", "UpperMean.HoldsWhere*", "Certificate.NeverTells*"),
   entry("halves differ by half as much", "core/render/tile_halves.cpp", "const double scale = 2.0 /", "const double scale = 1.0 /",
         "Certificate.OfSamplesIsNotFar*"),
-  entry("what is outside of the picture counts", "core/render/tile_halves.cpp", "Four counts = four(is_inside, i)", "Four counts(1.0)",
+  entry("what is outside of the picture counts", "core/render/tile_halves.cpp", "Four counts = four(is_inside, i)", "Four counts = four(is_inside, 0)",
         "TileHalves/*"),
   entry("a total is as strong as its strongest term", "core/model/bound.h", "std::max(kind, other.kind)", "std::min(kind, other.kind)",
         "Certificate.IsAsWeak*"),
