@@ -37,7 +37,7 @@ static_assert(std::int64_t{kMaxImageSide} * kMaxImageSide <= kMaxImagePixels,
               "sides within their range never make too many pixels");
 
 // In the order of the schema and of help.
-constexpr std::array kOptions{
+constexpr O kOptions[]{
     O{.key = "azimuth_degrees",
       .short_name = "azimuth",
       .section = Section::camera,
