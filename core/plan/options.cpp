@@ -24,6 +24,7 @@ O::Names names_of(const Types& types) {
   for (const auto& type : types) names.push_back(type.name);
   return names;
 }
+int max_depth_of(const TechniqueType& type) { return type.max_depth; }
 O::Names technique_names() { return names_of(technique_types()); }
 O::Names channel_names() { return names_of(channel_types()); }
 // "auto": the plan chooses.
@@ -90,10 +91,11 @@ constexpr O kOptions[]{
     O{.key = "max_depth",
       .short_name = "depth",
       .section = Section::render,
-      .kind = O::Integer<int>{&S::max_depth, 0, kMaxDepth, 5, &TechniqueType::max_depth},
+      .kind = O::Integer<int>{&S::max_depth, 0, kMaxDepth, 5},
       .placeholder = "N",
       .help = "Deepest ray that is traced; camera rays have depth 0. Unless told 5, of distributed 6, of "
-              "path 9."},
+              "path 9.",
+      .by_technique = max_depth_of},
     O{.key = "min_contribution",
       .section = Section::render,
       .kind = O::Number{&S::min_contribution, {.min = 0, .max = 1}, 0},
@@ -310,11 +312,6 @@ std::string RenderOption::value_name() const {
   return text;
 }
 
-bool RenderOption::by_technique() const {
-  const auto* integer = std::get_if<O::Integer<int>>(&kind);
-  return integer && integer->by_technique;
-}
-
 RenderOption::Names RenderOption::choices() const {
   return std::visit([](const auto& of) { return choices_of(of); }, kind);
 }
@@ -350,8 +347,8 @@ const RenderSettings& default_settings() {
 void RenderOption::read_scene(Params& p, RenderSettings& settings) const {
   std::visit(
       [&](const auto& of) {
-        auto value = read(p, *this, of, !by_technique());
-        if (p.has(key) || !by_technique()) settings.*of.member = std::move(value);
+        auto value = read(p, *this, of, !by_technique);
+        if (p.has(key) || !by_technique) settings.*of.member = std::move(value);
       },
       kind);
 }
@@ -383,9 +380,9 @@ RenderSettings defaults_of(const std::optional<std::string>& technique) {
   for (const TechniqueType& type : technique_types())
     if (technique == type.name)
       for (const RenderOption& option : kOptions)
-        if (option.by_technique()) {
+        if (option.by_technique) {
           const auto& integer = std::get<O::Integer<int>>(option.kind);
-          defaults.*integer.member = type.*integer.by_technique;
+          defaults.*integer.member = option.by_technique(type);
         }
   return defaults;
 }

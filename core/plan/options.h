@@ -35,7 +35,6 @@ struct RenderOption {
   struct Integer {
     Member<I> member;
     std::int64_t min, max, fallback;
-    int TechniqueType::*by_technique = nullptr;  // where each technique has a default of its own
   };
   struct Number {
     Member<double> member;
@@ -75,6 +74,8 @@ struct RenderOption {
   std::string_view help;              // one sentence
   bool in_scene = true;               // a scene may give it too, and is then the default of a request
   bool changes_pixels = true;         // another value may give another picture
+  // An integer's default where each technique has one of its own, which is in no schema then.
+  int (*by_technique)(const TechniqueType&) = nullptr;
 
   std::string pointer() const;     // JSON Pointer in a request: "/camera/azimuth_degrees"
   std::string value_name() const;  // "DEGREES", "true|false"
@@ -83,9 +84,6 @@ struct RenderOption {
   // What a value is in JSON, for those who make JSON from text.
   enum class Form { number, boolean, string, numbers, strings };
   Form form() const;
-
-  // Whether the default depends on the technique. It is in no schema then.
-  bool by_technique() const;
 
   bool given(const RenderSettings& settings) const;
   void copy(const RenderSettings& from, RenderSettings& to) const;  // a missing value too

@@ -35,7 +35,7 @@ ordered_json option_schemas() {
     const std::string key(option.key), section(name_of(option.section));
     ordered_json schema = request["properties"][section]["properties"][key];
     std::string description = schema["description"];
-    if (option.in_scene && !option.by_technique())
+    if (option.in_scene && !option.by_technique)
       description += " As the scene says, or " + option.text(default_settings()) + ".";
     if (!option.changes_pixels) description += " Changes no pixel.";
     if (schema.contains("$ref")) {  // shared definitions lie within the schema of requests only

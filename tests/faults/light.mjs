@@ -107,6 +107,6 @@ export const lightFaults = [
         "N(T(with_non_diffuse(lobes) ? 0 : 1))", "test_techniques", "Distributed.SheetsLet*"),
   entry(31, "half vectors are as dense as their lights", "core/materials/rough.h", "N(T(4) * dot(half, viewer))", "N(T(4) + T(0) * dot(half, viewer))", "test_materials",
         "Materials/LobesOf.AreDrawn*/Paint"),
-  entry(31, "the default depth is Whitted's", "core/plan/options.cpp", "= type.*integer.by_technique;", "= static_cast<int>(integer.fallback);",
+  entry(31, "the default depth is Whitted's", "core/plan/options.cpp", "= option.by_technique(type);", "= static_cast<int>(integer.fallback);",
         "test_plan", "RenderOptions.DepthIs*"),
 ];

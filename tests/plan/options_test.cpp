@@ -94,7 +94,7 @@ TEST(RenderOptions, DefaultsAreAllowedAndAreWhatAnEmptySceneGets) {
     ASSERT_TRUE(option.given(default_settings())) << option.key;
     EXPECT_EQ(problem(option, value_of(option, default_settings())), "");
     EXPECT_EQ(option.text(settings), option.text(default_settings())) << option.key;
-    EXPECT_EQ(option.given(load(bare)->render), option.in_scene && !option.by_technique()) << option.key;
+    EXPECT_EQ(option.given(load(bare)->render), option.in_scene && !option.by_technique) << option.key;
   }
 }
 
