@@ -38,7 +38,7 @@ static_assert(std::int64_t{kMaxImageSide} * kMaxImageSide <= kMaxImagePixels,
               "sides within their range never make too many pixels");
 
 // In the order of the schema and of help.
-constexpr O kOptions[]{
+constexpr std::array kOptions{
     O{.key = "azimuth_degrees",
       .short_name = "azimuth",
       .section = Section::camera,
