@@ -27,6 +27,8 @@ constexpr double kSlower = 1.1;          // than the last pass may the next be
 constexpr double kLastPassReach = 4.4;   // of this many times the samples, more than one pass is left
 constexpr int kSeenTiles = 16;           // of the first pass, before its time is foretold
 constexpr double kSurelyLate = 1.5;      // times the time that there is
+constexpr int kForecastSamples = 4, kForecastTiles = 16;
+constexpr double kFastest = 1.5;  // mean squares of edges fall with this power of the samples
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 class BudgetedRender {
@@ -45,7 +47,7 @@ class BudgetedRender {
   RenderResult render() {
     certificate_ = certify(*plan_, stats_, doubt_of_look(1));  // of nothing so far
     if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), certificate_);
-    if (plan_->free_contribution && plan_->max_depth > 0) choose_contribution();
+    choose_contribution();
     while (!render_passes()) {  // what a pilot did not see
       plan_ = plan_.with_min_contribution(plan_->min_contribution / kStepOfPass);
       ++deepenings_;
@@ -59,7 +61,69 @@ class BudgetedRender {
     return {std::move(*kept_), stats_, certificate_, std::move(told)};
   }
 
+  Forecast foretell() {
+    choose_contribution();
+    const double begin_s = used_s();
+    const Pilots pilots = trace_pilots();
+    ahead_s_ = begin_s - used_s();  // the picture does without these
+    rays_per_sample_ = pilots.rays * share_of(pilots.some);
+    pass_s_per_sample_ = rays_per_sample_ * pilots.cpu_s_per_ray / pool_.threads();
+    for (int next = progressive_samples(*plan_).front(); next > 0; next = next_samples()) {
+      ahead_s_ += (next - samples_) * pass_s_per_sample_;
+      samples_ = next;
+      stats_ = foretold(pilots);
+      certificate_ = certify(*plan_, stats_, doubt_of_look(++looks_));
+      if (is_enough()) break;
+    }
+    const double ready_s =
+        (pilots.some.build_ms + lost_.build_ms + lost_.trace_ms + plan_.settle_ms()) / 1000;
+    return {outcome(), certificate_,
+            static_cast<double>(lost_.counts.rays.total()) + rays_per_sample_ * samples_,
+            ready_s + pass_s_per_sample_ * samples_};
+  }
+
  private:
+  struct Pilots {
+    RenderStats some;            // of pixels that tell what others do, with kForecastSamples
+    double rays;                 // a sample of them
+    double cpu_s_per_ray, rate;  // mean squares fall with this power of the samples
+  };
+  // Blocks tell most of a picture, but not what reused paths bring, nor time: whole tiles do.
+  Pilots trace_pilots() {
+    const auto rays = [](const RenderStats& stats) { return static_cast<double>(stats.counts.rays.total()); };
+    const RenderStats tiles = trace_tiles(scene_, plan_, kForecastTiles, kForecastSamples, pool_, control_);
+    Pilots pilots{tiles, rays(tiles) / kForecastSamples, tiles.cpu_ms / 1000 / rays(tiles), 1};
+    if (plan_->reuse > 1) return pilots;
+    pilots.some = trace_pilot(scene_, plan_, kForecastSamples, pool_, control_);
+    pilots.some.build_ms += tiles.build_ms;
+    pilots.rays = rays(pilots.some) / kForecastSamples;
+    if (tiles.omitted.rms() > pilots.some.omitted.rms()) pilots.some.omitted = tiles.omitted;
+    constexpr int kMore = 4;
+    const RenderStats more = trace_pilot(scene_, plan_, kMore * kForecastSamples, pool_, control_);
+    const double few = pilots.some.halves.mean(), many = more.halves.mean();
+    if (few > 0 && many > 0) pilots.rate = std::clamp(std::log(few / many) / std::log(kMore), 1.0, kFastest);
+    return pilots;
+  }
+
+  // The picture's pixels over those that were traced.
+  double share_of(const RenderStats& some) const {
+    return double(plan_->width) * plan_->height / (some.error.pixel.values / 3);
+  }
+
+  // What a picture of samples_ may tell.
+  RenderStats foretold(const Pilots& pilots) const {
+    RenderStats stats = pilots.some;
+    if (!stats.error.known() || samples_ % 2 != 0) {
+      stats.error = {};
+      stats.halves = {};
+      return stats;
+    }
+    const double times = std::pow(double{kForecastSamples} / samples_, pilots.rate);
+    stats.error = stats.error.scaled(samples_, times);
+    stats.halves = stats.halves.scaled(share_of(stats), times);
+    return stats;
+  }
+
   bool fails_on_miss() const { return *plan_->asked.on_miss == OnMiss::fail; }
 
   // Of one that may end it, from 1 on; the last one alone counts where the samples are given.
@@ -69,16 +133,19 @@ class BudgetedRender {
 
   // Whether the clock may end it.
   bool is_timed() const { return std::isfinite(limit_s_); }
-  double used_s() const { return control_.used_s ? control_.used_s() : milliseconds_since(begin_) / 1000; }
+  double used_s() const {
+    return ahead_s_ + (control_.used_s ? control_.used_s() : milliseconds_since(begin_) / 1000);
+  }
   // When tracing must have ended.
   double deadline_s() const {
     const double pixels = double(plan_->width) * plan_->height;
     return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
   }
 
-  // By pilots: the largest with which rays that are not traced take little of the error, or mostly those do
-  // that depth leaves out.
+  // By pilots, where it is free: the largest with which rays that are not traced take little of the error, or
+  // mostly those do that depth leaves out.
   void choose_contribution() {
+    if (!plan_->free_contribution || plan_->max_depth == 0) return;
     for (int pilots = 1;; ++pilots) {
       const RenderStats pilot = trace_pilot(scene_, plan_, 1, pool_, control_);
       lose(pilot);
@@ -122,11 +189,12 @@ class BudgetedRender {
       pass_s_per_sample_ = (used_s() - begin_s) / (next - samples_);
       samples_ = next;
       look(passes);
+      rays_per_sample_ = static_cast<double>(stats_.counts.rays.total()) / samples_;
       if (is_too_coarse()) {
         before_.emplace(Made{plan_, passes.take_film(), stats_, certificate_, samples_});
         return false;
       }
-      if (error_ > 0 && (is_hopeless() || (plan_->free_samples && is_near_enough()))) break;
+      if (is_enough()) break;
     }
     if (samples_ == 0) {
       go_back();
@@ -218,6 +286,11 @@ class BudgetedRender {
     return !bound || *bound <= std::max(error_, kNearLeast * *least());
   }
 
+  // Whether there is no sense in more passes.
+  bool is_enough() const {
+    return error_ > 0 && (is_hopeless() || (plan_->free_samples && is_near_enough()));
+  }
+
   // Where a miss is an error, and no samples would help.
   bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
 
@@ -241,7 +314,7 @@ class BudgetedRender {
       }
       if (seconds_ > 0 && fit < most && fit < kLastPassReach * samples_) next = static_cast<int>(fit / 2) * 2;
     }
-    const double rays = static_cast<double>(stats_.counts.rays.total()) / samples_ * next;
+    const double rays = rays_per_sample_ * next;
     if (rays <= control_.most_rays) return next;
     reason_ = "twice as many samples would take " + rounded(rays) + " rays, more than the " +
               rounded(control_.most_rays) + " that there may be";
@@ -304,13 +377,14 @@ class BudgetedRender {
   const double error_, seconds_;  // 0: not asked
   const double limit_s_;          // of time; may be infinite
   const Clock::time_point begin_;
+  double ahead_s_ = 0;  // of the clock, in a forecast
   int deepenings_ = 0, looks_ = 0;
   bool gave_up_ = false;               // a pass
   std::atomic<bool> is_late_ = false;  // the first pass, and was given up
   std::atomic<double> least_s_ = 0.0;  // until the first pass would have ended, if it was given up
   // Of the last pass that has ended.
   int samples_ = 0;
-  double pass_s_per_sample_ = 0;
+  double pass_s_per_sample_ = 0, rays_per_sample_ = 0;
   RenderStats stats_;
   Certificate certificate_;
   RenderStats lost_;  // of pilots, and passes that cut too much
@@ -347,6 +421,11 @@ BudgetMissed::BudgetMissed(BudgetOutcome outcome, const Certificate& certificate
 RenderResult render_within_budget(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                                   const RenderControl& control) {
   return BudgetedRender(scene, plan, pool, control).render();
+}
+
+Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
+                  const RenderControl& control) {
+  return BudgetedRender(scene, plan, pool, control).foretell();
 }
 
 }  // namespace orrery

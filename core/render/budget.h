@@ -19,4 +19,19 @@ namespace orrery {
 RenderResult render_within_budget(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                                   const RenderControl& control);
 
+// What render_frame() is foretold to take of the plan, whether it has a budget or not.
+struct Forecast {
+  BudgetOutcome outcome;    // its settings are those that the picture would come to
+  Certificate certificate;  // that the picture would have
+  double rays = 0;          // all, with those of pilots
+  double seconds = 0;       // by the clock: of making ready and tracing, on the threads of the pool
+};
+
+// From a pilot of four samples, and those that choose the least contribution. Errors are taken to fall with
+// the root of the samples, as independent ones do; those of edges fall faster, so samples are rather foretold
+// too many. What is foretold of rays and samples depends on the plan alone but where it has a budget of time.
+// Throws Cancelled once control.stop is requested.
+Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
+                  const RenderControl& control = {});
+
 }  // namespace orrery

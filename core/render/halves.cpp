@@ -43,6 +43,17 @@ void Halves::add(const Halves& other) {
   tiles_ += other.tiles_;
 }
 
+Halves Halves::scaled(double pixels, double squares) const {
+  Halves all;
+  all.pixels_ = pixels_.scaled(pixels, squares);
+  all.beyond_ = beyond_.scaled(pixels, squares);
+  all.beyond_sum_ = beyond_sum_ * pixels * squares;
+  all.tiles_ = tiles_ * pixels;
+  all.sum_ = sum_ * pixels * squares;
+  all.squares_ = squares_ * pixels * squares * squares;
+  return all;
+}
+
 double Halves::upper_mean(double doubt, bool tiles_alone_are_independent) const {
   const double of_pixels = pixels_.upper_mean(doubt);
   return tiles_alone_are_independent ? std::max(of_pixels, upper_mean_of_tiles(doubt)) : of_pixels;

@@ -1,5 +1,7 @@
 #include "core/render/pilot.h"
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "core/math/sampling.h"
@@ -10,12 +12,26 @@ namespace {
 constexpr int kSide = 4;
 constexpr int kLeastBlocks = 64;  // of a picture that has as many
 
+RenderStats trace(std::span<const TileView> views, const PreparedScene& scene, const SettledPlan& plan,
+                  WorkerPool& pool, const RenderControl& control) {
+  RenderStats stats;
+  const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
+  Film forgotten(plan->width, plan->height, FilmStorage::srgb8);
+  prepared->render(views, forgotten, stats,
+                   {.stop = control.stop, .background = control.background, .pass = control.pass});
+  return stats;
+}
+
+// A number below `end` that chance names by i.
+int below(int end, int i) {
+  return static_cast<int>(mix_bits(static_cast<std::uint32_t>(i)) % static_cast<std::uint32_t>(end));
+}
+
 // Adds some blocks of a tile, evenly spaced from the one that chance names by the tile's number.
 void add_blocks(const TileView& tile, int number, int wanted, std::vector<TileView>& blocks) {
   const int across = (tile.width + kSide - 1) / kSide, down = (tile.height + kSide - 1) / kSide;
   const int all = across * down, some = std::min(wanted, all);
-  const int first =
-      static_cast<int>(mix_bits(static_cast<std::uint32_t>(number)) % static_cast<std::uint32_t>(all));
+  const int first = below(all, number);
   for (int i = 0; i < some; ++i) {
     const int block = (first + i * all / some) % all;
     const int x = block % across * kSide, y = block / across * kSide;
@@ -36,12 +52,19 @@ RenderStats trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int
   const int of_each = (kLeastBlocks + grid.size() - 1) / grid.size();
   std::vector<TileView> blocks;
   for (int i = 0; i < grid.size(); ++i) add_blocks(grid.at(i, samples), i, of_each, blocks);
-  RenderStats stats;
-  const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
-  Film forgotten(plan->width, plan->height, FilmStorage::srgb8);
-  prepared->render(blocks, forgotten, stats,
-                   {.stop = control.stop, .background = control.background, .pass = control.pass});
-  return stats;
+  return trace(blocks, scene, plan, pool, control);
+}
+
+RenderStats trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most, int samples,
+                        WorkerPool& pool, const RenderControl& control) {
+  const TileGrid grid(plan->width, plan->height);
+  const int count = std::min(most, grid.size());
+  std::vector<TileView> tiles;
+  for (int i = 0; i < count; ++i) {  // one of each of as many equal parts
+    const int begin = i * grid.size() / count, end = (i + 1) * grid.size() / count;
+    tiles.push_back(grid.at(begin + below(end - begin, i), samples));
+  }
+  return trace(tiles, scene, plan, pool, control);
 }
 
 }  // namespace orrery

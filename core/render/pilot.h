@@ -10,4 +10,9 @@ namespace orrery {
 RenderStats trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
                         const RenderControl& control);
 
+// Likewise whole tiles, so many at most, from all over the picture: what they take is what others take, and
+// their paths are reused as in the picture, which is not so of blocks.
+RenderStats trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most, int samples,
+                        WorkerPool& pool, const RenderControl& control);
+
 }  // namespace orrery

@@ -38,6 +38,16 @@ struct SampledError {
     tile_squares += other.tile_squares;
   }
 
+  // Of other samples of the pixels, with mean squares that are so many times as large.
+  SampledError scaled(int other_samples, double times) const {
+    SampledError all = *this;
+    all.samples = other_samples;
+    for (Sum* sum : {&all.pixel, &all.block4, &all.block32}) sum->squares *= times;
+    all.tile_sum *= times;
+    all.tile_squares *= times * times;
+    return all;
+  }
+
   // Of the RMSE of a pixel: 95 % of normal errors lie within.
   struct Interval {
     double low, high;

@@ -9,14 +9,14 @@ namespace orrery {
 
 // A double's bits from the second of its fraction on count quarters of powers of two, near enough: bins are
 // linear within an octave.
-void UnitHistogram::add_positive(double value) {
+void UnitHistogram::add_times(double value, double times) {
   constexpr int kBitsBelow = 50;
   constexpr std::uint64_t kFirst = std::uint64_t{1023 - kOctaves} << 2;
   const double x = value > 0 ? std::min(value, 1.0) : 0.0;
   const std::uint64_t part = std::bit_cast<std::uint64_t>(x) >> kBitsBelow;
   const std::size_t bin = part < kFirst ? 0 : std::min<std::uint64_t>(part - kFirst + 1, kBins - 1);
-  bins_[bin].count += 1;
-  bins_[bin].sum += x;
+  bins_[bin].count += times;
+  bins_[bin].sum += times * x;
 }
 
 void UnitHistogram::add(const UnitHistogram& other) {
@@ -24,6 +24,13 @@ void UnitHistogram::add(const UnitHistogram& other) {
     bins_[i].count += other.bins_[i].count;
     bins_[i].sum += other.bins_[i].sum;
   }
+}
+
+UnitHistogram UnitHistogram::scaled(double counts, double values) const {
+  UnitHistogram all;
+  for (const Bin& bin : bins_)
+    if (bin.count > 0) all.add_times(values * bin.sum / bin.count, counts * bin.count);
+  return all;
 }
 
 double UnitHistogram::count() const {

@@ -16,6 +16,8 @@ class UnitHistogram {
       add_positive(value);
   }
   void add(const UnitHistogram& other);
+  // `counts` times as many values, each `values` times as large, about: of a bin, the mean is moved.
+  UnitHistogram scaled(double counts, double values) const;
   double count() const;
   double mean() const;  // 0 without values
 
@@ -32,7 +34,8 @@ class UnitHistogram {
   struct Bin {
     double count = 0, sum = 0;
   };
-  void add_positive(double value);
+  void add_positive(double value) { add_times(value, 1); }
+  void add_times(double value, double times);
   static double low_of(std::size_t bin);
   // Whether a gambler would believe that the mean is below `mean`.
   bool rejects(double mean, double log_odds) const;

@@ -221,6 +221,25 @@ SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Call
   return *settled;
 }
 
+Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller) {
+  Plan pilots = *plan;  // which trace about a sample of each pixel
+  pilots.samples = 1;
+  pilots.free_samples = false;
+  require_request_rays(scene.scene(), pilots);
+  std::optional<Forecast> found;
+  watched(caller, timer_.now(), Stage::settle, [&](const std::stop_token& stop) {
+    auto ticket = admission_.enter(services_.demand_of(scene.scene(), pilots, caller.client), stop);
+    const SceneStore::Measured measured(scenes_, scene);
+    found = orrery::forecast(
+        scene, plan, pool_,
+        {.stop = stop,
+         .pass = &ticket,
+         .most_rays = settings_.request_rays / ray_weight(scene.scene(), *plan),
+         .most_s = kShareOfBudgets * static_cast<double>(settings_.request_seconds.count())});
+  });
+  return *found;
+}
+
 void App::drain() { drains_.request_stop(); }
 
 std::string_view App::readiness() const {

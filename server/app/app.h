@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/params/document.h"
+#include "core/render/budget.h"
 #include "server/app/access.h"
 #include "server/app/admission.h"
 #include "server/app/asset_store.h"
@@ -82,6 +83,9 @@ class App {
 
   // Settles the plan in its turn, as render() would. Throws likewise.
   SettledPlan settle(const PreparedScene& scene, const Plan& plan, const Caller& caller);
+
+  // Foretells what render() would take, in its turn. Throws likewise.
+  Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller);
 
   // The service is about to end: no new work; what runs goes on.
   bool draining() const { return drains_.stop_requested(); }

@@ -1,8 +1,10 @@
 #include "server/app/explain.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/number.h"
 #include "core/model/accelerator.h"
 #include "core/model/technique.h"
 #include "core/plan/options.h"
@@ -39,6 +41,34 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
+std::string error_text(const Certificate& certificate) {
+  const Bound total = certificate.total();
+  if (total.rms) return "RMS error " + rounded(*total.rms) + ", " + std::string(name_of(total.kind));
+  if (certificate.estimate) return "RMS error about " + rounded(*certificate.estimate) + ", not bounded";
+  return "an error that it does not tell";
+}
+
+std::string forecast_text(const Forecast& forecast) {
+  const BudgetOutcome& outcome = forecast.outcome;
+  const int samples = *outcome.settings.samples;
+  return "about " + std::to_string(samples) + (samples == 1 ? " sample, " : " samples, ") +
+         rounded(forecast.rays) + " rays and " + rounded(forecast.seconds) + " s; " +
+         error_text(forecast.certificate) +
+         (outcome.met() ? "" : "; the budget would be missed: " + outcome.reason);
+}
+
+ordered_json forecast_json(const Scene& scene, const Forecast& forecast) {
+  const RenderSettings& settings = forecast.outcome.settings;
+  ordered_json json = {{"plan", query_of(scene, settings)},
+                       {"samples", *settings.samples},
+                       {"rays", std::round(forecast.rays)},
+                       {"seconds", forecast.seconds},
+                       {"certificate", certificate_json(forecast.certificate)}};
+  if (forecast.outcome.error > 0 || forecast.outcome.seconds > 0)
+    json["budget"] = budget_json(forecast.outcome);
+  return json;
+}
+
 // What a request of the plan says: what a budget chooses is left to it.
 RenderSettings requested(const Plan& plan) {
   RenderSettings settings = settings_of(plan);
@@ -49,7 +79,8 @@ RenderSettings requested(const Plan& plan) {
 
 }  // namespace
 
-nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
+nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan,
+                                    const std::optional<Forecast>& forecast) {
   const RenderSettings settings = settings_of(plan);
   ordered_json decisions = ordered_json::array();
   for (const Decision& d : plan.decisions)
@@ -70,6 +101,7 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
   if (const auto least = least_provable(plan)) json["least_provable"] = *least;
   json["camera_rays"] = camera_rays(plan);
   json["decisions"] = std::move(decisions);
+  if (forecast) json["forecast"] = forecast_json(scene, *forecast);
   json["warnings"] = ordered_json::array();
   for (const Problem& p : find_warnings(scene, plan))
     json["warnings"].push_back({{"pointer", p.pointer}, {"detail", p.detail}});
@@ -78,7 +110,7 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan) {
   return json;
 }
 
-std::string explain_text(const Scene& scene, const Plan& plan) {
+std::string explain_text(const Scene& scene, const Plan& plan, const std::optional<Forecast>& forecast) {
   std::string text =
       std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels, " +
       (plan.free_samples ? "at most " : "") + std::to_string(plan.samples) +
@@ -102,6 +134,7 @@ std::string explain_text(const Scene& scene, const Plan& plan) {
                   name_of(plan.space).data());
     text += line;
   }
+  if (forecast) text += "  forecast: " + forecast_text(*forecast) + "\n";
   for (const Problem& p : find_warnings(scene, plan)) text += "  warning: " + p.text() + "\n";
   return text;
 }

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/plan/plan.h"
-#include "core/render/renderer.h"
+#include "core/render/budget.h"
 #include "server/app/explain.h"
 #include "server/commands/commands.h"
 #include "server/commands/render_flags.h"
@@ -15,13 +15,15 @@ constexpr const char* kExplainExamples = R"(
 Examples:
   orrery explain scenes/paper.json
   orrery explain scenes/paper.json --technique raycast --json
+  orrery explain scenes/cornell-box.json --error 0.02 --measure
 
-Renders nothing. Says what a render of the scene would model, and for each thing that it would leave out, why it
-is not needed.
+Says what a render of the scene would model, and for each thing that it would leave out, why it is not needed.
+Renders nothing; with --measure some of the pixels, to foretell samples, rays, seconds and error of the picture.
 )";
 
 struct ExplainOptions {
-  bool json = false;
+  bool json = false, measure = false;
+  int threads = 0;
   RenderFlags render;
 };
 
@@ -30,7 +32,13 @@ int explain(const ExplainOptions& options) {
   const PreparedScene prepared(load_scene_file(options.render.scene));
   const Scene& scene = prepared.scene();
   const SettledPlan plan = settle(prepared, make_plan(scene, request));
-  std::cout << (options.json ? explain_json(scene, *plan).dump(2) + "\n" : explain_text(scene, *plan));
+  std::optional<Forecast> foretold;
+  if (options.measure) {
+    WorkerPool pool(options.threads);
+    foretold = forecast(prepared, plan, pool);
+  }
+  std::cout << (options.json ? explain_json(scene, *plan, foretold).dump(2) + "\n"
+                             : explain_text(scene, *plan, foretold));
   return kDone;
 }
 
@@ -41,6 +49,8 @@ Command add_explain(CLI::App& root) {
   CLI::App* app = root.add_subcommand("explain", "Say what a render would model, and why no more");
   app->footer(kExplainExamples);
   app->add_flag("--json", options->json, "Print JSON");
+  app->add_flag("--measure", options->measure, "Trace some pixels and foretell what the picture takes");
+  add_threads_flag(*app, options->threads);
   add_render_flags(*app, options->render);
   return {app, [options] { return explain(*options); }};
 }

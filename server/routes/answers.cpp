@@ -106,6 +106,10 @@ RenderRequest read_query(const Request& request, std::span<const std::string_vie
   return read_option_texts(texts);
 }
 
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text.substr(0, 40)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 bool has_current(const Request& request, std::string_view etag) {
   bool found = false;
   for_each_entry(joined(request.headers, "If-None-Match"), ',', [&](std::string_view known) {

@@ -23,6 +23,8 @@ void refuse_compressed(const Request& request);
 // The options of a render in the query. `more` names what else the query may have; its values are left alone.
 // Throws InputError, with pointers such as "/azimuth".
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more = {});
+// What a client wrote, or the start of it, as errors show it.
+std::string quoted(const std::string& text);
 
 // Whether the client has what the ETag stands for.
 bool has_current(const Request& request, std::string_view etag);

@@ -1,5 +1,6 @@
 #include "server/app/explain.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "core/plan/plan.h"
@@ -7,17 +8,38 @@
 #include "server/app/app.h"
 #include "server/routes/answers.h"
 
-// GET /v1/scenes/{id}/explain: what a frame.png with the same query would model, and why no more.
+// GET /v1/scenes/{id}/explain: what a frame.png with the same query would model, and why no more; with
+// measure=true also what it would take.
 namespace orrery {
+namespace {
+
+constexpr std::array<std::string_view, 1> kOwnParameters{"measure"};
+
+bool asks_to_measure(const Request& request) {
+  const std::string text = find_field(request.query, kOwnParameters[0]).value_or("false");
+  if (text != "true" && text != "false")
+    throw InputError("/measure", "expected true or false, got " + quoted(text));
+  return text == "true";
+}
+
+Response explain(App& app, Request& request) {
+  const auto scene = app.scenes().find(request.path_value("id"));
+  RenderRequest wanted = read_query(request, kOwnParameters);
+  const bool measured = asks_to_measure(request);
+  choose_space(wanted, FileFormat::png);
+  const SettledPlan plan = app.settle(*scene, make_plan(scene->scene(), wanted), caller_of(request));
+  if (!measured) return json_answer(200, explain_json(scene->scene(), *plan));
+  Response response =
+      json_answer(200, explain_json(scene->scene(), *plan, app.forecast(*scene, plan, caller_of(request))));
+  response.set("Cache-Control", "no-store");  // its seconds are those of now
+  return response;
+}
+
+}  // namespace
 
 void add_explain_routes(Router& router, App& app) {
-  router.add("GET", "/v1/scenes/{id}/explain", Scope::read, LogLevel::info, [&app](Request& request) {
-    const auto scene = app.scenes().find(request.path_value("id"));
-    RenderRequest wanted = read_query(request);
-    choose_space(wanted, FileFormat::png);
-    const SettledPlan plan = app.settle(*scene, make_plan(scene->scene(), wanted), caller_of(request));
-    return json_answer(200, explain_json(scene->scene(), *plan));
-  });
+  router.add("GET", "/v1/scenes/{id}/explain", Scope::read, LogLevel::info,
+             [&app](Request& request) { return explain(app, request); });
 }
 
 }  // namespace orrery

@@ -25,9 +25,7 @@ double number_of(const Request& request, std::string_view name, double min, doub
     if (number && *number >= min && *number <= max) return *number;
     char range[96];
     std::snprintf(range, sizeof range, "expected a number >= %g and <= %g, got ", min, max);
-    problems.push_back(
-        {"/" + key, range + nlohmann::json(text.substr(0, 40))
-                                .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+    problems.push_back({"/" + key, range + quoted(text)});
   }
   return fallback;
 }

@@ -242,6 +242,8 @@ TEST_F(CommandLine, SchemaCatalogAndExplainPrintJson) {
   const std::string scene = write("s.json", kScene);
   EXPECT_FALSE(nlohmann::json::parse(run("explain --json " + scene).out).at("decisions").empty());
   EXPECT_NE(run("explain " + scene).out.find("shadows"), std::string::npos);
+  EXPECT_EQ(run("explain " + scene).out.find("forecast"), std::string::npos);
+  EXPECT_NE(run("explain --measure --error 0.05 " + scene).out.find("forecast: about "), std::string::npos);
 }
 
 TEST_F(CommandLine, ChartWritesWhatTheEndingSays) {

@@ -61,6 +61,28 @@ TEST_F(Scenes, DeletedSceneIsGone) {
   expect_problem(client_.Get(path + "/explain"), 404);
 }
 
+TEST_F(Scenes, ExplainForetellsWhatIsMeasured) {
+  const std::string path = "/v1/scenes/" + post_scene(small_scene().dump()) + "/explain?width=64&height=64";
+  const auto told = [&](const std::string& query) {
+    const auto result = client_.Get(path + query);
+    EXPECT_TRUE(result && result->status == 200);
+    return nlohmann::json::parse(result->body);
+  };
+  EXPECT_FALSE(told("").contains("forecast"));
+  EXPECT_FALSE(told("&measure=false").contains("forecast"));
+  const auto forecast = told("&measure=true&error=0.05").at("forecast");
+  EXPECT_GE(forecast.at("samples"), 2);
+  EXPECT_GE(forecast.at("rays"), 64 * 64 * 2);
+  EXPECT_TRUE(forecast.at("budget").at("met"));
+  EXPECT_LE(forecast.at("certificate").at("total").at("rms"), 0.05);
+  EXPECT_FALSE(told("&measure=true").at("forecast").contains("budget"));
+  const auto measured = client_.Get(path + "&measure=true");
+  EXPECT_EQ(measured->get_header_value("Cache-Control"), "no-store");
+  const auto refused = client_.Get(path + "&measure=maybe");
+  expect_problem(refused, 422);
+  EXPECT_NE(refused->body.find("/measure"), std::string::npos) << refused->body;
+}
+
 TEST_F(Scenes, ExplainGivesReasonsForThisQuery) {
   const std::string path = "/v1/scenes/" + post_scene(small_scene().dump()) + "/explain";
   const auto result = client_.Get(path + "?technique=raycast&width=100&height=50&samples=4");

@@ -41,6 +41,16 @@ TEST(UpperMean, OfEqualValuesIsCloseToThem) {
   EXPECT_EQ(draw(50, [] { return 1.0; }).upper_mean(0.05), 1);
 }
 
+// A bin keeps its sum, so its values are taken to be alike.
+TEST(UnitHistogram, ScalesCountsAndValues) {
+  Random random(3);
+  const UnitHistogram all = draw(500, [&] { return random.unit(); }), more = all.scaled(64, 0.25);
+  EXPECT_NEAR(more.count(), 64 * 500, 1e-6);
+  EXPECT_NEAR(more.mean(), all.mean() / 4, 1e-12);
+  const UnitHistogram drawn = draw(64 * 500, [&] { return random.unit() / 4; });
+  EXPECT_NEAR(more.upper_mean(0.05) / drawn.upper_mean(0.05), 1, 0.05);
+}
+
 // Most runs have seen none of the few large values.
 TEST(UpperMean, HoldsWhereErrorIsRare) {
   covers("certificate-26");

@@ -1,0 +1,118 @@
+// What is foretold of a picture, beside what it takes.
+#include <gtest/gtest.h>
+
+#include "core/render/budget.h"
+#include "tests/support/pictures.h"
+
+namespace orrery {
+namespace {
+
+using test::load;
+using test::sample;
+
+constexpr int kSide = 192;
+
+RenderRequest square() {
+  RenderRequest r;
+  r.width = r.height = kSide;
+  return r;
+}
+
+Forecast foretold(const std::shared_ptr<const Scene>& scene, const RenderRequest& request,
+                  WorkerPool& pool = test::shared_pool(), const RenderControl& control = {}) {
+  const PreparedScene prepared(scene);
+  return forecast(prepared, settle(prepared, make_plan(*scene, request)), pool, control);
+}
+
+// Passes double the samples, so a forecast may be one beside the last; of each sample rays are counted.
+TEST(Forecast, ComesToTheSamplesAndRaysOfABudget) {
+  for (const char* name : {"paper", "glass", "cornell-box", "sphereflake-2"})
+    for (const double error : {0.05, 0.02}) {
+      const auto scene = load(sample(name));
+      RenderRequest r = square();
+      r.error = error;
+      r.space = Space::display;
+      const Forecast told = foretold(scene, r);
+      const RenderResult made = test::rendered(scene, r);
+      const int samples = *told.outcome.settings.samples, taken = *made.budget->settings.samples;
+      EXPECT_LE(std::max(samples, taken), 2 * std::min(samples, taken)) << name << error;
+      const double rays = told.rays / samples, traced = double(made.stats.counts.rays.total()) / taken;
+      EXPECT_NEAR(rays / traced, 1, 0.25) << name << error;
+      EXPECT_TRUE(told.outcome.error_met) << name << error;
+      EXPECT_LE(*told.certificate.total().rms, error) << name << error;
+      EXPECT_GT(told.seconds, 0);
+    }
+}
+
+TEST(Forecast, OfGivenSamplesTellsTheirRaysAndError) {
+  for (const char* name : {"glass", "cornell-box"}) {
+    const auto scene = load(sample(name));
+    RenderRequest r = square();
+    r.precision = Precision::double_precision;
+    r.samples = 6;
+    const Forecast told = foretold(scene, r);
+    const RenderResult made = test::rendered(scene, r);
+    EXPECT_EQ(told.outcome.settings.samples, 6);
+    EXPECT_NEAR(told.rays / static_cast<double>(made.stats.counts.rays.total()), 1, 0.15) << name;
+    EXPECT_NEAR(*told.certificate.estimate / *made.certificate.estimate, 1, 0.4) << name;
+    r.samples = 1;
+    EXPECT_FALSE(foretold(scene, r).certificate.estimate) << "one sample tells no error";
+  }
+}
+
+// A picture for twice as long may have about twice the samples; the clock of the client stands.
+TEST(Forecast, OfABudgetOfTimeFillsIt) {
+  const auto scene = load(sample("cornell-box"));
+  RenderRequest r = square();
+  r.seconds = 100;
+  const Forecast told = foretold(scene, r, test::shared_pool(), {.used_s = [] { return 0.0; }});
+  EXPECT_LE(told.outcome.used_s, 100);
+  EXPECT_TRUE(told.outcome.used_s > 50 || told.outcome.settings.samples == 4096) << told.outcome.used_s;
+  EXPECT_TRUE(told.outcome.met());
+}
+
+TEST(Forecast, DependsOnThePlanAlone) {
+  WorkerPool one(1);
+  for (const char* name : {"glass", "cornell-box"}) {
+    const auto scene = load(sample(name));
+    RenderRequest r = square();
+    r.error = 0.03;
+    const Forecast a = foretold(scene, r), b = foretold(scene, r, one);
+    EXPECT_EQ(a.outcome.settings.samples, b.outcome.settings.samples) << name;
+    EXPECT_EQ(a.rays, b.rays) << name;
+    EXPECT_EQ(a.certificate.total().rms, b.certificate.total().rms) << name;
+  }
+}
+
+TEST(Forecast, SaysWhatWouldBeMissed) {
+  RenderRequest r = square();
+  r.error = 1e-6;
+  r.on_miss = OnMiss::fail;
+  const BudgetOutcome told = foretold(load(sample("paper")), r).outcome;
+  EXPECT_FALSE(told.met());
+  EXPECT_FALSE(told.reason.empty());
+  EXPECT_GT(*told.least_error, 1e-6);
+}
+
+// Pictures of which a pilot is all, and those smaller than a block.
+TEST(Forecast, IsThereForTheSmallestPictures) {
+  for (const int side : {1, 3, 33}) {
+    RenderRequest r = square();
+    r.width = r.height = side;
+    r.error = 0.05;
+    r.technique = "path";
+    const Forecast told = foretold(load(sample("cornell-box")), r);
+    EXPECT_GT(told.rays, side * side) << side;
+    EXPECT_TRUE(std::isfinite(told.seconds)) << side;
+  }
+}
+
+TEST(Forecast, EndsWhenItIsStopped) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(foretold(load(sample("paper")), square(), test::shared_pool(), {.stop = stop.get_token()}),
+               Cancelled);
+}
+
+}  // namespace
+}  // namespace orrery
