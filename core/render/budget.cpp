@@ -66,7 +66,7 @@ class BudgetedRender {
     const double begin_s = used_s();
     const Pilots pilots = trace_pilots();
     ahead_s_ = begin_s - used_s();  // the picture does without these
-    rays_per_sample_ = pilots.rays * share_of(pilots.some);
+    rays_per_sample_ = pilots.rays_per_sample;
     pass_s_per_sample_ = rays_per_sample_ * pilots.cpu_s_per_ray / pool_.threads();
     for (int next = progressive_samples(*plan_).front(); next > 0; next = next_samples()) {
       ahead_s_ += (next - samples_) * pass_s_per_sample_;
@@ -75,8 +75,7 @@ class BudgetedRender {
       certificate_ = certify(*plan_, stats_, doubt_of_look(++looks_));
       if (is_enough()) break;
     }
-    const double ready_s =
-        (pilots.some.build_ms + lost_.build_ms + lost_.trace_ms + plan_.settle_ms()) / 1000;
+    const double ready_s = (pilots.build_ms + lost_.build_ms + lost_.trace_ms + plan_.settle_ms()) / 1000;
     return {outcome(), certificate_,
             static_cast<double>(lost_.counts.rays.total()) + rays_per_sample_ * samples_,
             ready_s + pass_s_per_sample_ * samples_};
@@ -84,43 +83,41 @@ class BudgetedRender {
 
  private:
   struct Pilots {
-    RenderStats some;            // of pixels that tell what others do, with kForecastSamples
-    double rays;                 // a sample of them
-    double cpu_s_per_ray, rate;  // mean squares fall with this power of the samples
+    int samples;
+    Pilot some;  // pixels that tell what others do
+    double rays_per_sample, cpu_s_per_ray, build_ms;
+    double rate = 1;  // mean squares fall with this power of the samples
   };
   // Blocks tell most of a picture, but not what reused paths bring, nor time: whole tiles do.
   Pilots trace_pilots() {
-    const auto rays = [](const RenderStats& stats) { return static_cast<double>(stats.counts.rays.total()); };
-    const RenderStats tiles = trace_tiles(scene_, plan_, kForecastTiles, kForecastSamples, pool_, control_);
-    Pilots pilots{tiles, rays(tiles) / kForecastSamples, tiles.cpu_ms / 1000 / rays(tiles), 1};
+    const int samples = plan_->samples == 1 ? 1 : kForecastSamples;
+    const auto rays = [](const Pilot& pilot) { return static_cast<double>(pilot.stats.counts.rays.total()); };
+    const Pilot tiles = trace_tiles(scene_, plan_, kForecastTiles, samples, pool_, control_);
+    Pilots pilots{samples, tiles, rays(tiles) / tiles.share / samples,
+                  tiles.stats.cpu_ms / 1000 / rays(tiles), tiles.stats.build_ms};
     if (plan_->reuse > 1) return pilots;
-    pilots.some = trace_pilot(scene_, plan_, kForecastSamples, pool_, control_);
-    pilots.some.build_ms += tiles.build_ms;
-    pilots.rays = rays(pilots.some) / kForecastSamples;
-    if (tiles.omitted.rms() > pilots.some.omitted.rms()) pilots.some.omitted = tiles.omitted;
+    Pilot& blocks = pilots.some = trace_pilot(scene_, plan_, samples, pool_, control_);
+    pilots.rays_per_sample = rays(blocks) / blocks.share / samples;
+    if (tiles.stats.omitted.rms() > blocks.stats.omitted.rms()) blocks.stats.omitted = tiles.stats.omitted;
+    if (samples == 1) return pilots;
     constexpr int kMore = 4;
-    const RenderStats more = trace_pilot(scene_, plan_, kMore * kForecastSamples, pool_, control_);
-    const double few = pilots.some.halves.mean(), many = more.halves.mean();
+    const Pilot more = trace_pilot(scene_, plan_, kMore * samples, pool_, control_);
+    const double few = blocks.stats.halves.mean(), many = more.stats.halves.mean();
     if (few > 0 && many > 0) pilots.rate = std::clamp(std::log(few / many) / std::log(kMore), 1.0, kFastest);
     return pilots;
   }
 
-  // The picture's pixels over those that were traced.
-  double share_of(const RenderStats& some) const {
-    return double(plan_->width) * plan_->height / (some.error.pixel.values / 3);
-  }
-
   // What a picture of samples_ may tell.
   RenderStats foretold(const Pilots& pilots) const {
-    RenderStats stats = pilots.some;
+    RenderStats stats = pilots.some.stats;
     if (!stats.error.known() || samples_ % 2 != 0) {
       stats.error = {};
       stats.halves = {};
       return stats;
     }
-    const double times = std::pow(double{kForecastSamples} / samples_, pilots.rate);
+    const double times = std::pow(double(pilots.samples) / samples_, pilots.rate);
     stats.error = stats.error.scaled(samples_, times);
-    stats.halves = stats.halves.scaled(share_of(stats), times);
+    stats.halves = stats.halves.scaled(1 / pilots.some.share, times);
     return stats;
   }
 
@@ -147,7 +144,7 @@ class BudgetedRender {
   void choose_contribution() {
     if (!plan_->free_contribution || plan_->max_depth == 0) return;
     for (int pilots = 1;; ++pilots) {
-      const RenderStats pilot = trace_pilot(scene_, plan_, 1, pool_, control_);
+      const RenderStats pilot = trace_pilot(scene_, plan_, 1, pool_, control_).stats;
       lose(pilot);
       lost_.build_ms += pilot.build_ms;  // of what the passes find ready
       const bool late = seconds_ > 0 && used_s() > kShareOfPilots * seconds_;

@@ -12,14 +12,17 @@ namespace {
 constexpr int kSide = 4;
 constexpr int kLeastBlocks = 64;  // of a picture that has as many
 
-RenderStats trace(std::span<const TileView> views, const PreparedScene& scene, const SettledPlan& plan,
-                  WorkerPool& pool, const RenderControl& control) {
-  RenderStats stats;
-  const auto prepared = threads_backend(pool)->prepare(scene, plan, stats, control.stop);
+Pilot trace(std::span<const TileView> views, const PreparedScene& scene, const SettledPlan& plan,
+            WorkerPool& pool, const RenderControl& control) {
+  Pilot pilot{};
+  const auto prepared = threads_backend(pool)->prepare(scene, plan, pilot.stats, control.stop);
   Film forgotten(plan->width, plan->height, FilmStorage::srgb8);
-  prepared->render(views, forgotten, stats,
+  prepared->render(views, forgotten, pilot.stats,
                    {.stop = control.stop, .background = control.background, .pass = control.pass});
-  return stats;
+  double pixels = 0;
+  for (const TileView& view : views) pixels += view.width * view.height;
+  pilot.share = pixels / plan->width / plan->height;
+  return pilot;
 }
 
 // A number below `end` that chance names by i.
@@ -46,8 +49,8 @@ void add_blocks(const TileView& tile, int number, int wanted, std::vector<TileVi
 
 }  // namespace
 
-RenderStats trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
-                        const RenderControl& control) {
+Pilot trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
+                  const RenderControl& control) {
   const TileGrid grid(plan->width, plan->height);
   const int of_each = (kLeastBlocks + grid.size() - 1) / grid.size();
   std::vector<TileView> blocks;
@@ -55,8 +58,8 @@ RenderStats trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int
   return trace(blocks, scene, plan, pool, control);
 }
 
-RenderStats trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most, int samples,
-                        WorkerPool& pool, const RenderControl& control) {
+Pilot trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most, int samples,
+                  WorkerPool& pool, const RenderControl& control) {
   const TileGrid grid(plan->width, plan->height);
   const int count = std::min(most, grid.size());
   std::vector<TileView> tiles;

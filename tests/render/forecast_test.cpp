@@ -1,6 +1,8 @@
 // What is foretold of a picture, beside what it takes.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/render/budget.h"
 #include "tests/support/pictures.h"
 
@@ -56,7 +58,11 @@ TEST(Forecast, OfGivenSamplesTellsTheirRaysAndError) {
     EXPECT_NEAR(told.rays / static_cast<double>(made.stats.counts.rays.total()), 1, 0.15) << name;
     EXPECT_NEAR(*told.certificate.estimate / *made.certificate.estimate, 1, 0.4) << name;
     r.samples = 1;
-    EXPECT_FALSE(foretold(scene, r).certificate.estimate) << "one sample tells no error";
+    const Forecast single = foretold(scene, r);
+    const RenderResult one = test::rendered(scene, r);
+    EXPECT_NEAR(single.rays / static_cast<double>(one.stats.counts.rays.total()), 1, 0.15) << name;
+    EXPECT_TRUE(std::isfinite(single.seconds)) << name;
+    EXPECT_FALSE(single.certificate.estimate) << "one sample tells no error";
   }
 }
 
