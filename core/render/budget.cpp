@@ -4,11 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <thread>
 #include <utility>
 
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
+#include "core/plan/options.h"
 #include "core/plan/plan.h"
 #include "core/render/pilot.h"
 
@@ -27,8 +29,8 @@ constexpr double kSlower = 1.1;          // than the last pass may the next be
 constexpr double kLastPassReach = 4.4;   // of this many times the samples, more than one pass is left
 constexpr int kSeenTiles = 16;           // of the first pass, before its time is foretold
 constexpr double kSurelyLate = 1.5;      // times the time that there is
-constexpr int kForecastSamples = 4, kForecastTiles = 16;
-constexpr double kFastest = 1.5;  // mean squares of edges fall with this power of the samples
+constexpr int kForecastSamples = 4, kForecastSteps = 4, kForecastTiles = 16;
+constexpr double kLargestExponent = 1.5;  // with which mean squares of edges fall
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 class BudgetedRender {
@@ -67,13 +69,14 @@ class BudgetedRender {
     const Pilots pilots = trace_pilots();
     ahead_s_ = begin_s - used_s();  // the picture does without these
     rays_per_sample_ = pilots.rays_per_sample;
-    pass_s_per_sample_ = rays_per_sample_ * pilots.cpu_s_per_ray / pool_.threads();
-    for (int next = progressive_samples(*plan_).front(); next > 0; next = next_samples()) {
+    pass_s_per_sample_ = rays_per_sample_ * pilots.cpu_s_per_ray / threads_at_work();
+    int next = has_budget(plan_->asked) ? progressive_samples(*plan_).front() : plan_->samples;
+    for (; next > 0; next = next_samples()) {
       ahead_s_ += (next - samples_) * pass_s_per_sample_;
       samples_ = next;
       stats_ = foretold(pilots);
-      certificate_ = certify(*plan_, stats_, doubt_of_look(++looks_));
-      if (is_enough()) break;
+      certificate_ = foretold_certificate();
+      if (samples_ % 2 == 0 && is_enough()) break;
     }
     const double ready_s = (pilots.build_ms + lost_.build_ms + lost_.trace_ms + plan_.settle_ms()) / 1000;
     return {outcome(), certificate_,
@@ -83,42 +86,72 @@ class BudgetedRender {
 
  private:
   struct Pilots {
-    int samples;
-    Pilot some;  // pixels that tell what others do
+    Pilot last;   // pixels that tell what others do
+    int samples;  // of these
     double rays_per_sample, cpu_s_per_ray, build_ms;
-    double rate = 1;  // mean squares fall with this power of the samples
+    double exponent = 1;  // of the samples, with which mean squares fall
   };
   // Blocks tell most of a picture, but not what reused paths bring, nor time: whole tiles do.
   Pilots trace_pilots() {
     const int samples = plan_->samples == 1 ? 1 : kForecastSamples;
-    const auto rays = [](const Pilot& pilot) { return static_cast<double>(pilot.stats.counts.rays.total()); };
     const Pilot tiles = trace_tiles(scene_, plan_, kForecastTiles, samples, pool_, control_);
-    Pilots pilots{samples, tiles, rays(tiles) / tiles.share / samples,
-                  tiles.stats.cpu_ms / 1000 / rays(tiles), tiles.stats.build_ms};
+    const auto rays = static_cast<double>(tiles.stats.counts.rays.total());
+    Pilots pilots{tiles, samples, rays / tiles.share / samples, tiles.stats.cpu_ms / 1000 / rays,
+                  tiles.stats.build_ms};
     if (plan_->reuse > 1) return pilots;
-    Pilot& blocks = pilots.some = trace_pilot(scene_, plan_, samples, pool_, control_);
-    pilots.rays_per_sample = rays(blocks) / blocks.share / samples;
-    if (tiles.stats.omitted.rms() > blocks.stats.omitted.rms()) blocks.stats.omitted = tiles.stats.omitted;
-    if (samples == 1) return pilots;
-    constexpr int kMore = 4;
-    const Pilot more = trace_pilot(scene_, plan_, kMore * samples, pool_, control_);
-    const double few = blocks.stats.halves.mean(), many = more.stats.halves.mean();
-    if (few > 0 && many > 0) pilots.rate = std::clamp(std::log(few / many) / std::log(kMore), 1.0, kFastest);
+    double after = 0;
+    if (samples > 1) {
+      go_on(pilots, trace_pilot(scene_, plan_, kForecastSteps * samples, pool_, control_));
+      after = mean_square(pilots.last.stats);
+    }
+    go_on(pilots, trace_pilot(scene_, plan_, samples, pool_, control_));
+    const Pilot& last = pilots.last;
+    pilots.rays_per_sample = static_cast<double>(last.stats.counts.rays.total()) / last.share / samples;
+    const double before = mean_square(last.stats);
+    if (before > 0 && after > 0)
+      pilots.exponent =
+          std::clamp(std::log(before / after) / std::log(kForecastSteps), 1.0, kLargestExponent);
     return pilots;
+  }
+
+  // With another pilot: of what is not traced, the worse counts.
+  static void go_on(Pilots& pilots, const Pilot& next) {
+    const RenderStats before = std::exchange(pilots.last, next).stats;
+    RenderStats& stats = pilots.last.stats;
+    stats.counts.cut_rays += before.counts.cut_rays;
+    if (before.omitted.rms() > stats.omitted.rms()) stats.omitted = before.omitted;
+  }
+
+  static double mean_square(const RenderStats& stats) {
+    const double rmse = stats.error.pixel.rmse();
+    return stats.halves.known() ? stats.halves.mean() : rmse * rmse;
+  }
+
+  int threads_at_work() const {
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    return std::min({pool_.threads(), cores, TileGrid(plan_->width, plan_->height).size()});
   }
 
   // What a picture of samples_ may tell.
   RenderStats foretold(const Pilots& pilots) const {
-    RenderStats stats = pilots.some.stats;
+    RenderStats stats = pilots.last.stats;
     if (!stats.error.known() || samples_ % 2 != 0) {
       stats.error = {};
       stats.halves = {};
       return stats;
     }
-    const double times = std::pow(double(pilots.samples) / samples_, pilots.rate);
+    const double times = std::pow(double(pilots.samples) / samples_, pilots.exponent);
     stats.error = stats.error.scaled(samples_, times);
-    stats.halves = stats.halves.scaled(1 / pilots.some.share, times);
+    stats.halves = stats.halves.scaled(1 / pilots.last.share, times);
     return stats;
+  }
+
+  // Some pixels prove nothing of others.
+  Certificate foretold_certificate() {
+    Certificate certificate = certify(*plan_, stats_, doubt_of_look(++looks_));
+    for (Certificate::Term& term : certificate.terms)
+      if (term.bound.kind == Bound::Kind::proved) term.bound = Bound::estimated(*term.bound.rms);
+    return certificate;
   }
 
   bool fails_on_miss() const { return *plan_->asked.on_miss == OnMiss::fail; }

@@ -43,14 +43,14 @@ void Halves::add(const Halves& other) {
   tiles_ += other.tiles_;
 }
 
-Halves Halves::scaled(double pixels, double squares) const {
+Halves Halves::scaled(double more_pixels, double squares) const {
   Halves all;
-  all.pixels_ = pixels_.scaled(pixels, squares);
-  all.beyond_ = beyond_.scaled(pixels, squares);
-  all.beyond_sum_ = beyond_sum_ * pixels * squares;
-  all.tiles_ = tiles_ * pixels;
-  all.sum_ = sum_ * pixels * squares;
-  all.squares_ = squares_ * pixels * squares * squares;
+  all.pixels_ = pixels_.scaled(more_pixels, squares);
+  all.beyond_ = beyond_.scaled(more_pixels, squares);
+  all.beyond_sum_ = beyond_sum_ * more_pixels * squares;
+  all.tiles_ = tiles_ * more_pixels;
+  all.sum_ = sum_ * more_pixels * squares;
+  all.squares_ = squares_ * more_pixels * squares * squares;
   return all;
 }
 

@@ -22,8 +22,8 @@ class Halves {
     beyond_sum_ += value;
   }
   void add(const Halves& other);  // of other tiles
-  // Of a picture with `pixels` times as many of them and tiles, of which `squares` times as much is told.
-  Halves scaled(double pixels, double squares) const;
+  // Of a picture with so many times the pixels and tiles, of which `squares` times as much is told.
+  Halves scaled(double more_pixels, double squares) const;
 
   bool known() const { return pixels_.count() > 0; }
   double mean() const { return pixels_.mean(); }

@@ -222,10 +222,10 @@ SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Call
 }
 
 Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller) {
-  Plan pilots = *plan;  // which trace about a sample of each pixel
+  require_request_rays(scene.scene(), *plan);
+  Plan pilots = *plan;  // which trace about a sample of each pixel, or of those that are few some more
   pilots.samples = 1;
   pilots.free_samples = false;
-  require_request_rays(scene.scene(), pilots);
   std::optional<Forecast> found;
   watched(caller, timer_.now(), Stage::settle, [&](const std::stop_token& stop) {
     auto ticket = admission_.enter(services_.demand_of(scene.scene(), pilots, caller.client), stop);
