@@ -10,8 +10,10 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
+#include "core/model/tile.h"
 #include "core/plan/options.h"
 #include "core/plan/plan.h"
+#include "core/render/forecast_pilots.h"
 #include "core/render/pilot.h"
 
 namespace orrery {
@@ -29,8 +31,6 @@ constexpr double kSlower = 1.1;          // than the last pass may the next be
 constexpr double kLastPassReach = 4.4;   // of this many times the samples, more than one pass is left
 constexpr int kSeenTiles = 16;           // of the first pass, before its time is foretold
 constexpr double kSurelyLate = 1.5;      // times the time that there is
-constexpr int kForecastSamples = 4, kForecastSteps = 4, kForecastTiles = 16;
-constexpr double kLargestExponent = 1.5;  // with which mean squares of edges fall
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 class BudgetedRender {
@@ -66,92 +66,29 @@ class BudgetedRender {
   Forecast foretell() {
     choose_contribution();
     const double begin_s = used_s();
-    const Pilots pilots = trace_pilots();
+    const ForecastPilots pilots(scene_, plan_, pool_, control_);
     ahead_s_ = begin_s - used_s();  // the picture does without these
-    rays_per_sample_ = pilots.rays_per_sample;
-    pass_s_per_sample_ = rays_per_sample_ * pilots.cpu_s_per_ray / threads_at_work();
+    rays_per_sample_ = pilots.rays_per_sample();
+    pass_s_per_sample_ = pilots.cpu_s_per_sample() / threads_at_work();
     int next = has_budget(plan_->asked) ? progressive_samples(*plan_).front() : plan_->samples;
     for (; next > 0; next = next_samples()) {
       ahead_s_ += (next - samples_) * pass_s_per_sample_;
       samples_ = next;
-      stats_ = foretold(pilots);
-      certificate_ = foretold_certificate();
+      look(pilots.foretold(samples_));
+      for (Certificate::Term& term : certificate_.terms)  // some pixels prove nothing of others
+        if (term.bound.kind == Bound::Kind::proved) term.bound = Bound::estimated(*term.bound.rms);
       if (samples_ % 2 == 0 && is_enough()) break;
     }
-    const double ready_s = (pilots.build_ms + lost_.build_ms + lost_.trace_ms + plan_.settle_ms()) / 1000;
+    const double ready_s = (pilots.build_ms() + lost_.build_ms + lost_.trace_ms + plan_.settle_ms()) / 1000;
     return {outcome(), certificate_,
             static_cast<double>(lost_.counts.rays.total()) + rays_per_sample_ * samples_,
             ready_s + pass_s_per_sample_ * samples_};
   }
 
  private:
-  struct Pilots {
-    Pilot last;   // pixels that tell what others do
-    int samples;  // of these
-    double rays_per_sample, cpu_s_per_ray, build_ms;
-    double exponent = 1;  // of the samples, with which mean squares fall
-  };
-  // Blocks tell most of a picture, but not what reused paths bring, nor time: whole tiles do.
-  Pilots trace_pilots() {
-    const int samples = plan_->samples == 1 ? 1 : kForecastSamples;
-    const Pilot tiles = trace_tiles(scene_, plan_, kForecastTiles, samples, pool_, control_);
-    const auto rays = static_cast<double>(tiles.stats.counts.rays.total());
-    Pilots pilots{tiles, samples, rays / tiles.share / samples, tiles.stats.cpu_ms / 1000 / rays,
-                  tiles.stats.build_ms};
-    if (plan_->reuse > 1) return pilots;
-    double after = 0;
-    if (samples > 1) {
-      go_on(pilots, trace_pilot(scene_, plan_, kForecastSteps * samples, pool_, control_));
-      after = mean_square(pilots.last.stats);
-    }
-    go_on(pilots, trace_pilot(scene_, plan_, samples, pool_, control_));
-    const Pilot& last = pilots.last;
-    pilots.rays_per_sample = static_cast<double>(last.stats.counts.rays.total()) / last.share / samples;
-    const double before = mean_square(last.stats);
-    if (before > 0 && after > 0)
-      pilots.exponent =
-          std::clamp(std::log(before / after) / std::log(kForecastSteps), 1.0, kLargestExponent);
-    return pilots;
-  }
-
-  // With another pilot: of what is not traced, the worse counts.
-  static void go_on(Pilots& pilots, const Pilot& next) {
-    const RenderStats before = std::exchange(pilots.last, next).stats;
-    RenderStats& stats = pilots.last.stats;
-    stats.counts.cut_rays += before.counts.cut_rays;
-    if (before.omitted.rms() > stats.omitted.rms()) stats.omitted = before.omitted;
-  }
-
-  static double mean_square(const RenderStats& stats) {
-    const double rmse = stats.error.pixel.rmse();
-    return stats.halves.known() ? stats.halves.mean() : rmse * rmse;
-  }
-
   int threads_at_work() const {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     return std::min({pool_.threads(), cores, TileGrid(plan_->width, plan_->height).size()});
-  }
-
-  // What a picture of samples_ may tell.
-  RenderStats foretold(const Pilots& pilots) const {
-    RenderStats stats = pilots.last.stats;
-    if (!stats.error.known() || samples_ % 2 != 0) {
-      stats.error = {};
-      stats.halves = {};
-      return stats;
-    }
-    const double times = std::pow(double(pilots.samples) / samples_, pilots.exponent);
-    stats.error = stats.error.scaled(samples_, times);
-    stats.halves = stats.halves.scaled(1 / pilots.last.share, times);
-    return stats;
-  }
-
-  // Some pixels prove nothing of others.
-  Certificate foretold_certificate() {
-    Certificate certificate = certify(*plan_, stats_, doubt_of_look(++looks_));
-    for (Certificate::Term& term : certificate.terms)
-      if (term.bound.kind == Bound::Kind::proved) term.bound = Bound::estimated(*term.bound.rms);
-    return certificate;
   }
 
   bool fails_on_miss() const { return *plan_->asked.on_miss == OnMiss::fail; }
@@ -218,7 +155,7 @@ class BudgetedRender {
       before_.reset();
       pass_s_per_sample_ = (used_s() - begin_s) / (next - samples_);
       samples_ = next;
-      look(passes);
+      look(passes.stats());
       rays_per_sample_ = static_cast<double>(stats_.counts.rays.total()) / samples_;
       if (is_too_coarse()) {
         before_.emplace(Made{plan_, passes.take_film(), stats_, certificate_, samples_});
@@ -282,8 +219,8 @@ class BudgetedRender {
     return true;
   }
 
-  void look(const ProgressiveRender& passes) {
-    stats_ = passes.stats();
+  void look(const RenderStats& stats) {
+    stats_ = stats;
     certificate_ = certify(*plan_, stats_, doubt_of_look(++looks_));
   }
 

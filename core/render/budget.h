@@ -27,12 +27,11 @@ struct Forecast {
   double seconds = 0;       // by the clock: of making ready and tracing, on the threads of the pool
 };
 
-// From 16 whole tiles with 4 samples, which alone tell time and what reused paths bring, from pilots with 4
-// and 16, and from those that choose the least contribution. Errors are taken to fall as from 4 samples to
-// 16, at least with their root. What few pixels or paths alone bring is missed, and so are passes that trace
-// weaker rays for it. Without a budget the samples are those of the plan, however long they take. What is
-// foretold of rays and samples depends on the plan alone but where it has a budget of time.
-// Throws Cancelled once control.stop is requested.
+// From ForecastPilots, and those that choose the least contribution. Errors are taken to fall as from 4
+// samples to 16, at least with their root. What few pixels or paths alone bring is missed, and so are passes
+// that trace weaker rays for it. Without a budget the samples are those of the plan, however long they take.
+// What is foretold of rays and samples depends on the plan alone but where it has a budget of time. Throws
+// Cancelled once control.stop is requested.
 Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                   const RenderControl& control = {});
 

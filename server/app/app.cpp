@@ -139,6 +139,11 @@ Admission::Ticket App::enter_in_time(const Demand& demand, Clock::time_point sin
   }
 }
 
+RenderControl App::limits_of(const Scene& scene, const Plan& plan) const {
+  return {.most_rays = settings_.request_rays / ray_weight(scene, plan),
+          .most_s = kShareOfBudgets * static_cast<double>(settings_.request_seconds.count())};
+}
+
 Picture App::make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,
                   Stage& stage) {
@@ -151,12 +156,11 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   };
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
   if (storage == FilmStorage::sums) require_layers_fit(plan, memory_.most());
-  const RenderControl control{
-      .background = demand.lane == Lane::batch,
-      .used_s = [this, since,
-                 before_s] { return before_s + std::chrono::duration<double>(timer_.now() - since).count(); },
-      .most_rays = settings_.request_rays / ray_weight(scene.scene(), plan),
-      .most_s = kShareOfBudgets * static_cast<double>(settings_.request_seconds.count())};
+  RenderControl control = limits_of(scene.scene(), plan);
+  control.background = demand.lane == Lane::batch;
+  control.used_s = [this, since, before_s] {
+    return before_s + std::chrono::duration<double>(timer_.now() - since).count();
+  };
   const auto make_film = [&](const std::stop_token& nobody_waits) {
     enter(demand, nobody_waits);
     stage = Stage::render;
@@ -230,12 +234,10 @@ Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, cons
   watched(caller, timer_.now(), Stage::settle, [&](const std::stop_token& stop) {
     auto ticket = admission_.enter(services_.demand_of(scene.scene(), pilots, caller.client), stop);
     const SceneStore::Measured measured(scenes_, scene);
-    found = orrery::forecast(
-        scene, plan, pool_,
-        {.stop = stop,
-         .pass = &ticket,
-         .most_rays = settings_.request_rays / ray_weight(scene.scene(), *plan),
-         .most_s = kShareOfBudgets * static_cast<double>(settings_.request_seconds.count())});
+    RenderControl control = limits_of(scene.scene(), *plan);
+    control.stop = stop;
+    control.pass = &ticket;
+    found = orrery::forecast(scene, plan, pool_, control);
   });
   return *found;
 }

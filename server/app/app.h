@@ -108,6 +108,8 @@ class App {
   // `since`. 0: whenever it comes.
   Admission::Ticket enter_in_time(const Demand& demand, Clock::time_point since, double seconds,
                                   double used_s, const std::stop_token& ends);
+  // What a budget of one request may spend.
+  RenderControl limits_of(const Scene& scene, const Plan& plan) const;
   // Renders it, unless a film of it is kept, and encodes it. The client has waited since `since`.
   Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,

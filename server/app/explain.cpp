@@ -41,7 +41,7 @@ std::string padded(std::string text, std::size_t width) {
   return text;
 }
 
-std::string error_text(const Certificate& certificate) {
+std::string promise_text(const Certificate& certificate) {
   const Bound total = certificate.total();
   if (total.rms) return "RMS error " + rounded(*total.rms) + ", " + std::string(name_of(total.kind));
   if (certificate.estimate) return "RMS error about " + rounded(*certificate.estimate) + ", not bounded";
@@ -53,7 +53,7 @@ std::string forecast_text(const Forecast& forecast) {
   const int samples = *outcome.settings.samples;
   return "about " + std::to_string(samples) + (samples == 1 ? " sample, " : " samples, ") +
          rounded(forecast.rays) + " rays and " + rounded(forecast.seconds) + " s; " +
-         error_text(forecast.certificate) +
+         promise_text(forecast.certificate) +
          (outcome.met() ? "" : "; the budget would be missed: " + outcome.reason);
 }
 
