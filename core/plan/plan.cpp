@@ -152,10 +152,10 @@ class Planner {
     const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
-      const bool chosen = !request_.precision && *plan_.asked.error > 0;
+      const bool chosen = !request_.precision && has_budget(plan_.asked);
       return decide(
           "precision", precision_name(plan_.double_precision),
-          chosen ? "what float does to a picture is not bounded, and an error is asked" : "as asked",
+          chosen ? "what float does to a picture is not bounded, and budgets promise errors" : "as asked",
           rounding_bound());
     }
     if (plan_.technique->draws_light && plan_.frame.aperture_radius > plan_.frame.focus_distance) {
@@ -261,7 +261,8 @@ class Planner {
   }
 
   std::string depth_reason() const {
-    if (*plan_.asked.error > 0 && !request_.max_depth) return "the most there may be, for the error asked";
+    if (!request_.max_depth && budget_frees_depth(plan_.asked, *plan_.technique))
+      return "the most there may be, for the budget asked";
     return request_.max_depth || scene_.render.max_depth ? "as asked" : "by default";
   }
 

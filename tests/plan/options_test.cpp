@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/load/load.h"
 #include "core/params/json.h"
+#include "core/plan/limits.h"
 #include "core/techniques/registry.h"
 #include "tests/support/pictures.h"
 
@@ -119,6 +120,29 @@ TEST(RenderOptions, DepthIsThatOfTheTechniqueUnlessNamed) {
     EXPECT_NE(row->help.find(usual ? "Unless told " + depth : std::string("of ") + type.name + " " + depth),
               std::string_view::npos)
         << type.name;
+  }
+}
+
+// What the request names is kept; the depth of trees is only for an error to choose.
+TEST(RenderOptions, BudgetsFreeWhatIsNotAskedWhateverTheSceneSays) {
+  Json json = sample("paper");
+  json["render"].update({{"max_depth", 4}, {"precision", "float"}, {"samples", 3}});
+  const auto scene = load(json);
+  for (const TechniqueType& type : technique_types()) {
+    RenderSettings error, seconds;
+    error.technique = seconds.technique = type.name;
+    error.error = 0.01;
+    seconds.seconds = 1;
+    EXPECT_EQ(resolve(*scene, error).max_depth, kMaxDepth) << type.name;
+    EXPECT_EQ(resolve(*scene, seconds).max_depth, type.draws_light ? kMaxDepth : 4) << type.name;
+    for (RenderSettings asked : {error, seconds}) {
+      EXPECT_EQ(resolve(*scene, asked).precision, Precision::double_precision) << type.name;
+      EXPECT_EQ(resolve(*scene, asked).samples, kMaxSamples) << type.name;
+      asked.max_depth = 2;
+      asked.precision = Precision::single_precision;
+      EXPECT_EQ(resolve(*scene, asked).max_depth, 2) << type.name;
+      EXPECT_EQ(resolve(*scene, asked).precision, Precision::single_precision) << type.name;
+    }
   }
 }
 
