@@ -1,6 +1,6 @@
 // Wires what tells of speed and accuracy to the page: the chart and its slider, budgets, and the picture's own error.
 
-import { attach_budgets, told_of } from "./budget.js";
+import { attach_budgets, budget_of, told_of } from "./budget.js";
 import { ChartDialog } from "./chart_dialog.js";
 import { Overlay } from "./overlay.js";
 import { Tradeoff } from "./tradeoff.js";
@@ -8,12 +8,14 @@ import { Tradeoff } from "./tradeoff.js";
 const $ = (id) => document.getElementById(id);
 
 // `on` has: picture() -> the picture at rest without plan and budget, or null; seen() -> the address of the one on the
-// stage, or null; pause(); set({plan, seconds, error}), of which one is given. Returns {show(), leave(), mark(state),
-// tell(figures, state)}.
+// stage, or null; pause(); set({plan, seconds, error}), of which one is given. Returns {show(), predict(), leave(),
+// mark(state), tell(figures, state)}.
 export function attach_accuracy(on) {
   const overlay = new Overlay($("overlay"));
   const dialog = new ChartDialog($("chart"), $("show-chart"), (index) => tradeoff.choose(index));
+  const chips = [...document.querySelectorAll("#budgets button")];
   const parts = {
+    budgets: chips.map(budget_of),
     make: $("make-chart"),
     progress: $("chart-progress"),
     part: $("chart-part"),
@@ -34,12 +36,11 @@ export function attach_accuracy(on) {
     chart: (drawing, points) => dialog.show(drawing, points),
     say: (text) => ($("announcement").textContent = text),
   });
-  const mark_budgets = attach_budgets(document.querySelectorAll("#budgets button"), (budget) =>
-    on.set({ plan: "", ...budget }),
-  );
+  const mark_budgets = attach_budgets(chips, (budget) => on.set({ plan: "", ...budget }));
   $("drop-plan").addEventListener("click", () => on.set({ plan: "", seconds: 0, error: 0 }));
   return {
     show: () => tradeoff.show(on.picture()),
+    predict: () => tradeoff.predict(),
     leave: () => tradeoff.leave(),
     mark: (state) => {
       mark_budgets(state);

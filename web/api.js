@@ -61,8 +61,8 @@ export async function request(path, options = {}) {
   return request(path, options);
 }
 
-export async function get_json(path) {
-  return (await request(path)).json();
+export async function get_json(path, options) {
+  return (await request(path, options)).json();
 }
 
 export async function get_text(path) {

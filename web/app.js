@@ -49,6 +49,7 @@ const player = new Player(camera, view, {
   stats: (kind, figures) => {
     hud.show(kind, figures);
     show_warning(figures.warning);
+    if (kind === "still") accuracy.predict();
     if (kind === "still" && figures.bound) accuracy.tell(figures, state);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;

@@ -18,7 +18,7 @@ export function attach_budgets(chips, on_change) {
   };
 }
 
-const budget_of = ({ dataset }) => ({ seconds: Number(dataset.seconds ?? 0), error: Number(dataset.error ?? 0) });
+export const budget_of = ({ dataset }) => ({ seconds: Number(dataset.seconds ?? 0), error: Number(dataset.error ?? 0) });
 
 // What a picture that was made to a plan or a budget tells: {missed, text}; `figures` of the picture.
 export function told_of(figures, { plan, seconds, error }) {

@@ -6,6 +6,7 @@ import { bound_words, fields_of } from "./bound.js";
 import { at_view, bound_of, plan_of, stop_at, stops_of } from "./front.js";
 import { Hold } from "./hold.js";
 import { make_chart } from "./job.js";
+import { Prediction } from "./predicted.js";
 import { progress_text } from "./progress.js";
 import { frame_url, query_of } from "./urls.js";
 
@@ -24,10 +25,13 @@ export class Tradeoff {
   #at = -1; // the stop that is chosen
   #was = null; // address of what was over the stage before something else was held there
   #work = null; // AbortController of the chart being made
+  #prediction;
+  #predicted = ""; // what is said while there is no chart
   #fetching = new AbortController();
 
-  // `parts`: elements by name. `on` has: picture() -> the picture at rest or null, without plan and budget; seen() ->
-  // the address of the one on the stage, or null; pause(), use(plan), chart(drawing, points) and say(text).
+  // `parts`: elements by name, and the `budgets` to predict. `on` has: picture() -> the picture at rest or null, without
+  // plan and budget; seen() -> the address of the one on the stage, or null; pause(), use(plan), chart(drawing, points)
+  // and say(text).
   constructor(parts, overlay, on) {
     this.#parts = parts;
     this.#overlay = overlay;
@@ -39,6 +43,10 @@ export class Tradeoff {
     parts.use.addEventListener("click", () => this.#at >= 0 && on.use(plan_of(this.#point)));
     new Hold(parts.reference, "r", (held) => this.#hold(held, this.#reference()));
     new Hold(parts.bound, "e", (held) => this.#hold(held, this.#bound()));
+    this.#prediction = new Prediction(parts.budgets, (words) => {
+      this.#predicted = words;
+      this.#offer();
+    });
     this.#show_parts();
   }
 
@@ -48,7 +56,14 @@ export class Tradeoff {
     if (kind === this.#kind) return;
     this.#kind = kind;
     this.#work?.abort();
+    this.#prediction.drop();
     this.#drop();
+  }
+
+  // The view no longer moves, and something of the picture is shown: what the budgets would give may be asked.
+  predict() {
+    const picture = this.#on.picture();
+    if (picture && !this.#chart) this.#prediction.of(picture);
   }
 
   // The stage is to be seen.
@@ -157,7 +172,7 @@ export class Tradeoff {
     const { slider, line: told } = this.#parts;
     if (place === undefined) this.#settle();
     slider.ariaValueText = line;
-    told.textContent = line;
+    told.textContent = told.title = line;
     this.#on.pause();
     const elsewhere = this.#elsewhere ? "Measured in another view. " : "";
     this.#say(`${elsewhere}The picture alone tells: ${bound_words(fields_of(this.#point.certificate))}`);
@@ -223,7 +238,12 @@ export class Tradeoff {
     const { note } = this.#parts;
     note.textContent = text;
     note.classList.toggle("missed", alarms);
-    if (!this.#chart) this.#parts.line.textContent = kOffer;
+    this.#offer();
+  }
+
+  #offer() {
+    const { line } = this.#parts;
+    if (!this.#chart) line.textContent = line.title = this.#predicted || kOffer;
   }
 }
 

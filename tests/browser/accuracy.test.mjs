@@ -75,6 +75,48 @@ page_test(
 );
 
 page_test(
+  "before there is a chart it is predicted what the budgets would give, once for a picture",
+  "scene=cornell-box&playing=0",
+  async (page) => {
+    const asked = [];
+    page.on("request", (request) => /explain/.test(request.url()) && asked.push(query(request.url())));
+    await rest(page);
+    const line = /^Predicted: 2 s gives error ≤ 0\.\d+; 2 % takes [\d.]+ (ms|s|min); 0\.5 % (takes|is out of reach)/;
+    const words = await eventually("the prediction", async () => line.exec(await text(page, "stop-line"))?.input);
+    assert.deepEqual(await axe_violations(page), []);
+    await page.locator("#stage").hover();
+    await page.mouse.wheel(0, 100);
+    await eventually("another view", async () => /^Predicted in another view: 2 s/.test(await text(page, "stop-line")));
+    assert.ok(asked.length <= 3, "a turned view asks nothing");
+    await page.getByRole("button", { name: "Reset the view" }).click();
+    await eventually("the view again", async () => (await text(page, "stop-line")) === words);
+    await page.locator("#technique").selectOption("raycast");
+    const ray_casting = () => asked.filter((each) => each.get("technique") === "raycast");
+    await eventually("that of other options", async () => ray_casting().length === 3 && /^Predicted: /.test(await text(page, "stop-line")));
+    assert.deepEqual(ray_casting().map((each) => each.get("seconds") ?? each.get("error")), ["2", "0.02", "0.005"]);
+  },
+  still,
+);
+
+page_test(
+  "a prediction that is refused leaves the offer, and is asked again",
+  "playing=0",
+  async (page) => {
+    await page.route("**/explain?**", (route) => route.fulfill({ status: 429, json: { title: "Too many requests" } }));
+    const refused = page.waitForResponse((response) => response.status() === 429);
+    await page.locator("#technique").selectOption("raycast");
+    await refused;
+    await rest(page);
+    assert.match(await text(page, "stop-line"), /A chart tries many ways/);
+    await page.unroute("**/explain?**");
+    await page.locator("#stage").hover();
+    await page.mouse.wheel(0, 100);
+    await eventually("the prediction", async () => /^Predicted: /.test(await text(page, "stop-line")));
+  },
+  { ...still, expected: /status of 429/ },
+);
+
+page_test(
   "the slider goes from stop to stop by keys, and says what each is",
   "playing=0",
   async (page) => {

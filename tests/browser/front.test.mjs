@@ -9,6 +9,7 @@ import { load } from "./web_modules.mjs";
 const { bound_words, budget_words, fields_of, parameters_of } = await load("bound.js");
 const { at_view, duration, line_of, options_of, plan_of, stop_at, stops_of } = await load("front.js");
 const { format_hash, kDefaults, parse_hash } = await load("state.js");
+const { prediction_words } = await load("predicted.js");
 const { chart_body, frame_url, job_body } = await load("urls.js");
 
 const point = (cpu_ms, rmse, more = {}) => ({
@@ -87,4 +88,17 @@ test("a missed budget says why, and that it was missed", () => {
   });
   const met = budget_words(parameters_of("met=?1;seconds=2;seconds-met=?1;used=1.834"), bound);
   assert.deepEqual(met, { missed: false, text: "Budget met: 1.8 s of 2 s; error ≤ 0.0071 (95 %, estimated)" });
+});
+
+test("a prediction says what a budget gives, and when it is out of reach", () => {
+  const certificate = (kind, rms) => ({ total: { kind, rms }, known: { kind, rms }, terms: [] });
+  const forecast = (kind, rms, error_met) => ({ budget: { used_s: 1.234, error_met }, certificate: certificate(kind, rms) });
+  const seconds = { seconds: 2, error: 0 }, error = { seconds: 0, error: 0.005 };
+  assert.equal(prediction_words(seconds, forecast("estimated", 0.01234)), "2 s gives error ≤ 0.012");
+  assert.equal(prediction_words(seconds, forecast("unknown", null)), "2 s gives an unknown error");
+  const unknown = { kind: "unknown", rms: null };
+  const partly = { ...certificate("estimated", 0.03), total: unknown, terms: [{ subject: "precision", bound: unknown }] };
+  assert.equal(prediction_words(seconds, { budget: {}, certificate: partly }), "2 s gives error ≤ 0.03 besides precision");
+  assert.equal(prediction_words(error, forecast("estimated", 0.0049, true)), "0.5 % takes 1.2 s");
+  assert.equal(prediction_words(error, forecast("proved", 0.031, false)), "0.5 % is out of reach: error ≤ 0.031 in 1.2 s");
 });

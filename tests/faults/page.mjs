@@ -42,6 +42,8 @@ export const pageFaults = [
         "the last picture is the finest one that takes no longer than it may, unless it was asked for"),
   of_accuracy("a missed budget is said to be met", "bound.js", "if (budget.met) return", "if (budget.met !== undefined) return",
               "a missed budget says why, and that it was missed"),
+  of_accuracy("a budget out of reach is predicted to be met", "predicted.js", "${budget.error_met ? ", "${budget ? ",
+              "a prediction says what a budget gives, and when it is out of reach"),
   of_accuracy("what is unknown is an empty field", "bound.js", "return `error unknown, because of ${because}; ${rest}`;", 'return "";',
               "what a picture tells of its error is put into words"),
   of_accuracy("a link forgets the plan", "state.js", "    plan: state.plan,\n", "", "a link keeps a plan without its view and size"),
