@@ -184,15 +184,15 @@ export async function axe_violations(page) {
   return violations.map(({ id, nodes }) => `${id} at ${nodes.map(({ target }) => target)}`);
 }
 
-// From now on streams of passes hang after the one of so many samples; window.signals are those of all requests.
+// From now on streams of passes hang after the one of so many samples; window.signals are theirs.
 export async function hold_refinement(page, samples) {
   await page.evaluate((last) => {
     const real_fetch = window.fetch;
     window.signals = [];
     window.fetch = async (path, options) => {
-      if (options?.signal) window.signals.push(options.signal);
+      if (!String(path).includes("/refinement?")) return real_fetch(path, options);
+      window.signals.push(options.signal);
       const response = await real_fetch(path, options);
-      if (!String(path).includes("/refinement?")) return response;
       const bytes = new Uint8Array(await response.arrayBuffer());
       let at = 0;
       for (let seen = 0; seen < last;) {
