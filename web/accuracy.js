@@ -7,9 +7,9 @@ import { Tradeoff } from "./tradeoff.js";
 
 const $ = (id) => document.getElementById(id);
 
-// `on` has: picture() -> the picture at rest without plan and budget, or null; seen() -> the address of the one on the
-// stage, or null; pause(); set({plan, seconds, error}), of which one is given. Returns {show(), predict(), leave(),
-// mark(state), tell(figures, state)}.
+// `on` has: picture() -> the picture at rest without plan and budget, or null; within({seconds, error}) -> the same with
+// a budget; seen() -> the address of the one on the stage, or null; pause(); set({plan, seconds, error}), of which one is
+// given. Returns {show(), rest(), stale(), leave(), mark(state), tell(figures, state)}.
 export function attach_accuracy(on) {
   const overlay = new Overlay($("overlay"));
   const dialog = new ChartDialog($("chart"), $("show-chart"), (index) => tradeoff.choose(index));
@@ -30,6 +30,7 @@ export function attach_accuracy(on) {
   };
   const tradeoff = new Tradeoff(parts, overlay, {
     picture: on.picture,
+    within: on.within,
     seen: on.seen,
     pause: on.pause,
     use: (plan) => on.set({ plan, seconds: 0, error: 0 }),
@@ -40,7 +41,8 @@ export function attach_accuracy(on) {
   $("drop-plan").addEventListener("click", () => on.set({ plan: "", seconds: 0, error: 0 }));
   return {
     show: () => tradeoff.show(on.picture()),
-    predict: () => tradeoff.predict(),
+    rest: () => tradeoff.rest(),
+    stale: () => tradeoff.stale(),
     leave: () => tradeoff.leave(),
     mark: (state) => {
       mark_budgets(state);

@@ -49,7 +49,6 @@ const player = new Player(camera, view, {
   stats: (kind, figures) => {
     hud.show(kind, figures);
     show_warning(figures.warning);
-    if (kind === "still") accuracy.predict();
     if (kind === "still" && figures.bound) accuracy.tell(figures, state);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
@@ -59,16 +58,21 @@ const player = new Player(camera, view, {
   waiting: show_waiting,
   problem: fail_to_render,
   progress: (figures) => show_progress($("busy"), $("progress"), figures),
-  stale: () => delete stage.dataset.shows,
+  stale: () => {
+    delete stage.dataset.shows;
+    accuracy.stale();
+  },
   settled: () => save_now(),
   rested: () => {
     stage.dataset.shows = "still";
     refresh_download();
+    if (!state.playing) accuracy.rest();
   },
 });
 
 const accuracy = attach_accuracy({
   picture: () => scene && picture_to_chart(page(), camera.view),
+  within: (budget) => picture_at_rest({ ...page(), state: { ...state, plan: "", ...budget } }, camera.view),
   seen: () => scene && frame_url(player.picture),
   pause: () => state.playing && set_playing(false),
   set: (settings) => change(settings),

@@ -1,6 +1,6 @@
 // What a picture tells of its error, in words. The service says it as parameters of a header, or as JSON.
 
-import { rounded } from "./progress.js";
+import { rounded, rounded_up } from "./progress.js";
 
 // "rms=0.0044;kind=estimated;met=?1;reason=\"a; b\"" as {name: text}; truth values as booleans.
 export function parameters_of(header) {
@@ -27,7 +27,7 @@ export function fields_of({ total, known, terms, space }) {
 }
 
 const strength = (kind) => (kind === "estimated" ? "95 %, estimated" : kind);
-const at_most = (rms, kind) => `≤ ${rounded(Number(rms))} (${strength(kind)})`;
+const at_most = (rms, kind) => `≤ ${rounded_up(Number(rms))} (${strength(kind)})`;
 
 // "error ≤ 0.0044 (95 %, estimated)"; of what is unknown, that it is, why, and what the rest is at most.
 export function bound_words(fields) {

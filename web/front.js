@@ -1,6 +1,6 @@
 // The stops of a chart: ways to make its picture, each nearer to the reference than all that cost less.
 
-import { rounded } from "./progress.js";
+import { rounded, rounded_up } from "./progress.js";
 
 const kNearer = 0.99; // a smaller difference of errors is none, as the service has it
 // What a link says of the view and of its size is no part of a plan.
@@ -39,7 +39,7 @@ export function duration(seconds) {
 // "0.8 s, error ≤ 0.004 (95 %), whitted, depth 5, 16 samples, float". The time is predicted.
 export function line_of({ full_size, interval, rmse, technique, max_depth, samples, precision }) {
   const error = interval
-    ? `error ≤ ${rounded(interval.rmse.high)} (95 %)`
+    ? `error ≤ ${rounded_up(interval.rmse.high)} (95 %)`
     : `error about ${rounded(rmse)} (one round)`;
   const count = samples === 1 ? "1 sample" : `${samples} samples`;
   return `${duration(full_size.seconds)}, ${error}, ${technique}, depth ${max_depth}, ${count}, ${precision}`;

@@ -7,6 +7,13 @@ function duration(seconds) {
 // To two digits.
 export const rounded = (rmse) => String(Number(rmse.toPrecision(2)));
 
+// Of what is at most so much: never less than it is, but for the rounding of a double.
+export function rounded_up(bound) {
+  if (bound === 0) return "0";
+  const unit = 10 ** (Math.floor(Math.log10(bound)) - 1);
+  return rounded(Math.ceil(bound / unit - 1e-9) * unit);
+}
+
 // `shown` of `end` samples are on the canvas, with that root mean square error of a pixel, in linear radiance, if it is
 // known; `part` of the next picture is done, `seconds_left` till the end.
 export function progress_text({ shown, end, rmse, part, seconds_left }) {

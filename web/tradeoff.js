@@ -30,8 +30,8 @@ export class Tradeoff {
   #fetching = new AbortController();
 
   // `parts`: elements by name, and the `budgets` to predict. `on` has: picture() -> the picture at rest or null, without
-  // plan and budget; seen() -> the address of the one on the stage, or null; pause(), use(plan), chart(drawing, points)
-  // and say(text).
+  // plan and budget; within(budget) -> the same with a budget alone; seen() -> the address of the one on the stage, or
+  // null; pause(), use(plan), chart(drawing, points) and say(text).
   constructor(parts, overlay, on) {
     this.#parts = parts;
     this.#overlay = overlay;
@@ -43,7 +43,7 @@ export class Tradeoff {
     parts.use.addEventListener("click", () => this.#at >= 0 && on.use(plan_of(this.#point)));
     new Hold(parts.reference, "r", (held) => this.#hold(held, this.#reference()));
     new Hold(parts.bound, "e", (held) => this.#hold(held, this.#bound()));
-    this.#prediction = new Prediction(parts.budgets, (words) => {
+    this.#prediction = new Prediction((words) => {
       this.#predicted = words;
       this.#offer();
     });
@@ -56,14 +56,17 @@ export class Tradeoff {
     if (kind === this.#kind) return;
     this.#kind = kind;
     this.#work?.abort();
-    this.#prediction.drop();
     this.#drop();
   }
 
-  // The view no longer moves, and something of the picture is shown: what the budgets would give may be asked.
-  predict() {
-    const picture = this.#on.picture();
-    if (picture && !this.#chart) this.#prediction.of(picture);
+  // The picture is at rest.
+  rest() {
+    if (!this.#chart && !this.#work) this.#prediction.of(this.#parts.budgets.map(this.#on.within));
+  }
+
+  // Another picture is due.
+  stale() {
+    this.#prediction.leave();
   }
 
   // The stage is to be seen.

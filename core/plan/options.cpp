@@ -193,7 +193,7 @@ constexpr std::array kOptions{
       .placeholder = "SECONDS",
       .help =
           "Time that the answer may take, all in all, or the first picture of an orbit: as many samples are "
-          "traced as fit, in double precision, of paths to any depth, unless these are given. 0: no limit.",
+          "traced as fit, to any depth and in double precision, unless these are given. 0: no limit.",
       .in_scene = false},
     O{.key = "on_miss",
       .section = Section::budget,
@@ -409,31 +409,24 @@ namespace {
 
 // From where an error asks for less: the same for all, so that a smaller one never comes to more.
 constexpr double kMostContribution = 1.0 / 16;
+// In a given time: a quarter of what a code of 8 bits stands for. Trees are limited by it rather than by
+// their depth, which costs hardly more where surfaces mirror and less where glass branches.
+constexpr double kTimedContribution = 0.001;
 
 // Completes what a budget leaves free.
-void free_for_budget(RenderSettings& settings, const TechniqueType& technique) {
+void free_for_budget(RenderSettings& settings) {
   if (!settings.samples) settings.samples = kMaxSamples;
+  if (!settings.max_depth) settings.max_depth = kMaxDepth;
+  if (!settings.min_contribution)
+    settings.min_contribution = settings.error.value_or(0) > 0 ? kMostContribution : kTimedContribution;
   if (!settings.precision) settings.precision = Precision::double_precision;
-  if (!settings.max_depth && budget_frees_depth(settings, technique)) settings.max_depth = kMaxDepth;
-  if (!settings.min_contribution && settings.error.value_or(0) > 0)
-    settings.min_contribution = kMostContribution;
-}
-
-const TechniqueType& technique_of(const Scene& scene, const RenderSettings& asked) {
-  const auto& name = asked.technique ? asked.technique : scene.render.technique;
-  return *std::ranges::find(technique_types(), name.value_or(*default_settings().technique),
-                            &TechniqueType::name);
 }
 
 }  // namespace
 
-bool budget_frees_depth(const RenderSettings& settings, const TechniqueType& technique) {
-  return settings.error.value_or(0) > 0 || (settings.seconds.value_or(0) > 0 && technique.draws_light);
-}
-
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked) {
   RenderSettings all = asked;
-  if (has_budget(all)) free_for_budget(all, technique_of(scene, asked));
+  if (has_budget(all)) free_for_budget(all);
   const auto complete = [&](const RenderSettings& otherwise) {
     for (const RenderOption& option : kOptions)
       if (!option.given(all)) option.copy(otherwise, all);

@@ -112,15 +112,10 @@ void require_no_budget(const RenderSettings& settings, std::string_view what);
 // Throws InputError if another view is asked for, where `what` has the picture's alone.
 void require_picture(const RenderSettings& settings, std::string_view what);
 
-// Whether a budget chooses how deep rays go where the request does not. Paths may go as deep as any: of the
-// Cornell box those to depth 32 take 1.1 of the time of those to 5, and what these leave out outweighs that.
-// Trees grow with every depth; with an error, the least contribution limits them.
-bool budget_frees_depth(const RenderSettings& settings, const TechniqueType& technique);
-
 // Every option as asked or else as the scene says or else its default, the time held within the scene's
 // motion. A budget frees what is not asked, whatever the scene says: of samples there may then be as many as
-// any picture may have, in double precision, and rays may be as deep as any, those of trees only where an
-// error is asked, with 1/16 of it as least contribution.
+// any picture may have, rays may be as deep as any, those of trees with a least contribution of 1/16, of
+// which an error makes less, or of 0.001 where only a time is given, in double precision.
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked);
 
 // REQUIRES: the options of the camera are given.

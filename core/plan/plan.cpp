@@ -261,8 +261,7 @@ class Planner {
   }
 
   std::string depth_reason() const {
-    if (!request_.max_depth && budget_frees_depth(plan_.asked, *plan_.technique))
-      return "the most there may be, for the budget asked";
+    if (!request_.max_depth && has_budget(plan_.asked)) return "the most there may be, for the budget asked";
     return request_.max_depth || scene_.render.max_depth ? "as asked" : "by default";
   }
 
@@ -302,9 +301,13 @@ class Planner {
     if (plan_.min_contribution > 0)
       decide("least contribution",
              (plan_.free_contribution ? "at most " : "") + number_text(plan_.min_contribution),
-             std::string(plan_.free_contribution ? "the error asked chooses it" : "as asked") +
-                 "; weaker rays are replaced by ambient light",
-             cut_bound(1));
+             contribution_reason() + "; weaker rays are replaced by ambient light", cut_bound(1));
+  }
+
+  std::string contribution_reason() const {
+    if (plan_.free_contribution) return "the error asked chooses it";
+    if (request_.min_contribution || !has_budget(plan_.asked)) return "as asked";
+    return "a quarter of what a code of 8 bits stands for";
   }
 
   // Of rays that are not traced, before any is: of so much weight in all. The picture's ledger tells less.

@@ -75,39 +75,50 @@ page_test(
 );
 
 page_test(
-  "before there is a chart it is predicted what the budgets would give, once for a picture",
-  "scene=cornell-box&playing=0",
+  "before there is a chart it is predicted what the budgets would give, of the picture at rest",
+  "scene=cornell-box&playing=0&samples=2",
   async (page) => {
     const asked = [];
     page.on("request", (request) => /explain/.test(request.url()) && asked.push(query(request.url())));
-    await rest(page);
-    const line = /^Predicted: 2 s gives error ≤ 0\.\d+; 2 % takes [\d.]+ (ms|s|min); 0\.5 % (takes|is out of reach)/;
-    const words = await eventually("the prediction", async () => line.exec(await text(page, "stop-line"))?.input);
+    const line = /^Predicted: 2 s: error ≤ 0\.\d+ · 2 %: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+) · 0\.5 %: /;
+    const predicted = () => eventually("the prediction", async () => line.exec(await text(page, "stop-line"))?.input);
+    await predicted();
     assert.deepEqual(await axe_violations(page), []);
+    asked.length = 0;
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("another view", async () => /^Predicted in another view: 2 s/.test(await text(page, "stop-line")));
-    assert.ok(asked.length <= 3, "a turned view asks nothing");
-    await page.getByRole("button", { name: "Reset the view" }).click();
-    await eventually("the view again", async () => (await text(page, "stop-line")) === words);
+    await eventually("the offer", async () => /A chart tries many ways/.test(await text(page, "stop-line")));
+    await predicted();
+    assert.deepEqual(asked.map((each) => each.get("seconds") ?? each.get("error")), ["2", "0.02", "0.005"]);
+    assert.deepEqual([...new Set(asked.map((each) => each.get("samples")))], ["2"], "what was chosen");
     await page.locator("#technique").selectOption("raycast");
-    const ray_casting = () => asked.filter((each) => each.get("technique") === "raycast");
-    await eventually("that of other options", async () => ray_casting().length === 3 && /^Predicted: /.test(await text(page, "stop-line")));
-    assert.deepEqual(ray_casting().map((each) => each.get("seconds") ?? each.get("error")), ["2", "0.02", "0.005"]);
+    await eventually("that of other options", async () => asked.at(-1).get("technique") === "raycast");
+    await page.goBack();
+    await eventually("the first again", async () => asked.at(-1).get("technique") !== "raycast");
+    await predicted();
+    const before = asked.length;
+    await page.getByRole("button", { name: "2 s" }).click();
+    await eventually("the budget", async () => /^Budget /.test(await text(page, "told")));
+    await predicted();
+    assert.equal(asked.length, before, "what is known is not asked again");
   },
   still,
 );
 
 page_test(
-  "a prediction that is refused leaves the offer, and is asked again",
+  "a prediction that is refused leaves the offer, and is asked of the next picture",
   "playing=0",
   async (page) => {
-    await page.route("**/explain?**", (route) => route.fulfill({ status: 429, json: { title: "Too many requests" } }));
-    const refused = page.waitForResponse((response) => response.status() === 429);
+    const refused = [];
+    await page.route("**/explain?**", (route) => {
+      refused.push(query(route.request().url()).get("technique"));
+      return route.fulfill({ status: 429, json: { title: "Too many requests" } });
+    });
     await page.locator("#technique").selectOption("raycast");
-    await refused;
+    await eventually("the refusal", async () => refused.includes("raycast"));
     await rest(page);
     assert.match(await text(page, "stop-line"), /A chart tries many ways/);
+    assert.equal(refused.filter((technique) => technique === "raycast").length, 1);
     await page.unroute("**/explain?**");
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);

@@ -10,6 +10,7 @@ const { bound_words, budget_words, fields_of, parameters_of } = await load("boun
 const { at_view, duration, line_of, options_of, plan_of, stop_at, stops_of } = await load("front.js");
 const { format_hash, kDefaults, parse_hash } = await load("state.js");
 const { prediction_words } = await load("predicted.js");
+const { rounded_up } = await load("progress.js");
 const { chart_body, frame_url, job_body } = await load("urls.js");
 
 const point = (cpu_ms, rmse, more = {}) => ({
@@ -90,15 +91,20 @@ test("a missed budget says why, and that it was missed", () => {
   assert.deepEqual(met, { missed: false, text: "Budget met: 1.8 s of 2 s; error ≤ 0.0071 (95 %, estimated)" });
 });
 
-test("a prediction says what a budget gives, and when it is out of reach", () => {
-  const certificate = (kind, rms) => ({ total: { kind, rms }, known: { kind, rms }, terms: [] });
-  const forecast = (kind, rms, error_met) => ({ budget: { used_s: 1.234, error_met }, certificate: certificate(kind, rms) });
+test("a prediction says what a budget gives, and when it is missed", () => {
+  const forecast = (rms, met) => ({
+    budget: { used_s: 1.234, error_met: met, seconds_met: met },
+    certificate: { total: { kind: rms === null ? "unknown" : "estimated", rms } },
+  });
   const seconds = { seconds: 2, error: 0 }, error = { seconds: 0, error: 0.005 };
-  assert.equal(prediction_words(seconds, forecast("estimated", 0.01234)), "2 s gives error ≤ 0.012");
-  assert.equal(prediction_words(seconds, forecast("unknown", null)), "2 s gives an unknown error");
-  const unknown = { kind: "unknown", rms: null };
-  const partly = { ...certificate("estimated", 0.03), total: unknown, terms: [{ subject: "precision", bound: unknown }] };
-  assert.equal(prediction_words(seconds, { budget: {}, certificate: partly }), "2 s gives error ≤ 0.03 besides precision");
-  assert.equal(prediction_words(error, forecast("estimated", 0.0049, true)), "0.5 % takes 1.2 s");
-  assert.equal(prediction_words(error, forecast("proved", 0.031, false)), "0.5 % is out of reach: error ≤ 0.031 in 1.2 s");
+  assert.equal(prediction_words(seconds, forecast(0.0121, true)), "2 s: error ≤ 0.013");
+  assert.equal(prediction_words(seconds, forecast(null, true)), "2 s: error unknown");
+  assert.equal(prediction_words(seconds, forecast(0.01, false)), "2 s: missed, takes 1.2 s");
+  assert.equal(prediction_words(error, forecast(0.0049, true)), "0.5 %: 1.2 s");
+  assert.equal(prediction_words(error, forecast(0.00501, false)), "0.5 %: missed, error ≤ 0.0051");
+});
+
+test("what is at most so much is never rounded down", () => {
+  const rounded = [0, 0.02, 0.0201, 0.0995, 0.996, 1, 1.01, 1e-7].map(rounded_up);
+  assert.deepEqual(rounded, ["0", "0.02", "0.021", "0.1", "1", "1", "1.1", "1e-7"]);
 });

@@ -18,8 +18,8 @@ export const optionFaults = [
           "if (option.given(otherwise)) option.copy(otherwise, all);", "test_plan", "RenderOptions.OfARequestComeBefore*"),
   options(24, "missing options of a request become defaults", "if (p.has(key)) settings.*of.member", "settings.*of.member",
           "test_plan", "RenderOptions.AreReadUpToTheirLimits*"),
-  options(24, "a budget of time keeps paths as short as the scene says", "settings.seconds.value_or(0) > 0 && technique.draws_light",
-          "settings.seconds.value_or(0) > 0 && false", "test_plan", "RenderOptions.BudgetsFree*"),
+  options(24, "a budget of time keeps rays as short as the scene says", "if (!settings.max_depth) settings",
+          "if (!settings.max_depth && settings.error.value_or(0) > 0) settings", "test_plan", "RenderOptions.BudgetsFree*"),
   {
     fault: 24,
     about: "the written plan leaves the precision to the next plan",

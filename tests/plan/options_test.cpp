@@ -123,24 +123,28 @@ TEST(RenderOptions, DepthIsThatOfTheTechniqueUnlessNamed) {
   }
 }
 
-// What the request names is kept; the depth of trees is only for an error to choose.
+// What the request names is kept.
 TEST(RenderOptions, BudgetsFreeWhatIsNotAskedWhateverTheSceneSays) {
   Json json = sample("paper");
-  json["render"].update({{"max_depth", 4}, {"precision", "float"}, {"samples", 3}});
+  json["render"].update(
+      {{"max_depth", 4}, {"min_contribution", 0.5}, {"precision", "float"}, {"samples", 3}});
   const auto scene = load(json);
   for (const TechniqueType& type : technique_types()) {
     RenderSettings error, seconds;
     error.technique = seconds.technique = type.name;
     error.error = 0.01;
     seconds.seconds = 1;
-    EXPECT_EQ(resolve(*scene, error).max_depth, kMaxDepth) << type.name;
-    EXPECT_EQ(resolve(*scene, seconds).max_depth, type.draws_light ? kMaxDepth : 4) << type.name;
+    EXPECT_EQ(resolve(*scene, error).min_contribution, 1.0 / 16) << type.name;
+    EXPECT_EQ(resolve(*scene, seconds).min_contribution, 0.001) << type.name;
     for (RenderSettings asked : {error, seconds}) {
       EXPECT_EQ(resolve(*scene, asked).precision, Precision::double_precision) << type.name;
       EXPECT_EQ(resolve(*scene, asked).samples, kMaxSamples) << type.name;
+      EXPECT_EQ(resolve(*scene, asked).max_depth, kMaxDepth) << type.name;
       asked.max_depth = 2;
       asked.precision = Precision::single_precision;
+      asked.min_contribution = 0.25;
       EXPECT_EQ(resolve(*scene, asked).max_depth, 2) << type.name;
+      EXPECT_EQ(resolve(*scene, asked).min_contribution, 0.25) << type.name;
       EXPECT_EQ(resolve(*scene, asked).precision, Precision::single_precision) << type.name;
     }
   }
