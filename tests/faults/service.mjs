@@ -59,7 +59,7 @@ export const serviceFaults = [
   admission("who has lost many places begins more", "return lost >= 2 * limits_.running;", "return lost < 0;",
             "Admission.WhoHasLostMany*"),
   entry(20, "a long tile does not give way", "core/render/worker_pool.cpp", "!is_over(loop) || !thread_for_another()", "true",
-        "test_render", "WorkerPool.ALongStepLets*"),
+        "test_render", "WorkerPool.NoStepRuns*"),
   entry(20, "a step that does not ask stops others", "core/render/worker_pool.cpp", "place->since <= until && others_wait",
         "place->since > until && others_wait", "test_render", "WorkerPool.AStepThatNever*", "WorkerPool.ATaskThat*"),
   entry(20, "a client takes all bytes", "server/http/budget.h", "const bool has_others = by_client > own &&", "const bool has_others = by_client > most_ &&",
