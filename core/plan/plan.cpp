@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <limits>
+#include <optional>
 
 #include "core/accelerators/registry.h"
 #include "core/cameras/pixel_filter.h"
@@ -73,6 +74,12 @@ class Planner {
   }
   void decide(std::string subject, std::string choice, std::string reason, const Bound& bound = {}) {
     plan_.decisions.push_back({std::move(subject), std::move(choice), std::move(reason), bound});
+  }
+
+  // Whether a budget chooses what the request may name.
+  template <class T>
+  bool is_free(const std::optional<T>& named) const {
+    return !named && has_budget(plan_.asked);
   }
 
   void take_request() {
@@ -152,11 +159,11 @@ class Planner {
     const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
       plan_.double_precision = asked == Precision::double_precision;
-      const bool chosen = !request_.precision && has_budget(plan_.asked);
-      return decide(
-          "precision", precision_name(plan_.double_precision),
-          chosen ? "what float does to a picture is not bounded, and budgets promise errors" : "as asked",
-          rounding_bound());
+      return decide("precision", precision_name(plan_.double_precision),
+                    is_free(request_.precision)
+                        ? "what float does to a picture is not bounded, and budgets promise errors"
+                        : "as asked",
+                    rounding_bound());
     }
     if (plan_.technique->draws_light && plan_.frame.aperture_radius > plan_.frame.focus_distance) {
       plan_.double_precision = true;
@@ -261,7 +268,7 @@ class Planner {
   }
 
   std::string depth_reason() const {
-    if (!request_.max_depth && has_budget(plan_.asked)) return "the most there may be, for the budget asked";
+    if (is_free(request_.max_depth)) return "the most there may be, for the budget asked";
     return request_.max_depth || scene_.render.max_depth ? "as asked" : "by default";
   }
 
@@ -306,8 +313,7 @@ class Planner {
 
   std::string contribution_reason() const {
     if (plan_.free_contribution) return "the error asked chooses it";
-    if (request_.min_contribution || !has_budget(plan_.asked)) return "as asked";
-    return "a quarter of what a code of 8 bits stands for";
+    return is_free(request_.min_contribution) ? "a quarter of what a code of 8 bits stands for" : "as asked";
   }
 
   // Of rays that are not traced, before any is: of so much weight in all. The picture's ledger tells less.

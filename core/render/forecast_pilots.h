@@ -8,8 +8,9 @@ namespace orrery {
 // on scene and plan alone, but for times.
 class ForecastPilots {
  public:
-  // Traces 16 whole tiles with 4 samples, which alone tell time and what reused paths bring; where none are
-  // reused also pilots with 4 and 16. Throws Cancelled once control.stop is requested.
+  // Traces 16 whole tiles with 4 samples, twice where they are quick, which alone tell time and what reused
+  // paths bring; where none are reused also pilots with 4 and 16. Throws Cancelled once control.stop is
+  // requested.
   ForecastPilots(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                  const RenderControl& control);
 
