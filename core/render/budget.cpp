@@ -268,11 +268,20 @@ class BudgetedRender {
     return !is_proved() && share_of_cuts(certificate_) > kShareOfCuts * error_ && !are_too_deep(stats_);
   }
 
+  // At least twice as many as before, so that both halves are there and tell the error; 0: none.
+  int doubled_samples() const {
+    for (const int samples : progressive_samples(*plan_)) {
+      const int told = samples == plan_->samples ? samples : samples / 2 * 2;
+      if (told >= 2 * samples_) return told;
+    }
+    return 0;
+  }
+
   // After the pass that has ended; 0: none.
   int next_samples() {
     const int most = plan_->samples;
-    if (samples_ >= most) return 0;
-    int next = std::min(2 * samples_, most);
+    int next = doubled_samples();
+    if (next == 0) return 0;
     if (is_timed()) {
       const double fit = samples_ + (deadline_s() - used_s()) / (kSlower * pass_s_per_sample_);
       if (fit < next) {

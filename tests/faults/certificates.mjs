@@ -58,6 +58,8 @@ export const certificateFaults = [
   entry("a budget changes the samples that were asked", "core/render/budget.cpp", "(plan_->free_samples && is_near_enough())",
         "is_near_enough()", "ErrorBudget.KeepsWhat*"),
   entry("a pass that was given up stays in the film", "core/render/budget.cpp", "kept_ = passes.film().copy();", "kept_.reset();", "TimeBudget.EndsInTime*"),
+  entry("a pass may less than double the samples", "core/render/budget.cpp", "told >= 2 * samples_", "told > samples_",
+        "TimeBudget.TellsTheError*"),
   entry("what does not fit is begun", "core/render/budget.cpp", "if (fit < next) {", "if (fit < 0) {", "TimeBudget.EndsInTime*"),
   entry("halves are taken in radiance where a display is asked", "core/render/tile_halves.cpp",
         "difference = shown_a - shown_b;", "difference = a - b;", "TileHalves/TileHalvesTest.TellWhatADisplayShows*"),

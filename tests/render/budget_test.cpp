@@ -358,6 +358,28 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
   EXPECT_GE(in_time, 80) << "the others stall in their last tile";
 }
 
+// Of samples that are given, and no power of two: the last pass has at least doubled them, whenever it ends.
+TEST(TimeBudget, TellsTheErrorOfSamplesGiven) {
+  const auto scene = test::load(test::sample("cornell-box"));
+  RenderRequest r = square(40);  // 4 tiles
+  r.samples = 100;
+  r.error = 1e-6;
+  EXPECT_EQ(rendered(scene, r).stats.error.samples, 100);
+  r.error = 0;
+  int partial = 0;
+  for (int run = 0; run < 40; ++run) {
+    FakeClock clock;
+    clock.random = test::Random(static_cast<std::uint64_t>(run));
+    clock.share_of_stalls = 0.1;
+    r.seconds = 0.004 * (run + 2);
+    const RenderResult result = rendered(scene, r, clock.control());
+    const int samples = *result.budget->settings.samples;
+    EXPECT_EQ(result.stats.error.samples, samples == 1 ? 0 : samples) << run;
+    partial += samples < 100 && samples > 1;
+  }
+  EXPECT_GE(partial, 10);
+}
+
 TEST(TimeBudget, SaysThatTheFirstPassTookLonger) {
   FakeClock clock;
   RenderRequest r = square(96);
