@@ -6,9 +6,24 @@
 #include "core/model/counts.h"
 #include "core/model/path.h"
 #include "core/model/plan.h"
+#include "core/model/record.h"
 #include "core/model/world.h"
 
 namespace orrery {
+
+template <class N>
+struct SecondVertex {
+  Vec3<N> position, geometric;
+  N step;
+  N shared;  // 1, or 0: nothing may be connected to it
+};
+
+// What a second vertex receives, and one over the density with which its group draws it; 0: nobody does.
+template <class N>
+struct Arrival {
+  Vec3<N> suffix;
+  N inverse_density;
+};
 
 // Paths of one tile that share what their second vertices receive: each first vertex is connected to the
 // second vertices of a group of others, which are drawn anew for each sample, and weighted with the densities
@@ -50,31 +65,30 @@ class PathReuse {
     Array<T> density;    // area density with which the slot's first vertex draws its partner's second vertex
     Vec3Array<T> share;  // of what leaves that and reaches the slot, per area
   };
-  int partner(int slot, int turn) const {
-    const int place = place_of_[static_cast<std::size_t>(slot)], within = place % group_;
-    return slot_at_[static_cast<std::size_t>(place - within + (within + turn) % group_)];
-  }
   void connect_own(Connections& own);
   void connect(int turn, Connections& to, TraceCounts& counts);
   void aim(int turn);
-  void sum_densities();
+  void find_arrivals();
+  Vec3<N> received(int i) const;
 
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;
   const int group_;
   const Groups all_ = Groups::covering(0, kBatch, kWidth<T>);
-  std::vector<int> slot_at_, place_of_;  // a permutation of the slots: following ones make a group
+  Groups kept_;  // registers that have first vertices
+  // By turn and slot: the one of its group that it is connected to; at turn 0 itself.
+  std::vector<Array<IndexOf<T>>> partners_;
   // First vertices by slot.
   SurfaceBatch<T> first_;
   Vec3Array<T> ray_, weight_;
-  Array<T> pdf_;  // 0: no other could draw the direction
-  Array<T> lit_;  // 1 or 0
-  // Second vertices by slot.
-  Vec3Array<T> position_, geometric_, suffix_;
-  Array<T> step_, shared_;  // shared: 1 or 0
+  Array<T> pdf_;                         // 0: no other could draw the direction
+  Array<T> lit_;                         // 1 or 0
+  std::vector<SecondVertex<T>> second_;  // by slot
+  Vec3Array<T> suffix_;
+  std::vector<Arrival<T>> arrivals_;  // by slot
   // One turn of connections.
   Vec3Array<T> toward_normal_, f_cos_;
-  Array<T> lobe_pdf_, total_;
+  Array<T> lobe_pdf_;
   RayBatch<T> shadow_;
   std::vector<Connections> connections_;  // by turn
 };
