@@ -1,6 +1,7 @@
 #include "core/lights/emitters.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/math/bounds.h"
@@ -101,6 +102,33 @@ Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance) {
       break;
   }
   return e;
+}
+
+std::optional<Emitter<double>> make_emitter(const Patch& patch, const Vec3d& radiance,
+                                            const Affined& world_from_model) {
+  using orrery::length;
+  constexpr double kRounding = 1e-12;
+  Patch placed{patch.kind, world_from_model.point(patch.at), world_from_model.vector(patch.a),
+               world_from_model.vector(patch.b)};
+  switch (patch.kind) {
+    case Patch::Kind::triangle: break;
+    case Patch::Kind::rectangle:
+    case Patch::Kind::disk:
+      if (!(std::abs(dot(placed.a, placed.b)) <= kRounding * length(placed.a) * length(placed.b))) return {};
+      break;
+    case Patch::Kind::sphere: {
+      const Vec3d scale(length(world_from_model.x), length(world_from_model.y), length(world_from_model.z));
+      if (!(max_component(abs(scale - Vec3d(scale.x))) <= kRounding * scale.x)) return {};
+      placed.a = patch.a * scale.x;
+      break;
+    }
+  }
+  Emitter<double> emitter = make_emitter(placed, radiance);
+  // Hits are off by what rounding moves them in the model, and on the way from there: see Placed.
+  const double in_model = make_emitter(patch, radiance).magnitude;
+  const double moved = stretch(world_from_model) * in_model + max_component(abs(world_from_model.origin));
+  emitter.magnitude = std::max(emitter.magnitude, 2 * moved);
+  return emitter;
 }
 
 LightBounds bounds_of(const Emitter<double>& e) {

@@ -5,7 +5,7 @@
 #include "core/accelerators/beside_moving.h"
 #include "core/accelerators/moving_instances.h"
 #include "core/base/work_scope.h"
-#include "core/lights/emitters.h"
+#include "core/prepare/emitting_surfaces.h"
 #include "core/stages/light_tree.h"
 
 namespace orrery {
@@ -117,42 +117,6 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
     const auto* kernel = (moves ? moving : geometry.shapes).back().get();
     geometry.primitives.push_back({kernel, moves ? moving_index++ : resting_index++, box});
   }
-}
-
-// Surfaces that emit. Those within instances are met by chance alone, and so are those that move during the
-// exposure. Returns bounds of the others.
-template <class T>
-std::vector<LightBounds> add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry) {
-  std::vector<LightBounds> bounds;
-  if (!scene.facts.materials.emits) return bounds;
-  for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
-  std::vector<Emitter<double>> emitters;
-  geometry.emitter_of.assign(geometry.material_of.size(), -1);
-  std::size_t primitive = 0;
-  const auto radiance_of = [&](std::size_t p) {
-    return scene.emission[static_cast<std::size_t>(scene.material_of[p])];
-  };
-  for (const auto& shapes : scene.shapes) {
-    const auto last = primitive + static_cast<std::size_t>(shapes->size());
-    while (primitive < last && radiance_of(primitive) == Vec3d(0)) interruption_point(++primitive);
-    if (primitive == last) continue;  // nothing to be posed
-    const auto posed = shapes->at(exposure.opens);
-    const ShapeSet& now = posed ? *posed : *shapes;
-    for (int i = now.size() - static_cast<int>(last - primitive); i < now.size(); ++i, ++primitive) {
-      interruption_point(primitive);
-      const Vec3d radiance = radiance_of(primitive);
-      if (!exposure.instant() && shapes->moves(i)) continue;
-      const auto patch = radiance == Vec3d(0) ? std::nullopt : now.patch(i);
-      if (!patch) continue;
-      const Emitter<double> emitter = make_emitter(*patch, radiance);
-      if (!(emitter.area > 0)) continue;
-      geometry.emitter_of[primitive] = static_cast<IndexOf<T>>(emitters.size());
-      bounds.push_back(bounds_of(emitter));
-      emitters.push_back(emitter);
-    }
-  }
-  if (!emitters.empty()) geometry.emitters = make_emitters<T>(emitters);
-  return bounds;
 }
 
 template <class T>

@@ -117,10 +117,17 @@ TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
                      {"look_at", {0, 0, 0}},
                      {"fov_degrees", 1e-4}};
   EXPECT_NEAR(mean_of(scene, 32, 256, 1) / sum, 1, 0.01) << name;
-  // What stands in an instance is no light source: directions alone find it.
-  scene["models"]["lamp"]["objects"] = Json::array({scene["objects"].back()});
-  scene["objects"].erase(scene["objects"].size() - 1);
-  scene["instances"] = json("[{'model': 'lamp'}]");
+  // A model's, wherever its instance takes it.
+  Json model = scene;
+  model["models"]["lamp"]["objects"] = Json::array({scene["objects"].back()});
+  model["objects"].erase(model["objects"].size() - 1);
+  model["instances"] = json("[{'model': 'lamp'}]");
+  EXPECT_NEAR(mean_of(model, 32, 256, 1) / sum, 1, 0.01) << name;
+  // Light is not drawn from a box: directions alone find it.
+  scene["objects"].back() = {{"type", "box"},
+                             {"min", {kAside - kSide / 2, height, -kSide / 2}},
+                             {"max", {kAside + kSide / 2, height + 1e-6, kSide / 2}},
+                             {"material", "lamp"}};
   EXPECT_NEAR(mean_of(scene, 32, 256, 1) / sum, 1, 0.02) << name;
 }
 INSTANTIATE_TEST_SUITE_P(
@@ -134,6 +141,53 @@ INSTANTIATE_TEST_SUITE_P(
                     Lit{"TranslucentThrough", "{'type': 'translucent'}", -1},
                     Lit{"TranslucentAbove", "{'type': 'translucent'}", 1}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
+
+// What the origin of a floor gets from where `sees` a lamp of radiance 1.
+template <class Sees>
+double lit_by(const Sees& sees) {
+  constexpr int kSteps = 1000;  // in height and around: each cell has the same share of the cosine
+  double found = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const double sine2 = (i + 0.5) / kSteps, turn = 2 * std::numbers::pi * (j + 0.5) / kSteps;
+      const double sine = std::sqrt(sine2), up = std::sqrt(1 - sine2);
+      found += sees(Vec3d(sine * std::cos(turn), up, sine * std::sin(turn)));
+    }
+  return found / kSteps / kSteps;
+}
+
+// A ball that becomes an ellipsoid, and a square that becomes skew, send what they send there.
+TEST(PathMaterials, InstancesDistortLamps) {
+  const Vec3d centre(0.3, 1, 0), radii(0.8, 0.2, 0.4);
+  const double ellipsoid = lit_by([&](const Vec3d& d) {
+    const Vec3d from(centre.x / radii.x, centre.y / radii.y, centre.z / radii.z);
+    const Vec3d toward = safe_normalize(Vec3d(d.x / radii.x, d.y / radii.y, d.z / radii.z));
+    return length(cross(from, toward)) < 1;
+  });
+  const double skew = lit_by([](const Vec3d& d) {  // sides of (1, 0, 0.3) and (1, 0, -0.3) from (-1, 1, 0)
+    const double sum = d.x / d.y + 1, difference = d.z / d.y / 0.3;
+    return std::abs(difference) < std::min(sum, 2 - sum);
+  });
+  const auto lit = [](const char* object, const char* instance) {
+    Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'floor'}]",
+                          "{'materials': {'white': {}, 'floor': {'type': 'lambert', 'reflectance': 1},"
+                          "'lamp': {'type': 'lambert', 'reflectance': 0, 'emission': [1, 1, 1]}}}");
+    scene["models"]["lamp"]["objects"] = Json::array({json(object)});
+    scene["instances"] = Json::array({json(instance)});
+    scene["camera"] = {
+        {"type", "perspective"}, {"eye", {0, 0.2, 0.3}}, {"look_at", {0, 0, 0}}, {"fov_degrees", 1e-3}};
+    return mean_of(scene, 32, 256, 1);
+  };
+  EXPECT_NEAR(lit("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.4, 'material': 'lamp'}",
+                  "{'model': 'lamp', 'scale': [2, 0.5, 1], 'translate': [0.3, 1, 0]}") /
+                  ellipsoid,
+              1, 0.01);
+  EXPECT_NEAR(
+      lit("{'type': 'rectangle', 'corner': [0, 0, 0], 'a': [1, 0, 1], 'b': [1, 0, -1], 'material': 'lamp'}",
+          "{'model': 'lamp', 'scale': [1, 1, 0.3], 'translate': [-1, 1, 0]}") /
+          skew,
+      1, 0.01);
+}
 
 // Stripes of chalk and of dark polished plastic under a ceiling that a spot light shines on. Draws of the
 // coat go through a mirror, those of chalk never do: paths that share what they find count how likely each

@@ -30,7 +30,20 @@ const std::vector<Named> kLamps = {
     {"Mesh",
      "{'type': 'mesh', 'positions': [[-2, 1.2, -1], [0.5, 1.5, -0.5], [-0.8, 1.9, 1.2], [-2.5, 1.3, 0.8]],"
      " 'indices': [[0, 1, 2], [0, 3, 2]]}"},
-    {"Sun", "{'type': 'directional', 'from': [-0.8, 1, 0.1], 'angle_degrees': 40}"}};
+    {"Sun", "{'type': 'directional', 'from': [-0.8, 1, 0.1], 'angle_degrees': 40}"},
+    // Of models.
+    {"PlacedRectangle",
+     "{'type': 'rectangle', 'corner': [-0.5, 0, -0.5], 'a': [1, 0, 0], 'b': [0, 0, 1], 'instance': "
+     "{'scale': [1.5, 9, 2], 'rotate': {'axis': [0.1, 0, 1], 'degrees': 20}, 'translate': [-1.2, 1.6, 0]}}"},
+    {"PlacedBall",
+     "{'type': 'sphere', 'center': [0.1, 0, 0], 'radius': 0.35, 'instance': "
+     "{'scale': [2, 2, 2], 'rotate': {'axis': [0, 1, 0], 'degrees': 70}, 'translate': [-1.2, 1.6, 0.3]}}"},
+    {"PlacedDisk",
+     "{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 1, 0], 'radius': 0.5, 'instance': "
+     "{'scale': [2, 1, 1.2], 'rotate': {'axis': [0, 0, 1], 'degrees': -20}, 'translate': [-1, 1.4, 0.2]}}"},
+    {"PlacedTriangle",
+     "{'type': 'triangle', 'vertices': [[-1, 0, -1], [1, 0, -0.5], [0, 0.5, 1]], 'instance': "
+     "{'scale': [1.5, 0.5, -1], 'rotate': {'axis': [1, 1, 1], 'degrees': 15}, 'translate': [-1, 1.5, 0]}}"}};
 const std::vector<Named> kMaterials = {
     {"Lambert", "{'type': 'lambert', 'reflectance': 0.8}"},
     {"OrenNayar", "{'type': 'oren-nayar', 'reflectance': 0.8, 'roughness': 0.7}"},
@@ -52,8 +65,16 @@ Json scene_of_lamp(const Json& lamp, const Json* material) {
   if (is_light(lamp)) {
     scene["lights"] = Json::array({lamp});
   } else {
-    scene["objects"].push_back(lamp);
-    scene["objects"].back()["material"] = "lamp";
+    Json object = lamp, instance = object.value("instance", Json());
+    object.erase("instance");
+    object["material"] = "lamp";
+    if (instance.is_null()) {
+      scene["objects"].push_back(object);
+    } else {
+      instance["model"] = "lamp";
+      scene["models"]["lamp"]["objects"] = Json::array({object});
+      scene["instances"] = Json::array({instance});
+    }
   }
   if (!material) return scene;
   scene["materials"]["it"] = *material;

@@ -1,0 +1,93 @@
+#include "core/prepare/emitting_surfaces.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/base/work_scope.h"
+#include "core/lights/emitters.h"
+
+namespace orrery {
+namespace {
+
+template <class T>
+class EmitterList {
+ public:
+  EmitterList(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry)
+      : scene_(scene), exposure_(exposure), geometry_(geometry) {}
+
+  // Those of all sets of the scene, and then of its instances.
+  std::vector<LightBounds> find() {
+    for (const auto& shapes : scene_.shapes) {
+      const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
+      if (skip_dark(last)) {  // else there is nothing to be posed
+        const auto posed = shapes->at(exposure_.opens);
+        add(*shapes, posed ? *posed : *shapes, last, nullptr);
+      }
+    }
+    for (const Instance& instance : scene_.instances) {
+      const Model& model = scene_.models[instance.model];
+      const bool moves = !exposure_.instant() && instance.motion.times.size() > 1;
+      const Affined world_from_model = instance.world_from_model(exposure_.opens);
+      for (const auto& shapes : model.shapes) {
+        const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
+        if (!moves && shapes->key_times().empty() && skip_dark(last))
+          add(*shapes, *shapes, last, &world_from_model);
+        primitive_ = last;
+      }
+    }
+    if (!emitters_.empty()) geometry_.emitters = make_emitters<T>(emitters_);
+    return std::move(bounds_);
+  }
+
+ private:
+  Vec3d radiance() const { return scene_.emission[static_cast<std::size_t>(scene_.material_of[primitive_])]; }
+
+  // To the next primitive that emits; false if there is none before `last`.
+  bool skip_dark(std::size_t last) {
+    while (primitive_ < last && radiance() == Vec3d(0)) interruption_point(++primitive_);
+    return primitive_ < last;
+  }
+
+  // Those of a set that end before `last`.
+  void add(const ShapeSet& shapes, const ShapeSet& now, std::size_t last, const Affined* world_from_model) {
+    for (int i = now.size() - static_cast<int>(last - primitive_); primitive_ < last; ++i, ++primitive_) {
+      interruption_point(primitive_);
+      if (radiance() == Vec3d(0) || (!exposure_.instant() && shapes.moves(i))) continue;
+      const auto patch = now.patch(i);
+      if (!patch) continue;
+      std::optional<Emitter<double>> emitter;
+      if (!world_from_model)
+        emitter = make_emitter(*patch, radiance());
+      else if (instanced_ < kMostInstancedEmitters)
+        emitter = make_emitter(*patch, radiance(), *world_from_model);
+      if (!emitter || !(emitter->area > 0)) continue;
+      instanced_ += world_from_model != nullptr;
+      geometry_.emitter_of[primitive_] = static_cast<IndexOf<T>>(emitters_.size());
+      bounds_.push_back(bounds_of(*emitter));
+      emitters_.push_back(*emitter);
+    }
+  }
+
+  const Scene& scene_;
+  const Exposure& exposure_;
+  Geometry<T>& geometry_;
+  std::size_t primitive_ = 0, instanced_ = 0;
+  std::vector<Emitter<double>> emitters_;
+  std::vector<LightBounds> bounds_;
+};
+
+}  // namespace
+
+template <class T>
+std::vector<LightBounds> add_emitters(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry) {
+  if (!scene.facts.materials.emits) return {};
+  for (const Vec3d& emission : scene.emission) geometry.emission.push_back(Vec3<T>(emission));
+  geometry.emitter_of.assign(geometry.material_of.size(), -1);
+  return EmitterList<T>(scene, exposure, geometry).find();
+}
+
+template std::vector<LightBounds> add_emitters(const Scene&, const Exposure&, Geometry<float>&);
+template std::vector<LightBounds> add_emitters(const Scene&, const Exposure&, Geometry<double>&);
+
+}  // namespace orrery
