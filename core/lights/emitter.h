@@ -71,13 +71,13 @@ class SphericalRectangle {
 };
 
 // A surface that sends out light on both sides, drawn from as a point sees it: rectangles and spheres by
-// solid angle, triangles and disks by area.
+// solid angle, triangles and disks by area; for boxes and cylinders see SolidEmitter.
 template <class N>
 struct Emitter {
-  Vec3<N> at, a, b;  // see Patch; a and b of a rectangle are unit vectors
-  Vec3<N> normal;    // unit, of a flat one
+  Vec3<N> at, a, b;  // see Patch; a and b of a rectangle or a solid are unit vectors
+  Vec3<N> normal;    // unit, of a flat one; c of a solid, likewise
   Vec3<N> radiance;
-  N length_a, length_b;
+  N length_a, length_b, length_c;  // of Patch's vectors
   N kind, area, magnitude;
 
   struct Drawn {
@@ -91,6 +91,15 @@ struct Emitter {
     const Drawn ball = draw_sphere(from, u, v);
     return {select(round, ball.point, flat.point), select(round, ball.normal, flat.normal),
             select(round, ball.pdf, flat.pdf)};
+  }
+
+  MaskOf<N> is(Patch::Kind k) const { return kind == N(static_cast<ScalarOf<N>>(k)); }
+
+  // Of a rectangle as seen from there, in steradians; 0 where it looks so small that it is drawn from by
+  // area.
+  N angle(const Vec3<N>& from) const {
+    const N seen = spherical(from).angle();
+    return select(seen > N(kLeastAngle), seen, N(T(0)));
   }
 
   // Density with which draw() finds the direction of a unit ray that hits the emitter at t.
@@ -112,7 +121,6 @@ struct Emitter {
   static constexpr T kLeastAngle =
       T(0.02);  // steradians; a rectangle that looks smaller is drawn from by area
 
-  MaskOf<N> is(Patch::Kind k) const { return kind == N(static_cast<T>(k)); }
   N density(const N& distance2, const N& cosine) const {
     return select(cosine > N(T(0)), N(distance2 / (cosine * area)), N(T(0)));
   }

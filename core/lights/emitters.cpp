@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/lights/solid_emitter.h"
 #include "core/math/bounds.h"
 #include "core/model/record.h"
 
@@ -35,7 +36,7 @@ class EmitterKernel final : public LightKernel<T> {
   void pdf(const RayBatch<T>& rays, const HitBatch<T>& hits, const LightChoices<T>& choices,
            const Groups& groups, Array<T>& out) const override {
     for_each_register(choices, groups, [&](int i, const auto& mine, const Emitter<N>& emitter) {
-      out.put(i, mine, emitter.pdf(rays.at(i), hits.t.at(i)) * choices.probability.at(i));
+      out.put(i, mine, pdf_of(emitter, rays.at(i), hits.t.at(i)) * choices.probability.at(i));
     });
   }
 
@@ -49,6 +50,24 @@ class EmitterKernel final : public LightKernel<T> {
     }
   }
 
+  using Drawn = typename Emitter<N>::Drawn;
+  static auto solid(const Emitter<N>& emitter) {
+    return emitter.is(Patch::Kind::box) || emitter.is(Patch::Kind::cylinder);
+  }
+  static Drawn draw(const Emitter<N>& emitter, const Vec3<N>& from, const N& u, const N& v) {
+    const auto mine = solid(emitter);
+    const Drawn other = emitter.draw(from, u, v);
+    if (!any(mine)) return other;
+    const Drawn drawn = SolidEmitter<N>(emitter, from).draw(u, v);
+    return {select(mine, drawn.point, other.point), select(mine, drawn.normal, other.normal),
+            select(mine, drawn.pdf, other.pdf)};
+  }
+  static N pdf_of(const Emitter<N>& emitter, const Ray<N>& ray, const N& t) {
+    const auto mine = solid(emitter);
+    const N other = emitter.pdf(ray, t);
+    return any(mine) ? select(mine, SolidEmitter<N>(emitter, ray.origin).pdf(ray, t), other) : other;
+  }
+
   // The shadow ray ends where it is as far above the emitter as rounding may move that or the ray's origin: a
   // point of the emitter itself is not lit by it.
   static void put(const Emitter<N>& emitter, const SurfaceBatch<T>& surface, const PathDraws<T>& draws, int i,
@@ -56,7 +75,7 @@ class EmitterKernel final : public LightKernel<T> {
     const N zero(T(0));
     const auto [u, v] = draws.two(SampleSet::light, i);
     const Vec3<N> from = surface.position.at(i);
-    const auto drawn = emitter.draw(from, u, v);
+    const Drawn drawn = draw(emitter, from, u, v);
     const N step = T(2) * (emitter.magnitude * (8 * std::numeric_limits<T>::epsilon()) + surface.step.at(i));
     const Vec3<N> line = drawn.point - from;
     const N distance = length(line), pdf = drawn.pdf * probability;
@@ -78,11 +97,13 @@ class EmitterKernel final : public LightKernel<T> {
 }  // namespace
 
 Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance) {
-  const double length_a = orrery::length(patch.a), length_b = orrery::length(patch.b);
+  using orrery::length;
+  const double length_a = length(patch.a), length_b = length(patch.b), length_c = length(patch.c);
   const Vec3d product = cross(patch.a, patch.b), normal = safe_normalize(product);
-  const double pi = std::numbers::pi, parallelogram = orrery::length(product);
-  Emitter<double> e{patch.at, patch.a,  patch.b,  normal,
-                    radiance, length_a, length_b, static_cast<double>(patch.kind),
+  const double pi = std::numbers::pi, parallelogram = length(product);
+  Emitter<double> e{patch.at, patch.a,  patch.b,
+                    normal,   radiance, length_a,
+                    length_b, length_c, static_cast<double>(patch.kind),
                     0,        0};
   const Boundsd box = Boundsd::of({patch.at, patch.at + patch.a, patch.at + patch.b,
                                    patch.at + patch.a + patch.b, patch.at - patch.a - patch.b});
@@ -100,6 +121,16 @@ Emitter<double> make_emitter(const Patch& patch, const Vec3d& radiance) {
       e.area = 4 * pi * patch.a.x * patch.a.x;
       e.magnitude = max_component(abs(patch.at)) + patch.a.x;
       break;
+    case Patch::Kind::box:
+    case Patch::Kind::cylinder:
+      e.a = patch.a / length_a;
+      e.b = patch.b / length_b;
+      e.normal = patch.c / length_c;
+      e.area = patch.kind == Patch::Kind::box
+                   ? 8 * (length_a * length_b + length_b * length_c + length_c * length_a)
+                   : 2 * pi * length_a * (2 * length_c + length_a);
+      e.magnitude = max_component(abs(patch.at) + abs(patch.a) + abs(patch.b) + abs(patch.c));
+      break;
   }
   return e;
 }
@@ -109,19 +140,30 @@ std::optional<Emitter<double>> make_emitter(const Patch& patch, const Vec3d& rad
   using orrery::length;
   constexpr double kRounding = 1e-12;
   Patch placed{patch.kind, world_from_model.point(patch.at), world_from_model.vector(patch.a),
-               world_from_model.vector(patch.b)};
+               world_from_model.vector(patch.b), world_from_model.vector(patch.c)};
+  const auto square = [](const Vec3d& x, const Vec3d& y) {
+    return std::abs(dot(x, y)) <= kRounding * length(x) * length(y);
+  };
+  const auto as_long = [](double x, double y) { return std::abs(x - y) <= kRounding * x; };
   switch (patch.kind) {
     case Patch::Kind::triangle: break;
     case Patch::Kind::rectangle:
     case Patch::Kind::disk:
-      if (!(std::abs(dot(placed.a, placed.b)) <= kRounding * length(placed.a) * length(placed.b))) return {};
+      if (!square(placed.a, placed.b)) return {};
       break;
     case Patch::Kind::sphere: {
-      const Vec3d scale(length(world_from_model.x), length(world_from_model.y), length(world_from_model.z));
-      if (!(max_component(abs(scale - Vec3d(scale.x))) <= kRounding * scale.x)) return {};
-      placed.a = patch.a * scale.x;
+      const auto& [x, y, z, origin] = world_from_model;
+      if (!as_long(length(x), length(y)) || !as_long(length(x), length(z))) return {};
+      placed.a = patch.a * length(x);
       break;
     }
+    case Patch::Kind::cylinder:
+      if (!as_long(length(placed.a), length(placed.b))) return {};
+      [[fallthrough]];
+    case Patch::Kind::box:
+      if (!square(placed.a, placed.b) || !square(placed.a, placed.c) || !square(placed.b, placed.c))
+        return {};
+      break;
   }
   Emitter<double> emitter = make_emitter(placed, radiance);
   // Hits are off by what rounding moves them in the model, and on the way from there: see Placed.
@@ -153,6 +195,15 @@ LightBounds bounds_of(const Emitter<double>& e) {
       bounds.normal = Vec3d(0);
       seen_area /= 4;
       break;
+    case Patch::Kind::box:
+    case Patch::Kind::cylinder: {
+      const double across =
+          e.kind == static_cast<double>(Patch::Kind::box) ? std::hypot(e.length_a, e.length_b) : e.length_a;
+      bounds.radius = std::hypot(across, e.length_c);
+      bounds.normal = Vec3d(0);
+      seen_area /= 4;  // of any convex body, in the mean over directions (Cauchy)
+      break;
+    }
   }
   bounds.strength = 2 * max_component(e.radiance);
   bounds.attenuation = {1, 0, 2 * std::numbers::pi / seen_area};

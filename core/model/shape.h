@@ -116,10 +116,11 @@ struct ShapeTraits {
 
 // A surface from whose points light can be drawn.
 struct Patch {
-  enum class Kind { rectangle, triangle, disk, sphere } kind;
+  enum class Kind { rectangle, triangle, disk, sphere, box, cylinder } kind;
   // Rectangle: a corner and two sides at right angles. Triangle: a corner and two sides. Disk: its centre and
-  // two radii at right angles. Sphere: its centre, and the radius in a.x.
-  Vec3d at, a, b;
+  // two radii at right angles. Sphere: its centre, and the radius in a.x. Box: its centre and half of its
+  // edges, at right angles. Cylinder with ends: its centre, two radii and half of its axis, likewise.
+  Vec3d at, a, b, c{};
 };
 
 // The primitives of a set that move, during an exposure. Const and free of state.

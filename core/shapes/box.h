@@ -18,6 +18,11 @@ struct Box {
 
   Boundsd bounds() const { return Boundsd::of({lo, hi}); }
 
+  Patch patch() const {
+    const Vec3d half = (hi - lo) * 0.5;
+    return {Patch::Kind::box, lo + half, {half.x, 0, 0}, {0, half.y, 0}, {0, 0, half.z}};
+  }
+
   // The nearer face ahead of the origin: of the interval inside all three slabs, the entry, or from within
   // the exit. A ray in the plane of a face gives NaN there (0 * infinity), which loses against the other
   // slabs.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/math/bounds.h"
 #include "core/math/hemisphere.h"
 #include "core/model/shape.h"
@@ -25,6 +27,13 @@ struct Cylinder {
   }
 
   Vec3d anchor() const { return center; }
+
+  std::optional<Patch> patch() const {
+    if (std::isinf(half_length)) return {};
+    const Tangents<double> across = tangents_of(axis);
+    return Patch{Patch::Kind::cylinder, center, across.first * radius, across.second * radius,
+                 axis * half_length};
+  }
 
   std::vector<HullTriangle> hull() const {
     return round_hull(Vec3d(center), Vec3d(axis), double(radius), double(half_length));

@@ -14,7 +14,8 @@
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
 //   Vec3d anchor() const;                         if it may be unbounded: a point that places it
 //   std::vector<HullTriangle> hull() const;       if it knows better than bounds(): see ShapeKernel
-//   Patch patch() const;                          of a Sphere<double>, if light can be drawn from it
+//   Patch patch() const;                          of a Sphere<double>, if light can be drawn from it; or
+//                                                 std::optional<Patch>, if not from all
 //   Core, core()                                  if distance() needs only a part: see packed_records.h
 // and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
 namespace orrery {

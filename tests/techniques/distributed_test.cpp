@@ -174,12 +174,15 @@ TEST(Distributed, LampsThatAreMetByChanceCountOnceBesideThoseThatAreDrawn) {
   covers("light-22");
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'},"
-      " {'type': 'box', 'min': [-1, 1, -1], 'max': [0, 1.2, 1], 'material': 'lamp'},"
       " {'type': 'rectangle', 'corner': [0.3, 0.6, -1], 'a': [0.8, 0.4, 0], 'b': [0, 0, 2], 'material': "
       "'lamp'}]",
       {},
       "{'background': [0.2, 0.2, 0.2], 'camera': {'eye': [0, 0.5, 1], 'look_at': [0, 0, 0], 'fov_degrees': "
-      "20}}");
+      "20},"
+      " 'models': {'ellipsoid': {'objects': [{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, "
+      "'material': "
+      "'lamp'}]}},"
+      " 'instances': [{'model': 'ellipsoid', 'scale': [0.6, 0.1, 1], 'translate': [-0.5, 1.1, 0]}]}");
   for (const char* material :
        {"{'type': 'lambert', 'reflectance': 0.7}", "{'type': 'plastic', 'roughness': 0.4}",
         "{'type': 'metallic-roughness', 'metallic': 0.4, 'roughness': 0.4}",

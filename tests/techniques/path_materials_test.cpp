@@ -123,12 +123,15 @@ TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
   model["objects"].erase(model["objects"].size() - 1);
   model["instances"] = json("[{'model': 'lamp'}]");
   EXPECT_NEAR(mean_of(model, 32, 256, 1) / sum, 1, 0.01) << name;
-  // Light is not drawn from a box: directions alone find it.
-  scene["objects"].back() = {{"type", "box"},
-                             {"min", {kAside - kSide / 2, height, -kSide / 2}},
-                             {"max", {kAside + kSide / 2, height + 1e-6, kSide / 2}},
-                             {"material", "lamp"}};
-  EXPECT_NEAR(mean_of(scene, 32, 256, 1) / sum, 1, 0.02) << name;
+  // Light is not drawn from what moves within its model, as far as keys say: directions alone find it.
+  const double x0 = kAside - kSide / 2, x1 = kAside + kSide / 2, z = kSide / 2;
+  model["models"]["lamp"]["objects"] =
+      Json::array({{{"type", "mesh"},
+                    {"positions", {{x0, height, -z}, {x1, height, -z}, {x1, height, z}, {x0, height, z}}},
+                    {"indices", {{0, 1, 2}, {0, 2, 3}}},
+                    {"motion", {{{"time", 0}}, {{"time", 1}}}},
+                    {"material", "lamp"}}});
+  EXPECT_NEAR(mean_of(model, 32, 256, 1) / sum, 1, 0.02) << name;
 }
 INSTANTIATE_TEST_SUITE_P(
     Materials, UnderALamp,

@@ -124,7 +124,12 @@ TEST(Path, ConvexLampsDoNotLightThemselves) {
         Lamp{"{'type': 'disk', 'center': [0.3, 0.4, -0.2], 'normal': [0.3, 0.5, 0.8], 'radius': 0.5}",
              Vec3d(0.3, 0.4, -0.2)},
         Lamp{"{'type': 'sphere', 'center': [1000, 1000, 1000], 'radius': 0.2}", Vec3d(1000, 1000, 1000)},
-        Lamp{"{'type': 'sphere', 'center': [0.1, 0.2, 0.3], 'radius': 0.4}", Vec3d(0.1, 0.2, 0.3)}}) {
+        Lamp{"{'type': 'sphere', 'center': [0.1, 0.2, 0.3], 'radius': 0.4}", Vec3d(0.1, 0.2, 0.3)},
+        Lamp{"{'type': 'box', 'min': [-0.2, -0.1, -0.3], 'max': [0.4, 0.5, 0.2]}", Vec3d(0.1, 0.2, 0.2)},
+        Lamp{"{'type': 'cylinder', 'base': [-1, 0.2, 0.1], 'top': [1, 0.2, 0.1], 'radius': 0.3}",
+             Vec3d(0, 0.2, 0.4)},
+        Lamp{"{'type': 'cylinder', 'base': [0, 0, -1], 'top': [0, 0, 0.1], 'radius': 0.3}",
+             Vec3d(0.1, 0.05, 0.1)}}) {
     const Json scene =
         scene_with(json(text), Json{{"materials", {{"white", {{"kd", 0.9}, {"emission", {1, 1, 1}}}}}}});
     EXPECT_EQ(estimate(scene, middle + Vec3d(0.3, 0.4, 3), middle, 4).mean, 1) << text;
