@@ -8,12 +8,17 @@
 namespace orrery::test {
 namespace {
 
-constexpr int kSide = 6;  // of the square that things stand on: kSide * kSide of them
+// A square that things stand on, side * side of them.
+struct Square {
+  int side, step;  // step * step = 1 modulo side * side: each is the partner of its partner
 
-Vec3d place_of(int i) { return {2.0 * (i % kSide) - kSide, 0.3 * ((i * 7) % 5), 2.0 * (i / kSide) - kSide}; }
-int partner_of(int i) {
-  return 17 * i % (kSide * kSide);
-}  // 17 * 17 = 8 * 36 + 1: it is the partner of its partner
+  int size() const { return side * side; }
+  Vec3d place_of(int i) const {
+    return {2.0 * (i % side) - side, 0.3 * ((i * 7) % 5), 2.0 * (i / side) - side};
+  }
+  int partner_of(int i) const { return step * i % size(); }
+};
+constexpr Square kSquare{6, 17}, kLarge{20, 49};
 
 // Instances that change places two by two within 1 s, while they turn.
 Json swapping_instances() {
@@ -25,26 +30,27 @@ Json swapping_instances() {
                     {"radius", 0.1},
                     {"material", "white"}};
   scene["models"] = {{"it", {{"objects", {ball, rod}}}}};
-  for (int i = 0; i < kSide * kSide; ++i)
-    scene["instances"].push_back(
-        {{"model", "it"},
-         {"translate", numbers(place_of(i))},
-         {"motion",
-          {{{"time", 0}},
-           {{"time", 1}, {"translate", numbers(place_of(partner_of(i)))}, {"degrees", 90 * i}}}}});
+  for (int i = 0; i < kSquare.size(); ++i)
+    scene["instances"].push_back({{"model", "it"},
+                                  {"translate", numbers(kSquare.place_of(i))},
+                                  {"motion",
+                                   {{{"time", 0}},
+                                    {{"time", 1},
+                                     {"translate", numbers(kSquare.place_of(kSquare.partner_of(i)))},
+                                     {"degrees", 90 * i}}}}});
   return scene;
 }
 
 // One mesh whose triangles change places two by two.
-Json swapping_triangles() {
+Json swapping_triangles(const Square& square = kSquare) {
   Json scene = scene_of(R"({"type": "sphere", "center": [0, -20, 0], "radius": 0.5})");
   Json mesh = {{"type", "mesh"}, {"material", "white"}};
   Json moved = Json::array();
   const std::array<Vec3d, 3> corners{Vec3d(-0.7, 0, 0), Vec3d(0.7, 0.2, 0.3), Vec3d(0, 0.1, -0.7)};
-  for (int i = 0; i < kSide * kSide; ++i) {
+  for (int i = 0; i < square.size(); ++i) {
     for (const Vec3d& corner : corners) {
-      mesh["positions"].push_back(numbers(place_of(i) + corner));
-      moved.push_back(numbers(place_of(partner_of(i)) + corner));
+      mesh["positions"].push_back(numbers(square.place_of(i) + corner));
+      moved.push_back(numbers(square.place_of(square.partner_of(i)) + corner));
     }
     mesh["indices"].push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
@@ -117,6 +123,15 @@ TEST_P(Motion, PairsOfTrianglesSwapPlaces) {
   const Followed followed = follow<float>(swapping_triangles(), GetParam(), 20, 3000);
   follow<double>(swapping_triangles(), GetParam(), 5, 1000);
   expect_both(followed);
+}
+
+// Of so many that inner nodes have inner nodes.
+TEST_P(Motion, PairsOfManyTrianglesBeginToSwapPlaces) {
+  covers("F19 F1");
+  Json scene = swapping_triangles(kLarge);
+  scene["objects"][1]["motion"][1]["time"] = 16;
+  follow<float>(scene, GetParam(), 4, 1000, 20);
+  follow<double>(scene, GetParam(), 2, 1000, 20);
 }
 
 TEST_P(Motion, OneFliesAwayAndComesBack) {

@@ -17,7 +17,7 @@ export const motionFaults = [
     from: "if (!is_leaf(child)) return nodes_[child].box();",
     to: "if (!is_leaf(child)) return before;",
     target: "test_accelerators",
-    tests: ["All/Motion.PairsOfInstancesSwapPlaces/bvh"],
+    tests: ["All/Motion.PairsOfManyTriangles*/bvh"],
   },
   {
     fault: 19,
