@@ -95,6 +95,8 @@ struct Emitter {
 
   MaskOf<N> is(Patch::Kind k) const { return kind == N(static_cast<ScalarOf<N>>(k)); }
 
+  MaskOf<N> is_solid() const { return is(Patch::Kind::box) || is(Patch::Kind::cylinder); }
+
   // Of a rectangle as seen from there, in steradians; 0 where it looks so small that it is drawn from by
   // area.
   N angle(const Vec3<N>& from) const {

@@ -51,11 +51,8 @@ class EmitterKernel final : public LightKernel<T> {
   }
 
   using Drawn = typename Emitter<N>::Drawn;
-  static auto solid(const Emitter<N>& emitter) {
-    return emitter.is(Patch::Kind::box) || emitter.is(Patch::Kind::cylinder);
-  }
   static Drawn draw(const Emitter<N>& emitter, const Vec3<N>& from, const N& u, const N& v) {
-    const auto mine = solid(emitter);
+    const auto mine = emitter.is_solid();
     const Drawn other = emitter.draw(from, u, v);
     if (!any(mine)) return other;
     const Drawn drawn = SolidEmitter<N>(emitter, from).draw(u, v);
@@ -63,7 +60,7 @@ class EmitterKernel final : public LightKernel<T> {
             select(mine, drawn.pdf, other.pdf)};
   }
   static N pdf_of(const Emitter<N>& emitter, const Ray<N>& ray, const N& t) {
-    const auto mine = solid(emitter);
+    const auto mine = emitter.is_solid();
     const N other = emitter.pdf(ray, t);
     return any(mine) ? select(mine, SolidEmitter<N>(emitter, ray.origin).pdf(ray, t), other) : other;
   }

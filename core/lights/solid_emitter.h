@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// The wall of a cylinder as a point sees it, from inside all of it: drawn from evenly across what is seen of
-// its width, and along it by the angle.
+// The wall of a cylinder as a point outside sees it: drawn from evenly across what is seen of its width, and
+// along it by the angle.
 template <class N>
 class SeenWall {
   using T = ScalarOf<N>;
@@ -26,7 +26,7 @@ class SeenWall {
     low_ = sine(least_);
     range_ = sine(most_) - low_;
     const N share = radius / reach_;
-    half_width_ = select(outside_, sqrt(max_first(zero, N((one - share) * (one + share)))), one);
+    half_width_ = sqrt(max_first(zero, N((one - share) * (one + share))));
   }
 
   const MaskOf<N>& outside() const { return outside_; }  // of the cylinder without ends
@@ -42,10 +42,8 @@ class SeenWall {
     const N rest = sqrt(max_first(N(std::numeric_limits<T>::min()), N((one - s) * (one + s))));
     const N z = max_first(least_, min_first(most_, N(reach_ * s / rest)));
     const N y = half_width_ * (v + v - one);
-    const auto [sine_v, cosine_v] = sine_cosine_turns(v);
-    const N sideways = select(outside_, y, sine_v);
-    const N facing = select(outside_, sqrt(max_first(N(T(0)), N(one - y * y))), cosine_v);
-    const Vec3<N> normal = toward_ * facing + cross(axis_, toward_) * sideways;
+    const N facing = sqrt(max_first(N(T(0)), N(one - y * y)));
+    const Vec3<N> normal = toward_ * facing + cross(axis_, toward_) * y;
     return {axis_ * (along_ + z) + normal * radius_, normal};
   }
 
@@ -54,9 +52,8 @@ class SeenWall {
     using std::sqrt;
     const N zero(T(0)), z = dot(point.from_centre, axis_) - along_, squares = z * z + reach_ * reach_;
     const N lengthwise = reach_ * reach_ / (squares * sqrt(squares) * range_);
-    const N seen = dot(point.normal, toward_) / (T(2) * half_width_);
-    const N around = select(outside_, seen, N(T(0.5 / std::numbers::pi)));
-    return select(around > zero && range_ > zero, N(lengthwise * around / radius_), zero);
+    const N across = dot(point.normal, toward_) / (T(2) * half_width_);
+    return select(outside_ && across > zero, N(lengthwise * across / radius_), zero);
   }
 
  private:
@@ -70,8 +67,9 @@ class SeenWall {
   MaskOf<N> outside_;
 };
 
-// Boxes and cylinders that send out light: one of their faces, or the wall, is drawn from, of those that the
-// point sees, by about the angle under which it is seen. Other lanes are meaningless.
+// Boxes and cylinders that send out light: one of their faces, or the wall, is drawn from, of those that a
+// point outside sees, by about the angle under which it is seen. Nothing is drawn from inside, where they
+// fill the view, and whose points by rounding lie outside. Other lanes are meaningless.
 template <class N>
 class SolidEmitter {
   using T = ScalarOf<N>;
@@ -84,12 +82,6 @@ class SolidEmitter {
         from_(from),
         box_(solid.is(Patch::Kind::box)),
         wall_(from - solid.at, solid.normal, solid.length_a, solid.length_c) {
-    using std::abs;
-    using std::sqrt;
-    const Vec3<N> d = from - solid.at;
-    const N x = abs(dot(d, solid.a)), y = abs(dot(d, solid.b)), z = abs(dot(d, solid.normal));
-    const auto within = x < solid.length_a && y < solid.length_b;
-    inside_ = ((box_ && within) || (!box_ && !wall_.outside())) && z < solid.length_c;
     for (int k = 0; k < kParts; ++k) {
       weight_[static_cast<std::size_t>(k)] = weight(k);
       sum_ = sum_ + weight_[static_cast<std::size_t>(k)];
@@ -159,12 +151,10 @@ class SolidEmitter {
   }
 
   N weight(int k) const {
-    using std::abs;
     using std::sqrt;
     const N zero(T(0)), half(T(0.5));
     const Emitter<N> one = part(k);
-    const N height = dot(from_ - one.at, one.normal);
-    const N above = select(inside_, abs(height), max_first(zero, height));
+    const N above = max_first(zero, dot(from_ - one.at, one.normal));
     const Vec3<N> to_centre =
         from_ - one.at -
         select(box_, one.a * (one.length_a * half) + one.b * (one.length_b * half), Vec3<N>(zero));
@@ -173,7 +163,7 @@ class SolidEmitter {
     const N angle = box_angle(one);
     const N flat = select(above > zero, select(angle > zero, angle, small), zero);
     if (k < 2) return flat;
-    const N wall = k == 2 ? select(wall_.outside() || inside_, wall_.angle(), zero) : zero;
+    const N wall = k == 2 ? select(wall_.outside(), wall_.angle(), zero) : zero;
     return select(box_, flat, wall);
   }
   N box_angle(const Emitter<N>& face) const {
@@ -224,7 +214,6 @@ class SolidEmitter {
   const Vec3<N> from_;
   const MaskOf<N> box_;
   const SeenWall<N> wall_;
-  MaskOf<N> inside_;
   std::array<N, kParts> weight_;
   N sum_ = N(T(0));
 };

@@ -32,6 +32,8 @@ struct Geometry {
   // Primitives that emit and that light can be drawn from, all in one kernel: null if there are none.
   LightKernelPtr<T> emitters;
   std::vector<IndexOf<T>> emitter_of;  // of each primitive: its number there, or -1
+  // Whether other primitives emit, or there are points that see some of these from which none is drawn.
+  bool emits_undrawn = false;
   // The lights of the scene, then the emitters: null if there are none.
   std::shared_ptr<const LightTree<T>> light_tree;
   LightKernelPtr<T> environment;  // its light 0; null: the background is the same everywhere

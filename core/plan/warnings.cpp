@@ -218,6 +218,7 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
                for (int i = 0; i < shapes->size(); ++i) {
                  if (++seen > kMostPrimitives) return true;
                  if (!shapes->bounds(i).contains(eye) || is_transparent(scene, materials[i])) continue;
+                 if (scene.emission[static_cast<std::size_t>(materials[i])] != Vec3d(0)) continue;
                  if (++around > kMostAround) return true;
                  if (!kernel) kernel = shapes->kernel(double(), 0);
                  if (!surroundings) surroundings = std::make_unique<Surroundings>(scene, plan.frame.eye);

@@ -25,15 +25,20 @@ class EmitterList {
         add(*shapes, posed ? *posed : *shapes, last, nullptr);
       }
     }
+    const bool few = emits_at_most(kMostInstancedEmitters);
     for (const Instance& instance : scene_.instances) {
       const Model& model = scene_.models[instance.model];
       const bool moves = !exposure_.instant() && instance.motion.times.size() > 1;
       const Affined world_from_model = instance.world_from_model(exposure_.opens);
       for (const auto& shapes : model.shapes) {
         const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
-        if (!moves && shapes->key_times().empty() && skip_dark(last))
+        if (!skip_dark(last)) continue;
+        if (few && !moves && shapes->key_times().empty()) {
           add(*shapes, *shapes, last, &world_from_model);
-        primitive_ = last;
+        } else {
+          geometry_.emits_undrawn = true;
+          primitive_ = last;
+        }
       }
     }
     if (!emitters_.empty()) geometry_.emitters = make_emitters<T>(emitters_);
@@ -49,30 +54,45 @@ class EmitterList {
     return primitive_ < last;
   }
 
+  // Whether no more than so many primitives from here on emit.
+  bool emits_at_most(std::size_t most) const {
+    std::size_t count = 0;
+    for (std::size_t p = primitive_; p < scene_.material_of.size() && count <= most; ++p) {
+      interruption_point(p);
+      count += scene_.emission[static_cast<std::size_t>(scene_.material_of[p])] != Vec3d(0);
+    }
+    return count <= most;
+  }
+
   // Those of a set that end before `last`.
   void add(const ShapeSet& shapes, const ShapeSet& now, std::size_t last, const Affined* world_from_model) {
     for (int i = now.size() - static_cast<int>(last - primitive_); primitive_ < last; ++i, ++primitive_) {
       interruption_point(primitive_);
-      if (radiance() == Vec3d(0) || (!exposure_.instant() && shapes.moves(i))) continue;
-      const auto patch = now.patch(i);
-      if (!patch) continue;
-      std::optional<Emitter<double>> emitter;
-      if (!world_from_model)
-        emitter = make_emitter(*patch, radiance());
-      else if (instanced_ < kMostInstancedEmitters)
-        emitter = make_emitter(*patch, radiance(), *world_from_model);
-      if (!emitter || !(emitter->area > 0)) continue;
-      instanced_ += world_from_model != nullptr;
+      if (radiance() == Vec3d(0)) continue;
+      const bool moves = !exposure_.instant() && shapes.moves(i);
+      const auto emitter = moves ? std::nullopt : emitter_of(now, i, world_from_model);
+      if (!emitter || !(emitter->area > 0)) {
+        geometry_.emits_undrawn = true;
+        continue;
+      }
+      geometry_.emits_undrawn |= emitter->is_solid();
       geometry_.emitter_of[primitive_] = static_cast<IndexOf<T>>(emitters_.size());
       bounds_.push_back(bounds_of(*emitter));
       emitters_.push_back(*emitter);
     }
   }
+  std::optional<Emitter<double>> emitter_of(const ShapeSet& now, int index,
+                                            const Affined* world_from_model) const {
+    const auto patch = now.patch(index);
+    if (!patch) return {};
+    if (world_from_model) return make_emitter(*patch, radiance(), *world_from_model);
+    return make_emitter(*patch, radiance());
+  }
 
   const Scene& scene_;
   const Exposure& exposure_;
   Geometry<T>& geometry_;
-  std::size_t primitive_ = 0, instanced_ = 0;
+  std::size_t primitive_ = 0;
   std::vector<Emitter<double>> emitters_;
   std::vector<LightBounds> bounds_;
 };

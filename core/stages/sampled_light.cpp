@@ -13,13 +13,7 @@ namespace {
 // around. (Pictures of skies are drawn from where they are bright alone.)
 template <class T>
 bool has_light_beside_drawn(const Geometry<T>& geometry) {
-  if (geometry.environment || geometry.background != Vec3<T>()) return true;
-  for (std::size_t p = 0; p < geometry.emitter_of.size(); ++p) {
-    const IndexOf<T> material = geometry.material_of[p];
-    const bool emits = material >= 0 && geometry.emission[static_cast<std::size_t>(material)] != Vec3<T>();
-    if (emits && geometry.emitter_of[p] < 0) return true;
-  }
-  return false;
+  return geometry.environment || geometry.background != Vec3<T>() || geometry.emits_undrawn;
 }
 
 }  // namespace

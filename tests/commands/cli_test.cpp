@@ -139,6 +139,8 @@ TEST_F(CommandLine, UselessPicturesAreWarnedOf) {
   EXPECT_NE(rendered.err.find("orrery: warning: /camera/eye: " + said), std::string::npos) << rendered.err;
   EXPECT_NE(run("explain " + inside).out.find("warning: /camera/eye: " + said), std::string::npos);
   EXPECT_EQ(run("render " + write("s.json", kScene) + " -o " + file("a.png")).err, "");
+  text.replace(text.find(R"("rough")"), 7, R"("rough", "emission": [1, 1, 1])");
+  EXPECT_EQ(run("check " + write("lamp.json", text)).out.find("warning"), std::string::npos);
 }
 
 TEST_F(CommandLine, LayersAreRefusedByFormatsThatKeepNone) {

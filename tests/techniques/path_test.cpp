@@ -37,9 +37,12 @@ TEST_P(PathFurnace, ShowsTheSumOfAllBounces) {
     EXPECT_NEAR(found.mean, 2 - std::pow(0.5, depth), 4 * found.error() + 1e-12) << depth;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Rooms, PathFurnace,
-                         testing::Values("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
-                                         "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
+INSTANTIATE_TEST_SUITE_P(
+    Rooms, PathFurnace,
+    testing::Values("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
+                    "[{'type': 'cylinder', 'base': [0, -2, 0], 'top': [0, 2, 0], 'radius': 2}]",
+                    "[{'type': 'cylinder', 'base': [0.3, -2, 1], 'top': [-0.2, 1, -2], 'radius': 3}]",
+                    "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
 // Unit square over a point, by height; sd: of a sample by solid angle, relative to the mean.
 TEST(Path, IrradianceOfASquare) {
