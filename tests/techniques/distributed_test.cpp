@@ -195,6 +195,12 @@ TEST(Distributed, LampsThatAreMetByChanceCountOnceBesideThoseThatAreDrawn) {
     const Picture distributed = render(loaded, following("distributed", 32, 256, 1, 2));
     EXPECT_NEAR(distributed.sum() / path.sum(), 1, 4e-3) << material;
   }
+  // Without a background that rays look for anyway.
+  scene.erase("background");
+  scene["materials"]["it"] = json("{'type': 'lambert', 'reflectance': 0.7}");
+  const auto loaded = load(scene);
+  const double by_path = render(loaded, following("path", 32, 256, 1, 1)).sum();
+  EXPECT_NEAR(render(loaded, following("distributed", 32, 256, 1, 2)).sum() / by_path, 1, 4e-3);
 }
 
 // A convex ball under a sky sees nothing of itself, and so has no light from other surfaces: all that paths
