@@ -86,7 +86,15 @@ class EmitterList {
     const auto patch = now.patch(index);
     if (!patch) return {};
     if (world_from_model) return make_emitter(*patch, radiance(), *world_from_model);
-    return make_emitter(*patch, radiance());
+    const Emitter<double> emitter = make_emitter(*patch, radiance());
+    if (emitter.is_solid() && holds_all(now.bounds(index))) return {};
+    return emitter;
+  }
+  // Whether the rest of the scene lies within: a solid is seen from inside then, where nothing is drawn.
+  bool holds_all(const Boundsd& box) const {
+    const Boundsd& all = scene_.facts.bounds;
+    return scene_.material_of.size() > 1 && !scene_.facts.unbounded && box.contains(all.lo) &&
+           box.contains(all.hi);
   }
 
   const Scene& scene_;

@@ -69,6 +69,8 @@ export const lightFaults = [
         "test_techniques", "Lamps/Strategies.*Box*"),
   entry(26, "the wall of a cylinder is drawn from by its arc", "core/lights/solid_emitter.h", "dot(point.normal, toward_) / (T(2)", "N(T(1)) / (T(2)",
         "test_techniques", "Lamps/Strategies.*Column*"),
+  entry(26, "a lamp around all else is drawn from in vain", "core/prepare/emitting_surfaces.cpp", "if (emitter.is_solid() && holds_all(now.bounds(index))) return {};", "",
+        "test_techniques", "Path.LampsAroundAllElse*"),
   entry(26, "nobody looks for a box that is seen from inside", "core/prepare/emitting_surfaces.cpp", "|= emitter->is_solid()", "|= false",
         "test_techniques", "Rooms/DiffuseRoom.*"),
   entry(27, "what mirrors find is shared", "core/stages/path_reuse.cpp", "if (!(pdf_[slot] > 0)) continue;", "", "test_techniques",

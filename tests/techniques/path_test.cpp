@@ -139,6 +139,25 @@ TEST(Path, ConvexLampsDoNotLightThemselves) {
   }
 }
 
+// What holds all else is seen from inside, where nothing would be drawn: then no other lamp waits for it.
+TEST(Path, LampsAroundAllElseAreLeftToChance) {
+  const auto is_drawn_from = [](const char* objects) {
+    const Json scene =
+        scene_of(objects, "{'materials': {'white': {'emission': [1, 1, 1]}, 'dark': {'type': 'rough'}}}");
+    return Tracing(scene).world().geometry->emitters != nullptr;
+  };
+  const std::string room = "{'type': 'box', 'min': [-2, -2, -2], 'max': [2, 2, 2]}";
+  const std::string tank = "{'type': 'cylinder', 'base': [0, -2, 0], 'top': [0, 2, 0], 'radius': 2}";
+  const auto ball = [](double x) {
+    return "{'type': 'sphere', 'material': 'dark', 'radius': 0.5, 'center': [" + std::to_string(x) +
+           ", 0, 0]}";
+  };
+  for (const std::string& around : {room, tank}) {
+    EXPECT_FALSE(is_drawn_from(("[" + around + "," + ball(1) + "]").c_str()));
+    EXPECT_TRUE(is_drawn_from(("[" + around + "," + ball(3) + "]").c_str())) << "it lights what is outside";
+  }
+}
+
 // A square of 100,352 triangles, of which each vertex of a path draws one.
 TEST(Path, ManyEmittersAreAsBrightAsOne) {
   constexpr int kSide = 224;
