@@ -99,10 +99,7 @@ struct Emitter {
 
   // Of a rectangle as seen from there, in steradians; 0 where it looks so small that it is drawn from by
   // area.
-  N angle(const Vec3<N>& from) const {
-    const N seen = spherical(from).angle();
-    return select(seen > N(kLeastAngle), seen, N(T(0)));
-  }
+  N angle(const Vec3<N>& from) const { return large_angle(spherical(from)); }
 
   // Density with which draw() finds the direction of a unit ray that hits the emitter at t.
   N pdf(const Ray<N>& ray, const N& t) const {
@@ -130,8 +127,12 @@ struct Emitter {
   SphericalRectangle<N> spherical(const Vec3<N>& from) const {
     return {at - from, a, length_a, b, length_b, normal};
   }
+  static N large_angle(const SphericalRectangle<N>& seen) {
+    return select(seen.angle() > N(kLeastAngle), seen.angle(), N(T(0)));
+  }
   static N rectangle_density(const SphericalRectangle<N>& seen) {
-    return select(seen.angle() > N(kLeastAngle), N(T(1) / seen.angle()), N(T(0)));
+    const N angle = large_angle(seen);
+    return select(angle > N(T(0)), N(T(1) / angle), N(T(0)));
   }
 
   Drawn draw_flat(const Vec3<N>& from, const N& u, const N& v) const {

@@ -46,11 +46,13 @@ class EmitterList {
   }
 
  private:
-  Vec3d radiance() const { return scene_.emission[static_cast<std::size_t>(scene_.material_of[primitive_])]; }
+  Vec3d radiance_of(std::size_t primitive) const {
+    return scene_.emission[static_cast<std::size_t>(scene_.material_of[primitive])];
+  }
 
   // To the next primitive that emits; false if there is none before `last`.
   bool skip_dark(std::size_t last) {
-    while (primitive_ < last && radiance() == Vec3d(0)) interruption_point(++primitive_);
+    while (primitive_ < last && radiance_of(primitive_) == Vec3d(0)) interruption_point(++primitive_);
     return primitive_ < last;
   }
 
@@ -59,7 +61,7 @@ class EmitterList {
     std::size_t count = 0;
     for (std::size_t p = primitive_; p < scene_.material_of.size() && count <= most; ++p) {
       interruption_point(p);
-      count += scene_.emission[static_cast<std::size_t>(scene_.material_of[p])] != Vec3d(0);
+      count += radiance_of(p) != Vec3d(0);
     }
     return count <= most;
   }
@@ -68,7 +70,7 @@ class EmitterList {
   void add(const ShapeSet& shapes, const ShapeSet& now, std::size_t last, const Affined* world_from_model) {
     for (int i = now.size() - static_cast<int>(last - primitive_); primitive_ < last; ++i, ++primitive_) {
       interruption_point(primitive_);
-      if (radiance() == Vec3d(0)) continue;
+      if (radiance_of(primitive_) == Vec3d(0)) continue;
       const bool moves = !exposure_.instant() && shapes.moves(i);
       const auto emitter = moves ? std::nullopt : emitter_of(now, i, world_from_model);
       if (!emitter || !(emitter->area > 0)) {
@@ -85,8 +87,9 @@ class EmitterList {
                                             const Affined* world_from_model) const {
     const auto patch = now.patch(index);
     if (!patch) return {};
-    if (world_from_model) return make_emitter(*patch, radiance(), *world_from_model);
-    const Emitter<double> emitter = make_emitter(*patch, radiance());
+    const Vec3d radiance = radiance_of(primitive_);
+    if (world_from_model) return make_emitter(*patch, radiance, *world_from_model);
+    const Emitter<double> emitter = make_emitter(*patch, radiance);
     if (emitter.is_solid() && holds_all(now.bounds(index))) return {};
     return emitter;
   }

@@ -141,7 +141,7 @@ TEST(Path, ConvexLampsDoNotLightThemselves) {
 
 // What holds all else is seen from inside, where nothing would be drawn: then no other lamp waits for it.
 TEST(Path, LampsAroundAllElseAreLeftToChance) {
-  const auto is_drawn_from = [](const char* objects) {
+  const auto is_drawn_from = [](std::string_view objects) {
     const Json scene =
         scene_of(objects, "{'materials': {'white': {'emission': [1, 1, 1]}, 'dark': {'type': 'rough'}}}");
     return Tracing(scene).world().geometry->emitters != nullptr;
@@ -153,8 +153,8 @@ TEST(Path, LampsAroundAllElseAreLeftToChance) {
            ", 0, 0]}";
   };
   for (const std::string& around : {room, tank}) {
-    EXPECT_FALSE(is_drawn_from(("[" + around + "," + ball(1) + "]").c_str()));
-    EXPECT_TRUE(is_drawn_from(("[" + around + "," + ball(3) + "]").c_str())) << "it lights what is outside";
+    EXPECT_FALSE(is_drawn_from("[" + around + "," + ball(1) + "]"));
+    EXPECT_TRUE(is_drawn_from("[" + around + "," + ball(3) + "]")) << "it lights what is outside";
   }
 }
 
