@@ -279,13 +279,19 @@ function moved() {
 
 const moves = {
   rotate: (azimuth, elevation) => (camera.rotate(azimuth, elevation), moved()),
-  dolly: (factor) => (camera.dolly(factor), moved()),
-  pan: (right, up) => pan(right, up),
+  dolly,
+  pan,
   panning: () => pans,
   reset: () => (camera.reset(), moved()),
   toggle_play: () => set_playing(!state.playing),
   hold: (held) => player.hold(held),
 };
+
+function dolly(factor) {
+  const changed = camera.dolly(factor);
+  moved();
+  return changed;
+}
 
 // By pixels on the stage: what lies at the target's distance keeps under the pointer.
 function pan(right, up) {

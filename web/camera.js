@@ -66,21 +66,24 @@ export class OrbitCamera {
     this.#keep_allowed();
   }
 
+  // Returns the factor by which the distance changes: another one at the nearest and the farthest.
   dolly(factor) {
+    const { distance } = this.#goal;
     this.#goal.distance *= factor;
     this.#keep_allowed();
+    return this.#goal.distance / distance;
   }
 
-  // Moves eye and target in the picture's plane, by parts of the height that the picture shows at the target's
+  // Moves eye and target in the goal's picture plane, by parts of the height that its picture shows at the target's
   // distance. `fov` is the picture's angle where it is not the scene's own.
   pan(right, up, fov) {
-    const { azimuth, elevation } = this.#now;
+    const { azimuth, elevation, distance } = this.#goal;
     const { pole, out, side } = this.#own;
     const turned = radians(azimuth);
     const lifted = radians(this.#own.elevation + elevation);
     const camera_right = mix(side, Math.cos(turned), out, -Math.sin(turned));
     const camera_up = mix(pole, Math.cos(lifted), cross(camera_right, pole), -Math.sin(lifted));
-    const height = this.#shown_metres(fov);
+    const height = this.#shown_metres(distance, fov);
     const move = mix(camera_right, right * height, camera_up, up * height);
     this.#goal.pan = mix(this.#goal.pan, 1, move, 1);
     this.#keep_allowed();
@@ -129,13 +132,12 @@ export class OrbitCamera {
     const goal = this.#goal;
     const turned = Math.hypot(radians(goal.azimuth - now.azimuth), radians(goal.elevation - now.elevation)) / 2;
     const zoomed = Math.abs(Math.log(goal.distance / now.distance)) / 2;
-    return Math.max(turned, zoomed, Math.hypot(...mix(goal.pan, 1, now.pan, -1)) / this.#shown_metres());
+    return Math.max(turned, zoomed, Math.hypot(...mix(goal.pan, 1, now.pan, -1)) / this.#shown_metres(now.distance));
   }
 
-  // Height of what the picture shows at the target's distance. `fov` is the picture's angle where it is not the
-  // scene's own.
-  #shown_metres(fov = this.#scene?.fov_degrees ?? 45) {
-    const { distance } = this.#now;
+  // Height of what the picture shows at the target's distance, a factor of the scene's own. `fov` is the picture's
+  // angle where it is not the scene's own.
+  #shown_metres(distance, fov = this.#scene?.fov_degrees ?? 45) {
     if (this.#scene?.type === "orthographic") return distance * (this.#scene.height ?? 2);
     return distance * 2 * this.#own.metres * Math.tan(radians(fov / 2));
   }

@@ -1,6 +1,6 @@
 // Turns pointer, touch, wheel and keyboard input on the stage into camera moves.
-// `on` has: rotate(azimuth, elevation) in degrees, dolly(factor), pan(right, up) by pixels of the camera's own
-// move, panning() -> whether plain drags and arrows pan, reset(), toggle_play(), hold(bool).
+// `on` has: rotate(azimuth, elevation) in degrees, dolly(factor) -> the factor the distance took, pan(right, up) by
+// pixels of the camera's own move, panning() -> whether plain drags and arrows pan, reset(), toggle_play(), hold(bool).
 
 const kDollyStep = 0.95; // factor of the distance for one wheel notch
 export const kZoomStep = kDollyStep ** 3; // for a key or a button
@@ -30,9 +30,13 @@ function attach_pointers(stage, on) {
   let dragging = false;
   let pans = false;
 
-  const gap = () => {
+  // Of two fingers: their distance, and what is midway between them from the middle of the stage.
+  const pinch = () => {
     const [a, b] = [...pointers.values()];
-    return Math.hypot(a.x - b.x, a.y - b.y);
+    const { left, top, width, height } = stage.getBoundingClientRect();
+    const x = (a.x + b.x) / 2 - (left + width / 2);
+    const y = (a.y + b.y) / 2 - (top + height / 2);
+    return { gap: Math.max(1, Math.hypot(a.x - b.x, a.y - b.y)), x, y };
   };
 
   stage.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -54,13 +58,14 @@ function attach_pointers(stage, on) {
       dragging = true;
       on.hold(true);
     }
-    const before = pointers.size === 2 ? gap() : 0;
+    const before = pointers.size === 2 ? pinch() : null;
     last.x = event.clientX;
     last.y = event.clientY;
     const degrees_per_pixel = 360 / stage.clientHeight;
-    if (pointers.size === 2) {
-      on.pan(-dx / 2, dy / 2); // each finger moves their middle by half its own way
-      if (before > 0 && gap() > 0) on.dolly(before / gap());
+    if (before) {
+      const after = pinch();
+      const factor = on.dolly(before.gap / after.gap);
+      on.pan(before.x / factor - after.x, after.y - before.y / factor); // what is midway between them stays there
     } else if (pans) {
       on.pan(-dx, dy);
     } else {

@@ -198,6 +198,16 @@ test("the camera pans in its picture's plane, as far as its picture shows", () =
   close_to(panned({ camera: { type: "orthographic", height: 3 }, distance: 2 }, 1, 0), [6, 0, 0]);
 });
 
+test("a glide on its way changes nothing of how far a pan goes", () => {
+  const camera = new OrbitCamera();
+  camera.pan(1, 0);
+  const [metres] = camera.goal.pan;
+  assert.equal(camera.dolly(0.5), 0.5);
+  camera.pan(1, 0);
+  assert.equal(camera.goal.pan[0], 1.5 * metres, "by what the goal shows, not by what is seen yet");
+  assert.equal(camera.dolly(0.01), 0.04, "from half to a fiftieth, the nearest");
+});
+
 test("the camera glides to where it is panned to, and reset takes it back", () => {
   const camera = new OrbitCamera();
   camera.pan(1, 0);

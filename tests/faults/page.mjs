@@ -27,6 +27,8 @@ export const pageFaults = [
         "a JSON pointer leads to its place in the text"),
   entry("a glide dies away instead of ending", "camera.js", "(60 * seconds) + least)", "(60 * seconds))",
         "a glide ends rather than move by less than a pixel a frame"),
+  entry("a glide on its way shortens what is panned", "camera.js", "elevation, distance } = this.#goal;",
+        "elevation, distance } = this.#now;", "a glide on its way changes nothing of how far a pan goes"),
   entry("the view sinks through the floor", "camera.js", "if (this.#floor > -Infinity) {", "if (false) {",
         "the view never goes below the floor"),
   entry("a surface of water is a floor", "floor.js", ' && materials[material]?.type !== "refractive"', "",
