@@ -9,7 +9,7 @@
 //     --compile             only checks that each file compiles with its fault, by the flags of build/
 
 import {spawnSync} from "node:child_process";
-import {existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync} from "node:fs";
+import {existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, utimesSync, writeFileSync} from "node:fs";
 import {availableParallelism, tmpdir} from "node:os";
 import {dirname, join, resolve} from "node:path";
 import {parseArgs} from "node:util";
@@ -17,6 +17,7 @@ import {parseArgs} from "node:util";
 import {compileFaults} from "./compile.mjs";
 import {faults as all} from "./faults.mjs";
 import {kRoot, planted} from "./planted.mjs";
+import {unitsWith} from "./units.mjs";
 
 const kTestMinutes = 2;  // a fault may also keep a test from ending
 const kNamesShown = 4;
@@ -140,15 +141,28 @@ class Copy {
   }
   // Calls act() while `fault` is in the copy.
   withFault(fault, act) {
-    const path = join(this.source, fault.file);
     const {text, original, problem} = planted(fault, this.source);
     if (problem) return {caught: false, text: problem};
-    writeFileSync(path, text);
+    this.change(fault, text);
     try {
       return act();
     } finally {
-      writeFileSync(path, original);
+      this.change(fault, original);
     }
+  }
+  // The file keeps its age where only some of the units that include it are to be compiled again.
+  change(fault, text) {
+    const path = join(this.source, fault.file), {atime, mtime} = statSync(path), units = unitsWith(fault);
+    writeFileSync(path, text);
+    if (!units) return;
+    utimesSync(path, atime, mtime);
+    const now = new Date();
+    const seen = this.units().filter((unit) => units.some((beginning) => unit.startsWith(beginning)));
+    if (seen.length === 0) throw new Stop(`${fault.file}: no unit is called ${units.join(", ")}`);
+    for (const unit of seen) utimesSync(join(this.source, unit), now, now);
+  }
+  units() {
+    return readdirSync(this.source, {recursive: true}).filter((path) => path.endsWith(".cpp"));
   }
 }
 
