@@ -2,11 +2,37 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "core/accelerators/box_tree.h"
 #include "core/base/parallel.h"
+#include "core/math/lanes.h"
 
 namespace orrery {
+
+// A box as two registers, each with the sides of all axes; the fourth lane means nothing.
+template <class T>
+struct BoxLanes {
+  using Sides = stdx::simd<T, stdx::simd_abi::deduce_t<T, 4>>;
+  Sides lo{std::numeric_limits<T>::infinity()}, hi{-std::numeric_limits<T>::infinity()};
+
+  // Each register is read at once; the second takes a number that follows the box along.
+  static BoxLanes of(const TreeItem<T>& item) {
+    static_assert(offsetof(TreeItem<T>, box) == 0 && sizeof item >= 7 * sizeof(T));
+    const T* sides = reinterpret_cast<const T*>(&item);
+    return {Sides(sides, stdx::element_aligned), Sides(sides + 3, stdx::element_aligned)};
+  }
+  void include(const BoxLanes& b) {
+    lo = min_first(lo, b.lo);
+    hi = max_first(hi, b.hi);
+  }
+  void include(const Sides& p) { include({p, p}); }
+  Bounds<T> bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
+  static Sides sides(T x, T y, T z) {
+    const std::array<T, 4> each{x, y, z, 0};
+    return Sides(each.data(), stdx::element_aligned);
+  }
+};
 
 // Top down by the surface area heuristic (Goldsmith and Salmon 1987), binned (Wald, "On fast Construction of
 // SAH-based Bounding Volume Hierarchies", 2007). The tree depends on the items alone, not on threads.
@@ -25,24 +51,24 @@ class SahBuilder {
   }
 
  private:
-  static constexpr int kBins = 16;
+  static constexpr std::size_t kBins = 16, kBinsOfFew = 8;
+  static constexpr std::uint32_t kFew = 16;         // items that fewer bins are enough for
   static constexpr std::uint32_t kParallel = 4096;  // items worth a task of their own
+  using Sides = typename BoxLanes<T>::Sides;
   struct Bin {
-    Bounds<T> box;
+    BoxLanes<T> box;
     std::uint32_t count = 0;
   };
+  using Bins = std::array<std::array<Bin, 3>, kBins>;  // by axis in each
   struct Split {
-    T cost = std::numeric_limits<T>::infinity();
-    int axis = 0, bin = 0;
+    T parts = std::numeric_limits<T>::infinity();  // half areas of both, times the cost of what they hold
+    std::size_t axis = 0, bin = 0;
   };
-  // Maps twice the centre of a box to a bin of one axis.
+  // Maps twice the centre of a box to a place along each axis: bin i holds the places from i to i + 1, the
+  // first and the last whatever lies beyond them.
   struct Scale {
-    Vec3<T> from, factor;
-    int bin(const Bounds<T>& box, int axis) const {
-      const auto at = [axis](const Vec3<T>& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
-      const int bin = static_cast<int>((at(box.lo) + at(box.hi) - at(from)) * at(factor));
-      return std::clamp(bin, 0, kBins - 1);
-    }
+    Sides from, factor;
+    Sides places(const BoxLanes<T>& box) const { return (box.lo + box.hi - from) * factor; }
   };
 
   explicit SahBuilder(BoxTree<T>& tree) : tree_(tree) {}
@@ -50,15 +76,17 @@ class SahBuilder {
   // Node `at` gets the items from..to-1; its 2(to - from) - 2 descendants take the places after it.
   void fill(std::uint32_t at, std::uint32_t from, std::uint32_t to, int depth) {
     auto& node = tree_.nodes[at];
-    Bounds<T> centers;
+    BoxLanes<T> box, centers;
     bool mixed = false;
     for (std::uint32_t i = from; i < to; ++i) {
       interruption_point(i);
       const TreeItem<T>& item = tree_.items[i];
-      node.box.include(item.box);
-      centers.include(item.box.lo + item.box.hi);
+      const auto lanes = BoxLanes<T>::of(item);
+      box.include(lanes);
+      centers.include(lanes.lo + lanes.hi);
       mixed = mixed || item.kernel != tree_.items[from].kernel;
     }
+    node.box = box.bounds();
     const std::uint32_t middle = choose_middle(node.box, centers, from, to, mixed, depth);
     if (middle == from) {
       node.leaf = true;
@@ -79,60 +107,67 @@ class SahBuilder {
   }
 
   // Reorders the items and returns the first of the right child, or `from` for a leaf.
-  std::uint32_t choose_middle(const Bounds<T>& box, const Bounds<T>& centers, std::uint32_t from,
+  std::uint32_t choose_middle(const Bounds<T>& box, const BoxLanes<T>& centers, std::uint32_t from,
                               std::uint32_t to, bool mixed, int depth) {
     const std::uint32_t count = to - from;
     if (count == 1) return from;
     Scale scale;
-    const Split split = best_split(box, centers, from, to, scale);
+    const Split split = best_split(centers, from, to, scale);
     const bool may_be_leaf = count <= static_cast<std::uint32_t>(kBlock<T>);
-    if (may_be_leaf && !(split.cost < cost_of(count))) return mixed ? divide_by_kernel(from, to) : from;
-    if (depth >= kDepthGuard || split.cost == std::numeric_limits<T>::infinity()) return from + count / 2;
-    return partition(from, to,
-                     [&](const TreeItem<T>& item) { return scale.bin(item.box, split.axis) <= split.bin; });
+    const bool may_split = split.parts < std::numeric_limits<T>::infinity();
+    if (may_be_leaf && !(may_split && kNodeCost + split.parts / half_area(box) < cost_of(count)))
+      return mixed ? divide_by_kernel(from, to) : from;
+    if (depth >= kDepthGuard || !may_split) return from + count / 2;
+    const T end = static_cast<T>(split.bin + 1);
+    return partition(from, to, [&](const TreeItem<T>& item) {
+      return !(scale.places(BoxLanes<T>::of(item))[split.axis] >= end);
+    });
   }
 
   static T cost_of(std::uint32_t count) {
     return kBlockCost * static_cast<T>((count + kBlock<T> - 1) / kBlock<T>);
   }
 
-  Split best_split(const Bounds<T>& box, const Bounds<T>& centers, std::uint32_t from, std::uint32_t to,
-                   Scale& scale) const {
-    const Vec3<T> extent = centers.hi - centers.lo;
-    const auto factor = [](T e) { return e > 0 ? T(kBins) / e : T(0); };
-    scale = {centers.lo, {factor(extent.x), factor(extent.y), factor(extent.z)}};
-    std::array<std::array<Bin, kBins>, 3> bins;
+  Split best_split(const BoxLanes<T>& centers, std::uint32_t from, std::uint32_t to, Scale& scale) const {
+    const std::size_t used = to - from > kFew ? kBins : kBinsOfFew;
+    const Bounds<T> around = centers.bounds();
+    const Vec3<T> extent = around.hi - around.lo;
+    const auto factor = [used](T e) { return e > 0 ? T(used) / e : T(0); };
+    scale = {centers.lo, BoxLanes<T>::sides(factor(extent.x), factor(extent.y), factor(extent.z))};
+    Bins bins;
+    std::fill_n(bins.begin(), used, std::array<Bin, 3>{});
     for (std::uint32_t i = from; i < to; ++i) {
       interruption_point(i);
-      const Bounds<T>& b = tree_.items[i].box;
-      for (int axis = 0; axis < 3; ++axis) {
-        Bin& bin = bins[static_cast<std::size_t>(axis)][static_cast<std::size_t>(scale.bin(b, axis))];
-        bin.box.include(b);
+      const auto lanes = BoxLanes<T>::of(tree_.items[i]);
+      const Sides places = min_first(max_first(Sides(0), scale.places(lanes)), Sides(T(used - 1)));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        Bin& bin = bins[static_cast<std::size_t>(static_cast<int>(places[axis]))][axis];
+        bin.box.include(lanes);
         ++bin.count;
       }
     }
     Split best;
-    const T whole = half_area(box);
-    for (int axis = 0; axis < 3; ++axis) sweep(bins[static_cast<std::size_t>(axis)], axis, whole, best);
+    for (std::size_t axis = 0; axis < 3; ++axis) sweep(bins, used, axis, best);
     return best;
   }
 
-  static void sweep(const std::array<Bin, kBins>& bins, int axis, T whole, Split& best) {
+  static void sweep(const Bins& bins, std::size_t used, std::size_t axis, Split& best) {
     std::array<T, kBins> right;
     Bin sum;
-    for (std::size_t i = kBins - 1; i > 0; --i) {
-      sum.box.include(bins[i].box);
-      sum.count += bins[i].count;
-      right[i] = sum.count > 0 ? half_area(sum.box) * cost_of(sum.count) : T(-1);
+    for (std::size_t i = used - 1; i > 0; --i) {
+      const Bin& bin = bins[i][axis];
+      sum.box.include(bin.box);
+      sum.count += bin.count;
+      right[i] = sum.count > 0 ? half_area(sum.box.bounds()) * cost_of(sum.count) : T(-1);
     }
     sum = {};
-    for (std::size_t i = 0; i + 1 < kBins; ++i) {
-      sum.box.include(bins[i].box);
-      sum.count += bins[i].count;
+    for (std::size_t i = 0; i + 1 < used; ++i) {
+      const Bin& bin = bins[i][axis];
+      sum.box.include(bin.box);
+      sum.count += bin.count;
       if (sum.count == 0 || right[i + 1] < 0) continue;
-      const T parts = half_area(sum.box) * cost_of(sum.count) + right[i + 1];
-      const T cost = kNodeCost + (whole > 0 ? parts / whole : T(0));
-      if (cost < best.cost) best = {cost, axis, static_cast<int>(i)};
+      const T parts = half_area(sum.box.bounds()) * cost_of(sum.count) + right[i + 1];
+      if (parts < best.parts) best = {parts, axis, i};
     }
   }
 
