@@ -28,15 +28,17 @@ class Blocks {
     references_ += places.size();
     auto making = std::find_if(makings_.begin(), makings_.end(),
                                [kernel](const Making& m) { return m.kernel == kernel; });
-    const std::size_t index = static_cast<std::size_t>(primitives[places.front()].index);
-    if (making == makings_.end()) making = makings_.insert(making, {kernel, places.front() - index, {}});
+    if (making == makings_.end()) {
+      const auto index = static_cast<std::size_t>(primitives[places.front()].index);
+      making = makings_.insert(making, {kernel, places.front() - index, {}});
+    }
     assert(makings_.size() <= kMaxPacks);
     std::vector<int>& indices = making->indices;
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
     if (block > kBlockMask)
       throw InputError("/render/accelerator",
                        "expected a structure of at most 67108864 blocks of primitives");
-    for (const std::uint32_t place : places) indices.push_back(primitives[place].index);
+    for (const std::uint32_t place : places) indices.push_back(static_cast<int>(place - making->first_place));
     indices.resize((block + 1) * kSize, kNothing);
     return static_cast<BlockName>(making - makings_.begin()) << kBlockBits | block;
   }

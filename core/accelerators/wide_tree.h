@@ -46,7 +46,9 @@ class WideTree {
     box_ = tree.nodes[0].box;
     nodes_.shrink_to_fit();
     blocks_.pack();
-    measure(primitives);
+    double held = 0;
+    for (const TreeItem<T>& item : tree.items) held += half_area(item.box);
+    measure(held);
     relative_surface_area_as_built_ = relative_surface_area_;
   }
 
@@ -62,7 +64,10 @@ class WideTree {
       for (std::size_t i = 0; i < kPlaces; ++i)
         if (node->has(i)) node->set_box(i, box_now(node->child[i], node->box_of(i)));
     box_ = box_now(root_, box_);
-    measure(moved);
+    double held = 0;
+    for (const auto& primitive : moved)
+      if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
+    measure(held);
   }
   // How much larger the boxes have become beside what they hold since the tree was built, by their surfaces,
   // to which the rays that enter them are proportional. (By what they hold and not by the root's box: of a
@@ -95,34 +100,44 @@ class WideTree {
     interruption_point();
     depth_ = std::max(depth_, level);
     if (tree.nodes[at].leaf) return add_leaf(tree, tree.nodes[at], primitives);
-    const std::vector<std::uint32_t> children = children_of(tree, at);
+    const Children children = children_of(tree, at);
     Node node;
     for (std::size_t side = 0; side < 6; ++side)
       node.planes[side] = Lanes<T>(side % 2 ? -kInfinite : kInfinite);
     node.child.fill(kLeaf);
     const std::size_t me = nodes_.size();
     nodes_.emplace_back();
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      node.set_box(i, tree.nodes[children[i]].box);
-      node.child[i] = convert(tree, children[i], primitives, level + 1);
+    for (std::size_t i = 0; i < children.count; ++i) {
+      node.set_box(i, tree.nodes[children.node[i]].box);
+      node.child[i] = convert(tree, children.node[i], primitives, level + 1);
     }
     nodes_[me] = node;
     return static_cast<Child>(me);
   }
 
   // The largest descendants that make a full node.
-  static std::vector<std::uint32_t> children_of(const BoxTree<T>& tree, std::uint32_t at) {
-    std::vector<std::uint32_t> children{tree.nodes[at].left, tree.nodes[at].right};
-    while (children.size() < kPlaces) {
-      const auto size = [&](std::uint32_t n) {
-        return tree.nodes[n].leaf ? T(-1) : half_area(tree.nodes[n].box);
-      };
-      const auto largest = std::max_element(children.begin(), children.end(),
-                                            [&](auto a, auto b) { return size(a) < size(b); });
-      if (size(*largest) < 0) break;
-      const auto& opened = tree.nodes[*largest];
-      *largest = opened.left;
-      children.push_back(opened.right);
+  struct Children {
+    std::array<std::uint32_t, kPlaces> node;
+    std::array<T, kPlaces> area;  // of what may be opened; else -1
+    std::size_t count = 0;
+
+    void set(std::size_t place, const BoxTree<T>& tree, std::uint32_t child) {
+      node[place] = child;
+      area[place] = tree.nodes[child].leaf ? T(-1) : half_area(tree.nodes[child].box);
+    }
+  };
+  static Children children_of(const BoxTree<T>& tree, std::uint32_t at) {
+    Children children;
+    children.set(children.count++, tree, tree.nodes[at].left);
+    children.set(children.count++, tree, tree.nodes[at].right);
+    while (children.count < kPlaces) {
+      const auto begin = children.area.begin();
+      const auto largest = std::max_element(begin, begin + static_cast<std::ptrdiff_t>(children.count));
+      if (*largest < 0) break;
+      const auto place = static_cast<std::size_t>(largest - begin);
+      const auto& opened = tree.nodes[children.node[place]];
+      children.set(place, tree, opened.left);
+      children.set(children.count++, tree, opened.right);
     }
     return children;
   }
@@ -135,8 +150,9 @@ class WideTree {
     return kLeaf | blocks_.add(primitives, std::span(places).first(count));
   }
 
-  void measure(const PrimitiveList<T>& primitives) {
-    double area = 0, held = 0, sides = 0;
+  // `held`: the surface of what it holds, of each primitive half that of its box.
+  void measure(double held) {
+    double area = 0, sides = 0;
     std::size_t leaves = 0;
     const auto add = [&](Child child, const Bounds<T>& box) {
       area += half_area(box);
@@ -148,9 +164,6 @@ class WideTree {
     for (const Node& node : nodes_)
       for (std::size_t i = 0; i < kPlaces; ++i)
         if (node.has(i)) add(node.child[i], node.box_of(i));
-    interruption_point();
-    for (const auto& primitive : primitives)
-      if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
     relative_surface_area_ = area / held;
     mean_leaf_extent_ = static_cast<T>(sides / static_cast<double>(leaves));
   }

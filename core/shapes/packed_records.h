@@ -29,7 +29,7 @@ struct CoreOf<Record, N> {
 template <template <class> class Record, class T>
 class PackedRecords final : public PackedPrimitives<T> {
  public:
-  // records.core(i) is what distance() needs of record i.
+  // records.core(i) is what distance() needs of record i. REQUIRES: each block of indices has a primitive.
   template <class Records>
   PackedRecords(const Records& records, int first, std::span<const int> indices) : first_(first) {
     blocks_.reserve(indices.size() / kB);
@@ -141,10 +141,12 @@ class PackedRecords final : public PackedPrimitives<T> {
       std::array<T, kCoreFields> row;
       const auto& core = records.core(static_cast<std::size_t>(index));
       std::memcpy(row.data(), &core, sizeof row);
-      for (std::size_t rest = lane; rest < kB; ++rest) {
-        for (std::size_t field = 0; field < kCoreFields; ++field) columns[field][rest] = row[field];
-        block.id[rest] = static_cast<IndexOf<T>>(first + index);
-      }
+      for (std::size_t field = 0; field < kCoreFields; ++field) columns[field][lane] = row[field];
+      block.id[lane] = static_cast<IndexOf<T>>(first + index);
+    }
+    for (std::size_t last = block.count - 1, rest = block.count; rest < kB; ++rest) {
+      for (auto& column : columns) column[rest] = column[last];
+      block.id[rest] = block.id[last];
     }
     static_assert(sizeof columns == sizeof block.core);
     std::memcpy(static_cast<void*>(&block.core), columns.data(), sizeof columns);
