@@ -28,17 +28,14 @@ class Blocks {
     references_ += places.size();
     auto making = std::find_if(makings_.begin(), makings_.end(),
                                [kernel](const Making& m) { return m.kernel == kernel; });
-    if (making == makings_.end()) {
-      const auto index = static_cast<std::size_t>(primitives[places.front()].index);
-      making = makings_.insert(making, {kernel, places.front() - index, {}});
-    }
+    if (making == makings_.end()) making = makings_.insert(making, {kernel, places.front(), {}});
     assert(makings_.size() <= kMaxPacks);
     std::vector<int>& indices = making->indices;
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
     if (block > kBlockMask)
       throw InputError("/render/accelerator",
                        "expected a structure of at most 67108864 blocks of primitives");
-    for (const std::uint32_t place : places) indices.push_back(static_cast<int>(place - making->first_place));
+    for (const std::uint32_t place : places) indices.push_back(primitives[place].index);
     indices.resize((block + 1) * kSize, kNothing);
     return static_cast<BlockName>(making - makings_.begin()) << kBlockBits | block;
   }
@@ -57,7 +54,7 @@ class Blocks {
   // To be called once all are added, before any is asked for.
   void pack() {
     for (const Making& making : makings_)
-      packs_.push_back({making.kernel, making.first_place, making.kernel->pack(making.indices)});
+      packs_.push_back({making.kernel, making.place, making.kernel->pack(making.indices)});
     makings_ = {};
   }
 
@@ -67,16 +64,16 @@ class Blocks {
     std::vector<std::vector<Bounds<T>>> boxes;
     for (Pack& pack : packs_) {
       auto& of_pack = boxes.emplace_back();
-      const auto* kernel = moved[pack.first_place].kernel;
+      const auto* kernel = moved[pack.place].kernel;
       if (kernel == pack.kernel) continue;
       const std::vector<int> indices = pack.primitives->indices();
+      const std::vector<const Boundsd*> bounds = bounds_of(*kernel, moved);
       pack.primitives = kernel->pack(indices);
       pack.kernel = kernel;
       of_pack.resize(indices.size() / kSize);
       for (std::size_t i = 0; i < indices.size(); ++i)
         if (indices[i] != kNothing)
-          of_pack[i / kSize].include(
-              padded<T>(moved[pack.first_place + static_cast<std::size_t>(indices[i])].bounds));
+          of_pack[i / kSize].include(padded<T>(*bounds[static_cast<std::size_t>(indices[i])]));
     }
     return boxes;
   }
@@ -93,15 +90,28 @@ class Blocks {
  private:
   static constexpr int kBlockBits = 26;
   static constexpr std::uint32_t kBlockMask = (1u << kBlockBits) - 1, kMaxPacks = 1u << 5;
-  // A pack that is being put together. The kernel's primitives follow each other in the list.
+  // Of a kernel's primitives, by their indices: the list may lack some. Null: not in the list.
+  static std::vector<const Boundsd*> bounds_of(const ShapeKernel<T>& kernel,
+                                               const PrimitiveList<T>& primitives) {
+    std::vector<const Boundsd*> bounds;
+    for (const Primitive<T>& primitive : primitives) {
+      if (primitive.kernel != &kernel) continue;
+      const auto index = static_cast<std::size_t>(primitive.index);
+      if (index >= bounds.size()) bounds.resize(index + 1);
+      bounds[index] = &primitive.bounds;
+    }
+    return bounds;
+  }
+
+  // A pack that is being put together.
   struct Making {
     const ShapeKernel<T>* kernel;
-    std::size_t first_place;
+    std::size_t place;  // of one of its primitives in the list
     std::vector<int> indices;
   };
   struct Pack {
     const ShapeKernel<T>* kernel;
-    std::size_t first_place;
+    std::size_t place;
     PackedPrimitivesPtr<T> primitives;
   };
   std::vector<Making> makings_;

@@ -15,13 +15,13 @@ namespace {
 
 const Exposure kExposure{0.1, 1.3};
 
-// Instances that turn, grow and fly, some of a model that changes its form, some at rest; a mesh that moves
-// and one at rest; and planes that an instance tilts. Keys are within the exposure and beyond it.
+// Instances that turn, grow and fly, some of a model that changes its form, some at rest; meshes that move,
+// before, between and after some at rest; and planes that an instance tilts. Keys are within the exposure and
+// beyond it.
 Json busy_scene() {
   Random random(8);
   Json scene = scene_of(R"([
-      {'type': 'sphere', 'center': [0, -3, 0], 'radius': 1.5},
-      {'type': 'mesh', 'positions': [[-6, -2, -6], [6, -2, -6], [0, -2, 6]], 'indices': [[0, 1, 2]]}])");
+      {'type': 'sphere', 'center': [0, -3, 0], 'radius': 1.5}])");
   const auto swarm = [&](int count) {
     Json mesh = {{"type", "mesh"}, {"material", "white"}}, later = Json::array(), last = Json::array();
     for (int i = 0; i < count; ++i) {
@@ -38,7 +38,14 @@ Json busy_scene() {
         {{"time", 0}}, {{"time", 0.7}, {"positions", later}}, {{"time", 1.1}, {"positions", last}}};
     return mesh;
   };
-  scene["objects"].push_back(swarm(60));
+  const auto resting = [](double y) {
+    return Json{{"type", "mesh"},
+                {"positions", {{-6, y, -6}, {6, y, -6}, {0, y, 6}, {2, y + 0.5, 3}}},
+                {"indices", {{0, 1, 2}, {1, 2, 3}}},
+                {"material", "white"}};
+  };
+  for (const Json& mesh : {swarm(3), resting(-2), swarm(60), resting(-1), swarm(2)})
+    scene["objects"].push_back(mesh);
   const Json ball = {{"type", "sphere"}, {"center", {0.3, 0, 0}}, {"radius", 0.4}, {"material", "white"}};
   const Json rod = {{"type", "cylinder"},
                     {"base", {0, 0, 0}},

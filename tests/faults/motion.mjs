@@ -3,6 +3,24 @@
 export const motionFaults = [
   {
     fault: 19,
+    about: "primitives that rest are numbered as if all of their kernel did",
+    file: "core/accelerators/blocks.h",
+    from: "indices.push_back(primitives[place].index);",
+    to: "indices.push_back(static_cast<int>(place - making->place));",
+    target: "test_accelerators",
+    tests: ["All/Shutter.MovingThingsAreFoundAsByTestingEverything/bvh"],
+  },
+  {
+    fault: 19,
+    about: "boxes follow those of other primitives, where some of a kernel move",
+    file: "core/accelerators/blocks.h",
+    from: "padded<T>(*bounds[static_cast<std::size_t>(indices[i])])",
+    to: "padded<T>(moved[std::min(pack.place + static_cast<std::size_t>(indices[i]), moved.size() - 1)].bounds)",
+    target: "test_accelerators",
+    tests: ["MovingDuringAnExposure.FollowsFromTheExposureBefore"],
+  },
+  {
+    fault: 19,
     about: "boxes stay where the primitives were",
     file: "core/accelerators/wide_tree.h",
     from: "return of_pack.empty() ? before : of_pack[Blocks<T>::block_of(child)];",
