@@ -28,17 +28,6 @@ class BoxRays {
   std::array<std::uint16_t, kBatch / kWidth<T>> place_;
 };
 
-// Whether they hold primitives of the same indices, by kernels that change at the same places.
-template <class T>
-bool alike(const PrimitiveList<T>& a, const PrimitiveList<T>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i].index != b[i].index) return false;
-    if (i > 0 && (a[i].kernel == a[i - 1].kernel) != (b[i].kernel == b[i - 1].kernel)) return false;
-  }
-  return true;
-}
-
 template <class T>
 class BesideMoving final : public Accelerator<T> {
  public:
@@ -51,7 +40,7 @@ class BesideMoving final : public Accelerator<T> {
   void build_resting(const AcceleratorType& type, const Accelerator<T>* before) {
     if (resting_.empty()) return;
     const auto* other = dynamic_cast<const BesideMoving*>(before);
-    if (other && alike(other->resting_, resting_)) behind_ = other->behind_->refitted(resting_);
+    if (other && other->resting_.size() == resting_.size()) behind_ = other->behind_->refitted(resting_);
     if (!behind_) behind_ = build(type, resting_);
   }
 

@@ -28,10 +28,6 @@ struct BoxLanes {
   }
   void include(const Sides& p) { include({p, p}); }
   Bounds<T> bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
-  static Sides sides(T x, T y, T z) {
-    const std::array<T, 4> each{x, y, z, 0};
-    return Sides(each.data(), stdx::element_aligned);
-  }
 };
 
 // Top down by the surface area heuristic (Goldsmith and Salmon 1987), binned (Wald, "On fast Construction of
@@ -130,16 +126,14 @@ class SahBuilder {
 
   Split best_split(const BoxLanes<T>& centers, std::uint32_t from, std::uint32_t to, Scale& scale) const {
     const std::size_t used = to - from > kFew ? kBins : kBinsOfFew;
-    const Bounds<T> around = centers.bounds();
-    const Vec3<T> extent = around.hi - around.lo;
-    const auto factor = [used](T e) { return e > 0 ? T(used) / e : T(0); };
-    scale = {centers.lo, BoxLanes<T>::sides(factor(extent.x), factor(extent.y), factor(extent.z))};
+    const Sides extent = centers.hi - centers.lo, zero(T(0));
+    scale = {centers.lo, select(extent > zero, Sides(T(used)) / extent, zero)};
     Bins bins;
     std::fill_n(bins.begin(), used, std::array<Bin, 3>{});
     for (std::uint32_t i = from; i < to; ++i) {
       interruption_point(i);
       const auto lanes = BoxLanes<T>::of(tree_.items[i]);
-      const Sides places = min_first(max_first(Sides(0), scale.places(lanes)), Sides(T(used - 1)));
+      const Sides places = min_first(max_first(zero, scale.places(lanes)), Sides(T(used - 1)));
       for (std::size_t axis = 0; axis < 3; ++axis) {
         Bin& bin = bins[static_cast<std::size_t>(static_cast<int>(places[axis]))][axis];
         bin.box.include(lanes);

@@ -152,6 +152,7 @@ class WideTree {
 
   // `held`: the surface of what it holds, of each primitive half that of its box.
   void measure(double held) {
+    interruption_point();
     double area = 0, sides = 0;
     std::size_t leaves = 0;
     const auto add = [&](Child child, const Bounds<T>& box) {
