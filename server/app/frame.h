@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "core/base/clock.h"
 #include "core/base/work_scope.h"
@@ -16,6 +17,7 @@ inline constexpr PngOptions kFrameOfStream{.level = 1};
 struct Frame {
   std::string bytes;
   RenderStats stats;
+  Certificate certificate = {};
   double render_ms = 0, encode_ms = 0;
   MemoryCharge charge = {};  // for the bytes, where they are counted
 };
@@ -24,7 +26,10 @@ struct Frame {
 template <class Encoder>
 Frame encode_frame(RenderResult&& rendered, double render_ms, const Encoder& encoder) {
   const auto start = Clock::now();
-  Frame frame{.bytes = encoder(rendered.film), .stats = rendered.stats, .render_ms = render_ms};
+  Frame frame{.bytes = encoder(rendered.film),
+              .stats = rendered.stats,
+              .certificate = std::move(rendered.certificate),
+              .render_ms = render_ms};
   frame.encode_ms = milliseconds_since(start);
   return frame;
 }

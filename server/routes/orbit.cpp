@@ -7,6 +7,7 @@
 #include "core/plan/warnings.h"
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
+#include "server/app/told_error.h"
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 
@@ -65,7 +66,8 @@ nlohmann::ordered_json header_of(const OrbitFrame& frame, std::int64_t skipped) 
           {"render_ms", picture.stats.build_ms + picture.stats.trace_ms},
           {"encode_ms", picture.encode_ms},
           {"skipped", skipped},
-          {"rays", picture.stats.counts.rays.total()}};
+          {"rays", picture.stats.counts.rays.total()},
+          {"bound", certificate_json(picture.certificate)}};
 }
 
 SharedBytes picture_of(const std::shared_ptr<const OrbitFrame>& frame) {
@@ -83,7 +85,12 @@ struct OrbitRequest {
 void send(const OrbitRequest& orbit, PictureWriter&& writer) {
   for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone)) try {
       const auto header = header_of(*frame, orbit.viewer->skipped());
-      if (!writer.write({.png = picture_of(frame), .header = header, .last = orbit.viewer->at_end()})) return;
+      const bool written =
+          writer.write({.png = picture_of(frame),
+                        .header = header,
+                        .fields = {{"Orrery-Error-Bound", bound_text(frame->picture.certificate)}},
+                        .last = orbit.viewer->at_end()});
+      if (!written) return;
     } catch (const OverLimit&) {  // the frame is skipped, as if its viewer were slow
     }
   writer.end();

@@ -1,5 +1,6 @@
 #include <future>
 
+#include "core/base/number.h"
 #include "server/http/server.h"
 #include "tests/http/daemon.h"
 #include "tests/support/sanitized.h"
@@ -97,6 +98,20 @@ TEST_F(OrbitStream, FramesAreThePicturesOfTheirAngles) {
   const auto again = parse_frames(client_.Get(path("frames=2&fps=0&azimuth=90"), kFrames)->body);
   ASSERT_EQ(again.size(), 2u);
   EXPECT_EQ(again[0].png, frames[1].png);
+}
+
+TEST_F(OrbitStream, FramesTellHowFarTheyMayBeOff) {
+  const std::string scene = "/v1/scenes/" + post_scene(small_scene().dump());
+  const std::string turned = "azimuth=90&samples=2&precision=double";
+  const std::string bound =
+      client_.Get(scene + "/frame.png?" + turned)->get_header_value("Orrery-Error-Bound");
+  EXPECT_EQ(bound.rfind("rms=0.", 0), 0u) << bound;
+  const std::string orbit = scene + "/orbit?frames=1&" + turned;
+  const auto parts = client_.Get(orbit);
+  EXPECT_NE(parts->body.find("Orrery-Error-Bound: " + bound + "\r\n"), std::string::npos) << bound;
+  const auto told = parse_frames(client_.Get(orbit, kFrames)->body).at(0).header.at("bound");
+  EXPECT_EQ(told.at("total").at("kind"), "estimated");
+  EXPECT_EQ(bound.rfind("rms=" + rounded(told.at("total").at("rms")) + ";kind=estimated", 0), 0u) << bound;
 }
 
 TEST_F(OrbitStream, UselessPicturesAreWarnedOf) {
