@@ -6,6 +6,7 @@
 #include "core/base/number.h"
 #include "core/load/load.h"
 #include "core/params/json.h"
+#include "core/params/suggest.h"
 
 namespace orrery {
 namespace {
@@ -71,6 +72,30 @@ std::vector<std::string_view> render_option_names() {
     if (!option.short_name.empty()) names.push_back(option.short_name);
   }
   return names;
+}
+
+std::vector<OptionText> option_texts(const Fields& query,
+                                     const std::function<std::string(std::string_view)>& called,
+                                     std::span<const std::string_view> more) {
+  std::vector<std::string_view> names = render_option_names();
+  names.insert(names.end(), more.begin(), more.end());
+  std::vector<OptionText> texts;
+  std::vector<Problem> problems;
+  for (const auto& [name, value] : query) {
+    if (std::find(more.begin(), more.end(), name) != more.end()) continue;
+    const RenderOption* option = find_render_option(name);
+    const bool again =
+        std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.option == option; });
+    if (!option)
+      problems.push_back({called(name), "unknown parameter" + did_you_mean(name, names)});
+    else if (again)
+      problems.push_back({called(name), "given as " + std::string(option->key) + " and as " +
+                                            std::string(option->short_name)});
+    else
+      texts.push_back({option, called(name), value});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return texts;
 }
 
 RenderRequest read_option_texts(std::span<const OptionText> texts) {

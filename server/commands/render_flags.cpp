@@ -6,6 +6,7 @@
 #include "core/render/views.h"
 #include "server/app/flag_name.h"
 #include "server/app/render_options.h"
+#include "server/http/target.h"
 
 namespace orrery {
 namespace {
@@ -24,6 +25,16 @@ std::string help_of(const RenderOption& option) {
   return std::string(option.help.substr(0, option.help.size() - option.help.ends_with('.')));
 }
 
+// An address counts from its "?" on.
+std::vector<OptionText> texts_of_plan(std::string_view plan) {
+  const auto called = [](std::string_view name) { return "--plan " + std::string(name); };
+  try {
+    return option_texts(parse_target("/?" + std::string(plan.substr(plan.find('?') + 1))).query, called);
+  } catch (const HttpError& error) {
+    throw InputError("--plan", error.what());
+  }
+}
+
 }  // namespace
 
 void add_render_flags(CLI::App& app, RenderFlags& flags) {
@@ -35,6 +46,12 @@ void add_render_flags(CLI::App& app, RenderFlags& flags) {
     option->type_name(options[i].value_name())->group("Picture");
     flags.options.push_back(option);
   }
+  app.add_option(
+         "--plan", flags.plan,
+         "Any of these options as an address has them, such as a plan that was printed; what is given "
+         "beside it counts")
+      ->type_name("A=B&C=D")
+      ->group("Picture");
   app.add_flag("--full-model", flags.full_model, "Leave no stage out, even where the scene does not need it")
       ->group("Advanced");
   app.add_option("--slice", flags.slice, "Rays that pass the stages together; changes no result")
@@ -51,10 +68,12 @@ void add_threads_flag(CLI::App& app, int& threads) {
 }
 
 RenderRequest read_render_flags(const RenderFlags& flags) {
-  std::vector<OptionText> texts;
+  std::vector<OptionText> texts = texts_of_plan(flags.plan);
   for (std::size_t i = 0; i < flags.options.size(); ++i) {
+    if (flags.options[i]->count() == 0) continue;
     const RenderOption& option = render_options()[i];
-    if (flags.options[i]->count() > 0) texts.push_back({&option, short_flag_of(option), flags.texts[i]});
+    std::erase_if(texts, [&](const OptionText& text) { return text.option == &option; });
+    texts.push_back({&option, short_flag_of(option), flags.texts[i]});
   }
   RenderRequest request = read_option_texts(texts);
   request.full_model = flags.full_model;

@@ -18,6 +18,7 @@ namespace orrery {
 // The options of every command that renders or plans. Must stay where it is once added to a command line.
 struct RenderFlags {
   std::string scene;                  // a file's name, or "-"
+  std::string plan;                   // options as a query has them
   std::vector<std::string> texts;     // of values, as render_options()
   std::vector<CLI::Option*> options;  // likewise
   bool full_model = false;

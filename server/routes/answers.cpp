@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/params/suggest.h"
 #include "server/app/frame_path.h"
 #include "server/app/render_options.h"
 #include "server/app/told_error.h"
@@ -85,25 +84,7 @@ void refuse_compressed(const Request& request) {
 }
 
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more) {
-  std::vector<std::string_view> names = render_option_names();
-  names.insert(names.end(), more.begin(), more.end());
-  std::vector<OptionText> texts;
-  std::vector<Problem> problems;
-  for (const auto& [name, value] : request.query) {
-    if (std::find(more.begin(), more.end(), name) != more.end()) continue;
-    const RenderOption* option = find_render_option(name);
-    const bool again =
-        std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.option == option; });
-    if (!option)
-      problems.push_back({pointer_to(name), "unknown parameter" + did_you_mean(name, names)});
-    else if (again)
-      problems.push_back({pointer_to(name), "given as " + std::string(option->key) + " and as " +
-                                                std::string(option->short_name)});
-    else
-      texts.push_back({option, pointer_to(name), value});
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-  return read_option_texts(texts);
+  return read_option_texts(option_texts(request.query, pointer_to, more));
 }
 
 std::string quoted(const std::string& text) {

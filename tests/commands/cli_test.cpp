@@ -96,6 +96,34 @@ TEST_F(CommandLine, OptionsHaveTheNamesThatJsonHas) {
   EXPECT_EQ(nlohmann::json::parse(by_name).at("request").at("camera").at("azimuth_degrees"), 30);
 }
 
+TEST_F(CommandLine, PlanThatWasPrintedGivesThePictureAgain) {
+  const std::string render = "render " + write("s.json", kScene) + " -o ";
+  ASSERT_EQ(run(render + file("a.png") + " --error 0.2 --azimuth 30 --certificate " + file("c.json")).status,
+            0);
+  const std::string plan = nlohmann::json::parse(bytes_of(file("c.json"))).at("plan");
+  ASSERT_NE(plan.find("samples="), std::string::npos) << plan;
+  EXPECT_EQ(run(render + file("b.png") + " --plan '" + plan + "'").status, 0);
+  EXPECT_EQ(bytes_of(file("a.png")), bytes_of(file("b.png")));
+  const std::string address = " --plan '/v1/scenes/0/frame.png?azimuth=40&samples=4&pan=0,0.5,0'";
+  EXPECT_EQ(run(render + file("c.png") + address).status, 0);
+  EXPECT_EQ(run(render + file("d.png") + " --azimuth 40 --samples 4 --pan 0,0.5,0").status, 0);
+  EXPECT_EQ(bytes_of(file("c.png")), bytes_of(file("d.png")));
+  EXPECT_EQ(run(render + file("e.png") + address + " --azimuth-degrees 50").status, 0);
+  EXPECT_EQ(run(render + file("f.png") + " --azimuth 50 --samples 4 --pan 0,0.5,0").status, 0);
+  EXPECT_EQ(bytes_of(file("e.png")), bytes_of(file("f.png"))) << "what is given beside it counts";
+  const std::pair<const char*, const char*> wrong[] = {
+      {"samples=0", "--plan samples: expected an integer >= 1"},
+      {"sampels=4", "--plan sampels: unknown parameter (did you mean \"samples\"?)"},
+      {"azimuth=1&azimuth_degrees=2", "--plan azimuth_degrees: given as azimuth_degrees and as azimuth"},
+      {"samples=1&samples=2", "--plan: The address gives \"samples\" twice"},
+      {"samples=%zz", "--plan: "}};
+  for (const auto& [given, said] : wrong) {
+    const Outcome refused = run(render + file("g.png") + " --plan '" + given + "'");
+    EXPECT_EQ(refused.status, 2) << given;
+    EXPECT_NE(refused.err.find(said), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(CommandLine, SceneComesFromStandardInputToo) {
   const std::string scene = write("s.json", kScene);
   EXPECT_EQ(run("render - -o " + file("a.png") + " <" + scene).status, 0);
