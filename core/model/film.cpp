@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 #include "core/base/work_scope.h"
@@ -16,12 +17,18 @@ void take_means(const TileSums& sums, TileMeans& means) {
       means[c].values[i] = static_cast<float>(sums.radiance[c][i] * share);
 }
 
-std::uint64_t count_non_finite(const TileMeans& means) {
-  std::uint64_t non_finite = 0;
+// Of the pixels of the tile: what slots beside the picture have is nobody's.
+std::uint64_t count_non_finite(const TileView& tile, const TileMeans& means) {
+  bool all_finite = true;
   for (int i = 0; i < kBatch; i += kWidth<float>) {
     const Lanes<float> sum = means[0].at(i) + means[1].at(i) + means[2].at(i);
-    non_finite += static_cast<std::uint64_t>(stdx::popcount(!(sum - sum == 0.0f)));
+    all_finite = all_finite && all_of(sum - sum == 0.0f);
   }
+  if (all_finite) return 0;
+  std::uint64_t non_finite = 0;
+  for_each_slot(tile, [&](std::size_t i) {
+    non_finite += !std::isfinite(means[0].values[i] + means[1].values[i] + means[2].values[i]);
+  });
   return non_finite;
 }
 
@@ -100,7 +107,7 @@ int Film::tile_number(const TileView& tile) const {
 
 std::uint64_t Film::put(const TileView& tile, const TileMeans& means) {
   set_rows(tile, means, *image_);
-  return count_non_finite(means);
+  return count_non_finite(tile, means);
 }
 
 std::uint64_t Film::put(const TileView& tile, const TileSums& sums) {
@@ -116,7 +123,7 @@ std::uint64_t Film::put(const TileView& tile, const TileSums& sums) {
       planes_[k].weight[pixel] = sums.channels[k].weight[slot];
     }
   });
-  return count_non_finite(means);
+  return count_non_finite(tile, means);
 }
 
 void Film::take(const TileView& tile, TileSums& sums) const {
