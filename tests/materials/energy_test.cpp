@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/materials/fresnel.h"
 #include "tests/support/covers.h"
 #include "tests/support/materials.h"
 
@@ -95,8 +96,27 @@ TEST(Plastic, OfAWhiteBaseReflectsAllLight) {
       for (const double cosine : kCosines)
         EXPECT_NEAR(mean_weight(white, seen_at(cosine)).x, 1, 3e-3)
             << roughness << " " << ior << " " << cosine;
-      EXPECT_NEAR(white.ambient().x, 1, 1e-12) << roughness << " " << ior;
+      const double mirrored = roughness > 0 ? 0 : mean_dielectric(1 / ior);  // by rays
+      EXPECT_NEAR(white.ambient().x, 1 - mirrored, 1e-12) << roughness << " " << ior;
     }
+}
+
+TEST(Ambient, IsNoMoreThanItsLimit) {
+  std::vector<Json> materials;
+  for (const char* type : {"rough", "lambert", "oren-nayar", "translucent"})
+    materials.push_back({{"type", type}});
+  for (const double roughness : {0.0, 0.1, 0.3, 1.0}) {
+    for (const char* type : {"glass", "metallic-roughness"})
+      materials.push_back({{"type", type}, {"roughness", roughness}});
+    materials.push_back({{"type", "metal"}, {"name", "iron"}, {"roughness", roughness}});
+    for (const double reflectance : {0.0, 0.5, 1.0})
+      materials.push_back({{"type", "plastic"}, {"reflectance", reflectance}, {"roughness", roughness}});
+  }
+  for (const Json& material : materials) {
+    const Probe<double> probe(material);
+    const Vec3d most = probe.limits().ambient, sent = probe.ambient();
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_LE(sent[c], most[c] + 1e-12) << material;
+  }
 }
 
 // Of a smooth coat all is known: it mirrors F, and lets 1 - F go on to the base and 1 - F of even light out

@@ -126,6 +126,13 @@ MaterialTraits Probe<T>::traits() const {
   return all;
 }
 
+template <class T>
+ReflectionLimits Probe<T>::limits() const {
+  for (const auto& set : scene_->materials)
+    if (set->size() > 0) return set->limits(0);
+  return {};
+}
+
 template class Probe<float>;
 template class Probe<double>;
 

@@ -59,6 +59,7 @@ class Probe {
   std::vector<Specular> specular(std::span<const Case> cases) const;
   Specular specular(const Case& one) const { return specular(std::span(&one, 1)).front(); }
   MaterialTraits traits() const;
+  ReflectionLimits limits() const;
   // What leaves under ambient light of 1.
   Vec3<T> ambient(Lobes lobes = Lobes::all) const;
 
