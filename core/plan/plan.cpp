@@ -63,6 +63,7 @@ class Planner {
     if (request_.full_model || plan_.technique->draws_light) return plan_;
     choose_lights();
     choose_specular();
+    plan_.free_contribution = plan_.free_contribution && plan_.max_depth > 0;
     return plan_;
   }
 

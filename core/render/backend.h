@@ -7,9 +7,7 @@
 
 #include "core/model/counts.h"
 #include "core/model/film.h"
-#include "core/render/clamped.h"
-#include "core/render/halves.h"
-#include "core/render/sampled_error.h"
+#include "core/render/film_error.h"
 #include "core/render/worker_pool.h"
 #include "core/tuning/settle.h"
 
@@ -30,18 +28,14 @@ struct RenderControl {
   double most_s = std::numeric_limits<double>::infinity();
 };
 
-struct RenderStats {
+// What a render took, and how far its film may be off.
+struct RenderStats : FilmError {
   TraceCounts counts;
   const AcceleratorType* accelerator = nullptr;
   AcceleratorFacts structure;  // what the rays were traced with
   double build_ms = 0;         // making the scene ready, where it was not yet
   double trace_ms = 0;         // wall clock
   double cpu_ms = 0;           // of tracing, on all threads together
-  std::uint64_t non_finite_pixels = 0;
-  Omitted omitted;
-  Clamped clamped;
-  Halves halves;       // over Plan::halves_range(); empty if nothing limits samples
-  SampledError error;  // of an even number of samples, of which at least the second half was traced together
 };
 
 // A scene and a settled plan, ready to render.

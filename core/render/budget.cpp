@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <thread>
 #include <utility>
 
@@ -38,64 +39,65 @@ class BudgetedRender {
   BudgetedRender(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                  const RenderControl& control)
       : scene_(scene),
-        plan_(plan),
         pool_(pool),
         control_(control),
         error_(*plan->asked.error),
         seconds_(*plan->asked.seconds),
         limit_s_(seconds_ > 0 ? std::min(seconds_, control.most_s) : control.most_s),
-        begin_(Clock::now()) {}
+        begin_(Clock::now()),
+        made_{.plan = plan} {}
 
   RenderResult render() {
-    certificate_ = certify(*plan_, stats_, doubt_of_look(1));  // of nothing so far
-    if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), certificate_);
+    made_.certificate = certify(*made_.plan, made_.stats, doubt_of_look(1));  // of nothing so far
+    if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), made_.certificate);
     choose_contribution();
     while (!render_passes()) {  // what a pilot did not see
-      plan_ = plan_.with_min_contribution(plan_->min_contribution / kStepOfPass);
+      made_.plan = made_.plan.with_min_contribution(made_.plan->min_contribution / kStepOfPass);
       ++deepenings_;
     }
-    stats_.counts.add(lost_.counts);  // it was traced, too
-    stats_.build_ms += lost_.build_ms;
-    stats_.trace_ms += lost_.trace_ms;
-    stats_.cpu_ms += lost_.cpu_ms;
+    made_.stats.counts.add(lost_.counts);  // it was traced, too
+    made_.stats.build_ms += lost_.build_ms;
+    made_.stats.trace_ms += lost_.trace_ms;
+    made_.stats.cpu_ms += lost_.cpu_ms;
     BudgetOutcome told = outcome();
-    require_met(told, certificate_);
-    return {std::move(*kept_), stats_, certificate_, std::move(told)};
+    require_met(told, made_.certificate);
+    return {std::move(*made_.film), made_.stats, made_.certificate, std::move(told)};
   }
 
   Forecast foretell() {
     choose_contribution();
     const double begin_s = used_s();
-    const ForecastPilots pilots(scene_, plan_, pool_, control_);
+    const ForecastPilots pilots(scene_, made_.plan, pool_, control_);
     ahead_s_ = begin_s - used_s();  // the picture does without these
     rays_per_sample_ = pilots.rays_per_sample();
     pass_s_per_sample_ = pilots.cpu_s_per_sample() / threads_at_work();
-    int next = has_budget(plan_->asked) ? progressive_samples(*plan_).front() : plan_->samples;
+    int next = has_budget(made_.plan->asked) ? progressive_samples(*made_.plan).front() : made_.plan->samples;
     for (; next > 0; next = next_samples()) {
-      ahead_s_ += (next - samples_) * pass_s_per_sample_;
-      samples_ = next;
-      look(pilots.foretold(samples_));
-      for (Certificate::Term& term : certificate_.terms)  // some pixels prove nothing of others
+      ahead_s_ += (next - made_.samples) * pass_s_per_sample_;
+      made_.samples = next;
+      look(pilots.foretold(made_.samples));
+      for (Certificate::Term& term : made_.certificate.terms)  // some pixels prove nothing of others
         if (term.bound.kind == Bound::Kind::proved) term.bound = Bound::estimated(*term.bound.rms);
-      if (samples_ % 2 == 0 && is_enough()) break;
+      if (made_.samples % 2 == 0 && is_enough()) break;
     }
-    const double ready_s = (pilots.build_ms() + lost_.build_ms + lost_.trace_ms + plan_.settle_ms()) / 1000;
-    return {outcome(), certificate_,
-            static_cast<double>(lost_.counts.rays.total()) + rays_per_sample_ * samples_,
-            ready_s + pass_s_per_sample_ * samples_};
+    const double ready_s =
+        (pilots.build_ms() + lost_.build_ms + lost_.trace_ms + made_.plan.settle_ms()) / 1000;
+    return {outcome(), made_.certificate,
+            static_cast<double>(lost_.counts.rays.total()) + rays_per_sample_ * made_.samples,
+            ready_s + pass_s_per_sample_ * made_.samples};
   }
 
  private:
   int threads_at_work() const {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    return std::min({pool_.threads(), cores, TileGrid(plan_->width, plan_->height).size()});
+    return std::min({pool_.threads(), cores, TileGrid(made_.plan->width, made_.plan->height).size()});
   }
 
-  bool fails_on_miss() const { return *plan_->asked.on_miss == OnMiss::fail; }
+  bool fails_on_miss() const { return *made_.plan->asked.on_miss == OnMiss::fail; }
 
   // Of one that may end it, from 1 on; the last one alone counts where the samples are given.
   double doubt_of_look(int look) const {
-    return Certificate::kDoubt * (plan_->free_samples ? std::exp2(-look) : 1);
+    return Certificate::kDoubt * (made_.plan->free_samples ? std::exp2(-look) : 1);
   }
 
   // Whether the clock may end it.
@@ -105,31 +107,31 @@ class BudgetedRender {
   }
   // When tracing must have ended.
   double deadline_s() const {
-    const double pixels = double(plan_->width) * plan_->height;
+    const double pixels = double(made_.plan->width) * made_.plan->height;
     return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
   }
 
   // By pilots, where it is free: the largest with which rays that are not traced take little of the error, or
   // mostly those do that depth leaves out.
   void choose_contribution() {
-    if (!plan_->free_contribution || plan_->max_depth == 0) return;
+    if (!made_.plan->free_contribution) return;
     for (int pilots = 1;; ++pilots) {
-      const RenderStats pilot = trace_pilot(scene_, plan_, 1, pool_, control_).stats;
+      const RenderStats pilot = trace_pilot(scene_, made_.plan, 1, pool_, control_).stats;
       lose(pilot);
       lost_.build_ms += pilot.build_ms;  // of what the passes find ready
       const bool late = seconds_ > 0 && used_s() > kShareOfPilots * seconds_;
       if (pilots == kMostPilots || late || are_too_deep(pilot) ||
-          share_of_cuts(certify(*plan_, pilot)) <= kShareOfPilot * error_)
+          share_of_cuts(certify(*made_.plan, pilot)) <= kShareOfPilot * error_)
         return;
-      plan_ = plan_.with_min_contribution(plan_->min_contribution / kStep);
+      made_.plan = made_.plan.with_min_contribution(made_.plan->min_contribution / kStep);
     }
   }
 
   // Whether what was left out is nearly all of rays that a smaller least contribution would not trace either:
   // too weak ones have less than that each.
   bool are_too_deep(const RenderStats& stats) const {
-    const auto& [x, y, z] = plan_->cut_range;
-    const double least = plan_->min_contribution * (x + y + z);
+    const auto& [x, y, z] = made_.plan->cut_range;
+    const double least = made_.plan->min_contribution * (x + y + z);
     return stats.omitted.sum >= kHeavy * least * static_cast<double>(stats.counts.cut_rays);
   }
 
@@ -146,48 +148,53 @@ class BudgetedRender {
 
   // False if weaker rays are to be traced, too.
   bool render_passes() {
-    ProgressiveRender passes(scene_, plan_, pool_, control_.stop);
-    samples_ = looks_ = 0;
-    for (int next = progressive_samples(*plan_).front(); next > 0; next = next_samples()) {
+    ProgressiveRender passes(scene_, made_.plan, pool_, control_.stop);
+    made_.samples = 0;
+    for (int next = progressive_samples(*made_.plan).front(); next > 0; next = next_samples()) {
       const double begin_s = used_s();
       if (!trace(passes, next)) break;
-      if (before_) lose(before_->stats);
-      before_.reset();
-      pass_s_per_sample_ = (used_s() - begin_s) / (next - samples_);
-      samples_ = next;
+      pass_s_per_sample_ = (used_s() - begin_s) / (next - made_.samples);
+      made_.samples = next;
       look(passes.stats());
-      rays_per_sample_ = static_cast<double>(stats_.counts.rays.total()) / samples_;
+      rays_per_sample_ = static_cast<double>(made_.stats.counts.rays.total()) / made_.samples;
+      if (before_ && !is_better(before_->certificate, made_.certificate)) forget_before();
       if (is_too_coarse()) {
-        before_.emplace(Made{plan_, passes.take_film(), stats_, certificate_, samples_});
+        forget_before();
+        made_.film = passes.take_film();
+        before_.emplace(std::move(made_));
+        made_ = {.plan = before_->plan};
         return false;
       }
       if (is_enough()) break;
     }
-    if (samples_ == 0) {
-      go_back();
-    } else if (!kept_) {
-      kept_ = passes.take_film();
+    if (before_) {  // there was no time for a better one
+      if (made_.samples > 0) lose(made_.stats);
+      made_ = std::move(*before_);
+    } else if (!made_.film) {
+      made_.film = passes.take_film();
     }
     return true;
   }
 
-  // To the picture without the weaker rays, as there was no time for them.
-  void go_back() {
-    plan_ = before_->plan;
-    kept_ = std::move(before_->film);
-    stats_ = before_->stats;
-    certificate_ = before_->certificate;
-    samples_ = before_->samples;
+  void forget_before() {
+    if (before_) lose(before_->stats);
+    before_.reset();
   }
 
-  // False if time is up: then the film is that of the passes before. Without any, that is a miss.
+  static bool is_better(const Certificate& a, const Certificate& b) {
+    const auto of_a = a.total().rms, of_b = b.total().rms;
+    return of_a && (!of_b || *of_a < *of_b);
+  }
+
+  // False if time is up, or there is no memory to keep the film of the passes before, which is then the last
+  // one. Without any, that is a miss.
   bool trace(ProgressiveRender& passes, int samples) {
+    if (is_timed() && made_.samples > 0 && !keep(passes.film())) return false;
     std::stop_source late;
     const std::stop_callback forward(control_.stop, [&] { late.request_stop(); });
     RenderControl control = control_;
     control.stop = late.get_token();
-    if (is_timed() && samples_ > 0) kept_ = passes.film().copy();
-    const bool is_first = samples_ == 0 && !before_;
+    const bool is_first = made_.samples == 0 && !before_;
     control.spread = is_first && seconds_ > 0 && fails_on_miss();
     control.progress = [&, begin_s = used_s()](int done, int total) {
       if (is_first ? control.spread && is_surely_late(begin_s, done, total) : used_s() > deadline_s())
@@ -198,13 +205,22 @@ class BudgetedRender {
       passes.refine(samples, control);
     } catch (const Cancelled&) {
       if (control_.stop.stop_requested()) throw;
-      if (is_first) throw BudgetMissed(outcome(), certificate_);
+      if (is_first) throw BudgetMissed(outcome(), made_.certificate);
       gave_up_ = true;
       reason_ = "time was up";
       return false;
     }
-    kept_.reset();
+    made_.film.reset();
     return true;
+  }
+
+  // False if there is no memory for it.
+  bool keep(const Film& film) try {
+    made_.film = film.copy();
+    return true;
+  } catch (const std::bad_alloc&) {
+    reason_ = "there is no memory for another pass";
+    return false;
   }
 
   // Of the first pass, after so many of its tiles, which lie all over the picture.
@@ -220,75 +236,77 @@ class BudgetedRender {
   }
 
   void look(const RenderStats& stats) {
-    stats_ = stats;
-    certificate_ = certify(*plan_, stats_, doubt_of_look(++looks_));
+    made_.stats = stats;
+    made_.certificate = certify(*made_.plan, made_.stats, doubt_of_look(++looks_));
   }
 
   static bool is_beside_samples(const Certificate::Term& term) {
     return term.subject != Certificate::kSamples;
   }
   // Of all but the samples; none if unknown.
-  std::optional<double> rest() const { return certificate_.total_of(is_beside_samples).rms; }
+  std::optional<double> rest() const { return made_.certificate.total_of(is_beside_samples).rms; }
   double rest_known() const {
-    return *certificate_
+    return *made_.certificate
                 .total_of([](const Certificate::Term& term) {
                   return is_beside_samples(term) && term.bound.kind != Bound::Kind::unknown;
                 })
                 .rms;
   }
 
-  bool is_proved() const { return certificate_.total().rms && *certificate_.total().rms <= error_; }
+  bool is_proved() const { return made_.certificate.total().rms && *made_.certificate.total().rms <= error_; }
 
   bool is_provable() const { return least() && *least() <= error_; }
 
   // Proved, or as near to what can be proved as is worth the samples: a smaller error never takes fewer.
   bool is_near_enough() const {
-    const SampledError& error = stats_.error;
+    const SampledError& error = made_.stats.error;
     if (!error.known()) return false;
-    const double estimate = certificate_.least_provable ? *certificate_.estimate
-                            : error.tiles < 2           ? error.pixel.rmse()
-                                                        : error.interval().high;
+    const double estimate = made_.certificate.least_provable ? *made_.certificate.estimate
+                            : error.tiles < 2                ? error.pixel.rmse()
+                                                             : error.interval().high;
     if (estimate > std::max(error_ - rest_known(), error_ / 2)) return false;
-    const auto& bound = certificate_.total().rms;
+    const auto& bound = made_.certificate.total().rms;
     return !bound || *bound <= std::max(error_, kNearLeast * *least());
   }
 
   // Whether there is no sense in more passes.
   bool is_enough() const {
-    return error_ > 0 && (is_hopeless() || (plan_->free_samples && is_near_enough()));
+    return error_ > 0 && (is_hopeless() || (made_.plan->free_samples && is_near_enough()));
   }
 
   // Where a miss is an error, and no samples would help.
   bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
 
   bool is_too_coarse() const {
-    if (error_ == 0 || !plan_->free_contribution || deepenings_ == kMostDeepenings) return false;
-    const double first_pass_s = pass_s_per_sample_ * progressive_samples(*plan_).front();
+    if (error_ == 0 || !made_.plan->free_contribution || deepenings_ == kMostDeepenings) return false;
+    const double first_pass_s = pass_s_per_sample_ * progressive_samples(*made_.plan).front();
     if (seconds_ > 0 && used_s() + kSlower * first_pass_s > deadline_s()) return false;
-    return !is_proved() && share_of_cuts(certificate_) > kShareOfCuts * error_ && !are_too_deep(stats_);
+    return !is_proved() && share_of_cuts(made_.certificate) > kShareOfCuts * error_ &&
+           !are_too_deep(made_.stats);
   }
 
   // At least twice as many as before, so that both halves are there and tell the error; 0: none.
   int doubled_samples() const {
-    for (const int samples : progressive_samples(*plan_)) {
-      const int told = samples == plan_->samples ? samples : samples / 2 * 2;
-      if (told >= 2 * samples_) return told;
+    for (const int samples : progressive_samples(*made_.plan)) {
+      const int told = samples == made_.plan->samples ? samples : samples / 2 * 2;
+      if (told >= 2 * made_.samples) return told;
     }
     return 0;
   }
 
   // After the pass that has ended; 0: none.
   int next_samples() {
-    const int most = plan_->samples;
+    const int most = made_.plan->samples;
     int next = doubled_samples();
     if (next == 0) return 0;
     if (is_timed()) {
-      const double fit = samples_ + (deadline_s() - used_s()) / (kSlower * pass_s_per_sample_);
+      const double fit = made_.samples + (deadline_s() - used_s()) / (kSlower * pass_s_per_sample_);
       if (fit < next) {
         reason_ = "more samples would not end in time";
         return 0;
       }
-      if (seconds_ > 0 && fit < most && fit < kLastPassReach * samples_) next = static_cast<int>(fit / 2) * 2;
+      if (seconds_ > 0 && fit < most && fit < kLastPassReach * made_.samples)
+        next = static_cast<int>(fit / 2) * 2;
     }
     const double rays = rays_per_sample_ * next;
     if (rays <= control_.most_rays) return next;
@@ -301,10 +319,10 @@ class BudgetedRender {
     BudgetOutcome outcome;
     outcome.error = error_;
     outcome.seconds = seconds_;
-    outcome.on_miss = *plan_->asked.on_miss;
+    outcome.on_miss = *made_.plan->asked.on_miss;
     outcome.least_error = least();
-    Plan used = *plan_;
-    used.asked.samples = samples_;
+    Plan used = *made_.plan;
+    used.asked.samples = made_.samples;
     used.asked.error = used.asked.seconds = 0;
     used.asked.on_miss = OnMiss::best;
     used.asked.space = Space::automatic;
@@ -319,15 +337,14 @@ class BudgetedRender {
 
   std::string reason() const {
     if (is_late_ || error_ == 0 || is_proved()) return late_reason();
-    for (const Certificate::Term& term : certificate_.terms)
-      if (term.subject != Certificate::kSamples && term.bound.kind == Bound::Kind::unknown)
+    for (const Certificate::Term& term : made_.certificate.terms)
+      if (term.bound.kind == Bound::Kind::unknown && (made_.samples > 0 || is_beside_samples(term)))
         return term.subject + ": " + term.reason;
-    if (samples_ > 0 && !stats_.error.known()) return "samples: only an even number of them tells its error";
-    if (!certificate_.least_provable) return "samples: nothing limits what one may bring";
+    if (!made_.certificate.least_provable) return "samples: nothing limits what one may bring";
     if (*rest() > error_) return "all but the samples may be " + rounded(*rest());
     if (!is_provable()) return "samples of that many pixels prove no less than " + rounded(*least());
     if (!reason_.empty()) return reason_;
-    const bool near = *certificate_.total().rms <= kNearLeast * *least();
+    const bool near = *made_.certificate.total().rms <= kNearLeast * *least();
     return near ? "more samples would hardly prove less, at least " + rounded(*least())
                 : "there may be no more samples";
   }
@@ -336,18 +353,17 @@ class BudgetedRender {
     if (least_s_ > 0) return "the first pass would take about " + rounded(least_s_) + " s";
     if (is_late_) return "time was up in the first pass";
     if (gave_up_) return "a pass took longer than the one before, and ending it took too long";
-    const bool first = samples_ == progressive_samples(*plan_).front();
+    const bool first = made_.samples == progressive_samples(*made_.plan).front();
     return std::string(first ? "the first" : "the last") + " pass took longer";
   }
 
   // The smallest error that can be proved; none if none can.
   std::optional<double> least() const {
-    if (!rest() || !certificate_.least_provable) return {};
-    return *rest() + *certificate_.least_provable;
+    if (!rest() || !made_.certificate.least_provable) return {};
+    return *rest() + *made_.certificate.least_provable;
   }
 
   const PreparedScene& scene_;
-  SettledPlan plan_;
   WorkerPool& pool_;
   const RenderControl& control_;
   const double error_, seconds_;  // 0: not asked
@@ -358,21 +374,18 @@ class BudgetedRender {
   bool gave_up_ = false;               // a pass
   std::atomic<bool> is_late_ = false;  // the first pass, and was given up
   std::atomic<double> least_s_ = 0.0;  // until the first pass would have ended, if it was given up
-  // Of the last pass that has ended.
-  int samples_ = 0;
-  double pass_s_per_sample_ = 0, rays_per_sample_ = 0;
-  RenderStats stats_;
-  Certificate certificate_;
-  RenderStats lost_;  // of pilots, and passes that cut too much
+  double pass_s_per_sample_ = 0, rays_per_sample_ = 0;  // of the last pass that has ended
+  RenderStats lost_;                                    // of pilots, and pictures that cut too much
+  // After so many samples.
   struct Made {
     SettledPlan plan;
-    Film film;
-    RenderStats stats;
-    Certificate certificate;
-    int samples;
+    RenderStats stats = {};
+    Certificate certificate = {};
+    int samples = 0;
+    std::optional<Film> film = {};  // while a pass may be given up, and in the end
   };
-  std::optional<Made> before_;  // with fewer rays, until one pass with more has ended
-  std::optional<Film> kept_;    // while a pass may be given up
+  Made made_;
+  std::optional<Made> before_;  // with fewer rays, until there is a better one with more
   std::string reason_;          // why there was no further pass
 };
 

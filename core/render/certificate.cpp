@@ -30,9 +30,19 @@ Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   const char* const subject = "rays not traced";
   if (stats.counts.cut_rays == 0) return {subject, {}};
   const Omitted& omitted = stats.omitted;
-  if (!std::isfinite(omitted.max()))
+  if (!std::isfinite(omitted.max() + omitted.rms()))
     return {subject, Bound::unknown(), "nothing limits what they would find"};
   return {subject, bound_of(plan, omitted, !plan.technique->draws_light)};
+}
+
+// Light that was met and cut.
+Certificate::Term clamp_term(const Plan& plan, const RenderStats& stats) {
+  const char* const subject = "clamp of indirect light";
+  const Omitted& away = stats.clamped.pixels;
+  if (away.sum == 0) return {subject, {}};
+  if (!std::isfinite(away.max() + away.rms()))
+    return {subject, Bound::unknown(), "what it cuts has no limit"};
+  return {subject, bound_of(plan, away, false)};
 }
 
 Certificate::Term precision_term(const Plan& plan) {
@@ -40,12 +50,15 @@ Certificate::Term precision_term(const Plan& plan) {
   return {"precision", Bound::unknown(), "no ray was traced in double precision besides"};
 }
 
-// Means over tiles have 1 / 1024 of the mean square error of pixels that err independently. With 16 tiles a
-// ratio of 4 has a probability below 1e-7.
+// Means over tiles have 1 / 1024 of the mean square error of pixels that err independently, times chi^2 over
+// its degrees of freedom, of which there is one a tile if all err as much: more than the quantile to which z
+// belongs (Wilson, Hilferty 1931) by a chance of 1e-7.
 bool pixels_are_alike(const SampledError& error) {
-  constexpr double kLeastTiles = 16, kMost = 4;
+  constexpr double kLeastTiles = 16, kZ = 5.2;
   const double pixel = error.pixel.rmse(), tile = error.block32.rmse();
-  return error.block32.values >= 3 * kLeastTiles && tile * tile > kMost * pixel * pixel / kBatch;
+  const double spread = 2 / (9 * error.tiles_that_err()),
+               most = std::pow(1 - spread + kZ * std::sqrt(spread), 3);
+  return error.block32.values >= 3 * kLeastTiles && tile * tile > most * pixel * pixel / kBatch;
 }
 
 // With means a and b of the halves, (a - b)^2 / 4 is on average at least the squared error of their mean; and
@@ -65,10 +78,12 @@ Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, doub
   return {subject, Bound::estimated(seen + display_rms(stats.halves.upper_beyond(part, beyond)))};
 }
 
-// Codes of 8 bits lie by half of one at most beside what they stand for, evenly.
-Certificate::Term encoding_term() {
+// Codes of 8 bits lie by half of one at most beside what they stand for; evenly, where nothing else is known.
+Certificate::Term encoding_term(const RenderStats& stats) {
+  const char* const subject = "codes of 8 bits";
   constexpr double kHalf = 0.5 / 255;
-  return {"codes of 8 bits", {Bound::Kind::estimated, kHalf, kHalf / std::sqrt(3.0)}};
+  if (!stats.halves.known()) return {subject, {Bound::Kind::estimated, kHalf, kHalf / std::sqrt(3.0)}};
+  return {subject, Bound::proved(kHalf + kCurveError, stats.halves.rounding() + kCurveError)};
 }
 
 }  // namespace
@@ -76,7 +91,7 @@ Certificate::Term encoding_term() {
 std::optional<double> least_provable(const Plan& plan, double doubt) {
   if (!std::isfinite(plan.halves_range())) return {};
   const double pixels = double(plan.width) * plan.height;
-  return plan.halves_range() * std::sqrt(-std::expm1(std::log(doubt) / pixels)) / 2;
+  return plan.halves_range() * std::sqrt(UnitHistogram::least_upper_mean(pixels, doubt)) / 2;
 }
 
 Bound Certificate::total() const {
@@ -93,11 +108,11 @@ Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {
   found.not_followed = plan.not_followed;
   found.least_provable = least_provable(plan, doubt);
   const bool display = plan.space == Space::display;
-  if (display) found.terms.push_back(encoding_term());
+  if (display) found.terms.push_back(encoding_term(stats));
   if (stats.error.known())
     found.estimate = display ? std::sqrt(stats.halves.mean()) / 2 : stats.error.pixel.rmse();
   if (plan.clamp_indirect > 0) {
-    found.terms.push_back({"clamp of indirect light", bound_of(plan, stats.clamped.pixels, false)});
+    found.terms.push_back(clamp_term(plan, stats));
     Certificate::Bias& bias = found.biases.emplace_back();
     bias.option = "clamp_indirect";
     bias.value = plan.clamp_indirect;

@@ -76,16 +76,10 @@ ProgressiveRender::ProgressiveRender(const PreparedScene& scene, const SettledPl
 }
 
 void ProgressiveRender::refine(int samples, const RenderControl& control) {
-  stats_.error = {};
-  stats_.halves = {};
-  const Omitted omitted_before = std::exchange(stats_.omitted, {});
-  const Clamped clamped_before = std::exchange(stats_.clamped, {});
+  const FilmError before = std::exchange<FilmError>(stats_, {});
   const std::vector<TileView> tiles = tiles_of(film_, samples_, samples - samples_);
   prepared_->render(control.spread ? spread(tiles) : tiles, film_, stats_, control);
-  if (samples_ > 0) {
-    stats_.omitted.join(omitted_before);
-    stats_.clamped.join(clamped_before);
-  }
+  if (samples_ > 0) stats_.join(before);
   samples_ = samples;
 }
 

@@ -38,6 +38,8 @@ void Halves::add(const Halves& other) {
   pixels_.add(other.pixels_);
   beyond_.add(other.beyond_);
   beyond_sum_ += other.beyond_sum_;
+  rounding_squares_ += other.rounding_squares_;
+  codes_ += other.codes_;
   sum_ += other.sum_;
   squares_ += other.squares_;
   tiles_ += other.tiles_;
@@ -48,6 +50,8 @@ Halves Halves::scaled(double more_pixels, double squares) const {
   all.pixels_ = pixels_.scaled(more_pixels, squares);
   all.beyond_ = beyond_.scaled(more_pixels, squares);
   all.beyond_sum_ = beyond_sum_ * more_pixels * squares;
+  all.rounding_squares_ = rounding_squares_ * more_pixels;
+  all.codes_ = codes_ * more_pixels;
   all.tiles_ = tiles_ * more_pixels;
   all.sum_ = sum_ * more_pixels * squares;
   all.squares_ = squares_ * more_pixels * squares * squares;

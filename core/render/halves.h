@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/render/unit_histogram.h"
 
 namespace orrery {
 
 // How the two halves of the samples differ: of each pixel the mean over channels of the squared difference,
 // over that of what samples may differ by, so in [0, 1]. On a display, also how much brighter one half is
-// than any that is shown, in radiance, where the other one is not.
+// than any that is shown, in radiance, where the other one is not, and how far codes of 8 bits lie beside
+// what all samples show.
 class Halves {
  public:
   void add(double value) { pixels_.add(value); }
@@ -21,12 +24,18 @@ class Halves {
     beyond_.add(value / most);
     beyond_sum_ += value;
   }
+  // Squares of how far so many codes are off, over the range of codes.
+  void add_rounding(double squares, double codes) {
+    rounding_squares_ += squares;
+    codes_ += codes;
+  }
   void add(const Halves& other);  // of other tiles
   // Of a picture with so many times the pixels and tiles, of which `squares` times as much is told.
   Halves scaled(double more_pixels, double squares) const;
 
   bool known() const { return pixels_.count() > 0; }
   double mean() const { return pixels_.mean(); }
+  double rounding() const { return codes_ > 0 ? std::sqrt(rounding_squares_ / codes_) : 0; }  // RMS
   // At least the mean of what they were drawn from, with probability 1 - doubt: of pixels that are
   // independent whatever they are drawn from, see UnitHistogram. Where those of a tile depend on each other,
   // at least what tiles tell by Student's t as well, of which there must be two, else 1.
@@ -39,6 +48,7 @@ class Halves {
 
   UnitHistogram pixels_, beyond_;
   double beyond_sum_ = 0;
+  double rounding_squares_ = 0, codes_ = 0;
   double tiles_ = 0, sum_ = 0, squares_ = 0;  // of sums over a tile
 };
 

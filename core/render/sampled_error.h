@@ -48,6 +48,9 @@ struct SampledError {
     return all;
   }
 
+  // How many tiles that err alike would have mean squares that spread as much.
+  double tiles_that_err() const { return tile_squares > 0 ? tile_sum * tile_sum / tile_squares : tiles; }
+
   // Of the RMSE of a pixel: 95 % of normal errors lie within.
   struct Interval {
     double low, high;

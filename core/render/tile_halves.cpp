@@ -99,31 +99,36 @@ void TileHalves::add_to(Halves& halves, const Plan& plan) const {
 void TileHalves::add_displayed_to(Halves& halves, const Plan& plan) const {
   using N = Lanes<float>;
   const N kOfBias(16.0f);  // with the fourth of the squared difference: twice the bias
-  const N one(1.0f), none(0.0f);
+  const N one(1.0f), none(0.0f), half(0.5f), kCodes(255.0f);
   const double most = plan.beyond_range(samples);
-  alignas(64) std::array<float, kBatch> squares{}, beyond{};
+  alignas(64) std::array<float, kBatch> squares{}, beyond{}, rounding{};
   Shown means;
   for (std::size_t c = 0; c < 3; ++c) {
     find_means(first[c], all[c], 2.0 / samples, means);
     for (std::size_t i = 0; i < kBatch; i += N::size()) {
       const N a = load(&means.first[i]), b = load(&means.second[i]);
       const N shown_a = encode_srgb(a), shown_b = encode_srgb(b), difference = shown_a - shown_b;
-      const N bias = encode_srgb((a + b) * N(0.5f)) - (shown_a + shown_b) * N(0.5f);
+      const N shown = encode_srgb((a + b) * half), bias = shown - (shown_a + shown_b) * half;
+      const N code = shown * kCodes, off = code - floor(code + half);
       const N square = load(&squares[i]) + (difference * difference + kOfBias * bias * bias);
       const N larger = max_first(a, b);
       const N cut = select(min_first(a, b) < one && larger > one, larger - one, none);
       square.copy_to(&squares[i], stdx::vector_aligned);
       (load(&beyond[i]) + cut).copy_to(&beyond[i], stdx::vector_aligned);
+      (load(&rounding[i]) + off * off).copy_to(&rounding[i], stdx::vector_aligned);
     }
   }
-  double sum = 0;
+  double sum = 0, rounding_sum = 0, codes = 0;
   for_each_slot(tile, [&](std::size_t i) {
     if (!std::isfinite(squares[i] + beyond[i])) return;
+    rounding_sum += double{rounding[i]};
+    codes += 3;
     const double value = std::min(1.0, double{squares[i]} / 3);
     halves.add(value);
     sum += value;
     if (most > 0) halves.add_beyond(std::min(double{beyond[i]} / 3, most), most);
   });
+  halves.add_rounding(rounding_sum / (255.0 * 255.0), codes);
   halves.add_tile(sum);
 }
 

@@ -248,7 +248,7 @@ void TileRenderer<T>::add_clamped(const TileView& tile) {
   for (std::size_t c = 0; c < 3; ++c)
     for_each_slot(tile, [&](std::size_t i) {
       sums[c] += clamped_[c][i];
-      stats_.clamped.pixels.add(clamped_[c][i]);
+      stats_.clamped.pixels.add(std::fabs(clamped_[c][i]));  // where a filter takes away, it may be below 0
     });
   stats_.clamped.add_tile(sums);
 }
@@ -256,11 +256,7 @@ void TileRenderer<T>::add_clamped(const TileView& tile) {
 template <class T>
 void TileRenderer<T>::add_to(RenderStats& stats) const {
   stats.counts.add(stats_.counts);
-  stats.error.add(stats_.error);
-  stats.halves.add(stats_.halves);
-  stats.omitted.add(stats_.omitted);
-  stats.clamped.add(stats_.clamped);
-  stats.non_finite_pixels += stats_.non_finite_pixels;
+  stats.add(stats_);
 }
 
 template class TileRenderer<float>;

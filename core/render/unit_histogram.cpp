@@ -52,7 +52,8 @@ double UnitHistogram::low_of(std::size_t bin) {
 }
 
 // The mean over bets of the product over values of 1 + bet (mean - value): a bet is a share of the most that
-// cannot ruin the gambler. Logarithms are concave, so within a bin the chord is below.
+// cannot ruin the gambler. One half of his wealth is on the largest, which wins most where nothing is above
+// 0. Logarithms are concave, so within a bin the chord is below.
 bool UnitHistogram::rejects(double mean, double log_odds) const {
   constexpr int kBets = 24;
   std::array<double, kBets> wealth;
@@ -70,9 +71,16 @@ bool UnitHistogram::rejects(double mean, double log_odds) const {
     wealth[static_cast<std::size_t>(j)] = sum;
   }
   const double most = *std::max_element(wealth.begin(), wealth.end());
-  double all = 0;
-  for (const double w : wealth) all += std::exp(w - most);
-  return most + std::log(all / kBets) >= log_odds;
+  double others = 0;
+  for (std::size_t j = 1; j < kBets; ++j) others += std::exp(wealth[j] - most);
+  const double mean_wealth = (std::exp(wealth[0] - most) + others / (kBets - 1)) / 2;
+  return most + std::log(mean_wealth) >= log_odds;
+}
+
+double UnitHistogram::least_upper_mean(double count, double delta) {
+  UnitHistogram zeros;
+  zeros.bins_[0].count = count;
+  return zeros.upper_mean(delta);
 }
 
 double UnitHistogram::upper_mean(double delta) const {

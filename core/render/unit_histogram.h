@@ -27,6 +27,8 @@ class UnitHistogram {
   // multiplies it by 1 / delta with that probability at most. Of values in a bin only the sum is known, and
   // the least wealth that they may bring counts. 1 without values.
   double upper_mean(double delta) const;
+  // The least that so many values may tell: upper_mean() if all of them are 0.
+  static double least_upper_mean(double count, double delta);
 
  private:
   static constexpr int kOctaves = 64, kPartsOfOctave = 4;

@@ -93,13 +93,15 @@ Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, 
     const int x = static_cast<int>(pixel % plan.width), y = static_cast<int>(pixel / plan.width);
     const Vec3f a = cut.stored().linear(x, y), b = full.stored().linear(x, y);
     double most = 0, sum = 0, share = 0;
+    bool is_equal = true;
     for (std::size_t c = 0; c < 3; ++c) {
       const double off = std::fabs(in_space(a[c], plan.space) - in_space(b[c], plan.space));
       most = std::max(most, off);
+      is_equal = is_equal && off <= kEqualPixels;  // values that are no numbers are not
       sum += off * off;
       share += std::pow(std::min(1.0, (off + left_out) / range), 2) / 3;
     }
-    found.differing += !(most <= kEqualPixels);
+    found.differing += !is_equal;
     found.max = std::max(found.max, most);
     squares += sum;
     shares.add(std::isfinite(share) ? share : 1);

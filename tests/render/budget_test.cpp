@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "core/base/work_scope.h"
 #include "core/plan/options.h"
 #include "core/render/views.h"
 #include "tests/support/covers.h"
@@ -49,7 +50,7 @@ std::vector<double> truth_of(const std::shared_ptr<const Scene>& scene, RenderRe
   r.precision = Precision::double_precision;
   r.max_depth = 32;
   r.min_contribution = 1e-5;
-  r.seed = 4711;
+  if (!r.seed) r.seed = 4711;
   return values_of(rendered(scene, r).film, Space::linear);
 }
 
@@ -101,12 +102,21 @@ TEST(ErrorBudget, IsMetWhereItIsSaidToBe) {
 TEST(ErrorBudget, TracesLittleMoreThanThePicture) {
   for (const char* name : {"paper", "glass", "mirrors"}) {
     const auto scene = test::load(test::sample(name));
-    const RenderResult result = rendered(scene, with_error(96, 0.07, Space::display));
+    const RenderResult result = rendered(scene, with_error(96, 0.05, Space::display));
     RenderRequest plain;
     static_cast<RenderSettings&>(plain) = result.budget->settings;
     const auto needed = static_cast<double>(rendered(scene, plain).stats.counts.rays.total());
     EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 1.25 * needed) << name;
   }
+}
+
+// No smaller contribution would have rays followed that none of a technique's are.
+TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
+  const auto scene = test::load(test::sample("glass"));
+  RenderRequest r = with_error(64, 0.1, Space::display);
+  r.technique = "raycast";
+  EXPECT_EQ(rendered(scene, r).stats.counts.rays.camera,
+            64u * 64 * *rendered(scene, r).budget->settings.samples);
 }
 
 // The decision looks at all pixels at once, so features that few samples meet are not darkened (deciding by
@@ -164,7 +174,13 @@ TEST(ErrorBudget, IsNotDeceivedByWhatADisplayCuts) {
     r.filter = Filter::gaussian;
     RenderRequest much = square(64);
     much.filter = r.filter;
-    const auto truth = in_space(truth_of(test::load(true_json), much, 2048), Space::display);
+    std::vector<double> mean(3 * 64 * 64);
+    for (std::uint64_t seed = 4711; seed < 4715; ++seed) {
+      much.seed = seed;
+      const auto one = truth_of(test::load(true_json), much, 2048);
+      for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += one[i] / 4;
+    }
+    const auto truth = in_space(mean, Space::display);
     for (r.seed = 0; *r.seed < 6; ++*r.seed) {
       const RenderResult result = rendered(scene, r);
       const double realised = rms_difference(values_of(result.film, Space::display), truth);
@@ -278,9 +294,9 @@ TEST(ErrorBudget, NamesWhatCannotBeProved) {
   covers("certificate-16 certificate-35");
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = with_error(64, 0.0005, Space::display);
-  EXPECT_NE(rendered(scene, r).budget->reason.find("all but the samples may be 0.00113"), std::string::npos)
+  EXPECT_NE(rendered(scene, r).budget->reason.find("all but the samples may be 0.001"), std::string::npos)
       << rendered(scene, r).budget->reason;
-  r.error = 0.004;  // 64 x 64 pixels prove no less than sqrt(ln 20 / 4096) / 2
+  r.error = 0.004;  // less than samples of 64 x 64 pixels can prove
   EXPECT_NE(rendered(scene, r).budget->reason.find("prove no less than"), std::string::npos)
       << rendered(scene, r).budget->reason;
   r.on_miss = OnMiss::fail;
@@ -356,6 +372,24 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
     if (run % 3 == 0) expect_repeated(scene, result);  // where tiles stall
   }
   EXPECT_GE(in_time, 80) << "the others stall in their last tile";
+}
+
+// Where a copy of the film would be too much, what there is is the picture.
+TEST(TimeBudget, KeepsThePictureWhereMemoryEnds) {
+  const auto scene = test::load(test::sample("paper"));
+  RenderRequest r = square(1200);  // 35 MB of sums
+  r.technique = "raycast";
+  r.seconds = 60;
+  const auto account = MemoryAccount::open([] {
+    return [](std::size_t bytes, bool already) {
+      if (!already && bytes > 60'000'000) throw Error("there is no more memory");
+      return bytes;
+    };
+  });
+  const RenderResult result =
+      account->run({}, [&] { return rendered(scene, r, {.used_s = [] { return 0.0; }}); });
+  EXPECT_EQ(result.budget->settings.samples, 2);
+  EXPECT_TRUE(result.budget->met()) << "no error was asked";
 }
 
 // Of samples that are given, and no power of two: the last pass has at least doubled them, whenever it ends.

@@ -280,10 +280,11 @@ TEST(Certificate, KnowsThatPixelsErrAlike) {
   plan.width = plan.height = 128;
   RenderStats stats;
   test::Random random(1);
+  int erring_tiles = 16;
   const auto kind_of = [&](double shared) {  // between pixels of a tile
     stats = {};
     for (int tile = 0; tile < 16; ++tile) {
-      const double of_tile = random.between(-1, 1), scale = random.unit();
+      const double of_tile = random.between(-1, 1), scale = tile < erring_tiles ? random.unit() : 0;
       double sum = 0, squares = 0;
       for (int pixel = 0; pixel < kBatch; ++pixel) {
         const double error = scale * (shared * of_tile + (1 - shared) * random.between(-1, 1));
@@ -297,12 +298,16 @@ TEST(Certificate, KnowsThatPixelsErrAlike) {
                        .block4 = {},
                        .block32 = {3 * sum * sum / kBatch / kBatch, 3},
                        .tiles = 1,
-                       .tile_sum = 0,
-                       .tile_squares = 0});
+                       .tile_sum = squares / kBatch,
+                       .tile_squares = squares / kBatch * squares / kBatch});
     }
     return certify(plan, stats).total().kind;
   };
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ(kind_of(0), Bound::Kind::estimated) << i;
+  for (erring_tiles = 1; erring_tiles <= 16; erring_tiles += 5)
+    for (int i = 0; i < 1000; ++i) ASSERT_EQ(kind_of(0), Bound::Kind::estimated) << erring_tiles << " " << i;
+  erring_tiles = 2;
+  EXPECT_EQ(kind_of(1), Bound::Kind::unknown);
+  erring_tiles = 16;
   EXPECT_EQ(kind_of(1), Bound::Kind::unknown);
   EXPECT_EQ(kind_of(0.3), Bound::Kind::unknown);
   plan.reuse = 16;  // where that is expected
@@ -392,6 +397,7 @@ TEST(Certificate, NeverTellsAnErrorOfNothingFromSamples) {
   EXPECT_EQ(certificate.estimate, 0);
   EXPECT_EQ(certificate.total().kind, Bound::Kind::estimated);
   EXPECT_GE(*certificate.total().rms, 2 * std::sqrt(std::log(20) / (64 * 64)) / 2);
+  EXPECT_EQ(certificate.total().rms, certificate.least_provable) << "and none can tell less";
   r.technique = "path";  // a lamp that is drawn by its area may bring anything
   EXPECT_EQ(test::rendered(empty, r).certificate.total().kind, Bound::Kind::unknown);
 }
