@@ -11,8 +11,8 @@ namespace orrery {
 // The ledger of Plan::clamp_indirect: the radiance that it took away, which the same samples without it would
 // have. Their mean is known exactly, and by how much that is off its expectation is told by how tiles differ.
 struct Clamped {
-  Omitted pixels;                          // of all channels
-  std::array<double, 3> sum{}, squares{};  // by channel, of sums over a tile's pixels and samples
+  Omitted pixels;                   // of all channels
+  std::array<Sum, 3> sum, squares;  // by channel, of sums over a tile's pixels and samples
   double tiles = 0;
 
   double mean(std::size_t channel) const {

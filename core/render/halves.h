@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/math/sum.h"
 #include "core/render/unit_histogram.h"
 
 namespace orrery {
@@ -22,7 +23,7 @@ class Halves {
   // `most` that it may be, perhaps infinite.
   void add_beyond(double value, double most) {
     beyond_.add(value / most);
-    beyond_sum_ += value;
+    if (value > 0) beyond_sum_ += value;
   }
   // Squares of how far so many codes are off, over the range of codes.
   void add_rounding(double squares, double codes) {
@@ -47,9 +48,9 @@ class Halves {
   double upper_mean_of_tiles(double doubt) const;
 
   UnitHistogram pixels_, beyond_;
-  double beyond_sum_ = 0;
-  double rounding_squares_ = 0, codes_ = 0;
-  double tiles_ = 0, sum_ = 0, squares_ = 0;  // of sums over a tile
+  Sum beyond_sum_, rounding_squares_;
+  double codes_ = 0, tiles_ = 0;
+  Sum sum_, squares_;  // of sums over a tile
 };
 
 // t for which a variable of Student's distribution with so many degrees of freedom is larger with probability

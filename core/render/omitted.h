@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/sum.h"
+
 namespace orrery {
 
 // The ledger of a picture: how far what was left out may take the mean of a pixel's samples, over all pixels
@@ -10,7 +12,8 @@ namespace orrery {
 // and full picture trace the same rays until the first that is left out, and differ there by its weight times
 // what it may have found.
 struct Omitted {
-  double sum = 0, squares = 0, largest = 0;  // of b
+  Sum sum = 0, squares = 0;  // of b
+  double largest = 0;
   double values = 0;
   int samples = 0;
 
@@ -18,12 +21,6 @@ struct Omitted {
   double rms() const { return values > 0 ? std::sqrt(squares / values) / samples : 0; }
   double max() const { return values > 0 ? largest / samples : 0; }
 
-  // Of a pixel, in one channel.
-  void add(double b) {
-    sum += b;
-    squares += b * b;
-    largest = std::max(largest, b);
-  }
   // Other pixels, of the same samples.
   void add(const Omitted& other) {
     sum += other.sum;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/sum.h"
+
 namespace orrery {
 
 // What a picture tells of its own error: half of its samples against the other half, as each half is a net of
@@ -12,20 +14,22 @@ namespace orrery {
 // 1.6 times at 2 samples and 1.2 times at 16. Sums over values, three a pixel, by the side of the blocks that
 // are averaged first.
 struct SampledError {
-  struct Sum {
-    double squares = 0, values = 0;
+  struct MeanSquare {
+    Sum squares = 0;
+    double values = 0;
 
     double rmse() const { return values > 0 ? std::sqrt(squares / values) : 0; }
   };
-  int samples = 0;             // of a pixel, which it is the error of
-  Sum pixel, block4, block32;  // blocks lie wholly in the picture
+  int samples = 0;                    // of a pixel, which it is the error of
+  MeanSquare pixel, block4, block32;  // blocks lie wholly in the picture
   // Of the tiles' mean squares: tiles are independent of each other, pixels of one may not be.
-  double tiles = 0, tile_sum = 0, tile_squares = 0;
+  double tiles = 0;
+  Sum tile_sum = 0, tile_squares = 0;
 
   bool known() const { return pixel.values > 0; }
 
   void add(const SampledError& other) {
-    const auto add_sum = [](Sum& to, const Sum& from) {
+    const auto add_sum = [](MeanSquare& to, const MeanSquare& from) {
       to.squares += from.squares;
       to.values += from.values;
     };
@@ -42,7 +46,7 @@ struct SampledError {
   SampledError scaled(int other_samples, double times) const {
     SampledError all = *this;
     all.samples = other_samples;
-    for (Sum* sum : {&all.pixel, &all.block4, &all.block32}) sum->squares *= times;
+    for (MeanSquare* sum : {&all.pixel, &all.block4, &all.block32}) sum->squares *= times;
     all.tile_sum *= times;
     all.tile_squares *= times * times;
     return all;

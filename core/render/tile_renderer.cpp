@@ -1,6 +1,8 @@
 #include "core/render/tile_renderer.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "core/cameras/shutter.h"
 #include "core/cameras/thin_lens.h"
@@ -31,6 +33,20 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
   if (first) sum.fill(0.0);
   for (std::size_t i = 0; i < kBatch; ++i)
     if (weight.values[i] > 0) sum[i] += static_cast<double>(value.values[i]);
+}
+
+// By how much pixels may be off, or are, from sums by channel and slot; none: all by 0. Where a filter takes
+// away, what it does may be below 0.
+Omitted ledger_of(const TileView& tile, std::span<const TileSums::Plane> channels) {
+  double sum = 0, squares = 0, largest = 0;
+  for (const TileSums::Plane& channel : channels)
+    for_each_slot(tile, [&](std::size_t i) {
+      const double off = std::fabs(channel[i]);
+      sum += off;
+      squares += off * off;
+      largest = std::max(largest, off);
+    });
+  return {sum, squares, largest, 3.0 * tile.width * tile.height, tile.samples};
 }
 
 }  // namespace
@@ -67,7 +83,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
     if (plan_.view == View::bound) show_bound(tile);
     stats_.non_finite_pixels += film.put(tile, sums_);
   }
-  add_omitted(tile);
+  stats_.omitted.add(ledger_of(tile, omitted_));
   if (plan_.clamp_indirect > 0) add_clamped(tile);
   return true;
 }
@@ -233,23 +249,10 @@ void TileRenderer<T>::show_bound(const TileView& tile) {
 }
 
 template <class T>
-void TileRenderer<T>::add_omitted(const TileView& tile) {
-  stats_.omitted.samples = tile.samples;
-  stats_.omitted.values += 3.0 * tile.width * tile.height;
-  for (const TileSums::Plane& channel : omitted_)
-    for_each_slot(tile, [&](std::size_t i) { stats_.omitted.add(channel[i]); });
-}
-
-template <class T>
 void TileRenderer<T>::add_clamped(const TileView& tile) {
-  stats_.clamped.pixels.samples = tile.samples;
-  stats_.clamped.pixels.values += 3.0 * tile.width * tile.height;
+  stats_.clamped.pixels.add(ledger_of(tile, clamped_));
   std::array<double, 3> sums{};
-  for (std::size_t c = 0; c < 3; ++c)
-    for_each_slot(tile, [&](std::size_t i) {
-      sums[c] += clamped_[c][i];
-      stats_.clamped.pixels.add(std::fabs(clamped_[c][i]));  // where a filter takes away, it may be below 0
-    });
+  for (std::size_t c = 0; c < 3; ++c) for_each_slot(tile, [&](std::size_t i) { sums[c] += clamped_[c][i]; });
   stats_.clamped.add_tile(sums);
 }
 

@@ -40,7 +40,6 @@ class TileRenderer {
   void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, PixelFilter::Part part,
                      TileSamples& to) const;
   void add_sample();
-  void add_omitted(const TileView& tile);
   void add_clamped(const TileView& tile);
   void add_error(const TileHalves& halves);
   void put_single(const TileView& tile, Film& film);

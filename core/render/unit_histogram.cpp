@@ -7,6 +7,12 @@
 
 namespace orrery {
 
+void UnitHistogram::add_positive(double value) {
+  constexpr std::uint64_t kRoundedOff = (std::uint64_t{1} << 24) - 1;
+  const auto bits = std::bit_cast<std::uint64_t>(std::max(value, 0x1p-64));
+  add_times(std::bit_cast<double>((bits + kRoundedOff) & ~kRoundedOff), 1);
+}
+
 // A double's bits from the second of its fraction on count quarters of powers of two, near enough: bins are
 // linear within an octave.
 void UnitHistogram::add_times(double value, double times) {

@@ -8,9 +8,10 @@ namespace orrery {
 // Values in [0, 1], kept by size: how many, and their sum, in bins of a quarter of a power of two.
 class UnitHistogram {
  public:
-  // Values outside of [0, 1] count as its ends.
+  // Values outside of [0, 1] count as its ends. Others are rounded up to 29 bits, or to 2^-64, so that sums
+  // of up to 2^24 in a bin are exact: they come in any order to the same.
   void add(double value) {
-    if (value == 0)
+    if (value <= 0)
       bins_[0].count += 1;
     else
       add_positive(value);
@@ -36,7 +37,7 @@ class UnitHistogram {
   struct Bin {
     double count = 0, sum = 0;
   };
-  void add_positive(double value) { add_times(value, 1); }
+  void add_positive(double value);
   void add_times(double value, double times);
   static double low_of(std::size_t bin);
   // Whether a gambler would believe that the mean is below `mean`.
