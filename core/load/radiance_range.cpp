@@ -57,8 +57,8 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
   const DirectLight light = find_direct_light(scene, facts);
   Vec3d tree = most_beyond(scene), paths = tree;
-  for (const LightPlace& place : scene.lights)
-    paths = largest(paths, scene.light_sets[place.set]->most_seen(place.index));
+  for (const LightPlace& place : scene.lights)  // suns stand before the sky, and may overlap
+    paths = paths + scene.light_sets[place.set]->most_seen(place.index);
   Vec3d distributed = paths;
   std::size_t number = 0;
   for (const auto& set : scene.materials)

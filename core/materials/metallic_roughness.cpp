@@ -42,13 +42,14 @@ MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
   return found;
 }
 
-// At three views: what facets mirror at once, and of the base the mean of 1 - F over the directions of light.
+// At some views, of which the most is mostly the flattest: what facets mirror at once, and of the base the
+// mean of 1 - F over the directions of light.
 template <class N>
 double MetallicRoughness<N>::most_reflected() const {
   if (!(strict > 0)) return 1;
   constexpr int kSteps = 64;
   double most = 0;
-  for (const double mu : {1.0, 0.5, 0.1}) {
+  for (const double mu : {1.0, 0.5, 0.1, 0.02, 0.005}) {
     const Vec3d viewer(std::sqrt(1 - mu * mu), 0, mu);
     double matt = 0;
     for (int i = 0; i < kSteps; ++i)

@@ -64,7 +64,9 @@ class PlasticKernel final : public LobeKernel<Plastic, T> {
                 const Groups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Plastic<N>& plastic) {
-      const N share = plastic.fresnel(-dot(rays.direction.at(i), surface.normal.at(i)));
+      const Vec3<N> viewer = -rays.direction.at(i);
+      const ShadingFrame<N> frame(surface.normal.at(i), surface.geometric.at(i), viewer);
+      const N share = plastic.fresnel(dot(frame.normal, viewer));
       out.reflectance.put(i, mine, Vec3<N>(select(plastic.alpha > zero, zero, share)));
       out.transmittance.put(i, mine, Vec3<N>(zero));
       out.filter.put(i, mine, Vec3<N>(one));

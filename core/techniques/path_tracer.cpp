@@ -95,8 +95,15 @@ template <class T>
 void PathTracer<T>::add_what_shines(const Groups& groups, const Groups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const bool second = paths->depth == 1, apart = second && (reuse_ || indirect_);
+  const Vec3<N> none(N(T(0)));
   if (apart)
-    for (const int i : groups) emission_.put(i, Vec3<N>(N(T(0))));
+    for (const int i : groups) emission_.put(i, none);
+  if (second && indirect_)
+    for (const int i : groups) {  // what is seen beyond the scene shines, too
+      const auto missed = !surface_lanes(i);
+      emission_.put(i, missed, radiance.at(i));
+      radiance.put(i, missed, none);
+    }
   sampled_light_.add_beyond(*paths, hits, groups, second && indirect_ ? emission_ : radiance);
   sampled_light_.add_emission(*paths, hits, surface, met, apart ? emission_ : radiance);
   if (apart) add_emission_to_first(indirect_ ? groups : met);
@@ -112,6 +119,16 @@ void PathTracer<T>::add_emission_to_first(const Groups& groups) {
       const Vec3<T> weight = reuse_ ? reuse_->weights()[slot] : paths.throughput[lane];
       sums.set(slot, sums[slot] + weight * emission_[lane]);
     }
+}
+
+template <class T>
+Vec3<Lanes<T>> PathTracer<T>::first_weights(int i) const {
+  const auto& slot = this->vertices_->paths->slot;
+  const auto of_paths = [&](const Array<T>& of_slots) {
+    return N([&](auto lane) { return of_slots[static_cast<int>(slot[i + static_cast<int>(lane)])]; });
+  };
+  const Vec3Array<T>& weights = reuse_->weights();
+  return {of_paths(weights.x), of_paths(weights.y), of_paths(weights.z)};
 }
 
 template <class T>
@@ -157,7 +174,12 @@ void PathTracer<T>::go_on(int i) {
 
 template <class T>
 void PathTracer<T>::end(const Groups& met) {
-  for (const int i : met) this->note_cut(i, surface_lanes(i), this->vertices_->paths->throughput.at(i));
+  const PathBatch<T>& paths = *this->vertices_->paths;
+  for (const int i : met) {
+    Vec3<N> weight = paths.throughput.at(i);
+    if (reuse_ && paths.depth > 0) weight = weight * first_weights(i);
+    this->note_cut(i, surface_lanes(i), weight);
+  }
 }
 
 template class PathTracer<float>;

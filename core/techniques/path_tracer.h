@@ -51,6 +51,8 @@ class PathTracer : public Wavefront<T> {
     const auto primitive = load_index<T>(this->vertices_->hits.primitive, i);
     return mask_cast<N>(primitive != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
   }
+  // What the paths had from their first vertex, where they share what they find after it.
+  Vec3<N> first_weights(int i) const;
   // Those whose light looks the same from everywhere.
   MaskOf<N> even_lanes(int i) const;
 
