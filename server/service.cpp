@@ -54,9 +54,10 @@ void add_common_headers(const Request& request, Response& response) {
 void keep_private(Audience audience, Response& response) {
   const std::string kept = find_field(response.headers, "Cache-Control").value_or("");
   constexpr std::string_view kPublic = "public, ";
-  if (audience == Audience::all || !kept.starts_with(kPublic)) return;
-  response.set("Cache-Control",
-               audience == Audience::link ? "private, no-cache" : "private, " + kept.substr(kPublic.size()));
+  if (audience == Audience::link && !kept.empty() && kept != "no-store")
+    response.set("Cache-Control", "private, no-cache");
+  else if (audience != Audience::all && kept.starts_with(kPublic))
+    response.set("Cache-Control", "private, " + kept.substr(kPublic.size()));
 }
 
 HttpServer::Options options_of(const Settings& settings) {

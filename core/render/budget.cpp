@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <new>
 #include <thread>
 #include <utility>
@@ -33,6 +34,8 @@ constexpr double kLastPassReach = 4.4;   // of this many times the samples, more
 constexpr int kSeenTiles = 16;           // of the first pass, before its time is foretold
 constexpr double kSurelyLate = 1.5;      // times the time that there is
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
+
+constexpr const char* kNoMemory = "there is no memory for another pass";
 
 class BudgetedRender {
  public:
@@ -148,32 +151,41 @@ class BudgetedRender {
 
   // False if weaker rays are to be traced, too.
   bool render_passes() {
-    ProgressiveRender passes(scene_, made_.plan, pool_, control_.stop);
     made_.samples = 0;
-    for (int next = progressive_samples(*made_.plan).front(); next > 0; next = next_samples()) {
+    const auto passes = begin_passes();
+    for (int next = passes ? progressive_samples(*made_.plan).front() : 0; next > 0; next = next_samples()) {
       const double begin_s = used_s();
-      if (!trace(passes, next)) break;
+      if (!trace(*passes, next)) break;
       pass_s_per_sample_ = (used_s() - begin_s) / (next - made_.samples);
       made_.samples = next;
-      look(passes.stats());
+      look(passes->stats());
       rays_per_sample_ = static_cast<double>(made_.stats.counts.rays.total()) / made_.samples;
       if (before_ && !is_better(before_->certificate, made_.certificate)) forget_before();
       if (is_too_coarse()) {
         forget_before();
-        made_.film = passes.take_film();
+        made_.film = passes->take_film();
         before_.emplace(std::move(made_));
         made_ = {.plan = before_->plan};
         return false;
       }
       if (is_enough()) break;
     }
-    if (before_) {  // there was no time for a better one
+    if (before_) {  // there was no time for a better one, or no memory
       if (made_.samples > 0) lose(made_.stats);
       made_ = std::move(*before_);
     } else if (!made_.film) {
-      made_.film = passes.take_film();
+      made_.film = passes->take_film();
     }
     return true;
+  }
+
+  // None if there is a picture already and no memory for another.
+  std::unique_ptr<ProgressiveRender> begin_passes() try {
+    return std::make_unique<ProgressiveRender>(scene_, made_.plan, pool_, control_.stop);
+  } catch (const std::bad_alloc&) {
+    if (!before_) throw;
+    reason_ = kNoMemory;
+    return nullptr;
   }
 
   void forget_before() {
@@ -219,7 +231,7 @@ class BudgetedRender {
     made_.film = film.copy();
     return true;
   } catch (const std::bad_alloc&) {
-    reason_ = "there is no memory for another pass";
+    reason_ = kNoMemory;
     return false;
   }
 
@@ -254,6 +266,11 @@ class BudgetedRender {
   }
 
   bool is_proved() const { return made_.certificate.total().rms && *made_.certificate.total().rms <= error_; }
+
+  // What a request names is not a budget's to change, unless it is to end at a time.
+  bool has_samples_asked() const {
+    return made_.plan->free_samples || seconds_ > 0 || made_.samples == made_.plan->samples;
+  }
 
   bool is_provable() const { return least() && *least() <= error_; }
 
@@ -330,12 +347,13 @@ class BudgetedRender {
     outcome.used_s = used_s();
     if (least_s_ > 0) outcome.least_s = least_s_;
     outcome.seconds_met = seconds_ == 0 || (outcome.used_s <= seconds_ && !is_late_);
-    outcome.error_met = error_ == 0 || is_proved();
+    outcome.error_met = error_ == 0 || (is_proved() && has_samples_asked());
     if (!outcome.met()) outcome.reason = reason();
     return outcome;
   }
 
   std::string reason() const {
+    if (is_proved() && !has_samples_asked()) return reason_;
     if (is_late_ || error_ == 0 || is_proved()) return late_reason();
     for (const Certificate::Term& term : made_.certificate.terms)
       if (term.bound.kind == Bound::Kind::unknown && (made_.samples > 0 || is_beside_samples(term)))

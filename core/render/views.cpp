@@ -39,6 +39,7 @@ void choose_space(RenderRequest& request, FileFormat format) {
   if (format == FileFormat::jpeg && request.error.value_or(0) > 0)
     throw InputError("/budget/error",
                      "expected none, as what JPEG leaves out has no bound; PNG and EXR keep one");
+  if (has_budget(request)) require_picture(request, "a budget");
   const bool open = request.space.value_or(Space::automatic) == Space::automatic;
   if (open && has_budget(request) && format == FileFormat::png) request.space = Space::display;
 }

@@ -195,7 +195,7 @@ void Study::end_round(int round) {
   turns_.erase(std::remove_if(next, turns_.end(), [&](const Turn& turn) { return over[turn.point]; }),
                turns_.end());
   if (!complete()) return;
-  reference_ = {};
+  end();
   chart_.points = std::move(different);
 }
 

@@ -40,6 +40,8 @@ class Study {
   // Takes the next picture; they come in order.
   void add(const RenderResult& rendered);
   bool complete() const { return added_ == pictures(); }
+  // Gives back what only taking pictures needs. No more come.
+  void end() { reference_ = std::vector<float>(); }
 
   const std::string& scene_id() const { return chart_.scene_id; }
   // REQUIRES: complete().

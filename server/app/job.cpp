@@ -147,6 +147,7 @@ void Job::keep(int step, Frame&& frame) {
 }
 
 void Job::end(std::exception_ptr error) {
+  spec_.work->end();
   memory_.reset();
   const std::lock_guard lock(mutex_);
   error_ = error;

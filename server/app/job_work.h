@@ -43,6 +43,9 @@ class JobWork {
   // done.
   virtual void keep(int step, std::string&& encoded) = 0;
 
+  // No more pictures come: gives back what only taking them needs.
+  virtual void end() {}
+
   // Members that point to the files, of what is told about the job `job_id`, and about a step that is done.
   virtual nlohmann::ordered_json links(const std::string& job_id) const = 0;
   virtual nlohmann::ordered_json links_of_step(const std::string& job_id, int step) const = 0;

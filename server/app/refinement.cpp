@@ -27,6 +27,7 @@ std::string Refinement::key_of(int samples) const {
 }
 
 std::optional<Refinement::Step> Refinement::next(const std::stop_token& gone) {
+  if (done_ > 0 && services_.draining.stop_requested()) next_ = samples_.size();
   if (at_end()) return std::nullopt;
   if (known_) {
     next_ = samples_.size();

@@ -37,6 +37,12 @@ FileFormat format_of(const std::string& path) {
   throw InputError("--output", "expected a name that ends in .png, .jpg or .exr, got " + path);
 }
 
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code none;
+  const auto place = [&](const std::string& path) { return std::filesystem::weakly_canonical(path, none); };
+  return place(a) == place(b);
+}
+
 void require_writable(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const std::string place = !is_replaced(path) ? path : folder.empty() ? "." : folder;

@@ -59,7 +59,7 @@ int render(const RenderOptions& options) {
   const RenderRequest request = read_picture_flags(options.render, kept);
   if (options.output) require_writable(*options.output);
   if (options.certificate) {
-    if (options.certificate == options.output)
+    if (options.output && is_same_file(*options.certificate, *options.output))
       throw InputError("--certificate",
                        "expected another file than that of --output, got " + *options.certificate);
     require_writable(*options.certificate);

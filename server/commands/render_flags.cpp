@@ -25,8 +25,9 @@ std::string help_of(const RenderOption& option) {
   return std::string(option.help.substr(0, option.help.size() - option.help.ends_with('.')));
 }
 
-// An address counts from its "?" on.
+// An address counts from its "?" on, and may have none.
 std::vector<OptionText> texts_of_plan(std::string_view plan) {
+  if (plan.find('?') == plan.npos && plan.find('/') != plan.npos) return {};
   const auto called = [](std::string_view name) { return "--plan " + std::string(name); };
   try {
     return option_texts(parse_target("/?" + std::string(plan.substr(plan.find('?') + 1))).query, called);

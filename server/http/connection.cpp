@@ -234,9 +234,9 @@ std::string Connection::read_counted(std::size_t length, const Received& receive
     receive_part(pace);
     received(std::min(received_.size(), length));
   }
-  std::string body = received_.substr(0, length);
-  received_.erase(0, length);
-  return body;
+  std::string rest = received_.substr(length);
+  received_.resize(length);
+  return std::exchange(received_, std::move(rest));  // which keeps no room for another body
 }
 
 std::string Connection::read_chunks(const BodyLimit& limit, const Received& received) {

@@ -24,6 +24,7 @@ class ChartWork final : public JobWork {
   void add(const RenderResult& rendered) override { study_.add(rendered); }
   std::string encode(const Film&) const override { return {}; }
   void keep(int, std::string&&) override {}
+  void end() override { study_.end(); }
 
   ordered_json links(const std::string& job_id) const override {
     return {{"chart", folder() + job_id + ".svg"}};

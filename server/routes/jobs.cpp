@@ -34,29 +34,28 @@ struct Events {
   void send(Sink& sink, const Timer& timer, const std::stop_token& gone) {
     constexpr std::chrono::milliseconds kLeast{100};  // between two reports of progress
     constexpr std::chrono::seconds kSilence{10};      // after which the client is told that the line is open
-    std::string text = news(job->status());
-    while (sink.write(text) && !ended && !gone.stop_requested()) {
+    for (JobStatus status = job->status(); tell(sink, status) && !ended && !gone.stop_requested();) {
       const auto spoke = timer.now();
-      JobStatus status = job->wait(seen, std::nullopt, spoke + kLeast, gone);
+      status = job->wait(seen, std::nullopt, spoke + kLeast, gone);
       if (status.steps_done == seen && !has_ended(status.state))
         status = job->wait(seen, tiles, spoke + kSilence, gone);
-      text = news(status);
     }
   }
 
  private:
-  // What the client does not know yet.
-  std::string news(const JobStatus& status) {
-    const bool moved = std::exchange(tiles, status.tiles_done) != status.tiles_done;
+  // Sends what the client does not know yet, event by event. False once it has gone.
+  bool tell(Sink& sink, const JobStatus& status) {
+    const bool moved = std::exchange(tiles, status.tiles_done) != status.tiles_done,
+               late = seen < status.steps_done;
     ended = has_ended(status.state);
-    std::string text;
-    for (; seen < status.steps_done; ++seen) text += frame_event(status);
-    if (ended) return text + event(name_of(status.state), status.steps + 1, job_json(*job, status, prefix));
-    if (!text.empty()) return text;
-    return moved ? event("progress", seen, job_json(*job, status, prefix)) : ": still waiting\n\n";
+    if (!late && !ended && !moved) return sink.write(": still waiting\n\n");
+    const ordered_json json = job_json(*job, status, prefix);
+    for (; seen < status.steps_done; ++seen)
+      if (!sink.write(frame_event(json))) return false;
+    if (ended) return sink.write(event(name_of(status.state), status.steps + 1, json));
+    return late || sink.write(event("progress", seen, json));
   }
-  std::string frame_event(const JobStatus& status) const {
-    ordered_json json = job_json(*job, status, prefix);
+  std::string frame_event(ordered_json json) const {
     json["frame"] = seen;
     json.update(with_prefix(job->work().links_of_step(job->id(), seen), prefix));
     json.update(job->work().told_of_step(seen));

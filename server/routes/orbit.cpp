@@ -50,7 +50,7 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   if (!problems.empty()) throw InputError(std::move(problems));
   require_range(spec.path, spec.frames, "/step");
   spec.client = request.client;
-  spec.key = canonical_orbit(scene, spec.path, spec.frames) + " " + std::to_string(spec.fps);
+  spec.key = canonical_orbit(scene, spec.path, spec.frames) + " " + number_text(spec.fps + 0.0);
   return spec;
 }
 

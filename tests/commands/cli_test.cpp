@@ -111,6 +111,8 @@ TEST_F(CommandLine, PlanThatWasPrintedGivesThePictureAgain) {
   EXPECT_EQ(run(render + file("e.png") + address + " --azimuth-degrees 50").status, 0);
   EXPECT_EQ(run(render + file("f.png") + " --azimuth 50 --samples 4 --pan 0,0.5,0").status, 0);
   EXPECT_EQ(bytes_of(file("e.png")), bytes_of(file("f.png"))) << "what is given beside it counts";
+  EXPECT_EQ(run("explain " + file("s.json") + " --plan /v1/scenes/0/frame.png").status, 0)
+      << "all as the scene says";
   const std::pair<const char*, const char*> wrong[] = {
       {"samples=0", "--plan samples: expected an integer >= 1"},
       {"sampels=4", "--plan sampels: unknown parameter (did you mean \"samples\"?)"},
@@ -345,6 +347,14 @@ TEST_F(CommandLine, BudgetsOfFilesWithoutABoundNameTheFlag) {
     EXPECT_NE(jpeg.err.find("--error: expected none, as what JPEG leaves out"), std::string::npos)
         << jpeg.err;
   }
+}
+
+TEST_F(CommandLine, CertificateReplacesNoPicture) {
+  const std::string render = "render " + write("s.json", kScene) + " -o " + file("a.png") + " --certificate ";
+  EXPECT_EQ(run(render + (folder_ / "." / "a.png").string()).status, 2);
+  const Outcome bound = run("render " + file("s.json") + " --view bound --error 0.1");
+  EXPECT_EQ(bound.status, 2);
+  EXPECT_NE(bound.err.find("--view: expected picture"), std::string::npos) << bound.err;
 }
 
 TEST_F(CommandLine, OrbitPlaysTheMotion) {

@@ -41,7 +41,7 @@ export const lightFaults = [
         "test_techniques", "Rooms/PathFurnace.*"),
   entry(26, "roulette lets go on by the throughput, not its root", "core/techniques/path_tracer.cpp", "max_first(N(kLeastChance), sqrt(select(alive, most, one)))",
         "max_first(N(kLeastChance), N(sqrt(select(alive, most, one)) * sqrt(select(alive, most, one))))", "test_techniques", "ClosedRoom.Roulette*"),
-  entry(26, "the ledger misses what is cut", "core/techniques/path_tracer.cpp", "this->note_cut(i, surface_lanes(i), this->vertices_->paths->throughput.at(i));",
+  entry(26, "the ledger misses what is cut", "core/techniques/path_tracer.cpp", "this->note_cut(i, surface_lanes(i), weight);",
         "this->note_cut(i, surface_lanes(i), Vec3<N>(N(T(0))));", "test_techniques", "ClosedRoom.Ledger*", "CornellBox.Loses*"),
   entry(26, "paths end one bounce early", "core/techniques/path_tracer.cpp", "const bool ends = paths->depth >= this->plan_.max_depth,",
         "const bool ends = paths->depth + 1 >= this->plan_.max_depth,", "test_techniques", "ClosedRoom.EachReflection*", "ClosedRoom.AnIntegrating*", "CornellBox.EachPath*"),

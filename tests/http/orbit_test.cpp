@@ -280,6 +280,12 @@ class SlowViewer {
   RawClient raw_;
 };
 
+TEST_F(OrbitStream, ThatIsPlayedSlowlyHoldsUpNoOther) {
+  const std::string orbit = path("frames=4&fps=");
+  const SlowViewer slow(daemon().port(), orbit + "1e-7");
+  EXPECT_EQ(parse_frames(client_.Get(orbit + "0", kFrames)->body).size(), 4u);
+}
+
 const std::string kLargeFrames = "frames=24&width=640&height=480&distance=1.1";
 
 void expect_some_skipped(const std::vector<StreamedFrame>& seen) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <mutex>
 
-#include "core/base/work_scope.h"
 #include "core/plan/options.h"
 #include "core/render/views.h"
 #include "tests/support/covers.h"
@@ -108,15 +107,6 @@ TEST(ErrorBudget, TracesLittleMoreThanThePicture) {
     const auto needed = static_cast<double>(rendered(scene, plain).stats.counts.rays.total());
     EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 1.25 * needed) << name;
   }
-}
-
-// No smaller contribution would have rays followed that none of a technique's are.
-TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
-  const auto scene = test::load(test::sample("glass"));
-  RenderRequest r = with_error(64, 0.1, Space::display);
-  r.technique = "raycast";
-  EXPECT_EQ(rendered(scene, r).stats.counts.rays.camera,
-            64u * 64 * *rendered(scene, r).budget->settings.samples);
 }
 
 // The decision looks at all pixels at once, so features that few samples meet are not darkened (deciding by
@@ -372,24 +362,6 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
     if (run % 3 == 0) expect_repeated(scene, result);  // where tiles stall
   }
   EXPECT_GE(in_time, 80) << "the others stall in their last tile";
-}
-
-// Where a copy of the film would be too much, what there is is the picture.
-TEST(TimeBudget, KeepsThePictureWhereMemoryEnds) {
-  const auto scene = test::load(test::sample("paper"));
-  RenderRequest r = square(1200);  // 35 MB of sums
-  r.technique = "raycast";
-  r.seconds = 60;
-  const auto account = MemoryAccount::open([] {
-    return [](std::size_t bytes, bool already) {
-      if (!already && bytes > 60'000'000) throw Error("there is no more memory");
-      return bytes;
-    };
-  });
-  const RenderResult result =
-      account->run({}, [&] { return rendered(scene, r, {.used_s = [] { return 0.0; }}); });
-  EXPECT_EQ(result.budget->settings.samples, 2);
-  EXPECT_TRUE(result.budget->met()) << "no error was asked";
 }
 
 // Of samples that are given, and no power of two: the last pass has at least doubled them, whenever it ends.

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "core/base/work_scope.h"
+#include "core/render/budget.h"
+#include "tests/support/pictures.h"
+
+// What ends a budget beside its error and its time.
+namespace orrery {
+namespace {
+
+using test::rendered;
+
+RenderRequest square(int side, double error = 0) {
+  RenderRequest r = test::size(side, side);
+  if (error > 0) r.error = error;
+  r.space = Space::display;
+  return r;
+}
+
+// No smaller contribution would have rays followed that none of a technique's are.
+TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
+  const auto scene = test::load(test::sample("glass"));
+  RenderRequest r = square(64, 0.1);
+  r.technique = "raycast";
+  EXPECT_EQ(rendered(scene, r).stats.counts.rays.camera,
+            64u * 64 * *rendered(scene, r).budget->settings.samples);
+}
+
+// The error of fewer samples than are named is not that of the picture that was asked for.
+TEST(ErrorBudget, IsMissedByFewerSamplesThanAreNamed) {
+  RenderRequest r = square(64, 0.9);
+  r.samples = 1024;
+  const RenderResult result = rendered(test::load(test::sample("paper")), r, {.most_rays = 1e6});
+  EXPECT_LT(*result.budget->settings.samples, 1024);
+  EXPECT_FALSE(result.budget->met());
+  EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;
+}
+
+// Where a copy of the film would be too much, what there is is the picture.
+TEST(TimeBudget, KeepsThePictureWhereMemoryEnds) {
+  const auto scene = test::load(test::sample("paper"));
+  RenderRequest r = square(1200);  // 35 MB of sums
+  r.technique = "raycast";
+  r.seconds = 60;
+  const auto account = MemoryAccount::open([] {
+    return [](std::size_t bytes, bool already) {
+      if (!already && bytes > 60'000'000) throw Error("there is no more memory");
+      return bytes;
+    };
+  });
+  const RenderResult result =
+      account->run({}, [&] { return rendered(scene, r, {.used_s = [] { return 0.0; }}); });
+  EXPECT_EQ(result.budget->settings.samples, 2);
+  EXPECT_TRUE(result.budget->met()) << "no error was asked";
+}
+
+}  // namespace
+}  // namespace orrery
