@@ -53,7 +53,7 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
 // What a surface sends out by itself and of light sources is its own; what it mirrors and refracts, or sends
 // on of what others send, is an average over their radiance. So a maximum V over all surfaces is at most
 // that over surfaces of own + albedo V. Trees send on nothing but what is mirrored and refracted, a share R,
-// and then own is at most 1 - R of a limit but for what shines by itself and ambient light.
+// and then own is at most 1 - R of a limit but for what shines by itself.
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
   const DirectLight light = find_direct_light(scene, facts);
   Vec3d tree = most_beyond(scene), paths = tree;
@@ -67,8 +67,8 @@ void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, Sce
       const ReflectionLimits limits = set->limits(i);
       facts.albedo = largest(facts.albedo, limits.albedo);
       const Vec3d ambient = product(limits.ambient, scene.ambient), emission = scene.emission[number];
-      const Vec3d shines = interreflected(emission + ambient, Vec3d(limits.specular ? 1 : 0));
-      tree = largest(tree, shines + product(limits.light, light.of_points));
+      const Vec3d shines = interreflected(emission, Vec3d(limits.specular ? 1 : 0));
+      tree = largest(tree, shines + ambient + product(limits.light, light.of_points));
       const Vec3d own = emission + product(limits.light, light.of_extents);
       paths = largest(paths, interreflected(own, limits.albedo));
       distributed = largest(distributed, interreflected(own + ambient, limits.albedo));

@@ -24,7 +24,7 @@ struct CookTorrance {
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  Vec3<N> from_everywhere(Lobes lobes) const {
+  Vec3<N> from_everywhere(const N&, Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     return diffuse * (with_diffuse(lobes) ? one : zero) +
            specular * reflectance(one) * (with_non_diffuse(lobes) ? one : zero);

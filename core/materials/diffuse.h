@@ -16,8 +16,8 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
   using N = Lanes<T>;
   using MaterialRecords<Record, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes, const Vec3<T>& ambient,
-               Vec3Array<T>& radiance) const override {
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
+               const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       radiance.put(i, mine, record.reflectance * from_everywhere);

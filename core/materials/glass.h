@@ -41,7 +41,7 @@ struct Glass {
   }
 
   N rough() const { return alpha; }
-  Vec3<N> from_everywhere(Lobes) const {
+  Vec3<N> from_everywhere(const N&, Lobes) const {
     const N one(ScalarOf<N>(1)), zero(ScalarOf<N>(0));
     return Vec3<N>(select(alpha > zero, one, zero));
   }

@@ -53,7 +53,7 @@ template <class N>
 // Kernel of materials whose light depends on both directions. Beside what MaterialRecords asks for, a record
 // has, with directions of ShadingFrame and the viewer above the surface,
 //   N rough() const                                           0: nothing but what the derived kernel draws
-//   Vec3<N> from_everywhere(lobes) const                      what leaves of ambient light
+//   Vec3<N> from_everywhere(cosine, lobes) const              what leaves of ambient light toward a viewer
 //   Scattered<N> scattered(viewer, light, inside, lobes)      light on either side of the surface
 //   DrawnDirection<N> drawn(viewer, inside, lobes, LobeDraw)  in proportion to the density of scattered()
 //   Vec3<N> passed(inside, travelled)                         what the body leaves of light that crossed it
@@ -63,11 +63,13 @@ class LobeKernel : public MaterialRecords<Record, T> {
   using N = Lanes<T>;
   using MaterialRecords<Record, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes, const Vec3<T>& ambient,
-               Vec3Array<T>& radiance) const override {
+  void ambient(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
+               const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
-      radiance.put(i, mine, record.from_everywhere(lobes) * from_everywhere);
+      const Vec3<N> viewer = -rays.direction.at(i);
+      const ShadingFrame<N> frame(surface.normal.at(i), surface.geometric.at(i), viewer);
+      radiance.put(i, mine, record.from_everywhere(dot(frame.normal, viewer), lobes) * from_everywhere);
     });
   }
 

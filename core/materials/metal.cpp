@@ -72,8 +72,8 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
   using N = Lanes<T>;
   using MaterialRecords<Metal, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes, const Vec3<T>& ambient,
-               Vec3Array<T>& radiance) const override {
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
+               const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const N zero(T(0)), one(T(1));
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {

@@ -29,18 +29,21 @@ struct MetallicRoughness {
   double most_reflected() const;
   ReflectionLimits limits() const {
     const double most = most_reflected();
-    return {f0 + base,
+    return {Vec3d(1) + base * strict,
             base + multiple / std::max(1 - albedo.mean, std::numeric_limits<double>::min()) +
                 Vec3d(Ggx<double>{alpha}.most()),
             Vec3d(most)};
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  Vec3<N> from_everywhere(Lobes lobes) const {
-    const Vec3<N> zero(N(ScalarOf<N>(0))), one(N(ScalarOf<N>(1)));
+  Vec3<N> from_everywhere(const N& cosine, Lobes lobes) const {
+    const N one(ScalarOf<N>(1));
+    const Vec3<N> zero(N(ScalarOf<N>(0))), white(one);
     const Vec3<N> even = left({albedo.mean, f0 * (albedo.mean - grazing.mean) + Vec3<N>(grazing.mean)});
-    const Vec3<N> matt = base * select(strict > N(ScalarOf<N>(0)), one - f0, even * even);
-    return (with_non_diffuse(lobes) ? f0 : zero) + (with_diffuse(lobes) ? matt : zero);
+    const auto seen = albedos(cosine);
+    const Vec3<N> matt = base * select(strict > N(ScalarOf<N>(0)), white - f0, left(seen) * even);
+    return (with_non_diffuse(lobes) ? seen.once + multiple * (one - seen.all) : zero) +
+           (with_diffuse(lobes) ? matt : zero);
   }
   Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 

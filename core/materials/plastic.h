@@ -24,16 +24,16 @@ struct Plastic {
   }
   double mirrored_share() const { return alpha > 0 ? 0 : fresnel(1); }
   ReflectionLimits limits() const {
-    return {from_everywhere(Lobes::all), alpha > 0 ? base + Vec3d(Ggx<double>{alpha}.most()) : base, Vec3d(1),
-            !(alpha > 0)};
+    if (alpha > 0) return {Vec3d(1), base + Vec3d(Ggx<double>{alpha}.most()), Vec3d(1)};
+    return {base * (1 - mean), base, Vec3d(1), true};
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
   // Without what a smooth coat mirrors.
-  Vec3<N> from_everywhere(Lobes lobes) const {
-    const N zero(ScalarOf<N>(0)), leaves = N(ScalarOf<N>(1)) - mean;
-    return (with_diffuse(lobes) ? base * (leaves * leaves) : Vec3<N>(zero)) +
-           Vec3<N>(with_non_diffuse(lobes) ? select(alpha > zero, mean, zero) : zero);
+  Vec3<N> from_everywhere(const N& cosine, Lobes lobes) const {
+    const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1)), mirrors = mirrored(cosine);
+    return (with_diffuse(lobes) ? base * ((one - mirrors) * (one - mean)) : Vec3<N>(zero)) +
+           Vec3<N>(with_non_diffuse(lobes) ? select(alpha > zero, mirrors, zero) : zero);
   }
   Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 

@@ -53,8 +53,8 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
   using N = Lanes<T>;
   using MaterialRecords<Rough, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes, const Vec3<T>& ambient,
-               Vec3Array<T>& radiance) const override {
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
+               const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(with_diffuse(lobes) ? ambient : Vec3<T>());
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
       radiance.put(i, mine, rough.ambient * from_everywhere);

@@ -32,8 +32,8 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
   using N = Lanes<T>;
   using MaterialRecords<Translucent, T>::MaterialRecords;
 
-  void ambient(const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes, const Vec3<T>& ambient,
-               Vec3Array<T>& radiance) const override {
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
+               const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
       const Vec3<N> zero(N(T(0)));

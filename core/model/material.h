@@ -51,8 +51,8 @@ class MaterialKernel {
   virtual ~MaterialKernel() = default;
 
   // Sets `radiance` of the lanes with this material to what `ambient` light alone makes leave the surface.
-  virtual void ambient(const SurfaceBatch<T>&, const Groups&, Lobes, const Vec3<T>& /*ambient*/,
-                       Vec3Array<T>& /*radiance*/) const {}
+  virtual void ambient(const RayBatch<T>&, const SurfaceBatch<T>&, const Groups&, Lobes,
+                       const Vec3<T>& /*ambient*/, Vec3Array<T>& /*radiance*/) const {}
 
   // Light along `directions.light` that leaves toward the ray's origin: `f_cos` is the share per channel,
   // cosine included, times pi (a white Lambert surface: the cosine); `pdf` the density per solid angle with
@@ -105,7 +105,7 @@ struct MaterialTraits {
 };
 
 // The most that a surface sends on, per channel, whatever the directions. Where it mirrors a share R besides,
-// `light` is what it sends on at R = 0, and at most 1 - R of that.
+// `ambient` and `light` are what it sends on at R = 0, and at most 1 - R of that.
 struct ReflectionLimits {
   Vec3d ambient{1.0};                                    // of ambient light
   Vec3d light{std::numeric_limits<double>::infinity()};  // f_cos of MaterialKernel::evaluate()

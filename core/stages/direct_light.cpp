@@ -7,7 +7,7 @@ void DirectLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws, c
                          const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts,
                          const Checkpoint& checkpoint) {
   if (groups.empty()) return;
-  add_ambient(geometry_, surface, groups, Lobes::all, radiance);
+  add_ambient(geometry_, paths.rays, surface, groups, Lobes::all, radiance);
   if (!plan_.direct_light) return;
   bool ends = false;
   lights_.for_each(

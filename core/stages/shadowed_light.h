@@ -55,11 +55,11 @@ void evaluate_materials(const Geometry<T>& geometry, const Directions<T>& direct
 // Sets the radiance of the lanes of `groups` whose materials are lit and have such lobes to what these make
 // of ambient light.
 template <class T>
-void add_ambient(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const Groups& groups,
-                 Lobes lobes, Vec3Array<T>& radiance) {
+void add_ambient(const Geometry<T>& geometry, const RayBatch<T>& rays, const SurfaceBatch<T>& surface,
+                 const Groups& groups, Lobes lobes, Vec3Array<T>& radiance) {
   for (const auto& m : geometry.materials)
     if (m.traits.lit && m.traits.has(lobes))
-      m.kernel->ambient(surface, groups, lobes, geometry.ambient, radiance);
+      m.kernel->ambient(rays, surface, groups, lobes, geometry.ambient, radiance);
 }
 
 extern template class ShadowedLight<float>;

@@ -51,8 +51,10 @@ void PathTracer<T>::shade(const Groups& groups, const Groups& met) {
   const bool ends = paths->depth >= this->plan_.max_depth, looked = paths->depth == 0 && looks_;
   if (looked)
     for (const int i : groups) radiance.put(i, Vec3<N>(N(T(0))));  // look() finds what shines
-  if (!with_diffuse(followed_))
-    add_ambient(geometry, surface, met, ends ? Lobes::all : Lobes::diffuse, radiance);
+  if (!with_diffuse(followed_)) {
+    add_ambient(geometry, paths->rays, surface, met, ends ? Lobes::all : Lobes::diffuse, radiance);
+    if (ends) add_ambient_of_mirrors(met);
+  }
   if (!looked) add_what_shines(groups, met);
   if (ends) return end(met);
   sampled_light_.add(*paths, this->draws(), surface,
@@ -61,6 +63,21 @@ void PathTracer<T>::shade(const Groups& groups, const Groups& met) {
   scatter(met);
   if (reuse_ && paths->depth == 1)
     for (const int i : met) reuse_->keep_second(i, *paths, surface, even_lanes(i));
+}
+
+template <class T>
+void PathTracer<T>::add_ambient_of_mirrors(const Groups& met) {
+  auto& [paths, hits, surface, radiance] = *this->vertices_;
+  const Vec3<N> ambient(this->geometry_.ambient);
+  const Groups mirrors = groups_with(this->geometry_, surface, met, &MaterialTraits::mirrors);
+  for (const auto& m : this->geometry_.materials)
+    if (m.traits.mirrors) m.kernel->specular(paths->rays, hits, surface, mirrors, specular_);
+  for (const int i : mirrors) {
+    const auto mine = lanes_with(this->geometry_, surface, i, &MaterialTraits::mirrors);
+    const Vec3<N> sent =
+        (specular_.reflectance.at(i) + specular_.transmittance.at(i)) * specular_.filter.at(i);
+    radiance.put(i, mine, radiance.at(i) + sent * ambient);
+  }
 }
 
 template <class T>

@@ -34,6 +34,8 @@ class PathTracer : public Wavefront<T> {
   }
   void shade(const Groups& groups, const Groups& met) final;
 
+  // Where smooth surfaces would mirror and refract light on.
+  void add_ambient_of_mirrors(const Groups& met);
   void add_what_shines(const Groups& groups, const Groups& met);
   // Adds emission_ at second vertices to the light of the first: it is found from there by light sources as
   // well, shared by nobody, and not indirect.
@@ -63,6 +65,7 @@ class PathTracer : public Wavefront<T> {
   std::unique_ptr<PathReuse<T>> reuse_;           // null: paths share nothing
   std::unique_ptr<Vec3Array<T>> indirect_;        // by slot; null: it is not clamped
   ScatterBatch<T> scatter_;
+  SpecularBatch<T> specular_;
   Vec3Array<T> emission_;
 };
 

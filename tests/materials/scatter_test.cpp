@@ -304,7 +304,7 @@ TEST_P(LobesOf, AddUpToTheMaterial) {
   for (const Lobes lobes : parts()) {
     const auto part = material_.evaluated(cases, lobes);
     for (std::size_t i = 0; i < cases.size(); ++i) sum[i] = sum[i] + part[i].f_cos;
-    ambient = ambient + material_.ambient(lobes);
+    ambient = ambient + material_.ambient({}, lobes);
   }
   for (std::size_t i = 0; i < cases.size(); ++i)
     ASSERT_NEAR(length(sum[i] - whole[i].f_cos), 0, 1e-12 * (1 + length(sum[i])));

@@ -110,11 +110,10 @@ std::vector<typename Probe<T>::Specular> Probe<T>::specular(std::span<const Case
 }
 
 template <class T>
-Vec3<T> Probe<T>::ambient(Lobes lobes) const {
+Vec3<T> Probe<T>::ambient(const Case& one, Lobes lobes) const {
   const auto b = std::make_unique<Batches<T>>();
-  const Case one;
   fill<T>(std::span(&one, 1), *b);
-  kernel_->ambient(b->surface, b->groups, lobes, Vec3<T>(T(1)), b->radiance);
+  kernel_->ambient(b->rays, b->surface, b->groups, lobes, Vec3<T>(T(1)), b->radiance);
   return b->radiance[0];
 }
 

@@ -61,7 +61,7 @@ class Probe {
   MaterialTraits traits() const;
   ReflectionLimits limits() const;
   // What leaves under ambient light of 1.
-  Vec3<T> ambient(Lobes lobes = Lobes::all) const;
+  Vec3<T> ambient(const Case& one = {}, Lobes lobes = Lobes::all) const;
 
  private:
   std::shared_ptr<const Scene> scene_;

@@ -222,6 +222,30 @@ TEST(Distributed, CoatsAreFollowedAndBasesEnd) {
   }
 }
 
+// Before a background as bright as ambient light, what reflects all light is not seen, coat or no coat.
+TEST(Ambient, LeavesNothingToSeeOfWhite) {
+  for (const char* white :
+       {"{'type': 'plastic', 'roughness': 0, 'reflectance': 1}",
+        "{'type': 'plastic', 'roughness': 0.4, 'reflectance': 1}",
+        "{'type': 'metallic-roughness', 'base_color': 1, 'metallic': 0, 'roughness': 0.4}",
+        "{'type': 'lambert', 'reflectance': 1}"})
+    for (const char* technique : {"raycast", "whitted", "distributed"}) {
+      const auto scene = load(
+          scene_of_materials("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]",
+                             {{"it", white}}, "{'ambient': [0.4, 0.4, 0.4], 'background': [0.4, 0.4, 0.4]}"));
+      RenderRequest request = in_double(size(32, 32));
+      request.technique = technique;
+      request.samples = 4;
+      request.max_depth = technique == std::string("distributed") ? 0 : 5;  // as far as there is no noise
+      const Picture picture = render(scene, request);
+      const int border =
+          *request.max_depth == 0 ? 12 : 0;  // the background is looked at more often than the ball
+      for (int y = border; y < 32 - border; ++y)
+        for (int x = border; x < 32 - border; ++x)
+          ASSERT_NEAR(picture.at(x, y).x, 0.4, 2e-3) << white << technique << " " << x << " " << y;
+    }
+}
+
 // In a white room without lamps but ambient light, a polished floor mirrors walls that show ambient light:
 // the coat mirrors by Fresnel's equations, the base shows what ambient light leaves.
 TEST(Distributed, ACoatMirrorsDiffuseWalls) {
@@ -234,8 +258,9 @@ TEST(Distributed, ACoatMirrorsDiffuseWalls) {
   for (const double cosine : {0.9, 0.5, 0.2}) {
     const Estimate found =
         estimate(scene, Vec3d(0, 1, 0), Vec3d(std::sqrt(1 / (cosine * cosine) - 1), 0, 0), 3, "distributed");
-    const double base =
-        Probe<double>("{'type': 'plastic', 'roughness': 0, 'reflectance': 0.5}").ambient(Lobes::diffuse).x;
+    const double base = Probe<double>("{'type': 'plastic', 'roughness': 0, 'reflectance': 0.5}")
+                            .ambient({.direction = -tilted(cosine)}, Lobes::diffuse)
+                            .x;
     const double mirrored = split_dielectric(1 / 1.5, cosine).reflectance;
     EXPECT_NEAR(found.mean, base + mirrored * 0.5, 1e-9) << cosine;
     EXPECT_LT(found.sd, 1e-6) << cosine;
