@@ -52,16 +52,38 @@ bool is_stopped() {
   }
 }
 
-// Whether a JPEG file has its end marker after where its scans begin: libjpeg makes up what is missing.
-// Before the scans are segments that tell their length; in a scan the marker's first byte is never followed
-// by its second.
-bool has_jpeg_end(std::string_view bytes) {
-  constexpr unsigned char kMarker = 0xff, kScan = 0xda;
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+const std::string kNoEnd = "the picture is damaged: it has no end";
+
+// What is wrong with a JPEG file that libjpeg would not notice, or only after it has taken memory and time:
+// it makes up what is missing, and decodes all scans of a progressive file, at its whole size, as it opens
+// it. Before the scans are segments that tell their length, one of which is the frame: precision, height,
+// width and components; in a scan a marker's first byte is never followed by its second.
+std::string problem_of_jpeg(std::string_view bytes, const PictureLimits& limits) {
+  constexpr unsigned kMarker = 0xff, kScan = 0xda, kFirstFrame = 0xc0, kLastFrame = 0xcf;
+  constexpr int kMostScans = 256;  // usual are 10
+  const auto byte = [&](std::size_t i) {
+    return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u;
+  };
+  const auto word = [&](std::size_t i) { return byte(i) * 256 + byte(i + 1); };
+  unsigned width = 0, height = 0, components = 0;
   std::size_t at = 2;
-  while (at + 4 <= bytes.size() && byte(at) == kMarker && byte(at + 1) != kScan)
-    at += byte(at + 1) == kMarker ? 1 : 2 + (byte(at + 2) * 256u + byte(at + 3));
-  return at < bytes.size() && bytes.find("\xff\xd9"sv, at) != std::string_view::npos;
+  for (; at + 4 <= bytes.size() && byte(at) == kMarker && byte(at + 1) != kScan;
+       at += byte(at + 1) == kMarker ? 1 : 2 + word(at + 2)) {
+    const unsigned marker = byte(at + 1);
+    const bool no_frame = marker == 0xc4 || marker == 0xc8 || marker == 0xcc;  // tables and extensions
+    if (marker < kFirstFrame || marker > kLastFrame || no_frame) continue;
+    height = word(at + 5);
+    width = word(at + 7);
+    components = byte(at + 9);
+  }
+  if (at >= bytes.size() || bytes.find("\xff\xd9"sv, at) == std::string_view::npos) return kNoEnd;
+  if (components == 0) return "the picture is damaged: it has no size before its scans";
+  if (std::string problem = limits.problem_of(width, height, static_cast<int>(components)); !problem.empty())
+    return problem;
+  int scans = 0;
+  for (; at != std::string_view::npos; at = bytes.find("\xff\xda"sv, at + 2)) ++scans;
+  if (scans <= kMostScans) return {};
+  return "expected at most " + std::to_string(kMostScans) + " scans, got " + std::to_string(scans);
 }
 
 // Whether the chunks of a PNG file, each of a length, a type, so many bytes and a checksum, lead to the last
@@ -79,10 +101,11 @@ bool has_png_end(std::string_view bytes) {
   return false;
 }
 
-// False where a file ends too early for its decoder to notice, or to end well.
-bool has_end(std::string_view bytes, PictureFormat format) {
-  if (format == PictureFormat::png) return has_png_end(bytes);
-  return format != PictureFormat::jpeg || has_jpeg_end(bytes);
+// What a decoder does not notice, or not in time or without harm.
+std::string problem_before_decoding(std::string_view bytes, PictureFormat format,
+                                    const PictureLimits& limits) {
+  if (format == PictureFormat::jpeg) return problem_of_jpeg(bytes, limits);
+  return format == PictureFormat::png && !has_png_end(bytes) ? kNoEnd : "";
 }
 
 // IEC 61966-2-1.
@@ -127,11 +150,8 @@ PictureFormat picture_format(std::string_view bytes) {
 Texels read_picture(std::string_view bytes, const PictureLimits& limits) {
   const PictureFormat format = picture_format(bytes);
   Texels picture;
-  std::string problem = "the picture is damaged: it has no end";
-  if (has_end(bytes, format)) {
-    problem.clear();
-    decoder()(bytes, format, limits, is_stopped, picture, problem);
-  }
+  std::string problem = problem_before_decoding(bytes, format, limits);
+  if (problem.empty()) decoder()(bytes, format, limits, is_stopped, picture, problem);
   interruption_point();
   if (!problem.empty()) throw InputError("", name_of(format) + (": " + problem));
   if (format == PictureFormat::png || format == PictureFormat::jpeg)

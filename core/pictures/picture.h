@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +19,21 @@ struct PictureLimits {
   int side = 16384;                 // texels
   std::size_t texels = 33'554'432;  // in all; each takes 12 bytes, and as much again while it is decoded
   int channels = 4;
+
+  // Empty if a picture of that size is within the limits.
+  std::string problem_of(std::uint64_t width, std::uint64_t height, int of_channels) const {
+    const auto within = [&](std::uint64_t of_side) {
+      return of_side >= 1 && of_side <= static_cast<std::uint64_t>(side);
+    };
+    if (!within(width) || !within(height) || width * height > texels)
+      return "expected a picture of 1 to " + std::to_string(side) + " texels a side and at most " +
+             std::to_string(texels) + " in all, got " + std::to_string(width) + " x " +
+             std::to_string(height);
+    if (of_channels < 1 || of_channels > channels)
+      return "expected a picture of 1 to " + std::to_string(channels) + " channels, got " +
+             std::to_string(of_channels);
+    return {};
+  }
 };
 
 // Largest value of a texel.

@@ -14,6 +14,8 @@
 namespace orrery::test {
 namespace {
 
+using namespace std::string_literals;
+
 Image linear_image(int width, int height, const std::vector<float>& rgb) {
   Image image(width, height, PixelFormat::linear32);
   std::memcpy(image.bytes().data(), rgb.data(), rgb.size() * sizeof(float));
@@ -112,6 +114,20 @@ TEST(Pictures, StatedSizesAreCheckedFirst) {
   EXPECT_NE(refusal(hdr(4, 2, 2), {.texels = 7}), "accepted");
   EXPECT_EQ(refusal(hdr(4, 2, 2), {.side = 4, .texels = 8}), "accepted");
   EXPECT_EQ(refusal(hdr(4, 2, 2), {.channels = 2}), "HDR: expected a picture of 1 to 2 channels, got 3");
+}
+
+// A progressive JPEG is decoded as a whole as soon as it is opened.
+TEST(Pictures, JpegIsRefusedBeforeItTakesMemoryOrTime) {
+  const std::string frame = "\xff\xc2\x00\x0b\x08\x2e\xe0\x5d\xc0\x01\x01\x11\x00"s,
+                    scan = "\xff\xda\x00\x08\x01\x01\x00\x00\x00\x00"s;
+  EXPECT_EQ(
+      refusal("\xff\xd8" + frame + scan + "\xff\xd9"),
+      "JPEG: expected a picture of 1 to 16384 texels a side and at most 33554432 in all, got 24000 x 12000");
+  EXPECT_EQ(refusal("\xff\xd8" + scan + "\xff\xd9"),
+            "JPEG: the picture is damaged: it has no size before its scans");
+  std::string many = encode_jpeg(coded_image(8, 8, 1));
+  for (int i = 0; i < 256; ++i) many.insert(many.size() - 2, scan);
+  EXPECT_EQ(refusal(many), "JPEG: expected at most 256 scans, got 257");
 }
 
 TEST(Pictures, TexelsThatAreNoLightAreNamed) {

@@ -23,16 +23,9 @@ const char* plugin_of(PictureFormat format) {
 }
 
 std::string problem_of(const OIIO::ImageSpec& spec, const PictureLimits& limits) {
-  const auto within = [&](int side) { return side >= 1 && side <= limits.side; };
-  if (!within(spec.width) || !within(spec.height) || spec.image_pixels() > limits.texels)
-    return "expected a picture of 1 to " + std::to_string(limits.side) + " texels a side and at most " +
-           std::to_string(limits.texels) + " in all, got " + std::to_string(spec.width) + " x " +
-           std::to_string(spec.height);
   if (spec.depth > 1 || spec.deep) return "expected a flat picture, got one with depth";
-  if (spec.nchannels < 1 || spec.nchannels > limits.channels)
-    return "expected a picture of 1 to " + std::to_string(limits.channels) + " channels, got " +
-           std::to_string(spec.nchannels);
-  return {};
+  const auto side = [](int texels) { return static_cast<std::uint64_t>(std::max(0, texels)); };
+  return limits.problem_of(side(spec.width), side(spec.height), spec.nchannels);
 }
 
 // Red, green and blue of texels with `channels` values each; grey is all three.
