@@ -74,7 +74,12 @@ void add_instances(const Scene& scene, SceneFacts& facts) {
       take_larger(facts.magnitude, own.magnitude.value, where);
       take_smaller(facts.smallest_feature, own.smallest.value / stretch(inverse(world_from_model)), where);
       facts.unbounded = facts.unbounded || own.has_unbounded;
-      if (own.has_unbounded || !own.bounded.bounded()) continue;
+      if (own.has_unbounded)  // the point that places it
+        take_larger(
+            facts.magnitude,
+            max_component(abs(world_from_model.origin)) + stretch(world_from_model) * own.magnitude.value,
+            where);
+      if (!own.bounded.bounded()) continue;
       for (const Vec3d& corner : corners_of(own.bounded)) {
         take_larger(facts.magnitude, reach_of(instance, world_from_model, corner), where);
         facts.bounds.include(world_from_model.point(corner));

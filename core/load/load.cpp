@@ -91,7 +91,7 @@ class ObjectReader {
     objects_by_shape_.resize(shapes_.size());
   }
 
-  void read(Params& p, const Names& materials, const AssetSource& meshes) {
+  void read(Params& p, const Names& materials, MeshSource& meshes) {
     interruption_point();
     const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
     if (!type) return;
@@ -184,7 +184,7 @@ class SceneReader {
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
     p.each("objects", "What there is to see, beside instances.", {0, kMaxObjects}, [&](Params& o) {
-      objects_.read(o, names_, assets_);
+      objects_.read(o, names_, meshes_);
       ++scene_->object_count;
     });
     p.each_named("models", "Objects that instances place, by name.", {},
@@ -264,7 +264,7 @@ class SceneReader {
     Model& model = scene_->models.emplace_back();
     ObjectReader& objects = model_objects_.emplace_back(model.shapes);
     p.each("objects", "What it consists of.", {1, kMaxObjects},
-           [&](Params& o) { objects.read(o, names_, assets_); });
+           [&](Params& o) { objects.read(o, names_, meshes_); });
   }
 
   // Materials are numbered set by set, and each primitive learns its number.
@@ -327,6 +327,7 @@ class SceneReader {
   }
 
   const ReadOnce assets_;
+  MeshSource meshes_{assets_};  // of all models
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};
   std::vector<MaterialPlace> places_;  // by number of the name

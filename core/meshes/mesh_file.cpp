@@ -76,7 +76,8 @@ MeshFormat mesh_format(std::string_view bytes) {
 
 TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits) {
   const MeshFormat format = mesh_format(bytes);
-  TriangleMesh mesh = read_as(format, without_byte_order_mark(bytes), limits);
+  const bool is_text = binary_stl_triangles(bytes) == 0;  // whose header may begin with anything
+  TriangleMesh mesh = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits);
   if (mesh.triangles.empty()) throw InputError("", "expected a mesh of at least 1 triangle, got none");
   finish_normals(mesh);
   return mesh;

@@ -20,8 +20,9 @@ class ObjReader {
   ObjReader(std::string_view bytes, const MeshLimits& limits) : text_(bytes, true), limits_(limits) {}
 
   TriangleMesh read() {
+    std::string_view keyword;
     do {
-      const std::string_view keyword = text_.word_of_line();
+      keyword = text_.word_of_line();
       if (keyword == "v") {
         positions_.push_back(read_three("v"));
         if (!is_position(positions_.back())) text_.fail(expected_position(positions_.back()));
@@ -33,7 +34,7 @@ class ObjReader {
       } else if (keyword == "f") {
         read_face();
       }
-    } while (text_.next_line());
+    } while (text_.next_line(!keyword.starts_with('#')));  // a comment ends with its line
     return build();
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "core/base/work_scope.h"
 #include "core/meshes/formats.h"
@@ -69,7 +70,7 @@ std::string_view TextReader::word() {
   return word;
 }
 
-bool TextReader::next_line() {
+bool TextReader::next_line(bool may_join) {
   interruption_point();
   while (!rest_.empty()) {
     const std::size_t end = rest_.find_first_of("\r\n");
@@ -77,7 +78,7 @@ bool TextReader::next_line() {
       rest_ = {};
       break;
     }
-    const bool joined = end > 0 && joins_at(end - 1);
+    const bool joined = may_join && end > 0 && joins_at(end - 1);
     rest_.remove_prefix(end);
     pass_line_end();
     if (!joined) break;
@@ -103,9 +104,9 @@ double TextReader::number_in(std::string_view word, std::string_view what) const
   const char* end = digits.data() + digits.size();
   double value = 0;
   const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  // Out of range with a negative exponent: too small for a double, which 0 stands for.
+  // Out of range, and too small for a double rather than too large: 0 stands for it.
   const bool vanishes = error == std::errc::result_out_of_range && stop == end &&
-                        (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos);
+                        std::fabs(std::strtod(std::string(digits).c_str(), nullptr)) < 1;
   if (vanishes) return 0;
   if (error != std::errc() || stop != end || !std::isfinite(value))
     fail("expected a finite number for " + std::string(what) + ", got " +

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "core/base/error.h"
@@ -28,6 +30,14 @@ class AssetSource {
   [[noreturn]] static void refuse_assets() {
     throw InputError("", "assets are kept by the service only: name a file beside the scene by 'file'");
   }
+};
+
+// Where the meshes of a scene come from, and how much was read of them so far: all have limits together.
+struct MeshSource {
+  const AssetSource& assets;
+  std::size_t vertices = 0, triangles = 0;  // those of keys too
+  bool full = false;
+  std::uint64_t pairs = 0;  // of triangles around a vertex that smoothing compares
 };
 
 }  // namespace orrery

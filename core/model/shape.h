@@ -140,7 +140,7 @@ class ShapeSet {
   virtual ~ShapeSet() = default;
 
   // Reads one object; returns how many primitives it added.
-  virtual int add(Params& params, const AssetSource& meshes) = 0;
+  virtual int add(Params& params, MeshSource& meshes) = 0;
   virtual int size() const = 0;
   // Primitives that were not added because no ray can meet them.
   virtual std::size_t left_out() const { return 0; }

@@ -9,14 +9,14 @@
 namespace orrery {
 namespace {
 
-// All meshes of a scene.
+// Meshes of a scene or a model.
 class MeshSet final : public ShapeSet {
  public:
-  int add(Params& p, const AssetSource& source) override {
+  int add(Params& p, MeshSource& source) override {
     const std::size_t before = table_.triangles.size();
-    MeshObject object = reader_.read(p, source);
+    MeshObject object = MeshReader(source).read(p);
     if (object.mesh.triangles.empty()) return 0;
-    if (!(object.keys.empty() ? take_resting(object, p) : take_moving(object, p))) return 0;
+    if (!(object.keys.empty() ? take_resting(object, p, source) : take_moving(object, p, source))) return 0;
     append(object.mesh);
     return static_cast<int>(table_.triangles.size() - before);
   }
@@ -90,23 +90,23 @@ class MeshSet final : public ShapeSet {
   }
 
   // Both false if there was a problem, which is noted.
-  bool take_resting(MeshObject& object, Params& p) {
+  bool take_resting(MeshObject& object, Params& p, MeshSource& source) {
     left_out_ += drop_degenerate(object.mesh);
     drop_unused(object.mesh);
     if (!object.crease_degrees) return true;
     const PositionIndices places = position_indices_of(object.mesh.positions);
-    if (!may_compare(count_pairs(object.mesh, places), p)) return false;
+    if (!may_compare(count_pairs(object.mesh, places), p, source)) return false;
     smooth_normals(object.mesh, *object.crease_degrees, places);
     return true;
   }
-  bool take_moving(MeshObject& object, Params& p) {
+  bool take_moving(MeshObject& object, Params& p, MeshSource& source) {
     MovingMesh moving{
         object.mesh.triangles, object.mesh.uvs, std::move(object.keys), object.crease_degrees, {}, 0};
     if (object.crease_degrees) {
       moving.always = position_indices_of(*moving.keys.values[0].positions);
       for (const VertexKey& key : moving.keys.values) split_position_indices(moving.always, *key.positions);
       moving.most_pairs = kRoomForMoments * count_pairs(object.mesh, moving.always);
-      if (!may_compare(moving.most_pairs, p)) return false;
+      if (!may_compare(moving.most_pairs, p, source)) return false;
     }
     moving_.emplace(table_.parts.size(), std::move(moving));
     return true;
@@ -114,12 +114,12 @@ class MeshSet final : public ShapeSet {
 
   // Notes that smoothing compares so many pairs of triangles; false, and a problem, if there are too many
   // now.
-  bool may_compare(std::uint64_t pairs, Params& p) {
-    pairs_ += pairs;
-    if (pairs_ <= kMostPairs) return true;
+  static bool may_compare(std::uint64_t pairs, Params& p, MeshSource& source) {
+    source.pairs += pairs;
+    if (source.pairs <= kMostPairs) return true;
     p.fail("crease_degrees", "expected at most " + std::to_string(kMostPairs) +
                                  " pairs of triangles around vertices to be compared for smoothing, got " +
-                                 std::to_string(pairs_));
+                                 std::to_string(source.pairs));
     return false;
   }
 
@@ -167,11 +167,9 @@ class MeshSet final : public ShapeSet {
     return std::make_shared<PrimitiveKernel<MeshTriangle, T, MeshRecords<T>>>(MeshRecords<T>(table_), first);
   }
 
-  MeshReader reader_;
   MeshTable<double> table_;                   // as if nothing moved; what moves is not smoothed
   std::map<std::size_t, MovingMesh> moving_;  // by part
   std::size_t left_out_ = 0;
-  std::uint64_t pairs_ = 0;  // that smoothing compares
 };
 
 std::unique_ptr<ShapeSet> make_mesh_set() { return std::make_unique<MeshSet>(); }

@@ -79,13 +79,13 @@ SharedVectors share(std::vector<Vec3d> vectors) {
 
 }  // namespace
 
-MeshObject MeshReader::read(Params& p, const AssetSource& source) {
+MeshObject MeshReader::read(Params& p) {
   MeshObject object;
   TriangleMesh& mesh = object.mesh;
   switch (p.form({{"positions", "indices"}, {"file"}, {"asset"}})) {
     case 0: mesh = read_inline(p); break;
-    case 1: mesh = read_file(p, source, file_name(p)); break;
-    default: mesh = read_asset(p, source, asset_name(p));
+    case 1: mesh = read_file(p, source_.assets, file_name(p)); break;
+    default: mesh = read_asset(p, source_.assets, asset_name(p));
   }
   const double crease = p.number("crease_degrees",
                                  "Shading is smooth across edges where faces meet at less than this angle; "
@@ -95,14 +95,13 @@ MeshObject MeshReader::read(Params& p, const AssetSource& source) {
   if (!fits(mesh.positions.size(), mesh.triangles.size(), p)) mesh = {};
   const VertexKey at_rest =
       p.has("motion") ? VertexKey{share(mesh.positions), share(mesh.normals)} : VertexKey();
-  object.keys = read_motion(p, [&](Params& key) { return read_key(key, source, mesh, at_rest); });
-  if (full_) object = {};
+  object.keys = read_motion(p, [&](Params& key) { return read_key(key, mesh, at_rest); });
+  if (source_.full) object = {};
   return object;
 }
 
 // Where the vertices of the mesh are at one time.
-VertexKey MeshReader::read_key(Params& p, const AssetSource& source, const TriangleMesh& rest,
-                               const VertexKey& at_rest) {
+VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest) {
   std::vector<Vec3d> positions =
       p.points("positions", "Vertices, as many as the mesh has.", {0, kLimits.vertices});
   std::vector<Vec3d> normals = p.directions(
@@ -112,7 +111,8 @@ VertexKey MeshReader::read_key(Params& p, const AssetSource& source, const Trian
     p.fail("", "expected one of positions, file and asset");
   if (!fits(rest.positions.size(), rest.triangles.size(), p)) return at_rest;
   if (p.has("file") || p.has("asset")) {
-    TriangleMesh mesh = p.has("file") ? read_file(p, source, file) : read_asset(p, source, asset);
+    TriangleMesh mesh =
+        p.has("file") ? read_file(p, source_.assets, file) : read_asset(p, source_.assets, asset);
     if (mesh.triangles != rest.triangles)
       p.fail("", "expected the triangles that the mesh has without motion (" +
                      std::to_string(rest.triangles.size()) + ", of the same vertices), got " +
@@ -133,16 +133,17 @@ VertexKey MeshReader::read_key(Params& p, const AssetSource& source, const Trian
 }
 
 bool MeshReader::fits(std::size_t vertices, std::size_t triangles, Params& p) {
-  if (full_) return false;
-  vertices_ += vertices;
-  triangles_ += triangles;
-  full_ = vertices_ > kLimits.vertices || triangles_ > kLimits.triangles;
-  if (full_)
+  if (source_.full) return false;
+  source_.vertices += vertices;
+  source_.triangles += triangles;
+  source_.full = source_.vertices > kLimits.vertices || source_.triangles > kLimits.triangles;
+  if (source_.full)
     p.fail("", "expected at most " + std::to_string(kLimits.vertices) + " vertices (mesh_vertices) and " +
                    std::to_string(kLimits.triangles) +
                    " triangles (mesh_triangles) in all meshes of a scene and their keys, got " +
-                   std::to_string(vertices_) + " and " + std::to_string(triangles_) + " so far");
-  return !full_;
+                   std::to_string(source_.vertices) + " and " + std::to_string(source_.triangles) +
+                   " so far");
+  return !source_.full;
 }
 
 }  // namespace orrery

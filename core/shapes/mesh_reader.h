@@ -17,16 +17,15 @@ struct MeshObject {
 // Reads the meshes of a scene, which have limits together: many objects and keys may name one file.
 class MeshReader {
  public:
-  MeshObject read(Params& p, const AssetSource& source);
+  explicit MeshReader(MeshSource& source) : source_(source) {}
+  MeshObject read(Params& p);
 
  private:
-  VertexKey read_key(Params& p, const AssetSource& source, const TriangleMesh& rest,
-                     const VertexKey& at_rest);
+  VertexKey read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest);
   // Notes so many more; false, and a problem, if there are too many now.
   bool fits(std::size_t vertices, std::size_t triangles, Params& p);
 
-  std::size_t vertices_ = 0, triangles_ = 0;  // so far, those of keys too
-  bool full_ = false;
+  MeshSource& source_;
 };
 
 }  // namespace orrery

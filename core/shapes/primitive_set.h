@@ -139,7 +139,7 @@ class PrimitiveKernel final : public ShapeKernel<T> {
 template <template <class> class Record>
 class PrimitiveSet final : public ShapeSet {
  public:
-  int add(Params& params, const AssetSource&) override {
+  int add(Params& params, MeshSource&) override {
     const std::size_t before = records_.size();
     Record<double>::read(params, records_);
     return static_cast<int>(records_.size() - before);

@@ -21,6 +21,13 @@ bool is_replaced(const std::string& path) {
   return kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
 }
 
+// What a link leads to.
+std::string target_of(const std::string& path) {
+  std::error_code ignored;
+  const std::string target = std::filesystem::weakly_canonical(path, ignored).string();
+  return target.empty() ? path : target;
+}
+
 }  // namespace
 
 std::string ending_of(const std::string& path) {
@@ -37,14 +44,10 @@ FileFormat format_of(const std::string& path) {
   throw InputError("--output", "expected a name that ends in .png, .jpg or .exr, got " + path);
 }
 
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code none;
-  const auto place = [&](const std::string& path) { return std::filesystem::weakly_canonical(path, none); };
-  return place(a) == place(b);
-}
+bool is_same_file(const std::string& a, const std::string& b) { return target_of(a) == target_of(b); }
 
 void require_writable(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const std::string folder = std::filesystem::path(target_of(path)).parent_path().string();
   const std::string place = !is_replaced(path) ? path : folder.empty() ? "." : folder;
   std::error_code ignored;
   errno = std::filesystem::is_directory(path, ignored) ? EISDIR : 0;
@@ -54,12 +57,13 @@ void require_writable(const std::string& path) {
 
 void write_file(const std::string& path, std::string_view bytes) {
   const bool replace = is_replaced(path);
-  const std::string written = replace ? path + ".part-" + std::to_string(getpid()) : path;
+  const std::string target = target_of(path),
+                    written = replace ? target + ".part-" + std::to_string(getpid()) : path;
   errno = 0;
   std::ofstream out(written, std::ios::binary);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (out && (!replace || std::rename(written.c_str(), path.c_str()) == 0)) return;
+  if (out && (!replace || std::rename(written.c_str(), target.c_str()) == 0)) return;
   const std::string reason = errno ? ": " + std::string(std::strerror(errno)) : "";
   std::error_code ignored;
   if (replace) std::filesystem::remove(written, ignored);

@@ -349,6 +349,15 @@ TEST_F(CommandLine, BudgetsOfFilesWithoutABoundNameTheFlag) {
   }
 }
 
+TEST_F(CommandLine, PicturesAreWrittenWhereLinksLead) {
+  fs::create_directory(folder_ / "far");
+  write("far/a.png", "an older picture");
+  fs::create_symlink(folder_ / "far" / "a.png", folder_ / "link.png");
+  EXPECT_EQ(run("render " + write("s.json", kScene) + " -o " + file("link.png")).status, 0);
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.png"));
+  EXPECT_EQ(bytes_of(folder_ / "far" / "a.png").rfind("\x89PNG", 0), 0u);
+}
+
 TEST_F(CommandLine, CertificateReplacesNoPicture) {
   const std::string render = "render " + write("s.json", kScene) + " -o " + file("a.png") + " --certificate ";
   EXPECT_EQ(run(render + (folder_ / "." / "a.png").string()).status, 2);

@@ -22,7 +22,7 @@ export const serviceFaults = [
         "OrbitStream.FramesTellHowFarTheyMayBeOff"),
   entry(21, "an orbit that is played slowly is any other", "server/routes/orbit.cpp", "number_text(spec.fps + 0.0)",
         "std::to_string(spec.fps)", "test_http", "OrbitStream.ThatIsPlayedSlowly*"),
-  entry(21, "a certificate replaces its picture", "server/commands/output_file.cpp", "return place(a) == place(b);", "return a == b;",
+  entry(21, "a certificate replaces its picture", "server/commands/output_file.cpp", "return target_of(a) == target_of(b);", "return a == b;",
         "test_commands", "CommandLine.CertificateReplaces*"),
   entry(21, "a plan that was printed is passed over", "server/commands/render_flags.cpp", "texts_of_plan(flags.plan)",
         'texts_of_plan("")', "test_commands", "CommandLine.PlanThatWasPrintedGivesThePictureAgain"),

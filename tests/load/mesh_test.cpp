@@ -133,6 +133,15 @@ TEST(AssetFiles, AreTooManyTogether) {
   EXPECT_EQ(problem.pointer, "/objects/2");
   EXPECT_NE(problem.detail.find("10000000 vertices (mesh_vertices)"), std::string::npos) << problem.detail;
   EXPECT_EQ(problem_of("[{'type': 'mesh', 'file': ''}]", Shelf()).pointer, "/objects/0/file");
+  Json models = scene_of("[]");
+  for (const char* name : {"a", "b", "c"})
+    models["models"][name]["objects"] = {{{"type", "mesh"}, {"file", "a"}, {"material", "white"}}};
+  try {
+    load_scene(models.dump(), Dots());
+    FAIL() << "models have them together, too";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().front().pointer, "/models/c/objects/0");
+  }
 }
 
 // Several meshes share one set: each keeps its own vertices and normals.

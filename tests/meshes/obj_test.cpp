@@ -65,6 +65,17 @@ TEST(Obj, NumbersAreTheNearestDoubles) {
   EXPECT_EQ(mesh.positions[0], Vec3d(0.1, 123456.789012, -8.371950));
 }
 
+TEST(Obj, CommentsEndWithTheirLine) {
+  EXPECT_EQ(read_mesh("# from C:\\models\\\n" + kFour + "f 1 2 3\n").triangles,
+            (std::vector<Triangle>{{0, 1, 2}}));
+}
+
+TEST(Obj, NumbersBeyondDoublesAreRefusedHoweverTheyAreWritten) {
+  const std::string large = "1" + std::string(400, '0') + "e-5", small = "0." + std::string(400, '0') + "1";
+  EXPECT_THROW(read_mesh("v " + large + " 0 0\n" + kFour + "f 1 2 3\n"), InputError);
+  EXPECT_EQ(read_mesh("v " + small + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").positions[0].x, 0);
+}
+
 TEST(Obj, RefusalsNameTheLine) {
   const auto with = [](const std::string& line) { return problem(kFour + line + "\nf 1 2 3\n"); };
   EXPECT_EQ(with("v 1 nan 0"), "line 5: expected a finite number for v, got \"nan\"");

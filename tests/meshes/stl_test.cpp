@@ -39,6 +39,10 @@ TEST(Stl, BinaryIsToldByItsSizeWhateverItsTitle) {
     EXPECT_EQ(corners_of(read_mesh(binary_stl_of(cube(), title))), corners_of(cube())) << title;
 }
 
+TEST(Stl, BinaryTitlesMayBeginAsTextsWithAMark) {
+  EXPECT_EQ(corners_of(read_mesh(binary_stl_of(cube(), "\xEF\xBB\xBF part"))), corners_of(cube()));
+}
+
 TEST(Stl, AsciiMayBeInCapitalsHaveSeveralSolidsAndAnyNames) {
   const std::string facet =
       "FACET NORMAL nan nan nan OUTER LOOP VERTEX 0 0 0 VERTEX 1 0 0 VERTEX 0 1 0 ENDLOOP ENDFACET\n";

@@ -136,6 +136,16 @@ TEST(Precision, SaysWhatNeedsDouble) {
 }
 
 // What is too small for float is right in double, down to the least size of the format.
+TEST(Precision, OfAPlaneInAModelIsThatOfWhereItStands) {
+  const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
+                                   "{'models': {'floor': {'objects': [{'type': 'plane', 'point': [0, 0, 0],"
+                                   " 'normal': [0, 1, 0.3], 'material': 'white'}]}},"
+                                   " 'instances': [{'model': 'floor', 'translate': [1e6, 0, 1e6]}]}"));
+  const Plan plan = make_plan(*scene, {});
+  EXPECT_TRUE(plan.double_precision);
+  EXPECT_EQ(scene->facts.magnitude.where, "/instances/0");
+}
+
 TEST(Precision, OfTinyScenesIsRightToTheLeastSize) {
   const Json tiny = from_file("tests/scenes/precision/mesh_of_size_1e-14.json");
   const Picture large = render(scaled(tiny, 0x1p47), in_double());
