@@ -61,18 +61,24 @@ export async function request(path, options = {}) {
   return request(path, options);
 }
 
+export async function get_text(path, options) {
+  return whole((await request(path, options)).text());
+}
+
 export async function get_json(path, options) {
-  return (await request(path, options)).json();
+  return JSON.parse(await get_text(path, options));
 }
 
-export async function get_text(path) {
-  return (await request(path)).text();
-}
-
-export async function post_json(path, text) {
+export function post_json(path, text) {
   const headers = { "Content-Type": "application/json" };
-  return (await request(path, { method: "POST", headers, body: text })).json();
+  return get_json(path, { method: "POST", headers, body: text });
 }
+
+// A body that is read, unless it breaks off.
+const whole = (body) =>
+  body.catch((error) => {
+    throw broken(error);
+  });
 
 // {id, width, height, camera, objects, lights}.
 export const post_scene = (text) => post_json("v1/scenes", text);
@@ -100,10 +106,6 @@ export async function get_frame(url, signal) {
   const bound = response.headers.get("Orrery-Error-Bound");
   const budget = response.headers.get("Orrery-Budget");
   const location = response.headers.get("Content-Location") ?? undefined;
-  try {
-    const png = await response.blob();
-    return { png, stats: { render_ms, encode_ms, rays, rmse, warning, bound, budget, location } };
-  } catch (error) {
-    throw broken(error);
-  }
+  const png = await whole(response.blob());
+  return { png, stats: { render_ms, encode_ms, rays, rmse, warning, bound, budget, location } };
 }

@@ -6,7 +6,6 @@ import { test } from "node:test";
 import { near } from "./support.mjs";
 import { load } from "./web_modules.mjs";
 
-const { server_timing } = await load("api.js");
 const { persist, wake_all } = await load("backoff.js");
 const { OrbitCamera, elevation_of } = await load("camera.js");
 const { floor_height } = await load("floor.js");
@@ -453,14 +452,6 @@ test("progress says what was measured, and calls a guess a guess", () => {
   assert.equal(progress_text({ ...at, seconds_left: -1 }), "16 of 64 samples", "a guess that came to nothing");
   assert.equal(progress_text({ ...at, part: 0, seconds_left: 600 }), "16 of 64 samples · 0 % · 10 min left");
   assert.equal(progress_text({}), "");
-});
-
-test("Server-Timing is read by name", () => {
-  assert.deepEqual(server_timing('load;dur=0.1, render;desc="x";dur=12.5, cached'), {
-    load: 0.1,
-    render: 12.5,
-  });
-  assert.deepEqual(server_timing(null), {});
 });
 
 test("an attempt is repeated while the failure may pass, and no longer", async () => {
