@@ -43,8 +43,9 @@ export class Editor {
       this.#timer = setTimeout(() => this.#try(on_check, false), kCheckMs);
     });
     parts.restore.addEventListener("click", () => {
+      const { value } = this.#text;
       this.#text.value = this.#draft;
-      this.#draft = "";
+      this.#draft = value === this.#loaded ? "" : value;
       this.#changed();
       this.#try(on_check, false);
       this.#text.focus();

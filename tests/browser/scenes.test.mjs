@@ -170,8 +170,12 @@ daemon_test("an edit that another scene replaces can be brought back", "playing=
   await page.locator("#tab-scenes").click();
   await page.locator("#gallery button").nth(1).click();
   await page.locator("#tab-json").click();
+  await eventually("the other scene", async () => (await page.locator("#text").inputValue()) !== "my edit");
+  await page.locator("#text").fill("a newer one");
   await page.locator("#restore").click();
   assert.equal(await page.locator("#text").inputValue(), "my edit");
+  await page.locator("#restore").click();
+  assert.equal(await page.locator("#text").inputValue(), "a newer one");
 });
 
 daemon_test("a forgotten scene is posted again", "playing=0&samples=1", async (page, daemon) => {
