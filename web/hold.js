@@ -15,6 +15,8 @@ export class Hold {
     });
     for (const event of ["pointerup", "pointercancel", "lostpointercapture", "blur"])
       button.addEventListener(event, () => this.#set(false));
+    // Without a pointer, as from a screen reader, it stays held until the next click.
+    button.addEventListener("click", ({ detail }) => detail === 0 && this.#set(!this.#held));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
     const is_ours = ({ key: pressed, target }) =>
       target === button ? [" ", "Enter", key].includes(pressed.toLowerCase()) : pressed.toLowerCase() === key;
@@ -23,7 +25,12 @@ export class Hold {
       event.preventDefault();
       if (!event.repeat) this.#set(true);
     });
-    document.addEventListener("keyup", (event) => is_ours(event) && this.#set(false));
+    document.addEventListener("keyup", (event) => {
+      if (!is_ours(event)) return;
+      // Else some browsers click the button now.
+      event.preventDefault();
+      this.#set(false);
+    });
     addEventListener("blur", () => this.#set(false));
   }
 
@@ -35,4 +42,6 @@ export class Hold {
   }
 }
 
-const writes = (target) => target.matches("textarea, select, input:not([type=range])");
+// The list box goes to first letters, and a dialog lies over everything.
+const writes = (target) =>
+  target.closest("textarea, select, input:not([type=range]), [role=listbox]") || document.querySelector("dialog[open]");
