@@ -1,6 +1,7 @@
 // What the page's budgets would give, as the service foretells it from parts of the picture.
 
 import { get_json } from "./api.js";
+import { unit } from "./bound.js";
 import { duration } from "./front.js";
 import { rounded_up } from "./progress.js";
 import { frame_url, query_of } from "./urls.js";
@@ -56,9 +57,9 @@ async function words_of_all(pictures, signal) {
 }
 
 // "2 s: error ≤ 0.011", "2 %: 0.7 s"; of a budget and what is foretold of it.
-export function prediction_words({ seconds, error }, { budget, certificate: { total } }) {
+export function prediction_words({ seconds, error }, { budget, certificate: { total, space } }) {
   const takes = duration(budget.used_s);
-  const reached = total.kind === "unknown" ? "error unknown" : `error ≤ ${rounded_up(total.rms)}`;
+  const reached = total.kind === "unknown" ? "error unknown" : `error ≤ ${rounded_up(total.rms)}${unit(space)}`;
   if (seconds) return `${seconds} s: ${budget.seconds_met ? reached : `missed, takes ${takes}`}`;
   return `${Number((100 * error).toPrecision(6))} %: ${budget.error_met ? takes : `missed, ${reached}`}`;
 }

@@ -74,6 +74,7 @@ test("what a picture tells of its error is put into words", () => {
   const header = 'rms=unknown;kind=unknown;max=unknown;because="precision, caustics";known=0.0031;known-kind=estimated;known-max=unknown';
   assert.equal(bound_words(parameters_of(header)), "error unknown, because of precision, caustics; the rest ≤ 0.0031 (95 %, estimated)");
   assert.equal(bound_words(parameters_of("rms=0.0044;kind=proved;max=1")), "error ≤ 0.0044 (proved)");
+  assert.equal(bound_words(parameters_of("rms=0.0044;kind=proved;space=display")), "error ≤ 0.0044 (proved), on a display");
   assert.match(bound_words(parameters_of(null)), /unknown/);
   const unknown = { kind: "unknown", rms: null, max: null };
   const json = { total: unknown, known: unknown, space: "linear", terms: [{ subject: "samples", bound: unknown }] };
@@ -88,16 +89,17 @@ test("a missed budget says why, and that it was missed", () => {
     text: "Budget missed: 8 bits; no more; error asked: 0.005; error ≤ 0.0071 (95 %, estimated)",
   });
   const met = budget_words(parameters_of("met=?1;seconds=2;seconds-met=?1;used=1.834"), bound);
-  assert.deepEqual(met, { missed: false, text: "Budget met: 1.8 s of 2 s; error ≤ 0.0071 (95 %, estimated)" });
+  assert.deepEqual(met, { missed: false, text: "Budget met: 1.9 s of 2 s; error ≤ 0.0071 (95 %, estimated)" });
 });
 
 test("a prediction says what a budget gives, and when it is missed", () => {
-  const forecast = (rms, met) => ({
+  const forecast = (rms, met, space) => ({
     budget: { used_s: 1.234, error_met: met, seconds_met: met },
-    certificate: { total: { kind: rms === null ? "unknown" : "estimated", rms } },
+    certificate: { total: { kind: rms === null ? "unknown" : "estimated", rms }, space },
   });
   const seconds = { seconds: 2, error: 0 }, error = { seconds: 0, error: 0.005 };
   assert.equal(prediction_words(seconds, forecast(0.0121, true)), "2 s: error ≤ 0.013");
+  assert.equal(prediction_words(seconds, forecast(0.0121, true, "display")), "2 s: error ≤ 0.013, on a display");
   assert.equal(prediction_words(seconds, forecast(null, true)), "2 s: error unknown");
   assert.equal(prediction_words(seconds, forecast(0.01, false)), "2 s: missed, takes 1.2 s");
   assert.equal(prediction_words(error, forecast(0.0049, true)), "0.5 %: 1.2 s");
