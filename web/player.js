@@ -6,7 +6,7 @@ import { Backoff } from "./backoff.js";
 import { play_stream } from "./orbit_stream.js";
 import { Pace } from "./pace.js";
 import { kStreams } from "./quality.js";
-import { amount, Refiner } from "./refine.js";
+import { amount, decode_unless, Refiner } from "./refine.js";
 import { frame_url, orbit_url } from "./urls.js";
 import { decode } from "./view.js";
 
@@ -33,10 +33,13 @@ export class Player {
   #shown = ""; // address of the still on the canvas
   #shown_samples = 0; // likewise
   #shown_location; // likewise: the address that gives it again, where a budget has made it
+  #shown_figures; // likewise
   #refiner = new Refiner();
   #preview_busy = false;
   #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
   #preview_slow = 0; // level of previews
+  // None is asked for before, where one failed.
+  #preview_from = 0;
   #pace = new Pace();
   #backoff = new Backoff();
   #timer = 0;
@@ -135,12 +138,13 @@ export class Player {
 
   // One in flight; whatever the camera does meanwhile is caught up with by the next.
   async #preview() {
-    const picture = this.#preview_busy ? null : this.#on.picture("preview", this.#preview_slow);
+    const start = performance.now();
+    const waits = this.#preview_busy || start < this.#preview_from;
+    const picture = waits ? null : this.#on.picture("preview", this.#preview_slow);
     const url = picture && frame_url(picture);
     if (!url || url === this.#shown) return;
     this.#preview_busy = true;
     const epoch = this.#epoch;
-    const start = performance.now();
     try {
       const frame = await get_frame(url);
       this.#refiner.note(picture, frame.stats.render_ms);
@@ -150,6 +154,7 @@ export class Player {
       this.#preview_slow = performance.now() - start > kQuickMs ? 1 : 0;
     } catch (error) {
       // The still that follows meets the same trouble and reports it.
+      this.#preview_from = performance.now() + 1000 * (error.retry_after_seconds ?? 1);
     } finally {
       this.#preview_busy = false;
     }
@@ -164,7 +169,7 @@ export class Player {
     if (this.#work?.kind === "still" && this.#work.key === key) return;
     this.#stop();
     const { width, height, samples } = this.#seen_of(picture) ?? {};
-    if (samples) this.#on.stats("still", { width, height });
+    if (width) this.#on.stats("still", { ...this.#shown_figures, width, height });
     const shown = samples <= picture.samples ? samples : 0; // fewer may be wanted than there are
     this.#run("still", key, async (signal) => {
       if (keeps_budget(picture)) await this.#keep_budget(picture, signal);
@@ -181,8 +186,7 @@ export class Player {
   async #keep_budget(picture, signal) {
     if (this.#shown === frame_url(picture)) return;
     const { png, stats } = await get_frame(frame_url(picture), signal);
-    const bitmap = await decode(png);
-    if (signal.aborted) return bitmap.close();
+    const bitmap = await decode_unless(signal, png);
     const plan = new URLSearchParams(stats.location?.split("?")[1]);
     const samples = Number(plan.get("samples") ?? picture.own); // which a plan may leave to the scene
     this.#draw(frame_url(picture), bitmap, picture, "still", { ...stats, samples });
@@ -236,6 +240,7 @@ export class Player {
     this.#shown = url;
     this.#shown_samples = picture.samples;
     this.#shown_location = undefined;
+    this.#shown_figures = figures;
     this.#reposts = 0;
     this.#backoff.reset();
     if (kind !== "still") this.#on.progress(null);

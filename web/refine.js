@@ -130,7 +130,7 @@ function ticking(expected, tell) {
 }
 
 // Throws AbortError once `signal` fires.
-async function decode_unless(signal, png) {
+export async function decode_unless(signal, png) {
   const bitmap = await decode(png);
   if (signal.aborted) bitmap.close();
   signal.throwIfAborted();
