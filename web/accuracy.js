@@ -37,17 +37,23 @@ export function attach_accuracy(on) {
     chart: (drawing, points) => dialog.show(drawing, points),
     say: (text) => ($("announcement").textContent = text),
   });
-  const mark_budgets = attach_budgets(chips, (budget) => on.set({ plan: "", ...budget }));
+  const mark_budgets = attach_budgets(chips, (budget) => {
+    on.set({ plan: "", ...budget });
+    // An orbit keeps no budget.
+    if (budget.seconds || budget.error) on.pause();
+  });
   $("drop-plan").addEventListener("click", () => on.set({ plan: "", seconds: 0, error: 0 }));
   return {
     show: () => tradeoff.show(on.picture()),
     rest: () => tradeoff.rest(),
-    stale: () => tradeoff.stale(),
+    stale: () => {
+      tradeoff.stale();
+      say({ missed: false, text: "" });
+    },
     leave: () => tradeoff.leave(),
     mark: (state) => {
       mark_budgets(state);
       $("drop-plan").hidden = !state.plan;
-      if (!state.plan && !state.seconds && !state.error) say({ missed: false, text: "" });
     },
     tell: (figures, state) => say(told_of(figures, state)),
   };

@@ -49,7 +49,8 @@ const player = new Player(camera, view, {
   stats: (kind, figures) => {
     hud.show(kind, figures);
     show_warning(figures.warning);
-    if (kind === "still" && figures.bound) accuracy.tell(figures, state);
+    // An orbit that is held shows a picture without its budget.
+    if (kind === "still" && figures.bound && !state.playing) accuracy.tell(figures, state);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
     hide_fail();
@@ -73,7 +74,8 @@ const player = new Player(camera, view, {
 const accuracy = attach_accuracy({
   picture: () => scene && picture_to_chart(page(), camera.view),
   within: (budget) => picture_at_rest({ ...page(), state: { ...state, plan: "", ...budget } }, camera.view),
-  seen: () => scene && frame_url(player.picture),
+  // Of a picture that is not made yet to its budget no bound can be drawn: then of the one without.
+  seen: () => scene && frame_url({ ...player.picture, seconds: 0, error: 0 }),
   pause: () => state.playing && set_playing(false),
   set: (settings) => change(settings),
 });
@@ -109,6 +111,7 @@ async function open_scene(at) {
   const turn = ++opening;
   const wanted = () => turn === opening;
   scene = null;
+  accuracy.show();
   player.invalidate();
   try {
     const opened = await persist(() => library.open(state.scene), show_waiting, wanted);
@@ -199,6 +202,8 @@ function load_hash() {
   show_settings();
   if (!same_scene) return open_scene(state);
   camera.jump(view_of(state));
+  accuracy.leave();
+  accuracy.show();
   player.invalidate();
   player.playing = state.playing;
 }
@@ -216,6 +221,7 @@ function show_settings() {
 function set_playing(playing) {
   state.playing = playing;
   show_settings();
+  if (playing) accuracy.leave();
   player.playing = playing;
   save_now();
 }
@@ -238,6 +244,7 @@ function change(settings) {
 const hide_fail = () => hide_problem($("stage-problem"));
 
 function fail(error, actions = []) {
+  $("notice").hidden = true;
   show_problem($("stage-problem"), error, undefined, actions);
 }
 

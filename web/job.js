@@ -21,8 +21,8 @@ export async function make_chart(picture, extent, signal, tell) {
   if (!address) return null;
   const job = await follow_job(address, signal, tell);
   const [chart, drawing] = await Promise.all([
-    get_json(job.chart.replace(/svg$/, "json")),
-    get_text(job.chart),
+    get_json(job.chart.replace(/svg$/, "json"), { signal }),
+    get_text(job.chart, { signal }),
   ]);
   return { chart, drawing };
 }

@@ -8,6 +8,7 @@ export class Overlay {
   #canvases; // two: the one that is seen, and the one before
   #pictures = new Map(); // address -> promise of a bitmap
   #wanted = "";
+  #ahead = []; // addresses that were fetched ahead last
 
   // `box` holds two <canvas>.
   constructor(box) {
@@ -22,11 +23,8 @@ export class Overlay {
   // Fetches what is not here yet, one after the other, so that it is there when it is wanted; others are dropped.
   // Stops in silence at what fails: who shows it hears why.
   async prefetch(addresses, signal) {
-    for (const [address, picture] of this.#pictures) {
-      if (addresses.includes(address) || address === this.#wanted) continue;
-      this.#pictures.delete(address);
-      picture.then((bitmap) => bitmap.close(), () => {});
-    }
+    this.#ahead = addresses;
+    this.#drop();
     try {
       for (const address of addresses) {
         if (signal.aborted) return;
@@ -37,10 +35,12 @@ export class Overlay {
     }
   }
 
-  // Resolves once it is seen, or something else is wanted. Throws ApiError.
+  // Resolves once it is seen, or something else is wanted. Throws ApiError where it is still wanted.
   async show(address) {
     this.#wanted = address;
-    const bitmap = await this.#picture(address);
+    const bitmap = await this.#picture(address).catch((error) => {
+      if (this.#wanted === address) throw error;
+    });
     if (this.#wanted !== address) return;
     const [seen, next] = this.#canvases;
     Object.assign(next, { width: bitmap.width, height: bitmap.height });
@@ -58,13 +58,22 @@ export class Overlay {
     this.#wanted = "";
     this.#box.hidden = true;
     for (const canvas of this.#canvases) canvas.className = "";
+    this.#drop();
   }
 
   // What was fetched is of no use any more.
   clear() {
+    this.#ahead = [];
     this.hide();
-    for (const picture of this.#pictures.values()) picture.then((bitmap) => bitmap.close(), () => {});
-    this.#pictures.clear();
+  }
+
+  // Bitmaps of a whole screen are large: only those are kept that are likely to be seen soon.
+  #drop() {
+    for (const [address, picture] of this.#pictures) {
+      if (address === this.#wanted || this.#ahead.includes(address)) continue;
+      this.#pictures.delete(address);
+      picture.then((bitmap) => bitmap.close(), () => {});
+    }
   }
 
   #picture(address) {

@@ -1,7 +1,6 @@
 // Speed against accuracy of the scene at hand: a chart once it is asked for, then a slider from the fastest picture
 // to the nearest, with the pictures of its stops over the stage.
 
-import { is_abort } from "./api.js";
 import { bound_words, fields_of } from "./bound.js";
 import { at_view, bound_of, plan_of, stop_at, stops_of } from "./front.js";
 import { Hold } from "./hold.js";
@@ -90,6 +89,7 @@ export class Tradeoff {
     if (!picture) return;
     const { progress, part } = this.#parts;
     this.#work = new AbortController();
+    const { signal } = this.#work;
     this.#show_parts();
     const tell = (figures) => {
       progress.value = figures.part ?? 0;
@@ -97,11 +97,12 @@ export class Tradeoff {
     };
     tell({});
     try {
-      const made = await make_chart(picture, kExtent, this.#work.signal, tell);
+      const made = await make_chart(picture, kExtent, signal, tell);
+      signal.throwIfAborted();
       if (made) this.#take(made, picture);
       else this.#say("This service makes no charts.", true);
     } catch (error) {
-      if (!is_abort(error)) this.#say(`No chart: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
+      if (!signal.aborted) this.#say(`No chart: ${error.title ?? error.message}. ${error.detail ?? ""}`, true);
     } finally {
       this.#work = null;
       this.#show_parts();
@@ -120,7 +121,8 @@ export class Tradeoff {
     this.#on.chart(drawing, selectable);
     this.#show_parts();
     this.#go(this.#stops.length - 1);
-    this.#parts.slider.focus();
+    // Who meanwhile writes elsewhere goes on there.
+    if ([this.#parts.make, document.body].includes(document.activeElement)) this.#parts.slider.focus();
   }
 
   #drop() {
@@ -200,9 +202,9 @@ export class Tradeoff {
     return this.#chart && this.#in_view(this.#chart.reference.picture);
   }
 
-  // Of the stop, or of what the stage shows.
+  // Of the stop where that is seen, else of what the stage shows.
   #bound() {
-    const address = this.#address() ?? this.#on.seen();
+    const address = (this.#overlay.shown && this.#address()) || this.#on.seen();
     return address && bound_of(address);
   }
 

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
-import { axe_violations, canvas_digest, eventually, hash_of, page_tests, rest, start_both } from "./support.mjs";
+import { axe_violations, canvas_digest, charted, eventually, hash_of, page_tests, quick_charts, rest, start_both } from "./support.mjs";
 
 const { daemon, browser } = await start_both(after);
 const page_test = page_tests(browser, daemon);
@@ -13,32 +13,11 @@ const text = (page, id) => page.locator(`#${id}`).textContent();
 const shown = (page) => page.locator("#overlay").getAttribute("data-shows");
 const query = (address) => new URLSearchParams(address.split("?")[1]);
 
-// Has charts measured by few small pictures; `seen` are the bodies that were asked.
-async function quick_charts(page, seen = []) {
-  await page.route("**/charts", (route) => {
-    const body = route.request().postDataJSON();
-    seen.push(structuredClone(body));
-    return route.continue({ postData: JSON.stringify({ ...body, chart: { samples: 16, rounds: 2, width: 40 } }) });
-  });
-  return seen;
-}
-
 // Goes to the first stop; resolves to the address of its picture once it is shown.
 async function first_stop(page, slider) {
   const last = await shown(page);
   await slider.press("Home");
   return eventually("the first picture", async () => ((await shown(page)) !== last ? shown(page) : null));
-}
-
-// Makes a chart; resolves to the slider once it stands at its last stop.
-async function charted(page) {
-  await quick_charts(page);
-  await rest(page);
-  await page.locator("#make-chart").click();
-  const slider = page.getByRole("slider", { name: "From faster to nearer" });
-  await slider.waitFor({ state: "visible" });
-  await page.locator("#overlay").waitFor({ state: "visible" });
-  return slider;
 }
 
 const line_shape = /^[\d.]+ (ms|s), error ≤ [\d.e-]+ \(95 %\), \w+, depth \d+, \d+ samples?, (float|double)$/;
@@ -80,7 +59,7 @@ page_test(
   async (page) => {
     const asked = [];
     page.on("request", (request) => /explain/.test(request.url()) && asked.push(query(request.url())));
-    const line = /^Predicted: 2 s: error ≤ 0\.\d+ · 2 %: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+) · 0\.5 %: /;
+    const line = /^Predicted: 2 s: error ≤ 0\.\d+, on a display · 2 %: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+, on a display) · 0\.5 %: /;
     const predicted = () => eventually("the prediction", async () => line.exec(await text(page, "stop-line"))?.input);
     await predicted();
     assert.deepEqual(await axe_violations(page), []);
@@ -254,6 +233,17 @@ page_test(
     assert.ok(await page.locator("#scale").isVisible(), "its colours have a scale");
     await page.keyboard.up("e");
     await eventually("the point again", async () => (await shown(page)) === point);
+    await page.locator("#stage").hover();
+    await page.mouse.wheel(0, 100);
+    await page.locator("#overlay").waitFor({ state: "hidden" });
+    await rest(page);
+    const seen = await page.locator("#download").getAttribute("href");
+    const other = page.waitForRequest(/view=bound/);
+    await page.locator("#bound").evaluate((button) => button.click());
+    assert.ok((await other).url().endsWith(`${seen}&view=bound`), "that of what is seen");
+    assert.equal(await page.locator("#bound").getAttribute("aria-pressed"), "true", "held without a pointer");
+    await page.locator("#bound").evaluate((button) => button.click());
+    assert.equal(await page.locator("#bound").getAttribute("aria-pressed"), "false");
   },
   { ...still, expected: /status of 422/ },
 );
@@ -352,6 +342,14 @@ page_test(
     assert.match(await text(page, "told"), /error (unknown, because of|≤)/);
     await rest(page);
     assert.ok((await canvas_digest(page)).length > 0);
+    const told = await text(page, "told");
+    await page.evaluate(() => dispatchEvent(new Event("online")));
+    await rest(page);
+    assert.equal(await text(page, "told"), told, "of the same picture");
+    await page.locator("#stage").hover();
+    await page.mouse.wheel(0, 100);
+    await eventually("nothing of another view", async () => (await text(page, "told")) === "");
+    await eventually("its own", async () => (await text(page, "told")) !== "");
     await page.getByRole("button", { name: "2 s" }).click();
     await eventually("another budget", async () => (await hash_of(page)).seconds === "2");
     assert.equal(await page.getByRole("button", { name: "2 s" }).getAttribute("aria-pressed"), "true");

@@ -151,6 +151,42 @@ page_test(
   },
 );
 
+page_test(
+  "where small pictures are refused, none is asked for before its time",
+  "playing=0",
+  async (page) => {
+    await rest(page);
+    const { width } = await page.locator("#stage").boundingBox();
+    let asked = 0;
+    await page.route("**/frame.png?*", (route) => {
+      const side = new URL(route.request().url()).searchParams.get("width");
+      if (side < 200 || side > width / 2 + 1) return route.continue();
+      asked += 1;
+      return route.fulfill({ status: 429, headers: { "Retry-After": "60" }, json: { title: "Too many requests" } });
+    });
+    for (let n = 0; n < 4; n += 1) await page.locator('[data-do="right"]').click();
+    await rest(page);
+    assert.equal(asked, 1);
+  },
+  { expected: /status of 429/ },
+);
+
+page_test(
+  "no new attempt is announced once a picture has failed for good",
+  "playing=0",
+  async (page) => {
+    await rest(page);
+    let status = 429;
+    await page.route("**/frame.png?*", (route) => route.fulfill({ status, json: { title: "Out of luck" } }));
+    await page.locator("#size").selectOption("half");
+    await page.locator("#notice").waitFor({ state: "visible" });
+    status = 500;
+    await page.locator("#stage-problem").waitFor({ state: "visible" });
+    assert.equal(await page.locator("#notice").isVisible(), false);
+  },
+  { expected: /status of (429|500)/ },
+);
+
 page_test("a drag interrupts the orbit, which goes on after it", "speed=30", async (page) => {
   const height = await drag(page, 0, 40);
   const state = await eventually("the new elevation", async () => {

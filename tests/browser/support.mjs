@@ -207,6 +207,27 @@ export async function hold_refinement(page, samples) {
   }, samples);
 }
 
+// Has charts measured by few small pictures; `seen` are the bodies that were asked.
+export async function quick_charts(page, seen = []) {
+  await page.route("**/charts", (route) => {
+    const body = route.request().postDataJSON();
+    seen.push(structuredClone(body));
+    return route.continue({ postData: JSON.stringify({ ...body, chart: { samples: 16, rounds: 2, width: 40 } }) });
+  });
+  return seen;
+}
+
+// Makes a chart; resolves to the slider once it stands at its last stop.
+export async function charted(page) {
+  await quick_charts(page);
+  await rest(page);
+  await page.locator("#make-chart").click();
+  const slider = page.getByRole("slider", { name: "From faster to nearer" });
+  await slider.waitFor({ state: "visible" });
+  await page.locator("#overlay").waitFor({ state: "visible" });
+  return slider;
+}
+
 // The middle of the stage, and its height.
 export async function middle(page) {
   const box = await page.locator("#stage").boundingBox();
