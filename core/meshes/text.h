@@ -17,8 +17,8 @@ class TextReader {
   std::string_view word_of_line();
   // The next word on this line or a later one; empty at the end of the text.
   std::string_view word();
-  // Goes to the start of the next line, or of the one after those that a backslash joins to it. False at the end
-  // of the text.
+  // Goes to the start of the next line, or of the one after those that a backslash joins to it. False at the
+  // end of the text.
   bool next_line(bool may_join = true);
   // Goes to the start of the next line, which is not text: a \n after a \r belongs to it if `lone_returns`.
   void end_text(bool lone_returns);
