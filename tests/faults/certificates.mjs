@@ -97,7 +97,7 @@ export const certificateFaults = [
   entry("less is provable than can be", "core/render/certificate.cpp", "UnitHistogram::least_upper_mean(pixels, doubt)",
         "-std::expm1(std::log(doubt) / pixels)", "Certificate.NeverTells*"),
   { ...entry("what slots beside the picture have is counted", "core/model/film.cpp", "for_each_slot(tile, [&](std::size_t i) {",
-        "for_each_slot(TileView{0, 0, kTileSide, kTileSide}, [&](std::size_t i) {", "Film.CountsValues*"), target: "test_model" },
+        "for_each_slot(tile.is_whole() ? tile : TileView{0, 0, kTileSide, kTileSide}, [&](std::size_t i) {", "Film.CountsValues*"), target: "test_model" },
   entry("weak rays are looked for where none are followed", "core/plan/plan.cpp",
         "plan_.free_contribution = plan_.free_contribution && plan_.max_depth > 0;", "", "ErrorBudget.LooksForNo*"),
   entry("no memory for a copy loses the picture", "core/render/budget.cpp", "reason_ = kNoMemory;\n    return false;", "throw;",
