@@ -25,7 +25,8 @@ Examples:
   orrery orbit scenes/paper.json --frames 120 -o frame-%04d.png
   orrery check my-scene.json
 
-Status: 0 done, 1 failed, 2 wrong input or usage, 3 a budget missed with --on-miss fail, 130 interrupted. `orrery COMMAND --help` tells more.
+Status: 0 done, 1 failed, 2 wrong input or usage, 3 a budget missed with --on-miss fail, 130 interrupted.
+`orrery COMMAND --help` tells more.
 )";
 
 int fail(int status, const std::string& message) {

@@ -52,7 +52,7 @@ bool is_stopped() {
   }
 }
 
-const std::string kNoEnd = "the picture is damaged: it has no end";
+constexpr const char* kNoEnd = "the picture is damaged: it has no end";
 
 // What is wrong with a JPEG file that libjpeg would not notice, or only after it has taken memory and time:
 // it makes up what is missing, and decodes all scans of a progressive file, at its whole size, as it opens

@@ -3,6 +3,7 @@
 #include "core/stages/emission.h"
 #include "core/stages/lane_masks.h"
 #include "core/stages/shadowed_light.h"
+#include "core/stages/specular.h"
 #include "core/stages/surfaces.h"
 
 namespace orrery {
@@ -70,8 +71,7 @@ void PathTracer<T>::add_ambient_of_mirrors(const Groups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const Vec3<N> ambient(this->geometry_.ambient);
   const Groups mirrors = groups_with(this->geometry_, surface, met, &MaterialTraits::mirrors);
-  for (const auto& m : this->geometry_.materials)
-    if (m.traits.mirrors) m.kernel->specular(paths->rays, hits, surface, mirrors, specular_);
+  evaluate_specular(this->geometry_, false, hits, surface, mirrors, *paths, specular_);
   for (const int i : mirrors) {
     const auto mine = lanes_with(this->geometry_, surface, i, &MaterialTraits::mirrors);
     const Vec3<N> sent =

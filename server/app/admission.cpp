@@ -439,7 +439,7 @@ void Admission::measure(double cost) {
 }
 
 double Admission::retry_after_s(Lane lane) const {
-  return std::clamp(waiting_cost(lane) / rays_a_second(), 1.0, 30.0);
+  return limited_retry_s(waiting_cost(lane) / rays_a_second());
 }
 
 double Admission::rays_a_second() const { return busy_s_ > 0 ? done_rays_ / busy_s_ : kExpectedRate; }

@@ -31,6 +31,9 @@ class TooManyRays : public InputError {
   const char* limit() const noexcept { return "request_rays"; }  // its name in /v1/limits
 };
 
+// When who was refused may come back: Retry-After, in seconds.
+inline double limited_retry_s(double seconds) { return std::clamp(seconds, 1.0, 30.0); }
+
 // Holds that there is a place for one more of `what`, of which there are `all` now, `own` of them this
 // client's: at most `most` (the limit called `limit`), and half of them for one client. Throws Busy or
 // ClientBusy.

@@ -135,7 +135,7 @@ Admission::Ticket App::enter_in_time(const Demand& demand, Clock::time_point sin
     if (ends.stop_requested()) throw;
     throw OverLimit(
         "Others have had the service for all of the " + number_text(seconds) + " s that the picture may take",
-        std::clamp(seconds, 1.0, 30.0), "renders");
+        limited_retry_s(seconds), "renders");
   }
 }
 

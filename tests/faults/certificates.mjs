@@ -1,6 +1,7 @@
 // Mistakes of what a picture tells of its error, as faults.mjs has them: fault 32.
 
-const entry = (about, file, from, to, ...tests) => ({ fault: 32, about, file, from, to, target: "test_render", tests });
+const entry_of = (target, about, file, from, to, ...tests) => ({ fault: 32, about, file, from, to, target, tests });
+const entry = (...rest) => entry_of("test_render", ...rest);
 
 const kRange = "core/load/radiance_range.cpp", kWavefront = "core/techniques/wavefront.cpp";
 const kRandom = "Ledger.BoundsTheErrorOfRandomScenes";
@@ -96,8 +97,8 @@ export const certificateFaults = [
         "Certificate.KnowsThat*"),
   entry("less is provable than can be", "core/render/certificate.cpp", "UnitHistogram::least_upper_mean(pixels, doubt)",
         "-std::expm1(std::log(doubt) / pixels)", "Certificate.NeverTells*"),
-  { ...entry("what slots beside the picture have is counted", "core/model/film.cpp", "for_each_slot(tile, [&](std::size_t i) {",
-        "for_each_slot(tile.is_whole() ? tile : TileView{0, 0, kTileSide, kTileSide}, [&](std::size_t i) {", "Film.CountsValues*"), target: "test_model" },
+  entry_of("test_model", "what slots beside the picture have is counted", "core/model/film.cpp", "for_each_slot(tile, [&](std::size_t i) {",
+        "for_each_slot(tile.is_whole() ? tile : TileView{0, 0, kTileSide, kTileSide}, [&](std::size_t i) {", "Film.CountsValues*"),
   entry("weak rays are looked for where none are followed", "core/plan/plan.cpp",
         "plan_.free_contribution = plan_.free_contribution && plan_.max_depth > 0;", "", "ErrorBudget.LooksForNo*"),
   entry("no memory for a copy loses the picture", "core/render/budget.cpp", "reason_ = kNoMemory;\n    return false;", "throw;",
@@ -113,15 +114,15 @@ export const certificateFaults = [
   entry("suns are no brighter than the sky before which they stand", kRange,
         "paths = paths + scene.light_sets[place.set]->most_seen(place.index);",
         "paths = largest(paths, scene.light_sets[place.set]->most_seen(place.index));", "RadianceRange.OfPathsHoldsTheSky*"),
-  { ...entry("a coat mirrors by a normal that faces away", "core/materials/plastic.cpp", "plastic.fresnel(dot(frame.normal, viewer))",
-        "plastic.fresnel(dot(surface.normal.at(i), viewer))", "Plastic.CoatMirrors*"), target: "test_materials" },
-  { ...entry("a coat leaves as much ambient light to all views", "core/materials/plastic.h", "base * ((one - mirrors) * (one - mean))",
-        "base * ((one - mean) * (one - mean))", "Ambient.LeavesNothing*"), target: "test_techniques" },
-  { ...entry("nothing stands in for what smooth surfaces would mirror", "core/techniques/path_tracer.cpp", "if (ends) add_ambient_of_mirrors(met);",
-        "", "Ambient.LeavesNothing*"), target: "test_techniques" },
-  { ...entry("flat views reflect no more than others", "core/materials/metallic_roughness.cpp", "{1.0, 0.5, 0.1, 0.02, 0.005}",
-        "{1.0, 0.5, 0.1}", "MetallicRoughness.Strict*", "Materials.TellHowMuch*"), target: "test_materials" },
-  { ...entry("a coat sends on ambient light beyond its limit", "core/materials/plastic.h", "return {Vec3d(1), base +", "return {base, base +",
-        "Ambient.IsNoMore*"), target: "test_materials" },
-  { ...entry("a smooth coat sends on what it mirrors", "core/materials/plastic.h", "select(alpha > zero, mirrors, zero)", "mirrors", "Plastic.OfAWhite*"), target: "test_materials" },
+  entry_of("test_materials", "a coat mirrors by a normal that faces away", "core/materials/plastic.cpp", "plastic.fresnel(dot(frame.normal, viewer))",
+        "plastic.fresnel(dot(surface.normal.at(i), viewer))", "Plastic.CoatMirrors*"),
+  entry_of("test_techniques", "a coat leaves as much ambient light to all views", "core/materials/plastic.h", "base * ((one - mirrors) * (one - mean))",
+        "base * ((one - mean) * (one - mean))", "Ambient.LeavesNothing*"),
+  entry_of("test_techniques", "nothing stands in for what smooth surfaces would mirror", "core/techniques/path_tracer.cpp", "if (ends) add_ambient_of_mirrors(met);",
+        "", "Ambient.LeavesNothing*"),
+  entry_of("test_materials", "flat views reflect no more than others", "core/materials/metallic_roughness.cpp", "{1.0, 0.5, 0.1, 0.02, 0.005}",
+        "{1.0, 0.5, 0.1}", "MetallicRoughness.Strict*", "Materials.TellHowMuch*"),
+  entry_of("test_materials", "a coat sends on ambient light beyond its limit", "core/materials/plastic.h", "return {Vec3d(1), base +", "return {base, base +",
+        "Ambient.IsNoMore*"),
+  entry_of("test_materials", "a smooth coat sends on what it mirrors", "core/materials/plastic.h", "select(alpha > zero, mirrors, zero)", "mirrors", "Plastic.OfAWhite*"),
 ];
