@@ -114,19 +114,19 @@ class ImageEnvironment final : public Environment {
   const std::shared_ptr<const TurnedMap> image_;
 };
 
-Texels read_picture_of(Params& p, const char* key, const std::string& name, const auto& read) {
+TexelsPtr read_picture_of(Params& p, const char* key, const std::string& name, const auto& read) {
   try {
     if (name.empty()) throw InputError("", "expected a name, got \"\"");
     return read(name);
   } catch (const InputError& error) {
     p.fail(key, error.problems().front().detail);
-    return {};
+    return nullptr;
   }
 }
 
 std::shared_ptr<const Environment> read_image(Params& p, const AssetSource& source) {
   constexpr std::size_t kMostNameLength = 1024;
-  Texels picture;
+  TexelsPtr picture;
   if (p.form({{"file"}, {"asset"}}) == 0) {
     const std::string name = p.text(
         "file", "EXR, HDR, PNG or JPEG file in the scene's folder or below it; on the command line only.",
@@ -141,9 +141,9 @@ std::shared_ptr<const Environment> read_image(Params& p, const AssetSource& sour
                                   {.min = -1e6, .max = 1e6}, 0.0);
   const double scale =
       p.number("scale", "Factor of the picture's radiance.", {.min = 0, .max = kMaxColor}, 1.0);
-  if (picture.rgb.empty()) return nullptr;
+  if (!picture) return nullptr;
   return std::make_shared<ImageEnvironment>(
-      TurnedMap{LightMap(picture), sine_cosine_degrees(degrees), scale});
+      TurnedMap{LightMap(*picture), sine_cosine_degrees(degrees), scale});
 }
 
 }  // namespace

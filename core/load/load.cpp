@@ -69,8 +69,8 @@ class ReadOnce final : public AssetSource {
   TriangleMesh mesh_asset(const std::string& sha256) const override {
     return once(assets_, sha256, [&] { return from_.mesh_asset(sha256); });
   }
-  Texels picture_file(const std::string& name) const override { return from_.picture_file(name); }
-  Texels picture_asset(const std::string& sha256) const override { return from_.picture_asset(sha256); }
+  TexelsPtr picture_file(const std::string& name) const override { return from_.picture_file(name); }
+  TexelsPtr picture_asset(const std::string& sha256) const override { return from_.picture_asset(sha256); }
 
  private:
   using Meshes = std::map<std::string, TriangleMesh>;

@@ -18,10 +18,10 @@ class AssetSource {
 
   // Of a file beside the scene.
   virtual TriangleMesh mesh_file(const std::string& /*name*/) const { refuse_files(); }
-  virtual Texels picture_file(const std::string& /*name*/) const { refuse_files(); }
+  virtual TexelsPtr picture_file(const std::string& /*name*/) const { refuse_files(); }
   // By the SHA-256 of its bytes, in hexadecimal.
   virtual TriangleMesh mesh_asset(const std::string& /*sha256*/) const { refuse_assets(); }
-  virtual Texels picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
+  virtual TexelsPtr picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
 
  private:
   [[noreturn]] static void refuse_files() {

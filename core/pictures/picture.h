@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +14,12 @@ struct Texels {
   int width = 0, height = 0;
   std::vector<float> rgb;  // red, green and blue of each texel, row by row from the top
 };
+using TexelsPtr = std::shared_ptr<const Texels>;
 
 // What an image file may hold.
 struct PictureLimits {
   int side = 16384;                 // texels
-  std::size_t texels = 33'554'432;  // in all; each takes 12 bytes, and as much again while it is decoded
+  std::size_t texels = 33'554'432;  // in all; each takes 12 bytes
   int channels = 4;
 
   // Empty if a picture of that size is within the limits.
@@ -49,12 +51,12 @@ bool is_picture(std::string_view bytes);
 // Throws InputError (pointer "") if it is none.
 PictureFormat picture_format(std::string_view bytes);
 
-// Reads an OpenEXR, Radiance HDR, PNG or JPEG file, told by its first bytes. EXR and HDR are linear; PNG and
-// JPEG are decoded from sRGB. One channel is grey; a second or fourth, alpha, is left aside. Nothing but
-// `bytes` is read; the same bytes give the same picture.
+// Reads an OpenEXR, Radiance HDR, PNG or JPEG file; its first bytes say which. EXR and HDR are linear; PNG
+// and JPEG are decoded from sRGB. One channel is grey; a second or fourth, alpha, is left out. The same bytes
+// give the same picture. The file is decoded in a process of its own (core/pictures/decode_process.h).
 //
-// Throws InputError (pointer "") with the value and the limit. The size that a file states is checked before
-// anything is decoded. Texels must be finite, at least 0 and at most kMaxTexel.
+// Throws InputError (pointer "") with the value and the limit; Cancelled; std::bad_alloc. The size that a
+// file states is checked before anything is decoded. Texels must be finite, at least 0 and at most kMaxTexel.
 Texels read_picture(std::string_view bytes, const PictureLimits& limits = {});
 
 }  // namespace orrery

@@ -20,6 +20,7 @@ class AssetStore final : public AssetSource {
     struct Picture {
       PictureFormat format;
       int width, height;
+      TexelsPtr texels;  // null if they take more of the store than one picture may
     };
     std::string bytes;
     std::variant<Mesh, Picture> content;
@@ -46,7 +47,7 @@ class AssetStore final : public AssetSource {
   std::uint64_t evictions() const { return assets_.evictions(); }
 
   TriangleMesh mesh_asset(const std::string& sha256) const override;
-  Texels picture_asset(const std::string& sha256) const override;
+  TexelsPtr picture_asset(const std::string& sha256) const override;
 
  private:
   // Throws InputError if there is none.

@@ -17,7 +17,7 @@ TriangleMesh Reading::mesh_asset(const std::string& sha256) const {
   return assets_.mesh_asset(sha256);
 }
 
-Texels Reading::picture_asset(const std::string& sha256) const {
+TexelsPtr Reading::picture_asset(const std::string& sha256) const {
   if (!ticket_) take_turn();
   return assets_.picture_asset(sha256);
 }

@@ -18,7 +18,7 @@ class Reading final : public AssetSource {
           std::stop_token stop);
 
   TriangleMesh mesh_asset(const std::string& sha256) const override;
-  Texels picture_asset(const std::string& sha256) const override;
+  TexelsPtr picture_asset(const std::string& sha256) const override;
 
   double waited_ms() const { return waited_ms_; }
 

@@ -31,8 +31,9 @@ TriangleMesh AssetFiles::mesh_file(const std::string& name) const {
   return read_with(name, [](const std::string& bytes) { return read_mesh(bytes); });
 }
 
-Texels AssetFiles::picture_file(const std::string& name) const {
-  return read_with(name, [](const std::string& bytes) { return read_picture(bytes); });
+TexelsPtr AssetFiles::picture_file(const std::string& name) const {
+  return read_with(
+      name, [](const std::string& bytes) { return std::make_shared<const Texels>(read_picture(bytes)); });
 }
 
 }  // namespace orrery

@@ -11,7 +11,7 @@ class AssetFiles final : public AssetSource {
  public:
   explicit AssetFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
   TriangleMesh mesh_file(const std::string& name) const override;
-  Texels picture_file(const std::string& name) const override;
+  TexelsPtr picture_file(const std::string& name) const override;
 
  private:
   // What read(bytes) makes of the file. Throws InputError with its name.

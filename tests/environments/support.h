@@ -24,7 +24,9 @@ inline Texels painted(int width, int height, const std::function<Vec3d(int x, in
 class OnePicture final : public AssetSource {
  public:
   explicit OnePicture(Texels picture) : picture_(std::move(picture)) {}
-  Texels picture_file(const std::string&) const override { return picture_; }
+  TexelsPtr picture_file(const std::string&) const override {
+    return std::make_shared<const Texels>(picture_);
+  }
 
  private:
   const Texels picture_;

@@ -116,7 +116,7 @@ TEST(Pictures, StatedSizesAreCheckedFirst) {
   EXPECT_EQ(refusal(hdr(4, 2, 2), {.channels = 2}), "HDR: expected a picture of 1 to 2 channels, got 3");
 }
 
-// A progressive JPEG is decoded as a whole as soon as it is opened.
+// libjpeg decodes a progressive file as a whole as soon as it opens it.
 TEST(Pictures, JpegIsRefusedBeforeItTakesMemoryOrTime) {
   const std::string frame = "\xff\xc2\x00\x0b\x08\x2e\xe0\x5d\xc0\x01\x01\x11\x00"s,
                     scan = "\xff\xda\x00\x08\x01\x01\x00\x00\x00\x00"s;
@@ -127,7 +127,7 @@ TEST(Pictures, JpegIsRefusedBeforeItTakesMemoryOrTime) {
             "JPEG: the picture is damaged: it has no size before its scans");
   std::string many = encode_jpeg(coded_image(8, 8, 1));
   for (int i = 0; i < 256; ++i) many.insert(many.size() - 2, scan);
-  EXPECT_EQ(refusal(many), "JPEG: expected at most 256 scans, got 257");
+  EXPECT_EQ(refusal(many), "JPEG: expected at most 256 scans, got more");
 }
 
 TEST(Pictures, TexelsThatAreNoLightAreNamed) {

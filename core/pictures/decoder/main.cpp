@@ -1,0 +1,177 @@
+// The program orrery-decode: decodes one picture file in a process of its own, whose memory and CPU time are
+// limited, so that nothing that a file does to a library harms whoever reads it.
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/math/elementary.h"
+#include "core/pictures/decoder/protocol.h"
+
+namespace {
+
+using orrery::DecodedHeader;
+
+void write_all(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (written <= 0) std::_Exit(1);  // nobody reads
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+[[noreturn]] void fail(std::string text) {
+  constexpr std::size_t kMaxText = 500;
+  text.resize(std::min(text.size(), kMaxText));
+  const DecodedHeader header{static_cast<std::uint32_t>(text.size()), 0, 0};
+  write_all(std::as_bytes(std::span(&header, 1)));
+  write_all(std::as_bytes(std::span(text)));
+  std::_Exit(0);
+}
+
+// Memory that this process has mapped and may write to, as RLIMIT_DATA counts it.
+rlim_t mapped_data() {
+  std::FILE* const file = std::fopen("/proc/self/statm", "r");
+  unsigned long pages = 0;
+  const bool read = file && std::fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) == 1;
+  if (file) std::fclose(file);
+  return read ? pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+void limit_process() {
+  constexpr rlim_t kMaxSeconds = 300;
+  constexpr int kLowerPriority = 5;  // than what answers requests
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  close_range(STDERR_FILENO + 1, ~0U, 0);
+  [[maybe_unused]] const int priority = nice(kLowerPriority);
+  const rlimit seconds{kMaxSeconds, kMaxSeconds}, none{0, 0};
+  setrlimit(RLIMIT_CPU, &seconds);
+  setrlimit(RLIMIT_CORE, &none);
+}
+
+// Allows so many bytes besides those mapped so far.
+void limit_memory([[maybe_unused]] std::uint64_t bytes) {
+#ifndef ORRERY_SANITIZED  // whose own memory counts as data
+  const rlim_t most = mapped_data() + orrery::kDecoderRoom + bytes;
+  const rlimit data{most, most};
+  setrlimit(RLIMIT_DATA, &data);
+#endif
+}
+
+std::span<std::byte> map_input() {
+  struct stat status {};
+  if (fstat(STDIN_FILENO, &status) != 0 || status.st_size <= 0) fail("there is no input");
+  const auto size = static_cast<std::size_t>(status.st_size);
+  void* const start = mmap(nullptr, size, PROT_READ, MAP_SHARED, STDIN_FILENO, 0);
+  if (start == MAP_FAILED) fail("the input cannot be mapped");
+  return {static_cast<std::byte*>(start), size};
+}
+
+// The linear light of each code of `Code`, which are encoded in sRGB (IEC 61966-2-1).
+template <class Code>
+std::vector<float> light_of_codes() {
+  constexpr std::size_t kMaxCode = std::numeric_limits<Code>::max();
+  std::vector<float> light;
+  for (std::size_t code = 0; code <= kMaxCode; ++code) {
+    const double x = static_cast<double>(code) / static_cast<double>(kMaxCode);
+    light.push_back(
+        static_cast<float>(x <= 0.04045 ? x / 12.92 : orrery::pow_unit((x + 0.055) / 1.055, 2.4)));
+  }
+  return light;
+}
+
+// Reads the rows from `begin` to `end` as they are stored. (OpenImageIO's function for several rows allocates
+// 64 MiB whatever their size.)
+template <class Sample>
+void read_rows(OIIO::ImageInput& input, int begin, int end, std::vector<Sample>& samples) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const OIIO::TypeDesc type = OIIO::BaseTypeFromC<Sample>::value;
+  const std::size_t row = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels);
+  samples.resize(row * static_cast<std::size_t>(end - begin));
+  bool read = true;
+  if (spec.tile_width > 0)
+    read = input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, 0, 1, 0,
+                            spec.nchannels, type, samples.data());
+  else
+    for (int y = begin; y < end && read; ++y)
+      read = input.read_scanline(spec.y + y, 0, type,
+                                 samples.data() + row * static_cast<std::size_t>(y - begin));
+  if (!read) fail("the picture is damaged: " + input.geterror());
+}
+
+// Writes red, green and blue of each texel, light(sample) of each; grey is all three, alpha is left out.
+template <class Sample>
+void decode(OIIO::ImageInput& input, const auto& light) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const DecodedHeader header{0, static_cast<std::uint32_t>(spec.width),
+                             static_cast<std::uint32_t>(spec.height)};
+  const int rows = spec.tile_width > 0 ? std::min(spec.tile_height, spec.height) : orrery::kRowsAtOnce;
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  const bool grey = channels < 3;
+  std::vector<Sample> samples;
+  std::vector<float> texels;
+  for (int y = 0; y < spec.height; y += rows) {
+    read_rows(input, y, std::min(spec.height, y + rows), samples);
+    texels.clear();
+    for (std::size_t at = 0; at + channels <= samples.size(); at += channels)
+      for (std::size_t c = 0; c < 3; ++c) texels.push_back(light(samples[at + (grey ? 0 : c)]));
+    if (y == 0) write_all(std::as_bytes(std::span(&header, 1)));
+    write_all(std::as_bytes(std::span(texels)));
+  }
+}
+
+template <class Code>
+void decode_srgb(OIIO::ImageInput& input) {
+  decode<Code>(input, [light = light_of_codes<Code>()](Code code) { return light[code]; });
+}
+
+void run(const char* plugin, std::uint64_t memory_bytes) {
+  OIIO::attribute("threads", 1);
+  OIIO::attribute("exr_threads", -1);
+  const std::span<std::byte> bytes = map_input();
+  OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
+  const auto input = OIIO::ImageInput::create(plugin, false, nullptr, &reader, "");
+  limit_memory(memory_bytes);  // the reader has started its thread, and has seen nothing of the file
+  OIIO::ImageSpec spec, how;
+  how.attribute("oiio:UnassociatedAlpha", 1);
+  if (!input || !input->set_ioproxy(&reader) || !input->open("picture", spec, how))
+    fail("the picture is damaged: " + (input ? input->geterror() : OIIO::geterror()));
+  if (spec.depth > 1 || spec.deep) fail("expected a flat picture, got one with depth");
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) fail("the picture is damaged: it is empty");
+  const std::string_view format = plugin;
+  const bool linear = format == "openexr" || format == "hdr";
+  if (linear)
+    decode<float>(*input, [](float value) { return value; });
+  else if (spec.format == OIIO::TypeDesc::UINT8)
+    decode_srgb<std::uint8_t>(*input);
+  else
+    decode_srgb<std::uint16_t>(*input);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  limit_process();
+  try {
+    run(argv[1], std::strtoull(argv[2], nullptr, 10));
+  } catch (const std::bad_alloc&) {
+    fail("it takes more memory to be decoded than its size explains");
+  } catch (const std::exception& error) {
+    fail(std::string("the picture is damaged: ") + error.what());
+  }
+  std::_Exit(0);  // what libraries would clean up goes with the process
+}

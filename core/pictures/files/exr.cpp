@@ -1,0 +1,95 @@
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/pictures/picture_file.h"
+
+namespace orrery {
+namespace {
+
+// OpenImageIO compares each attribute with all others; usual are 10 to 50.
+constexpr int kMaxAttributes = 1000;
+constexpr std::size_t kMaxHeader = 1 << 20;  // bytes
+
+// Rows that are compressed as one block, at most (OpenEXR, "Technical Introduction": DWAB).
+constexpr std::uint64_t kBlockRows = 256;
+
+struct Attribute {
+  std::string_view name, type;
+  ByteReader value;
+};
+
+// Sets `out` to the next attribute, or returns false at the end of the header.
+bool next_attribute(ByteReader& reader, Attribute& out) {
+  out.name = reader.take_until('\0');
+  if (out.name.empty()) return false;
+  out.type = reader.take_until('\0');
+  const std::uint32_t size = reader.little_endian_32();
+  out.value = ByteReader(reader.take(size));
+  return true;
+}
+
+int count_channels(ByteReader list) {
+  constexpr std::size_t kDescription = 16;  // type, linearity, sampling
+  int channels = 0;
+  for (; !list.take_until('\0').empty(); ++channels) list.take(kDescription);
+  return channels;
+}
+
+// The number of texels from the first to the last coordinate, 0 if there are none.
+std::uint64_t extent(std::uint32_t first, std::uint32_t last) {
+  const std::int64_t between =
+      std::int64_t{static_cast<std::int32_t>(last)} - static_cast<std::int32_t>(first);
+  return between < 0 ? 0 : static_cast<std::uint64_t>(between) + 1;
+}
+
+// Reads the attributes of one header up to an empty name, and adds their number. Returns false if there are
+// none.
+bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
+  std::uint64_t rows = kBlockRows, tile_width = 0;
+  Attribute attribute{{}, {}, ByteReader({})};
+  const int before = attributes;
+  for (; next_attribute(reader, attribute); ++attributes) {
+    if (attributes == kMaxAttributes || reader.at() > kMaxHeader)
+      throw InputError("", "expected a header of at most " + std::to_string(kMaxAttributes) +
+                               " attributes and " + std::to_string(kMaxHeader) + " bytes, got more");
+    if (attribute.name == "channels" && attribute.type == "chlist")
+      file.channels = count_channels(attribute.value);
+    if (attribute.name == "dataWindow" && attribute.type == "box2i") {
+      std::uint32_t edges[4];
+      for (std::uint32_t& edge : edges) edge = attribute.value.little_endian_32();
+      file.width = extent(edges[0], edges[2]);
+      file.height = extent(edges[1], edges[3]);
+    }
+    if (attribute.name == "tiles" && attribute.type == "tiledesc") {
+      tile_width = attribute.value.little_endian_32();
+      rows = attribute.value.little_endian_32();
+    }
+  }
+  // A row of blocks or tiles as it is stored, unpacked, and in the order of texels, at 4 bytes a sample. A
+  // tile may reach beyond the picture.
+  constexpr std::uint64_t kMaxSide = 1 << 16, kCopies = 3;
+  const std::uint64_t width = std::min(std::max(file.width, tile_width), kMaxSide);
+  file.decoder_bytes =
+      kCopies * 4 * static_cast<std::uint64_t>(file.channels) * width * std::min(rows, kMaxSide);
+  return attributes > before;
+}
+
+}  // namespace
+
+// A magic number, flags, then the header; of a file with several parts the headers of all up to an empty one,
+// of which the first counts.
+void inspect_exr(std::string_view bytes, PictureFile& file) {
+  constexpr std::uint32_t kDeep = 0x800, kManyParts = 0x1000;
+  ByteReader reader(bytes);
+  reader.take(4);
+  const std::uint32_t flags = reader.little_endian_32();
+  if (flags & kDeep) throw InputError("", "expected a flat picture, got one with depth");
+  int attributes = 0;
+  read_header(reader, attributes, file);
+  PictureFile other{.format = file.format, .parts = {}};
+  while (flags & kManyParts && read_header(reader, attributes, other)) {
+  }
+  file.keep(bytes);
+}
+
+}  // namespace orrery

@@ -1,0 +1,39 @@
+#include <charconv>
+
+#include "core/base/error.h"
+#include "core/pictures/picture_file.h"
+
+namespace orrery {
+namespace {
+
+// Takes a number from the text, such as 512 of "-Y 512 +X 1024".
+std::uint64_t side(std::string_view& text) {
+  const std::size_t digits = text.find_first_of("0123456789");
+  if (digits == std::string_view::npos) fail_damaged("it has no size");
+  std::uint64_t value = 0;
+  const auto read = std::from_chars(text.data() + digits, text.data() + text.size(), value);
+  text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+  return read.ec == std::errc() ? value : ~std::uint64_t{0};
+}
+
+}  // namespace
+
+// Lines of text up to an empty one, then a line with the size: "-Y height +X width".
+void inspect_hdr(std::string_view bytes, PictureFile& file) {
+  constexpr std::size_t kMaxHeader = 1 << 16;  // bytes
+  const std::size_t end = bytes.substr(0, kMaxHeader).find("\n\n");
+  if (end == std::string_view::npos)
+    throw InputError("", bytes.size() < kMaxHeader ? "the picture is damaged: it has no size"
+                                                   : "expected a header of at most " +
+                                                         std::to_string(kMaxHeader) + " bytes, got more");
+  ByteReader reader(bytes, end + 2);
+  std::string_view size = reader.take_until('\n');
+  const bool rows_first = size.find('Y') < size.find('X');
+  const std::uint64_t first = side(size), second = side(size);
+  file.height = rows_first ? first : second;
+  file.width = rows_first ? second : first;
+  file.channels = 3;
+  file.keep(bytes);
+}
+
+}  // namespace orrery

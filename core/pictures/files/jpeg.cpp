@@ -1,0 +1,97 @@
+#include "core/base/error.h"
+#include "core/pictures/picture_file.h"
+
+namespace orrery {
+namespace {
+
+constexpr unsigned kMarker = 0xff;
+enum Marker : unsigned {
+  kFirstFrame = 0xc0,
+  kProgressive = 0xc2,
+  kHuffman = 0xc4,
+  kExtension = 0xc8,
+  kArithmetic = 0xcc,
+  kLastFrame = 0xcf,
+  kFirstRestart = 0xd0,
+  kLastRestart = 0xd7,
+  kEnd = 0xd9,
+  kScan = 0xda,
+  kFirstApplication = 0xe0,
+  kAdobe = 0xee,
+  kLastApplication = 0xef,
+  kComment = 0xfe,
+};
+
+bool within(unsigned marker, Marker first, Marker last) { return marker >= first && marker <= last; }
+
+bool is_frame(unsigned marker) {
+  return within(marker, kFirstFrame, kLastFrame) && marker != kHuffman && marker != kExtension &&
+         marker != kArithmetic;
+}
+
+// The segment of 14 bytes that says which colours the components are; its name has no other use.
+bool is_colour_transform(unsigned marker, std::string_view content) {
+  return marker == kAdobe && content.starts_with("Adobe") && content.size() < 64;
+}
+
+void read_frame(unsigned marker, std::string_view content, PictureFile& file) {
+  ByteReader reader(content);
+  reader.take(1);  // bits a sample
+  file.height = reader.big_endian(2);
+  file.width = reader.big_endian(2);
+  file.channels = static_cast<int>(reader.byte());
+  // A progressive file is decoded as a whole: two bytes a coefficient, and blocks at the edges are whole
+  // ones.
+  constexpr std::uint64_t kBlock = 32;
+  if (marker == kProgressive)
+    file.decoder_bytes =
+        2 * static_cast<std::uint64_t>(file.channels) * (file.width + kBlock) * (file.height + kBlock);
+}
+
+// Reads the coded samples of a scan, in which a marker's first byte is followed by 0 or a restart.
+void skip_scan(std::string_view bytes, ByteReader& reader) {
+  for (;;) {
+    reader.take_until(static_cast<char>(kMarker));
+    if (reader.left() == 0) fail_damaged("it has no end");
+    const auto next = static_cast<unsigned char>(bytes[reader.at()]);
+    if (next == 0 || within(next, kFirstRestart, kLastRestart)) continue;
+    reader = ByteReader(bytes, reader.at() - 1);
+    return;
+  }
+}
+
+}  // namespace
+
+// Segments: a byte 255, a marker, a length of two bytes that counts itself, the content; behind the header of
+// a scan its coded samples. libjpeg makes up what is missing at the end, and decodes all scans of a
+// progressive file as it opens it.
+void inspect_jpeg(std::string_view bytes, PictureFile& file) {
+  constexpr int kMaxScans = 256;  // usual are 10
+  ByteReader reader(bytes);
+  file.keep(reader.take(2));
+  for (int scans = 0;;) {
+    std::size_t start = reader.at();
+    if (reader.byte() != kMarker) fail_damaged("it has bytes that belong to no segment");
+    unsigned marker = reader.byte();
+    for (; marker == kMarker; marker = reader.byte()) ++start;
+    if (marker == kEnd) {
+      if (scans == 0) fail_damaged("it has no scans");
+      return file.keep(bytes.substr(start, 2));
+    }
+    const std::uint32_t length = reader.big_endian(2);
+    if (length < 2) fail_damaged("it has a segment without a length");
+    const std::string_view content = reader.take(length - 2);
+    if (is_frame(marker)) read_frame(marker, content, file);
+    if (marker == kScan) {
+      if (file.channels == 0) fail_damaged("it has no size before its scans");
+      skip_scan(bytes, reader);
+      if (++scans > kMaxScans)
+        throw InputError("", "expected at most " + std::to_string(kMaxScans) + " scans, got more");
+    }
+    const bool describes = within(marker, kFirstApplication, kLastApplication) || marker == kComment;
+    if (!describes || is_colour_transform(marker, content))
+      file.keep(bytes.substr(start, reader.at() - start));
+  }
+}
+
+}  // namespace orrery

@@ -1,0 +1,54 @@
+#include <algorithm>
+#include <array>
+
+#include "core/pictures/picture_file.h"
+
+namespace orrery {
+namespace {
+
+constexpr std::array<std::string_view, 7> kTexelChunks = {"IHDR", "PLTE", "tRNS", "gAMA",
+                                                          "sRGB", "IDAT", "IEND"};
+
+// Channels of a colour type (PNG specification, 11.2.2); a palette may have an alpha chunk.
+int channels_of(unsigned colour_type) {
+  switch (colour_type) {
+    case 0: return 1;
+    case 2: return 3;
+    case 3: return 4;
+    case 4: return 2;
+    case 6: return 4;
+    default: fail_damaged("it has no colour type " + std::to_string(colour_type));
+  }
+}
+
+}  // namespace
+
+// A signature of 8 bytes, then chunks: a length, a type of 4 letters, the content and a checksum.
+void inspect_png(std::string_view bytes, PictureFile& file) {
+  ByteReader reader(bytes);
+  file.keep(reader.take(8));
+  for (std::string_view type; type != "IEND";) {
+    const std::size_t start = reader.at();
+    const std::uint32_t length = reader.big_endian(4);
+    type = reader.take(4);
+    ByteReader content(reader.take(length));
+    reader.take(4);
+    if (file.width == 0 && type != "IHDR") fail_damaged("it does not begin with its size");
+    if (type == "IHDR") {
+      file.width = content.big_endian(4);
+      file.height = content.big_endian(4);
+      const std::uint64_t depth = content.byte();
+      file.channels = channels_of(content.byte());
+      content.take(2);                              // ways to compress and to filter
+      const bool interlaced = content.byte() != 0;  // decoded as a whole; others row by row
+      if (interlaced)
+        file.decoder_bytes =
+            file.width * file.height * static_cast<std::uint64_t>(file.channels) * (depth > 8 ? 2 : 1);
+      if (file.width == 0) fail_damaged("it has no width");
+    }
+    const bool makes_texels = std::find(kTexelChunks.begin(), kTexelChunks.end(), type) != kTexelChunks.end();
+    if (makes_texels) file.keep(bytes.substr(start, reader.at() - start));
+  }
+}
+
+}  // namespace orrery
