@@ -3,13 +3,21 @@
 #include <cassert>
 #include <utility>
 
+#include "core/base/shorten.h"
+
 namespace orrery {
 namespace {
 
+std::vector<Problem> bounded(std::vector<Problem> problems) {
+  if (problems.size() > InputError::kMaxProblems) problems.resize(InputError::kMaxProblems);
+  for (Problem& p : problems)
+    for (std::string* text : {&p.pointer, &p.detail}) *text = shortened(*text, InputError::kMaxCharacters);
+  return problems;
+}
+
 std::string summary(const std::vector<Problem>& problems) {
   assert(!problems.empty());
-  const Problem& first = problems.front();
-  std::string text = first.text();
+  std::string text = bounded({problems.front()}).front().text();
   if (problems.size() > 1) {
     const std::size_t more = problems.size() - 1;
     text += " (and " + std::to_string(more) + (more == 1 ? " more problem)" : " more problems)");
@@ -17,15 +25,10 @@ std::string summary(const std::vector<Problem>& problems) {
   return text;
 }
 
-std::vector<Problem> at_most(std::vector<Problem> problems, std::size_t count) {
-  if (problems.size() > count) problems.resize(count);
-  return problems;
-}
-
 }  // namespace
 
 InputError::InputError(std::vector<Problem> problems)
-    : Error(summary(problems)), problems_(at_most(std::move(problems), kMaxProblems)) {}
+    : Error(summary(problems)), problems_(bounded(std::move(problems))) {}
 
 InputError::InputError(std::string pointer, std::string detail)
     : InputError(std::vector<Problem>{{std::move(pointer), std::move(detail)}}) {}

@@ -31,6 +31,9 @@ class InputError : public Error {
  public:
   // At most this many problems are kept: more help nobody and let a bad document ask for unbounded memory.
   static constexpr std::size_t kMaxProblems = 20;
+  // Characters of a pointer and of a detail; longer ones are shortened. Those who write them cut names,
+  // values and lists long before.
+  static constexpr std::size_t kMaxCharacters = 2048;
 
   // REQUIRES: problems is not empty. Problems past kMaxProblems are dropped.
   explicit InputError(std::vector<Problem> problems);

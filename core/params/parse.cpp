@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/shorten.h"
 #include "core/base/work_scope.h"
 #include "core/params/document.h"
 #include "core/params/json.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/shorten.h"
 #include "core/params/json.h"
 #include "core/params/suggest.h"
 #include "core/params/words.h"
@@ -147,7 +148,10 @@ std::size_t Reader::do_reference(Key key, Doc, const Names& names) {
   const std::optional<std::size_t> index = names.find(*name);
   if (!index) {
     std::vector<Key> known;
-    for (const auto& entry : names.index_of()) known.push_back(entry.first);
+    for (const auto& entry : names.index_of()) {
+      if (known.size() == kMaxCandidates) break;
+      known.push_back(entry.first);
+    }
     note(pointer(key), "no " + names.kind() + " " + in_quotes(*name) + did_you_mean(*name, known));
   }
   return index.value_or(0);

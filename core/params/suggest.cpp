@@ -10,9 +10,7 @@ namespace orrery {
 namespace {
 
 constexpr int kMaxSlips = 2;
-// Longer words are no typing errors, more candidates are not searched: a bad document must not cost much.
-constexpr std::size_t kMaxWord = 64;
-constexpr std::size_t kMaxCandidates = 1000;
+constexpr std::size_t kMaxWord = 64;  // longer words are no typing errors
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -41,16 +39,21 @@ std::optional<std::string> only_one_beginning_with(std::string_view word,
 
 int edit_distance(std::string_view a, std::string_view b, int limit) {
   const std::size_t gap = a.size() > b.size() ? a.size() - b.size() : b.size() - a.size();
-  if (gap > static_cast<std::size_t>(limit)) return limit + 1;
-  std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);  // rows i-2, i-1, i
-  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = static_cast<int>(j);
+  const auto band = static_cast<std::size_t>(limit);  // cells further from the diagonal exceed the limit
+  if (gap > band) return limit + 1;
+  std::vector<int> before(b.size() + 1, limit + 1), last = before, row = before;  // rows i-2, i-1, i
+  for (std::size_t j = 0; j <= std::min(b.size(), band); ++j) last[j] = static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = static_cast<int>(i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+    const std::size_t first = i > band ? i - band : 0, end = std::min(b.size(), i + band);
+    int least = row[first] = first == 0 ? static_cast<int>(i) : limit + 1;
+    for (std::size_t j = std::max<std::size_t>(first, 1); j <= end; ++j) {
+      const int left = j > first ? row[j - 1] : limit + 1, above = j < i + band ? last[j] : limit + 1;
+      row[j] = std::min({above + 1, left + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
       const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
       if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+      least = std::min(least, row[j]);
     }
+    if (least > limit) return limit + 1;
     before.swap(last);
     last.swap(row);
   }

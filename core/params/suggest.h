@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace orrery {
+
+// Candidates that are searched, at most: a bad document must not cost much.
+inline constexpr std::size_t kMaxCandidates = 1000;
 
 // Number of single-character insertions, deletions, replacements and swaps of neighbours that turn a into b
 // (optimal string alignment: no character is edited twice), or limit + 1 if it takes more than `limit`.

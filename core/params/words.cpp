@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/base/shorten.h"
+
 namespace orrery {
 namespace {
 
@@ -47,18 +49,12 @@ void append_string(std::string_view text, std::string& out, std::size_t limit) {
   out += '"';
 }
 
-bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
-
 // The text cut after kBriefCharacters characters.
 std::string cut(std::string text) {
-  std::size_t characters = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (!continues_character(text[i]) && ++characters > kBriefCharacters) {
-      text.resize(i);
-      return text + "...";
-    }
-  }
-  return text;
+  const std::size_t first = first_characters(text, kBriefCharacters).size();
+  if (first == text.size()) return text;
+  text.resize(first);
+  return text + "...";
 }
 
 }  // namespace
@@ -137,7 +133,7 @@ std::string one_of(std::span<const std::string_view> words, std::string_view las
 
 std::string pointer_step(std::string_view key) {
   std::string step = "/";
-  for (const char c : key) {
+  for (const char c : shortened(key)) {
     if (c == '~') {
       step += "~0";
     } else if (c == '/') {
@@ -170,11 +166,6 @@ double stand_in(const Range& range) {
     if (std::isfinite(x) && range.contains(x)) return x;
   }
   return std::isfinite(range.min) ? range.min + 1 : range.max - 1;
-}
-
-std::size_t character_count(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return !continues_character(c); }));
 }
 
 }  // namespace orrery

@@ -24,7 +24,8 @@ std::string in_quotes(std::string_view name);
 // "a", "b" or "c": every word quoted.
 std::string one_of(std::span<const std::string_view> words, std::string_view last_join = " or ");
 
-// "/" and the key, escaped for a JSON Pointer (RFC 6901).
+// "/" and the key, escaped for a JSON Pointer (RFC 6901). A long key is shortened, so that no error repeats
+// it.
 std::string pointer_step(std::string_view key);
 
 // " > 0 and <= 1e12"; empty for no limits.
@@ -35,8 +36,5 @@ std::string count_text(Count count);
 
 // A number in the range, to go on with where there is no right one.
 double stand_in(const Range& range);
-
-// Number of Unicode characters in valid UTF-8.
-std::size_t character_count(std::string_view text);
 
 }  // namespace orrery

@@ -4,6 +4,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "core/base/shorten.h"
 #include "server/app/admission.h"
 #include "server/app/told_error.h"
 #include "server/app/watch.h"
@@ -13,14 +14,31 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr std::size_t kMostBytes = 64 * 1024;  // of an answer
+constexpr std::size_t kMostCharacters = 4500;  // of its detail; each takes at most 6 bytes
+
+// The body, without the last of its errors where all would take more than kMostBytes. REQUIRES: there is room
+// for one error.
+std::string text_of(ordered_json problem) {
+  const auto text = [&] {
+    return problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  };
+  std::string body = text();
+  if (!problem.contains("errors")) return body;
+  for (ordered_json& errors = problem["errors"]; body.size() > kMostBytes && errors.size() > 1; body = text())
+    errors.erase(errors.size() - 1);
+  return body;
+}
+
 Response respond(int status, std::string_view title, std::string_view detail, std::string_view request_id,
                  std::string_view type = "about:blank", const ordered_json& more = ordered_json::object()) {
-  ordered_json problem = {
-      {"type", type}, {"title", title}, {"status", status}, {"detail", detail}, {"request_id", request_id}};
+  ordered_json problem = {{"type", type},
+                          {"title", title},
+                          {"status", status},
+                          {"detail", shortened(detail, kMostCharacters)},
+                          {"request_id", request_id}};
   problem.update(more);
-  Response response =
-      text_response(status, "application/problem+json",
-                    problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  Response response = text_response(status, "application/problem+json", text_of(std::move(problem)));
   response.set("Cache-Control", "no-store");
   return response;
 }

@@ -100,6 +100,25 @@ TEST_F(Bodies, JustUnderTheLimitAreRead) {
   EXPECT_EQ(client_.Post("/v1/render", scene, "application/json")->status, 200);
 }
 
+// Names of control characters, which JSON writes with six bytes each, as deep as they may be: the longest
+// errors that there are.
+TEST_F(Bodies, GetErrorsOfAtMost64KiB) {
+  const std::string name(1000, '\x01'), written = nlohmann::json(name).dump();
+  std::string deep = "1";
+  for (int i = 0; i < 30; ++i) deep = "{" + written + ":" + deep + "," + written + ":1}";
+  auto wide = small_scene();
+  for (int i = 0; i < 20; ++i)
+    wide["materials"][name + std::to_string(i)] = {{"type", "rough"}, {"kd", name}};
+  for (const std::string& body : {deep, wide.dump(), nlohmann::json(std::string(4 << 20, 'x')).dump(),
+                                  "{" + nlohmann::json(std::string(4 << 20, 'x')).dump() + ": tru}"}) {
+    const auto result = client_.Post("/v1/render", body, "application/json");
+    ASSERT_TRUE(result);
+    EXPECT_GE(result->status, 400);
+    EXPECT_LE(result->body.size(), 64u * 1024);
+    EXPECT_FALSE(nlohmann::json::parse(result->body).at("errors").empty());
+  }
+}
+
 TEST_F(Bodies, OfOtherTypesAreRefused) {
   for (const char* type : {"image/png", "multipart/form-data; boundary=x", "application/xml",
                            "application/json; charset=utf-16", "text/plain;CHARSET=\"latin1\""})

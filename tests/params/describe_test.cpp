@@ -125,6 +125,40 @@ TEST(EditDistance, CountsSlipsIncludingSwaps) {
   EXPECT_EQ(edit_distance("kitten", "sitting", 2), 3);
 }
 
+// The whole table, row by row.
+int slow_edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = static_cast<int>(i + j);
+        continue;
+      }
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+TEST(EditDistance, AgreesWithTheWholeTable) {
+  std::uint32_t state = 1;
+  const auto next = [&](std::uint32_t below) {
+    return (state = state * 1664525 + 1013904223) / 65536 % below;
+  };
+  const auto word = [&] {
+    std::string text(next(9), 'a');
+    for (char& c : text) c = static_cast<char>('a' + next(3));
+    return text;
+  };
+  for (int i = 0; i < 20'000; ++i) {
+    const std::string a = word(), b = word();
+    const int limit = static_cast<int>(next(5));
+    ASSERT_EQ(edit_distance(a, b, limit), std::min(slow_edit_distance(a, b), limit + 1))
+        << a << " " << b << " " << limit;
+  }
+}
+
 TEST(Suggestion, FindsSlipsCaseAndAbbreviations) {
   const std::string_view keys[] = {"eye", "look_at", "up", "fov_degrees", "center", "radius"};
   EXPECT_EQ(nearest("lookAt", keys), "look_at");

@@ -29,6 +29,21 @@ void read_sphere(Params& p) {
   p.positive("radius", "");
 }
 
+TEST(Reader, ShortensLongNames) {
+  const std::string name(8'000'000, '~');
+  const auto lines =
+      problems(R"({"materials": {")" + name + R"(": {}}, ")" + name + R"(": 1})", [](Params& p) {
+        p.each_named("materials", "", {}, [](const std::string&, Params& m) { m.positive("shininess", ""); });
+      });
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_TRUE(lines[0].starts_with("/materials/~0~0~0")) << lines[0];
+  EXPECT_NE(lines[0].find("~0... (8000000 characters): expected a name of 1 to 128 characters"),
+            std::string::npos)
+      << lines[0];
+  EXPECT_LT(lines[0].size(), 400u);
+  EXPECT_LT(lines[1].size(), 400u);
+}
+
 TEST(Reader, SaysThePlaceTheLimitAndWhatCame) {
   const auto read = [](Params& p) { p.each("objects", "", {}, read_sphere); };
   EXPECT_EQ(
