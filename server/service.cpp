@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/base/version.h"
+#include "server/http/compression.h"
 #include "server/http/cors.h"
 #include "server/http/process_limits.h"
 #include "server/http/target.h"
@@ -182,7 +183,7 @@ Response Service::refuse(const Request& request, std::exception_ptr error) const
 }
 
 Response Service::finished(const Request& request, Response response) const {
-  compressor_.compress(request, response);
+  compress(request, response);
   add_common_headers(request, response);
   if (const auto location = find_field(response.headers, "Location"))
     response.set("Location", request.prefix + *location);

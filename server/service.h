@@ -3,7 +3,6 @@
 #include "server/app/app.h"
 #include "server/app/log.h"
 #include "server/app/metrics.h"
-#include "server/http/compression.h"
 #include "server/http/server.h"
 #include "server/routes/router.h"
 
@@ -38,7 +37,6 @@ class Service {
 
   const Settings settings_;  // as they were given
   const Log& log_;
-  mutable Compressor compressor_;
   SteadyTimer timer_;
   App app_;
   Metrics metrics_;

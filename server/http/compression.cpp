@@ -22,6 +22,10 @@ bool is_text(std::string_view content_type) {
          std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
 }
 
+bool may_compress(std::string_view content_type, std::size_t size) {
+  return size >= kLeast && size <= kMost && is_text(content_type);
+}
+
 bool takes_gzip(const Request& request) {
   double gzip = -1, any = -1;
   for_each_entry(joined(request.headers, "Accept-Encoding"), ',', [&](std::string_view entry) {
@@ -37,7 +41,7 @@ bool takes_gzip(const Request& request) {
 std::string gzip(std::string_view bytes) {
   constexpr int kWindowBits = 15, kGzip = 16, kMemoryLevel = 8;
   z_stream stream{};
-  // The quickest level: at 100 MB/s and more the connection's thread is held up for 10 ms at most.
+  // The quickest level: at 100 MB/s and more the handler's slot is held for 10 ms at most.
   if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kWindowBits + kGzip, kMemoryLevel,
                    Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
@@ -54,7 +58,13 @@ std::string gzip(std::string_view bytes) {
 
 }  // namespace
 
-void Compressor::compress(const Request& request, Response& response) {
+SharedBytes gzip_of(std::string_view content_type, std::string_view bytes) {
+  if (!may_compress(content_type, bytes.size())) return {};
+  std::string packed = gzip(bytes);
+  return packed.size() < bytes.size() ? SharedBytes(std::move(packed)) : SharedBytes();
+}
+
+void compress(const Request& request, Response& response) {
   const auto header = [&](std::string_view name) { return find_field(response.headers, name).value_or(""); };
   const auto vary = [&] {
     const std::string others = header("Vary");
@@ -66,17 +76,14 @@ void Compressor::compress(const Request& request, Response& response) {
     response.set("ETag", weak);
     return vary();
   }
-  const std::size_t size = response.body.size();
-  if (response.stream || size < kLeast || size > kMost || !is_text(header("Content-Type")) ||
+  if (response.stream || !may_compress(header("Content-Type"), response.body.size()) ||
       header("Cache-Control").find("no-store") != std::string::npos)
     return;
   vary();
   if (!takes_gzip(request)) return;
-  const std::unique_lock lock(busy_, std::try_to_lock);
-  if (!lock) return;
-  std::string packed = gzip(response.body);
-  if (packed.size() >= size) return;
-  response.body = std::move(packed);
+  if (response.gzip.empty()) response.gzip = gzip_of(header("Content-Type"), response.body);
+  if (response.gzip.empty()) return;
+  response.body = response.gzip;
   response.set("Content-Encoding", "gzip");
   if (const std::string etag = header("ETag"); etag.starts_with('"')) response.set("ETag", "W/" + etag);
 }

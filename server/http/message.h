@@ -65,6 +65,7 @@ struct Response {
   int status = 200;
   Fields headers = {};
   SharedBytes body = {};
+  SharedBytes gzip = {};  // the body compressed, where that is kept; empty: not made
   // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws if it
   // cannot go on: the answer is then broken off, so that nobody takes it for a whole one, and the log says
   // why.

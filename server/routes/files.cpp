@@ -1,8 +1,8 @@
 #include <array>
 
-#include "core/base/hash.h"
+#include "server/app/app.h"
 #include "server/http/embedded.h"
-#include "server/routes/answers.h"
+#include "server/routes/constant.h"
 
 // GET / and the files of the page, GET /scenes/{name}.json: what was built into the program.
 namespace orrery {
@@ -28,14 +28,8 @@ std::string_view type_of(std::string_view path) {
 }
 
 void add_file(Router& router, std::string_view address, const EmbeddedFile& file) {
-  const std::string etag = "\"" + sha256_hex(file.bytes).substr(0, 32) + "\"";
-  router.add("GET", address, Scope::none, LogLevel::info, [file, etag](Request& request) {
-    Response response = has_current(request, etag)
-                            ? Response{.status = 304}
-                            : text_response(200, type_of(file.path), {nullptr, file.bytes});
-    response.set("ETag", etag).set("Cache-Control", "no-cache");  // kept, but asked about each time
-    return response;
-  });
+  add_constant(router, address, Scope::none, type_of(file.path),
+               [file] { return SharedBytes(nullptr, file.bytes); });
 }
 
 }  // namespace

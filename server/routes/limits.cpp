@@ -7,6 +7,7 @@
 #include "server/app/option_json.h"
 #include "server/http/head.h"
 #include "server/routes/answers.h"
+#include "server/routes/constant.h"
 
 // GET /v1/limits: what no request may exceed, under the names that errors use.
 namespace orrery {
@@ -49,9 +50,8 @@ nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ord
 }  // namespace
 
 void add_limits_routes(Router& router, App& app) {
-  router.add("GET", "/v1/limits", Scope::read, LogLevel::info, [&app, options = option_limits()](Request&) {
-    return json_answer(200, limits_json(app.settings(), options));
-  });
+  add_constant(router, "/v1/limits", Scope::read, "application/json",
+               [&app] { return json_answer(200, limits_json(app.settings(), option_limits())).body; });
 }
 
 }  // namespace orrery

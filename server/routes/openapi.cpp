@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/base/hash.h"
 #include "server/app/option_json.h"
 #include "server/app/render_options.h"
 #include "server/app/settings.h"
 #include "server/http/embedded.h"
 #include "server/routes/answers.h"
-#include "server/routes/router.h"
+#include "server/routes/constant.h"
 
 // GET /openapi.json: the service's description of itself. The file openapi.json has all but the render
 // options:
@@ -95,14 +94,8 @@ std::string description() {
 }  // namespace
 
 void add_openapi_routes(Router& router, App&) {
-  const std::string text = description();
-  const std::string etag = "\"" + sha256_hex(text).substr(0, 32) + "\"";
-  router.add("GET", "/openapi.json", Scope::none, LogLevel::info, [text, etag](Request& request) {
-    Response response =
-        has_current(request, etag) ? Response{.status = 304} : text_response(200, "application/json", text);
-    response.set("ETag", etag).set("Cache-Control", "no-cache");
-    return response;
-  });
+  add_constant(router, "/openapi.json", Scope::none, "application/json",
+               [] { return SharedBytes(description()); });
 }
 
 }  // namespace orrery

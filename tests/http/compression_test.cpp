@@ -13,10 +13,9 @@ const std::string kLong(5000, 'x');
 
 // The answer after compression for a client with this Accept-Encoding.
 Response compressed(Response response, const std::string& accepts = "gzip") {
-  Compressor compressor;
   Request request;
   request.headers = {{"Accept-Encoding", accepts}};
-  compressor.compress(request, response);
+  compress(request, response);
   return response;
 }
 bool is_compressed(const Response& response) {
@@ -47,6 +46,15 @@ TEST(Compression, GivesTheSameBytesBack) {
   EXPECT_TRUE(is_compressed(response));
   EXPECT_LT(response.body.size(), body.size() / 2);
   EXPECT_EQ(unpacked(response.body), body);
+}
+
+TEST(Compression, UsesTheCompressedFormThatIsKept) {
+  Response kept = text();
+  kept.gzip = "kept form";
+  const Response response = compressed(kept);
+  EXPECT_TRUE(is_compressed(response));
+  EXPECT_EQ(std::string_view(response.body), "kept form");
+  EXPECT_FALSE(is_compressed(compressed(kept, "identity")));
 }
 
 TEST(Compression, IsForWhoTakesIt) {
@@ -88,12 +96,11 @@ TEST(Compression, WeakensTheETag) {
 // An answer that says "what you have is current" has the tag of what that is.
 TEST(Compression, NotModifiedHasTheTagOfWhatTheClientHas) {
   const auto tag_for = [](const std::string& known) {
-    Compressor compressor;
     Request request;
     request.headers = {{"Accept-Encoding", "gzip"}, {"If-None-Match", known}};
     Response response{.status = 304};
     response.set("ETag", "\"a\"");
-    compressor.compress(request, response);
+    compress(request, response);
     return find_field(response.headers, "ETag").value_or("") + " " +
            find_field(response.headers, "Vary").value_or("");
   };
