@@ -71,18 +71,19 @@ void App::watched(const Caller& caller, Clock::time_point since, const Stage& st
   }
 }
 
-void App::read(std::size_t bytes, const Caller& caller, Timing& timing,
-               const std::function<void(const AssetSource&)>& work) {
+void App::read(Body& body, const Caller& caller, Timing& timing, const ReadDocument& work) {
+  const std::string bytes = std::move(body.bytes_);
   watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto start = Clock::now();
-    const Reading reading(assets_, admission_, caller.client, bytes, stop);
-    work(reading);
+    const Reading reading(assets_, admission_, caller.client, bytes.size(), stop);
+    work(parse_document(bytes), reading);
     timing.queue += reading.waited_ms();
     timing.load += milliseconds_since(start) - reading.waited_ms();
   });
 }
 
-AssetStore::Added App::add_asset(const std::string& sha256, std::string bytes, const Caller& caller) {
+AssetStore::Added App::add_asset(const std::string& sha256, Body& body, const Caller& caller) {
+  std::string bytes = std::move(body.bytes_);
   AssetStore::Added added;
   watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto ticket =

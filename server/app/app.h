@@ -22,6 +22,7 @@
 #include "server/app/settings.h"
 #include "server/app/streams.h"
 #include "server/app/work_memory.h"
+#include "server/http/message.h"
 
 namespace orrery {
 
@@ -63,11 +64,14 @@ class App {
   const WorkMemory& memory() const { return memory_; }
   Meters& meters() { return meters_; }
 
-  // Calls `work` to read a text of so many bytes that may name assets: in its turn if that takes long. Throws
-  // what `work` does, ClientBusy, Busy, Cancelled, TimedOut.
-  void read(std::size_t bytes, const Caller& caller, Timing& timing,
-            const std::function<void(const AssetSource&)>& work);
-  AssetStore::Added add_asset(const std::string& sha256, std::string bytes, const Caller& caller);
+  // The one door for bodies of requests. Both take the body, count the memory of the work in the client's
+  // account, wait for a turn if it takes long, and stop once the client has gone. Both throw ClientBusy,
+  // Busy, Cancelled and TimedOut.
+  //
+  // Parses a body of JSON and calls `work` to read it; it may name assets. Throws what both do.
+  using ReadDocument = std::function<void(const Document&, const AssetSource&)>;
+  void read(Body& body, const Caller& caller, Timing& timing, const ReadDocument& work);
+  AssetStore::Added add_asset(const std::string& sha256, Body& body, const Caller& caller);
 
   // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded
   // in its turn, once for all who ask; one with a budget of time, which counts from now, for each. Throws as

@@ -52,7 +52,8 @@ bool Exchanger::exchange(Connection& connection) {
   try {
     admitted = handler_.admit(request);
     if (admitted.body)  // takes of the budget what has come: what is only announced takes nothing from others
-      request.body = connection.read_body(head, *admitted.body, [&](std::size_t bytes) { body.grow(bytes); });
+      request.body =
+          Body(connection.read_body(head, *admitted.body, [&](std::size_t bytes) { body.grow(bytes); }));
   } catch (...) {
     return send(connection, request, handler_.refuse(request, std::current_exception()), framing);
   }

@@ -24,6 +24,22 @@ using Fields = std::vector<std::pair<std::string, std::string>>;
 // The value of the first field of that name, whatever its case.
 std::optional<std::string> find_field(const Fields& fields, std::string_view name);
 
+class App;
+
+// The bytes of a request's body. Routes cannot read them: only App::read() and App::add_asset() can, which
+// open the client's memory account, take a turn where that takes long, and stop once the client has gone.
+class Body {
+ public:
+  Body() = default;
+  explicit Body(std::string bytes) : bytes_(std::move(bytes)) {}
+  bool empty() const { return bytes_.empty(); }
+  std::size_t size() const { return bytes_.size(); }
+
+ private:
+  friend class App;
+  std::string bytes_;
+};
+
 // How long a body may be.
 struct BodyLimit {
   std::size_t bytes;
@@ -42,7 +58,7 @@ struct Request {
   Fields query;           // decoded; names are unique
   Fields path_values;     // of the route's {places}
   Fields headers;
-  std::string body;  // if the route has one read
+  Body body;  // if the route has one read
   std::chrono::steady_clock::time_point start;
 
   std::stop_token gone;  // requested once the client has gone

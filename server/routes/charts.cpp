@@ -52,11 +52,10 @@ struct ChartOrder {
 };
 
 ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
-  const std::string body = std::move(request.body);
+  if (request.body.empty()) request.body = Body("{}");
   ChartOrder order;
   order.extent.threads = app.settings().threads;
-  app.read(body.size(), caller_of(request), timing, [&](const AssetSource&) {
-    const Document document = parse_document(body.empty() ? "{}" : body);
+  app.read(request.body, caller_of(request), timing, [&](const Document& document, const AssetSource&) {
     for (const char* key : {"scene", "scene_id"})
       if (document.member(key)) throw InputError(std::string("/") + key, "the address names the scene");
     order.view = read_request(document, [&](Params& p) {

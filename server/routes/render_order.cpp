@@ -17,16 +17,15 @@ SceneStore::Prepared find(App& app, const Document& id) {
 
 RenderOrder read_render_order(App& app, Request& request, Timing& timing,
                               const std::function<void(Params&)>& more) {
-  const std::string body = std::move(request.body);
   RenderOrder order;
-  app.read(body.size(), caller_of(request), timing, [&](const AssetSource& assets) {
-    const Document document = parse_document(body);
-    const auto scene = document.member("scene"), id = document.member("scene_id");
-    if (scene && id) throw InputError("/scene_id", "expected either scene or scene_id, got both");
-    if (scene || id) order.request = read_request(document, more);
-    order.scene =
-        id ? find(app, *id) : app.scenes().get(scene ? *scene : document, assets, caller_of(request).client);
-  });
+  app.read(
+      request.body, caller_of(request), timing, [&](const Document& document, const AssetSource& assets) {
+        const auto scene = document.member("scene"), id = document.member("scene_id");
+        if (scene && id) throw InputError("/scene_id", "expected either scene or scene_id, got both");
+        if (scene || id) order.request = read_request(document, more);
+        order.scene = id ? find(app, *id)
+                         : app.scenes().get(scene ? *scene : document, assets, caller_of(request).client);
+      });
   return order;
 }
 

@@ -44,6 +44,9 @@ class Router {
   // Throws HttpError 404 or 405.
   const Route& find(Request& request) const;
 
+  // In the order they were added.
+  const std::deque<Route>& routes() const { return routes_; }
+
   // "GET, HEAD, OPTIONS": the methods that there are for the request's path, for "*" those of all routes (RFC
   // 9110, 9.3.7). Fills as find(). Throws HttpError 404.
   std::string allowed_methods(Request& request) const;

@@ -39,11 +39,11 @@ std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }
 Response add_scene(App& app, Request& request) {
   app.require_open();
   Timing timing;
-  const std::string body = std::move(request.body);
   SceneStore::Kept kept;
-  app.read(body.size(), caller_of(request), timing, [&](const AssetSource& assets) {
-    kept = app.scenes().keep(parse_document(body), assets, caller_of(request).client);
-  });
+  app.read(request.body, caller_of(request), timing,
+           [&](const Document& document, const AssetSource& assets) {
+             kept = app.scenes().keep(document, assets, caller_of(request).client);
+           });
   const Scene& scene = kept.scene->scene();
   Response response = json_answer(kept.known ? 200 : 201, summary(scene));
   response.set("Location", "/v1/scenes/" + scene.id);

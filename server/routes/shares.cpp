@@ -16,9 +16,12 @@ Response share(App& app, const Router& router, Request& request) {
   constexpr std::size_t kLongestPath = 1900;  // what is added has its place in a target, too
   std::string path;
   std::int64_t seconds = kUsual_s;
-  read_document(parse_document(request.body), [&](Params& p) {
-    path = p.text("path", "What is shared, beginning with /v1/.", kLongestPath);
-    seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
+  Timing timing;
+  app.read(request.body, caller_of(request), timing, [&](const Document& document, const AssetSource&) {
+    read_document(document, [&](Params& p) {
+      path = p.text("path", "What is shared, beginning with /v1/.", kLongestPath);
+      seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
+    });
   });
   for (const std::string& prefix : {request.prefix, app.settings().path_prefix})
     if (path.starts_with(prefix + "/") && !path.starts_with("/v1/")) path.erase(0, prefix.size());

@@ -5,8 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/base/hash.h"
 #include "server/http/embedded.h"
 #include "server/http/target.h"
+#include "tests/http/daemon.h"
 
 // What each route asks of a token, and how loudly it is logged.
 namespace orrery {
@@ -106,6 +108,50 @@ TEST_F(Routes, OnlyThoseThatSupervisorsAskAreLoggedQuietly) {
   }
   for (const char* path : {"/", "/v1/limits", "/v1/scenes/a/frame.png"})
     EXPECT_EQ(find("GET", path).log, LogLevel::info);
+}
+
+// A body of that route whose reading takes more memory than one client may have.
+std::string hostile_body(const Route& route) {
+  std::string body;
+  if (route.pattern == "/v1/assets/{sha256}") {
+    for (int i = 0; i < 1'200'000; ++i) body += "v 0 0 0\n";
+    return body + "f 1 2 3\n";
+  }
+  for (int i = 0; i < 400'000; ++i) body += i == 0 ? "[[0]" : ",[0]";
+  return body + "]";
+}
+
+TEST(BodiesOfAllRoutes, CountInTheAccountOfTheirClient) {
+  Settings settings = settings_within(150 << 20);
+  settings.connections = 8;
+  SteadyTimer timer;
+  App app(settings, timer);
+  Router router;
+  add_routes(router, app);
+  Timing timing;
+  std::string scene;
+  Body body(small_scene().dump());
+  app.read(body, {"127.0.0.1", {}}, timing, [&](const Document& document, const AssetSource& assets) {
+    scene = app.scenes().keep(document, assets, "127.0.0.1").scene->scene().id;
+  });
+  int found = 0;
+  for (const Route& route : router.routes()) {
+    if (!route.body) continue;
+    ++found;
+    const std::string bytes = hostile_body(route);
+    Request request = request_for(route.method, route.pattern);
+    request.client = "127.0.0.1";
+    request.path_values = {{"id", scene}, {"sha256", sha256_hex(bytes)}};
+    request.body = Body(bytes);
+    try {
+      route.handler(request);
+      ADD_FAILURE() << route.pattern << " took it";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("(work_bytes)"), std::string::npos)
+          << route.pattern << ": " << error.what();
+    }
+  }
+  EXPECT_GE(found, 6);
 }
 
 TEST_F(Routes, BodiesAreReadWhereTheyMeanSomething) {
