@@ -67,6 +67,7 @@ HttpServer::Options options_of(const Settings& settings) {
           .max_bodies = std::max({settings.bodies_bytes, settings.body_bytes, settings.asset_bytes}),
           .max_answers = settings.answers_bytes,
           .max_connections = settings.connections,
+          .handlers = std::max<std::size_t>(2, std::thread::hardware_concurrency()),
           .grace = settings.grace_seconds,
           .forwarding = {settings.trusted_proxies, settings.path_prefix}};
 }
@@ -76,6 +77,7 @@ HttpServer::Options health_options_of(const Settings& settings) {
           .port = settings.health_port,
           .max_bodies = 0,
           .max_connections = kHealthConnections,
+          .handlers = kHealthConnections,
           .grace = std::chrono::seconds(1),
           .forwarding = {}};
 }
@@ -89,6 +91,7 @@ Service::Service(const Settings& settings, const Log& log)
       origins_(settings.cors_origins),
       server_(options_of(settings), handler_of(router_)),
       health_(health_options_of(settings), handler_of(health_router_)) {
+  app_.watch_connections([this] { return std::string_view(server_.exhausted() ? "full" : "ok"); });
   add_routes(router_, app_);
   add_health_routes(health_router_, app_);
   health_router_.add("GET", "/metrics", Scope::none, LogLevel::debug, [this](Request&) { return metrics(); });

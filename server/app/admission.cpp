@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "server/http/handler_slots.h"
+
 namespace orrery {
 namespace {
 
@@ -94,6 +96,7 @@ Admission::Ticket Admission::enter_again(const Demand& demand, const std::stop_t
 }
 
 Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std::stop_token& stop) {
+  HandlerSlots::Wait wait;  // released once the lock is
   std::unique_lock lock(mutex_);
   if (entry == Entry::first && !may_begin(demand, entry)) make_room(demand);
   const double charge = std::min(demand.cost, kLeastCost + rays_in(kLeastPlace, limits_.running));
@@ -106,6 +109,7 @@ Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std:
     throw;
   }
   lock.unlock();
+  wait.end_without_slot();
   try {
     return Ticket(*this, *work, stop);
   } catch (...) {
@@ -129,7 +133,9 @@ Admission::Ticket::Ticket(Ticket&& other) noexcept
 Admission::Ticket::~Ticket() {
   others_may_have_it_.reset();
   all_may_have_it_.reset();
-  if (work_) from_->leave(*work_, std::uncaught_exceptions() <= exceptions_);
+  if (!work_) return;
+  from_->leave(*work_, std::uncaught_exceptions() <= exceptions_);
+  HandlerSlots::resume();
 }
 
 void Admission::Ticket::set_alarms() {
@@ -152,8 +158,9 @@ void Admission::Ticket::set_cost(double rays) {
 bool Admission::Ticket::expired() const { return work_->state != State::runs; }
 
 void Admission::Ticket::renew() {
-  std::unique_lock lock(from_->mutex_);
   if (!expired()) return;
+  HandlerSlots::Wait wait(Waiting::Kind::begun);
+  std::unique_lock lock(from_->mutex_);
   const auto place = std::find_if(from_->works_.begin(), from_->works_.end(),
                                   [&](const Work& work) { return &work == work_; });
   from_->works_.splice(from_->works_.end(), from_->works_, place);
@@ -162,6 +169,7 @@ void Admission::Ticket::renew() {
   work_->charge = kLeastCost;
   from_->wait_for_place(lock, *work_, stop_);
   lock.unlock();
+  wait.end_without_slot();
   set_alarms();
 }
 

@@ -86,7 +86,8 @@ class Admission {
 
   // The right to work. Ends with the object, and unless that is by an exception, the work was done: at the
   // cost that was expected, or that set_cost() has told. As a Pass it is expired once it has lost its place;
-  // to be renewed it waits for another, and what was used counts as work of its client.
+  // to be renewed it waits for another, and what was used counts as work of its client. It stands for the
+  // slot of a handler (HandlerSlots), which gets that back when the ticket ends.
   class Ticket final : public Pass {
    public:
     Ticket(Ticket&& other) noexcept;

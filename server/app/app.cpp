@@ -249,6 +249,7 @@ std::string_view App::readiness() const {
   constexpr std::chrono::seconds kLongWait{5};
   if (retires_ || draining()) return "draining";
   if (admission_.full()) return "full";
+  if (const auto state = connections_(); state != "ok") return state;
   return admission_.longest_wait() >= kLongWait ? "slow" : "ok";
 }
 

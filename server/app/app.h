@@ -95,6 +95,9 @@ class App {
   bool draining() const { return drains_.stop_requested(); }
   // Whether new work should be sent here: "ok", or why not: "draining", "full" or "slow".
   std::string_view readiness() const;
+  // `readiness`: of the HTTP server, "full" where a new client would get no connection, else "ok". Called
+  // before others use the app.
+  void watch_connections(std::function<std::string_view()> readiness) { connections_ = std::move(readiness); }
   void retire() { retires_ = true; }  // new work is still taken, but should go elsewhere
   void drain();
   // What still runs ends now.
@@ -120,6 +123,7 @@ class App {
                Stage& stage);
 
   Timer& timer_;
+  std::function<std::string_view()> connections_ = [] { return std::string_view("ok"); };
   std::atomic<bool> retires_{false};
   std::stop_source drains_, ends_;
   Meters meters_;

@@ -14,6 +14,7 @@
 #include "server/app/admission.h"
 #include "server/app/lru.h"
 #include "server/app/watch.h"
+#include "server/http/handler_slots.h"
 
 namespace orrery {
 
@@ -62,11 +63,15 @@ class SingleFlight {
         leave(*work);
       });
       if (first) return make_for_all(key, work, make);
-      lock.lock();
-      work->changed.wait(lock, client.gone, [&] { return work->done; });
-      const ValuePtr value = work->value;
-      const std::exception_ptr error = work->error;
-      lock.unlock();  // before `leaves` goes: it may be waiting for the mutex
+      ValuePtr value;
+      std::exception_ptr error;
+      {  // ends before `leaves` goes, which may be waiting for the mutex
+        const HandlerSlots::Wait wait;
+        std::unique_lock again(mutex_);
+        work->changed.wait(again, client.gone, [&] { return work->done; });
+        value = work->value;
+        error = work->error;
+      }
       if (value) return {value, false};
       if (error) std::rethrow_exception(error);
       if (client.gone.stop_requested()) throw Cancelled("the client has gone");

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "server/http/chunk_decoder.h"
+#include "server/http/handler_slots.h"
 
 namespace orrery {
 namespace {
@@ -68,7 +69,8 @@ Connection::Connection(int fd, const IpAddress& peer, int wake, const Patience& 
       network_(peer.network()),
       patience_(patience),
       reading_since_(Clock::now()),
-      waiting_(POLLIN) {}
+      waiting_(POLLIN),
+      client_(network_) {}
 
 Connection::~Connection() {
   const ::linger at_once{.l_onoff = 1, .l_linger = 0};
@@ -92,6 +94,7 @@ void Connection::linger() {
 
 Connection::Ready Connection::wait(short events, Clock::time_point deadline, bool heed_wake) {
   if (!waiting_.begin(events == POLLOUT ? *writing_since_ : reading_since_, events)) return Ready::none;
+  const HandlerSlots::Wait released(Waiting::Kind::client);
   pollfd ready[] = {{fd_, events, 0}, {wake_, POLLIN, 0}};
   int count;
   do count = poll(ready, heed_wake ? 2 : 1, milliseconds_until(deadline));
@@ -100,12 +103,29 @@ Connection::Ready Connection::wait(short events, Clock::time_point deadline, boo
   return ready[0].revents != 0 ? Ready::socket : Ready::wake;
 }
 
-bool Connection::make_room() {
-  // With something to do at hand it is about to go on.
+std::stop_source Connection::begin_request(const std::string& client) {
+  const std::lock_guard lock(mutex_);
+  client_ = client;
+  return request_ = std::stop_source();
+}
+
+std::string Connection::client() const {
+  const std::lock_guard lock(mutex_);
+  return client_;
+}
+
+bool Connection::make_room(Waiting::Kind kind) {
   pollfd ready{fd_, waiting_.events(), 0};
-  if (poll(&ready, 1, 0) > 0 || !waiting_.give_up()) return false;
-  shutdown(fd_,
-           waiting_.events() == POLLIN ? SHUT_RD : SHUT_RDWR);  // who sent too slowly can still be told so
+  const bool goes_on = kind == Waiting::Kind::client && poll(&ready, 1, 0) > 0;
+  if (goes_on || !waiting_.give_up(kind)) return false;
+  if (kind == Waiting::Kind::client)  // a client that sent too slowly can still be told so
+    shutdown(fd_, waiting_.events() == POLLIN ? SHUT_RD : SHUT_RDWR);
+  std::stop_source request;
+  {
+    const std::lock_guard lock(mutex_);
+    request = request_;
+  }
+  request.request_stop();
   return true;
 }
 

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <functional>
 #include <initializer_list>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -27,7 +29,7 @@ struct Patience {
 };
 
 // One client's socket: requests are read from it, answers are written to it. For the thread that serves the
-// connection, except abandon(), waiting() and make_room().
+// connection, except abandon(), client(), waiting() and make_room().
 class Connection final {
  public:
   // Takes the socket, which must not block. `wake` becomes readable when the service ends: idle connections
@@ -65,11 +67,16 @@ class Connection final {
   // Has the client see a reset instead of an end, which it would take for that of the answer.
   void end_by_reset() { ends_by_reset_ = true; }
 
-  // Since when the client has kept its thread waiting; none: it does not. A body that comes, or an answer
-  // that is taken, at the least rate allowed keeps nobody waiting.
-  std::optional<Waiting::Clock::time_point> waiting() const { return waiting_.since(); }
-  // Ends a connection that still waits, and gives its thread back soon. False: it does not wait any more.
-  bool make_room();
+  // A request of that client begins. Returns what ends it early: its client has gone, or make_room().
+  std::stop_source begin_request(const std::string& client);
+  // Of the latest request; before the first, the peer's network.
+  std::string client() const;
+
+  // What its thread waits for. A body that comes, or an answer that is taken, at the least rate allowed keeps
+  // nobody waiting: the wait for the client begins later then.
+  Waiting& waiting() { return waiting_; }
+  // Ends a connection that still waits for that, and gives its thread back soon. Returns false otherwise.
+  bool make_room(Waiting::Kind kind);
   bool made_room() const { return waiting_.gave_up(); }
 
   std::uint64_t bytes_written() const { return written_; }
@@ -110,7 +117,10 @@ class Connection final {
   std::optional<Clock::time_point> writing_since_;  // the same for the answer, once it had to wait
   std::optional<Clock::time_point> last_call_;      // when it ends
   Waiting waiting_;
-  bool ended_ = false;  // the client sends no more, though it owes something
+  mutable std::mutex mutex_;
+  std::string client_;        // guarded by mutex_
+  std::stop_source request_;  // likewise
+  bool ended_ = false;        // the client sends no more, though it owes something
   bool ends_by_reset_ = false;
   mutable std::atomic<bool> broken_{false};
 };

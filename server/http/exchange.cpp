@@ -1,5 +1,8 @@
 #include "server/http/exchange.h"
 
+#include <optional>
+
+#include "server/http/over_limit.h"
 #include "server/http/request_id.h"
 #include "server/http/target.h"
 
@@ -47,7 +50,8 @@ bool Exchanger::exchange(Connection& connection) {
     return send(connection, request, handler_.refuse(request, std::current_exception()), framing);
   }
   framing.keep_alive = head.keep_alive;
-  Budget::Share body(bodies_, request.client);  // as long as it is used
+  const std::string client = request.client;  // by its address: tokens name it otherwise
+  Budget::Share body(bodies_, client);        // as long as it is used
   HttpServer::Admitted admitted;
   try {
     admitted = handler_.admit(request);
@@ -57,26 +61,34 @@ bool Exchanger::exchange(Connection& connection) {
   } catch (...) {
     return send(connection, request, handler_.refuse(request, std::current_exception()), framing);
   }
-  std::stop_source gone;
+  const std::stop_source gone = connection.begin_request(client);
   request.gone = gone.get_token();
   // HTTP/1.0 knows no interim responses.
   HangupMonitor::Watching watching = monitor_.watch(connection.fd(), gone, framing.minor_version == 1);
-  Response response = answer(request, admitted);
+  std::optional<HandlerSlots::Handler> handler;
+  Response response;
+  try {
+    handler.emplace(slots_, client, request.gone, connection.waiting());
+    response = admitted.answer(request);
+  } catch (...) {
+    response = refuse(connection, request, std::current_exception());
+  }
   watching.stop_asking();
   return send(connection, request, std::move(response), framing);
 }
 
-Response Exchanger::answer(Request& request, const HttpServer::Admitted& admitted) {
-  try {
-    return admitted.answer(request);
-  } catch (...) {
-    return handler_.refuse(request, std::current_exception());
-  }
+Response Exchanger::refuse(const Connection& connection, const Request& request,
+                           std::exception_ptr error) const {
+  if (connection.made_room())
+    error = std::make_exception_ptr(ClientBusy(
+        "Others want a connection, and your address has most of them (connections)", 1, "connections"));
+  return handler_.refuse(request, error);
 }
 
 bool Exchanger::send(Connection& connection, const Request& request, Response response, Framing framing) {
   const bool ends_with_it = response.stream && framing.minor_version == 0;  // which knows no chunks
-  if (ends_with_it || draining_ || connection.body_unread()) framing.keep_alive = false;
+  if (ends_with_it || draining_ || connection.body_unread() || connection.made_room())
+    framing.keep_alive = false;
   const Sender sender{answers_, request.client, request.gone};
   AnswerBudget::Share share;
   try {
@@ -86,6 +98,10 @@ bool Exchanger::send(Connection& connection, const Request& request, Response re
   }
   const std::uint64_t before = connection.bytes_written();
   const bool written = write_response(connection, response, framing, sender);
+  if (response.stream) {
+    const HandlerSlots::Wait released;  // the end of a stream may wait for its threads
+    response.stream = nullptr;
+  }
   // Who leaves after the last byte has got its answer.
   const bool gone =
       connection.left() || response.status == kClientGone || (!written && response.note.empty());

@@ -4,6 +4,7 @@
 
 #include "server/http/budget.h"
 #include "server/http/connection.h"
+#include "server/http/handler_slots.h"
 #include "server/http/hangup_monitor.h"
 #include "server/http/response_writer.h"
 #include "server/http/server.h"
@@ -18,6 +19,7 @@ class Exchanger {
   Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler, HangupMonitor& monitor)
       : handler_(handler),
         monitor_(monitor),
+        slots_(options.handlers),
         bodies_(options.max_bodies, "bodies_bytes", "Bodies of requests"),
         answers_(options.max_answers),
         forwarding_(options.forwarding) {}
@@ -30,11 +32,13 @@ class Exchanger {
   void drain() { draining_ = true; }
 
  private:
-  Response answer(Request& request, const HttpServer::Admitted& admitted);
+  // The answer to what was thrown about the request.
+  Response refuse(const Connection& connection, const Request& request, std::exception_ptr error) const;
   bool send(Connection& connection, const Request& request, Response response, Framing framing);
 
   const HttpServer::Handler& handler_;
   HangupMonitor& monitor_;
+  HandlerSlots slots_;
   Budget bodies_;
   AnswerBudget answers_;
   const Forwarding forwarding_;

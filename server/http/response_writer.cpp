@@ -5,6 +5,8 @@
 #include <charconv>
 #include <iterator>
 
+#include "server/http/handler_slots.h"
+
 namespace orrery {
 namespace {
 
@@ -34,6 +36,7 @@ class BodySink final : public Sink {
     if (sender_.gone.stop_requested()) return whole_ = false;
     const std::size_t count = bytes.size() + more.size() + end.size();
     if (count == 0) return whole_;  // an empty chunk would be the last
+    HandlerSlots::give_way();
     const auto share = sender_.answers.take(more, sender_.client);
     if (!chunked_) return whole_ = whole_ && connection_.write({bytes, more, end});
     std::array<char, 20> text;

@@ -74,6 +74,11 @@ class HttpServer::Parts {
     return open_.size();
   }
 
+  bool exhausted() const {
+    const std::lock_guard lock(mutex_);
+    return open_.size() >= options_.max_connections && candidates(1).empty();
+  }
+
   void run() {
     while (!draining_) {
       wait_for_connection_or(wake_, Clock::time_point::max());
@@ -103,9 +108,10 @@ class HttpServer::Parts {
     for (int fd; (fd = listener_->accept()) >= 0;) {
       const IpAddress peer = IpAddress::of_peer(fd);
       const std::string network = peer.network();
-      const bool over_share = count(network) > share_of_one() && share_of_one() < options_.max_connections &&
-                              !options_.forwarding.trusts(peer);
-      if ((!over_share && threads_.has_room()) || make_room(network, over_share)) {
+      const bool trusted = options_.forwarding.trusts(peer);
+      const bool over_share =
+          count(network) > share_of_one() && share_of_one() < options_.max_connections && !trusted;
+      if ((!over_share && threads_.has_room()) || make_room(network, over_share, !trusted)) {
         const auto connection = std::make_shared<Connection>(fd, peer, wake_.fd(), Patience{});
         threads_.start([this, connection, entry = remember(*connection)] { serve(*connection, entry); });
       } else {
@@ -129,29 +135,43 @@ class HttpServer::Parts {
     if (--known->second == 0) of_network_.erase(known);
   }
 
-  // Ends a connection for a newcomer of that network, if there is one that waits for its client: with `own`,
-  // of the same network. Slow clients, however many, then take no place from those who know what they want.
-  bool make_room(const std::string& network, bool own) {
+  struct Candidate {
+    // The client's connections, the most first; what they wait for; those that have waited a while, the
+    // oldest first; the others, the newest first.
+    std::tuple<std::ptrdiff_t, Waiting::Kind, bool, Clock::duration> rank;
+    Connection* connection;
+  };
+  // Connections that may be evicted for a newcomer whose client then has `of_newcomer`, the first one first.
+  // With mutex_ held.
+  std::vector<Candidate> candidates(std::size_t of_newcomer) const {
     constexpr std::chrono::milliseconds kWhile{100};  // what is sent at once has come by then
-    const std::lock_guard lock(mutex_);
-    const std::size_t of_newcomer = of_network_[network];
-    // The network's connections, the most first; those that have waited a while, the oldest first; the
-    // others, the newest first.
-    using Rank = std::tuple<std::ptrdiff_t, bool, Clock::duration>;
-    std::vector<std::pair<Rank, Connection*>> candidates;
+    std::map<std::string, std::size_t> counts;        // by client, which a proxy may have named
+    for (const Connection* connection : open_) ++counts[connection->client()];
+    std::vector<Candidate> found;
     for (Connection* connection : open_) {
-      const auto since = connection->waiting();
-      if (!since || (own && connection->network() != network)) continue;
-      const bool fresh = Clock::now() - *since < kWhile;
-      const std::size_t others = of_network_[connection->network()];
+      const auto kind = connection->waiting().kind();
+      if (!kind) continue;
+      const auto since = connection->waiting().since();
+      const bool fresh = *kind != Waiting::Kind::client || Clock::now() - since < kWhile;
+      const std::size_t others = counts[connection->client()];
       if (fresh && others <= of_newcomer) continue;
-      const auto age = since->time_since_epoch();
-      candidates.emplace_back(Rank{-static_cast<std::ptrdiff_t>(others), fresh, fresh ? -age : age},
-                              connection);
+      const auto age = since.time_since_epoch();
+      found.push_back({{-static_cast<std::ptrdiff_t>(others), *kind, fresh, fresh ? -age : age}, connection});
     }
-    std::sort(candidates.begin(), candidates.end());
-    return std::any_of(candidates.begin(), candidates.end(),
-                       [](const auto& candidate) { return candidate.second->make_room(); });
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.rank < b.rank; });
+    return found;
+  }
+
+  // Evicts a connection for a newcomer of that network, if there is one that may be: with `own`, one of the
+  // same network that waits for its client. `known`: the newcomer's client is that network.
+  bool make_room(const std::string& network, bool own, bool known) {
+    const std::lock_guard lock(mutex_);
+    const std::vector<Candidate> found = candidates(known ? of_network_[network] : 1);
+    return std::any_of(found.begin(), found.end(), [&](const Candidate& candidate) {
+      const Waiting::Kind kind = std::get<Waiting::Kind>(candidate.rank);
+      if (own && (kind != Waiting::Kind::client || candidate.connection->network() != network)) return false;
+      return candidate.connection->make_room(kind);
+    });
   }
 
   // What those get who cannot be heard.
@@ -245,6 +265,7 @@ HttpServer::~HttpServer() = default;
 int HttpServer::port() const { return parts_->port(); }
 std::size_t HttpServer::connections() const { return parts_->connections(); }
 std::uint64_t HttpServer::refused() const { return parts_->refused(); }
+bool HttpServer::exhausted() const { return parts_->exhausted(); }
 void HttpServer::run() { parts_->run(); }
 void HttpServer::drain() { parts_->drain(); }
 

@@ -14,9 +14,11 @@
 namespace orrery {
 
 // An HTTP/1.1 server: sockets, threads and bytes. What requests mean is the handler's matter. The connections
-// of one network take at most three quarters of all. When all are taken, a new one gets the place of one that
-// waits for its client, of the network with most connections: the one that has kept it waiting longest or, if
-// the newcomer's network has fewer, the newest. If all are at work, it is told to come back.
+// of one network take at most three quarters of all. When all are taken, a new one evicts one of the client
+// that has most: first one that waits for its client, then one whose request waits for its turn (answered
+// 429), then one whose work or stream has begun and waits to go on. Of a client that has no more than the
+// newcomer's, only connections that have waited for their client for a while are evicted. If there is none,
+// the newcomer is told to come back.
 class HttpServer {
  public:
   struct Options {
@@ -25,6 +27,7 @@ class HttpServer {
     std::size_t max_bodies = 256 << 20;   // of all that are read or used at one time (bodies_bytes)
     std::size_t max_answers = 256 << 20;  // of all that are sent at one time (answers_bytes)
     std::size_t max_connections = 256;
+    std::size_t handlers = 4;        // that compute at one time on connections' threads (HandlerSlots)
     std::chrono::seconds grace{30};  // for running requests once drain() was called
     Forwarding forwarding = {};      // its trusted proxies may take all connections
   };
@@ -55,6 +58,7 @@ class HttpServer {
 
   std::size_t connections() const;  // that are open
   std::uint64_t refused() const;    // connections, because there were too many
+  bool exhausted() const;           // a new client's connection would be refused
 
   // Accepts connections until drain() was called and the last request was answered.
   void run();

@@ -15,12 +15,15 @@ ConnectionThreads::~ConnectionThreads() {
 
 bool ConnectionThreads::has_room() {
   const std::lock_guard lock(mutex_);
-  if (idle_ > waiting_.size()) return true;
-  if (threads_.size() == most_) return false;
+  if (threads_.size() - idle_ + waiting_.size() >= most_) return false;
+  return idle_ > waiting_.size() || add_thread();
+}
+
+bool ConnectionThreads::add_thread() {
   try {
     threads_.emplace_back([this] { serve(); });
   } catch (const std::system_error&) {
-    return false;  // the machine has no more threads
+    return false;
   }
   ++idle_;
   return true;
@@ -29,6 +32,8 @@ bool ConnectionThreads::has_room() {
 void ConnectionThreads::start(std::function<void()> work) {
   const std::lock_guard lock(mutex_);
   waiting_.push_back(std::move(work));
+  const std::size_t spare = most_ / 8 + 1;
+  if (idle_ < waiting_.size() && threads_.size() < most_ + spare) add_thread();
   changed_.notify_one();
 }
 

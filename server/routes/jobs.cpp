@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
+#include "server/http/handler_slots.h"
 #include "server/routes/access.h"
 #include "server/routes/job_answers.h"
 
@@ -35,6 +36,7 @@ struct Events {
     constexpr std::chrono::milliseconds kLeast{100};  // between two reports of progress
     constexpr std::chrono::seconds kSilence{10};      // after which the client is told that the line is open
     for (JobStatus status = job->status(); tell(sink, status) && !ended && !gone.stop_requested();) {
+      const HandlerSlots::Wait wait(Waiting::Kind::begun);
       const auto spoke = timer.now();
       status = job->wait(seen, std::nullopt, spoke + kLeast, gone);
       if (status.steps_done == seen && !has_ended(status.state))

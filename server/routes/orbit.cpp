@@ -8,6 +8,7 @@
 #include "server/app/app.h"
 #include "server/app/picture_key.h"
 #include "server/app/told_error.h"
+#include "server/http/handler_slots.h"
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 
@@ -82,8 +83,13 @@ struct OrbitRequest {
   std::stop_token gone;
 };
 
+std::shared_ptr<const OrbitFrame> next_of(const OrbitRequest& orbit, Waiting::Kind kind) {
+  const HandlerSlots::Wait wait(kind);
+  return orbit.viewer->next(orbit.gone);
+}
+
 void send(const OrbitRequest& orbit, PictureWriter&& writer) {
-  for (auto frame = orbit.first; frame; frame = orbit.viewer->next(orbit.gone)) try {
+  for (auto frame = orbit.first; frame; frame = next_of(orbit, Waiting::Kind::begun)) try {
       const auto header = header_of(*frame, orbit.viewer->skipped());
       const bool written =
           writer.write({.png = picture_of(frame),
@@ -111,7 +117,7 @@ Response orbit(App& app, Request& request) {
                      .viewer = app.orbits().watch(spec),
                      .first = {},
                      .gone = request.gone};
-  orbit.first = orbit.viewer->next(orbit.gone);  // what fails here has a status of its own
+  orbit.first = next_of(orbit, Waiting::Kind::turn);  // what fails here has a status of its own
   if (!orbit.first && request.gone.stop_requested()) throw Cancelled("the client has gone");
   if (!orbit.first) throw Busy("The service ends", 5);
   response.stream = [orbit, format](Sink& sink) { send(orbit, PictureWriter(sink, format)); };

@@ -163,6 +163,48 @@ TEST(Connections, OfOneAddressLeaveAQuarterToOthers) {
   EXPECT_EQ(health_from(daemon, kOther).substr(0, 12), "HTTP/1.1 200");
 }
 
+// Two addresses hold all connections, and most of their requests wait for a turn.
+TEST(Connections, WhoseRequestsWaitForATurnMakeRoomForOthers) {
+  Daemon daemon(
+      with_endless_pictures({"--connections", "8", "--threads", "1", "--queue-rays", "1000000000000"}));
+  const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
+  const std::string id = nlohmann::json::parse(posted->body).at("id");
+  ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
+  std::vector<std::unique_ptr<RawClient>> holders;
+  for (int i = 0; i < 8; ++i) {
+    holders.push_back(std::make_unique<RawClient>(daemon.port(), 0, i < 5 ? kGreedy : kOther));
+    holders.back()->send("GET /v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=512&seed=" +
+                         std::to_string(i) + " HTTP/1.1\r\nHost: x\r\n\r\n");
+    const auto at_work = [&] {
+      return daemon.metric("orrery_renders_running") + daemon.metric("orrery_renders_waiting");
+    };
+    ASSERT_TRUE(test::eventually([&] { return at_work() == i + 1; })) << i << " " << at_work();
+  }
+  EXPECT_EQ(daemon.health_client().Get("/readyz")->status, 200);
+  const RawClient newcomer(daemon.port(), 0, 4);
+  newcomer.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+  EXPECT_EQ(newcomer.receive_some().substr(0, 12), "HTTP/1.1 200");
+  const std::string evicted = holders[4]->receive_all();  // the newest of the address that had most
+  EXPECT_EQ(evicted.substr(0, 12), "HTTP/1.1 429");
+  EXPECT_NE(evicted.find("\r\nRetry-After: "), std::string::npos);
+  EXPECT_NE(evicted.find("(connections)"), std::string::npos) << evicted;
+}
+
+TEST(Connections, ThatAreAllAtWorkMakeTheServiceFull) {
+  Daemon daemon(with_endless_pictures({"--connections", "2"}));
+  const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
+  const std::string id = nlohmann::json::parse(posted->body).at("id");
+  ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
+  const RawClient first(daemon.port(), 0, kGreedy), second(daemon.port(), 0, kOther);
+  const std::string path = "/v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096";
+  first.send("GET " + path + "&seed=1 HTTP/1.1\r\nHost: x\r\n\r\n");
+  second.send("GET " + path + "&seed=2 HTTP/1.1\r\nHost: x\r\n\r\n");
+  ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_renders_running") == 2; }));
+  const auto ready = daemon.health_client().Get("/readyz");
+  EXPECT_EQ(ready->status, 503);
+  EXPECT_EQ(nlohmann::json::parse(ready->body).at("status"), "full");
+}
+
 // Some of those that one address opened all at once make room for others, who need not wait for that.
 TEST(Connections, OfABurstMakeRoomForOthers) {
   Daemon daemon({"--connections", "8"});
