@@ -80,7 +80,7 @@ MetricFamily limits_family(const Settings& settings) {
 
 }  // namespace
 
-std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
+std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server, const Log& log) {
   constexpr MetricType kCounter = MetricType::Counter, kGauge = MetricType::Gauge;
   const Admission& admission = app.admission();
   const Meters& meters = app.meters();
@@ -146,6 +146,10 @@ std::vector<MetricFamily> read_metrics(App& app, const HttpServer& server) {
        kCounter,
        {value(meters.jobs_done, {{"outcome", "done"}}), value(meters.jobs_failed, {{"outcome", "failed"}}),
         value(meters.jobs_cancelled, {{"outcome", "cancelled"}})}},
+      {"orrery_log_lines_dropped_total",
+       "Lines of the log that were not written, as its reader did not read or was gone",
+       kCounter,
+       {value(log.dropped())}},
       {"orrery_connections", "Connections that are open", kGauge, {value(server.connections())}},
       {"orrery_connections_refused_total",
        "Connections turned away because there were too many",

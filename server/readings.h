@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "server/app/app.h"
+#include "server/app/log.h"
 #include "server/http/server.h"
 
 namespace orrery {
 
 // What is true of the service and its process at this moment, a row a metric.
-std::vector<prometheus::MetricFamily> read_metrics(App& app, const HttpServer& server);
+std::vector<prometheus::MetricFamily> read_metrics(App& app, const HttpServer& server, const Log& log);
 
 }  // namespace orrery

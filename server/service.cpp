@@ -149,7 +149,7 @@ void Service::stop() {
 
 Response Service::metrics() {
   return text_response(200, "text/plain; version=0.0.4; charset=utf-8",
-                       metrics_.text(read_metrics(app_, server_)))
+                       metrics_.text(read_metrics(app_, server_, log_)))
       .set("Cache-Control", "no-store");
 }
 

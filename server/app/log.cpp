@@ -1,11 +1,16 @@
 #include "server/app/log.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
+#include <signal.h>
+#include <spdlog/async_logger.h>
+#include <spdlog/details/thread_pool.h>
+#include <spdlog/sinks/base_sink.h>
 
+#include <atomic>
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "core/base/hash.h"
+#include "server/app/line_writer.h"
 
 namespace orrery {
 namespace {
@@ -50,11 +55,78 @@ std::string text_of(std::string_view event, const ordered_json& fields) {
   return text;
 }
 
+// The fields with texts cut to a length at which thousands of lines may be queued.
+ordered_json cut(ordered_json fields) {
+  constexpr std::size_t kLongest = 2048;
+  for (auto& value : fields)
+    if (value.is_string() && value.get_ref<const std::string&>().size() > kLongest)
+      value.get_ref<std::string&>().resize(kLongest);
+  return fields;
+}
+
+// Signals are for the threads that wait for them.
+void block_signals() {
+  sigset_t all;
+  sigfillset(&all);
+  pthread_sigmask(SIG_BLOCK, &all, nullptr);
+}
+
+// What follows the time and the level.
+std::string line_of(LogForm form, std::string_view event, const ordered_json& fields) {
+  if (form == LogForm::text) return without_c1(text_of(event, fields));
+  ordered_json line = {{"event", event}};
+  line.update(fields);
+  const std::string object = dumped(line);
+  return object.substr(1, object.size() - 2);
+}
+
 }  // namespace
 
-Log::Log(LogForm form, LogLevel lowest)
-    : form_(form),
-      logger_(std::make_unique<spdlog::logger>("orrery", std::make_shared<spdlog::sinks::stderr_sink_mt>())) {
+// Writes lines on the log's thread.
+class Log::Sink final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  // `queue` must outlive its thread.
+  Sink(LogForm form, int fd, spdlog::details::thread_pool& queue) : form_(form), queue_(queue), writer_(fd) {}
+
+  std::uint64_t dropped() const { return not_written_ + queue_.overrun_counter(); }
+  void drop() { ++not_written_; }
+  void close_by(std::chrono::steady_clock::time_point end) { writer_.close_by(end); }
+
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    if (!report_dropped() || !write(message)) drop();
+  }
+  void flush_() override {}
+
+  bool write(const spdlog::details::log_msg& message) {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    return writer_.write({line.data(), line.size()});
+  }
+  // False: lines were dropped, and none can be written yet.
+  bool report_dropped() {
+    const std::uint64_t count = dropped();
+    if (count == reported_) return true;
+    const std::string line = line_of(form_, "log lines dropped", {{"count", count - reported_}});
+    if (!write({"orrery", spdlog::level::warn, line})) return false;
+    reported_ = count;
+    return true;
+  }
+
+  const LogForm form_;
+  spdlog::details::thread_pool& queue_;
+  LineWriter writer_;
+  std::atomic<std::uint64_t> not_written_{0};
+  std::uint64_t reported_ = 0;  // of those dropped
+};
+
+Log::Log(LogForm form, LogLevel lowest, int fd) : form_(form) {
+  constexpr std::size_t kQueue = 4096;  // lines
+  thread_ = std::make_shared<spdlog::details::thread_pool>(kQueue, 1, block_signals);
+  sink_ = std::make_shared<Sink>(form, fd, *thread_);
+  logger_ = std::make_shared<spdlog::async_logger>("orrery", sink_, thread_,
+                                                   spdlog::async_overflow_policy::overrun_oldest);
+  logger_->set_error_handler([sink = sink_](const std::string&) { sink->drop(); });
   logger_->set_level(level_of(lowest));
   // Time in UTC with milliseconds, and the level; the rest is ours.
   logger_->set_pattern(
@@ -62,15 +134,13 @@ Log::Log(LogForm form, LogLevel lowest)
       form == LogForm::json ? spdlog::pattern_time_type::utc : spdlog::pattern_time_type::local);
 }
 
-Log::~Log() = default;
+Log::~Log() { sink_->close_by(std::chrono::steady_clock::now() + std::chrono::seconds(1)); }
 
 void Log::write(LogLevel level, std::string_view event, const ordered_json& fields) const {
-  if (!logger_->should_log(level_of(level))) return;
-  if (form_ == LogForm::text) return logger_->log(level_of(level), "{}", without_c1(text_of(event, fields)));
-  ordered_json line = {{"event", event}};
-  line.update(fields);
-  const std::string object = dumped(line);
-  logger_->log(level_of(level), "{}", std::string_view(object).substr(1, object.size() - 2));
+  if (logger_->should_log(level_of(level)))
+    logger_->log(level_of(level), "{}", line_of(form_, event, cut(fields)));
 }
+
+std::uint64_t Log::dropped() const { return sink_->dropped(); }
 
 }  // namespace orrery

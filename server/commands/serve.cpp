@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -100,10 +101,13 @@ std::size_t count_tokens(const Settings& settings, std::vector<Problem>& problem
   return 0;
 }
 
-void announce(const Service& service, const Settings& settings) {
+void announce(const Service& service, const Settings& settings, const Log& log) {
   const bool v6 = settings.host.find(':') != std::string::npos;
   std::cout << "orrery listens on http://" << (v6 ? "[" + settings.host + "]" : settings.host) << ":"
             << service.port() << "\nhealth and metrics on port " << service.health_port() << std::endl;
+  if (std::cout) return;
+  log.write(LogLevel::warning, "cannot write to standard output", nlohmann::ordered_json::object());
+  std::cout.clear();  // the service runs without it
 }
 
 // `read`: the settings as they are when it is called.
@@ -123,7 +127,7 @@ int run_service(const Settings& settings, const Log& log, const std::function<Se
     running = &service;
     if (signals.interrupted().stop_requested()) service.stop();
   }
-  announce(service, settings);
+  announce(service, settings, log);
   log.write(LogLevel::info, "start",
             {{"version", kVersion},
              {"instructions", instruction_level()},
@@ -139,6 +143,7 @@ int run_service(const Settings& settings, const Log& log, const std::function<Se
 }
 
 int serve(const CLI::App& app, const ServeOptions& options) {
+  signal(SIGPIPE, SIG_IGN);  // the reader of the log may end before the service
   std::vector<Problem> problems;
   const Settings settings = read_settings(app, options.config, problems);
   check_values(settings, problems);

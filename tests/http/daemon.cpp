@@ -85,8 +85,9 @@ std::string program() {
   return path;
 }
 
-Daemon::Daemon(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words{program(), "serve", "--port", "0", "--health-port", "0", "--quiet"};
+Daemon::Daemon(const std::vector<std::string>& arguments, std::optional<int> log) {
+  std::vector<std::string> words{program(), "serve", "--port", "0", "--health-port", "0"};
+  if (!log) words.push_back("--quiet");
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -97,7 +98,9 @@ Daemon::Daemon(const std::vector<std::string>& arguments) {
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // should the test die
+    ::signal(SIGPIPE, SIG_DFL);        // as a shell would leave it
     dup2(ends[1], STDOUT_FILENO);
+    if (log) dup2(*log, STDERR_FILENO);
     execv(argv[0], argv.data());
     _exit(127);
   }

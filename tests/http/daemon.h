@@ -4,6 +4,7 @@
 #include <httplib.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace orrery {
 // A running `orrery serve` on a free port.
 class Daemon {
  public:
-  explicit Daemon(const std::vector<std::string>& arguments = {});
+  // log: where it writes its log, of all requests; none: warnings and errors, on our standard error.
+  explicit Daemon(const std::vector<std::string>& arguments = {}, std::optional<int> log = {});
   ~Daemon();
   Daemon(const Daemon&) = delete;
 
