@@ -8,6 +8,7 @@
 
 #include "core/plan/request.h"
 #include "core/render/renderer.h"
+#include "server/http/shared_bytes.h"
 
 namespace orrery {
 
@@ -17,8 +18,9 @@ struct JobResult {
   std::string_view type;  // "image/png"
   // Steps of the job, the first ones, that make it; none: all.
   std::optional<int> after;
-  // Its bytes, with links below `prefix`. REQUIRES: the job's status has said that so many steps are done.
-  std::function<std::string(const std::string& prefix)> write;
+  // Its bytes, with links below `prefix`; the same ones for all readers where it has no links. REQUIRES: the
+  // job's status has said that so many steps are done.
+  std::function<SharedBytes(const std::string& prefix)> read;
 };
 
 // What a job does: renders pictures of a scene, one a step, and makes files of them. A kind of job is a class

@@ -27,6 +27,7 @@ class FrameWork final : public JobWork {
   }
   std::string encode(const Film& film) const override { return encode_film(film, FileFormat::png); }
   void keep(int step, std::string&& encoded) override {
+    encoded.shrink_to_fit();
     files_[static_cast<std::size_t>(step)] = std::move(encoded);
   }
 
@@ -62,7 +63,7 @@ class FrameWork final : public JobWork {
   const std::weak_ptr<const PreparedScene> scene_;  // the job's, while it renders
   OrbitPath path_;
   OrbitBudget budget_;
-  std::vector<std::string> files_;  // by step; empty before it is done
+  std::vector<SharedBytes> files_;  // by step; empty before it is done
 };
 
 struct FrameOrder {

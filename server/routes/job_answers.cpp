@@ -58,7 +58,7 @@ Response job_result(App& app, const Request& request, const std::string& job_id)
                              std::string(name_of(status.state)));
   const std::string etag = "\"" + job_id + request.path.substr(request.path.rfind('/')) + "\"";
   Response response{.status = 304};
-  if (!has_current(request, etag)) response = text_response(200, result.type, result.write(request.prefix));
+  if (!has_current(request, etag)) response = text_response(200, result.type, result.read(request.prefix));
   response.set("ETag", etag);
   response.set("Cache-Control", "private, max-age=31536000, immutable");
   return response;
