@@ -88,7 +88,7 @@ AssetStore::Added App::add_asset(const std::string& sha256, Body& body, const Ca
   watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto ticket =
         admission_.enter({Lane::interactive, caller.client, cost_of_reading(bytes.size())}, stop);
-    added = assets_.add(sha256, std::move(bytes));
+    added = assets_.add(sha256, std::move(bytes), caller.client);
   });
   return added;
 }
@@ -173,7 +173,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   const Films::Found film =
       *plan.asked.seconds > 0
           ? Films::Found{std::make_shared<const RenderResult>(make_film(stop)), true}
-          : films_.get(key + std::to_string(static_cast<int>(storage)), {stop}, make_film);
+          : films_.get(key + std::to_string(static_cast<int>(storage)), {stop, demand.client}, make_film);
   const RenderStats& stats = film.value->stats;
   if (film.made_here) {
     timing.build = stats.build_ms;

@@ -4,12 +4,20 @@
 #include <utility>
 
 #include "core/base/hash.h"
+#include "server/http/message.h"
+#include "server/http/over_limit.h"
 
 namespace orrery {
 
 namespace {
 
 std::size_t bytes_of(const Texels& picture) { return picture.rgb.size() * sizeof(float); }
+
+std::size_t bytes_of(const AssetStore::Asset& asset) {
+  constexpr std::size_t kEntry = 1024;  // of an entry besides its file and texels
+  const auto* const picture = std::get_if<AssetStore::Asset::Picture>(&asset.content);
+  return kEntry + asset.bytes.size() + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
+}
 
 // Keeps the texels of a picture that takes at most `most_texel_bytes`.
 decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::size_t most_texel_bytes) {
@@ -31,26 +39,35 @@ void AssetStore::require_name(const std::string& name) {
         "", "an asset is named by the SHA-256 of its bytes: 64 digits 0-9, a-f; got " + name.substr(0, 80));
 }
 
-AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes) {
+AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes, const std::string& client) {
   const std::string hash = sha256_hex(bytes);
   if (hash != sha256)
     throw InputError("",
                      "the SHA-256 of these bytes is " + hash + ", which must be the name they are put under");
-  if (const auto known = assets_.find(sha256)) return {*known, true};
-  constexpr std::size_t kEntry = 512;  // bytes of an entry besides those of its file
-  std::size_t size = bytes.size() + kEntry;
-  if (size > assets_.most_bytes())
-    throw InputError("", "the file takes " + std::to_string(size) + " bytes of memory, at most " +
-                             std::to_string(assets_.most_bytes()) + " are kept (asset_store_bytes)");
+  if (const auto known = assets_.find(sha256)) {
+    assets_.add(sha256, client, bytes_of(**known), [&] { return *known; });
+    return {*known, true};
+  }
   auto asset = std::make_shared<Asset>();
-  // So that one picture does not evict most of the others.
-  const std::size_t most_texel_bytes = std::min(assets_.most_bytes() / 4, assets_.most_bytes() - size);
-  asset->content = content_of(bytes, most_texel_bytes);
-  if (const auto* const picture = std::get_if<Asset::Picture>(&asset->content); picture && picture->texels)
-    size += bytes_of(*picture->texels);
   asset->bytes = std::move(bytes);
-  const auto added = assets_.add(sha256, size, [&asset] { return asset; });
-  return {added.value, added.known};
+  const std::size_t most = assets_.most_bytes(), least = bytes_of(*asset);
+  if (least > most)
+    throw InputError("", "the file takes " + std::to_string(least) + " bytes of memory, at most " +
+                             std::to_string(most) + " are kept (asset_store_bytes)");
+  // So that one picture does not evict most of the others.
+  asset->content = content_of(asset->bytes, std::min(most / 4, most - least));
+  const auto add = [&] { return assets_.add(sha256, client, bytes_of(*asset), [&] { return asset; }); };
+  auto added = add();
+  auto* const picture = std::get_if<Asset::Picture>(&asset->content);
+  if (!added && picture && picture->texels) {
+    picture->texels = nullptr;
+    added = add();
+  }
+  if (added) return {added->value, added->known};
+  constexpr double kRetry_s = 30;
+  throw OverLimit("Assets of others leave no room for " + std::to_string(least) +
+                      " bytes more of yours, of " + std::to_string(most) + " for all (asset_store_bytes)",
+                  kRetry_s, "asset_store_bytes");
 }
 
 AssetStore::AssetPtr AssetStore::find(const std::string& sha256) {
@@ -59,8 +76,14 @@ AssetStore::AssetPtr AssetStore::find(const std::string& sha256) {
   return *found;
 }
 
-void AssetStore::remove(const std::string& sha256) {
-  if (!assets_.remove(sha256)) throw NotFound("There is no asset " + sha256.substr(0, 64));
+void AssetStore::remove(const std::string& sha256, const std::string& client, bool of_all) {
+  switch (assets_.remove(sha256, client, of_all)) {
+    case Lru<AssetPtr>::Removed::yes: return;
+    case Lru<AssetPtr>::Removed::unknown: throw NotFound("There is no asset " + sha256.substr(0, 64));
+    case Lru<AssetPtr>::Removed::not_held:
+      throw HttpError(403,
+                      "An asset is removed by a client that has put it, or by a token of the scope admin");
+  }
 }
 
 AssetStore::AssetPtr AssetStore::find_for_scene(const std::string& sha256) const {

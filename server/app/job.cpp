@@ -141,7 +141,6 @@ void Job::keep(int step, Frame&& frame) {
   if (bytes > 0) room_(bytes);
   spec_.work->keep(step, std::move(frame.bytes));
   const std::lock_guard lock(mutex_);
-  bytes_ += bytes;
   ++steps_done_;
   changed_.notify_all();
 }
@@ -169,11 +168,6 @@ JobStatus Job::status() const {
 std::optional<Clock::time_point> Job::ended() const {
   const std::lock_guard lock(mutex_);
   return ended_;
-}
-
-std::size_t Job::bytes() const {
-  const std::lock_guard lock(mutex_);
-  return bytes_;
 }
 
 JobStatus Job::wait(int steps, std::optional<std::int64_t> tiles, Clock::time_point until,

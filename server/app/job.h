@@ -59,7 +59,6 @@ class Job {
   const JobWork& work() const { return *spec_.work; }
   JobStatus status() const;
   std::optional<Clock::time_point> ended() const;
-  std::size_t bytes() const;  // that it keeps
 
   // Waits until more than `steps` are done, the job has ended, `until` has come or `stop` is requested; if
   // `tiles` is given, also until another number of tiles is done.
@@ -93,7 +92,6 @@ class Job {
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable_any changed_;
   int steps_, steps_done_ = 0;
-  std::size_t bytes_ = 0;
   JobState state_ = JobState::waiting;
   std::exception_ptr error_;
   std::int64_t tiles_a_step_ = 0, tiles_done_ = 0;

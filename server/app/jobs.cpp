@@ -5,6 +5,11 @@
 #include "server/http/request_id.h"
 
 namespace orrery {
+namespace {
+
+constexpr FairShares::Rank kEnded = 0, kUnderWay = 1;
+
+}  // namespace
 
 Jobs::~Jobs() {
   std::vector<Entry> entries;
@@ -16,7 +21,7 @@ Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::strin
   const std::lock_guard lock(mutex_);
   forget_old();
   const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) {
-    return !key.empty() && e.key == key && e.job->client() == spec.client;
+    return !key.empty() && e.key == key && e.job->client() == spec.client && !e.evicted;
   });
   if (known != entries_.end()) {
     if (known->content == content) return {known->job, true};
@@ -24,9 +29,11 @@ Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::strin
   }
   require_place(spec.client);
   constexpr std::size_t kIdBytes = 16;  // nobody can guess it
-  auto job = std::make_shared<Job>(random_hex(kIdBytes), std::move(spec), services_, limits_.run_time,
-                                   [this](std::size_t bytes) { make_room(bytes); });
+  const std::string id = random_hex(kIdBytes), client = spec.client;
+  auto job = std::make_shared<Job>(id, std::move(spec), services_, limits_.run_time,
+                                   [this, id, client](std::size_t bytes) { make_room(id, client, bytes); });
   entries_.push_back({job, key, content});
+  bytes_.hold(id, client, kUnderWay);
   return {job, false};
 }
 
@@ -44,8 +51,10 @@ void Jobs::require_place(const std::string& client) const {
 Jobs::JobPtr Jobs::find(const std::string& id) {
   const std::lock_guard lock(mutex_);
   forget_old();
+  bytes_.touch(id);
+  ended_.touch(id);
   for (const Entry& entry : entries_)
-    if (entry.job->id() == id) return entry.job;
+    if (entry.job->id() == id && !entry.evicted) return entry.job;
   throw NotFound("There is no job " + id.substr(0, 64) + " (any more)");
 }
 
@@ -53,6 +62,8 @@ void Jobs::remove(const std::string& id) {
   const JobPtr job = find(id);
   job->cancel();
   const std::lock_guard lock(mutex_);
+  bytes_.erase(id);
+  ended_.erase(id);
   std::erase_if(entries_, [&](const Entry& entry) { return entry.job == job; });
 }
 
@@ -65,40 +76,54 @@ std::size_t Jobs::under_way() {
 
 std::size_t Jobs::bytes() {
   const std::lock_guard lock(mutex_);
-  return bytes_kept();
-}
-
-std::size_t Jobs::bytes_kept() const {
-  std::size_t sum = 0;
-  for (const Entry& entry : entries_) sum += entry.job->bytes();
-  return sum;
+  return bytes_.weight();
 }
 
 void Jobs::forget_old() {
   const auto now = services_.timer.now();
-  auto surplus = -static_cast<std::ptrdiff_t>(limits_.ended);
+  std::vector<std::string> old;
   for (const Entry& entry : entries_) {
-    if (!entry.job->ended()) continue;
-    entry.job->release();
-    ++surplus;
-  }
-  std::erase_if(entries_, [&](const Entry& entry) {
     const auto ended = entry.job->ended();
-    return ended && (surplus-- > 0 || now - *ended > limits_.kept);
-  });
+    if (!ended) continue;
+    entry.job->release();
+    const std::string& id = entry.job->id();
+    if (entry.evicted || now - *ended > limits_.kept) {
+      old.push_back(id);
+    } else if (bytes_.rank(id) == kUnderWay) {
+      bytes_.hold(id, entry.job->client(), kEnded);
+      ended_.hold(id, entry.job->client());
+      ended_.set_weight(id, 1);
+    }
+  }
+  evict(old);
+  if (const auto surplus = ended_.make_room("", 0, static_cast<std::size_t>(limits_.ended), {}))
+    evict(*surplus);
 }
 
-void Jobs::make_room(std::size_t bytes) {
+// The files of a job that has not ended stay until it has.
+void Jobs::evict(const std::vector<std::string>& ids) {
+  for (const std::string& id : ids) {
+    bytes_.erase(id);
+    ended_.erase(id);
+    const auto entry =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.job->id() == id; });
+    if (entry == entries_.end()) continue;
+    entry->job->cancel();
+    entry->evicted = true;
+    if (entry->job->ended()) entries_.erase(entry);
+  }
+}
+
+void Jobs::make_room(const std::string& id, const std::string& client, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   forget_old();
-  while (bytes_kept() + bytes > limits_.bytes) {
-    const auto oldest =
-        std::find_if(entries_.begin(), entries_.end(), [](const Entry& e) { return e.job->ended(); });
-    if (oldest == entries_.end())
-      throw InputError("", "the pictures of all jobs take more than " + std::to_string(limits_.bytes) +
-                               " bytes (job_bytes)");
-    entries_.erase(oldest);
-  }
+  if (!bytes_.holds(id, client)) throw Cancelled();
+  const auto evicted = bytes_.make_room(client, bytes, limits_.bytes, {.own = kUnderWay});
+  if (!evicted)
+    throw InputError("", "the pictures of all jobs take more than " + std::to_string(limits_.bytes) +
+                             " bytes (job_bytes)");
+  evict(*evicted);
+  bytes_.set_weight(id, bytes_.weight(id) + bytes);
 }
 
 }  // namespace orrery

@@ -4,11 +4,14 @@
 #include <mutex>
 #include <vector>
 
+#include "server/app/fair_shares.h"
 #include "server/app/job.h"
 
 namespace orrery {
 
-// The jobs under way and those that ended lately. Safe from any thread.
+// The jobs under way and those that ended lately. Where there are too many, or their files take too many
+// bytes, FairShares says whose go: jobs that have ended, and last the job under way of a client that holds
+// more than the one that needs room. Safe from any thread.
 class Jobs {
  public:
   struct Limits {
@@ -44,17 +47,23 @@ class Jobs {
   struct Entry {
     JobPtr job;
     std::string key, content;
+    bool evicted = false;  // its end is waited for
   };
-  void make_room(std::size_t bytes);  // throws InputError
+  // For more bytes of the job. Throws InputError, and Cancelled if the job was evicted.
+  void make_room(const std::string& id, const std::string& client, std::size_t bytes);
   // Below: with mutex_ held.
   void require_place(const std::string& client) const;
   void forget_old();
-  std::size_t bytes_kept() const;
+  void evict(const std::vector<std::string>& ids);
+  bool is_kept(const std::string& id) const { return bytes_.rank(id).has_value(); }
 
   const RenderServices services_;
   const Limits limits_;
   std::mutex mutex_;
   std::vector<Entry> entries_;  // the oldest first; guarded by mutex_
+  // Guarded by mutex_: the bytes of all jobs, and the number of those that have ended, which limits_.kept
+  // protects.
+  FairShares bytes_{Clock::duration::max()}, ended_{Clock::duration::max()};
 };
 
 }  // namespace orrery

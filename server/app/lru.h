@@ -1,91 +1,83 @@
 #pragma once
 
 #include <cstdint>
-#include <list>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include "server/app/fair_shares.h"
+
 namespace orrery {
 
-// Values by id. Once they take more than the limit, those not used for longest are forgotten; values are
-// shared pointers, so who still uses one keeps it alive. Safe from any thread.
+// Values by id, held by clients. Once they take more than the limit, some are evicted as FairShares says.
+// Values are shared pointers: an evicted one lives as long as it is used. Safe from any thread.
 template <class Value>
 class Lru {
  public:
-  explicit Lru(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+  // protected_for: see FairShares.
+  Lru(std::size_t most_bytes, Clock::duration protected_for)
+      : most_bytes_(most_bytes), shares_(protected_for) {}
 
   struct Added {
     Value value;
     bool known;  // it was there before, and that one is returned
   };
-  // `make` gives the value. REQUIRES: bytes <= most_bytes().
+  // `make` gives the value, which the client holds from now on. Returns none if the client would hold most of
+  // the store by this value alone, and others leave no room for it. REQUIRES: bytes <= most_bytes().
   template <class Make>
-  Added add(const std::string& id, std::size_t bytes, const Make& make) {
+  std::optional<Added> add(const std::string& id, const std::string& client, std::size_t bytes,
+                           const Make& make) {
     const std::lock_guard lock(mutex_);
-    if (const auto known = entries_.find(id); known != entries_.end()) {
-      touch(known->second);
-      return {known->second.value, true};
+    auto known = values_.find(id);
+    const bool is_known = known != values_.end();
+    if (!is_known) {
+      const auto evicted = shares_.make_room(client, bytes, most_bytes_, {});
+      if (!evicted) return std::nullopt;
+      evictions_ += evicted->size();
+      for (const std::string& other : *evicted) values_.erase(other);
+      known = values_.emplace(id, make()).first;
     }
-    shrink_to(most_bytes_ - bytes);
-    uses_.push_front(id);
-    bytes_ += bytes;
-    return {entries_.emplace(id, Entry{make(), bytes, uses_.begin()}).first->second.value, false};
+    shares_.hold(id, client);
+    if (!is_known) shares_.set_weight(id, bytes);
+    return Added{known->second, is_known};
   }
 
   std::optional<Value> find(const std::string& id) {
     const std::lock_guard lock(mutex_);
-    const auto found = entries_.find(id);
-    if (found == entries_.end()) return {};
-    touch(found->second);
-    return found->second.value;
+    const auto found = values_.find(id);
+    if (found == values_.end()) return {};
+    shares_.touch(id);
+    return found->second;
   }
 
-  // Whether it was there.
-  bool remove(const std::string& id) {
+  enum class Removed { yes, not_held, unknown };
+  // The client holds the value no more, which goes if nobody else holds it, or with `of_all` in any case.
+  Removed remove(const std::string& id, const std::string& client, bool of_all) {
     const std::lock_guard lock(mutex_);
-    const auto found = entries_.find(id);
-    if (found == entries_.end()) return false;
-    erase(found);
-    return true;
+    if (values_.count(id) == 0) return Removed::unknown;
+    if (!of_all && !shares_.holds(id, client)) return Removed::not_held;
+    if (of_all) shares_.erase(id);
+    if (of_all || shares_.release(id, client)) values_.erase(id);
+    return Removed::yes;
   }
 
-  // Values that were forgotten for others, since the start.
+  // Values that were evicted, since the start.
   std::uint64_t evictions() const {
     const std::lock_guard lock(mutex_);
     return evictions_;
   }
   std::size_t bytes() const {
     const std::lock_guard lock(mutex_);
-    return bytes_;
+    return shares_.weight();
   }
   std::size_t most_bytes() const { return most_bytes_; }
 
  private:
-  struct Entry {
-    Value value;
-    std::size_t bytes;
-    std::list<std::string>::iterator use;
-  };
-  using Entries = std::map<std::string, Entry>;
-
-  // Below: with mutex_ held.
-  void shrink_to(std::size_t most_bytes) {
-    for (; bytes_ > most_bytes; ++evictions_) erase(entries_.find(uses_.back()));
-  }
-  void touch(Entry& entry) { uses_.splice(uses_.begin(), uses_, entry.use); }
-  void erase(typename Entries::iterator entry) {
-    bytes_ -= entry->second.bytes;
-    uses_.erase(entry->second.use);
-    entries_.erase(entry);
-  }
-
   const std::size_t most_bytes_;
-  mutable std::mutex mutex_;
-  Entries entries_;
-  std::list<std::string> uses_;  // ids, the latest use first
-  std::size_t bytes_ = 0;
+  mutable std::mutex mutex_;  // guards all below
+  std::map<std::string, Value> values_;
+  FairShares shares_;
   std::uint64_t evictions_ = 0;
 };
 

@@ -30,11 +30,12 @@ void RayEstimator::learn(const Scene& scene, const Plan& plan, std::uint64_t ray
   const double weight = std::min(1.0, camera_rays / kEnoughCameraRays);
   const double seen =
       std::clamp(static_cast<double>(rays) / expected_rays(scene, plan), 1 / kMostFactor, kMostFactor);
-  const auto [factor, known] =
-      factors_.add(key_of(scene, plan), 1, [&] { return std::make_shared<double>(1 + weight * (seen - 1)); });
-  if (!known) return;
+  const std::string nobody;  // factors are no client's
+  const auto added = factors_.add(key_of(scene, plan), nobody, 1,
+                                  [&] { return std::make_shared<double>(1 + weight * (seen - 1)); });
+  if (!added->known) return;
   const std::lock_guard lock(mutex_);
-  *factor += weight / 2 * (seen - *factor);
+  *added->value += weight / 2 * (seen - *added->value);
 }
 
 }  // namespace orrery

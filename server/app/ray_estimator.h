@@ -25,7 +25,7 @@ class RayEstimator {
  private:
   static constexpr std::size_t kMostFactors = 1024;  // kept, those used last
 
-  Lru<std::shared_ptr<double>> factors_{kMostFactors};
+  Lru<std::shared_ptr<double>> factors_{kMostFactors, Clock::duration::max()};
   std::mutex mutex_;  // guards the numbers that factors_ points to
 };
 

@@ -81,7 +81,7 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
   picture.bytes.shrink_to_fit();  // it may be kept
   step.encode_ms = milliseconds_since(start);
   step.picture = std::make_shared<const Picture>(std::move(picture));
-  pictures_.keep(key_of(samples), step.picture);
+  pictures_.keep(key_of(samples), spec_.client, step.picture);
   ++services_.meters.pictures_made;
   return step;
 }

@@ -1,15 +1,24 @@
 #include "server/app/scene_store.h"
 
-#include <iterator>
+#include <algorithm>
 
 #include "core/base/error.h"
 #include "core/load/load.h"
 #include "server/http/message.h"
+#include "server/http/over_limit.h"
 
 namespace orrery {
 
+namespace {
+
+constexpr FairShares::Rank kCached = 0, kBuilt = 1, kKept = 2;
+
+std::string built_id(const std::string& id) { return id + " built"; }
+
+}  // namespace
+
 SceneStore::~SceneStore() {
-  while (!entries_.empty()) erase(entries_.begin());
+  for (const auto& [id, entry] : scenes_) entry.scene->settle(false, false);
 }
 
 SceneStore::Kept SceneStore::keep(const Document& document, const AssetSource& assets,
@@ -21,11 +30,16 @@ SceneStore::Kept SceneStore::keep(const Document& document, const AssetSource& a
                              " bytes of memory, at most " + std::to_string(most_) +
                              " are kept (store_bytes)");
   const std::lock_guard lock(mutex_);
-  Entry* const known = find_locked(id);
-  if (!known) return {add(scene, {client}), false};
-  const bool was_kept = !known->keepers.empty();
-  known->keepers.insert(client);
-  return {known->scene, was_kept};
+  if (Prepared known = find_locked(id)) {
+    const bool was_kept = is_kept(id);
+    hold(id, client, kKept);
+    return {known, was_kept};
+  }
+  if (add(scene, client, kKept)) return {scene, false};
+  constexpr double kRetry_s = 30;
+  throw OverLimit("Scenes of others leave no room for " + std::to_string(scene->loaded_bytes()) +
+                      " bytes more of yours, of " + std::to_string(most_) + " for all (store_bytes)",
+                  kRetry_s, "store_bytes");
 }
 
 SceneStore::Prepared SceneStore::get(const Document& document, const AssetSource& assets,
@@ -33,17 +47,21 @@ SceneStore::Prepared SceneStore::get(const Document& document, const AssetSource
   const std::string id = document.id();
   const Prepared scene = find_or_load(id, document, assets, client);
   const std::lock_guard lock(mutex_);
-  if (const Entry* const known = find_locked(id)) return known->scene;
-  return scene->loaded_bytes() <= most_ - kept_bytes() ? add(scene, {}) : scene;
+  if (Prepared known = find_locked(id)) {
+    hold(id, client, kCached);
+    return known;
+  }
+  if (scene->loaded_bytes() <= most_) add(scene, client, kCached);
+  return scene;
 }
 
 SceneStore::Prepared SceneStore::find_or_load(const std::string& id, const Document& document,
                                               const AssetSource& assets, const std::string& client) {
   {
     const std::lock_guard lock(mutex_);
-    if (const Entry* const known = find_locked(id)) {
+    if (Prepared known = find_locked(id)) {
       ++hits_;
-      return known->scene;
+      return known;
     }
   }
   const Prepared loaded = load(document, assets, client);
@@ -61,92 +79,102 @@ SceneStore::Prepared SceneStore::load(const Document& document, const AssetSourc
 
 SceneStore::Prepared SceneStore::find(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  if (const Entry* const known = find_locked(id)) return known->scene;
+  if (Prepared known = find_locked(id)) return known;
   throw NotFound("There is no scene " + id.substr(0, 64) + " (any more): post it again");
 }
 
 void SceneStore::remove(const std::string& id, const std::string& client, bool of_all) {
   const std::lock_guard lock(mutex_);
-  const auto known = by_id_.find(id);
-  if (known == by_id_.end()) throw NotFound("There is no scene " + id.substr(0, 64));
-  std::set<std::string>& keepers = known->second->keepers;
-  if (keepers.erase(client) == 0 && !keepers.empty() && !of_all)
-    throw HttpError(403, "Only who keeps the scene may remove it, or a token of the scope admin");
-  if (keepers.empty() || of_all) erase(known->second);
+  if (scenes_.count(id) == 0) throw NotFound("There is no scene " + id.substr(0, 64));
+  if (of_all) return erase(id);
+  if (!shares_.holds(id, client))
+    throw HttpError(403,
+                    "A scene is removed by a client that has posted it, or by a token of the scope admin");
+  shares_.release(built_id(id), client);
+  if (shares_.release(id, client)) return erase(id);
+  weigh(id);
 }
 
 void SceneStore::measure(const PreparedScene& scene) {
   const std::lock_guard lock(mutex_);
-  const auto known = by_id_.find(scene.scene().id);
-  const bool here = known != by_id_.end();
-  if (!here || known->second->scene.get() != &scene) return scene.settle(here, false);
-  set_bytes(*known->second, scene.bytes());
+  const auto known = scenes_.find(scene.scene().id);
+  const bool here = known != scenes_.end();
+  if (!here || known->second.scene.get() != &scene) return scene.settle(here, false);
+  known->second.built = scene.bytes() - scene.loaded_bytes();
   scene.settle(true, true);
-  drop_cached(most_);
-  drop_built(most_);
+  weigh(known->first);
+  make_room("", 0, {.own = kKept, .others = kKept});
 }
 
 std::size_t SceneStore::bytes() const {
   const std::lock_guard lock(mutex_);
-  return bytes_;
+  return shares_.weight();
 }
 
-SceneStore::Entry* SceneStore::find_locked(const std::string& id) {
-  const auto known = by_id_.find(id);
-  if (known == by_id_.end()) return nullptr;
-  entries_.splice(entries_.begin(), entries_, known->second);
-  return &*known->second;
+SceneStore::Prepared SceneStore::find_locked(const std::string& id) {
+  const auto known = scenes_.find(id);
+  if (known == scenes_.end()) return nullptr;
+  shares_.touch(id);
+  shares_.touch(built_id(id));
+  return known->second.scene;
 }
 
-std::size_t SceneStore::kept_bytes() const {
-  std::size_t bytes = 0;
-  for (const Entry& entry : entries_)
-    if (!entry.keepers.empty()) bytes += entry.bytes;
-  return bytes;
+bool SceneStore::is_kept(const std::string& id) const { return shares_.rank(id) == kKept; }
+
+void SceneStore::hold(const std::string& id, const std::string& client, FairShares::Rank rank) {
+  shares_.hold(id, client, std::max(rank, shares_.rank(id, client).value_or(kCached)));
+  if (shares_.rank(built_id(id))) shares_.hold(built_id(id), client, kBuilt);
+  weigh(id);
 }
 
-SceneStore::Prepared SceneStore::add(const Prepared& scene, const std::set<std::string>& keepers) {
-  const std::size_t room = most_ - scene->loaded_bytes();
-  drop_cached(room);
-  if (!keepers.empty()) {
-    drop_built(room);
-    drop_kept(room);
-  }
-  entries_.push_front({scene, keepers});
-  by_id_.emplace(scene->scene().id, entries_.begin());
-  set_bytes(entries_.front(), scene->loaded_bytes());
+bool SceneStore::add(const Prepared& scene, const std::string& client, FairShares::Rank rank) {
+  const FairShares::Rank below = rank == kKept ? FairShares::kRanks : kBuilt;
+  if (!make_room(client, scene->loaded_bytes(), {.own = below, .others = below})) return false;
+  scenes_.emplace(scene->scene().id, Entry{scene});
   scene->settle(true, false);
-  return scene;
+  hold(scene->scene().id, client, rank);
+  return true;
 }
 
-void SceneStore::set_bytes(Entry& entry, std::size_t bytes) {
-  bytes_ += bytes - entry.bytes;
-  entry.bytes = bytes;
-}
-
-void SceneStore::erase(Entries::iterator entry) {
-  set_bytes(*entry, 0);
-  entry->scene->settle(false, false);
-  by_id_.erase(entry->scene->scene().id);
-  entries_.erase(entry);
-}
-
-void SceneStore::drop_cached(std::size_t most_bytes) {
-  for (auto entry = entries_.end(); bytes_ > most_bytes && entry != entries_.begin();)
-    if ((--entry)->keepers.empty()) ++evictions_, erase(entry++);
-}
-
-void SceneStore::drop_built(std::size_t most_bytes) {
-  for (auto entry = entries_.end(); bytes_ > most_bytes && entry != entries_.begin();) {
-    --entry;
-    entry->scene->settle(true, false);
-    entry->scene = entry->scene->without_built();
-    set_bytes(*entry, entry->scene->loaded_bytes());
+bool SceneStore::make_room(const std::string& client, std::size_t bytes, FairShares::Ranks ranks) {
+  const auto evicted = shares_.make_room(client, bytes, most_, ranks);
+  if (!evicted) return false;
+  for (const std::string& id : *evicted) {
+    if (scenes_.count(id) > 0) {
+      ++evictions_;
+      erase(id);
+    } else if (const auto built_for = scenes_.find(id.substr(0, id.rfind(built_id(""))));
+               built_for != scenes_.end()) {
+      drop_built(built_for->second);
+    }
   }
+  return true;
 }
 
-void SceneStore::drop_kept(std::size_t most_bytes) {
-  for (; bytes_ > most_bytes && !entries_.empty(); ++evictions_) erase(std::prev(entries_.end()));
+// A cached scene goes with what was built for it, which a kept one can do without.
+void SceneStore::weigh(const std::string& id) {
+  const Entry& entry = scenes_.at(id);
+  const std::size_t loaded = entry.scene->loaded_bytes();
+  const bool is_separate = is_kept(id) && entry.built > 0;
+  shares_.set_weight(id, is_separate ? loaded : loaded + entry.built);
+  if (!is_separate) return shares_.erase(built_id(id));
+  if (!shares_.rank(built_id(id)))
+    for (const std::string& client : shares_.holders(id)) shares_.hold(built_id(id), client, kBuilt);
+  shares_.set_weight(built_id(id), entry.built);
+}
+
+void SceneStore::drop_built(Entry& entry) {
+  entry.scene->settle(true, false);
+  entry.scene = entry.scene->without_built();
+  entry.built = 0;
+}
+
+void SceneStore::erase(const std::string& id) {
+  const auto scene = scenes_.find(id);
+  scene->second.scene->settle(false, false);
+  shares_.erase(built_id(id));
+  shares_.erase(id);
+  scenes_.erase(scene);
 }
 
 }  // namespace orrery

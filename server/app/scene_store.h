@@ -1,26 +1,27 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 
 #include "core/model/asset_source.h"
 #include "core/params/document.h"
 #include "core/prepare/prepared_scene.h"
+#include "server/app/fair_shares.h"
 #include "server/app/work_memory.h"
 
 namespace orrery {
 
 // Scenes by id, the hash of what they say, with what rendering has built for them. Some are kept on purpose;
-// others were only rendered and are cached. Where room is needed, those not used for longest go: first cached
-// ones, then what was built for kept ones, and kept ones only for others that are kept, so that who may
-// render only cannot remove what others keep. While a scene is here the store answers for its memory, before
-// and after that the client's work. Safe from any thread.
+// others were only rendered and are cached. Both are held by the clients that posted them. Where room is
+// needed, FairShares says which client gives up what: first its cached scenes, then what was built for its
+// kept ones, and kept ones only for others that are kept, so that a client that may only render cannot remove
+// what others keep. While a scene is here the store answers for its memory, before and after that the
+// client's work. Safe from any thread.
 class SceneStore {
  public:
   using Prepared = std::shared_ptr<const PreparedScene>;
@@ -34,7 +35,8 @@ class SceneStore {
     bool known = false;  // it was kept before
   };
   // Keeps the scene that `document` says; loads it only if it is not here, also not as a cached one. Throws
-  // what load_scene() does, InputError if the scene alone is over the limit, and as WorkMemory::open() says.
+  // what load_scene() does, InputError if the scene alone is over the limit, OverLimit if others leave no
+  // room for it, and as WorkMemory::open() says.
   Kept keep(const Document& document, const AssetSource& assets, const std::string& client);
   // The scene that `document` says, loaded only if it is not here, and then cached if there is room. Throws
   // likewise.
@@ -42,8 +44,8 @@ class SceneStore {
 
   // Kept or cached. Throws NotFound.
   Prepared find(const std::string& id);
-  // The client does not keep it any more: it goes unless others keep it, too, or with `of_all` in any case.
-  // Throws NotFound if it is not here, HttpError 403 if others alone keep it.
+  // The client holds it no more: it goes unless others hold it, too, or with `of_all` in any case. Throws
+  // NotFound if it is not here, HttpError 403 if others alone hold it.
   void remove(const std::string& id, const std::string& client, bool of_all);
 
   // Until its end something may be built for the scene, which is measured then.
@@ -67,32 +69,30 @@ class SceneStore {
  private:
   struct Entry {
     Prepared scene;
-    std::set<std::string> keepers;  // clients; none: it is only cached
-    std::size_t bytes = 0;
+    std::size_t built = 0;  // bytes, when they were last measured
   };
-  using Entries = std::list<Entry>;
 
   Prepared find_or_load(const std::string& id, const Document& document, const AssetSource& assets,
                         const std::string& client);
   Prepared load(const Document& document, const AssetSource& assets, const std::string& client) const;
   void measure(const PreparedScene& scene);
   // Below: with mutex_ held.
-  Entry* find_locked(const std::string& id);  // makes it the one used last; null: it is not here
-  std::size_t kept_bytes() const;
-  Prepared add(const Prepared& scene, const std::set<std::string>& keepers);
-  void set_bytes(Entry& entry, std::size_t bytes);
-  void erase(Entries::iterator entry);
-  // Removes entries until all take at most so many bytes, or none is left that gives way.
-  void drop_cached(std::size_t most_bytes);
-  void drop_built(std::size_t most_bytes);
-  void drop_kept(std::size_t most_bytes);
+  Prepared find_locked(const std::string& id);  // a use of it; null: it is not here
+  bool is_kept(const std::string& id) const;
+  void hold(const std::string& id, const std::string& client, FairShares::Rank rank);
+  bool add(const Prepared& scene, const std::string& client, FairShares::Rank rank);
+  // Has clients give up what FairShares says. False if the client would hold most.
+  bool make_room(const std::string& client, std::size_t bytes, FairShares::Ranks ranks);
+  void weigh(const std::string& id);
+  static void drop_built(Entry& entry);
+  void erase(const std::string& id);
 
   const std::size_t most_;
   WorkMemory& work_;
   mutable std::mutex mutex_;  // guards all below
-  Entries entries_;           // the latest use first
-  std::map<std::string, Entries::iterator> by_id_;
-  std::size_t bytes_ = 0;
+  std::map<std::string, Entry> scenes_;
+  // By id; what was built for a kept scene is an entry of its own.
+  FairShares shares_{std::chrono::hours(1)};
   std::atomic<std::uint64_t> hits_{0}, loads_{0}, evictions_{0};
 };
 

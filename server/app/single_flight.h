@@ -19,8 +19,9 @@
 namespace orrery {
 
 // Values made lately, by key, and those being made: what several ask for at one time is made once. A value
-// is kept if it takes at most `largest` bytes, of at most `most_bytes` of all; std::size_t held_bytes(const
-// Value&) tells how many. Safe from any thread.
+// is kept if it takes at most `largest` bytes, of at most `most_bytes` of all, in the share of the client
+// that it was made for (see FairShares); std::size_t held_bytes(const Value&) tells how many. Safe from any
+// thread.
 template <class Value>
 class SingleFlight {
  public:
@@ -36,7 +37,8 @@ class SingleFlight {
   };
 
   explicit SingleFlight(std::size_t most_bytes) : SingleFlight(most_bytes, most_bytes) {}
-  SingleFlight(std::size_t most_bytes, std::size_t largest) : kept_(most_bytes), largest_(largest) {}
+  SingleFlight(std::size_t most_bytes, std::size_t largest)
+      : kept_(most_bytes, std::chrono::minutes(5)), largest_(largest) {}
 
   struct Found {
     ValuePtr value;
@@ -62,7 +64,7 @@ class SingleFlight {
         sharing.reset();
         leave(*work);
       });
-      if (first) return make_for_all(key, work, make);
+      if (first) return make_for_all(key, client.name, work, make);
       ValuePtr value;
       std::exception_ptr error;
       {  // ends before `leaves` goes, which may be waiting for the mutex
@@ -83,11 +85,11 @@ class SingleFlight {
     const auto kept = kept_.find(key);
     return kept ? *kept : nullptr;
   }
-  // Keeps a value that was made elsewhere, as get() would.
-  void keep(const std::string& key, const ValuePtr& value) {
+  // Keeps a value that was made elsewhere for the client, as get() would.
+  void keep(const std::string& key, const std::string& client, const ValuePtr& value) {
     constexpr std::size_t kBeside = 4096;  // what the allocator adds to a large block, and the entries here
     const std::size_t bytes = kBeside + key.size() + held_bytes(*value);
-    if (bytes <= largest_) kept_.add(key, bytes, [&] { return value; });
+    if (bytes <= largest_) kept_.add(key, client, bytes, [&] { return value; });
   }
 
   std::size_t bytes() const { return kept_.bytes(); }
@@ -119,13 +121,14 @@ class SingleFlight {
     work.nobody_waits.request_stop();
   }
 
-  Found make_for_all(const std::string& key, const WorkPtr& work, const Make& make) {
+  Found make_for_all(const std::string& key, const std::string& client, const WorkPtr& work,
+                     const Make& make) {
     std::exception_ptr error;
     bool theirs = false;  // whether the error concerns the others
     ValuePtr value;
     try {
       value = std::make_shared<const Value>(make(work->nobody_waits.get_token()));
-      keep(key, value);
+      keep(key, client, value);
     } catch (const Busy&) {
       error = std::current_exception();
     } catch (const Cancelled&) {  // another may have come at the last moment

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/app/app.h"
+#include "server/routes/access.h"
 #include "server/routes/answers.h"
 
 // /v1/assets: mesh and picture files that scenes name by the hash of their bytes.
@@ -82,7 +83,7 @@ Response get_asset(App& app, Request& request) {
 }
 
 Response remove_asset(App& app, Request& request) {
-  app.assets().remove(request.path_value("sha256"));
+  app.assets().remove(request.path_value("sha256"), request.client, may_remove_others(app.access(), request));
   return {.status = 204};
 }
 

@@ -202,8 +202,9 @@ TEST_F(JobsTest, AreAtMostSoManyAtOnceAndHalfOfThemOneClients) {
 
 TEST_F(JobsTest, ThatEndedMakeRoomForBytesAndNoOthers) {
   limits_.bytes = 35;
-  const auto first = start(2), second = start(1);
+  const auto first = start(2);
   end_of(first);
+  const auto second = start(1);
   end_of(second);
   EXPECT_EQ(jobs().bytes(), 30U);
   const auto third = start(1);
@@ -215,6 +216,49 @@ TEST_F(JobsTest, ThatEndedMakeRoomForBytesAndNoOthers) {
   EXPECT_EQ(large.state, JobState::failed);
   EXPECT_EQ(large.steps_done, 3);
   EXPECT_NE(error_of(large).find("(job_bytes)"), std::string::npos) << error_of(large);
+}
+
+TEST_F(JobsTest, OfOthersStayHoweverManyAClientHasDone) {
+  limits_.ended = 10;
+  const auto other = start(
+      1, [](int) {}, "b");
+  end_of(other);
+  std::vector<JobPtr> flood;
+  for (int i = 0; i < 30; ++i) end_of(flood.emplace_back(start(1)));
+  EXPECT_TRUE(is_kept(other));
+  EXPECT_TRUE(is_kept(flood.back()));
+  EXPECT_EQ(std::count_if(flood.begin(), flood.end(), [&](const auto& job) { return is_kept(job); }), 9);
+}
+
+TEST_F(JobsTest, OfOthersStayHoweverManyBytesAClientsTake) {
+  limits_.bytes = 95;
+  const auto other = start(
+      2, [](int) {}, "b");
+  end_of(other);
+  for (int i = 0; i < 10; ++i) end_of(start(3));
+  const JobStatus large = end_of(start(12));
+  EXPECT_EQ(large.state, JobState::failed);
+  EXPECT_EQ(large.steps_done, 7);
+  EXPECT_TRUE(is_kept(other));
+}
+
+// A job under way goes as well where its client holds most and has no others.
+TEST_F(JobsTest, ThatTakeMostMakeRoomWhileTheyAreUnderWay) {
+  limits_.bytes = 60;
+  std::promise<void> go;
+  const auto goes = go.get_future().share();
+  const auto large = start(6, [&](int step) {
+    if (step == 5) goes.wait();
+  });
+  EXPECT_TRUE(test::eventually([&] { return large->status().steps_done == 5; }));
+  const auto other = start(
+      3, [](int) {}, "b");
+  EXPECT_EQ(end_of(other).state, JobState::done);
+  EXPECT_FALSE(is_kept(large));
+  go.set_value();
+  EXPECT_EQ(end_of(large).state, JobState::cancelled);
+  EXPECT_TRUE(is_kept(other));
+  EXPECT_EQ(jobs().bytes(), 30U);
 }
 
 TEST_F(JobsTest, LearnWhatTheirScenesTake) {

@@ -5,6 +5,7 @@
 #include "core/accelerators/registry.h"
 #include "core/base/error.h"
 #include "server/http/message.h"
+#include "server/http/over_limit.h"
 
 // Which scenes are loaded, and which go when there is no more room.
 namespace orrery {
@@ -167,6 +168,63 @@ TEST(SceneStore, KeptScenesStayWhileAnyoneKeepsThem) {
   store->keep(scene, kNoMeshes, "a");
   remove("c", true);
   EXPECT_FALSE(store.has(scene));
+}
+
+TEST(SceneStore, AFloodOfKeptScenesTakesNothingFromOthers) {
+  Store store(4 * size_of(ball("kept")) + 100);
+  store->keep(ball("kept"), kNoMeshes, "a");
+  store->get(ball("cach"), kNoMeshes, "b");
+  for (int i = 0; i < 50; ++i) store->keep(ball(std::to_string(1000 + i)), kNoMeshes, "flood");
+  for (int i = 0; i < 50; ++i) store->get(ball(std::to_string(2000 + i)), kNoMeshes, "flood");
+  EXPECT_TRUE(store.has(ball("kept")) && store.has(ball("cach")));
+  EXPECT_TRUE(store.has(ball("1049")) && store.has(ball("1048"))) << "it keeps what it kept last";
+  EXPECT_FALSE(store.has(ball("2049"))) << "and its cached scenes take nothing from kept ones";
+}
+
+TEST(SceneStore, RefusesASceneThatOthersLeaveNoRoomFor) {
+  const std::size_t small = size_of(ball("kept"));
+  const Document large = balls("large", 100);
+  Store store(size_of(large) + small / 2);
+  store->keep(ball("kept"), kNoMeshes, "a");
+  try {
+    store->keep(large, kNoMeshes, "b");
+    ADD_FAILURE() << "kept";
+  } catch (const OverLimit& error) {
+    EXPECT_STREQ(error.limit(), "store_bytes");
+  }
+  EXPECT_TRUE(store.has(ball("kept")));
+  EXPECT_EQ(store->bytes(), small);
+}
+
+TEST(SceneStore, OthersDoNotRemoveWhatAClientHasRendered) {
+  Store store(1 << 30);
+  const Document scene = ball("cach");
+  store->get(scene, kNoMeshes, "a");
+  EXPECT_THROW(store->remove(scene.id(), "b", false), HttpError);
+  store->keep(scene, kNoMeshes, "b");
+  store->remove(scene.id(), "b", false);
+  EXPECT_TRUE(store.has(scene));
+  store->remove(scene.id(), "a", false);
+  EXPECT_FALSE(store.has(scene));
+}
+
+// Another client may have much built for a scene: its keeper then loses that, and no scene.
+TEST(SceneStore, WhatIsBuiltForAKeptSceneCostsItsKeeperNoScene) {
+  const std::size_t bare = size_of(balls("kept", 2000));
+  Store store(3 * bare);
+  const auto scene = store->keep(balls("kept", 2000), kNoMeshes, "a").scene;
+  store->keep(ball("more"), kNoMeshes, "a");
+  {
+    const SceneStore::Measured measured(store.scenes, *scene);
+    double build_ms = 0;
+    store.work.open("b")->run({},
+                              [&] { world_for<float>(scene->parts(), accelerator_types()[0], 0, build_ms); });
+  }
+  EXPECT_GT(store->bytes(), scene->loaded_bytes());
+  EXPECT_EQ(store->bytes(), scene->bytes() + size_of(ball("more")));
+  store->keep(balls("new1", 2000), kNoMeshes, "c");
+  for (const Document& kept : {balls("kept", 2000), ball("more"), balls("new1", 2000)})
+    EXPECT_TRUE(store.has(kept));
 }
 
 // What was built for a kept scene goes before the scene does.

@@ -143,7 +143,7 @@ TEST_F(Assets, FilesAreNotForRequests) {
 }
 
 TEST(AssetLimits, HoldAndAreNamed) {
-  Daemon daemon({"--asset-bytes", "200", "--asset-store-bytes", "2400"});
+  Daemon daemon({"--asset-bytes", "200", "--asset-store-bytes", "4800"});
   httplib::Client client = daemon.client();
   const auto put = [&](const std::string& bytes) {
     return client.Put("/v1/assets/" + sha256_hex(bytes), bytes, "application/octet-stream");
@@ -153,7 +153,7 @@ TEST(AssetLimits, HoldAndAreNamed) {
   EXPECT_NE(refused.at("detail").get<std::string>().find("asset_bytes"), std::string::npos);
   std::vector<std::string> meshes;  // the store holds four of them
   for (int i = 0; i < 5; ++i) meshes.push_back(kTetrahedron + "# " + std::to_string(i) + "\n");
-  const std::size_t held = 2400 / (meshes[0].size() + 512);  // each with what it takes beside its bytes
+  const std::size_t held = 4800 / (meshes[0].size() + 1024);  // each with what it takes beside its bytes
   for (const auto& mesh : meshes) EXPECT_EQ(put(mesh)->status, 201);
   for (std::size_t i = 0; i < meshes.size(); ++i)
     EXPECT_EQ(client.Get("/v1/assets/" + sha256_hex(meshes[i]))->status,
