@@ -25,9 +25,9 @@ std::optional<std::string_view> lacking(Scope held, Scope needed);
 class Access {
  public:
   // tokens_file: a line each, "NAME SCOPE[,SCOPE...] SHA256-OF-TOKEN"; # begins a comment. Empty: everyone
-  // may do everything. share_key_file: bytes, at least 32, that links are signed with. Empty: there are no
-  // links. Throws InputError that names the file and the line; a
-  // file without tokens is an error.
+  // may do everything, but remove what others made. share_key_file: bytes, at least 32, that links are signed
+  // with. Empty: there are no links. Throws InputError that names the file and the line; a file without
+  // tokens is an error.
   Access(std::string tokens_file, std::string share_key_file);
 
   // Reads the files again. Throws as the constructor does, and then all stays as it is.

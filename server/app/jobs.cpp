@@ -95,13 +95,15 @@ void Jobs::forget_old() {
       ended_.set_weight(id, 1);
     }
   }
-  evict(old);
-  if (const auto surplus = ended_.make_room("", 0, static_cast<std::size_t>(limits_.ended), {}))
-    evict(*surplus);
+  forget(old);
+  if (const auto surplus = ended_.make_room("", 0, static_cast<std::size_t>(limits_.ended), {})) {
+    evictions_ += surplus->size();
+    forget(*surplus);
+  }
 }
 
 // The files of a job that has not ended stay until it has.
-void Jobs::evict(const std::vector<std::string>& ids) {
+void Jobs::forget(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
     bytes_.erase(id);
     ended_.erase(id);
@@ -122,7 +124,8 @@ void Jobs::make_room(const std::string& id, const std::string& client, std::size
   if (!evicted)
     throw InputError("", "the pictures of all jobs take more than " + std::to_string(limits_.bytes) +
                              " bytes (job_bytes)");
-  evict(*evicted);
+  evictions_ += evicted->size();
+  forget(*evicted);
   bytes_.set_weight(id, bytes_.weight(id) + bytes);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -42,6 +44,7 @@ class Jobs {
 
   std::size_t under_way();
   std::size_t bytes();
+  std::uint64_t evictions() const { return evictions_; }  // since the start
 
  private:
   struct Entry {
@@ -54,15 +57,16 @@ class Jobs {
   // Below: with mutex_ held.
   void require_place(const std::string& client) const;
   void forget_old();
-  void evict(const std::vector<std::string>& ids);
+  void forget(const std::vector<std::string>& ids);  // cancels those that have not ended
   bool is_kept(const std::string& id) const { return bytes_.rank(id).has_value(); }
 
   const RenderServices services_;
   const Limits limits_;
   std::mutex mutex_;
   std::vector<Entry> entries_;  // the oldest first; guarded by mutex_
-  // Guarded by mutex_: the bytes of all jobs, and the number of those that have ended, which limits_.kept
-  // protects.
+  std::atomic<std::uint64_t> evictions_{0};
+  // Guarded by mutex_: the bytes of all jobs, and the number of those that have ended. None of them is too
+  // old: limits_.kept ends them.
   FairShares bytes_{Clock::duration::max()}, ended_{Clock::duration::max()};
 };
 

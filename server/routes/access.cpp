@@ -65,7 +65,7 @@ Audience require_access(const Access& access, Scope needed, Request& request) {
 }
 
 bool may_remove_others(const Access& access, const Request& request) {
-  if (!access.needs_token()) return true;
+  if (!access.needs_token()) return false;
   const auto holder = access.holder_of(bearer_of(request.header("Authorization").value_or("")));
   return holder && !lacking(holder->scopes, Scope::admin);
 }

@@ -12,7 +12,8 @@ enum class Audience { all, holders, link };
 // notes who it is from. A link's own parameters are taken out of the query. Throws HttpError 401 or 403.
 Audience require_access(const Access& access, Scope needed, Request& request);
 
-// Whether the request may remove what others made: where there are tokens, that takes the scope admin.
+// Whether the request may remove what other clients made, which takes a token of the scope admin. Without
+// tokens, nobody may: there clients are known by their addresses.
 bool may_remove_others(const Access& access, const Request& request);
 
 // Whether the address has parameters of a link.

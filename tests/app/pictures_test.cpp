@@ -38,6 +38,18 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
   EXPECT_TRUE(get("a").made_here);
 }
 
+TEST(Pictures, OfAClientStayWhateverOthersAskFor) {
+  Pictures pictures(50'000);
+  const auto get = [&](const std::string& key, const std::string& client) {
+    return pictures.get(key, {kStays, client}, [&](const auto&) { return picture(std::string(3000, 'x')); });
+  };
+  EXPECT_TRUE(get("a", "one").made_here);
+  for (int i = 0; i < 100; ++i) get(std::to_string(i), "flood");
+  EXPECT_FALSE(get("a", "one").made_here);
+  EXPECT_FALSE(get("99", "flood").made_here);
+  EXPECT_GT(pictures.evictions(), 80U);
+}
+
 TEST(Pictures, TooLargeToKeepAreMadeAllTheSame) {
   Pictures pictures(0);
   for (int i = 0; i < 2; ++i)

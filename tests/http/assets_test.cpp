@@ -142,6 +142,41 @@ TEST_F(Assets, FilesAreNotForRequests) {
   EXPECT_EQ(problem.at("errors").at(0).at("pointer"), "/objects/0/file");
 }
 
+TEST_F(Assets, AreRemovedByClientsThatHavePutThemOnly) {
+  const std::string path = path_of(kTetrahedron);
+  httplib::Client other = daemon().client_at(2), third = daemon().client_at(3);
+  const auto put = [&](httplib::Client& client) {
+    return client.Put(path, kTetrahedron, "application/octet-stream")->status;
+  };
+  EXPECT_EQ(put(client_), 201);
+  expect_problem(other.Delete(path), 403);
+  EXPECT_EQ(put(other), 200);
+  EXPECT_EQ(client_.Delete(path)->status, 204);
+  EXPECT_EQ(client_.Get(path)->status, 200) << "the other client holds it";
+  expect_problem(client_.Delete(path), 403);
+  expect_problem(third.Delete(path), 403);
+  EXPECT_EQ(other.Delete(path)->status, 204);
+  expect_problem(client_.Get(path), 404);
+}
+
+TEST(AssetLimits, AFloodOfOneClientTakesNothingFromOthers) {
+  Daemon daemon({"--asset-store-bytes", "100000"});
+  httplib::Client client = daemon.client(), flood = daemon.client_at(2);
+  const std::string path = "/v1/assets/" + sha256_hex(kTetrahedron);
+  const auto put = [](httplib::Client& by, const std::string& bytes) {
+    return by.Put("/v1/assets/" + sha256_hex(bytes), bytes, "application/octet-stream");
+  };
+  EXPECT_EQ(put(client, kTetrahedron)->status, 201);
+  for (int i = 0; i < 20; ++i)
+    EXPECT_EQ(put(flood, kTetrahedron + "#" + std::string(30'000, static_cast<char>('a' + i)) + "\n")->status,
+              201);
+  EXPECT_EQ(client.Get(path)->status, 200);
+  EXPECT_GT(daemon.metric("orrery_evictions_total{store=\"assets\"}"), 10);
+  const auto refused = expect_problem(put(flood, kTetrahedron + "#" + std::string(98'000, 'z') + "\n"), 503);
+  EXPECT_NE(refused.at("detail").get<std::string>().find("asset_store_bytes"), std::string::npos) << refused;
+  EXPECT_EQ(client.Get(path)->status, 200);
+}
+
 TEST(AssetLimits, HoldAndAreNamed) {
   Daemon daemon({"--asset-bytes", "200", "--asset-store-bytes", "4800"});
   httplib::Client client = daemon.client();

@@ -120,6 +120,11 @@ Daemon::~Daemon() {
 }
 
 httplib::Client Daemon::client() const { return client_of(port_); }
+httplib::Client Daemon::client_at(int last_byte) const {
+  httplib::Client client = client_of(port_);
+  client.set_interface("127.0.0." + std::to_string(last_byte));
+  return client;
+}
 httplib::Client Daemon::health_client() const { return client_of(health_port_); }
 
 void Daemon::signal(int number) const { kill(pid_, number); }

@@ -21,6 +21,8 @@ class Daemon {
   int port() const { return port_; }
   int health_port() const { return health_port_; }
   httplib::Client client() const;
+  // Of another client: at 127.0.0.X.
+  httplib::Client client_at(int last_byte) const;
   httplib::Client health_client() const;
 
   void signal(int number) const;

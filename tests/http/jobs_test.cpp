@@ -295,6 +295,23 @@ TEST(JobLimits, EndedJobsKeepNeitherThreadsNorMoreThanTheirNumber) {
   EXPECT_EQ(daemon.client().Get(paths.back())->status, 200);
 }
 
+TEST(JobLimits, AFloodOfOneClientTakesNothingFromOthers) {
+  Daemon daemon({"--jobs-kept", "5"});
+  const json job = post_job(daemon, {{"scene", small_scene()}});
+  EXPECT_EQ(events_of(daemon, job).back().name, "done");
+  httplib::Client flood = daemon.client_at(2);
+  for (int i = 0; i < 20; ++i) {
+    const json tiny = {{"scene", small_scene({{"title", std::to_string(i)}})},
+                       {"image", {{"width", 1}, {"height", 1}}}};
+    const auto started = flood.Post("/v1/jobs", tiny.dump(), kJson);
+    ASSERT_EQ(started->status, 202) << started->body;
+    EXPECT_EQ(events_of(daemon, json::parse(started->body)).back().name, "done");
+  }
+  EXPECT_EQ(daemon.client().Get(job_path(job) + "/frames/0.png")->status, 200);
+  expect_problem(flood.Delete(job_path(job)), 403);
+  EXPECT_GT(daemon.metric("orrery_evictions_total{store=\"jobs\"}"), 10);
+}
+
 TEST(JobLimits, JobsThatWaitKeepNobodyElseOut) {
   Daemon daemon;
   for (int i = 0; i < 4; ++i) post_job(daemon, endless());

@@ -95,6 +95,18 @@ TEST_F(Scenes, ExplainGivesReasonsForThisQuery) {
     for (const char* part : {"subject", "choice", "reason"}) EXPECT_FALSE(decision.value(part, "").empty());
 }
 
+TEST_F(Scenes, AreRemovedByClientsThatHavePostedThemOnly) {
+  const std::string scene = small_scene({{"title", "of two"}}).dump(),
+                    path = "/v1/scenes/" + post_scene(scene);
+  httplib::Client other = daemon().client_at(2);
+  expect_problem(other.Delete(path), 403);
+  EXPECT_EQ(other.Post("/v1/scenes", scene, "application/json")->status, 200);
+  EXPECT_EQ(client_.Delete(path)->status, 204);
+  EXPECT_EQ(client_.Get(path)->status, 200) << "the other client keeps it";
+  EXPECT_EQ(other.Delete(path)->status, 204);
+  expect_problem(client_.Get(path), 404);
+}
+
 TEST(SceneStore, ForgetsTheScenesUnusedForLongest) {
   Daemon daemon({"--store-bytes", "20000"});
   httplib::Client client = daemon.client();

@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "server/http/answer_budget.h"
+#include "server/http/target.h"
+#include "server/routes/routes.h"
+#include "tests/http/daemon.h"
+#include "tests/support/eventually.h"
+
+// Files of jobs, as the answers that are sent of them.
+namespace orrery {
+namespace {
+
+class JobFiles : public testing::Test {
+ protected:
+  JobFiles() { add_routes(router_, app_); }
+  Response answer(const std::string& method, const std::string& path, std::string body = {}) {
+    Request request;
+    request.method = method;
+    Target target = parse_target(path);
+    request.path = std::move(target.path);
+    request.segments = std::move(target.segments);
+    request.body = std::move(body);
+    request.client = "somebody";
+    return router_.find(request).handler(request);
+  }
+  static nlohmann::json json_of(const Response& response) {
+    return nlohmann::json::parse(std::string_view(response.body));
+  }
+
+  SteadyTimer timer_;
+  App app_{Settings(), timer_};
+  Router router_;
+};
+
+TEST_F(JobFiles, AreTheSameBytesForAllReaders) {
+  const nlohmann::json order = {{"scene", small_scene()}, {"image", {{"width", 400}, {"height", 300}}}};
+  const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));
+  EXPECT_TRUE(test::eventually([&] { return json_of(answer("GET", job)).at("state") == "done"; }));
+  AnswerBudget budget(200'000);
+  std::vector<AnswerBudget::Share> shares;
+  std::set<const char*> places;
+  for (int reader = 0; reader < 100; ++reader) {
+    const Response response = answer("GET", job + "/frames/0.png");
+    EXPECT_EQ(response.status, 200);
+    EXPECT_GT(response.body.size(), 70'000U) << "smaller ones take nothing of the budget";
+    places.insert(response.body.data());
+    shares.push_back(budget.take(response.body, "reader " + std::to_string(reader)));
+  }
+  EXPECT_EQ(places.size(), 1U);
+}
+
+// A reader keeps the bytes that it is sent, whatever becomes of the job.
+TEST_F(JobFiles, OutliveTheirJobWhileTheyAreSent) {
+  const nlohmann::json order = {{"scene", small_scene()}};
+  const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));
+  EXPECT_TRUE(test::eventually([&] { return json_of(answer("GET", job)).at("state") == "done"; }));
+  const Response response = answer("GET", job + "/frames/0.png");
+  const std::string copy{std::string_view(response.body)};
+  EXPECT_EQ(answer("DELETE", job).status, 204);
+  EXPECT_EQ(std::string_view(response.body), copy);
+  EXPECT_TRUE(is_png(copy));
+}
+
+}  // namespace
+}  // namespace orrery
