@@ -22,7 +22,7 @@ class JobFiles : public testing::Test {
     Target target = parse_target(path);
     request.path = std::move(target.path);
     request.segments = std::move(target.segments);
-    request.body = std::move(body);
+    request.body = Body(std::move(body));
     request.client = "somebody";
     return router_.find(request).handler(request);
   }
