@@ -94,7 +94,7 @@ class Copy {
     this.source = join(folder, "source");
     this.build = join(folder, "build");
     // Paths below the folder do not count for ccache: every temporary folder profits from the last one.
-    this.environment = {CCACHE_BASEDIR: folder, ...process.env, TEST_ORRERY: join(this.build, "orrery")};
+    this.environment = {CCACHE_BASEDIR: folder, TEST_EXHAUSTIVE: "yes", ...process.env, TEST_ORRERY: join(this.build, "orrery")};
     mkdirSync(this.source, {recursive: true});
     copyTree(this.source);
   }

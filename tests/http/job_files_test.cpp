@@ -36,7 +36,7 @@ class JobFiles : public testing::Test {
 };
 
 TEST_F(JobFiles, AreTheSameBytesForAllReaders) {
-  const nlohmann::json order = {{"scene", small_scene()}, {"image", {{"width", 400}, {"height", 300}}}};
+  const nlohmann::json order = {{"scene", small_scene()}, {"image", {{"width", 1200}, {"height", 900}}}};
   const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));
   EXPECT_TRUE(test::eventually([&] { return json_of(answer("GET", job)).at("state") == "done"; }));
   AnswerBudget budget(200'000);

@@ -2,7 +2,9 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 #include "tests/http/daemon.h"
 
@@ -44,7 +46,8 @@ TEST(LogPipe, ThatNobodyReadsStopsNoRequestAndNoEnd) {
   Daemon daemon({}, pipe.ends[1]);
   expect_answers(daemon, kMany);
   EXPECT_TRUE(pipe.is_full());
-  EXPECT_GT(daemon.metric("orrery_log_lines_dropped_total"), 0);
+  while (daemon.metric("orrery_log_lines_dropped_total") == 0)  // the first one waits for a reader
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0);
 }

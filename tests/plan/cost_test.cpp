@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/plan/plan.h"
+#include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
 #include "tests/support/sanitized.h"
 
@@ -126,7 +127,7 @@ class CostOfSamples : public testing::TestWithParam<std::string> {};
 TEST_P(CostOfSamples, IsOfTheOrderOfWhatIsTraced) {
   const auto scene = load(sample(GetParam()));
   RenderRequest request = size(160, 120);
-  if (kSanitized) request.samples = 2;
+  if (kSanitized || !exhaustive()) request.samples = 2;
   const double traced = static_cast<double>(render(scene, request).stats.counts.rays.total());
   const double share = expected_rays(*scene, make_plan(*scene, request)) / traced;
   RecordProperty("expected_over_traced", std::to_string(share));

@@ -8,6 +8,7 @@
 #include "core/channels/registry.h"
 #include "core/plan/plan.h"
 #include "tests/support/covers.h"
+#include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
 #include "tests/support/sanitized.h"
@@ -101,7 +102,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, HardForFloat, testing::ValuesIn(hard_scenes()),
 TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
   for (const std::string& name : sample_names()) {
     Json scene = sample(name);
-    scene["image"] = {{"width", kSanitized ? 32 : 96}, {"height", kSanitized ? 24 : 72}};
+    const bool small = kSanitized || !exhaustive();
+    scene["image"] = {{"width", small ? 32 : 96}, {"height", small ? 24 : 72}};
     const auto loaded = load(scene);
     EXPECT_FALSE(make_plan(*loaded, {}).double_precision) << name;
     EXPECT_LE(error_of_choice(loaded), kMostError) << name;

@@ -3,6 +3,7 @@
 #include "core/accelerators/registry.h"
 #include "core/model/technique.h"
 #include "tests/support/covers.h"
+#include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
 #include "tests/support/sanitized.h"
@@ -14,7 +15,7 @@ namespace {
 
 // What sanitizers look for shows in fewer pixels.
 RenderRequest small(int samples = 1) {
-  RenderRequest request = kSanitized ? size(80, 60) : size(160, 120);
+  RenderRequest request = kSanitized || !exhaustive() ? size(80, 60) : size(160, 120);
   request.samples = samples;
   return request;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/support/covers.h"
+#include "tests/support/exhaustive.h"
 #include "tests/support/shapes.h"
 
 // Every registered shape, in float and in double, against its own formula in long double. The measure is
@@ -99,7 +100,7 @@ Verdict judge(const Json& object, const Placement& placement, int count, std::ui
 
 class ShapeOracle : public testing::TestWithParam<std::string> {
  protected:
-  static constexpr int kRays = 100'000;  // for each shape type and precision
+  const int kRays = exhaustive() ? 100'000 : 10'000;  // for each shape type and precision
 
   template <class T>
   void check() {
