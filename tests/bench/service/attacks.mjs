@@ -1,6 +1,7 @@
 // Requests of under 64 KiB that ask for as much work as they can.
 
 import { readFileSync } from "node:fs";
+import { many_attributes_exr, put_asset, text_png, tiny_jpeg } from "./pictures.mjs";
 import { kLayers, kPaper } from "./support.mjs";
 
 const kGlass = { type: "refractive", ior: 1.5, fresnel: "exact" };
@@ -101,7 +102,26 @@ const structures = ["list", "boxes", "obb-tree", "octree", "kd-sah", "adaptive-g
 // What is asked of a scene that was posted before: `id`.
 const of_scene = (name, scene, ask) => [name, ask, scene];
 
-// [name, request(number, id), scene(number) whose id it takes]
+const kNumbers = `[${Array(15_000).fill("[0]").join(",")}]`;
+const post = (path, body) => ({ method: "POST", path, body: typeof body === "string" ? body : JSON.stringify(body) });
+const sphere_of = (number, material) => scene_of(number, material, [sphere(1)], {});
+
+// Answers that take no turn, or files for decoders: 180 clients at once ask for these, too.
+const kSmall = [
+  ["the catalog", () => ({ path: "/v1/catalog" })],
+  ["the description of the service", () => ({ path: "/openapi.json" })],
+  ["explanations", (n, id) => ({ path: `/v1/scenes/${id}/explain?seed=${n}` }), (n) => sphere_of(n, kGlass)],
+  ["a long wrong name", (n) => post("/v1/scenes", sphere_of(n, { type: "r".repeat(60_000) }))],
+  ["many wrong names", (n) => post("/v1/scenes", { ...sphere_of(n, kRough), ...Object.fromEntries(Array.from({ length: 4000 }, (_, i) => [`x${i}`, 0])) })],
+  ["shares of many numbers", () => post("/v1/shares", kNumbers)],
+  ["jobs of one pixel", (n) => post("/v1/jobs", { scene: { ...sphere_of(n, kRough), image: { width: 1, height: 1 } } })],
+  ["JPEGs of 362 bytes", (n) => put_asset(tiny_jpeg(n))],
+  ["JPEGs of many scans", (n) => put_asset(tiny_jpeg(n, 200))],
+  ["PNGs of long texts", (n) => put_asset(text_png(n))],
+  ["EXRs of many attributes", (n) => put_asset(many_attributes_exr(n))],
+].map(([name, ask, scene]) => [name, ask, scene, 180]);
+
+// [name, request(number, id), scene(number) whose id it takes, clients at once beyond the usual]
 export const kAttacks = [
   ...[4, 8, 12, 16, 24, 32].map((depth) => glass_of(depth, 2)),
   ...[16, 32].map((depth) => glass_of(depth, 12)),
@@ -171,9 +191,5 @@ export const kAttacks = [
       }),
     }),
   ],
-  of_scene(
-    "explanations",
-    (n) => scene_of(n, kGlass, shells(12), { depth: 32 }),
-    (n, id) => ({ path: `/v1/scenes/${id}/explain?seed=${n}` }),
-  ),
+  ...kSmall,
 ];

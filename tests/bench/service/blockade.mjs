@@ -22,6 +22,10 @@ const kForces = [
   { count: 16, addresses: 8 },
 ];
 
+function forces_of([, , , count]) {
+  return count ? [...kForces, { count, addresses: 1 }, { count, addresses: 8 }] : kForces;
+}
+
 // Asks every kPeriod_ms, whatever the last answer does, until stop(), which resolves to all answers.
 export function open_loop(port, path_of, address) {
   const answers = [];
@@ -120,11 +124,11 @@ async function run({ seconds }) {
   const wanted = process.env.BENCH_ATTACK ?? "";
   const tries = [];
   for (const one of kAttacks.filter(([name]) => name.includes(wanted)))
-    for (const force of kForces) {
+    for (const force of forces_of(one)) {
       tries.push(await with_service((service, { paper }) => try_attack(service, paper, one, force, seconds)));
       tell(tries.at(-1));
     }
-  return { rows: rows_of(tries), remark: `${kAttacks.length} attacks, alone, 16 at once from one address and from 8` };
+  return { rows: rows_of(tries), remark: `${kAttacks.length} attacks, alone, 16 at once from one address and from 8, some 180 at once` };
 }
 
 export const kBlockade = {

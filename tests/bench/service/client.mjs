@@ -40,10 +40,12 @@ export class Client {
     this.#address = address;
   }
 
+  // `body`: text or a Buffer.
   ask(path, { method = "GET", headers = {}, body = "" } = {}) {
     const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
     const length = body.length > 0 ? `Content-Length: ${Buffer.byteLength(body)}\r\n` : "";
-    const bytes = `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1\r\n${length}${lines.join("")}\r\n${body}`;
+    const head = `${method} ${path} HTTP/1.1\r\nHost: 127.0.0.1\r\n${length}${lines.join("")}\r\n`;
+    const bytes = typeof body === "string" ? head + body : Buffer.concat([Buffer.from(head), body]);
     return new Promise((resolve) => {
       this.#waiting = {
         resolve,

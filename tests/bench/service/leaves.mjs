@@ -1,8 +1,9 @@
 // Clients that leave: how soon the work for them ends.
 
 import { Client, header_of } from "./client.mjs";
+import { put_asset, tiny_jpeg } from "./pictures.mjs";
 import {
-  Gauges, closed_loop, kRendersAtOnce, most, ms, new_picture, p99, pause, row, with_service,
+  Gauges, closed_loop, decoders_of, kRendersAtOnce, most, ms, new_picture, p99, pause, row, with_service,
 } from "./support.mjs";
 import { cpu_seconds } from "../daemon.mjs";
 
@@ -102,6 +103,31 @@ async function leave_waiting(service, gauges, scenes, times) {
   return took.filter(is_time);
 }
 
+async function until(holds, limit_ms = 30_000) {
+  const start = performance.now();
+  while (!holds()) {
+    if (performance.now() - start > limit_ms) return NaN;
+    await pause(1);
+  }
+  return performance.now() - start;
+}
+
+// Leaves while a picture file is decoded, which takes seconds.
+async function leave_decoding(service, times) {
+  const took = [];
+  for (let i = 0; i < times; ++i) {
+    const client = new Client(service.port);
+    const { path, ...request } = put_asset(tiny_jpeg(i, 250));
+    const answer = client.ask(path, request);
+    await until(() => decoders_of(service.pid).length > 0);
+    await pause(200 * Math.random());
+    client.leave();
+    const ended = await until(() => decoders_of(service.pid).length === 0);
+    if ((await answer).failure === "left") took.push(ended);
+  }
+  return took;
+}
+
 // All pictures in one lane, so that long ones keep short ones waiting, however many.
 const kOneLane = ["--interactive-rays", 1e12, "--queue-rays", 1e12];
 
@@ -114,12 +140,14 @@ async function run({ times }) {
     const left_over = (cpu_seconds(service.pid) - before) / 0.5;
     const waiting = await leave_waiting(service, gauges, scenes, times);
     await gauges.until(is_idle);
+    const decoding = await leave_decoding(service, Math.ceil(times / 20));
     const large = await leave_large(service, gauges, scenes, Math.ceil(times / 20));
     gauges.close();
     return {
       rows: [
         report("left while traced: until no work runs", tracing, kRunning_ms),
         report("left while queued: until its work is given up", waiting, kWaiting_ms),
+        report("left while a file is decoded: until no decoder runs", decoding, kRunning_ms),
         report("left any time in 16 Mpixel: until no work runs", large.took, kRunning_ms),
       ],
       remark:

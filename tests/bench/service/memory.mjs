@@ -4,6 +4,7 @@ import { createHash } from "node:crypto";
 import net from "node:net";
 import { kVictim, open_loop } from "./blockade.mjs";
 import { Client } from "./client.mjs";
+import { many_attributes_exr, put_asset, text_png, tiny_jpeg } from "./pictures.mjs";
 import {
   Gauges, kLayers, memory_bound, mib, most, ms, new_picture, outcome, p99, pause, process_state, row, tally,
   with_service,
@@ -51,6 +52,7 @@ function sheet(side) {
 }
 
 const kNested = `[${Array(330_000).fill("[[1]]").join(",")}]`;
+const kLongName = "x".repeat(4_000_000);
 const kNumbers = `[${Array(900_000).fill("1").join(",")}]`;
 
 async function put(port, text) {
@@ -84,6 +86,11 @@ function requests(assets) {
     () => ({ path: "/v1/jobs", method: "POST", ...json({ scene: scene_of(mesh()), frames: 50 }) }),
     () => ({ path: "/v1/jobs", method: "POST", ...json({ scene: scene_of(ball(), 4096), frames: 50 }) }),
     () => ({ path: `/v1/assets/${pick(assets)}` }),
+    () => ({ path: "/v1/shares", method: "POST", headers: { "Content-Type": "application/json" }, body: kNumbers }),
+    () => ({ path: "/v1/scenes", method: "POST", ...json({ ...scene_of([]), materials: { m: { type: kLongName } } }) }),
+    () => put_asset(tiny_jpeg(++number)),
+    () => put_asset(text_png(++number)),
+    () => put_asset(many_attributes_exr(++number, 40_000)),
   ];
 }
 

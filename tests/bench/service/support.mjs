@@ -71,11 +71,34 @@ export const none_row = (what, bad) =>
 
 // ---- the service as the kernel and its own metrics see it
 
+const status_of = (pid) => readFileSync(`/proc/${pid}/status`, "utf8");
+const resident_of = (pid) => 1024 * Number(/VmRSS:\s*(\d+)/.exec(status_of(pid))?.[1] ?? 0);
+
+// Process ids of those that decode pictures for the service.
+export function decoders_of(pid) {
+  const children = (task) => {
+    try {
+      return readFileSync(`/proc/${pid}/task/${task}/children`, "utf8").split(" ").filter(Boolean);
+    } catch {
+      return []; // the thread has ended
+    }
+  };
+  return readdirSync(`/proc/${pid}/task`).flatMap(children);
+}
+
+// `resident` has the memory of the service's decoders too.
 export function process_state(pid) {
-  const status = readFileSync(`/proc/${pid}/status`, "utf8");
+  let resident = resident_of(pid);
+  for (const decoder of decoders_of(pid)) {
+    try {
+      resident += resident_of(decoder);
+    } catch {
+      // it has ended
+    }
+  }
   return {
-    resident: 1024 * Number(/VmRSS:\s*(\d+)/.exec(status)[1]),
-    threads: Number(/Threads:\s*(\d+)/.exec(status)[1]),
+    resident,
+    threads: Number(/Threads:\s*(\d+)/.exec(status_of(pid))[1]),
     descriptors: readdirSync(`/proc/${pid}/fd`).length,
   };
 }
