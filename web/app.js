@@ -2,7 +2,7 @@
 
 import { attach_accuracy } from "./accuracy.js";
 import { get_json, post_scene } from "./api.js";
-import { picture_at_rest, picture_for, picture_to_chart } from "./asked.js";
+import { moving_pictures, picture_at_rest, picture_for, picture_to_chart } from "./asked.js";
 import { persist, wake_all } from "./backoff.js";
 import { OrbitCamera } from "./camera.js";
 import { attach_controls, kZoomStep, step } from "./controls.js";
@@ -15,7 +15,7 @@ import { Player } from "./player.js";
 import { hide_problem, show_problem } from "./problem.js";
 import { show_progress } from "./progress.js";
 import { refused_of } from "./refusal.js";
-import { facts_of, SceneLibrary } from "./scenes.js";
+import { facts_of, SceneLibrary, thumbnail_of } from "./scenes.js";
 import { attach_curl, attach_download } from "./share.js";
 import { format_hash, kDefaults, parse_hash, view_of } from "./state.js";
 import { attach_tabs } from "./tabs.js";
@@ -31,7 +31,7 @@ const state = parse_hash(location.hash);
 const library = new SceneLibrary();
 const camera = new OrbitCamera();
 const stage = $("stage");
-const view = new View(stage, $("canvas"));
+const view = new View(stage, $("canvas"), $("poster"));
 const hud = new Hud($("hud"));
 const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
 let scene = null; // the scene shown; null while another is opened
@@ -43,7 +43,7 @@ let pans = false;
 const page = () => ({ state, scene, view, limits });
 
 const player = new Player(camera, view, {
-  picture: (purpose, level) => scene && picture_for(page(), purpose, level, camera.view),
+  moving: (purpose, at) => (scene ? moving_pictures(page(), purpose, at) : []),
   at_rest: (at) => scene && { picture: picture_at_rest(page(), at), asked: state.samples > 0 || state.plan !== "" },
   missing: () => post_again(),
   stats: (kind, figures) => {
@@ -113,6 +113,7 @@ async function open_scene(at) {
   scene = null;
   accuracy.show();
   player.invalidate();
+  announce();
   try {
     const opened = await persist(() => library.open(state.scene), show_waiting, wanted);
     if (!wanted()) return;
@@ -125,9 +126,18 @@ async function open_scene(at) {
   }
 }
 
-function show_nothing() {
-  view.clear();
+// The scene before, its figures and what is said of it are of no interest any more.
+function announce() {
+  const sample = library.sample(state.scene);
+  view.announce(sample ? thumbnail_of(sample) : "");
+  stage.dataset.scene = state.scene;
+  hud.clear();
+  hide_fail();
   show_warning("");
+}
+
+function show_nothing() {
+  view.announce("");
   document.title = "orrery";
   stage.setAttribute("aria-label", "Orbit view");
 }
@@ -141,7 +151,7 @@ function unknown_scene({ request_id }) {
 function show_scene(opened, at) {
   opening += 1;
   scene = { ...opened, ...facts_of(opened) };
-  state.scene = opened.ref;
+  state.scene = stage.dataset.scene = opened.ref;
   camera.use_scene_camera(opened.camera, scene.floor);
   camera.jump(view_of(at));
   hide_fail();
@@ -303,7 +313,7 @@ function dolly(factor) {
 // By pixels on the stage: what lies at the target's distance keeps under the pointer.
 function pan(right, up) {
   if (!scene) return;
-  const { width, height, fov } = picture_for(page(), "still", 0, camera.view);
+  const { width, height, fov } = picture_for(page(), "still", camera.view);
   const shown_height = Math.min(view.box.height, (view.box.width * height) / width);
   camera.pan(right / shown_height, up / shown_height, fov);
   moved();
@@ -375,7 +385,7 @@ async function start() {
     set_option,
   );
   options.show(state, null);
-  gallery = new Gallery($("gallery"), library, limits, pick_sample);
+  gallery = new Gallery($("gallery"), library, pick_sample);
   await open_scene(state);
 }
 

@@ -1,15 +1,8 @@
-// The sample scenes, a list box: one stop of the tab key, in which arrows, Home, End and first letters move. A thumbnail
-// is asked for once its row is in sight, one at a time, so that thumbnails never
-// crowd out the picture.
+// The sample scenes, a list box: one stop of the tab key, in which arrows, Home, End and first letters move.
 
-import { get_frame } from "./api.js";
 import { element } from "./problem.js";
-import { title_of } from "./scenes.js";
-import { picture_size } from "./size.js";
-import { frame_url } from "./urls.js";
-import { decode } from "./view.js";
+import { thumbnail_of, title_of } from "./scenes.js";
 
-const kThumbnail = { width: 96, height: 72 }; // CSS pixels, as in style.css
 const kFirst = "paper";
 const kHeadings = {
   // by what a sample's name starts with, in the order shown
@@ -48,23 +41,13 @@ export class Gallery {
   #root;
   #library;
   #on_pick;
-  #limits;
-  #queue = Promise.resolve();
 
-  constructor(root, library, limits, on_pick) {
+  constructor(root, library, on_pick) {
     this.#root = root;
     this.#library = library;
-    this.#limits = limits;
     this.#on_pick = on_pick;
-    const watcher = new IntersectionObserver((entries) => {
-      for (const entry of entries.filter((each) => each.isIntersecting)) {
-        watcher.unobserve(entry.target);
-        this.#queue = this.#queue.then(() => this.#load_thumbnail(entry.target)).catch(() => {});
-      }
-    });
     root.addEventListener("keydown", (event) => this.#move(event));
     root.replaceChildren(...Object.keys(kHeadings).flatMap((kind) => this.#group(kind)));
-    for (const box of root.querySelectorAll(".thumbnail")) watcher.observe(box);
   }
 
   // Selects the scene that `ref` names, if it is a sample.
@@ -113,33 +96,20 @@ export class Gallery {
   }
 
   #row(sample) {
-    const thumbnail = element("span", "", "thumbnail");
+    const thumbnail = element("img", "", "thumbnail");
+    thumbnail.alt = "";
+    thumbnail.loading = "lazy";
+    thumbnail.src = thumbnail_of(sample);
     const text = element("span", "", "words");
     text.append(element("strong", title_of(sample)), element("span", sample.description));
     const button = element("button");
     button.role = "option";
-    button.dataset.name = thumbnail.dataset.name = sample.name;
+    button.dataset.name = sample.name;
     button.append(thumbnail, text);
     button.addEventListener("click", () => this.#on_pick(sample.name));
     const row = element("li");
     row.role = "none";
     row.append(button);
     return row;
-  }
-
-  async #load_thumbnail(box) {
-    const scene = await this.#library.open(box.dataset.name);
-    const size = picture_size({
-      mode: "fit",
-      purpose: "still",
-      box: kThumbnail,
-      pixel_ratio: 2,
-      scene,
-      limits: this.#limits,
-    });
-    const url = frame_url({ id: scene.id, azimuth: 0, elevation: 0, distance: 1, ...size, samples: 1 });
-    const canvas = element("canvas");
-    canvas.getContext("bitmaprenderer").transferFromImageBitmap(await decode((await get_frame(url)).png));
-    box.append(canvas);
   }
 }

@@ -3,11 +3,18 @@
 import { element } from "./problem.js";
 import { rounded } from "./progress.js";
 
-const kFields = ["fps", "render", "encode", "rays", "size", "skipped", "rmse"];
+// [label, what it is]
+const kFields = {
+  fps: ["fps", "Frames shown in a second"],
+  render: ["render", "Time to trace the rays of the last picture"],
+  encode: ["encode", "Time to write it as PNG"],
+  rays: ["rays/s", "Rays traced in a second"],
+  size: ["size", "Pixels of the last picture"],
+  skipped: ["skipped", "Frames that came too late to be shown"],
+  rmse: ["error", "Root mean square error of a pixel, in linear radiance, as its samples show"],
+};
 const kRefreshMs = 250;
 const kWindowMs = 1500; // frames per second are counted over this long
-
-const kLabels = { rays: "rays/s", rmse: "RMSE" };
 
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
@@ -25,11 +32,12 @@ export class Hud {
 
   // Fills `list`, a <dl>.
   constructor(list) {
-    for (const name of kFields) {
+    for (const [name, [label, title]] of Object.entries(kFields)) {
       const field = (this.#fields[name] = element("dd", "–"));
       field.id = `hud-${name}`;
       const pair = element("div");
-      pair.append(element("dt", kLabels[name] ?? name), field);
+      pair.title = title;
+      pair.append(element("dt", label), field);
       list.append(pair);
     }
   }
@@ -44,6 +52,14 @@ export class Hud {
     const wait = kind === "still" ? 0 : kRefreshMs - (now - this.#last_write);
     if (wait <= 0) this.#write();
     else this.#timer = setTimeout(() => this.#write(), wait);
+  }
+
+  // Another scene is to be shown.
+  clear() {
+    clearTimeout(this.#timer);
+    this.#times = [];
+    this.#figures = null;
+    for (const field of Object.values(this.#fields)) field.textContent = "–";
   }
 
   // No frames come at present.

@@ -1,10 +1,12 @@
 // How fast and how fine an orbit is asked for. Every frame is rendered, so slow frames make it turn too slowly. Then
 // the stream is asked for anew: coarser as long as it would stutter, else with fewer frames and a wider step; and finer
-// again once that would not stutter by far.
+// again as far as that would not stutter.
 
 const kMostFps = 30;
 const kSmoothFps = 12; // below this it stutters
-const kFinerFps = 2 * kSmoothFps; // what a finer orbit has to promise
+const kFinerFps = 16; // what a finer orbit has to promise
+const kFinerAfterMs = 200; // and the rate that it is judged by is measured this long
+const kAgainMs = 5000; // what was too slow is not tried again before
 const kTolerance = 0.85; // of the planned rate
 const kWindowMs = 1000; // a judgement of the rate rests on this much, and on three frames or one long gap
 const kLongGapMs = 1500;
@@ -14,15 +16,18 @@ export class Pace {
   fps = kMostFps;
   level = 0; // 0: as asked; each level above is coarser
   #kind = ""; // what was found out holds for
+  #slow = { level: -1, until: 0 }; // the last level that was too slow
   #times = [];
   #longest_ms = 0; // of the frames at #times
 
-  // An orbit of `picture` begins. Another size of the window changes nothing, but what the user chooses does.
-  play({ id, width, height, fills, technique, samples }) {
+  // An orbit of `picture` begins, at `level` unless one was found already. Another size of the window changes nothing,
+  // but what the user chooses does.
+  play({ id, width, height, fills, technique, samples }, level = 0) {
     const kind = [id, fills || `${width}x${height}`, technique, samples].join();
     if (kind === this.#kind) return;
     this.#kind = kind;
-    this.#change_level(0);
+    this.#slow = { level: -1, until: 0 };
+    this.#change_level(level);
     this.restart();
   }
 
@@ -36,24 +41,24 @@ export class Pace {
   // same unit and less than the one before. Returns whether fps or level changed, so that the stream should be asked
   // for anew.
   note(now, work_ms, speed, costs) {
-    const expected_ms = (level) => (work_ms * costs[level]) / costs[this.level];
-    const coarsest = costs.length - 1;
-    if (work_ms > 1000 / kSmoothFps && this.level < coarsest) {
-      const smooth = costs.findIndex((_, level) => level > this.level && expected_ms(level) <= 1000 / kSmoothFps);
-      return this.#change_level(smooth < 0 ? coarsest : smooth);
+    if (work_ms > 1000 / kSmoothFps && this.level < costs.length - 1) {
+      const smooth = first_within(costs, work_ms / costs[this.level], 1000 / kSmoothFps);
+      return this.#get_coarser(now, Math.max(smooth, this.level + 1));
     }
     this.#times.push(now);
     this.#longest_ms = Math.max(this.#longest_ms, work_ms);
     const span = now - this.#times[0];
     const count = this.#times.length - 1;
-    if (count < 1 || !((span >= kWindowMs && count >= 3) || span >= kLongGapMs)) return false;
     const rate = (count * 1000) / span;
-    const longest_ms = this.#longest_ms;
+    if (count >= 3 && span >= kFinerAfterMs && rate >= kFinerFps) {
+      const finer = first_within(costs, this.#longest_ms / costs[this.level], 1000 / kFinerFps);
+      const finest = now < this.#slow.until ? this.#slow.level + 1 : 0;
+      if (Math.max(finer, finest) < this.level) return this.#change_level(Math.max(finer, finest));
+    }
+    if (count < 1 || !((span >= kWindowMs && count >= 3) || span >= kLongGapMs)) return false;
     this.restart();
     this.#times = [now];
-    if (rate < kTolerance * this.fps) return this.#slow_down(rate, speed, this.level < coarsest);
-    if (this.level > 0 && (longest_ms * costs[this.level - 1]) / costs[this.level] < 1000 / kFinerFps)
-      return this.#change_level(this.level - 1);
+    if (rate < kTolerance * this.fps) return this.#slow_down(now, rate, speed, this.level < costs.length - 1);
     const possible = Math.min(kMostFps, 700 / work_ms);
     if (possible < 1.3 * this.fps) return false;
     this.fps = possible;
@@ -66,10 +71,21 @@ export class Pace {
     return true;
   }
 
-  #slow_down(rate, speed, coarser) {
-    if (rate < kSmoothFps && coarser) return this.#change_level(this.level + 1);
+  #get_coarser(now, level) {
+    this.#slow = { level: level - 1, until: now + kAgainMs };
+    return this.#change_level(level);
+  }
+
+  #slow_down(now, rate, speed, coarser) {
+    if (rate < kSmoothFps && coarser) return this.#get_coarser(now, this.level + 1);
     const before = this.fps;
     this.fps = Math.min(before, Math.max(rate, Math.abs(speed) / kWidestStep));
     return this.fps < before;
   }
+}
+
+// The number of the first cost that takes at most `ms`, at `unit_ms` for a cost of 1; of the last where none does.
+function first_within(costs, unit_ms, ms) {
+  const at = costs.findIndex((cost) => cost * unit_ms <= ms);
+  return at < 0 ? costs.length - 1 : at;
 }

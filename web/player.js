@@ -1,20 +1,22 @@
-// Decides what the canvas shows: the orbit's stream while playing, small quick pictures while the view moves by
-// hand, and finer and finer full ones once it rests.
+// Decides what the canvas shows: the orbit's stream while playing, quick pictures while the view moves by hand, and
+// finer and finer full ones once it rests. A scene that is new here begins with the cheapest picture.
 
 import { get_frame, is_abort } from "./api.js";
 import { Backoff } from "./backoff.js";
+import { amount, Cost } from "./cost.js";
 import { play_stream } from "./orbit_stream.js";
 import { Pace } from "./pace.js";
-import { kStreams } from "./quality.js";
-import { amount, decode_unless, Refiner } from "./refine.js";
+import { decode_unless, Refiner } from "./refine.js";
 import { frame_url, orbit_url } from "./urls.js";
 import { decode } from "./view.js";
 
 const kRestMs = 100; // without input for this long, the view counts as at rest
 const kRestartMs = 150; // changes of size or speed are gathered this long
-const kQuickMs = 60; // previews slower than this get a quarter of each side instead of a half
+const kPreviewMs = 75; // from asking to showing, of what follows the hand
+const kFrameMs = 60; // of an orbit's frames, before one was seen
+const kDraftMs = 100; // a first picture that takes longer follows a draft
 
-// `on` has: picture(purpose, level) -> picture or null, at_rest(view) -> {picture, asked} or null, missing() -> promise
+// `on` has: moving(purpose, view) -> pictures, each cheaper than the one before, none where there is no scene; at_rest(view) -> {picture, asked} or null, missing() -> promise
 // (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error), progress(figures or null),
 // stale() when another picture is due, settled() when the view no longer moves, rested() when the picture is final.
 export class Player {
@@ -34,10 +36,12 @@ export class Player {
   #shown_samples = 0; // likewise
   #shown_location; // likewise: the address that gives it again, where a budget has made it
   #shown_figures; // likewise
-  #refiner = new Refiner();
+  #shown_id = ""; // scene on the canvas
+  #cost = new Cost(); // of rendering
+  #delay = new Cost(); // of previews, from asking to showing
+  #refiner = new Refiner(this.#cost);
   #preview_busy = false;
   #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
-  #preview_slow = 0; // level of previews
   // None is asked for before, where one failed.
   #preview_from = 0;
   #pace = new Pace();
@@ -99,7 +103,7 @@ export class Player {
   // Lets the next refresh fetch even an equal picture.
   invalidate() {
     this.#stop();
-    this.#shown = "";
+    this.#shown = this.#shown_id = "";
     this.#epoch += 1;
   }
 
@@ -140,24 +144,42 @@ export class Player {
   async #preview() {
     const start = performance.now();
     const waits = this.#preview_busy || start < this.#preview_from;
-    const picture = waits ? null : this.#on.picture("preview", this.#preview_slow);
+    const picture = waits ? null : this.#preview_picture();
     const url = picture && frame_url(picture);
     if (!url || url === this.#shown) return;
     this.#preview_busy = true;
     const epoch = this.#epoch;
     try {
       const frame = await get_frame(url);
-      this.#refiner.note(picture, frame.stats.render_ms);
+      this.#cost.note(picture, frame.stats.render_ms);
       const bitmap = await decode(frame.png);
       if (this.#moving && epoch === this.#epoch) this.#draw(url, bitmap, picture, "preview", frame.stats);
       else bitmap.close();
-      this.#preview_slow = performance.now() - start > kQuickMs ? 1 : 0;
+      this.#delay.note(picture, performance.now() - start);
     } catch (error) {
       // The still that follows meets the same trouble and reports it.
       this.#preview_from = performance.now() + 1000 * (error.retry_after_seconds ?? 1);
     } finally {
       this.#preview_busy = false;
     }
+  }
+
+  // As fine as it follows the hand.
+  #preview_picture() {
+    const pictures = this.#on.moving("preview", this.#camera.view);
+    if (pictures.length === 0) return null;
+    const cost = this.#delay.knows(pictures[0]) ? this.#delay : this.#cost;
+    return pictures[cost.first_within(pictures, kPreviewMs)];
+  }
+
+  // Shows something of a scene that is not on the canvas, unless the `first` picture of it comes as soon.
+  async #draft(first, signal) {
+    if (this.#shown_id === first.id || this.#cost.expected_ms(first) <= kDraftMs) return;
+    const pictures = this.#on.moving("preview", this.#camera.view);
+    const picture = pictures[this.#cost.first_within(pictures, kDraftMs)];
+    const { png, stats } = await get_frame(frame_url(picture), signal);
+    this.#cost.note(picture, stats.render_ms);
+    this.#draw("", await decode_unless(signal, png), picture, "preview", stats);
   }
 
   #start_still() {
@@ -172,6 +194,7 @@ export class Player {
     if (width) this.#on.stats("still", { ...this.#shown_figures, width, height });
     const shown = samples <= picture.samples ? samples : 0; // fewer may be wanted than there are
     this.#run("still", key, async (signal) => {
+      await this.#draft({ ...picture, samples: 1 }, signal);
       if (keeps_budget(picture)) await this.#keep_budget(picture, signal);
       else if (shown < picture.samples)
         await this.#refiner.climb(picture, { shown, asked: rest.asked }, signal, {
@@ -194,12 +217,13 @@ export class Player {
   }
 
   #start_stream() {
-    const picture = this.#on.picture("stream", 0);
-    if (!picture) return;
+    const pictures = this.#on.moving("stream", this.#camera.view);
+    if (pictures.length === 0) return;
+    const [picture] = pictures;
     const key = JSON.stringify({ ...picture, azimuth: 0, time: 0, speed: this.speed });
     if (this.#work?.kind === "stream" && this.#work.key === key) return;
     this.#stop();
-    this.#pace.play(picture);
+    this.#pace.play(picture, this.#cost.first_within(pictures, kFrameMs));
     this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
@@ -207,7 +231,7 @@ export class Player {
   async #stream(signal) {
     const pace = this.#pace;
     for (;;) {
-      const pictures = this.#stream_pictures();
+      const pictures = this.#on.moving("stream", this.#camera.view);
       const costs = pictures.map(amount);
       pace.level = Math.min(pace.level, pictures.length - 1);
       const picture = pictures[pace.level];
@@ -220,7 +244,7 @@ export class Player {
       pace.restart();
       await play_stream(orbit_url(picture, rate), signal, (bitmap, header) => {
         this.#camera.follow(header.azimuth_degrees, header.time);
-        this.#refiner.note(picture, header.render_ms);
+        this.#cost.note(picture, header.render_ms);
         this.#draw("", bitmap, picture, "stream", header);
         const work_ms = Math.max(header.render_ms, header.encode_ms);
         return !pace.note(performance.now(), work_ms, this.speed, costs);
@@ -228,16 +252,11 @@ export class Player {
     }
   }
 
-  // Those of an orbit, each coarser than the one before.
-  #stream_pictures() {
-    const all = kStreams.map((_, level) => this.#on.picture("stream", level));
-    return all.filter((picture, level) => level === 0 || amount(picture) < amount(all[level - 1]));
-  }
-
   #draw(url, bitmap, picture, kind, figures) {
     const { width, height } = bitmap;
     this.#view.draw(bitmap, picture.fills, kind === "still" && this.#camera.damped);
     this.#shown = url;
+    this.#shown_id = picture.id;
     this.#shown_samples = picture.samples;
     this.#shown_location = undefined;
     this.#shown_figures = figures;

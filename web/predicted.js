@@ -56,10 +56,10 @@ async function words_of_all(pictures, signal) {
   return words;
 }
 
-// "2 s: error ≤ 0.011", "2 %: 0.7 s"; of a budget and what is foretold of it.
+// "best in 2 s: error ≤ 0.011", "error below 2 %: 0.7 s"; of a budget and what is foretold of it.
 export function prediction_words({ seconds, error }, { budget, certificate: { total, space } }) {
   const takes = duration(budget.used_s);
   const reached = total.kind === "unknown" ? "error unknown" : `error ≤ ${rounded_up(total.rms)}${unit(space)}`;
-  if (seconds) return `${seconds} s: ${budget.seconds_met ? reached : `missed, takes ${takes}`}`;
-  return `${Number((100 * error).toPrecision(6))} %: ${budget.error_met ? takes : `missed, ${reached}`}`;
+  if (seconds) return `best in ${seconds} s: ${budget.seconds_met ? reached : `missed, takes ${takes}`}`;
+  return `error below ${Number((100 * error).toPrecision(6))} %: ${budget.error_met ? takes : `missed, ${reached}`}`;
 }

@@ -18,7 +18,7 @@ export function rounded_up(bound) {
 // known; `part` of the next picture is done, `seconds_left` till the end.
 export function progress_text({ shown, end, rmse, part, seconds_left }) {
   const words = end ? [`${shown} of ${end} samples`] : [];
-  if (rmse > 0) words.push(`RMSE ${rounded(rmse)}`);
+  if (rmse > 0) words.push(`error ${rounded(rmse)}`);
   if (part !== undefined) words.push(`${Math.floor(100 * part)} %`);
   if (seconds_left > 0) words.push(`${part === undefined ? "about " : ""}${duration(seconds_left)} left`);
   return words.join(" · ");

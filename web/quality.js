@@ -1,10 +1,7 @@
-// What is given up for speed: of the picture's sides and of its samples.
+// What is given up for speed: samples first, then the picture's sides.
 
-// For the picture of a moving view; the second where the first takes too long.
-const kPreviews = [{ part: 1 / 2 }, { part: 1 / 4 }];
-// For the frames of an orbit, each level coarser than the one before.
-export const kStreams = [{}, { samples: 1 }, { samples: 1, part: 1 / 2 }, { samples: 1, part: 1 / 4 }];
-
+const kParts = [0.84, 0.71, 0.59, 0.5, 0.42, 0.35, 0.3, 0.25]; // of each side: two steps halve the pixels
+const kLeastPart = { fit: 0.25, half: 0.5 }; // a quarter of the stage's width
 const kUsualSamples = 64;
 
 // Samples of the picture at rest: what the user has `chosen` (0: nothing), else the usual number or what the scene asks
@@ -18,14 +15,14 @@ export function passes(samples) {
   return counts;
 }
 
-// {part, samples} for `purpose` "still", "preview" or "stream" at `level`. `part` is a factor of each side, `own` the
-// samples that the scene asks for, 0 where that is not known. An orbit keeps what the user has chosen: a number of
-// samples, or a size.
-export function quality(purpose, level, { samples, size, own }) {
-  if (purpose === "preview")
-    return { part: kPreviews[Math.min(level, kPreviews.length - 1)].part, samples: 1 };
-  if (purpose === "still") return { part: 1, samples };
-  const stream = kStreams[level];
-  const free_size = size === "fit" || size === "half";
-  return { part: (free_size && stream.part) || 1, samples: samples || (stream.samples ?? own) };
+// {part, samples} of pictures of a moving view, each cheaper than the one before. `part` is a factor of each side, `own`
+// the samples that the scene asks for, 0 where that is not known. What the user has chosen is kept: a number of samples,
+// or a size.
+export function rungs({ samples, size, own }) {
+  const counts = samples ? [samples] : passes(Math.max(1, own)).reverse();
+  const parts = kParts.filter((part) => part >= kLeastPart[size]);
+  return [
+    ...counts.map((count) => ({ part: 1, samples: count })),
+    ...parts.map((part) => ({ part, samples: counts.at(-1) })),
+  ];
 }

@@ -14,18 +14,11 @@ const kTooLong = new Set([422, 504]); // of what takes longer than a request may
 
 export class Refiner {
   #jobs = true; // false: the service takes none
-  #kind = ""; // what #cost holds for
-  #cost = NaN; // milliseconds for a sample of a pixel
+  #cost;
 
-  // A picture was rendered in `render_ms`.
-  note(picture, render_ms) {
-    this.#kind = kind_of(picture);
-    this.#cost = render_ms / amount(picture);
-  }
-
-  // What rendering should take, from the last picture of the same scene; NaN before the first. Samples cost alike.
-  expected_ms(picture) {
-    return kind_of(picture) === this.#kind ? this.#cost * amount(picture) : NaN;
+  // `cost`: of rendering, a Cost that is asked and told.
+  constructor(cost) {
+    this.#cost = cost;
   }
 
   // The picture that climb() ends with.
@@ -64,7 +57,7 @@ export class Refiner {
   }
 
   #too_slow(picture) {
-    return this.expected_ms(picture) > kLongestMs;
+    return this.#cost.expected_ms(picture) > kLongestMs;
   }
 
   async #stream(picture, { at, asked }, signal, { draw, tell }) {
@@ -72,14 +65,14 @@ export class Refiner {
     const too_slow = (samples) => !asked && this.#too_slow({ ...picture, samples });
     if (at.shown > 0 && too_slow(counts.find((samples) => samples > at.shown))) return;
     let traced = 0;
-    const left = () => this.expected_ms({ ...picture, samples: picture.samples - traced });
+    const left = () => this.#cost.expected_ms({ ...picture, samples: picture.samples - traced });
     const clock = ticking(left, tell);
     try {
       const response = await request(refinement_url(picture), { headers: { Accept: kFrameType }, signal });
       const warning = warning_of(response);
       for await (const { header, png } of read_frames(response.body)) {
         const { samples, render_ms } = header;
-        if (render_ms > 0) this.note({ ...picture, samples: samples - traced }, render_ms);
+        this.#cost.note({ ...picture, samples: samples - traced }, render_ms);
         traced = samples;
         const stats = { ...header, rmse: header.error?.rmse, warning };
         if (samples > at.shown) draw(await decode_unless(signal, png), stats);
@@ -93,11 +86,11 @@ export class Refiner {
 
   // All samples of a picture at one go.
   async #render(picture, signal, tell) {
-    const expected = this.expected_ms(picture);
+    const expected = this.#cost.expected_ms(picture);
     const start = performance.now();
     const { png, stats } = await this.#fetch(picture, expected, signal, tell);
     const bitmap = await decode_unless(signal, png);
-    this.note(picture, stats.render_ms ?? performance.now() - start);
+    this.#cost.note(picture, stats.render_ms ?? performance.now() - start);
     return { bitmap, stats: { ...stats, samples: picture.samples } };
   }
 
@@ -136,8 +129,3 @@ export async function decode_unless(signal, png) {
   signal.throwIfAborted();
   return bitmap;
 }
-
-const kind_of = ({ id, technique }) => `${id} ${technique}`;
-
-// Samples of a picture, a measure of its cost.
-export const amount = ({ width, height, samples }) => width * height * Math.max(1, samples);

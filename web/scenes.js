@@ -15,6 +15,9 @@ export function title_of(sample) {
   return sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
 }
 
+// Address of its picture in the gallery.
+export const thumbnail_of = ({ name }) => `scenes/thumbnails/${name}.webp`;
+
 // A scene is {ref, id, title, text, width, height, camera} and, if something moves in it, {motion}; `ref` is what
 // a link calls it.
 export class SceneLibrary {

@@ -37,8 +37,8 @@ export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, p
   }
   const most = purpose === "stream" && fills ? Math.min(kStreamPixels, limits.pixels) : limits.pixels;
   size = within(size, limits.side, most);
-  const width = Math.max(1, Math.round(size.width * part));
-  const height = Math.max(1, Math.round(size.height * part));
+  const width = Math.ceil(size.width * part);
+  const height = Math.ceil(size.height * part);
   return { width, height, fov, fills };
 }
 

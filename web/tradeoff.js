@@ -10,7 +10,7 @@ import { progress_text } from "./progress.js";
 import { frame_url, query_of } from "./urls.js";
 
 const kExtent = { samples: 16, rounds: 3, width: 200 }; // of a chart: some seconds, of paths a minute
-const kOffer = "How much nearer to the truth could this view be, or how much quicker? A chart tries many ways to make it.";
+const kOffer = "The chart renders this view in many ways and shows how long each takes and how large its error is.";
 const kSlider = 1000; // steps of the range, which is finer than its stops
 
 export class Tradeoff {

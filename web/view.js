@@ -1,4 +1,4 @@
-// The canvas: draws pictures and knows the box it fills.
+// The stage: draws pictures on its canvas and knows its size. A scene that has none yet is announced by its thumbnail.
 
 import { ApiError } from "./api.js";
 
@@ -7,11 +7,14 @@ const kFadeMs = 180;
 export class View {
   #canvas;
   #stage;
+  #poster;
   #context;
   #newest = null; // the bitmap drawn last, or being faded in
 
-  constructor(stage, canvas) {
+  // `poster`: the <img> of thumbnails.
+  constructor(stage, canvas, poster) {
     this.#stage = stage;
+    this.#poster = poster;
     this.#canvas = canvas;
     this.#context = canvas.getContext("2d", { alpha: false });
   }
@@ -36,13 +39,17 @@ export class View {
     }
     canvas.classList.toggle("fills", fills);
     canvas.hidden = false;
+    this.#poster.hidden = true;
     this.#newest = bitmap;
     this.#blend(bitmap, 0, performance.now(), fades ? kFadeMs : 0);
   }
 
-  clear() {
+  // Shows nothing but the `thumbnail` at this address, "" for none, until a picture is drawn.
+  announce(thumbnail) {
     this.#canvas.hidden = true;
     this.#newest = null;
+    this.#poster.hidden = !thumbnail;
+    if (thumbnail) this.#poster.src = thumbnail;
   }
 
   // `shown`: the bitmap's part in what the canvas shows; the rest is what was there before.

@@ -19,6 +19,7 @@ std::string_view type_of(std::string_view path) {
       Ending{".json", "application/json"},
       Ending{".svg", "image/svg+xml; charset=utf-8"},
       Ending{".png", "image/png"},
+      Ending{".webp", "image/webp"},
       Ending{".ico", "image/x-icon"},
       Ending{".webmanifest", "application/manifest+json"},
   };

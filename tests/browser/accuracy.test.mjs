@@ -59,7 +59,7 @@ page_test(
   async (page) => {
     const asked = [];
     page.on("request", (request) => /explain/.test(request.url()) && asked.push(query(request.url())));
-    const line = /^Predicted: 2 s: error ≤ 0\.\d+, on a display · 2 %: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+, on a display) · 0\.5 %: /;
+    const line = /^Predicted: best in 2 s: error ≤ 0\.\d+, on a display · error below 2 %: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+, on a display) · error below 0\.5 %: /;
     const predicted = () => eventually("the prediction", async () => line.exec(await text(page, "stop-line"))?.input);
     await predicted();
     assert.deepEqual(await axe_violations(page), []);
@@ -76,7 +76,7 @@ page_test(
     await eventually("the first again", async () => asked.at(-1).get("technique") !== "raycast");
     await predicted();
     const before = asked.length;
-    await page.getByRole("button", { name: "2 s" }).click();
+    await page.getByRole("button", { name: "Best in 2 s" }).click();
     await eventually("the budget", async () => /^Budget /.test(await text(page, "told")));
     await predicted();
     assert.equal(asked.length, before, "what is known is not asked again");
@@ -271,7 +271,7 @@ page_test(
     await eventually("the plan's words", async () => /^Plan: /.test(await text(other, "told")));
     assert.equal(await rest(other), digest);
     assert.deepEqual(await axe_violations(other), []);
-    await other.getByRole("button", { name: "Drop the plan" }).click();
+    await other.getByRole("button", { name: "Back to automatic" }).click();
     await eventually("no plan", async () => (await hash_of(other)).plan === undefined);
     await eventually("another picture", async () => (await rest(other)) !== digest);
     assert.equal(await text(other, "told"), "");
@@ -316,7 +316,7 @@ page_test(
       return route.fulfill({ response, headers });
     });
     await rest(page);
-    await page.getByRole("button", { name: "0.5 %" }).click();
+    await page.getByRole("button", { name: "Error below 0.5 %" }).click();
     await eventually("the budget", async () => /^Budget missed: 8 bits can prove no less/.test(await text(page, "told")));
     assert.match(await text(page, "told"), /error unknown, because of caustics; the rest ≤ 0\.0031 \(95 %, estimated\)$/);
     assert.equal(await page.locator("#told.missed").count(), 1);
@@ -327,7 +327,7 @@ page_test(
     await page.locator("#download").hover();
     const link = await page.locator("#download").getAttribute("href");
     assert.equal(query(link).get("error"), null, "the plan that it came to");
-    await page.getByRole("button", { name: "0.5 %" }).click();
+    await page.getByRole("button", { name: "Error below 0.5 %" }).click();
     await eventually("no budget", async () => (await text(page, "told")) === "");
     assert.equal((await hash_of(page)).error, undefined);
   },
@@ -350,9 +350,9 @@ page_test(
     await page.mouse.wheel(0, 100);
     await eventually("nothing of another view", async () => (await text(page, "told")) === "");
     await eventually("its own", async () => (await text(page, "told")) !== "");
-    await page.getByRole("button", { name: "2 s" }).click();
+    await page.getByRole("button", { name: "Best in 2 s" }).click();
     await eventually("another budget", async () => (await hash_of(page)).seconds === "2");
-    assert.equal(await page.getByRole("button", { name: "2 s" }).getAttribute("aria-pressed"), "true");
+    assert.equal(await page.getByRole("button", { name: "Best in 2 s" }).getAttribute("aria-pressed"), "true");
   },
   still,
 );

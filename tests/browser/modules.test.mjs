@@ -8,12 +8,13 @@ import { load } from "./web_modules.mjs";
 
 const { persist, wake_all } = await load("backoff.js");
 const { OrbitCamera, elevation_of } = await load("camera.js");
+const { Cost } = await load("cost.js");
 const { floor_height } = await load("floor.js");
 const { locate, offset_of, place_of } = await load("pointer.js");
 const { pretty } = await load("scenes.js");
 const { Pace } = await load("pace.js");
 const { progress_text } = await load("progress.js");
-const { passes, quality, samples_at_rest } = await load("quality.js");
+const { passes, rungs, samples_at_rest } = await load("quality.js");
 const { Refiner } = await load("refine.js");
 const { picture_size, within } = await load("size.js");
 const { format_hash, parse_hash } = await load("state.js");
@@ -328,6 +329,20 @@ test("an orbit gets coarser again where that did not help as much as it should",
   assert.deepEqual(starts.slice(0, 3), [[0, 0, 30], [400, 2, 30], [600, 3, 30]]);
 });
 
+test("an orbit that begins coarse is as fine as it can be after a moment", () => {
+  const pace = new Pace();
+  pace.play({ id: "ab", width: 8, height: 6, fills: true, technique: "", samples: 1 }, 3);
+  for (let now = 0; pace.level === 3 && now < 10_000; now += 34) pace.note(now, 3, 20, [64, 16, 4, 1]);
+  assert.equal(pace.level, 1);
+});
+
+test("an orbit tries what was too slow again after some seconds, not at once", () => {
+  const { starts } = paced((level) => [90, 12][level], [5, 1], 12);
+  const times = starts.filter(([, level]) => level === 0).map(([now]) => now);
+  assert.ok(times.length >= 2);
+  times.slice(1).forEach((now, at) => assert.ok(now - times[at] >= 5000, times.join()));
+});
+
 test("an orbit gets finer again after a slow moment, and stays so", () => {
   const { pace, starts } = paced((level, now) => (now < 500 ? 100 : 8) / 4 ** level, [1, 1 / 4], 20);
   assert.equal(pace.level, 0);
@@ -365,12 +380,29 @@ test("an orbit that got coarser stays so in a window of another size", () => {
   assert.equal(level_after({ fills: false }), 0);
 });
 
-test("an orbit gives up nothing that the user has chosen", () => {
-  const own = { samples: 0, size: "fit", own: 4 };
-  assert.deepEqual(quality("stream", 0, own), { part: 1, samples: 4 });
-  assert.deepEqual(quality("stream", 3, own), { part: 0.25, samples: 1 });
-  assert.deepEqual(quality("stream", 3, { samples: 16, size: "scene" }), { part: 1, samples: 16 });
-  assert.deepEqual(quality("still", 3, { samples: 16, size: "fit" }), { part: 1, samples: 16 });
+test("an orbit gives up samples first, then size, and nothing that the user has chosen", () => {
+  const own = rungs({ samples: 0, size: "fit", own: 4 });
+  assert.deepEqual(own.slice(0, 4), [
+    { part: 1, samples: 4 },
+    { part: 1, samples: 2 },
+    { part: 1, samples: 1 },
+    { part: 0.84, samples: 1 },
+  ]);
+  assert.deepEqual(own.at(-1), { part: 0.25, samples: 1 });
+  assert.deepEqual(rungs({ samples: 16, size: "scene" }), [{ part: 1, samples: 16 }]);
+  assert.deepEqual(rungs({ samples: 16, size: "half" }).at(-1), { part: 0.5, samples: 16 }, "of half the stage");
+  assert.deepEqual(rungs({ samples: 0, size: "1280x720", own: 2 }), [{ part: 1, samples: 2 }, { part: 1, samples: 1 }]);
+});
+
+test("a picture is chosen by what the last one of its scene took", () => {
+  const cost = new Cost();
+  const picture = { id: "ab", technique: "", width: 100, height: 100, samples: 1 };
+  const pictures = [4, 2, 1].map((samples) => ({ ...picture, samples }));
+  assert.equal(cost.first_within(pictures, 1e9), 2, "nothing is known");
+  cost.note(picture, 50);
+  assert.deepEqual([300, 150, 60, 10].map((ms) => cost.first_within(pictures, ms)), [0, 1, 2, 2]);
+  assert.equal(cost.knows({ ...picture, technique: "raycast" }), false);
+  assert.equal(cost.expected_ms({ ...picture, width: 200 }), 100);
 });
 
 test("addresses are the same for the same view and safe in a shell", () => {
@@ -431,14 +463,15 @@ test("passes are halves of the next", () => {
 });
 
 test("the last picture is the finest one that takes no longer than it may, unless it was asked for", () => {
-  const refiner = new Refiner();
+  const cost = new Cost();
+  const refiner = new Refiner(cost);
   const picture = { id: "ab", technique: "", width: 10, height: 10, samples: 64 };
   const last = (asked = false) => refiner.last(picture, asked).samples;
   assert.equal(last(), 64, "as long as nothing is known");
-  refiner.note({ ...picture, samples: 1 }, 400);
+  cost.note({ ...picture, samples: 1 }, 400);
   assert.equal(last(), 32);
   assert.equal(last(true), 64);
-  refiner.note({ ...picture, samples: 1 }, 60_000);
+  cost.note({ ...picture, samples: 1 }, 60_000);
   assert.equal(last(), 1);
 });
 
@@ -446,7 +479,7 @@ test("progress says what was measured, and calls a guess a guess", () => {
   const at = { shown: 16, end: 64 };
   assert.equal(progress_text({ ...at, part: 0.439, seconds_left: 2.1 }), "16 of 64 samples · 43 % · 3 s left");
   assert.equal(progress_text({ ...at, part: 0.1 }), "16 of 64 samples · 10 %");
-  assert.equal(progress_text({ ...at, rmse: 0.01234, seconds_left: 2 }), "16 of 64 samples · RMSE 0.012 · about 2 s left");
+  assert.equal(progress_text({ ...at, rmse: 0.01234, seconds_left: 2 }), "16 of 64 samples · error 0.012 · about 2 s left");
   assert.equal(progress_text({ ...at, seconds_left: 2.1 }), "16 of 64 samples · about 3 s left");
   assert.equal(progress_text({ ...at, seconds_left: NaN }), "16 of 64 samples");
   assert.equal(progress_text({ ...at, seconds_left: -1 }), "16 of 64 samples", "a guess that came to nothing");

@@ -97,7 +97,7 @@ page_test(
     assert.notEqual(await rest(page), coarse);
     assert.deepEqual(refined, [{ samples: 64, passes: [2, 4, 8, 16, 32, 64] }]);
     assert.match(await page.locator("#hud-rmse").textContent(), /^0\.\d+, 64 samples$/);
-    const error_of = (text) => /^\d+ of 64 samples · RMSE ([\d.e-]+)/.exec(text)?.[1];
+    const error_of = (text) => /^\d+ of 64 samples · error ([\d.e-]+)/.exec(text)?.[1];
     const errors = (await told.jsonValue()).map(error_of).filter(Boolean);
     assert.ok(errors.length >= 5, errors.join());
     assert.ok(Number(errors.at(-1)) < Number(errors[0]) / 4, `the error falls: ${errors}`);
@@ -149,7 +149,7 @@ page_test(
     await page.locator("#samples").selectOption("64");
     const bar = page.getByRole("progressbar");
     await eventually("an estimate", async () =>
-      /^16 of 64 samples · RMSE 0\.\d+ · about \d+ s left$/.test((await bar.getAttribute("aria-valuetext")) ?? ""),
+      /^16 of 64 samples · error 0\.\d+ · about \d+ s left$/.test((await bar.getAttribute("aria-valuetext")) ?? ""),
     );
     assert.equal(await bar.getAttribute("aria-valuenow"), null, "nothing was measured");
     assert.equal(await page.locator("#progress").textContent(), await bar.getAttribute("aria-valuetext"));

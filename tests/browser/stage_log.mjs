@@ -1,0 +1,61 @@
+// What the stage shows, as it is painted: shared by drafts.test.mjs and first_pictures.mjs.
+
+// To be called before the page is opened. From then on window.stage_log has an entry for each painted frame,
+// {at, scene, thumbnail, width}: its time in ms, the scene that the stage names, the file of the thumbnail in sight or
+// "", and the width of the picture in sight or 0; window.pictures has [time, width] of each picture that was drawn.
+export function log_stage(page) {
+  return page.addInitScript(() => {
+    window.stage_log = [];
+    window.pictures = [];
+    const draw = CanvasRenderingContext2D.prototype.drawImage;
+    CanvasRenderingContext2D.prototype.drawImage = function (...call) {
+      if (this.canvas.id === "canvas") window.pictures.push([performance.now(), this.canvas.width]);
+      return draw.apply(this, call);
+    };
+    const note = () => {
+      requestAnimationFrame(note);
+      const [stage, poster, canvas] = ["stage", "poster", "canvas"].map((id) => document.getElementById(id));
+      if (!stage) return;
+      const seen = !poster.hidden && poster.complete && poster.naturalWidth > 0;
+      const thumbnail = seen ? poster.src.split("/").at(-1) : "";
+      window.stage_log.push({ at: performance.now(), scene: stage.dataset.scene, thumbnail, width: canvas.hidden ? 0 : canvas.width });
+    };
+    requestAnimationFrame(note);
+  });
+}
+
+// Clicks the card of a sample scene; resolves to the time of the click, in the page's milliseconds.
+export function pick(page, name) {
+  return page.evaluate((wanted) => {
+    const card = document.querySelector(`#gallery [data-name="${wanted}"]`);
+    card.scrollIntoView({ block: "center", behavior: "instant" });
+    window.stage_log = [];
+    window.pictures = [];
+    const start = performance.now();
+    card.click();
+    return start;
+  }, name);
+}
+
+// Turns the view by the mouse for `ms`; resolves to [time, width] of the pictures that were drawn meanwhile.
+export async function drag_for(page, ms) {
+  const box = await page.locator("#stage").boundingBox();
+  const at = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(...at);
+  await page.mouse.down();
+  await page.evaluate(() => void (window.pictures = []));
+  const start = Date.now();
+  for (let n = 0; Date.now() - start < ms; n += 1) await page.mouse.move(at[0] + 60 * Math.sin(n / 12), at[1]);
+  const drawn = await page.evaluate(() => window.pictures);
+  await page.mouse.up();
+  return drawn;
+}
+
+export const scene_names = (page) =>
+  page.evaluate(() => [...document.querySelectorAll("#gallery [data-name]")].map((card) => card.dataset.name));
+
+// Slows the browser down, not the service.
+export async function slow_down(page, times) {
+  const device = await page.context().newCDPSession(page);
+  await device.send("Emulation.setCPUThrottlingRate", { rate: times });
+}

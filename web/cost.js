@@ -1,0 +1,30 @@
+// What pictures cost, learned from those that were made.
+
+export class Cost {
+  #ms = new Map(); // for a sample of a pixel, by scene and technique
+
+  // A picture took so long.
+  note(picture, ms) {
+    if (ms > 0) this.#ms.set(kind_of(picture), ms / amount(picture));
+  }
+
+  knows(picture) {
+    return this.#ms.has(kind_of(picture));
+  }
+
+  // NaN before the first picture of the same scene. Samples cost alike.
+  expected_ms(picture) {
+    return (this.#ms.get(kind_of(picture)) ?? NaN) * amount(picture);
+  }
+
+  // The number of the first of `pictures` that should take at most `ms`; of the last where none does or nothing is known.
+  first_within(pictures, ms) {
+    const at = pictures.findIndex((picture) => this.expected_ms(picture) <= ms);
+    return at < 0 ? pictures.length - 1 : at;
+  }
+}
+
+const kind_of = ({ id, technique }) => `${id} ${technique}`;
+
+// Samples of a picture, a measure of its cost.
+export const amount = ({ width, height, samples }) => width * height * Math.max(1, samples);
