@@ -28,7 +28,7 @@ export class Prediction {
       if (this.#work !== work) return;
       this.#last = { key, words };
     }
-    if (this.#last.words.length > 0) this.#tell(`Predicted: ${this.#last.words.join(" · ")}`);
+    if (this.#last.words.length > 0) this.#tell(`With a limit ${this.#last.words.join(" · ")}`);
   }
 
   // Another picture is due.
@@ -56,10 +56,10 @@ async function words_of_all(pictures, signal) {
   return words;
 }
 
-// "best in 2 s: error ≤ 0.011", "error below 2 %: 0.7 s"; of a budget and what is foretold of it.
+// "of 2 s: error ≤ 0.011", "of 2 % error: 0.7 s"; of a budget and what is foretold of it.
 export function prediction_words({ seconds, error }, { budget, certificate: { total, space } }) {
   const takes = duration(budget.used_s);
   const reached = total.kind === "unknown" ? "error unknown" : `error ≤ ${rounded_up(total.rms)}${unit(space)}`;
-  if (seconds) return `best in ${seconds} s: ${budget.seconds_met ? reached : `missed, takes ${takes}`}`;
-  return `error below ${Number((100 * error).toPrecision(6))} %: ${budget.error_met ? takes : `missed, ${reached}`}`;
+  if (seconds) return `of ${seconds} s: ${budget.seconds_met ? reached : `missed, takes ${takes}`}`;
+  return `of ${Number((100 * error).toPrecision(6))} % error: ${budget.error_met ? takes : `missed, ${reached}`}`;
 }

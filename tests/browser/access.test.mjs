@@ -45,7 +45,7 @@ test("the page asks for a token once, and every request carries it", async () =>
   await enter(page, kToken);
   await rest(page);
   assert.equal(await form.isVisible(), false);
-  await page.locator(".thumbnail canvas").first().waitFor();
+  await page.locator(".thumbnail").first().waitFor();
   assert.deepEqual(new Set(refused), new Set(["/v1/catalog", "/v1/limits"]));
   assert.ok(passed.some((path) => path.endsWith("/frame.png")));
 

@@ -59,14 +59,14 @@ page_test(
   async (page) => {
     const asked = [];
     page.on("request", (request) => /explain/.test(request.url()) && asked.push(query(request.url())));
-    const line = /^Predicted: best in 2 s: error ≤ 0\.\d+, on a display · error below 2 %: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+, on a display) · error below 0\.5 %: /;
+    const line = /^With a limit of 2 s: error ≤ 0\.\d+, on a display · of 2 % error: ([\d.]+ (ms|s|min)|missed, error ≤ 0\.\d+, on a display) · of 0\.5 % error: /;
     const predicted = () => eventually("the prediction", async () => line.exec(await text(page, "stop-line"))?.input);
     await predicted();
     assert.deepEqual(await axe_violations(page), []);
     asked.length = 0;
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("the offer", async () => /A chart tries many ways/.test(await text(page, "stop-line")));
+    await eventually("the offer", async () => /The chart renders this view in many ways/.test(await text(page, "stop-line")));
     await predicted();
     assert.deepEqual(asked.map((each) => each.get("seconds") ?? each.get("error")), ["2", "0.02", "0.005"]);
     assert.deepEqual([...new Set(asked.map((each) => each.get("samples")))], ["2"], "what was chosen");
@@ -76,7 +76,7 @@ page_test(
     await eventually("the first again", async () => asked.at(-1).get("technique") !== "raycast");
     await predicted();
     const before = asked.length;
-    await page.getByRole("button", { name: "Best in 2 s" }).click();
+    await page.getByRole("button", { name: "2 s" }).click();
     await eventually("the budget", async () => /^Budget /.test(await text(page, "told")));
     await predicted();
     assert.equal(asked.length, before, "what is known is not asked again");
@@ -96,12 +96,12 @@ page_test(
     await page.locator("#technique").selectOption("raycast");
     await eventually("the refusal", async () => refused.includes("raycast"));
     await rest(page);
-    assert.match(await text(page, "stop-line"), /A chart tries many ways/);
+    assert.match(await text(page, "stop-line"), /The chart renders this view in many ways/);
     assert.equal(refused.filter((technique) => technique === "raycast").length, 1);
     await page.unroute("**/explain?**");
     await page.locator("#stage").hover();
     await page.mouse.wheel(0, 100);
-    await eventually("the prediction", async () => /^Predicted: /.test(await text(page, "stop-line")));
+    await eventually("the prediction", async () => /^With a limit of /.test(await text(page, "stop-line")));
   },
   { ...still, expected: /status of 429/ },
 );
@@ -316,7 +316,7 @@ page_test(
       return route.fulfill({ response, headers });
     });
     await rest(page);
-    await page.getByRole("button", { name: "Error below 0.5 %" }).click();
+    await page.getByRole("button", { name: "0.5 % error" }).click();
     await eventually("the budget", async () => /^Budget missed: 8 bits can prove no less/.test(await text(page, "told")));
     assert.match(await text(page, "told"), /error unknown, because of caustics; the rest ≤ 0\.0031 \(95 %, estimated\)$/);
     assert.equal(await page.locator("#told.missed").count(), 1);
@@ -327,7 +327,7 @@ page_test(
     await page.locator("#download").hover();
     const link = await page.locator("#download").getAttribute("href");
     assert.equal(query(link).get("error"), null, "the plan that it came to");
-    await page.getByRole("button", { name: "Error below 0.5 %" }).click();
+    await page.getByRole("button", { name: "0.5 % error" }).click();
     await eventually("no budget", async () => (await text(page, "told")) === "");
     assert.equal((await hash_of(page)).error, undefined);
   },
@@ -350,9 +350,9 @@ page_test(
     await page.mouse.wheel(0, 100);
     await eventually("nothing of another view", async () => (await text(page, "told")) === "");
     await eventually("its own", async () => (await text(page, "told")) !== "");
-    await page.getByRole("button", { name: "Best in 2 s" }).click();
+    await page.getByRole("button", { name: "2 s" }).click();
     await eventually("another budget", async () => (await hash_of(page)).seconds === "2");
-    assert.equal(await page.getByRole("button", { name: "Best in 2 s" }).getAttribute("aria-pressed"), "true");
+    assert.equal(await page.getByRole("button", { name: "2 s" }).getAttribute("aria-pressed"), "true");
   },
   still,
 );

@@ -98,12 +98,12 @@ test("a prediction says what a budget gives, and when it is missed", () => {
     certificate: { total: { kind: rms === null ? "unknown" : "estimated", rms }, space },
   });
   const seconds = { seconds: 2, error: 0 }, error = { seconds: 0, error: 0.005 };
-  assert.equal(prediction_words(seconds, forecast(0.0121, true)), "best in 2 s: error ≤ 0.013");
-  assert.equal(prediction_words(seconds, forecast(0.0121, true, "display")), "best in 2 s: error ≤ 0.013, on a display");
-  assert.equal(prediction_words(seconds, forecast(null, true)), "best in 2 s: error unknown");
-  assert.equal(prediction_words(seconds, forecast(0.01, false)), "best in 2 s: missed, takes 1.2 s");
-  assert.equal(prediction_words(error, forecast(0.0049, true)), "error below 0.5 %: 1.2 s");
-  assert.equal(prediction_words(error, forecast(0.00501, false)), "error below 0.5 %: missed, error ≤ 0.0051");
+  assert.equal(prediction_words(seconds, forecast(0.0121, true)), "of 2 s: error ≤ 0.013");
+  assert.equal(prediction_words(seconds, forecast(0.0121, true, "display")), "of 2 s: error ≤ 0.013, on a display");
+  assert.equal(prediction_words(seconds, forecast(null, true)), "of 2 s: error unknown");
+  assert.equal(prediction_words(seconds, forecast(0.01, false)), "of 2 s: missed, takes 1.2 s");
+  assert.equal(prediction_words(error, forecast(0.0049, true)), "of 0.5 % error: 1.2 s");
+  assert.equal(prediction_words(error, forecast(0.00501, false)), "of 0.5 % error: missed, error ≤ 0.0051");
 });
 
 test("what is at most so much is never rounded down", () => {

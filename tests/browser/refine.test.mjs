@@ -105,13 +105,14 @@ page_test(
     await eventually("16 samples", async () => refined.length === 2);
     await rest(page);
     assert.deepEqual(refined[1], { samples: 16, passes: [16] }, "the service has kept that pass");
+    await page.route(is_frame, (route) => route.fulfill({ status: 429, json: { title: "Too many requests" } }));
     await look_elsewhere(page);
     await eventually("another view", async () => refined.length === 3);
     await rest(page);
     assert.deepEqual(refined[2], { samples: 16, passes: [2, 4, 8, 16] });
     assert.deepEqual(asked, [], "nothing is rendered beside the stream");
   },
-  still,
+  { ...still, expected: /status of 429/ },
 );
 
 page_test(

@@ -222,7 +222,7 @@ export async function charted(page) {
   await quick_charts(page);
   await rest(page);
   await page.locator("#make-chart").click();
-  const slider = page.getByRole("slider", { name: "From faster to more accurate" });
+  const slider = page.getByRole("slider", { name: "From fast to accurate" });
   await slider.waitFor({ state: "visible" });
   await page.locator("#overlay").waitFor({ state: "visible" });
   return slider;
