@@ -44,8 +44,8 @@ export function bound_words(fields) {
 // What became of a budget: {missed, text}.
 export function budget_words(budget, bound) {
   const took = budget.used ? `${rounded_up(Number(budget.used))} s of ${budget.seconds} s` : "";
-  const aim = budget.error ? `error asked: ${budget.error}` : "";
+  const aim = budget.error ? `error limit: ${budget.error}` : "";
   const words = [took, aim, bound_words(bound)].filter(Boolean).join("; ");
-  if (budget.met) return { missed: false, text: `Budget met: ${words}` };
-  return { missed: true, text: `Budget missed: ${budget.reason || "the service does not say why"}; ${words}` };
+  if (budget.met) return { missed: false, text: `Limit kept: ${words}` };
+  return { missed: true, text: `Limit missed: ${budget.reason || "the service does not say why"}; ${words}` };
 }

@@ -54,7 +54,7 @@ export class Options {
 
 function size_label(mode, scene) {
   if (mode === "fit") return "Fit the window";
-  if (mode === "half") return "Half the window’s";
+  if (mode === "half") return "Half the window";
   if (mode === "scene") return scene ? `Scene’s own, ${scene.width} × ${scene.height}` : "Scene’s own";
   return mode.replace("x", " × ");
 }

@@ -15,9 +15,9 @@ const kWaysOut = {
   technique: "Use the scene’s own technique",
   samples: "Choose samples automatically",
   size: "Fit the window",
-  plan: "Drop the plan",
-  seconds: "Drop the budget",
-  error: "Drop the budget",
+  plan: "Choose automatically",
+  seconds: "Remove the time limit",
+  error: "Remove the error limit",
 };
 
 // What of the state is refused: {settings, label}, the usual values to set instead and what that does in words; null

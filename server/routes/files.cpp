@@ -4,7 +4,8 @@
 #include "server/http/embedded.h"
 #include "server/routes/constant.h"
 
-// GET / and the files of the page, GET /scenes/{name}.json: what was built into the program.
+// GET / and the files of the page, GET /scenes/{name}.json, GET /scenes/thumbnails/{name}.webp: what was
+// built into the program.
 namespace orrery {
 namespace {
 

@@ -77,7 +77,7 @@ page_test(
     await predicted();
     const before = asked.length;
     await page.getByRole("button", { name: "2 s" }).click();
-    await eventually("the budget", async () => /^Budget /.test(await text(page, "told")));
+    await eventually("the budget", async () => /^Limit /.test(await text(page, "told")));
     await predicted();
     assert.equal(asked.length, before, "what is known is not asked again");
   },
@@ -317,7 +317,7 @@ page_test(
     });
     await rest(page);
     await page.getByRole("button", { name: "0.5 % error" }).click();
-    await eventually("the budget", async () => /^Budget missed: 8 bits can prove no less/.test(await text(page, "told")));
+    await eventually("the budget", async () => /^Limit missed: 8 bits can prove no less/.test(await text(page, "told")));
     assert.match(await text(page, "told"), /error unknown, because of caustics; the rest ≤ 0\.0031 \(95 %, estimated\)$/);
     assert.equal(await page.locator("#told.missed").count(), 1);
     const rgb = await page.locator("#told").evaluate((each) => getComputedStyle(each).color);
@@ -338,7 +338,7 @@ page_test(
   "a budget of seconds is in the link and says what it took",
   "playing=0&seconds=0.3",
   async (page) => {
-    await eventually("the budget", async () => /^Budget (met|missed): /.test(await text(page, "told")));
+    await eventually("the budget", async () => /^Limit (kept|missed): /.test(await text(page, "told")));
     assert.match(await text(page, "told"), /error (unknown, because of|≤)/);
     await rest(page);
     assert.ok((await canvas_digest(page)).length > 0);

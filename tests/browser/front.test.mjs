@@ -86,10 +86,10 @@ test("a missed budget says why, and that it was missed", () => {
   const missed = budget_words(parameters_of('met=?0;error=0.005;error-met=?0;reason="8 bits; no more"'), bound);
   assert.deepEqual(missed, {
     missed: true,
-    text: "Budget missed: 8 bits; no more; error asked: 0.005; error ≤ 0.0071 (95 %, estimated)",
+    text: "Limit missed: 8 bits; no more; error limit: 0.005; error ≤ 0.0071 (95 %, estimated)",
   });
   const met = budget_words(parameters_of("met=?1;seconds=2;seconds-met=?1;used=1.834"), bound);
-  assert.deepEqual(met, { missed: false, text: "Budget met: 1.9 s of 2 s; error ≤ 0.0071 (95 %, estimated)" });
+  assert.deepEqual(met, { missed: false, text: "Limit kept: 1.9 s of 2 s; error ≤ 0.0071 (95 %, estimated)" });
 });
 
 test("a prediction says what a budget gives, and when it is missed", () => {

@@ -98,7 +98,7 @@ page_test(
       assert.equal(await text(page, "told"), "");
     });
     await page.getByRole("button", { name: "2 s" }).click();
-    await eventually("the budget", async () => /^Budget (met|missed): /.test(await text(page, "told")));
+    await eventually("the budget", async () => /^Limit (kept|missed): /.test(await text(page, "told")));
     const { playing, seconds } = await hash_of(page);
     assert.deepEqual([playing, seconds], ["0", "2"]);
   },

@@ -18,7 +18,7 @@ constexpr double kMostRoundings = 4;
 
 int scenes_of_a_class() {
   const char* asked = std::getenv("EXACT_PIXELS");
-  const double pixels = asked ? std::atof(asked) : 40000;
+  const double pixels = asked ? std::atof(asked) : 20000;
   return static_cast<int>(
       std::ceil(pixels / (kWidth * kHeight) / static_cast<double>(scene_classes().size())));
 }

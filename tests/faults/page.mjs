@@ -4,6 +4,7 @@ const entry = (about, file, from, to, ...tests) => ({
   fault: 26, about, file: `web/${file}`, from, to, target: "tests/browser/modules.test.mjs", tests,
 });
 
+const of_pace = (...fields) => ({ ...entry(...fields), target: "tests/browser/pace.test.mjs" });
 const of_accuracy = (...fields) => ({ ...entry(...fields), target: "tests/browser/front.test.mjs" });
 
 export const pageFaults = [
@@ -19,9 +20,9 @@ export const pageFaults = [
         "a picture fits its box and the limits"),
   entry("numbers in a link have no range", "state.js", "Math.min(high, Math.max(low, value))", "value",
         "a link restores what it was made from, and nonsense in it is ignored"),
-  entry("an orbit becomes a slide show", "pace.js", "Math.max(rate, Math.abs(speed) / kWidestStep)", "rate",
+  of_pace("an orbit becomes a slide show", "pace.js", "Math.max(rate, Math.abs(speed) / kWidestStep)", "rate",
         "an orbit never turns into a slide show, and fast frames are left alone"),
-  entry("pictures at rest get no finer than the scene's own", "quality.js", "Math.max(own, kUsualSamples)", "own",
+  of_pace("pictures at rest get no finer than the scene's own", "quality.js", "Math.max(own, kUsualSamples)", "own",
         "the picture at rest has the samples that were chosen, or that the scene asks for"),
   entry("a slash in a JSON pointer is not unescaped", "pointer.js", '.replaceAll("~1", "/")', "",
         "a JSON pointer leads to its place in the text"),
@@ -33,14 +34,20 @@ export const pageFaults = [
         "the view never goes below the floor"),
   entry("a surface of water is a floor", "floor.js", ' && materials[material]?.type !== "refractive"', "",
         "a floor is an opaque plane across up, below the scene's own eye"),
-  entry("an orbit stutters for a second before it gets coarser", "pace.js", "work_ms > 1000 / kSmoothFps && this.level",
+  of_pace("an orbit stutters for a second before it gets coarser", "pace.js", "work_ms > 1000 / kSmoothFps && this.level",
         "this.#times.length > 3 && this.level",
         "an orbit gets coarser at its first slow frame, as far as it takes to run smoothly and no further"),
-  entry("an orbit stutters anew in a window of another size", "pace.js", "fills || `${width}x${height}`", "width",
+  of_pace("an orbit stutters anew in a window of another size", "pace.js", "fills || `${width}x${height}`", "width",
         "an orbit that got coarser stays so in a window of another size"),
-  entry("an orbit stays coarse after one slow moment", "pace.js", "if (this.level > 0 && (longest_ms", "if (false && (longest_ms",
+  of_pace("an orbit stays coarse after one slow moment", "pace.js", "if (Math.max(finer, finest) < this.level)", "if (false)",
         "an orbit gets finer again after a slow moment, and stays so"),
-  entry("a picture may be promised that is never refined to", "refine.js", "at > 0 && !asked && ", "false && ",
+  of_pace("an orbit tries what was too slow again at once", "pace.js", "now < this.#slow.until ?", "false ?",
+        "an orbit tries what was too slow again after some seconds, not at once"),
+  of_pace("size is given up before samples", "quality.js", "...counts.map((count) => ({ part: 1,", "...counts.map((count) => ({ part: 0.25,",
+        "an orbit gives up samples first, then size, and nothing that the user has chosen"),
+  of_pace("a picture that takes too long is chosen", "cost.js", "this.expected_ms(picture) <= ms", "this.expected_ms(picture) <= 9 * ms",
+        "a picture is chosen by what the last one of its scene took"),
+  of_pace("a picture may be promised that is never refined to", "refine.js", "at > 0 && !asked && ", "false && ",
         "the last picture is the finest one that takes no longer than it may, unless it was asked for"),
   of_accuracy("a missed budget is said to be met", "bound.js", "if (budget.met) return", "if (budget.met !== undefined) return",
               "a missed budget says why, and that it was missed"),

@@ -69,7 +69,9 @@ TEST_F(Routes, AskForTheScopesThatTheyAreFor) {
 
 // A path of the description as one that may be asked for.
 std::string with_places_filled(std::string path) {
-  if (path.starts_with("/scenes/")) return "/scenes/paper.json";  // a route for each sample
+  // Each sample has routes of its own.
+  if (path.starts_with("/scenes/thumbnails/")) return "/scenes/thumbnails/paper.webp";
+  if (path.starts_with("/scenes/")) return "/scenes/paper.json";
   for (std::size_t at; (at = path.find('{')) != std::string::npos;)
     path.replace(at, path.find('}') - at + 1, "a");
   return path;

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "tests/support/covers.h"
-#include "tests/support/exhaustive.h"
 #include "tests/support/materials.h"
 #include "tests/support/random.h"
 
@@ -131,7 +130,7 @@ class Scattering : public testing::TestWithParam<Material> {};
 TEST_P(Scattering, DrawsInProportionToItsDensity) {
   covers("light-24 light-25");
   const Probe<double> material(GetParam().text);
-  for (int v = exhaustive() ? 0 : 2; v < (exhaustive() ? kViewers : 3); ++v) {
+  for (int v = 0; v < kViewers; ++v) {
     const Case point = seen_from(viewer(v), GetParam().side);
     const auto drawn = material.sampled(point, 500'000);
     const Cells cells = cells_of(material, point);
@@ -224,11 +223,11 @@ TEST_P(Scattering, FloatAndDoubleAgree) {
 
 // Interpolated normals may face away from the viewer, and the light may stand behind either surface.
 template <class T>
-void random_points(const Material& tested) {
+void million_points(const Material& tested) {
   const Probe<T> material(tested.text);
   const bool transmits = tested.ior > 0;
   Random random(4);
-  std::vector<typename Probe<T>::Case> cases(exhaustive() ? 1'000'000 : 50'000);
+  std::vector<typename Probe<T>::Case> cases(1'000'000);
   for (auto& c : cases) {
     const Vec3d normal = random.direction();
     c.geometric = safe_normalize(Vec3<T>(normal));
@@ -254,10 +253,10 @@ void random_points(const Material& tested) {
     }
   EXPECT_EQ(wrong, 0);
 }
-TEST_P(Scattering, RandomPointsGiveNumbers) {  // a million in an exhaustive run
+TEST_P(Scattering, AMillionPointsGiveNumbers) {
   covers("A32");
-  random_points<float>(GetParam());
-  random_points<double>(GetParam());
+  million_points<float>(GetParam());
+  million_points<double>(GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, Scattering, testing::ValuesIn(kMaterials),
@@ -315,7 +314,7 @@ TEST_P(LobesOf, AddUpToTheMaterial) {
 // As Scattering has it for all lobes together; of paint these too. 48 tests.
 TEST_P(LobesOf, AreDrawnInProportionToTheirDensities) {
   covers("light-24");
-  const int kDraws = exhaustive() ? 200'000 : 40'000;
+  constexpr int kDraws = 200'000;
   std::vector<Lobes> asked = parts();
   if (std::string_view(GetParam().text).find("'rough'") != std::string_view::npos)
     asked.push_back(Lobes::all);

@@ -15,7 +15,7 @@ namespace {
 
 // What sanitizers look for shows in fewer pixels.
 RenderRequest small(int samples = 1) {
-  RenderRequest request = kSanitized || !exhaustive() ? size(80, 60) : size(160, 120);
+  RenderRequest request = kSanitized || !exhaustive() ? size(64, 48) : size(160, 120);
   request.samples = samples;
   return request;
 }

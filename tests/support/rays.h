@@ -39,12 +39,12 @@ struct Spot {
 template <class T>
 using Rays = std::vector<Ray<T>>;
 
-// All of them in an exhaustive run, else some 3,000 of those all over; under a sanitizer, which wants to see
-// all of the code but not all numbers, some 1,000.
+// All of them in an exhaustive run, else some 1,000 of those all over, and under a sanitizer in any case: it
+// wants to see all of the code but not all numbers.
 template <class T>
 Rays<T> enough_of(const Rays<T>& rays) {
   if (!kSanitized && exhaustive()) return rays;
-  constexpr std::size_t kEnough = kSanitized ? 1'000 : 3'000;
+  constexpr std::size_t kEnough = 1'000;
   Rays<T> some;
   for (std::size_t i = 0; i < rays.size(); i += std::max<std::size_t>(1, rays.size() / kEnough))
     some.push_back(rays[i]);
