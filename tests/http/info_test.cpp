@@ -44,6 +44,19 @@ TEST_F(Info, EverySampleOfTheCatalogIsServedAndIsAGoodScene) {
   }
 }
 
+TEST_F(Info, EverySampleOfTheCatalogHasAThumbnail) {
+  const auto catalog = get_json("/v1/catalog");
+  ASSERT_FALSE(catalog.at("samples").empty());
+  for (const auto& sample : catalog.at("samples")) {
+    const std::string path = "/scenes/thumbnails/" + sample.at("name").get<std::string>() + ".webp";
+    const auto thumbnail = client_.Get(path);
+    ASSERT_TRUE(thumbnail && thumbnail->status == 200) << path;
+    EXPECT_EQ(thumbnail->get_header_value("Content-Type"), "image/webp");
+    EXPECT_EQ(thumbnail->body.substr(8, 4), "WEBP") << path;
+    EXPECT_LT(thumbnail->body.size(), 16u << 10) << path;
+  }
+}
+
 TEST_F(Info, LimitsArePublished) {
   const auto limits = get_json("/v1/limits");
   EXPECT_EQ(limits.at("body_bytes"), 8 << 20);
