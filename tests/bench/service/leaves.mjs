@@ -15,6 +15,7 @@ const is_idle = ({ running, waiting }) => running + waiting === 0;
 function report(what, times, target_ms) {
   const lost = times.filter(Number.isNaN).length;
   const worst = most(times);
+  if (times.length === 0) return row(what, `all <= ${target_ms} ms`, "nobody left in time", false);
   const measured = lost > 0 ? `${lost} never ended` : `max ${ms(worst)}, p99 ${ms(p99(times))}`;
   return row(
     `${what}, ${times.length} times`,
@@ -117,7 +118,7 @@ async function leave_decoding(service, times) {
   const took = [];
   for (let i = 0; i < times; ++i) {
     const client = new Client(service.port);
-    const { path, ...request } = put_asset(tiny_jpeg(i, 250));
+    const { path, ...request } = put_asset(tiny_jpeg(i, 60));
     const answer = client.ask(path, request);
     await until(() => decoders_of(service.pid).length > 0);
     await pause(200 * Math.random());

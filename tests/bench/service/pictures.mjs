@@ -78,7 +78,7 @@ export function text_png(number, count = 5) {
 }
 
 // The header of an OpenEXR file with `count` attributes, and no pixels.
-export function many_attributes_exr(number, count = 3000) {
+export function many_attributes_exr(number, count = 2500) {
   const attribute = (name, type, bytes) => {
     const size = Buffer.alloc(4);
     size.writeInt32LE(bytes.length);
