@@ -202,7 +202,7 @@ daemon_test(
     const frozen = await canvas_digest(page);
     const revived = await start_daemon(new URL(daemon.url).port);
     try {
-      await eventually("frames again", async () => (await canvas_digest(page)) !== frozen, 30_000);
+      await eventually("frames again", async () => (await canvas_digest(page)) !== frozen);
       assert.equal(await notice.isVisible(), false);
     } finally {
       await revived.stop();

@@ -11,7 +11,7 @@ import { fileURLToPath } from "node:url";
 export const kRoot = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
 export const kSkipped = 77;
 const kChromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const kStartMs = 20_000;
+const kStartMs = 600_000;
 const require = createRequire(import.meta.url);
 
 // Path of a file in a package, found in node_modules or NODE_PATH; null where it is not installed.
@@ -94,7 +94,7 @@ export function start_browser() {
 // uncaught exceptions and requests to another origin. `ready` is what the page shows once it is open.
 export async function open_page(browser, url, { ready = "#canvas", ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
-  context.setDefaultTimeout(120_000); // tests share the machine with others: only what hangs is to fail
+  context.setDefaultTimeout(600_000); // tests share the machine with others: only what hangs is to fail
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
@@ -128,7 +128,7 @@ export async function hash_of(page) {
 }
 
 // Waits until `probe()` returns something true, and returns that.
-export async function eventually(what, probe, timeout_ms = 60_000) {
+export async function eventually(what, probe, timeout_ms = 600_000) {
   for (const start = Date.now(); Date.now() - start < timeout_ms;) {
     const result = await probe();
     if (result) return result;

@@ -66,7 +66,7 @@ void record(const httplib::Request& request, const httplib::Response& response) 
 httplib::Client client_of(int port) {
   httplib::Client client("127.0.0.1", port);
   client.set_logger(record);
-  client.set_read_timeout(120, 0);
+  client.set_read_timeout(600, 0);
   client.set_keep_alive(true);
   client.set_tcp_nodelay(true);
   return client;

@@ -39,8 +39,8 @@ class Daemon {
   // Processor time used so far, seconds.
   double cpu_seconds() const;
   // Waits until it uses the processor, or until it no longer does. False after `limit_s`.
-  bool wait_until_working(double limit_s = 20) const;
-  bool wait_until_idle(double limit_s = 20) const;
+  bool wait_until_working(double limit_s = 600) const;
+  bool wait_until_idle(double limit_s = 600) const;
 
  private:
   pid_t pid_ = -1;

@@ -93,7 +93,7 @@ TEST(ClientThatLeaves, EndsItsRefinement) {
            daemon.metric("orrery_renders_running") == 1;
   }));
   raw.close();
-  EXPECT_TRUE(daemon.wait_until_idle(5));
+  EXPECT_TRUE(daemon.wait_until_idle());
   EXPECT_NE(daemon.health_client().Get("/metrics")->body.find("orrery_given_up_total{stage=\"render\"} 1\n"),
             std::string::npos);
 }
