@@ -100,7 +100,7 @@ Verdict judge(const Json& object, const Placement& placement, int count, std::ui
 
 class ShapeOracle : public testing::TestWithParam<std::string> {
  protected:
-  const int kRays = exhaustive() ? 100'000 : 10'000;  // for each shape type and precision
+  const int kRays = exhaustive() ? 100'000 : 5'000;  // for each shape type and precision
 
   template <class T>
   void check() {
