@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/shorten.h"
 #include "core/params/json.h"
 #include "core/params/reader.h"
 #include "core/params/words.h"
