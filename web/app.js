@@ -126,7 +126,7 @@ async function open_scene(at) {
   }
 }
 
-// The scene before, its figures and what is said of it are of no interest any more.
+// Replaces the former scene on the stage, its figures and its messages by the thumbnail of the scene being opened.
 function announce() {
   const sample = library.sample(state.scene);
   view.announce(sample ? thumbnail_of(sample) : "");

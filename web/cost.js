@@ -19,9 +19,14 @@ export class Cost {
 
   // The number of the first of `pictures` that should take at most `ms`; of the last where none does or nothing is known.
   first_within(pictures, ms) {
-    const at = pictures.findIndex((picture) => this.expected_ms(picture) <= ms);
-    return at < 0 ? pictures.length - 1 : at;
+    return first_within(pictures.map((picture) => this.expected_ms(picture)), ms);
   }
+}
+
+// The number of the first of these times that is at most `ms`; of the last where none is.
+export function first_within(times, ms) {
+  const at = times.findIndex((time) => time <= ms);
+  return at < 0 ? times.length - 1 : at;
 }
 
 const kind_of = ({ id, technique }) => `${id} ${technique}`;

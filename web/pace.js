@@ -2,6 +2,8 @@
 // the stream is asked for anew: coarser as long as it would stutter, else with fewer frames and a wider step; and finer
 // again as far as that would not stutter.
 
+import { first_within } from "./cost.js";
+
 const kMostFps = 30;
 const kSmoothFps = 12; // below this it stutters
 const kFinerFps = 16; // what a finer orbit has to promise
@@ -41,8 +43,9 @@ export class Pace {
   // same unit and less than the one before. Returns whether fps or level changed, so that the stream should be asked
   // for anew.
   note(now, work_ms, speed, costs) {
+    const expected = (ms) => costs.map((cost) => (ms * cost) / costs[this.level]);
     if (work_ms > 1000 / kSmoothFps && this.level < costs.length - 1) {
-      const smooth = first_within(costs, work_ms / costs[this.level], 1000 / kSmoothFps);
+      const smooth = first_within(expected(work_ms), 1000 / kSmoothFps);
       return this.#get_coarser(now, Math.max(smooth, this.level + 1));
     }
     this.#times.push(now);
@@ -51,9 +54,9 @@ export class Pace {
     const count = this.#times.length - 1;
     const rate = (count * 1000) / span;
     if (count >= 3 && span >= kFinerAfterMs && rate >= kFinerFps) {
-      const finer = first_within(costs, this.#longest_ms / costs[this.level], 1000 / kFinerFps);
       const finest = now < this.#slow.until ? this.#slow.level + 1 : 0;
-      if (Math.max(finer, finest) < this.level) return this.#change_level(Math.max(finer, finest));
+      const level = Math.max(finest, first_within(expected(this.#longest_ms), 1000 / kFinerFps));
+      if (level < this.level) return this.#change_level(level);
     }
     if (count < 1 || !((span >= kWindowMs && count >= 3) || span >= kLongGapMs)) return false;
     this.restart();
@@ -82,10 +85,4 @@ export class Pace {
     this.fps = Math.min(before, Math.max(rate, Math.abs(speed) / kWidestStep));
     return this.fps < before;
   }
-}
-
-// The number of the first cost that takes at most `ms`, at `unit_ms` for a cost of 1; of the last where none does.
-function first_within(costs, unit_ms, ms) {
-  const at = costs.findIndex((cost) => cost * unit_ms <= ms);
-  return at < 0 ? costs.length - 1 : at;
 }

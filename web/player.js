@@ -16,7 +16,8 @@ const kPreviewMs = 75; // from asking to showing, of what follows the hand
 const kFrameMs = 60; // of an orbit's frames, before one was seen
 const kDraftMs = 100; // a first picture that takes longer follows a draft
 
-// `on` has: moving(purpose, view) -> pictures, each cheaper than the one before, none where there is no scene; at_rest(view) -> {picture, asked} or null, missing() -> promise
+// `on` has: moving(purpose, view) -> pictures, each cheaper than the one before, none where there is no scene;
+// at_rest(view) -> {picture, asked} or null, missing() -> promise
 // (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error), progress(figures or null),
 // stale() when another picture is due, settled() when the view no longer moves, rested() when the picture is final.
 export class Player {

@@ -4,8 +4,8 @@
 #include "server/http/embedded.h"
 #include "server/routes/constant.h"
 
-// GET / and the files of the page, GET /scenes/{name}.json, GET /scenes/thumbnails/{name}.webp: what was
-// built into the program.
+// Serves files that are built into the program: GET / and the page's files, GET /scenes/{name}.json and
+// GET /scenes/thumbnails/{name}.webp.
 namespace orrery {
 namespace {
 

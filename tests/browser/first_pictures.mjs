@@ -4,7 +4,7 @@
 // --slow: the browser's processor is slowed down so many times, the service's is not.
 
 import { parseArgs } from "node:util";
-import { eventually, skip_without_browser, start_browser, start_daemon } from "./support.mjs";
+import { eventually, open_page, skip_without_browser, start_browser, start_daemon } from "./support.mjs";
 import { drag_for, log_stage, pick, scene_names, slow_down } from "./stage_log.mjs";
 
 const kDrag_ms = 2000;
@@ -43,10 +43,7 @@ skip_without_browser();
 const daemon = await start_daemon();
 const browser = await start_browser();
 try {
-  const page = await (await browser.newContext({ viewport: { width, height } })).newPage();
-  await log_stage(page);
-  await page.goto(`${daemon.url}#scene=paper`);
-  await page.locator("#canvas").waitFor({ state: "visible" });
+  const { page } = await open_page(browser, `${daemon.url}#scene=paper`, { viewport: { width, height }, before: log_stage });
   if (Number(values.slow) > 1) await slow_down(page, Number(values.slow));
   row(["scene", "thumbnail, ms", "first picture, ms", "its width, pixels", "drag, fps", "width", "orbit, fps", "width"]);
   row(["---", "--:", "--:", "--:", "--:", "--:", "--:", "--:"]);

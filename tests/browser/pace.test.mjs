@@ -45,7 +45,7 @@ test("an orbit that begins coarse is as fine as it can be after a moment", () =>
   assert.equal(pace.level, 1);
 });
 
-test("an orbit tries what was too slow again after some seconds, not at once", () => {
+test("an orbit retries a level that was too slow after 5 s, not before", () => {
   const { starts } = paced((level) => [90, 12][level], [5, 1], 12);
   const times = starts.filter(([, level]) => level === 0).map(([now]) => now);
   assert.ok(times.length >= 2);

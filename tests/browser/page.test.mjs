@@ -113,7 +113,7 @@ page_test(
   async (page) => {
     await rest(page);
     const { width } = await page.locator("#stage").boundingBox();
-    // Counted inside the page: outside, a request may be seen to begin before the end of the last is told.
+    // Requests are counted inside the page: the driver may report one before it reports the end of the last.
     await page.evaluate(() => {
       const real_fetch = window.fetch;
       window.previews = [];
@@ -143,6 +143,7 @@ page_test(
     assert.equal(last.samples, "1");
     assert.equal(await page.evaluate(() => window.most_flying), 1);
     near(at_rest.split("x")[0], width, 1, "width at rest");
+    assert.match(await page.locator("#hud-rmse").textContent(), /, 4 samples$/);
   },
 );
 

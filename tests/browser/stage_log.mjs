@@ -1,4 +1,6 @@
-// What the stage shows, as it is painted: shared by drafts.test.mjs and first_pictures.mjs.
+// Records what the stage shows in each painted frame, for drafts.test.mjs and first_pictures.mjs.
+
+import { middle } from "./support.mjs";
 
 // To be called before the page is opened. From then on window.stage_log has an entry for each painted frame,
 // {at, scene, thumbnail, width}: its time in ms, the scene that the stage names, the file of the thumbnail in sight or
@@ -39,13 +41,12 @@ export function pick(page, name) {
 
 // Turns the view by the mouse for `ms`; resolves to [time, width] of the pictures that were drawn meanwhile.
 export async function drag_for(page, ms) {
-  const box = await page.locator("#stage").boundingBox();
-  const at = [box.x + box.width / 2, box.y + box.height / 2];
-  await page.mouse.move(...at);
+  const { x, y } = await middle(page);
+  await page.mouse.move(x, y);
   await page.mouse.down();
   await page.evaluate(() => void (window.pictures = []));
   const start = Date.now();
-  for (let n = 0; Date.now() - start < ms; n += 1) await page.mouse.move(at[0] + 60 * Math.sin(n / 12), at[1]);
+  for (let n = 0; Date.now() - start < ms; n += 1) await page.mouse.move(x + 60 * Math.sin(n / 12), y);
   const drawn = await page.evaluate(() => window.pictures);
   await page.mouse.up();
   return drawn;

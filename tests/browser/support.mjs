@@ -92,7 +92,8 @@ export function start_browser() {
 
 // A page at `url` that notes what should not happen: {page, faults, close()}. Faults are console errors,
 // uncaught exceptions and requests to another origin. `ready` is what the page shows once it is open.
-export async function open_page(browser, url, { ready = "#canvas", ...options } = {}) {
+// `before(page)` runs before it is opened.
+export async function open_page(browser, url, { ready = "#canvas", before = () => {}, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   context.setDefaultTimeout(600_000); // tests share the machine with others: only what hangs is to fail
   const page = await context.newPage();
@@ -107,6 +108,7 @@ export async function open_page(browser, url, { ready = "#canvas", ...options } 
     await page.unrouteAll({ behavior: "ignoreErrors" });
     await context.close();
   };
+  await before(page);
   await page.goto(url);
   await page.locator(ready).waitFor({ state: "visible" });
   return { page, faults, close };
