@@ -110,7 +110,7 @@ const sphere_of = (number, material) => scene_of(number, material, [sphere(1)], 
 const kSmall = [
   ["the catalog", () => ({ path: "/v1/catalog" })],
   ["the description of the service", () => ({ path: "/openapi.json" })],
-  ["explanations", (n, id) => ({ path: `/v1/scenes/${id}/explain?seed=${n}` }), (n) => sphere_of(n, kGlass)],
+  ["explanations", (n, id) => ({ path: `/v1/scenes/${id}/explain?seed=${n}` }), (n) => scene_of(n, kGlass, shells(12), { depth: 32 })],
   ["a long wrong name", (n) => post("/v1/scenes", sphere_of(n, { type: "r".repeat(60_000) }))],
   ["many wrong names", (n) => post("/v1/scenes", { ...sphere_of(n, kRough), ...Object.fromEntries(Array.from({ length: 4000 }, (_, i) => [`x${i}`, 0])) })],
   ["shares of many numbers", () => post("/v1/shares", kNumbers)],

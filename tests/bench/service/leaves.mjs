@@ -3,7 +3,7 @@
 import { Client, header_of } from "./client.mjs";
 import { put_asset, tiny_jpeg } from "./pictures.mjs";
 import {
-  Gauges, closed_loop, decoders_of, kRendersAtOnce, most, ms, new_picture, p99, pause, row, with_service,
+  Gauges, closed_loop, decoders_of, kRendersAtOnce, most, ms, new_picture, p99, pause, row, until, with_service,
 } from "./support.mjs";
 import { cpu_seconds } from "../daemon.mjs";
 
@@ -104,14 +104,7 @@ async function leave_waiting(service, gauges, scenes, times) {
   return took.filter(is_time);
 }
 
-async function until(holds, limit_ms = 30_000) {
-  const start = performance.now();
-  while (!holds()) {
-    if (performance.now() - start > limit_ms) return NaN;
-    await pause(1);
-  }
-  return performance.now() - start;
-}
+const each_ms_until = (holds) => until(() => pause(1).then(holds));
 
 // Leaves while a picture file is decoded, which takes seconds.
 async function leave_decoding(service, times) {
@@ -120,10 +113,10 @@ async function leave_decoding(service, times) {
     const client = new Client(service.port);
     const { path, ...request } = put_asset(tiny_jpeg(i, 60));
     const answer = client.ask(path, request);
-    await until(() => decoders_of(service.pid).length > 0);
+    await each_ms_until(() => decoders_of(service.pid).length > 0);
     await pause(200 * Math.random());
     client.leave();
-    const ended = await until(() => decoders_of(service.pid).length === 0);
+    const ended = await each_ms_until(() => decoders_of(service.pid).length === 0);
     if ((await answer).failure === "left") took.push(ended);
   }
   return took;

@@ -103,6 +103,16 @@ export function process_state(pid) {
   };
 }
 
+// Milliseconds until `holds()` resolves to true; NaN if that takes longer than `limit_ms`.
+export async function until(holds, limit_ms = 30_000) {
+  for (const start = performance.now(); ;) {
+    const held = await holds();
+    const took = performance.now() - start;
+    if (held) return took;
+    if (took > limit_ms) return NaN;
+  }
+}
+
 // Reads the service's metrics on a connection of its own, which the service closes after 15 s of rest.
 export class Gauges {
   constructor(service) {
@@ -124,13 +134,8 @@ export class Gauges {
   }
 
   // Milliseconds until `holds` is true of the gauges; NaN if that takes longer than `limit_ms`.
-  async until(holds, limit_ms = 30_000) {
-    for (const start = performance.now(); ;) {
-      const gauges = await this.read();
-      const took = performance.now() - start;
-      if (holds(gauges)) return took;
-      if (took > limit_ms) return NaN;
-    }
+  until(holds, limit_ms) {
+    return until(async () => holds(await this.read()), limit_ms);
   }
 
   close() {
