@@ -5,7 +5,6 @@
 #include "core/plan/plan.h"
 #include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
-#include "tests/support/sanitized.h"
 
 // What pictures are expected to cost, against the sums of the branching process by hand and against what is
 // traced.
@@ -127,7 +126,7 @@ class CostOfSamples : public testing::TestWithParam<std::string> {};
 TEST_P(CostOfSamples, IsOfTheOrderOfWhatIsTraced) {
   const auto scene = load(sample(GetParam()));
   RenderRequest request = size(160, 120);
-  if (kSanitized || !exhaustive()) request.samples = 2;
+  if (reduced()) request.samples = 2;
   const double traced = static_cast<double>(render(scene, request).stats.counts.rays.total());
   const double share = expected_rays(*scene, make_plan(*scene, request)) / traced;
   RecordProperty("expected_over_traced", std::to_string(share));

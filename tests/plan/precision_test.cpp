@@ -11,7 +11,6 @@
 #include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
-#include "tests/support/sanitized.h"
 
 // The number type that the plan chooses, against double precision: what float would get visibly wrong is
 // rendered in double, and the plan says what needs it.
@@ -102,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, HardForFloat, testing::ValuesIn(hard_scenes()),
 TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
   for (const std::string& name : sample_names()) {
     Json scene = sample(name);
-    const bool small = kSanitized || !exhaustive();
+    const bool small = reduced();
     scene["image"] = {{"width", small ? 32 : 96}, {"height", small ? 24 : 72}};
     const auto loaded = load(scene);
     EXPECT_FALSE(make_plan(*loaded, {}).double_precision) << name;

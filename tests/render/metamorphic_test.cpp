@@ -6,7 +6,6 @@
 #include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
-#include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
 
 // Changes that must not change a picture, over every scene of scenes/ and over random ones.
@@ -15,7 +14,7 @@ namespace {
 
 // What sanitizers look for shows in fewer pixels.
 RenderRequest small(int samples = 1) {
-  RenderRequest request = kSanitized || !exhaustive() ? size(64, 48) : size(160, 120);
+  RenderRequest request = reduced() ? size(64, 48) : size(160, 120);
   request.samples = samples;
   return request;
 }

@@ -8,7 +8,6 @@
 
 #include "core/model/scene.h"
 #include "tests/support/exhaustive.h"
-#include "tests/support/sanitized.h"
 #include "tests/support/scenes.h"
 
 // Single rays against the shapes of a scene, in any precision. The kernels see whole batches.
@@ -43,7 +42,7 @@ using Rays = std::vector<Ray<T>>;
 // wants to see all of the code but not all numbers.
 template <class T>
 Rays<T> enough_of(const Rays<T>& rays) {
-  if (!kSanitized && exhaustive()) return rays;
+  if (!reduced()) return rays;
   constexpr std::size_t kEnough = 1'000;
   Rays<T> some;
   for (std::size_t i = 0; i < rays.size(); i += std::max<std::size_t>(1, rays.size() / kEnough))
