@@ -137,6 +137,7 @@ MemoryCharge::~MemoryCharge() {
 }
 
 void interruption_point() {
+  if (current_work.turn) current_work.turn->give_way();
   if (current_work.stop && current_work.stop->stop_requested()) throw Cancelled();
   if (current_work.memory) current_work.memory->require_granted();
 }

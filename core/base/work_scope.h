@@ -10,6 +10,8 @@
 #include <stop_token>
 #include <utility>
 
+#include "core/base/checkpoint.h"
+
 namespace orrery {
 
 // Bytes that a piece of work holds: operator new adds to the account of the WorkScope that its thread is in,
@@ -31,8 +33,8 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   // From now on, others answer for so many of the bytes: they need no right.
   void settle(std::size_t bytes);
 
-  // Calls work() with the thread in the scope of this account and of `stop`. Where that threw because the
-  // account was refused more bytes, throws what refused them.
+  // Calls work() with the thread in the scope of this account and of `stop`, and of the same turn as before.
+  // Where that threw because the account was refused more bytes, throws what refused them.
   template <class Act>
   auto run(const std::stop_token& stop, const Act& work);
 
@@ -66,6 +68,7 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
 struct Work {
   MemoryAccount* memory = nullptr;        // whose memory it takes
   const std::stop_token* stop = nullptr;  // ends it
+  Turn* turn = nullptr;                   // on which it works; asked from any thread
 };
 
 // Sets what this thread works for, until its end. Workers that a caller waits for are in its scope as well.
@@ -104,7 +107,7 @@ class MemoryCharge {
 template <class Act>
 auto MemoryAccount::run(const std::stop_token& stop, const Act& work) {
   try {
-    const WorkScope scope({this, &stop});
+    const WorkScope scope({this, &stop, WorkScope::current().turn});
     return work();
   } catch (const std::bad_alloc&) {
     rethrow_refusal();
@@ -112,8 +115,9 @@ auto MemoryAccount::run(const std::stop_token& stop, const Act& work) {
   }
 }
 
-// Throws Cancelled once what the thread works for is to end, and std::bad_alloc once it holds more memory
-// than it may. Loops over input of any size ask it at each step; it takes a few ns.
+// Lets others go first if they have waited long enough. Throws Cancelled once what the thread works for is to
+// end, and std::bad_alloc once it holds more memory than it may. Loops over input of any size ask it at each
+// step, with no lock held that others need; it takes a few ns.
 void interruption_point();
 // The same for loops of steps that take less: asks at every 4,096th.
 inline void interruption_point(std::size_t step) {

@@ -61,12 +61,12 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, con
     if (!geometry) geometry = make_geometry<T>(parts.scene, type, exposure, before.geometry.get());
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
   };
-  if (const auto memory = open_account(parts)) {
+  const auto memory = open_account(parts);
+  const WorkScope scope({nullptr, &stop});  // no turn: who has the mutex gives way to nobody
+  if (memory)
     memory->run(stop, make);
-  } else {
-    const WorkScope scope({nullptr, &stop});
+  else
     make();
-  }
   build_ms += milliseconds_since(start);
   return world;
 }

@@ -57,18 +57,16 @@ void HandlerSlots::resume() {
   if (current) current->acquire();
 }
 
-void HandlerSlots::give_way() {
+void HandlerSlots::Handler::give_way() {
   constexpr std::chrono::milliseconds kSlice{5};  // what a handler takes at most, as a rule
-  if (!current || !current->has_slot_ || std::chrono::steady_clock::now() - current->since_ < kSlice) return;
-  if (current->slots_.waiting() > 0) current->release();
-  current->acquire();
+  if (current != this || !has_slot_ || slots_.waiting() == 0) return;
+  if (std::chrono::steady_clock::now() - since_ < kSlice) return;
+  release();
+  acquire();
 }
 
-std::size_t HandlerSlots::waiting() const {
-  const std::lock_guard lock(mutex_);
-  std::size_t count = 0;
-  for (const Client& client : clients_) count += client.waiters.size();
-  return count;
+void HandlerSlots::give_way() {
+  if (current) current->give_way();
 }
 
 bool HandlerSlots::take(const std::string& client, const std::stop_token& gone, bool goes_on) {
@@ -81,6 +79,7 @@ bool HandlerSlots::take(const std::string& client, const std::stop_token& gone, 
   auto own =
       std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.name == client; });
   if (own == clients_.end()) own = clients_.insert(clients_.end(), {client, {}});
+  ++waiting_;
   own->waiters.insert(goes_on ? own->waiters.begin() : own->waiters.end(), &waiter);
   waiter.changed.wait(lock, gone, [&] { return waiter.granted; });
   if (!waiter.granted) remove(client, waiter);
@@ -96,6 +95,7 @@ void HandlerSlots::give_back() {
   Client& client = clients_.front();
   Waiter& next = *client.waiters.front();
   client.waiters.pop_front();
+  --waiting_;
   if (client.waiters.empty())
     clients_.pop_front();
   else
@@ -108,6 +108,7 @@ void HandlerSlots::remove(const std::string& client, Waiter& waiter) {
   const auto own =
       std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.name == client; });
   std::erase(own->waiters, &waiter);
+  --waiting_;
   if (own->waiters.empty()) clients_.erase(own);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -8,6 +9,7 @@
 #include <stop_token>
 #include <string>
 
+#include "core/base/work_scope.h"
 #include "server/http/waiting.h"
 
 namespace orrery {
@@ -22,14 +24,17 @@ class HandlerSlots {
   HandlerSlots(const HandlerSlots&) = delete;
 
   // The handler of one request, for the thread that runs it. Holds a slot from its construction to its end,
-  // except while a Wait lives on the same thread.
-  class Handler {
+  // except while a Wait lives on the same thread. What it computes gives way at interruption points.
+  class Handler final : public Turn {
    public:
     // Waits for a slot, at most until `gone` is requested; throws Cancelled then. `state` shows others that
     // it waits; both outlive the handler.
     Handler(HandlerSlots& slots, std::string client, std::stop_token gone, Waiting& state);
     ~Handler();
     Handler(const Handler&) = delete;
+
+    // Lets other clients go first if the thread has held its slot for a while. Other threads have none.
+    void give_way() override;
 
    private:
     friend class HandlerSlots;
@@ -42,6 +47,7 @@ class HandlerSlots {
     const std::stop_token gone_;
     Waiting& state_;
     Handler* const outer_;  // of the thread, before
+    const WorkScope scope_{{nullptr, nullptr, this}};
     bool has_slot_ = false, has_begun_ = false;
     std::chrono::steady_clock::time_point since_;  // it has the slot
   };
@@ -64,10 +70,10 @@ class HandlerSlots {
 
   // Takes a slot again after Wait::end_without_slot().
   static void resume();
-  // Lets other clients go first if the thread has held its slot for a while.
+  // Has the thread's handler give way, if there is one.
   static void give_way();
 
-  std::size_t waiting() const;
+  std::size_t waiting() const { return waiting_; }
 
  private:
   struct Waiter {
@@ -84,9 +90,10 @@ class HandlerSlots {
   void give_back();
   void remove(const std::string& client, Waiter& waiter);  // with mutex_ held
 
-  mutable std::mutex mutex_;   // guards all below
-  std::size_t free_;           // 0 while anybody waits
-  std::list<Client> clients_;  // that wait, the next first
+  mutable std::mutex mutex_;             // guards all below
+  std::size_t free_;                     // 0 while anybody waits
+  std::list<Client> clients_;            // that wait, the next first
+  std::atomic<std::size_t> waiting_{0};  // handlers; changes with mutex_ held
 };
 
 }  // namespace orrery

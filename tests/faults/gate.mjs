@@ -60,6 +60,8 @@ export const gateFaults = [
         "if (kind != Waiting::Kind::client) continue;", "Connections.WhoseRequestsWait*"),
   entry(18, "the client with most handlers computes most", "handler_slots.cpp",
         "clients_.splice(clients_.end(), clients_, clients_.begin());", "", "HandlerSlots.GoRoundRobin*"),
+  entry(18, "long work of a handler lets nobody go first", "handler_slots.cpp",
+        "  release();\n  acquire();", "", "HandlerSlots.AreGivenUpNowAndThen*"),
   entry(18, "all handlers compute at once", "handler_slots.cpp", "if (free_ > 0) {", "if (true) {", "HandlerSlots.*"),
   entry(18, "the end waits for half a request", "connection.cpp",
         "wait(POLLIN, deadline, true);\n    if (ready != Ready::wake)", "wait(POLLIN, deadline, false);\n    if (ready != Ready::wake)",

@@ -120,6 +120,7 @@ export const serviceFaults = [
         "if (demand.is_shared())\n    std::for_each", "if (false)\n    std::for_each", "test_app", "SharedWork.*"),
   entry(20, "encoded frames are nobody's memory", "server/app/pipeline.cpp", "if (!memory_) return frame;", "return frame;",
         "test_app", "PipelineMemory.IsTakenWhile*"),
+  entry(20, "who has a scene locked lets others go first", "core/prepare/prepared_scene.cpp", "const WorkScope scope({nullptr, &stop});", "const WorkScope scope({nullptr, &stop, WorkScope::current().turn});", "test_load", "Interruption.LetsNobodyGoFirst*"),
   entry(20, "smoothing goes on for nobody", "core/meshes/smooth_normals.cpp", "      interruption_point();\n", "", "test_load", "Interruption.EndsSmoothingAmongTheFacets"),
   entry(20, "a flood evicts what others hold", "server/app/fair_shares.cpp", "now - entry.used <= protected_for_", "false",
         "test_app", "FairSharesTest.AFlood*"),

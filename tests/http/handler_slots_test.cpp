@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/work_scope.h"
 #include "tests/support/eventually.h"
 
 // How many handlers compute at once, and whose turn it is.
@@ -110,6 +111,18 @@ TEST(HandlerSlots, AreFreeWhileTheirHandlerWaits) {
     EXPECT_EQ(queue.order(), "b");
   }
   queue.add("c");  // waits: the first has its slot again
+}
+
+TEST(HandlerSlots, AreGivenUpNowAndThenByLongWork) {
+  HandlerSlots slots(1);
+  const Running first(slots, "a");
+  Queue queue(slots);
+  queue.add("b");
+  EXPECT_TRUE(test::eventually([&] {
+    interruption_point();
+    return slots.waiting() == 0;
+  }));
+  EXPECT_EQ(queue.order(), "b");
 }
 
 TEST(HandlerSlots, StayFreeWherePlacesOfAnotherKindBoundTheWork) {

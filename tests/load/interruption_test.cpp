@@ -99,5 +99,28 @@ TEST(Interruption, LeavesNothingHalfBuilt) {
   EXPECT_EQ(world_for<float>(scene.parts(), type, 0, build_ms).geometry->primitives.size(), 1u);
 }
 
+class CountedTurn final : public Turn {
+ public:
+  void give_way() override { ++asked; }
+  std::atomic<int> asked{0};
+};
+
+TEST(Interruption, LetsOthersGoFirst) {
+  CountedTurn turn;
+  const WorkScope scope({nullptr, nullptr, &turn});
+  load_scene(kScene);
+  EXPECT_GT(turn.asked, 0);
+}
+
+// Those that wait for the scene would keep what the builder waits for.
+TEST(Interruption, LetsNobodyGoFirstWhileASceneIsLocked) {
+  const PreparedScene scene(load_scene(kScene));
+  CountedTurn turn;
+  const WorkScope scope({nullptr, nullptr, &turn});
+  double build_ms = 0;
+  world_for<float>(scene.parts(), accelerator_types()[0], 0, build_ms);
+  EXPECT_EQ(turn.asked, 0);
+}
+
 }  // namespace
 }  // namespace orrery
