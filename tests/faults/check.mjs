@@ -1,12 +1,12 @@
 #!/usr/bin/env node
-// Puts each fault of faults.mjs into a copy of the source tree and checks that the tests named there fail.
-// Exits with 1 if a fault is not caught, if it can no longer be put in, or if a test fails without any.
+// Applies each fault of faults.mjs to a copy of the source tree and checks that its tests fail. Exits with 1 if a
+// fault is not caught or does not apply, or if a test fails without a fault.
 //
-//   node tests/faults/check.mjs [OPTION...] [FAULT...]     with numbers of faults, those alone
-//     --folder FOLDER       where the copy and its build lie, kept for the next run; else a temporary folder
-//     --shard K/N           every Nth fault from the Kth on: shards 1/N to N/N together are all of them
-//     --changed [REVISION]  those whose file differs from REVISION (default: where the branch left main)
-//     --compile             only checks that each file compiles with its fault, by the flags of build/
+//   node tests/faults/check.mjs [OPTION...] [FAULT...]     all faults, or those with the given numbers
+//     --folder FOLDER       folder of the copy and its build, kept for the next run (default: temporary)
+//     --shard K/N           every Nth fault, starting with the Kth
+//     --changed [REVISION]  faults in files that differ from REVISION (default: merge base with main)
+//     --compile             only checks that each fault compiles with the flags of build/
 
 import {spawnSync} from "node:child_process";
 import {existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, utimesSync, writeFileSync} from "node:fs";
@@ -21,12 +21,10 @@ import {unitsWith} from "./units.mjs";
 
 const kTestMinutes = 2;  // a fault may also keep a test from ending
 const kNamesShown = 4;
-// These start the program; the other executables hold all that they test.
+// Test executables that start the program.
 const kTargetsOfTheProgram = ["test_commands", "test_http"];
 
 class Stop extends Error {}
-
-const isScript = (target) => target.endsWith(".mjs");
 
 function run(command, args, options = {}) {
   const result = spawnSync(command, args, {encoding: "utf8", maxBuffer: 1 << 28, ...options});
@@ -49,7 +47,7 @@ function changedFiles(revision) {
   return new Set(`${git("diff", "-z", "--name-only", base)}${untracked}`.split("\0").filter(Boolean));
 }
 
-// Neighbours in the list are alike and often of one file, which may cost a long build: shards take turns.
+// Deals the faults to the shards in turn, since neighbours in the list often need the same long build.
 function shardOf(faults, text) {
   const [, k, n] = text.match(/^(\d+)\/(\d+)$/)?.map(Number) ?? [];
   if (!(k >= 1 && k <= n)) throw new Stop(`--shard: expected K/N with 1 <= K <= N, got "${text}"`);
@@ -65,15 +63,15 @@ function chosen(options, numbers) {
   return options.shard === undefined ? faults : shardOf(faults, options.shard);
 }
 
-// Whether a pattern of --gtest_filter matches.
+// Returns whether a pattern of --gtest_filter matches a name.
 const matches = (pattern, name) =>
   new RegExp(`^${pattern.replace(/[.+^${}()|[\]\\]/g, "\\$&").replace(/\*/g, ".*").replace(/\?/g, ".")}$`)
     .test(name);
 
 // ---- the copy ----
 
-// Makes `to` hold what git sees in the working tree. Files that are the same already stay untouched, so that
-// a second run builds little.
+// Copies the tracked and the untracked files of the working tree to the folder `to`. Equal files keep their time, so
+// that a second run builds little.
 function copyTree(to) {
   const listed = git("ls-files", "-z", "--cached", "--others", "--exclude-standard");
   const files = new Set(listed.split("\0").filter((file) => file && statSync(join(kRoot, file), {throwIfNoEntry: false})?.isFile()));
@@ -93,41 +91,26 @@ class Copy {
   constructor(folder) {
     this.source = join(folder, "source");
     this.build = join(folder, "build");
-    // Paths below the folder do not count for ccache: every temporary folder profits from the last one.
+    // ccache ignores the path of the folder, so that a new temporary folder reuses the objects of the last one.
     this.environment = {CCACHE_BASEDIR: folder, TEST_EXHAUSTIVE: "yes", ...process.env, TEST_ORRERY: join(this.build, "orrery")};
     mkdirSync(this.source, {recursive: true});
     copyTree(this.source);
   }
   configure() {
-    // A fault then costs the compilation of its own file alone.
+    // Without unity builds a fault recompiles its own file only.
     const flags = ["-DCMAKE_BUILD_TYPE=Release", "-DORRERY_LEVELS=host", "-DORRERY_UNITY=OFF"];
     const done = run("cmake", ["-G", "Ninja", "-S", this.source, "-B", this.build, ...flags],
                      {env: this.environment});
     if (!done.passed) throw new Stop(`cannot configure the copy:\n${done.output}`);
   }
-  buildTargets(wanted) {
-    const targets = wanted.filter((target) => !isScript(target));
-    if (targets.length === 0) return {passed: true};
+  buildTargets(targets) {
     const parallel = ["--parallel", String(availableParallelism())];
     const program = targets.some((target) => kTargetsOfTheProgram.includes(target)) ? ["orrery"] : [];
     return run("cmake", ["--build", this.build, ...parallel, "--target", ...program, ...targets],
                {env: this.environment});
   }
-  // Runs the tests that match the patterns; returns what ran, what failed, and the output.
+  // Runs the tests that match the patterns. Returns {passed, output, ran, failed}; the last two are test names.
   test(target, patterns) {
-    return isScript(target) ? this.testScript(target, patterns) : this.testExecutable(target, patterns);
-  }
-  testScript(target, patterns) {
-    const {output} = run("node", ["--test-reporter=tap", target], {
-      cwd: this.source, timeout: kTestMinutes * 60_000, killSignal: "SIGKILL",
-    });
-    const results = [...output.matchAll(/^(not )?ok \d+ - (.*?)(?: #.*)?$/gm)]
-      .map(([, failed, name]) => ({name, failed: failed !== undefined}))
-      .filter(({name}) => patterns.some((pattern) => matches(pattern, name)));
-    const failed = results.filter((result) => result.failed).map(({name}) => name);
-    return {passed: failed.length === 0, output, ran: results.map(({name}) => name), failed};
-  }
-  testExecutable(target, patterns) {
     const environment = {...this.environment};
     for (const name of Object.keys(environment)) if (name.startsWith("GTEST_")) delete environment[name];
     const filter = `--gtest_filter=${patterns.join(":")}`;
@@ -139,7 +122,7 @@ class Copy {
     const ran = names("RUN"), succeeded = new Set([...names("OK"), ...names("SKIPPED")]);
     return {passed, output, ran, failed: ran.filter((name) => !succeeded.has(name))};  // or did not end
   }
-  // Calls act() while `fault` is in the copy.
+  // Calls act() while `fault` is applied to the copy.
   withFault(fault, act) {
     const {text, original, problem} = planted(fault, this.source);
     if (problem) return {caught: false, text: problem};
@@ -150,7 +133,7 @@ class Copy {
       this.change(fault, original);
     }
   }
-  // The file keeps its age where only some of the units that include it are to be compiled again.
+  // Keeps the time of the file if units.mjs lists the units to recompile.
   change(fault, text) {
     const path = join(this.source, fault.file), {atime, mtime} = statSync(path), units = unitsWith(fault);
     writeFileSync(path, text);
@@ -173,7 +156,7 @@ const shown = (names) =>
   names.slice(0, kNamesShown).join(", ") +
   (names.length > kNamesShown ? ` and ${names.length - kNamesShown} more` : "");
 
-// Without a fault every pattern names a test, and all of them pass.
+// Checks that every pattern matches a test and that all tests pass without a fault.
 function checkSound(copy, faults) {
   const patterns = new Map();
   for (const {target, tests} of faults) patterns.set(target, [...(patterns.get(target) ?? []), ...tests]);
@@ -215,7 +198,7 @@ function checkAll(faults, folder) {
 
 // ---- the command line ----
 
-// `--changed` alone, or with a revision after it.
+// Accepts `--changed` with and without a revision.
 function readArguments() {
   const args = process.argv.slice(2);
   const bare = args.indexOf("--changed");

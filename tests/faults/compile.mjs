@@ -1,5 +1,5 @@
-// Whether the code compiles with a fault in it, without a build: the file with the fault lies in a folder of
-// its own, which the compiler looks into first, and -fsyntax-only reads a source that includes it, with the
+// Checks that the code compiles with a fault in it, without a build. The changed file is stored in a folder of its
+// own, which is first in the include path. The compiler reads a source that includes it with -fsyntax-only and the
 // flags of build/compile_commands.json.
 
 import {spawn} from "node:child_process";
@@ -9,7 +9,7 @@ import {dirname, join} from "node:path";
 
 import {kRoot, planted} from "./planted.mjs";
 
-// The sources that build/ compiles, by their path from the root: {command, directory}.
+// Returns the sources that build/ compiles, as a map from their path to {command, directory}.
 function readCommands() {
   const file = join(kRoot, "build/compile_commands.json");
   if (!existsSync(file)) throw new Error(`${file} is missing: run script/setup`);
@@ -21,7 +21,7 @@ function readCommands() {
   return commands;
 }
 
-// CMake compiles several sources as one that includes them.
+// Returns the sources that a file of a unity build includes, or the file itself.
 const sourcesOf = (file) =>
   !file.includes("/Unity/") ? [file] :
     [...readFileSync(file, "utf8").matchAll(/^#include "([^"]+)"/gm)].map((match) => match[1]);
@@ -38,7 +38,8 @@ function reaches(path, target, seen = new Set()) {
   return includesOf(path).some((next) => reaches(next, target, seen));
 }
 
-// The source to read for a fault in `file`: itself, its namesake, or one that includes it, best in its room.
+// Returns the source to compile for a fault in `file`: the file, its namesake, or one that includes it. Sources in the
+// same folder are preferred.
 function sourceFor(file, commands) {
   const namesake = file.replace(/\.h$/, ".cpp");
   if (commands.has(namesake)) return namesake;
@@ -47,25 +48,21 @@ function sourceFor(file, commands) {
     users.find((source) => dirname(source) === dirname(file)) ?? users[0];
 }
 
-// The first error that a command tells; nothing if it ends well.
-function complaintsFrom(command, args, cwd, input = "") {
+// Resolves to the first error message of a command, or to "" if it succeeds.
+function complaintsFrom(command, args, cwd) {
   return new Promise((done) => {
-    const child = spawn(command, args, {cwd, stdio: ["pipe", "ignore", "pipe"]});
+    const child = spawn(command, args, {cwd, stdio: ["ignore", "ignore", "pipe"]});
     let output = "";
     child.stderr.on("data", (data) => { output += data; });
     child.on("close", (status) =>
       done(status === 0 ? "" : output.split("\n").find((line) => /error/i.test(line)) ?? `status ${status}`));
-    child.stdin.end(input);
   });
 }
 
-const complaintsAboutScript = (text) => complaintsFrom("node", ["--check", "--input-type=module", "-"], kRoot, text);
-
-// What the compiler complains about; nothing if it compiles.
+// Resolves to the compiler's first error, or to "" if the code compiles.
 async function complaintsOf(fault, commands) {
   const {text, problem} = planted(fault);
   if (problem) return problem;
-  if (fault.file.endsWith(".js")) return complaintsAboutScript(text);
   const source = sourceFor(fault.file, commands);
   if (!source) return `no source includes ${fault.file}`;
   const folder = mkdtempSync(join(tmpdir(), "orrery-fault-"));
@@ -82,7 +79,7 @@ async function complaintsOf(fault, commands) {
   }
 }
 
-// Names those that do not compile; returns how many do.
+// Prints the faults that do not compile and resolves to the number of those that do.
 export async function compileFaults(faults) {
   const commands = readCommands();
   const waiting = [...faults];

@@ -1,4 +1,4 @@
-// What a file holds while a fault of faults.mjs is in it.
+// Applies a fault of faults.mjs to the text of its file.
 
 import {existsSync, readFileSync} from "node:fs";
 import {dirname, join, resolve} from "node:path";
@@ -6,13 +6,14 @@ import {fileURLToPath} from "node:url";
 
 export const kRoot = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 
-// {original, text}: the file at `root` without and with the fault; {problem} if the fault has no one place.
+// Returns {original, text}: the file below `root` without and with the fault. Returns {problem} if the text of the
+// fault does not occur exactly once.
 export function planted({file, from, to}, root = kRoot) {
   const path = join(root, file);
   if (!existsSync(path)) return {problem: `${file} is missing`};
   const original = readFileSync(path, "utf8");
   const count = original.split(from).length - 1;
-  if (count !== 1) return {problem: `its place stands ${count} times in ${file}, not once`};
+  if (count !== 1) return {problem: `its text occurs ${count} times in ${file}, not once`};
   const text = original.replace(from, () => to);
   return text === original ? {problem: `it changes nothing in ${file}`} : {original, text};
 }
