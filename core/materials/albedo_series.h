@@ -6,15 +6,15 @@
 
 namespace orrery {
 
-// A share of light as a function of a cosine mu in [0, 1]: a Chebyshev series in s = (1 + c) mu / (c + mu).
-// Albedos of microfacets are smooth in s where the scale c is their roughness, or little more.
+// Albedo as a function of a cosine mu in [0, 1]: a Chebyshev series in s = (1 + c) mu / (c + mu). Microfacet
+// albedos are smooth in s if the scale c is the roughness or slightly more.
 template <class N, std::size_t kTerms>
 struct AlbedoSeries {
   std::array<N, kTerms> coefficients;
   N scale;
-  N mean;  // over the hemisphere: the integral of 2 mu E(mu)
+  N mean;  // hemispherical mean: the integral of 2 mu E(mu)
 
-  // By Clenshaw's recurrence; in [0, 1].
+  // Evaluates the series by Clenshaw's recurrence. Returns a value in [0, 1].
   [[gnu::always_inline]] N at(const N& mu) const {
     using T = ScalarOf<N>;
     const N s = (T(1) + scale) * mu / (scale + mu);
@@ -30,7 +30,7 @@ struct AlbedoSeries {
   }
 };
 
-// Node k of the series of so many terms, as s.
+// Returns the Chebyshev polynomial of degree j at node k of `terms` nodes.
 inline double chebyshev_cosine(std::size_t terms, std::size_t j, std::size_t k) {
   return sine_cosine_turns(static_cast<double>(j * (2 * k + 1)) / (4.0 * static_cast<double>(terms))).cosine;
 }
@@ -40,7 +40,7 @@ double series_node(double scale, std::size_t k) {
   return scale * s / (1 + scale - s);
 }
 
-// The series through values at its nodes, which are the cosines series_node(scale, k).
+// Returns the series through values at the cosines series_node(scale, k).
 template <std::size_t kTerms>
 AlbedoSeries<double, kTerms> series_through(const std::array<double, kTerms>& values, double scale) {
   AlbedoSeries<double, kTerms> series{{}, scale, 0};

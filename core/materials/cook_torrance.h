@@ -7,16 +7,15 @@
 
 namespace orrery {
 
-// The model of Cook and Torrance ("A Reflectance Model for Computer Graphics", TOG 1982): a matt share and a
-// share of facets in V-shaped grooves, with slopes after Beckmann. Light that facets pass on to each other is
-// lost, as the model has it.
+// Cook-Torrance model ("A Reflectance Model for Computer Graphics", TOG 1982): a diffuse share plus facets in
+// V-shaped grooves with Beckmann-distributed slopes. Light reflected between facets is lost, as in the paper.
 template <class N>
 struct CookTorrance {
   Vec3<N> n, k;      // index of refraction and extinction of the facets
-  Vec3<N> diffuse;   // share of light that leaves evenly
-  Vec3<N> specular;  // of what facets mirror
-  N slope;           // root mean square of the facets
-  N chance;          // of drawing a facet
+  Vec3<N> diffuse;   // diffuse albedo
+  Vec3<N> specular;  // weight of the facets' reflection
+  N slope;           // root mean square slope of the facets
+  N chance;          // probability of sampling a facet
 
   static CookTorrance<double> read(Params& p);
   MaterialTraits traits() const {
@@ -29,7 +28,7 @@ struct CookTorrance {
     return diffuse * (with_diffuse(lobes) ? one : zero) +
            specular * reflectance(one) * (with_non_diffuse(lobes) ? one : zero);
   }
-  // The share of draws that facets get.
+  // Returns the probability of sampling a facet.
   N facet_chance(Lobes lobes) const {
     return lobes == Lobes::all ? chance : N(ScalarOf<N>(with_non_diffuse(lobes) ? 1 : 0));
   }
@@ -40,14 +39,14 @@ struct CookTorrance {
             fresnel_conductor(n.z, k.z, cosine)};
   }
 
-  // Beckmann's density of normals exp(-tan^2 / m^2) / (pi m^2 cos^4) and the masking of V-shaped grooves,
-  // min(1, 2 H.N V.N / V.H, 2 H.N L.N / V.H).
+  // Evaluates the model: Beckmann's normal density exp(-tan^2 / m^2) / (pi m^2 cos^4), and the masking of
+  // V-shaped grooves min(1, 2 H.N V.N / V.H, 2 H.N L.N / V.H).
   [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light, const MaskOf<N>&,
                                                 Lobes lobes) const {
     using T = ScalarOf<N>;
     using std::sqrt;
     constexpr T kPi = std::numbers::pi_v<T>, kLog2E = std::numbers::log2e_v<T>;
-    constexpr T kVanished = -60;  // powers of two
+    constexpr T kVanished = -60;  // exponent of 2 below which the density is 0
     const N zero(T(0)), one(T(1));
     const auto lit = light.z > zero;
     const N cosine = select(lit, light.z, one);

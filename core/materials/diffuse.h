@@ -5,9 +5,9 @@
 
 namespace orrery {
 
-// Kernel of materials that scatter over the whole hemisphere and draw directions in proportion to the cosine.
-// Beside what MaterialRecords asks for, a record has
-//   Vec3<N> reflectance;                    what leaves of even light from everywhere, roughly
+// Kernel of materials that scatter over the whole hemisphere and are sampled in proportion to the cosine. In
+// addition to the members for MaterialRecords, a record has
+//   Vec3<N> reflectance;                    approximate albedo under uniform light
 //   Vec3<N> pi_brdf(light, viewer, between) pi times the bidirectional reflectance distribution function, of
 //                                           N.L > 0, N.V and L.V
 template <template <class> class Record, class T>
@@ -38,7 +38,7 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
     });
   }
 
-  // The weight f cos / pdf is pi f.
+  // Samples in proportion to the cosine; the weight f cos / pdf is pi f.
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
     const N zero(T(0));

@@ -6,17 +6,17 @@
 #include "core/materials/albedo_series.h"
 #include "core/materials/microfacet.h"
 
-// Albedos of GGX microfacets that do more than mirror all light, by quadrature when a material is read.
+// Albedos of GGX microfacets with Fresnel reflection, computed by quadrature when a material is read.
 namespace orrery {
 
-inline constexpr double kLeastAlpha = 1e-3;  // of GGX; below it a surface is smooth
+inline constexpr double kLeastAlpha = 1e-3;  // GGX parameter; smaller values count as smooth
 
 template <class N>
 using FacetAlbedo = AlbedoSeries<N, 20>;
 
-// Means over the normals that a viewer at a cosine mu sees of share(viewer, normal, seen), where
-// seen(cosine of the light) is G2 / G1, by a Fibonacci lattice over half of the azimuths: 1e-3 for shares
-// with the step of total reflection, 2e-4 for smooth ones.
+// Returns the mean of share(viewer, normal, seen) over the normals visible at a cosine mu, where seen(cosine
+// of the light) is G2 / G1. Uses a Fibonacci lattice over half of the azimuths. The error is 1e-3 for shares
+// with the step of total reflection, and 2e-4 for smooth ones.
 template <class Share>
 FacetAlbedo<double> facet_albedo(double alpha, double scale, const Share& share) {
   constexpr std::size_t kTerms = std::tuple_size_v<decltype(FacetAlbedo<double>::coefficients)>;
@@ -40,14 +40,14 @@ FacetAlbedo<double> facet_albedo(double alpha, double scale, const Share& share)
   return series_through(values, scale);
 }
 
-// Of facets that mirror the share `fresnel` of the cosine to their normal.
+// Returns the albedo of facets that mirror the share `fresnel` of the cosine to their normal.
 template <class Fresnel>
 FacetAlbedo<double> mirrored_albedo(double alpha, const Fresnel& fresnel) {
   const auto share = [&](const Vec3d& viewer, const Vec3d& normal, const auto& seen) {
     const double light = mirrored_about(viewer, normal).z;
     return light > 0 ? fresnel(dot(viewer, normal)) * seen(light) : 0.0;
   };
-  constexpr double kLeastScale = 0.1;  // Fresnel's terms vary with mu itself
+  constexpr double kLeastScale = 0.1;  // Fresnel terms vary with mu itself
   return facet_albedo(alpha, std::max(alpha, kLeastScale), share);
 }
 

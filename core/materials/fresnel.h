@@ -2,10 +2,12 @@
 
 #include "core/math/lanes.h"
 
-// Reflectances of a smooth surface for unpolarised light. Cosines are of angles to the normal, in [0, 1].
+// Fresnel reflectances of smooth surfaces for unpolarised light. Cosines are of angles to the normal, in [0,
+// 1].
 namespace orrery {
 
-// Schlick's approximation F0 + (1 - F0) (1 - cos)^5. REQUIRES: the cosine in the optically thinner medium.
+// Returns Schlick's approximation F0 + (1 - F0) (1 - cos)^5. REQUIRES: `cosine` is in the optically thinner
+// medium.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_schlick(const N& f0, const N& cosine) {
   const N x = N(ScalarOf<N>(1)) - cosine;
@@ -13,7 +15,8 @@ template <class N>
   return f0 + (ScalarOf<N>(1) - f0) * (x2 * x2 * x);
 }
 
-// Fresnel's equations between two dielectrics; eta is the index on the incident side over that beyond.
+// Returns the reflectance between two dielectrics. eta is the index on the incident side over that on the
+// transmitted side.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_dielectric(const N& eta, const N& cos_incident,
                                                    const N& cos_transmitted) {
@@ -22,7 +25,7 @@ template <class N>
   return (s * s + p * p) * ScalarOf<N>(0.5);
 }
 
-// The same by the cosine of incidence alone: 1 beyond the critical angle.
+// Reflectance between two dielectrics from the cosine of incidence alone; 1 beyond the critical angle.
 template <class N>
 struct DielectricSplit {
   N reflectance, cos_transmitted;
@@ -39,7 +42,7 @@ template <class N>
   return {select(total, one, reflectance), cos_transmitted};
 }
 
-// Mean of split_dielectric() over the hemisphere: the integral of 2 mu F(mu).
+// Returns the mean of split_dielectric() over the hemisphere: the integral of 2 mu F(mu).
 inline double mean_dielectric(double eta) {
   constexpr int kSteps = 4096;
   double sum = 0;
@@ -50,7 +53,7 @@ inline double mean_dielectric(double eta) {
   return sum;
 }
 
-// Fresnel's equations for a metal of index n and extinction k, from air.
+// Returns the reflectance of a metal with index n and extinction k, from air.
 template <class N>
 [[gnu::always_inline]] inline N fresnel_conductor(const N& n, const N& k, const N& cosine) {
   using T = ScalarOf<N>;
@@ -65,7 +68,7 @@ template <class N>
   return (s + s * ratio) * T(0.5);
 }
 
-// F0 of Schlick's approximation: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+// Returns F0 of Schlick's approximation: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
 template <class N>
 [[gnu::always_inline]] inline N normal_reflectance(const N& n, const N& k) {
   using T = ScalarOf<N>;

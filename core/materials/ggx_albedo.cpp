@@ -8,11 +8,11 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kTerms = 14;
-constexpr std::size_t kRows = 32;  // of alpha, evenly spaced up to 1
+constexpr std::size_t kRows = 32;  // values of alpha, evenly spaced up to 1
 using Row = std::array<double, kTerms>;
 
-// Mean of G2 / G1 over the normals that a viewer at cosine mu sees, by the midpoint rule: half the azimuths,
-// as the other half is their mirror image.
+// Returns the mean of G2 / G1 over the normals visible at cosine mu, by the midpoint rule. Uses half of the
+// azimuths, because the other half mirrors them.
 double albedo(double alpha, double mu) {
   constexpr int kDepths = 256, kAzimuths = 32;
   const Ggx<double> facets{alpha};
@@ -29,9 +29,9 @@ double albedo(double alpha, double mu) {
   return sum / (kDepths * kAzimuths);
 }
 
-// Albedos at the nodes of the series, for each alpha.
+// Returns the albedos at the nodes of the series, for each alpha.
 std::array<Row, kRows> make_table() {
-  constexpr double kLeastAlpha = 1e-4;  // E depends on mu / alpha alone as alpha goes to 0
+  constexpr double kLeastAlpha = 1e-4;  // as alpha goes to 0, E depends only on mu / alpha
   std::array<Row, kRows> table;
   for (std::size_t row = 0; row < kRows; ++row) {
     const double alpha = std::max(kLeastAlpha, static_cast<double>(row) / (kRows - 1));

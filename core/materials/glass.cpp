@@ -6,11 +6,12 @@
 namespace orrery {
 namespace {
 
-// Refracted light is spread by about this times alpha; less than a thousandth of it is none.
+// Returns the approximate spread of refracted directions, divided by alpha. Glass with a spread below
+// kLeastSpread counts as smooth.
 double spread_by_index(double ior) { return std::abs(std::log2(ior)); }
 constexpr double kLeastSpread = 1e-4;
 
-// All light leaves at once but what a facet sends into another.
+// Returns the single-scattering albedo: all light leaves at once, except light that hits another facet.
 FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
   const auto share = [&](const Vec3d& viewer, const Vec3d& normal, const auto& seen) {
     const double to_viewer = dot(viewer, normal), eta = 1 / far_index;
@@ -19,14 +20,15 @@ FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
     const double on = eta * viewer.z - (eta * to_viewer - cos_transmitted) * normal.z;
     return (back > 0 ? mirrored * seen(back) : 0.0) + (on > 0 ? (1 - mirrored) * seen(on) : 0.0);
   };
-  constexpr double kStepScale = 0.3;  // the critical angle is a step of mu itself
+  constexpr double kStepScale = 0.3;  // the critical angle is a step in mu itself
   return facet_albedo(alpha, far_index < 1 ? std::max(alpha, kStepScale) : alpha, share);
 }
 
 }  // namespace
 
-// The shares that go through are those of Fresnel's mean, brought down so that both are at most 1 and
-// f / n^2 is the same both ways: see Glass. n^2 (1 - mean F) is the same seen from both sides.
+// The transmitted shares of multiple scattering follow from the mean Fresnel reflectance. Both are scaled
+// down to be at most 1 and to keep f / n^2 symmetric: see Glass. n^2 (1 - mean F) is the same from both
+// sides.
 template <class N>
 Glass<double> Glass<N>::read(Params& p) {
   const double ior =

@@ -8,20 +8,19 @@
 namespace orrery {
 
 // Glass of microfacets that mirror and refract (Walter, Marschner, Li, Torrance, "Microfacet Models for
-// Refraction through Rough Surfaces", EGSR 2007), by Fresnel's equations. Light that facets pass on to each
-// other leaves on both sides by lobes after Kulla and Conty (SIGGRAPH course, 2017), so that no light is lost
-// at any roughness. With alpha 0 the surface is smooth.
+// Refraction through Rough Surfaces", EGSR 2007), with exact Fresnel equations. Light scattered between
+// facets leaves on both sides in lobes after Kulla and Conty (SIGGRAPH course, 2017), so that no light is
+// lost at any roughness. With alpha 0 the surface is smooth.
 //
-// Radiance is held as radiance over the square of the index, which no surface changes: as `refractive` has
-// it. So f(in, out) / n_in^2 = f(out, in) / n_out^2, and glass among even light looks as if it were not
-// there.
+// Radiance is stored divided by the squared index of refraction, which no surface changes, as in Refractive.
+// Therefore f(in, out) / n_in^2 = f(out, in) / n_out^2, and glass in uniform light is invisible.
 template <class N>
 struct Glass {
-  Refractive<N> body;  // of exact equations
-  N alpha;             // of GGX; 0: smooth
-  // Of facets seen from outside and from inside: what leaves at once.
+  Refractive<N> body;  // uses exact Fresnel equations
+  N alpha;             // GGX parameter; 0: smooth
+  // Single-scattering albedos of the facets, seen from outside and from inside.
   FacetAlbedo<N> outside, inside;
-  // Share of what facets pass on that goes through, seen from outside and from inside.
+  // Transmitted share of multiple scattering, seen from outside and from inside.
   N through_outside, through_inside;
 
   static Glass<double> read(Params& p);
@@ -46,7 +45,7 @@ struct Glass {
     return Vec3<N>(select(alpha > zero, one, zero));
   }
 
-  // Where nothing is filtered nobody measures how far light travelled.
+  // Returns the transmittance of the body. `travelled` may be uninitialised if no material filters.
   Vec3<N> passed(const MaskOf<N>& is_inside, const N& travelled) const {
     const N zero(ScalarOf<N>(0));
     const auto filters = is_inside && max_component(-body.log2_filter) > zero;
@@ -54,7 +53,8 @@ struct Glass {
     return body.filter(select(filters, travelled, zero));
   }
 
-  // The generalised half vector V + eta L, with eta the index of the light's side over the viewer's.
+  // Evaluates the lobes with the generalised half vector V + eta L. eta is the index on the light's side over
+  // that on the viewer's side.
   [[gnu::always_inline]] Scattered<N> scattered(const Vec3<N>& viewer, const Vec3<N>& light,
                                                 const MaskOf<N>& is_inside, Lobes) const {
     using T = ScalarOf<N>;
@@ -71,10 +71,10 @@ struct Glass {
     const N to_viewer = dot(viewer, h) * along, to_light = dot(light, h) * along;
     const N seen = min_first(one, max_first(zero, to_viewer)), beyond = max_first(zero, -to_light);
     const N into = one / far_index;
-    // By both cosines where light goes through, as near the critical angle one says little of the other.
+    // Transmission uses both cosines: near the critical angle one barely determines the other.
     const N mirrored =
         select(through, fresnel_dielectric(into, seen, beyond), split_dielectric(into, seen).reflectance);
-    // d(half) / d(light) over that of a mirror.
+    // Jacobian d(half) / d(light), relative to that of a mirror.
     const N change = T(-4) * to_viewer * to_light * eta * eta / (half.length * half.length);
     const auto possible = half.length > zero && to_viewer > zero && (!through || to_light < zero);
     const N share = select(possible, select(through, N((one - mirrored) * change), mirrored), zero);
@@ -87,7 +87,7 @@ struct Glass {
     return {Vec3<N>((single + passed_viewer * passed_light * spread.chance * spread.scale) * cosine), pdf};
   }
 
-  // A facet that the viewer sees mirrors or refracts, or light leaves in proportion to the cosine.
+  // Samples a visible facet that mirrors or refracts, or a direction in proportion to the cosine.
   DrawnDirection<N> drawn(const Vec3<N>& viewer, const MaskOf<N>& is_inside, Lobes,
                           const LobeDraw<N>& draw) const {
     using T = ScalarOf<N>;
@@ -108,10 +108,10 @@ struct Glass {
   }
 
  private:
-  // Light that facets pass on, of the viewer's and of the light's direction, and where it goes.
+  // Lobe of multiple scattering on the light's side.
   struct Spread {
-    N chance;  // of the light's side
-    N scale;   // over what all directions of that side pass on
+    N chance;  // probability of the light's side
+    N scale;   // one over the mean multiple-scattering share of that side
   };
   struct PassedOn {
     N viewer, light;

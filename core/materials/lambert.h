@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// A matt surface that looks equally bright from everywhere (Lambert, Photometria, 1760).
+// Lambertian reflection: radiance is the same in all directions (Lambert, Photometria, 1760).
 template <class N>
 struct Lambert {
   Vec3<N> reflectance;

@@ -7,27 +7,27 @@
 
 namespace orrery {
 
-// What a surface does with light from one direction, as MaterialKernel::evaluate() has it.
+// Scattering from one direction of light: see MaterialKernel::evaluate().
 template <class N>
 struct Scattered {
   Vec3<N> f_cos;
   N pdf;
 };
 
-// A direction of ShadingFrame that was drawn; `through`: meant for the far side of the surface.
+// Sampled direction in ShadingFrame coordinates. `through` lanes leave on the far side of the surface.
 template <class N>
 struct DrawnDirection {
   Vec3<N> direction;
   MaskOf<N> through;
 };
 
-// The numbers that choose a direction, in [0, 1): two of its own, and `side` for what can only be decided
-// once a microfacet is known.
+// Random numbers in [0, 1) that choose a direction. `side` is for decisions that depend on the sampled
+// microfacet.
 template <class N>
 struct LobeDraw {
   N u, v, side;
 
-  // Whether u is below `share`, and the rest of it stretched to [0, 1).
+  // Result of choose(): lanes where u < `share`, and the remainder of u rescaled to [0, 1).
   struct Choice {
     MaskOf<N> first;
     N u;
@@ -40,8 +40,8 @@ struct LobeDraw {
   }
 };
 
-// The share of draws that go to a lobe of albedo `own` beside one of albedo `other`: at least a twentieth
-// each, but none to a lobe that is absent.
+// Returns the probability of sampling a lobe of albedo `own` rather than one of albedo `other`. Each lobe
+// gets at least 0.05, but an absent lobe gets 0.
 template <class N>
 [[gnu::always_inline]] inline N lobe_chance(const N& own, const N& other) {
   using T = ScalarOf<N>;
@@ -50,13 +50,14 @@ template <class N>
   return select(other > zero, select(own > zero, chance, zero), one);
 }
 
-// Kernel of materials whose light depends on both directions. Beside what MaterialRecords asks for, a record
-// has, with directions of ShadingFrame and the viewer above the surface,
-//   N rough() const                                           0: nothing but what the derived kernel draws
-//   Vec3<N> from_everywhere(cosine, lobes) const              what leaves of ambient light toward a viewer
+// Kernel of materials whose scattering depends on both directions. In addition to the members for
+// MaterialRecords, a record has the following members. Directions are in ShadingFrame coordinates, with the
+// viewer above the surface.
+//   N rough() const                                           0: only the derived kernel samples
+//   Vec3<N> from_everywhere(cosine, lobes) const              reflected ambient light toward a viewer
 //   Scattered<N> scattered(viewer, light, inside, lobes)      light on either side of the surface
 //   DrawnDirection<N> drawn(viewer, inside, lobes, LobeDraw)  in proportion to the density of scattered()
-//   Vec3<N> passed(inside, travelled)                         what the body leaves of light that crossed it
+//   Vec3<N> passed(inside, travelled)                         transmittance of the body
 template <template <class> class Record, class T>
 class LobeKernel : public MaterialRecords<Record, T> {
  public:
@@ -104,7 +105,7 @@ class LobeKernel : public MaterialRecords<Record, T> {
   }
 
  protected:
-  // Sets `out` of these lanes to a draw of these lobes of the record.
+  // Sets `out` of these lanes to a sample of these lobes of the record.
   void sample_rough(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, int i, const MaskOf<N>& mine,
                     const Record<N>& record, Lobes lobes, const LobeDraw<N>& draw,
                     ScatterBatch<T>& out) const {
@@ -119,7 +120,7 @@ class LobeKernel : public MaterialRecords<Record, T> {
     const auto scattered = record.scattered(local_viewer, local_light, inside, lobes);
     const auto leaves = mine && on_one_side(local_viewer, local_light, dot(geometric, light)) &&
                         (local_light.z < zero) == drawn.through && scattered.pdf > zero;
-    constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
+    constexpr T kPi = std::numbers::pi_v<T>;  // f_cos contains a factor pi: see MaterialKernel
     const Vec3<N> share = scattered.f_cos * record.passed(inside, surface.travelled.at(i));
     out.direction.put(i, mine, select(leaves, light, geometric));
     out.weight.put(i, mine, Vec3<N>(zero));
@@ -128,7 +129,8 @@ class LobeKernel : public MaterialRecords<Record, T> {
   }
 
  private:
-  // The viewer is above the surface, and the light on the same side of the shading and of the true one.
+  // Returns the lanes where the viewer is above the surface, and the light is on the same side of the shading
+  // and the geometric surface.
   static MaskOf<N> on_one_side(const Vec3<N>& local_viewer, const Vec3<N>& local_light,
                                const N& true_cosine) {
     return local_viewer.z > N(T(0)) && local_light.z * true_cosine > N(T(0));

@@ -8,14 +8,14 @@
 // A material type is one record, `template <class N> struct Rough`, with
 //   static Rough<double> read(Params&);         in the .cpp, which registers the type
 //   MaterialTraits traits() const;              of a Rough<double>
-//   RoundingLimit rounding() const;             likewise, if it has one
-//   double mirrored_share() const;              likewise, if it mirrors: see MaterialSet
-//   double most_reflected() const;              likewise, if it may create energy
-//   ReflectionLimits limits() const;            likewise, if they are known
-// and its formulas; and a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
+//   RoundingLimit rounding() const;             of a Rough<double>; optional
+//   double mirrored_share() const;              of a Rough<double>, if it mirrors: see MaterialSet
+//   double most_reflected() const;              of a Rough<double>, if it may create energy
+//   ReflectionLimits limits() const;            of a Rough<double>, if they are known
+// and its formulas, plus a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
 namespace orrery {
 
-// The materials of one type in the render's precision, and the loop over the lanes that have one of them.
+// Materials of one type in the render's precision, with a loop over the lanes that have one of them.
 template <template <class> class Record, class T>
 class MaterialRecords : public MaterialKernel<T> {
  public:

@@ -12,7 +12,7 @@
 namespace orrery {
 namespace {
 
-// The integral of 2 mu F(mu).
+// Returns the hemispherical mean of F: the integral of 2 mu F(mu).
 double mean_reflectance(double n, double k) {
   constexpr int kSteps = 256;
   double sum = 0;
@@ -23,7 +23,7 @@ double mean_reflectance(double n, double k) {
   return sum / kSteps;
 }
 
-// Index of refraction and extinction, by name or as numbers.
+// Reads the index of refraction and the extinction, by name or as numbers.
 std::pair<Vec3d, Vec3d> read_indices(Params& p) {
   if (p.form({{"n", "k"}, {"name"}}) == 0) {
     const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
@@ -99,7 +99,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     });
   }
 
-  // A microfacet that the viewer sees mirrors, or light leaves in proportion to the cosine: see
+  // Samples a visible microfacet that mirrors, or a direction in proportion to the cosine: see
   // Metal::multiple_share().
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
@@ -122,7 +122,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
       const Vec3<N> local_light = frame.local(light);
       const auto leaves = rough && reflects(metal, local_viewer, local_light, dot(geometric, light));
       const auto scattered = metal.scattered(local_viewer, local_light);
-      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
+      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos contains a factor pi: see MaterialKernel
       out.direction.put(i, rough, select(leaves, light, geometric));
       out.weight.put(i, leaves, scattered.f_cos * (N(T(1)) / (kPi * scattered.pdf)));
       out.pdf.put(i, leaves, scattered.pdf);
@@ -146,14 +146,16 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     return min_first(N(T(1)), max_first(N(T(0)), dot(viewer, normal)));
   }
 
-  // Both directions are in front of the surface, the light's of the true one too.
+  // Returns the lanes where both directions are above the shading surface, and the light also above the
+  // geometric surface.
   static MaskOf<N> reflects(const Metal<N>& metal, const Vec3<N>& local_viewer, const Vec3<N>& local_light,
                             const N& true_cosine) {
     const N zero(T(0));
     return metal.alpha > zero && local_viewer.z > zero && local_light.z > zero && true_cosine > zero;
   }
 
-  // The first number chooses the lobe, and what is left of it, stretched to [0, 1), a direction.
+  // Samples a direction. point.u chooses the lobe; its remainder, rescaled to [0, 1), and point.v choose the
+  // direction.
   static Vec3<N> drawn(const Metal<N>& metal, const ShadingFrame<N>& frame, const Vec3<N>& local_viewer,
                        const SamplePoint<N>& point) {
     const N one(T(1)), last(T(1) - std::numeric_limits<T>::epsilon() / 2);

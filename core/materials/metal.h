@@ -10,15 +10,14 @@
 
 namespace orrery {
 
-// A metal of microfacets, coloured by Fresnel's equations. Light that facets pass on to each other is put
-// back by the lobe of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", SIGGRAPH course,
-// 2017), so that a metal that mirrors all light reflects all of it at any roughness. With alpha 0 it is a
-// mirror.
+// Metal of microfacets, coloured by Fresnel's equations. Light scattered between facets is restored by the
+// lobe of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", SIGGRAPH course, 2017). A
+// metal that mirrors all light therefore has albedo 1 at any roughness. With alpha 0 it is a mirror.
 template <class N>
 struct Metal {
   Vec3<N> n, k;  // index of refraction and extinction
   Vec3<N> f0;    // reflectance along the normal
-  N alpha;       // of GGX; 0: mirror
+  N alpha;       // GGX parameter; 0: mirror
   GgxAlbedo<N> albedo;
   Vec3<N> multiple_scale;  // F_ms / (1 - mean albedo)
 
@@ -37,7 +36,8 @@ struct Metal {
             fresnel_conductor(n.z, k.z, cosine)};
   }
 
-  // See MaterialKernel::evaluate(). REQUIRES: alpha, N.V and N.L above 0; directions as Ggx has them.
+  // Result of scattered(): see MaterialKernel::evaluate(). REQUIRES: alpha, N.V and N.L above 0; directions
+  // as for Ggx.
   struct Scattered {
     Vec3<N> f_cos;
     N pdf;
@@ -56,16 +56,16 @@ struct Metal {
         (one - missing_viewer) * facets.pdf(viewer, half.density) + missing_viewer * light.z * (one / kPi)};
   }
 
-  // Share of light at this cosine that facets pass on to each other, which is also the probability that
-  // sample() draws in proportion to the cosine: the weight is bounded without any limit on the choice.
+  // Returns the share of light at this cosine that is scattered between facets. sample() chooses cosine
+  // sampling with this probability, which bounds its weight without limits on the choice.
   [[gnu::always_inline]] N multiple_share(const N& cosine) const {
     const N one(ScalarOf<N>(1));
     return one - albedo.at(min_first(one, cosine));
   }
 };
 
-// F_ms of Kulla and Conty, from a metal's mean reflectance and the mean albedo of facets that mirror all: the
-// series F^2 E / (1 - F (1 - E)) over all bounces.
+// Returns F_ms of Kulla and Conty, from a metal's mean reflectance and the mean albedo of facets that mirror
+// all light: the sum F^2 E / (1 - F (1 - E)) over all bounces.
 inline double multiple_scattering_reflectance(double mean_reflectance, double mean_albedo) {
   return mean_reflectance * mean_reflectance * mean_albedo / (1 - mean_reflectance * (1 - mean_albedo));
 }

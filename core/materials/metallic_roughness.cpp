@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-constexpr double kDielectric = 0.04;  // reflectance along the normal of what is no metal
+constexpr double kDielectric = 0.04;  // reflectance of dielectrics along the normal
 
 double mean_schlick(double f0) { return f0 + (1 - f0) / 21; }
 
@@ -42,8 +42,8 @@ MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
   return found;
 }
 
-// At some views, of which the most is mostly the flattest: what facets mirror at once, and of the base the
-// mean of 1 - F over the directions of light.
+// Takes the maximum over five views, which is mostly at grazing angles. The albedo is the facets' single
+// scattering, plus the base times the mean of 1 - F over light directions.
 template <class N>
 double MetallicRoughness<N>::most_reflected() const {
   if (!(strict > 0)) return 1;

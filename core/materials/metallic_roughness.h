@@ -7,20 +7,20 @@
 
 namespace orrery {
 
-// The metallic-roughness material of glTF 2.0 (Khronos, specification, appendix B): GGX microfacets with
-// Schlick's approximation over a matt base. The specification's own formula lets the base scatter light that
-// facets have mirrored already, and loses light that they pass on; here the base gets what they leave, as in
-// Plastic, and what they pass on leaves by the lobe of Kulla and Conty. `strict` keeps the formula.
+// Metallic-roughness material of glTF 2.0 (Khronos, specification, appendix B): GGX microfacets with
+// Schlick's approximation over a diffuse base. The specification's formula lets the base scatter light that
+// the facets have already mirrored, and loses light scattered between facets. This implementation gives the
+// base the remaining light, as in Plastic, and restores multiple scattering by the lobe of Kulla and Conty.
+// `strict` keeps the specification's formula.
 template <class N>
 struct MetallicRoughness {
-  Vec3<N> f0;  // reflectance along the normal
-  Vec3<N>
-      base;  // strict: reflectance of the base; else of the product of what facets leave of both directions
+  Vec3<N> f0;              // reflectance along the normal
+  Vec3<N> base;            // strict: base reflectance; else factor of left() of both directions
   Vec3<N> multiple;        // F_ms; 0 if strict
   N strict;                // 1 or 0
-  N alpha;                 // of GGX
-  GgxAlbedo<N> albedo;     // of facets that mirror all
-  FacetAlbedo<N> grazing;  // of facets that mirror (1 - cos)^5
+  N alpha;                 // GGX parameter
+  GgxAlbedo<N> albedo;     // for facets that mirror all light
+  FacetAlbedo<N> grazing;  // for facets that mirror (1 - cos)^5
 
   static MetallicRoughness<double> read(Params& p);
   MaterialTraits traits() const {
@@ -47,7 +47,7 @@ struct MetallicRoughness {
   }
   Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
-  // Albedos at a cosine: of facets that mirror all, and of the facets themselves at once.
+  // Albedos at a cosine: of facets that mirror all light, and single scattering of the actual facets.
   struct Albedos {
     N all;
     Vec3<N> once;
@@ -57,13 +57,13 @@ struct MetallicRoughness {
     const N all = albedo.at(mu), edge = min_first(all, grazing.at(mu));
     return {all, f0 * (all - edge) + Vec3<N>(edge)};
   }
-  // What facets leave to the base.
+  // Returns the share of light that facets leave to the base.
   [[gnu::always_inline]] Vec3<N> left(const Albedos& a) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     const Vec3<N> rest = Vec3<N>(one) - a.once - multiple * (one - a.all);
     return {max_first(zero, rest.x), max_first(zero, rest.y), max_first(zero, rest.z)};
   }
-  // The share of draws that facets get; the rest is in proportion to the cosine.
+  // Returns the probability of sampling a facet; otherwise sampling is in proportion to the cosine.
   [[gnu::always_inline]] N facet_chance(const Albedos& a, Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     if (!with_non_diffuse(lobes)) return zero;

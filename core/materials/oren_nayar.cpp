@@ -5,8 +5,8 @@
 
 namespace orrery {
 
-// The share that facets pass on, again and again, is coloured by the series over all bounces:
-// rho^2 E / (1 - rho (1 - E)), with E the mean albedo of white facets.
+// Multiple scattering between facets is coloured by the sum over all bounces: rho^2 E / (1 - rho (1 - E)),
+// with E the mean albedo of white facets.
 template <class N>
 OrenNayar<double> OrenNayar<N>::read(Params& p) {
   const Vec3d reflectance =

@@ -5,8 +5,8 @@
 
 namespace orrery {
 
-// Of light that the base reflects evenly, the coat sends back what it would not have let in:
-// 1 - (1 - E) / n^2, with E the mean of what it mirrors from outside.
+// The internal reflectance of the coat for diffuse light is 1 - (1 - E) / n^2, with E its mean reflectance
+// from outside.
 template <class N>
 Plastic<double> Plastic<N>::read(Params& p) {
   const Vec3d reflectance =

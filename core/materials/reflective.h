@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// A metal mirror coloured by Fresnel's law.
+// Metal mirror coloured by Fresnel's law.
 template <class N>
 struct Reflective {
   Vec3<N> n, k;  // index of refraction and extinction

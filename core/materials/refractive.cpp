@@ -36,7 +36,7 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
     });
   }
 
-  // Mirrored with the probability of the reflectance, else refracted.
+  // Samples mirror reflection with the reflectance as probability, otherwise refraction.
   void sample(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
               const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
     const N zero(T(0));

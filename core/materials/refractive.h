@@ -7,13 +7,13 @@
 
 namespace orrery {
 
-// Clear glass: mirrors and refracts, may filter light inside.
+// Clear glass that mirrors and refracts, and may absorb light inside.
 template <class N>
 struct Refractive {
   N ior;                // index inside over index outside
   N f0;                 // reflectance along the normal
   N exact;              // 1: Fresnel's equations, 0: Schlick's approximation
-  Vec3<N> log2_filter;  // of what remains of light after one metre inside
+  Vec3<N> log2_filter;  // log2 of the transmittance per metre inside
 
   static Refractive<double> read(Params& p);
   MaterialTraits traits() const {
@@ -23,10 +23,9 @@ struct Refractive {
 
   struct Split {
     N reflectance;
-    Vec3<N> refracted;  // unit; meaningless where all is mirrored
+    Vec3<N> refracted;  // unit; undefined in total reflection
   };
-  // Snell's law by the side the ray comes from. Beyond the critical angle all is mirrored and nothing is
-  // lost.
+  // Applies Snell's law for the side that the ray comes from. The reflectance is 1 beyond the critical angle.
   Split split(const Vec3<N>& direction, const Vec3<N>& normal, const MaskOf<N>& inside) const {
     using std::sqrt;
     using T = ScalarOf<N>;
@@ -44,14 +43,14 @@ struct Refractive {
             normalize(direction * eta + normal * (eta * cos_incident - cos_transmitted))};
   }
 
-  // What remains of light after so many metres inside.
+  // Returns the transmittance after `depth` metres inside.
   Vec3<N> filter(const N& depth) const {
     return {exp2_flushed(log2_filter.x * depth), exp2_flushed(log2_filter.y * depth),
             exp2_flushed(log2_filter.z * depth)};
   }
 };
 
-// Refractive::log2_filter of what remains of light after one metre.
+// Returns Refractive::log2_filter for a transmittance per metre.
 inline Vec3d log2_filter_of(const Vec3d& filter) {
   const auto log2_of = [](double x) {
     return x < std::numeric_limits<double>::min() ? -1e30 : log2_normal(x);

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Every material type, in the order in which materials are numbered.
+// Returns all material types, in the order in which materials are numbered.
 std::span<const MaterialType> material_types();
 
 }  // namespace orrery

@@ -24,7 +24,7 @@ Rough<double> Rough<N>::read(Params& p) {
   return rough;
 }
 
-// The power of a cosine that is off by some epsilon is off by a multiple of shininess times epsilon.
+// An error of epsilon in the cosine causes an error of shininess times epsilon in its power.
 template <class N>
 RoundingLimit Rough<N>::rounding() const {
   constexpr double kMostError = 2e-3;
@@ -32,8 +32,8 @@ RoundingLimit Rough<N>::rounding() const {
   return {kMostError / shininess, "its highlight has an exponent of " + number_text(shininess)};
 }
 
-// Of an exponent s, Phong's sends on 2 / (s + 1) of its coefficient, and the half vector's
-// 8 (1 - 2^(-(s + 2) / 2)) / (s + 2).
+// Returns the highlight's albedo along the normal, for exponent s and coefficient 1: 2 / (s + 1) for Phong, 8
+// (1 - 2^(-(s + 2) / 2)) / (s + 2) for the half vector.
 template <class N>
 double Rough<N>::highlight_albedo() const {
   const double s = shininess;
@@ -61,7 +61,7 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
     });
   }
 
-  // No light reaches a side that faces away, neither diffuse nor as a highlight.
+  // Light from behind contributes neither diffuse light nor a highlight.
   void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
                 Lobes lobes, Vec3Array<T>& f_cos, Array<T>& pdf) const override {
     const N zero(T(0));
@@ -104,7 +104,7 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
                           (!shines || dot(normal, viewer) > zero) && scattered.pdf > zero;
       const N pdf = select(leaves, scattered.pdf, zero);
       out.direction.put(i, mine, direction);
-      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos is pi times the share: see MaterialKernel
+      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos contains a factor pi: see MaterialKernel
       out.weight.put(i, mine, scattered.f_cos * select(leaves, N(T(1) / (kPi * pdf)), zero));
       out.pdf.put(i, mine, pdf);
     });

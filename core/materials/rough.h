@@ -9,13 +9,13 @@
 
 namespace orrery {
 
-// Ambient, Lambert diffuse and a Phong or Blinn-Phong highlight.
+// Ambient light, Lambertian reflection and a Phong or Blinn-Phong highlight.
 template <class N>
 struct Rough {
   Vec3<N> ambient, diffuse, specular;  // coefficient times colour
   N shininess;
-  N phong;   // 1: the mirrored light direction decides the highlight, 0: the half vector
-  N chance;  // of drawing the highlight, where all lobes are drawn: 1 if there is nothing else, or 0
+  N phong;   // 1: highlight about the mirrored light direction, 0: half vector
+  N chance;  // probability of sampling the highlight among all lobes: 1 if it is the only lobe, else 0
 
   static Rough<double> read(Params& p);
   MaterialTraits traits() const {
@@ -28,10 +28,11 @@ struct Rough {
   RoundingLimit rounding() const;
   double most_reflected() const { return max_component(limits().albedo); }
   ReflectionLimits limits() const;
-  double highlight_albedo() const;  // seen along the normal, where it is whole
+  double highlight_albedo() const;  // along the normal, where no part is cut off
 
-  // Cosine that the highlight is a power of, 0 where there is none. Unit vectors: normal, toward the light,
-  // toward the viewer, and half way between the two. The mirrored direction is R = 2 (N.L) N - L.
+  // Returns the cosine that the highlight is a power of, or 0 outside the highlight. Arguments are unit
+  // vectors: the normal, toward the light, toward the viewer, and half way between the two. The mirrored
+  // direction is R = 2 (N.L) N - L.
   [[gnu::always_inline]] N highlight(const Vec3<N>& normal, const Vec3<N>& light, const Vec3<N>& viewer,
                                      const Vec3<N>& half, const N& cosine) const {
     using T = ScalarOf<N>;
@@ -40,7 +41,7 @@ struct Rough {
     return min_first(N(T(1)), max_first(N(T(0)), c));
   }
 
-  // A highlight that is hardly one is drawn in proportion to the cosine.
+  // Minimum exponent for sampling the highlight. Weaker highlights are sampled in proportion to the cosine.
   static constexpr double kLeastShininess = 1;
   [[gnu::always_inline]] N highlight_chance(Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
@@ -48,14 +49,14 @@ struct Rough {
     return with_non_diffuse(lobes) ? select(shininess >= N(ScalarOf<N>(kLeastShininess)), one, zero) : zero;
   }
 
-  // Light from `light` that leaves toward `viewer`: f_cos with its cosine, and the density with which it is
-  // drawn.
+  // Result of scattered(): f_cos for light from `light` toward `viewer`, and the sampling density.
   struct Scattered {
     Vec3<N> f_cos;
     N pdf;
   };
-  // REQUIRES: cosine = N.L > 0. The highlight is drawn as the power of the cosine to the mirrored viewer, or
-  // of the half vector to the normal, whose density per solid angle of the light is 1 / (4 V.H) of its own.
+  // Evaluates the lobes. REQUIRES: cosine = N.L > 0. The sampling density is the power of the cosine to the
+  // mirrored viewer, or of the half vector to the normal, which converts by 1 / (4 V.H) to the light's solid
+  // angle.
   [[gnu::always_inline]] Scattered scattered(const Vec3<N>& normal, const Vec3<N>& light,
                                              const Vec3<N>& viewer, const Vec3<N>& half, const N& cosine,
                                              Lobes lobes) const {
@@ -74,7 +75,7 @@ struct Rough {
     return found;
   }
 
-  // Inverse of that density over u and v in [0, 1). REQUIRES: N.V > 0.
+  // Samples the highlight by the inverse of this density, from u and v in [0, 1). REQUIRES: N.V > 0.
   [[gnu::always_inline]] Vec3<N> drawn_highlight(const Vec3<N>& normal, const Vec3<N>& viewer, const N& u,
                                                  const N& v) const {
     using T = ScalarOf<N>;
@@ -93,7 +94,7 @@ struct Rough {
   }
 };
 
-// H = (L + V) / |L + V|; zero where the two are opposite.
+// Returns H = (L + V) / |L + V|, or zero if the two are opposite.
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> half_vector(const Vec3<N>& light, const Vec3<N>& viewer) {
   using T = ScalarOf<N>;

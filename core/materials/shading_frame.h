@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Coordinates about a surface's normal, which is the third axis. Materials whose light depends on the viewer
-// take the true normal where an interpolated one faces away from the viewer.
+// Coordinate frame whose third axis is the surface normal. Uses the geometric normal if the interpolated one
+// faces away from the viewer.
 template <class N>
 struct ShadingFrame {
   Vec3<N> normal;

@@ -5,12 +5,12 @@
 
 namespace orrery {
 
-// A thin sheet, such as paper or a leaf, that scatters light evenly on both sides: Lambert's law on each.
-// What leaves on the side it came from is diffuse, what goes through is not.
+// Thin sheet, such as paper or a leaf, with Lambertian scattering on both sides. Reflection is a diffuse
+// lobe, transmission a non-diffuse one.
 template <class N>
 struct Translucent {
   Vec3<N> reflectance, transmittance;
-  N through;  // share of draws that leave on the far side
+  N through;  // probability of sampling the far side
 
   static Translucent<double> read(Params& p);
   MaterialTraits traits() const {
