@@ -8,20 +8,20 @@
 #include "core/base/error.h"
 #include "core/meshes/mesh_file.h"
 
-// What the readers of this room share.
+// Declarations shared by the readers of mesh formats.
 namespace orrery {
 
-// Each takes a whole file of its format, without a byte order mark. Normals come as the file has them.
+// Reads a whole file of one format, without a byte order mark. Normals are returned as stored in the file.
 TriangleMesh read_obj(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_ply(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_stl(std::string_view bytes, const MeshLimits& limits);
 TriangleMesh read_gltf(std::string_view bytes, const MeshLimits& limits);
 
-// The number of triangles of a binary STL, whose size follows from it; 0 for anything else. No text is one:
-// at that place it states at least 150 million.
+// Returns the number of triangles of a binary STL, which determines the file's size, or 0 for any other file.
+// Text is never taken for one: its bytes there would mean at least 150 million triangles.
 std::size_t binary_stl_triangles(std::string_view bytes);
 
-// Whether `word` is `keyword` (in lower case), in capitals or not.
+// Returns true if `word` equals the lower-case `keyword`, ignoring case.
 bool is_keyword(std::string_view word, std::string_view keyword);
 
 [[noreturn]] inline void fail_at(const std::string& place, const std::string& detail) {
@@ -43,7 +43,7 @@ inline bool is_finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// The shortest decimals that give the number back.
+// Returns the shortest decimals that convert back to the same number.
 inline std::string text_of(double x) {
   std::array<char, 32> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), x).ptr};
@@ -52,7 +52,7 @@ inline std::string text_of(const Vec3d& v) {
   return '(' + text_of(v.x) + ", " + text_of(v.y) + ", " + text_of(v.z) + ')';
 }
 
-// Whether each coordinate is a number of at most kMaxMeshCoordinate.
+// Returns true if each coordinate is at most kMaxMeshCoordinate in magnitude.
 inline bool is_position(const Vec3d& v) {
   const auto in_range = [](double x) { return std::abs(x) <= kMaxMeshCoordinate; };
   return in_range(v.x) && in_range(v.y) && in_range(v.z);

@@ -7,14 +7,14 @@
 #include "core/meshes/text.h"
 
 // glTF 2.0 (Khronos, ISO/IEC 12113:2022): sections 3.5 (scenes) and 3.7 (meshes). Skins and morph targets are
-// left aside: a mesh stands as it is stored.
+// ignored: a mesh keeps its stored pose.
 namespace orrery {
 namespace {
 
-// A mesh may be placed by many nodes: what that may cost beside triangles.
+// Limit on placed primitives, because many nodes may reference one mesh.
 constexpr std::size_t kMaxPlaced = 250'000;
 
-// Extensions that change no geometry, or in a way that is read anyhow (quantized attributes).
+// Returns true if the extension does not change geometry, or is supported (quantized attributes).
 bool is_harmless(std::string_view extension) {
   constexpr std::string_view kPrefixes[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_",
                                             "KHR_mesh_quantization"};
@@ -40,7 +40,8 @@ class SceneReader {
   }
 
  private:
-  // Those of the scene to show; if the file names none, every node that is no other's child.
+  // Returns the roots of the scene to show. If the file names no scene, returns every node that is not a
+  // child.
   std::vector<std::size_t> roots(const GltfValue& nodes) const {
     std::vector<std::size_t> found;
     if (const auto scene = file_.root().find("scene")) {
@@ -64,8 +65,8 @@ class SceneReader {
     for (std::size_t i = 0; children && i < children->size(); ++i) visit(children->item(i).integer());
   }
 
-  // Depth first, in the order of the file. A tree reaches each node once; a cycle, or a node of two parents,
-  // reaches one again.
+  // Places the nodes depth first, in file order. Rejects nodes that are reached twice, by a cycle or by two
+  // parents.
   void place(const GltfValue& nodes, const std::vector<std::size_t>& roots) {
     struct Visit {
       std::size_t node;
@@ -151,7 +152,7 @@ class SceneReader {
     return numbers;
   }
 
-  // Indices into the mesh's positions, of which this primitive's begin at `first`.
+  // Returns indices into the mesh's positions. Positions of this primitive begin at `first`.
   std::vector<std::uint32_t> read_indices(const GltfValue& user, std::size_t first) {
     const GltfNumbers numbers = file_.accessor(user, "SCALAR");
     check_triangles(mesh_.triangles.size() + numbers.count / 3, limits_);
@@ -180,7 +181,7 @@ class SceneReader {
     for (std::size_t i = 0; i < count; ++i) {
       interruption_point(i);
       std::array<std::size_t, 3> corners = {3 * i, 3 * i + 1, 3 * i + 2};
-      if (mode == 5) corners = {i, i + 1 + i % 2, i + 2 - i % 2};  // a strip: every other one turns round
+      if (mode == 5) corners = {i, i + 1 + i % 2, i + 2 - i % 2};  // strips alternate their orientation
       if (mode == 6) corners = {i + 1, i + 2, 0};
       if (mirrored) std::swap(corners[1], corners[2]);
       mesh_.triangles.push_back({order[corners[0]], order[corners[1]], order[corners[2]]});
@@ -190,7 +191,7 @@ class SceneReader {
   GltfFile file_;
   const MeshLimits& limits_;
   TriangleMesh mesh_;
-  bool all_normals_ = true, all_uvs_ = true;  // so far
+  bool all_normals_ = true, all_uvs_ = true;  // for the primitives read so far
   std::size_t placed_ = 0;
 };
 

@@ -51,7 +51,8 @@ struct Chunks {
   std::string_view json, binary;
 };
 
-// A header (magic, version, length) and chunks (length, type, bytes), JSON first, each number 4 bytes.
+// Splits a GLB file: a header (magic, version, length) and chunks (length, type, bytes), JSON first. Each
+// number has 4 bytes.
 Chunks split_glb(std::string_view bytes) {
   constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
   const auto word = [&](std::size_t at) { return little_endian<std::uint32_t>(bytes.data() + at); };
@@ -86,7 +87,7 @@ std::array<std::int8_t, 256> base64_digits() {
   return digits;
 }
 
-// RFC 4648; padding may lack.
+// Decodes base64 (RFC 4648). Padding is optional.
 std::vector<char> decode_base64(std::string_view text, const GltfValue& place) {
   while (text.ends_with('=')) text.remove_suffix(1);
   if (text.size() % 4 == 1) place.fail("expected base64, got an odd number of digits");
@@ -99,7 +100,7 @@ std::vector<char> decode_base64(std::string_view text, const GltfValue& place) {
     if (digit < 0)
       place.fail("expected base64, got " + excerpt(text.substr(i, 1)) + " at digit " + std::to_string(i));
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    const std::size_t pending = (i + 1) * 6 % 8;  // of a byte, after this digit
+    const std::size_t pending = (i + 1) * 6 % 8;  // bits of an incomplete byte after this digit
     if (i % 4 != 0) bytes.push_back(static_cast<char>(bits >> pending));
   }
   return bytes;

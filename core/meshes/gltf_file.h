@@ -6,38 +6,38 @@
 
 namespace orrery {
 
-// The numbers of an accessor: `count` vectors of `components` each. Lives no longer than its GltfFile.
+// Numbers of an accessor: `count` vectors of `components` each. Must not outlive its GltfFile.
 struct GltfNumbers {
   const char* data;
   std::size_t count, stride;
   std::size_t components, component_bytes;
-  double (*load)(const char*);  // as a double, normalized if the accessor says so
+  double (*load)(const char*);  // loads a double, normalized if the accessor is
 
   double value(std::size_t i, std::size_t component) const {
     return load(data + i * stride + component * component_bytes);
   }
 };
 
-// A .glb or .gltf file and the buffers in it. Nothing outside the file is read: a buffer that lies elsewhere
-// is refused. Throws InputError.
+// A .glb or .gltf file with its buffers. Never reads other files; external buffers are rejected. Throws
+// InputError.
 class GltfFile {
  public:
   explicit GltfFile(std::string_view bytes);
 
   GltfValue root() const { return {document_, ""}; }
 
-  // Accessor `index`, which must be of `type` ("SCALAR", "VEC2", "VEC3") and is checked to lie in its buffer
-  // to the last byte. `user` names it: where an index out of range is reported.
+  // Returns the accessor with index `user`, after checking that all its elements lie in the buffer. Throws
+  // InputError if it is not of `type` ("SCALAR", "VEC2", "VEC3"). Errors in the index are reported at `user`.
   GltfNumbers accessor(const GltfValue& user, std::string_view type);
 
  private:
   struct Buffer {
     bool decoded = false;
-    std::vector<char> own;  // of a data: URI
+    std::vector<char> own;  // decoded data: URI
     std::string_view bytes;
   };
 
-  // Bytes of buffer view `index`.
+  // Returns the bytes of the buffer view with index `user`.
   std::string_view view(const GltfValue& user);
   std::string_view buffer(const GltfValue& user);
 

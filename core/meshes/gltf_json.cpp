@@ -8,8 +8,8 @@
 namespace orrery {
 namespace {
 
-constexpr int kMaxDepth = 32;                  // geometry takes 6
-constexpr std::size_t kMaxValues = 1'000'000;  // 16 to 80 bytes each, of as little as 2 bytes of text
+constexpr int kMaxDepth = 32;                  // geometry needs 6
+constexpr std::size_t kMaxValues = 1'000'000;  // 16 to 80 bytes of memory each, 2 bytes of text or more
 
 constexpr std::string_view kTopKeys[] = {"asset",       "scene",   "scenes",
                                          "nodes",       "meshes",  "accessors",
@@ -76,7 +76,7 @@ std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t
 nlohmann::json parse_gltf(std::string_view text) {
   using Event = nlohmann::json::parse_event_t;
   std::size_t values = 0;
-  // False leaves the value out of the document.
+  // Returns false for values that the document leaves out.
   const auto keep = [&](int depth, Event event, const nlohmann::json& value) {
     if (depth > kMaxDepth)
       throw InputError("", "expected JSON nested at most " + std::to_string(kMaxDepth) + " deep, got more");

@@ -8,25 +8,24 @@
 
 namespace orrery {
 
-// A value of a glTF document that knows where it is, so that every refusal names the place. Lives no longer
-// than the document.
+// Value of a glTF document with its path, so that errors name the place. Must not outlive the document.
 class GltfValue {
  public:
   GltfValue(const nlohmann::json& value, std::string path) : value_(&value), path_(std::move(path)) {}
 
-  // Member `key` of this object; none, or an error, if it is missing.
+  // Returns member `key` of this object. If it is missing, find() returns nullopt and at() throws.
   std::optional<GltfValue> find(const char* key) const;
   GltfValue at(const char* key) const;
-  // Entries of this array.
+  // Returns the number of entries of this array.
   std::size_t size() const;
-  GltfValue item(std::size_t i) const;  // fails if there are no more than i
+  GltfValue item(std::size_t i) const;  // throws if i >= size()
 
   std::uint64_t integer() const;  // at least 0
   double number() const;
   bool flag() const;
   const std::string& text() const;
 
-  // Throws InputError with the place.
+  // Throws InputError with the path of this value.
   [[noreturn]] void fail(const std::string& detail) const;
 
  private:
@@ -36,11 +35,11 @@ class GltfValue {
   std::string path_;
 };
 
-// Integer `key` of an object, or `fallback` if it is missing.
+// Returns the integer `key` of an object, or `fallback` if it is missing.
 std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t fallback);
 
-// The parts of a glTF document that geometry needs, without extras and extensions. Throws InputError if the
-// text is no JSON object, is nested deeper than any glTF or has too many values to hold.
+// Parses the parts of a glTF document that geometry needs, without extras and extensions. Throws InputError
+// if the text is not a JSON object, or exceeds the limits on depth and number of values.
 nlohmann::json parse_gltf(std::string_view text);
 
 }  // namespace orrery

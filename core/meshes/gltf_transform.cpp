@@ -22,7 +22,7 @@ Vec3d three_or(const GltfValue& node, const char* key, const Vec3d& fallback) {
   return {n[0], n[1], n[2]};
 }
 
-// The rotation of a quaternion (x, y, z, w) of any length but 0.
+// Returns the rotation of a quaternion (x, y, z, w). Its length need not be 1. Throws InputError if it is 0.
 Affined rotation_of(const GltfValue& value) {
   auto q = numbers_of<4>(value);
   double largest = 0;
@@ -42,7 +42,7 @@ Affined rotation_of(const GltfValue& value) {
 
 Affined transform_of(const GltfValue& node) {
   if (const auto matrix = node.find("matrix")) {
-    const auto m = numbers_of<16>(*matrix);  // column by column
+    const auto m = numbers_of<16>(*matrix);  // column-major
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
       matrix->fail("expected 0, 0, 0 and 1 as the last row, got a projection");
     return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};

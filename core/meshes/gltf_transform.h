@@ -5,7 +5,8 @@
 
 namespace orrery {
 
-// The transform of a node to its parent: its matrix, or translation * rotation * scale. Throws InputError.
+// Returns the transform from a node to its parent: its matrix, or translation * rotation * scale. Throws
+// InputError if it is invalid.
 Affined transform_of(const GltfValue& node);
 
 }  // namespace orrery

@@ -11,20 +11,20 @@
 
 namespace orrery {
 
-// Finds entries 0, 1, 2, ... of a list kept elsewhere by their content: a hash table of entry numbers alone
-// (open addressing, at most half full). Which number an entry gets never depends on the hash, so the hash is
-// keyed at random: a file cannot be made to collide.
+// Hash table from the content of list entries to their numbers 0, 1, 2, ... The list itself is stored
+// elsewhere. Uses open addressing, at most half full. Entry numbers do not depend on the hash, which has a
+// random key, so that a crafted file cannot force collisions.
 class IndexTable {
  public:
-  // Equal words, equal hash.
+  // Returns equal hashes for equal words.
   std::uint32_t hash(std::span<const std::uint64_t> words) const {
     std::uint64_t h = key_;
     for (const std::uint64_t word : words) h = mix(h ^ word);
     return static_cast<std::uint32_t>(h);
   }
 
-  // The entry e with this hash and same(e); if there is none, `size`, which the table knows from now on and
-  // the caller adds to the list. REQUIRES: size is the number of entries so far, below 2^31.
+  // Returns the entry e with this hash and same(e). If there is none, adds and returns `size`; the caller
+  // must append the entry to the list. REQUIRES: `size` is the number of entries so far, below 2^31.
   template <class Same>
   std::uint32_t find_or_add(std::uint32_t hash, std::size_t size, const Same& same) {
     interruption_point();
@@ -44,7 +44,7 @@ class IndexTable {
   };
   __extension__ using Wide = unsigned __int128;
 
-  // Both halves of the product with a secret factor (the mixing step of wyhash, Wang Yi).
+  // Combines both halves of the product with a secret factor (the mixing step of wyhash, Wang Yi).
   std::uint64_t mix(std::uint64_t x) const {
     const auto product = static_cast<Wide>(x) * factor_;
     return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
@@ -67,7 +67,7 @@ class IndexTable {
   }
 
   std::uint64_t key_ = random_word(), factor_ = random_word() | 1;
-  std::vector<Slot> slots_;  // a power of two
+  std::vector<Slot> slots_;  // size is a power of two
 };
 
 }  // namespace orrery

@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kObjWords[] = {"v", "vt", "vn", "vp", "f",      "l",      "p",
                                           "g", "o",  "s",  "mg", "usemtl", "mtllib", "cstype"};
 
-// The first word that is no comment.
+// Returns the first word that is not in a comment.
 std::string_view first_word(std::string_view bytes) {
   TextReader text(bytes);
   do {
@@ -26,8 +26,8 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
   return bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes;
 }
 
-// Normals to length 1. One of length 0 takes the sum of the face normals around its vertex, each with its
-// triangle's area as weight.
+// Normalizes the normals. A normal of length 0 becomes the area-weighted mean of the face normals around its
+// vertex.
 void finish_normals(TriangleMesh& mesh) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
@@ -45,7 +45,7 @@ void finish_normals(TriangleMesh& mesh) {
   }
   for (const std::size_t i : missing) {
     mesh.normals[i] = safe_normalize(mesh.normals[i]);
-    if (mesh.normals[i] == Vec3d()) mesh.normals[i] = {0, 0, 1};  // no triangle with area uses it
+    if (mesh.normals[i] == Vec3d()) mesh.normals[i] = {0, 0, 1};  // used by no triangle with area
   }
 }
 
@@ -76,7 +76,7 @@ MeshFormat mesh_format(std::string_view bytes) {
 
 TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits) {
   const MeshFormat format = mesh_format(bytes);
-  const bool is_text = binary_stl_triangles(bytes) == 0;  // whose header may begin with anything
+  const bool is_text = binary_stl_triangles(bytes) == 0;  // a binary STL may begin with any bytes
   TriangleMesh mesh = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits);
   if (mesh.triangles.empty()) throw InputError("", "expected a mesh of at least 1 triangle, got none");
   finish_normals(mesh);

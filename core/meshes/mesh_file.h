@@ -10,40 +10,40 @@
 
 namespace orrery {
 
-// What a mesh file holds, in the file's own units (taken as metres) and axes.
+// Triangle mesh, in the axes and units of its file (taken as metres).
 struct TriangleMesh {
   std::vector<Vec3d> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise from the front
-  std::vector<Vec3d> normals;                           // one a position, unit; or none
-  std::vector<std::array<double, 2>> uvs;               // one a position, (0, 0) lower left; or none
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise seen from the front
+  std::vector<Vec3d> normals;                           // per position, unit; or empty
+  std::vector<std::array<double, 2>> uvs;               // per position, (0, 0) lower left; or empty
 };
 
-// Largest coordinate of a position, in magnitude: that of a scene.
+// Largest magnitude of a coordinate, the same as for scenes.
 inline constexpr double kMaxMeshCoordinate = 1e12;
 
-// What a file may hold; at most 2^31 - 1 each.
+// Limits on the content of a file; at most 2^31 - 1 each.
 struct MeshLimits {
   std::size_t vertices = 10'000'000, triangles = 10'000'000;
 };
 
 enum class MeshFormat { obj, ply, stl, gltf };
 
-// The format of a file, told by its content: glTF and PLY by their first bytes, binary STL by its size, ASCII
-// STL and OBJ by their first word. Throws InputError if it is none of them.
+// Detects the format from the content: glTF and PLY by their first bytes, binary STL by its size, ASCII STL
+// and OBJ by their first word. Throws InputError if no format matches.
 MeshFormat mesh_format(std::string_view bytes);
 
-// Reads an OBJ, a PLY (ASCII, binary of either byte order), an STL (ASCII, binary) or a glTF 2.0 file (.glb,
-// or .gltf whose buffers are data: URIs), told by its content. Nothing but `bytes` is read; the same bytes
+// Reads an OBJ, PLY (ASCII, binary of either byte order), STL (ASCII, binary) or glTF 2.0 file (.glb, or
+// .gltf with data: URIs). Detects the format from the content. Reads nothing except `bytes`; the same bytes
 // give the same mesh.
 //
-// All that the file places becomes one mesh; materials and the like are left aside. Polygons become fans
-// about their first corner, which is right for convex ones. Triangles without area stay. Normals and uvs that
-// not every vertex has are left out; a normal of length 0 takes the direction of the faces around its vertex.
-// STL gives neither, and its equal corners are one vertex; glTF's uvs are turned to have (0, 0) at the lower
-// left.
+// Merges all geometry of the file into one mesh; ignores materials and the like. Polygons become fans about
+// their first corner, which is correct for convex ones. Keeps triangles without area. Drops normals and uvs
+// that some vertices lack. Normals of length 0 are computed from the faces around their vertex. STL has
+// neither normals nor uvs, and its equal corners become one vertex. The v of glTF is flipped, so that (0, 0)
+// is at the lower left.
 //
-// Throws InputError (pointer "") with the place in the file, the value and the limit. Every size that a file
-// states is checked against `limits` and against the bytes that are there before memory is taken for it.
+// Throws InputError (pointer "") with the place in the file, the value and the limit. Checks every size in a
+// file against `limits` and the available bytes before it allocates memory.
 TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits = {});
 
 }  // namespace orrery

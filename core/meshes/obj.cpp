@@ -2,12 +2,12 @@
 #include "core/meshes/index_table.h"
 #include "core/meshes/text.h"
 
-// Wavefront OBJ: v, vt, vn and f; every other keyword (groups, materials, lines, free-form curves) is passed
-// over. Format: Wavefront, Advanced Visualizer Manual, appendix B1.
+// Wavefront OBJ: reads v, vt, vn and f, and skips all other keywords (groups, materials, lines, free-form
+// curves). Format: Wavefront, Advanced Visualizer Manual, appendix B1.
 namespace orrery {
 namespace {
 
-// Entries of the lists that a corner names, counted from 0.
+// Indices of a corner into the lists, counted from 0.
 struct Corner {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::uint32_t position = kNone, uv = kNone, normal = kNone;
@@ -39,7 +39,7 @@ class ObjReader {
   }
 
  private:
-  // Words past the third (a weight, a colour) are left aside.
+  // Reads three numbers. Further words (a weight, a colour) are ignored.
   Vec3d read_three(const char* what) {
     const double x = read_number(what), y = read_number(what);
     return {x, y, read_number(what)};
@@ -52,7 +52,7 @@ class ObjReader {
     return {u, v.empty() ? 0.0 : text_.number_in(v, "vt")};
   }
 
-  // One of "7", "7/2", "7//3", "7/2/3". Corners that name the same entries are one vertex.
+  // Reads "7", "7/2", "7//3" or "7/2/3". Corners with the same indices are one vertex.
   std::uint32_t read_corner(std::string_view word) {
     std::array<std::string_view, 3> parts;
     std::size_t count = 0;
@@ -77,7 +77,7 @@ class ObjReader {
     return vertex;
   }
 
-  // From 1, or from -1 backwards from the last entry so far.
+  // Reads an index from 1 up, or from -1 backwards from the last entry so far.
   std::uint32_t read_index(std::string_view word, std::size_t count, const char* what) const {
     const std::int64_t index = text_.integer_in(word, std::string(what) + " of a corner");
     const auto size = static_cast<std::int64_t>(count);
@@ -121,8 +121,8 @@ class ObjReader {
   const MeshLimits& limits_;
   std::vector<Vec3d> positions_, normals_;
   std::vector<std::array<double, 2>> uvs_;
-  std::vector<Corner> corners_;  // the vertices of the mesh
-  IndexTable table_;             // of corners_
+  std::vector<Corner> corners_;  // vertices of the mesh
+  IndexTable table_;             // index of corners_
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 

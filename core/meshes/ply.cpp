@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-// The values of a vertex that a mesh keeps.
+// Vertex values that a mesh stores.
 enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots };
 struct SlotName {
   std::string_view name;
@@ -55,7 +55,8 @@ class PlyReader {
     check_vertices(vertices_, limits_);
   }
 
-  // Before anything is taken for the element.
+  // Throws InputError if fewer bytes are left than the element needs. Called before memory is allocated for
+  // it.
   void check_bytes(const PlyElement& element) const {
     std::size_t fewest = 0;
     for (const PlyProperty& property : element.properties) {
@@ -84,7 +85,7 @@ class PlyReader {
     read_any_rows(element);
   }
 
-  // Rows of one size: each value is at a known place.
+  // Reads rows of fixed size, in which each value has a fixed offset.
   void read_fixed_rows(const PlyElement& element) {
     struct Field {
       Slot slot;
@@ -170,7 +171,7 @@ class PlyReader {
 
   std::uint64_t list_length(const PlyProperty& property) {
     const double count = body_.read(body_.describe(*property.count_type));
-    constexpr double kMost = 4294967295.0;  // what the widest type holds
+    constexpr double kMost = 4294967295.0;  // largest value of the widest type
     if (!(count >= 0 && count <= kMost && count == std::floor(count)))
       body_.fail("expected a length of a list, got " + text_of(count));
     return static_cast<std::uint64_t>(count);
@@ -196,7 +197,7 @@ class PlyReader {
   const PlyHeader& header_;
   const MeshLimits& limits_;
   Body body_;
-  std::uint64_t vertices_ = 0;  // as the header has it: faces may come before them
+  std::uint64_t vertices_ = 0;  // from the header, because faces may precede vertices
   bool has_normals_ = false, has_uvs_ = false;
   TriangleMesh mesh_;
 };

@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// One value of type T as a double, which holds each of them exactly.
+// Returns one value of type T as a double, which represents it exactly.
 template <class T, std::endian order>
 double load_ply_value(const char* bytes) {
   std::array<char, sizeof(T)> copy;
@@ -33,7 +33,7 @@ inline PlyLoad ply_load(PlyType type, PlyEncoding encoding) {
                                              : ply_load_as<std::endian::little>(type);
 }
 
-// Where the values come from: words of a text, or bytes. Both are asked with what describe() made.
+// Sources of values: words of a text, or bytes. describe() makes the argument of read() and skip().
 class AsciiPly {
  public:
   struct Value {};
@@ -41,7 +41,7 @@ class AsciiPly {
 
   explicit AsciiPly(const PlyHeader& header) : text_(header.body) {}
   Value describe(PlyType) const { return {}; }
-  // Fewest bytes of a value: a digit and a blank, which only the last may lack.
+  // Returns the minimum size of a value: a digit and a blank, which only the last value may lack.
   static std::size_t fewest_bytes(PlyType) { return 2; }
   std::size_t bytes_left() const { return text_.rest().size() + 1; }
 
@@ -78,7 +78,7 @@ class BinaryPly {
     if (value.size > rest_.size()) fail("expected " + std::to_string(value.size) + " bytes, got the end");
     rest_.remove_prefix(value.size);
   }
-  const char* take(std::size_t bytes) {  // REQUIRES: as many are left
+  const char* take(std::size_t bytes) {  // REQUIRES: bytes <= bytes_left()
     const char* at = rest_.data();
     rest_.remove_prefix(bytes);
     return at;

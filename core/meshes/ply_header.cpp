@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMaxProperties = 1000;  // of all elements; scans have a dozen
+constexpr std::size_t kMaxProperties = 1000;  // total over elements; scans have a dozen
 
 struct TypeName {
   std::string_view name;
@@ -69,7 +69,7 @@ PlyHeader read_ply_header(std::string_view bytes) {
   std::optional<PlyEncoding> encoding;
   std::vector<PlyElement> elements;
   std::size_t properties = 0;
-  while (text.next_line()) {  // past "ply"
+  while (text.next_line()) {  // skips "ply"
     const std::string_view keyword = text.word_of_line();
     if (keyword == "end_header") {
       if (!encoding) text.fail("expected a line \"format\" before it");

@@ -16,8 +16,8 @@ std::size_t size_of(PlyType type);
 
 struct PlyProperty {
   std::string_view name;
-  PlyType type;                            // of the value, or of each entry of a list
-  std::optional<PlyType> count_type = {};  // of the length of a list: an integer type
+  PlyType type;                            // type of the value, or of each list entry
+  std::optional<PlyType> count_type = {};  // integer type of a list's length
 };
 
 struct PlyElement {
@@ -32,8 +32,8 @@ struct PlyHeader {
   TextReader body;  // at the first byte after the header
 };
 
-// The header of a PLY file (Turk, The PLY Polygon File Format, 1994). Throws InputError with the line if it
-// is wrong. Views point into `bytes`.
+// Reads the header of a PLY file (Turk, The PLY Polygon File Format, 1994). Throws InputError with the line
+// if it is invalid. Views point into `bytes`.
 PlyHeader read_ply_header(std::string_view bytes);
 
 }  // namespace orrery

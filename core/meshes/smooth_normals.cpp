@@ -10,9 +10,9 @@
 namespace orrery {
 namespace {
 
-// Angle between unit vectors, in radians, or 0 between two that are zero: 2 atan(|u - v| / |u + v|) (Kahan),
-// which is exact to a few ulps for all angles. The arctangent is halved three times, then its series; IEEE
-// operations alone, so that every machine gives the same bits.
+// Returns the angle between unit vectors in radians, or 0 between two zero vectors: 2 atan(|u - v| / |u + v|)
+// (Kahan), accurate to a few ulps for all angles. Halves the arctangent three times before the series. Uses
+// only IEEE operations, so that all machines return the same bits.
 double angle_between(const Vec3d& u, const Vec3d& v) {
   const double opposite = length(u - v), adjacent = length(u + v);
   if (opposite == 0) return 0;
@@ -24,10 +24,10 @@ double angle_between(const Vec3d& u, const Vec3d& v) {
   return 16 * tangent * series;
 }
 
-// The corners (3 * triangle + 0, 1 or 2) at each place: those of place p are list[first[p]] ..
-// list[first[p + 1] - 1], in rising order.
+// Corners (3 * triangle + 0, 1 or 2) by position: those of position p are list[first[p]] .. list[first[p + 1]
+// - 1], in ascending order.
 struct Corners {
-  std::vector<std::uint32_t> position;  // place of each corner
+  std::vector<std::uint32_t> position;  // position number of each corner
   std::vector<std::uint32_t> first, list;
 
   Corners(const TriangleMesh& mesh, const PositionIndices& places) {
@@ -48,8 +48,8 @@ struct Corners {
 };
 
 struct Facets {
-  std::vector<Vec3d> normals;   // of each triangle; 0 without area
-  std::vector<Vec3d> weighted;  // of each corner: the normal times the angle there
+  std::vector<Vec3d> normals;   // by triangle; 0 without area
+  std::vector<Vec3d> weighted;  // by corner: the normal times the angle there
 
   explicit Facets(const TriangleMesh& mesh) {
     normals.reserve(mesh.triangles.size());
@@ -67,7 +67,7 @@ struct Facets {
   }
 };
 
-// A triangle without area takes what all around it give.
+// Returns the normal of a corner. A triangle without area averages all triangles around the corner.
 Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& facets, double min_cosine) {
   const Vec3d own = facets.normals[corner / 3];
   const bool flat = own == Vec3d();
@@ -81,7 +81,7 @@ Vec3d corner_normal(std::uint32_t corner, const Corners& corners, const Facets& 
   }
   for (const Vec3d& candidate : {sum, own})
     if (const Vec3d unit = safe_normalize(candidate); unit != Vec3d()) return unit;
-  return {0, 0, 1};  // nothing but triangles without area, which no ray meets
+  return {0, 0, 1};  // only triangles without area, which no ray hits
 }
 
 }  // namespace
@@ -93,13 +93,13 @@ PositionIndices position_indices_of(const std::vector<Vec3d>& positions) {
 }
 
 void split_position_indices(PositionIndices& places, const std::vector<Vec3d>& positions) {
-  VertexList apart(true, false);  // with the old place for a normal
+  VertexList apart(true, false);  // stores the old number as normal
   for (std::size_t v = 0; v < places.size(); ++v)
     places[v] = apart.add({positions[v], Vec3d(places[v], 0, 0), {}});
 }
 
 std::uint64_t count_pairs(const TriangleMesh& mesh, const PositionIndices& places) {
-  std::vector<std::uint64_t> corners(places.size(), 0);  // of each place
+  std::vector<std::uint64_t> corners(places.size(), 0);  // by position number
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle) ++corners[places[vertex]];
   std::uint64_t pairs = 0;

@@ -4,12 +4,13 @@
 #include "core/meshes/text.h"
 #include "core/meshes/vertex_list.h"
 
-// Stereolithography files (3D Systems, 1989). The facets' own normals, which many writers leave at 0, are not
-// read: the order of the corners says which side is the front.
+// Stereolithography files (3D Systems, 1989). Stored facet normals are ignored, because many writers leave
+// them 0. The order of the corners determines the front.
 namespace orrery {
 namespace {
 
-// Binary: 80 bytes of anything, the number of facets, and each as 12 floats and 2 bytes, little-endian.
+// Binary format, little-endian: 80 arbitrary bytes, the number of facets, then 12 floats and 2 bytes per
+// facet.
 constexpr std::size_t kHeader = 84, kFacet = 50, kCorner = 12;
 
 std::uint32_t little_endian(const char* bytes) {
@@ -47,7 +48,7 @@ TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
   Builder builder(limits);
   builder.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const char* facet = bytes.data() + kHeader + i * kFacet + kCorner;  // past its normal
+    const char* facet = bytes.data() + kHeader + i * kFacet + kCorner;  // skips the normal
     std::array<Vec3d, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto value = [&](std::size_t c) -> double {
@@ -70,7 +71,7 @@ void expect(TextReader& text, std::string_view wanted) {
               (word.empty() ? "the end of the file" : excerpt(word)));
 }
 
-// facet normal i j k  outer loop  vertex x y z (3 times)  endloop  endfacet; past its first word.
+// Reads "facet normal i j k  outer loop  vertex x y z (3 times)  endloop  endfacet" after its first word.
 std::array<Vec3d, 3> read_facet(TextReader& text) {
   expect(text, "normal");
   for (int i = 0; i < 3; ++i) text.word();
@@ -89,7 +90,7 @@ std::array<Vec3d, 3> read_facet(TextReader& text) {
   return corners;
 }
 
-// One solid or several: "solid", anything up to the end of the line, facets, "endsolid", anything.
+// Reads one or more solids: "solid", any text up to the end of the line, facets, "endsolid", any text.
 TriangleMesh read_ascii(std::string_view bytes, const MeshLimits& limits) {
   TextReader text(bytes);
   Builder builder(limits);

@@ -14,7 +14,7 @@ namespace {
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' ' && !is_line_end(c); }
 
-// The bytes of a number that from_chars takes: it knows no leading "+".
+// Removes a leading "+", which from_chars does not accept.
 std::string_view unsigned_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
 }
@@ -104,7 +104,7 @@ double TextReader::number_in(std::string_view word, std::string_view what) const
   const char* end = digits.data() + digits.size();
   double value = 0;
   const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  // Out of range, and too small for a double rather than too large: 0 stands for it.
+  // Rounds to 0 if the number is too small for a double, rather than too large.
   const bool vanishes = error == std::errc::result_out_of_range && stop == end &&
                         std::fabs(std::strtod(std::string(digits).c_str(), nullptr)) < 1;
   if (vanishes) return 0;

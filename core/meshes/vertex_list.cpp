@@ -5,7 +5,7 @@
 namespace orrery {
 
 std::uint32_t VertexList::add(const Vertex& vertex) {
-  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 + 0 is 0
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // maps -0 to 0
   const Vec3d &p = vertex.position, &n = vertex.normal;
   const std::array words = {bits(p.x), bits(p.y), bits(p.z),          bits(n.x),
                             bits(n.y), bits(n.z), bits(vertex.uv[0]), bits(vertex.uv[1])};

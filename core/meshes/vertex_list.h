@@ -12,7 +12,7 @@ struct Vertex {
   bool operator==(const Vertex&) const = default;  // -0 equals 0
 };
 
-// Vertex i of a mesh; what the mesh lacks is 0.
+// Returns vertex i of a mesh, with 0 for missing normals and uvs.
 inline Vertex vertex_of(const TriangleMesh& mesh, std::size_t i) {
   Vertex vertex;
   vertex.position = mesh.positions[i];
@@ -21,16 +21,16 @@ inline Vertex vertex_of(const TriangleMesh& mesh, std::size_t i) {
   return vertex;
 }
 
-// Vertices without repetition, in the order in which they first came.
+// List of distinct vertices, in order of first occurrence.
 class VertexList {
  public:
   VertexList(bool with_normals, bool with_uvs) : with_normals_(with_normals), with_uvs_(with_uvs) {}
 
-  // The number of `vertex` in the list. REQUIRES: it is finite and has 0 for what the list is without; fewer
-  // than 2^31 came before.
+  // Returns the number of `vertex` in the list. REQUIRES: `vertex` is finite, with 0 for values that the list
+  // does not store; the list has fewer than 2^31 vertices.
   std::uint32_t add(const Vertex& vertex);
   std::size_t size() const { return mesh_.positions.size(); }
-  // The vertices, and no triangles. The list is empty after it.
+  // Returns the vertices without triangles, and empties the list.
   TriangleMesh take() { return std::move(mesh_); }
 
  private:
