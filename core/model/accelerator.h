@@ -8,8 +8,8 @@
 
 namespace orrery {
 
-// What a structure is built over: every primitive of a scene. (An instance is one; its hits have the numbers
-// of what is in it.)
+// Primitive in the list that an acceleration structure is built over. An instance counts as one primitive;
+// its hits carry the numbers of the primitives inside it.
 template <class T>
 struct Primitive {
   const ShapeKernel<T>* kernel;
@@ -19,21 +19,21 @@ struct Primitive {
 template <class T>
 using PrimitiveList = std::vector<Primitive<T>>;
 
-// What a structure is, once built.
+// Statistics of a built structure.
 struct AcceleratorFacts {
-  std::size_t bytes = 0;       // held beside the scene itself
-  int depth = 0;               // nodes on the longest way to a primitive
-  std::size_t references = 0;  // places that name a primitive: more than there are, where cells share some
-  bool refitted = false;       // its boxes followed primitives that moved since it was built
-  double surface_area_growth =
-      1;  // how much larger they are since then beside what they hold, by their surfaces
+  std::size_t bytes = 0;       // without the scene itself
+  int depth = 0;               // nodes on the longest path from the root to a primitive
+  std::size_t references = 0;  // primitive references; more than primitives if cells share some
+  bool refitted = false;       // boxes were updated after primitives moved
+  // Growth of the boxes' surface area since the build, relative to the area of their contents.
+  double surface_area_growth = 1;
 };
 
-// Beyond this surface_area_growth a new structure is built.
+// Largest surface_area_growth of a refitted structure. Above it, a new structure is built.
 inline constexpr double kMaxSurfaceAreaGrowth = 1.5;
 
-// Finds what rays meet first, exactly as testing every primitive would: the same distance and primitive,
-// equal distances going to the lower number. Immutable once built; calls may run on any number of threads.
+// Finds the nearest hits of rays, with exactly the result of testing every primitive: the same distance and
+// primitive. Equal distances go to the lower primitive number. Immutable once built and thread-safe.
 template <class T>
 class Accelerator {
  public:
@@ -41,30 +41,30 @@ class Accelerator {
 
   virtual AcceleratorFacts facts() const = 0;
 
-  // The same structure where the primitives have moved: `moved` has them in the same order. Null if it has to
-  // be built anew, because it cannot follow, or because its boxes would be kMaxSurfaceAreaGrowth times as
-  // large.
+  // Returns this structure refitted to moved primitives; `moved` lists them in the same order. Returns null
+  // if a rebuild is required: refitting is not supported, or surface_area_growth would exceed
+  // kMaxSurfaceAreaGrowth.
   virtual std::unique_ptr<Accelerator> refitted(const PrimitiveList<T>& /*moved*/) const { return nullptr; }
 
-  // Nearest hit of every active ray of `groups`. REQUIRES: hits.t holds t_max and hits.primitive
-  // kNoPrimitive, or the two are a hit of that ray, which then stays unless there is a nearer one, or one as
-  // near of a lower number.
+  // Finds the nearest hit of every active ray of `groups`. REQUIRES: hits.t and hits.primitive hold t_max and
+  // kNoPrimitive, or an earlier hit of the ray. An earlier hit is replaced only by a nearer one, or by one at
+  // the same distance with a lower primitive number.
   virtual void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 
-  // Sets t_max to -1 for every ray of `groups` that meets anything in (0, t_max).
+  // Sets t_max to -1 for every ray of `groups` that hits a primitive in (0, t_max).
   virtual void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const = 0;
 };
 
 template <class T>
 using AcceleratorPtr = std::unique_ptr<Accelerator<T>>;
 
-// About how many nanoseconds a structure takes for each thing counted, so that structures can be compared by
-// their counts: fitted to the times of `script/bench structures` on one machine, where single fits are within
-// 40 %. Only ratios mean something.
+// Cost model: approximate nanoseconds per counted operation, for comparing structures by their counts. Fitted
+// to times of `script/bench structures` on one machine; single fits are within 40 %. Only ratios are
+// meaningful.
 struct AcceleratorCosts {
   double ray, visit, box, primitive;
-  double each = 0;  // a ray, for each primitive that there is, where every one is asked
+  double each = 0;  // per ray and primitive of the scene, for structures that test every primitive
 
   double of(std::uint64_t rays, const AcceleratorCounts& counts) const {
     return ray * static_cast<double>(rays) + visit * static_cast<double>(counts.node_visits) +
@@ -73,7 +73,7 @@ struct AcceleratorCosts {
   }
 };
 
-// The list passed to `build` outlives the accelerator.
+// Type of acceleration structure. The list passed to `build` must outlive the accelerator.
 struct AcceleratorType {
   const char* name;
   const char* summary;

@@ -10,16 +10,16 @@
 
 namespace orrery {
 
-// Where a scene gets meshes and pictures that are not written in it. This one has none; whoever loads scenes
-// may know some. Each throws InputError (pointer "") if there is no such thing, or what is there is none.
+// Source of meshes and pictures that are not written in the scene itself. The base class has none; loaders of
+// scenes may override it. Each function throws InputError (pointer "") if the asset is missing or invalid.
 class AssetSource {
  public:
   virtual ~AssetSource() = default;
 
-  // Of a file beside the scene.
+  // Returns the contents of a file next to the scene file.
   virtual TriangleMesh mesh_file(const std::string& /*name*/) const { refuse_files(); }
   virtual TexelsPtr picture_file(const std::string& /*name*/) const { refuse_files(); }
-  // By the SHA-256 of its bytes, in hexadecimal.
+  // Returns an uploaded asset by the SHA-256 of its bytes, in hexadecimal.
   virtual TriangleMesh mesh_asset(const std::string& /*sha256*/) const { refuse_assets(); }
   virtual TexelsPtr picture_asset(const std::string& /*sha256*/) const { refuse_assets(); }
 
@@ -32,12 +32,12 @@ class AssetSource {
   }
 };
 
-// Where the meshes of a scene come from, and how much was read of them so far: all have limits together.
+// Source of a scene's meshes, with running totals: the limits apply to all meshes of a scene together.
 struct MeshSource {
   const AssetSource& assets;
-  std::size_t vertices = 0, triangles = 0;  // those of keys too
+  std::size_t vertices = 0, triangles = 0;  // including those of animation keys
   bool full = false;
-  std::uint64_t pairs = 0;  // of triangles around a vertex that smoothing compares
+  std::uint64_t pairs = 0;  // triangle pairs around a vertex that smoothing compares
 };
 
 }  // namespace orrery

@@ -7,11 +7,11 @@
 #include "core/math/vec3.h"
 
 // Batches: many rays in structure-of-arrays form, passed between stages. T is float or double (long double in
-// oracles). All arrays are aligned for whole registers and hold kBatchRoom entries, so that a stage may read
-// and write past `count` up to the next register boundary.
+// oracles). Arrays are aligned for whole registers and hold kBatchRoom entries, so that a stage may read and
+// write past `count` up to the next register boundary.
 namespace orrery {
 
-inline constexpr int kBatch = 1024;             // rays a batch holds at most
+inline constexpr int kBatch = 1024;             // maximum rays per batch
 inline constexpr int kBatchRoom = kBatch + 16;  // the widest register is 16 lanes
 
 template <class T>
@@ -20,7 +20,7 @@ struct Array {
 
   T& operator[](int i) { return values[static_cast<std::size_t>(i)]; }
   const T& operator[](int i) const { return values[static_cast<std::size_t>(i)]; }
-  // Lanes i, i+1, ...; REQUIRES: i is a multiple of the lane count.
+  // Returns lanes i, i+1, .... REQUIRES: i is a multiple of the lane count.
   [[gnu::always_inline]] Lanes<T> at(int i) const requires std::is_floating_point_v<T> {
     return {&values[static_cast<std::size_t>(i)], stdx::vector_aligned};
   }
@@ -38,7 +38,6 @@ template <class T>
 struct Vec3Array {
   Array<T> x, y, z;
 
-  // One of them.
   Vec3<T> operator[](int i) const { return {x[i], y[i], z[i]}; }
   void set(int i, const Vec3<T>& v) {
     x[i] = v.x;
@@ -60,18 +59,18 @@ struct Vec3Array {
   }
 };
 
-// Indices as wide as T, so that comparisons of the two share a mask.
+// Indices as wide as T, so that comparisons of indices and of T share a mask.
 template <class T>
 [[gnu::always_inline]] inline IndexLanes<T> load_index(const Array<IndexOf<T>>& a, int i) {
   return {&a.values[static_cast<std::size_t>(i)], stdx::vector_aligned};
 }
 
-// The registers of a batch that a stage works on: index of each one's first ray, ascending.
+// Registers of a batch that a stage works on: the index of the first ray of each register, ascending.
 class Groups {
  public:
-  Groups() {}  // the list itself stays uninitialised
+  Groups() {}  // leaves first_ uninitialised
 
-  // Every register that holds one of the rays from..to-1; `from` is a multiple of the width.
+  // Returns every register that holds one of the rays from..to-1. REQUIRES: `from` is a multiple of `width`.
   static Groups covering(int from, int to, int width) {
     Groups all;
     for (int i = from; i < to; i += width) all.add(i);
@@ -99,8 +98,8 @@ class Groups {
   std::array<std::uint16_t, kBatch> first_;
 };
 
-// One ray: points origin + t * direction. Formulas for hits take any non-zero direction; the stages pass unit
-// directions, so that t is metres.
+// Ray with points origin + t * direction. Hit formulas accept any non-zero direction. Stages pass unit
+// directions, so that t is in metres.
 template <class N>
 struct Ray {
   Vec3<N> origin, direction;
@@ -108,17 +107,16 @@ struct Ray {
   [[gnu::always_inline]] Vec3<N> at(const N& t) const { return origin + direction * t; }
 };
 
-// Rays of a batch. t_max is the far end in units of the direction's length (exclusive); a ray with t_max < 0
-// is inactive: it hits nothing.
+// Rays of a batch. t_max is the exclusive far end in units of the direction's length. A ray with t_max < 0 is
+// inactive and hits nothing.
 template <class T>
 struct RayBatch {
   int count = 0;
   Vec3Array<T> origin, direction;
   Array<T> t_max;
-  Array<T> time;  // share of the exposure, in [0, 1); filled only where something moves during one
+  Array<T> time;  // share of the exposure, in [0, 1); filled only if something moves during the exposure
 
   [[gnu::always_inline]] Ray<Lanes<T>> at(int i) const { return {origin.at(i), direction.at(i)}; }
-  // One of them.
   Ray<T> operator[](int i) const { return {origin[i], direction[i]}; }
   void set(int i, const Ray<T>& ray, T end) {
     origin.set(i, ray.origin);
@@ -127,7 +125,7 @@ struct RayBatch {
   }
 };
 
-// Rays of `groups` that are still active, and the registers that hold one.
+// Returns the number of active rays of `groups`.
 template <class T>
 std::uint64_t active_rays(const RayBatch<T>& rays, const Groups& groups) {
   std::uint64_t count = 0;
@@ -145,13 +143,13 @@ Groups with_active_rays(const RayBatch<T>& rays, const Groups& groups) {
 
 inline constexpr int kNoPrimitive = -1;
 
-// What the stages of a plan read of a hit beside t, primitive, position, normals, side, step and material.
-// Arrays that no stage reads are not filled.
+// Hit data that stages of a plan read in addition to t, primitive, position, normals, side, step and
+// material. Arrays that no stage reads are not filled.
 struct SurfaceFields {
   bool parameters = false;  // u and v of hits and surfaces, tangent
   bool identity = false;    // instance of hits, object of surfaces
   bool footprint = false;   // width and spread of rays, footprint of surfaces
-  bool travelled = false;   // of surfaces
+  bool travelled = false;   // distance of surfaces from the ray origin
 
   SurfaceFields& operator|=(const SurfaceFields& other) {
     parameters |= other.parameters;
@@ -162,20 +160,20 @@ struct SurfaceFields {
   }
 };
 
-// Nearest hit so far of each ray: t starts as the ray's t_max, primitive as kNoPrimitive. The rest is derived
-// from these two once per ray, after the search has ended (ShapeKernel::parameters()), because a search
-// replaces most of the hits that it finds.
+// Nearest hit so far of each ray. t starts as the ray's t_max, primitive as kNoPrimitive.
+// ShapeKernel::parameters() derives the other arrays once per ray after the search, because a search replaces
+// most of the hits it finds.
 template <class T>
 struct HitBatch {
   Array<T> t;
   Array<IndexOf<T>> primitive;
-  Array<T> u, v;  // the shape's own parameters (of a triangle: weights of its second and third vertex)
-  Array<IndexOf<T>> instance;  // that the primitive belongs to, counted from 0; kNoInstance for none
+  Array<T> u, v;               // shape parameters (triangle: weights of the second and third vertex)
+  Array<IndexOf<T>> instance;  // instance of the primitive, counted from 0, or kNoInstance
 };
 inline constexpr int kNoInstance = -1;
 
-// Where a hit at t on primitive `id` takes the place of (best, best_id): it is nearer, or as near and of a
-// lower number. Neither NaN nor infinity is a hit.
+// Returns the lanes whose hit at t on primitive `id` replaces (best, best_id): the hit is nearer, or equally
+// near with a lower primitive number. NaN and infinity are not hits.
 template <class N, class I>
 [[gnu::always_inline]] inline MaskOf<N> takes_over(const N& t, const I& id, const N& best, const I& best_id) {
   constexpr auto kFarthest = std::numeric_limits<ScalarOf<N>>::max();
@@ -183,23 +181,24 @@ template <class N, class I>
   return t < best || (t == best && lower && t <= N(kFarthest));
 }
 
-// The surface at each hit. Unit normals stand on the side the ray came from.
+// Surface at each hit. Unit normals point to the side the ray came from.
 template <class T>
 struct SurfaceBatch {
-  Vec3Array<T> position;   // put back on the shape
+  Vec3Array<T> position;   // corrected to lie on the shape
   Vec3Array<T> normal;     // for shading; may be interpolated
-  Vec3Array<T> geometric;  // of the true surface
-  Array<T> side;           // +1: the ray came from the outside, -1: from the inside
-  Array<T> step;           // metres along `geometric` that clear the surface of rounding
+  Vec3Array<T> geometric;  // normal of the true surface
+  Array<T> side;           // +1: ray came from outside, -1: from inside
+  Array<T> step;           // metres along `geometric` that clear the rounding error of the surface
   Array<IndexOf<T>> material;
   // See SurfaceFields.
-  Vec3Array<T> tangent;  // unit, along which u grows, at right angles to the true normal
-  Array<T> u, v;         // texture coordinates: those of a mesh if it has any, else the shape's parameters
-  Array<T> footprint;    // metres that a pixel covers here, across the ray
-  Array<T> travelled;    // metres from the ray's origin
-  Array<IndexOf<T>> object;  // number of the object in the scene: `objects` first, then `instances`
+  Vec3Array<T> tangent;      // unit, direction of increasing u, perpendicular to the geometric normal
+  Array<T> u, v;             // texture coordinates of the mesh, or else the shape's parameters
+  Array<T> footprint;        // pixel width in metres, across the ray
+  Array<T> travelled;        // metres from the ray's origin
+  Array<IndexOf<T>> object;  // object number in the scene: `objects` first, then `instances`
 
-  // Where rays along these directions leave the surfaces at register i: on the side that they go to.
+  // Returns the origins of rays along `direction` from the surfaces at register i, offset to the side the
+  // rays leave on.
   Vec3<Lanes<T>> origin_toward(int i, const Vec3<Lanes<T>>& direction) const {
     const Vec3<Lanes<T>> true_normal = geometric.at(i);
     const Lanes<T> clear = step.at(i);

@@ -7,28 +7,29 @@
 
 namespace orrery {
 
-// How far something may take a picture from the one without it.
+// Bound on the difference that an approximation makes to a picture.
 struct Bound {
-  // What the numbers rest on, the strongest first: nothing changes; no picture differs by more; pixels that
-  // were drawn at random tell, of any picture; samples tell.
+  // Evidence for the numbers, strongest first. exact: nothing changes. proved: no picture differs by more.
+  // audited: measured at randomly drawn pixels. estimated: from samples.
   enum class Kind { exact, proved, audited, estimated, unknown };
   Kind kind = Kind::exact;
-  // Largest and root-mean-square difference of a pixel's channel, in linear radiance; none if unknown.
+  // Largest and root-mean-square difference of a pixel channel, in linear radiance; nullopt if unknown.
   std::optional<double> max = 0, rms = 0;
 
   static Bound unknown() { return {Kind::unknown, std::nullopt, std::nullopt}; }
-  // Unknown if either is not finite.
+  // Returns a proved bound, or unknown() if either number is not finite.
   static Bound proved(double max, double rms) {
     return std::isfinite(max) && std::isfinite(rms) ? Bound{Kind::proved, max, rms} : unknown();
   }
-  // Of some pixels, which tell nothing of the largest difference.
+  // Returns a bound from measured pixels, which do not limit the largest difference.
   static Bound audited(double rms) { return {Kind::audited, std::nullopt, rms}; }
-  // Of samples, which tell nothing of the largest difference.
+  // Returns a bound from samples, which do not limit the largest difference, or unknown() if `rms` is not
+  // finite.
   static Bound estimated(double rms) {
     return std::isfinite(rms) ? Bound{Kind::estimated, std::nullopt, rms} : unknown();
   }
 
-  // Both together: as weak as the weaker.
+  // Returns the bound of both differences together, with the weaker kind.
   Bound operator+(const Bound& other) const {
     const auto sum = [](const std::optional<double>& a, const std::optional<double>& b) {
       return a && b ? std::optional(*a + *b) : std::nullopt;

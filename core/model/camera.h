@@ -6,45 +6,46 @@
 
 #include "core/model/tile.h"
 
-// Cameras. Right-handed; metres; degrees in scenes and requests.
+// Cameras. Right-handed coordinates in metres; angles in degrees in scenes and requests.
 namespace orrery {
 
 class Params;
 
 inline constexpr int kMaxBlades = 16;
 
-// The aperture's form: a regular polygon, whose corners are as far from the middle as its radius.
+// Aperture shape: a regular polygon whose corners lie at the aperture radius.
 struct LensBlades {
   int count = 0;       // sides, at least 3; 0: round
-  double degrees = 0;  // of the first corner, from right toward up
+  double degrees = 0;  // angle of the first corner, from right toward up
 };
 
-// Where a scene's own camera stands.
+// Placement of a scene's own camera.
 struct CameraPlacement {
   Vec3d eye{0, 0, 4}, look_at{0, 0, 0}, up{0, 1, 0};
-  double aperture_radius = 0;                 // of a thin lens, metres; 0: a pinhole
-  std::optional<double> focus_distance = {};  // along the view, metres; none: where look_at is
+  double aperture_radius = 0;                 // thin lens radius, metres; 0: pinhole
+  std::optional<double> focus_distance = {};  // along the view, metres; nullopt: distance to look_at
   LensBlades blades = {};
 };
 
-// A place on an orbit, relative to the scene's own camera: a turn about `up` through `look_at` (anticlockwise
-// seen from above, x' = x cos + z sin, z' = -x sin + z cos for up = y), a lift toward `up`, and a factor of
-// the own distance; all of it moved by `pan`, in metres of the scene's space.
+// Camera position on an orbit, relative to the scene's own camera. The azimuth turns about `up` through
+// `look_at`, anticlockwise seen from above: x' = x cos + z sin, z' = -x sin + z cos for up = y. The elevation
+// lifts toward `up`. `distance` is a factor of the own distance. `pan` then moves the camera, in metres of
+// the scene's space.
 struct Orbit {
   double azimuth_degrees = 0, elevation_degrees = 0, distance = 1;
   Vec3d pan{0, 0, 0};
 };
 
-// The camera's place and directions, unit and at right angles to each other.
+// Camera position and orthonormal axes.
 struct CameraFrame {
   Vec3d eye, right, up, back;
   double distance = 0;     // from eye to look_at, metres
-  double half_extent = 0;  // half the picture's height: see Camera::half_extent()
+  double half_extent = 0;  // half the picture height: see Camera::half_extent()
   double aperture_radius = 0, focus_distance = 0;
   LensBlades blades;
 };
 
-// Where each slot of a tile is sampled: in its pixel in [0, 1), or beyond with a filter that is wider.
+// Sample positions of a tile's slots within their pixels, in [0, 1); wider filters go beyond that range.
 struct TileSamples {
   Array<float> u, v;
 
@@ -56,30 +57,30 @@ struct TileSamples {
   }
 };
 
-// How rays leave the camera: one object a type. Const and free of state.
+// Camera model that generates rays, one object per type. Immutable and thread-safe.
 class Camera {
  public:
   virtual ~Camera() = default;
 
-  // Name and value of what a scene says about this type beside the placement.
+  // Name and value of a type-specific scene parameter.
   struct Parameter {
     const char* name;
     double value;
   };
   virtual std::vector<Parameter> parameters() const = 0;
   virtual const char* type() const = 0;
-  // Whether all rays have one direction.
+  // Returns true if all rays have the same direction.
   virtual bool parallel() const = 0;
-  // Whether rays leave toward all sides, so that there is no plane that a lens could be focused at.
+  // Returns true if rays leave in all directions, so that no focal plane exists.
   virtual bool all_around() const { return false; }
-  // Half the picture's height: in metres if parallel, else of the plane at distance 1 from the eye.
-  // `distance` is the orbit's factor of the own distance. In radians if all around.
+  // Returns half the picture height. Parallel cameras: in metres. Others: on the plane at distance 1 from the
+  // eye. All-around cameras: in radians. `distance` is the orbit's factor of the own distance.
   virtual double half_extent(double distance) const = 0;
-  // The same with another vertical angle, in (0, 180) degrees; null if it has no angle.
+  // Returns this camera with another vertical field of view, in (0, 180) degrees, or null if it has none.
   virtual std::unique_ptr<Camera> with_fov(double /*degrees*/) const { return nullptr; }
 
-  // One ray a slot for a tile of a picture of width x height pixels; slots beyond the tile's pixels get
-  // inactive rays.
+  // Generates one ray per slot for a tile of a picture of width x height pixels. Slots outside the picture
+  // get inactive rays.
   virtual void generate(const CameraFrame& frame, int width, int height, const TileView& tile,
                         const TileSamples& samples, RayBatch<float>& out) const = 0;
   virtual void generate(const CameraFrame& frame, int width, int height, const TileView& tile,
@@ -92,12 +93,12 @@ struct CameraType {
   std::unique_ptr<Camera> (*read)(Params&);
 };
 
-// The frame of `camera` at `orbit`. The lift stops at straight above and below, where the picture stays
-// upright by azimuth: nothing is divided by the cosine of the elevation. REQUIRES: eye, look_at and up span a
-// plane.
+// Returns the frame of `camera` at `orbit`. The elevation is clamped to straight above and below, where the
+// azimuth keeps the picture upright. No division by the cosine of the elevation occurs. REQUIRES: eye,
+// look_at and up are not collinear.
 CameraFrame frame_at(const CameraPlacement& placement, const Camera& camera, const Orbit& orbit);
 
-// Metres across the ray that a pixel covers: `width` at the ray's origin, and `spread` more per metre.
+// Pixel width in metres across the ray: `width` at the ray's origin plus `spread` per metre.
 struct PixelFootprint {
   double width, spread;
 };

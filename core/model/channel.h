@@ -4,17 +4,17 @@
 
 #include "core/model/path.h"
 
-// Channels of a film beside radiance: what camera rays meet first.
+// Film channels besides radiance (AOVs): properties of the first hits of camera rays.
 namespace orrery {
 
 // One channel of a batch, by slot.
 template <class T>
 struct ChannelBatch {
   Vec3Array<T> value;  // as many components as the channel has
-  Array<T> weight;     // 1 where the ray met something, else 0
+  Array<T> weight;     // 1 if the ray hit something, else 0
 };
 
-// What a channel may read of the camera rays' hits.
+// Inputs of a channel: the first hits of camera rays.
 template <class T>
 struct FirstHits {
   const PathBatch<T>& paths;
@@ -22,10 +22,10 @@ struct FirstHits {
   const SurfaceBatch<T>& surface;
 };
 
-// How the samples of a pixel become one value.
+// Reduction of a pixel's samples to one value.
 enum class ChannelMean {
-  of_hits,      // mean over the samples that met something
-  first_sample  // the value of the first sample: numbers that have no mean
+  of_hits,      // mean over the samples that hit something
+  first_sample  // value of the first sample, for identifiers
 };
 
 struct ChannelType {
@@ -33,8 +33,8 @@ struct ChannelType {
   const char* summary;
   std::vector<const char*> components;  // 1 to 3 suffixes: "X", "Y", "Z"
   ChannelMean mean;
-  float nothing;         // value of a pixel in which no ray met anything
-  SurfaceFields fields;  // what `record` reads of a surface
+  float nothing;         // value of a pixel in which every ray missed
+  SurfaceFields fields;  // surface fields that `record` reads
   // Sets the components of the value for the registers of `groups`.
   void (*record_float)(const FirstHits<float>&, const Groups&, Vec3Array<float>&);
   void (*record_double)(const FirstHits<double>&, const Groups&, Vec3Array<double>&);

@@ -7,9 +7,9 @@
 
 namespace orrery {
 
-inline constexpr int kDeepestRay = 32;  // no request may ask for deeper rays
+inline constexpr int kDeepestRay = 32;  // largest depth that a request may ask for
 
-// Rays by kind and depth; a shadow ray has the depth of the ray whose hit sent it.
+// Ray counts by kind and depth. A shadow ray has the depth of the ray whose hit spawned it.
 struct RayCounts {
   using ByDepth = std::array<std::uint64_t, kDeepestRay + 1>;
   std::uint64_t camera = 0;
@@ -30,12 +30,12 @@ struct RayCounts {
   }
 };
 
-// What one piece of a render did.
+// Work counters of one piece of a render.
 struct TraceCounts {
   RayCounts rays;
   AcceleratorCounts accelerator;
-  std::uint64_t camera_hits = 0;  // camera rays that met something
-  std::uint64_t cut_rays = 0;     // not traced: too deep or too weak
+  std::uint64_t camera_hits = 0;  // camera rays that hit something
+  std::uint64_t cut_rays = 0;     // rays not traced because of depth or weight
 
   void add(const TraceCounts& other) {
     rays.add(other.rays);

@@ -7,7 +7,7 @@
 
 namespace orrery {
 
-// What a pair of random numbers is for. Each purpose has a sequence of its own at each depth.
+// Purpose of a pair of random numbers. Each purpose has its own sequence at each depth.
 enum class SampleSet : std::uint32_t {
   pixel,
   light,
@@ -17,12 +17,12 @@ enum class SampleSet : std::uint32_t {
   look,
   lens,
   look_lens,
-  environment = 1u << 16  // beyond those of all depths
+  environment = 1u << 16  // above the numbers of all depths
 };
-inline constexpr std::uint32_t kSampleSets = 8;  // before the environment's
+inline constexpr std::uint32_t kSampleSets = 8;  // sets before `environment`
 
-// The random numbers of one sample of a tile: pure functions of (seed, frame, x, y, sample, set). They do not
-// depend on the tile's place in a schedule, on threads or on the width of registers.
+// Random numbers of one sample of a tile: pure functions of (seed, frame, x, y, sample, set). They do not
+// depend on tile order, threads or SIMD width.
 class Draws {
  public:
   Draws(std::uint64_t seed, const TileView& tile, int sample)
@@ -34,7 +34,7 @@ class Draws {
   template <class T>
   using Bits = stdx::rebind_simd_t<std::uint32_t, Lanes<T>>;
 
-  // Two numbers in [0, 1) for each of these slots of the tile, of paths of this depth (camera rays: 0).
+  // Returns two numbers in [0, 1) for each of the slots, for paths of `depth` (camera rays: 0).
   template <class T>
   [[gnu::always_inline]] SamplePoint<Lanes<T>> two(SampleSet set, int depth,
                                                    const IndexLanes<T>& slot) const {
@@ -42,13 +42,13 @@ class Draws {
     return {stdx::static_simd_cast<Lanes<T>>(point.u), stdx::static_simd_cast<Lanes<T>>(point.v)};
   }
 
-  // A third number, so that the three of a sample are stratified together.
+  // Returns a third number, stratified together with the two of two().
   template <class T>
   [[gnu::always_inline]] Lanes<T> third(SampleSet set, int depth, const IndexLanes<T>& slot) const {
     return stdx::static_simd_cast<Lanes<T>>(stratified_third(sample_, stream<T>(set, depth, slot)));
   }
 
-  // A random number for each slot of the tile, by which to put slots in an order of this sample alone.
+  // Fills `keys` with one random number per slot, for sorting slots into a random order for this sample.
   void shuffle_keys(std::array<std::uint32_t, kBatch>& keys) const {
     for (std::uint32_t slot = 0; slot < keys.size(); ++slot)
       keys[slot] = combine_bits<std::uint32_t>(
@@ -56,7 +56,7 @@ class Draws {
           pixel_of(slot));
   }
 
-  // The sequences, for stratified_point(), that two() takes its numbers from: the same for every sample.
+  // Returns the stratified_point() sequences that two() draws from; they are the same for every sample.
   template <class T>
   [[gnu::always_inline]] Bits<T> stream(SampleSet set, int depth, const IndexLanes<T>& slot) const {
     const std::uint32_t number =
@@ -67,9 +67,9 @@ class Draws {
   }
 
  private:
-  static constexpr int kRow = 65536;  // pixels are numbered row by row as if rows were this long
+  static constexpr int kRow = 65536;  // row length in the numbering of pixels
 
-  // Number of the pixel of a slot: see tile_pixel().
+  // Returns the pixel number of a slot: see tile_pixel().
   template <class N>
   [[gnu::always_inline]] N pixel_of(const N& slot) const {
     const N block = slot >> 4, within = slot & 15u;
@@ -82,7 +82,7 @@ class Draws {
   std::uint32_t seed_, frame_, first_pixel_, sample_;
 };
 
-// The random numbers of the paths of a batch, register by register.
+// Random numbers of the paths of a batch, by register.
 template <class T>
 struct PathDraws {
   const Draws& draws;

@@ -10,16 +10,17 @@ namespace orrery {
 
 class Params;
 
-// What surrounds a scene: light from infinitely far away, seen by rays that meet nothing.
+// Environment light: radiance from infinitely far away, seen by rays that miss everything.
 class Environment {
  public:
   virtual ~Environment() = default;
-  // The radiance, if it is the same from everywhere: then no kernel is made.
+  // Returns the radiance if it is the same in all directions. No kernel is made then.
   virtual std::optional<Vec3d> constant() const { return std::nullopt; }
-  virtual Vec3d most() const = 0;  // the largest radiance from anywhere, per channel
-  // Whether paths do better to draw directions toward it than to wait for them.
+  virtual Vec3d most() const = 0;  // largest radiance over all directions, per channel
+  // Returns true if importance sampling of its directions pays off.
   virtual bool sampled() const { return false; }
-  // It is light 0. Only beyond() and, if sampled(), sample_each() give light.
+  // Returns a kernel with one light, number 0. Only beyond() and, if sampled(), sample_each() return its
+  // light.
   virtual LightKernelPtr<float> kernel(float) const = 0;
   virtual LightKernelPtr<double> kernel(double) const = 0;
 };
@@ -27,7 +28,7 @@ class Environment {
 struct EnvironmentType {
   const char* name;
   const char* summary;
-  // Null after a problem, which is noted.
+  // Returns null after a problem, which `Params` records.
   std::shared_ptr<const Environment> (*read)(Params&, const AssetSource&);
 };
 

@@ -11,38 +11,39 @@
 
 namespace orrery {
 
-// How a film keeps what was rendered.
+// Storage format of a film.
 enum class FilmStorage {
-  srgb8,     // 3 bytes a pixel: radiance resolved for the eye as soon as a tile has ended
-  linear32,  // 12 bytes a pixel: radiance resolved to linear floats
-  sums       // 8 bytes a pixel, component and channel: sums in double precision, to which passes can be added
+  srgb8,     // 3 bytes per pixel: sRGB-encoded when a tile ends
+  linear32,  // 12 bytes per pixel: radiance as linear floats
+  sums       // 8 bytes per pixel, component and channel: double sums to which passes can be added
 };
 
-// Sums over the samples of one tile, by slot, in the order of the samples. Precision: double.
+// Sums over the samples of one tile, by slot, added in sample order.
 struct TileSums {
   using Plane = std::array<double, kBatch>;
   struct Sums {
     std::array<Plane, 3> value;
-    Plane weight;  // samples that count
+    Plane weight;  // number of samples that count
   };
   std::array<Plane, 3> radiance;
-  std::vector<Sums> channels;  // of the film, in its order
+  std::vector<Sums> channels;  // in the film's order
   int samples = 0;
 };
 
 // Mean radiance of one tile, by slot.
 using TileMeans = std::array<Array<float>, 3>;
 
-// A picture while it is made: sums over samples, by channel. Several threads may put different tiles at once.
+// Picture in progress: sums over samples, by channel. Different tiles may be stored by several threads at
+// once.
 class Film {
  public:
-  // Channels are kept with FilmStorage::sums alone. REQUIRES: none otherwise.
+  // Creates an empty film. REQUIRES: `channels` is empty unless `storage` is FilmStorage::sums.
   Film(int width, int height, FilmStorage storage, std::span<const ChannelType* const> channels = {});
 
-  // Another with the same sums. REQUIRES: FilmStorage::sums.
+  // Returns a copy. REQUIRES: FilmStorage::sums.
   Film copy() const;
 
-  // Bytes that such a film takes.
+  // Returns the memory size of such a film.
   static std::size_t bytes(int width, int height, FilmStorage storage,
                            std::span<const ChannelType* const> channels);
 
@@ -51,21 +52,22 @@ class Film {
   FilmStorage storage() const { return storage_; }
   std::span<const ChannelType* const> channels() const { return channels_; }
 
-  // Sets the tile's pixels to these sums. Returns how many of its pixels are not finite.
+  // Stores the sums of the tile's pixels. Returns the number of pixels that are not finite.
   std::uint64_t put(const TileView& tile, const TileSums& sums);
-  // Likewise from means, which a film of sums cannot take. REQUIRES: not FilmStorage::sums.
+  // Stores means instead of sums. Returns the number of pixels that are not finite. REQUIRES: not
+  // FilmStorage::sums.
   std::uint64_t put(const TileView& tile, const TileMeans& means);
-  // The sums that were put. REQUIRES: FilmStorage::sums; the tile was put.
+  // Loads the stored sums of the tile. REQUIRES: FilmStorage::sums; the tile was stored.
   void take(const TileView& tile, TileSums& sums) const;
 
-  // Mean radiance in either format. REQUIRES: all tiles were put; the film is not srgb8 where linear32 is
-  // asked for.
+  // Returns the mean radiance in `format`. REQUIRES: all tiles were stored; an srgb8 film does not convert to
+  // linear32.
   Image image(PixelFormat format) const;
-  // The picture as it is kept. REQUIRES: not FilmStorage::sums.
+  // Returns the picture in its storage format. REQUIRES: not FilmStorage::sums.
   const Image& stored() const { return *image_; }
 
-  // Mean of a component of a channel, row by row; ChannelType::nothing where no sample met anything.
-  // REQUIRES: FilmStorage::sums.
+  // Returns the mean of a channel component, row by row; pixels that every sample missed get
+  // ChannelType::nothing. REQUIRES: FilmStorage::sums.
   std::vector<float> values(std::size_t channel, std::size_t component) const;
 
  private:
@@ -80,10 +82,10 @@ class Film {
   int width_, height_;
   FilmStorage storage_;
   std::vector<const ChannelType*> channels_;
-  std::unique_ptr<Image> image_;  // unless sums are kept
+  std::unique_ptr<Image> image_;  // null for FilmStorage::sums
   std::array<Plane, 3> radiance_;
-  std::vector<ChannelPlanes> planes_;  // of each channel
-  std::vector<int> samples_;           // of each tile of the grid
+  std::vector<ChannelPlanes> planes_;  // by channel
+  std::vector<int> samples_;           // by tile of the grid
 };
 
 }  // namespace orrery

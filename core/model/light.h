@@ -5,70 +5,69 @@
 #include "core/model/draws.h"
 #include "core/model/rounding.h"
 
-// Lights. As with shapes, a scene keeps all lights of one type together (a LightSet, in double precision) and
-// makes a kernel of them in the plan's number type, whose calls take whole batches.
+// Lights. A scene keeps all lights of one type in a LightSet, in double precision. Each set makes a
+// LightKernel in the plan's number type, whose calls process whole batches.
 //
-// Convention: a white Lambert surface that faces a light of intensity 1 reads 1.
+// Convention: a white Lambert surface that faces a light of intensity 1 has radiance 1.
 namespace orrery {
 
 class Params;
 
-// Light as it arrives at every surface point of a batch.
+// Incident light at every surface point of a batch.
 template <class T>
 struct LightBatch {
-  // Rays that ask whether the light is seen. The light fills the unit direction toward it and t_max (metres
-  // to it, infinite if it is directional, -1 if it sends nothing here). Their origins are set once the
-  // direction is known: on the side of the surface that the light comes from.
+  // Shadow rays. The light fills the unit direction toward it and t_max: metres to the light, infinity if
+  // directional, -1 if it sends no light here. Origins are set afterwards, on the side of the surface that
+  // the light comes from.
   RayBatch<T> shadow;
-  // Radiance times cosine at the light over the density with which it was drawn and the probability of the
-  // choice; of a light that is one point, its intensity after attenuation and cone.
-  // (Area lights: radiance over pi and the density, so that a white Lambert surface reflects as much.)
+  // Radiance times the cosine at the light, divided by the sampling density and the selection probability.
+  // Point lights: intensity after attenuation and cone. Area lights also divide by pi, which cancels the
+  // factor pi of f_cos.
   Vec3Array<T> incident;
-  // Density per solid angle with which the direction was drawn, times the probability of the choice; 0 of a
-  // light that no ray can hit.
+  // Sampling density per solid angle times the selection probability; 0 for lights that no ray can hit.
   Array<T> pdf;
 };
 
-// Which light of a kernel a batch asks, and the probability with which it was chosen.
+// Light of a kernel, chosen for a whole batch, and the probability of the choice.
 template <class T>
 struct LightChoice {
   int index;  // within the kernel
   T probability = 1;
 };
 
-// One of a kernel's lights for each lane, or -1 for none, and the probability with which it was chosen.
+// Light of a kernel for each lane, or -1 for none, and the probability of the choice.
 template <class T>
 struct LightChoices {
   Array<IndexOf<T>> index;
   Array<T> probability;
 };
 
-// Const and free of state: any number of threads may call it at once.
+// Light sampling for all lights of one type. Immutable and thread-safe.
 template <class T>
 class LightKernel {
  public:
   virtual ~LightKernel() = default;
 
-  // Draws a point of the light for every surface point of `groups`: fills direction, t_max and incident. (As
-  // sample_each() of one light for all would: where each light is asked, that takes 2.5 % more of a picture.)
+  // Samples a point of one light for every surface point of `groups`: fills direction, t_max and incident.
+  // sample_each() could replace it, but makes a picture 2.5 % slower if every light is evaluated.
   virtual void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
                       const Groups& groups, LightBatch<T>& out) const = 0;
 
-  // Likewise, each surface point of another light: fills the lanes that have one, and pdf.
+  // Samples a separate light for each surface point. Fills pdf as well, and only the lanes that have a light.
   virtual void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices,
                            const PathDraws<T>& draws, const Groups& groups, LightBatch<T>& out) const = 0;
 
-  // Density per solid angle, times the probability of the choice, with which sample_each() draws the
-  // directions of `rays`, which hit the lights at `hits`, from where they start. Fills the lanes that have a
-  // light; 0 of a light that no ray can hit.
+  // Computes the density per solid angle, times the selection probability, with which sample_each() draws the
+  // directions of `rays`, which hit the lights at `hits`. Fills the lanes that have a light; 0 for lights
+  // that no ray can hit.
   virtual void pdf(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/,
                    const LightChoices<T>& /*choices*/, const Groups& groups, Array<T>& out) const {
     for (const int i : groups) out.put(i, Lanes<T>(T(0)));
   }
 
-  // Of a light that is infinitely far away and has an angle: the radiance that `rays` bring from it where
-  // they meet nothing, and the density per solid angle, times the probability of the choice, with which
-  // sample_each() draws their directions.
+  // Computes, for an extended light at infinity, the radiance along `rays` that miss everything. `pdf` is the
+  // density per solid angle, times the selection probability, with which sample_each() draws their
+  // directions.
   virtual void beyond(const RayBatch<T>& /*rays*/, const LightChoice<T>& /*choice*/, const Groups& groups,
                       Vec3Array<T>& radiance, Array<T>& pdf) const {
     for (const int i : groups) {
@@ -80,19 +79,20 @@ class LightKernel {
 template <class T>
 using LightKernelPtr = std::unique_ptr<LightKernel<T>>;
 
-// What the plan may use about a type of light.
+// Properties of a light type that the plan uses.
 struct LightTraits {
-  bool delta = true;      // no ray can hit it: only sample() finds it
-  bool parallel = false;  // the same direction everywhere
+  bool delta = true;      // no ray can hit it; only sample() finds it
+  bool parallel = false;  // same direction everywhere
 };
 
-// How much of a light reaches a point, roughly, unshadowed: by which lights are chosen. A white surface that
-// faces the light d metres from the centre, in front of it, reads strength * min(1, 1 / (c0 + c1 d + c2
-// d^2)). A light that reaches a point at all has no estimate of 0 there.
+// Rough unshadowed estimate of a light at a point, for light selection. A white surface facing the light, d
+// metres in front of the centre, has radiance strength * min(1, 1 / (c0 + c1 d + c2 d^2)). The estimate is
+// never 0 at a point that the light reaches.
 struct LightBounds {
   Vec3d centre{};
-  double radius = 0;  // metres; a sphere about the centre holds the light
-  // Unit normal of a flat light, which shines on both sides with the cosine; 0 of one that shines everywhere.
+  double radius = 0;  // bounding sphere about the centre, metres
+  // Unit normal of a flat light, which emits on both sides with the cosine; 0 for lights that emit in all
+  // directions.
   Vec3d normal{};
   double strength = 0;         // in the brightest channel
   Vec3d attenuation{1, 0, 0};  // c0, c1, c2
@@ -107,19 +107,20 @@ class LightSet {
   virtual LightTraits traits() const = 0;
   virtual Vec3d intensity(int index) const = 0;  // at the source, per channel
   virtual LightBounds bounds(int index) const = 0;
-  // The most that reaches points so many metres from the centre of the bounds, or more, taken for one point
-  // or direction, per channel: LightBatch::incident. Infinite where nothing limits it.
+  // Returns an upper bound of LightBatch::incident at `distance` metres or more from the centre of the
+  // bounds, per channel. Treats the light as one point or direction. Infinite if unbounded.
   virtual Vec3d most_at(int index, double distance) const = 0;
-  // The largest radiance that rays which meet nothing may bring from it.
+  // Returns the largest radiance that rays which miss everything can receive from the light.
   virtual Vec3d most_seen(int /*index*/) const { return Vec3d(0); }
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
-  // Whether sample_each() draws from an extent of the light that sample() takes for one point or direction.
+  // Returns true if sample_each() samples the extent of the light. sample() treats the light as one point or
+  // direction.
   virtual bool extended(int /*index*/) const { return false; }
   virtual LightKernelPtr<float> kernel(float) const = 0;
   virtual LightKernelPtr<double> kernel(double) const = 0;
 };
 
-// One light of a scene: a type's place in the registry and its number within the set.
+// Light of a scene: index of its type in the registry, and its number within the set.
 struct LightPlace {
   std::size_t set;
   int index;

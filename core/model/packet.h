@@ -5,17 +5,17 @@
 
 #include "core/model/batch.h"
 
-// Rays as structures meet them: one alone among many primitives (SingleRay), or a register of them that run
-// alike, so that they walk together (Packet); each with what its tests need and share worked out once.
+// Rays for traversal: one ray (SingleRay), or a register of similar rays that are traversed together
+// (Packet). Both carry values that intersection tests share, computed once per ray.
 namespace orrery {
 
-// Work of a structure: one ray against one thing, whatever the width of the lanes.
+// Work counters of a structure: tests of single rays, independent of SIMD width.
 struct AcceleratorCounts {
-  std::uint64_t node_visits = 0;  // by a ray, or by several that walk together
+  std::uint64_t node_visits = 0;  // by a ray or by a packet
   std::uint64_t box_tests = 0;
   std::uint64_t primitive_tests = 0;
-  std::uint64_t proposals = 0;  // primitives held against a shadow ray before the structure was asked
-  std::uint64_t proofs = 0;     // those that it met
+  std::uint64_t proposals = 0;  // predicted occluders tested before traversal
+  std::uint64_t proofs = 0;     // predicted occluders that the shadow ray hit
 
   void add(const AcceleratorCounts& other) {
     node_visits += other.node_visits;
@@ -26,7 +26,7 @@ struct AcceleratorCounts {
   }
 };
 
-// The axes of a ray as masks: z the direction's largest component, x and y following it cyclically.
+// Axes of a ray as masks: z is the direction's largest component; x and y follow cyclically.
 template <class N>
 struct RayAxes {
   MaskOf<N> z_is_x, z_is_y, z_is_z;
@@ -42,10 +42,10 @@ struct RayAxes {
   [[gnu::always_inline]] N z(const Vec3<N>& v) const { return select(z_is_x, v.x, select(z_is_y, v.y, v.z)); }
 };
 
-// Places of x, y and z in a vector, by the place of z.
+// Vector indices of x, y and z, by the index of z.
 inline constexpr std::array<std::array<int, 3>, 3> kCyclicAxes{{{1, 2, 0}, {2, 0, 1}, {0, 1, 2}}};
 
-// What a ray has for being turned and sheared to run along its largest axis z: x and y per z, and z.
+// Shear that aligns a ray with its largest axis z: x / z, y / z, and z.
 template <class N>
 struct Shear {
   N x, y, z;
@@ -59,7 +59,7 @@ struct Shear {
 template <class T>
 struct SingleRay {
   Ray<T> ray;
-  std::array<int, 3> axis;  // places of x, y and z
+  std::array<int, 3> axis;  // vector indices of x, y and z
   Shear<T> shear;
 
   static SingleRay of(const Ray<T>& ray) {
@@ -71,15 +71,15 @@ struct SingleRay {
 template <class T>
 struct Packet {
   Ray<Lanes<T>> ray;
-  std::array<int, 3> axis;  // the same for all that are active
+  std::array<int, 3> axis;  // the same for all active rays
   Shear<Lanes<T>> shear;
-  // What the active ones have in common: their origin, if it is one, and the limits of shear.x and shear.y.
+  // Common origin of the active rays, if one_origin, and the ranges of shear.x and shear.y.
   bool one_origin;
   Vec3<T> origin;
   std::array<T, 2> shear_lo, shear_hi;
 };
 
-// Nearest hit so far: t starts as the ray's t_max, primitive as kNoPrimitive. An occluded ray has t -1.
+// Nearest hit so far. t starts as the ray's t_max, primitive as kNoPrimitive. t is -1 if the ray is occluded.
 template <class T>
 struct SingleHit {
   T t;
@@ -92,13 +92,13 @@ template <class T>
 struct PacketHit {
   Lanes<T> t;
   IndexLanes<T> primitive;
-  T farthest;  // of t
-  int budget;  // tests of blocks and primitives that are left to it; below 0, it enters nothing any more
+  T farthest;  // largest t
+  int budget;  // remaining tests of blocks and primitives; below 0 the packet stops
 
   T limit() const { return budget < 0 ? T(-1) : farthest; }
 };
 
-// One of the rays, or packets, and a block of primitives that it has to be tested with.
+// Index of a ray or packet, and of a block of primitives to test it with.
 struct RayBlockPair {
   std::uint32_t block;
   std::int32_t ray;

@@ -5,22 +5,22 @@
 
 namespace orrery {
 
-// Path vertices on their way: rays of one depth, each with the slot of the camera's batch that its light is
-// added to. The slot tells the pixel and, with the batch's Draws, the sample.
+// Path vertices in flight: rays of one depth, each with the slot of the camera batch that receives its light.
+// The slot determines the pixel and, with the batch's Draws, the sample.
 template <class T>
 struct PathBatch {
   RayBatch<T> rays;
   Vec3Array<T> throughput;  // share of the ray's radiance that reaches the slot, per channel
   Array<IndexOf<T>> slot;
-  // With SurfaceFields::footprint: metres across the ray that a pixel covers at its origin, and how much they
-  // grow per metre.
+  // With SurfaceFields::footprint: pixel width in metres across the ray at its origin, and its growth per
+  // metre.
   Array<T> width, spread;
-  // Density per solid angle with which the ray's direction was drawn where it starts; 0 of one that no other
-  // could be. Only of techniques that draw directions, and not of camera rays.
+  // Density per solid angle with which the ray's direction was sampled; 0 for perfectly specular directions.
+  // Filled only by techniques that sample directions, and not for camera rays.
   Array<T> pdf;
   int depth = 0;  // 0: camera rays
 
-  // Appends the lanes of `mask`. Returns the bits of the mask.
+  // Appends the lanes of `mask`. Returns the mask as bits.
   unsigned append(const MaskOf<Lanes<T>>& mask, const Ray<Lanes<T>>& ray, const Vec3<Lanes<T>>& weight,
                   const IndexLanes<T>& slots) {
     const unsigned bits = bits_of(mask);
@@ -37,19 +37,19 @@ struct PathBatch {
     rays.count = n + std::popcount(bits);
     return bits;
   }
-  // Gives the rays appended last, those of `bits`, their footprint.
+  // Sets the footprint of the rays appended last, those of `bits`.
   void append_footprint(unsigned bits, const Lanes<T>& widths, const Lanes<T>& spreads) {
     const int n = rays.count - std::popcount(bits);
     compress_store(widths, bits, &width[n]);
     compress_store(spreads, bits, &spread[n]);
   }
 
-  // Gives the rays appended last, those of `bits`, their density.
+  // Sets the density of the rays appended last, those of `bits`.
   void append_pdf(unsigned bits, const Lanes<T>& pdfs) {
     compress_store(pdfs, bits, &pdf[rays.count - std::popcount(bits)]);
   }
 
-  // Makes every ray active without an end, and the rest of the last register inactive but harmless.
+  // Sets t_max of every ray to infinity, and fills the last register with harmless inactive rays.
   void seal() {
     using N = Lanes<T>;
     for (int i = 0; i < rays.count; i += kWidth<T>) rays.t_max.put(i, N(std::numeric_limits<T>::infinity()));
@@ -63,7 +63,7 @@ struct PathBatch {
     }
   }
 
-  // Takes over the rays of `other`, with their footprints if they have any. REQUIRES: they fit.
+  // Appends the rays of `other`, with their footprints if `footprints`. REQUIRES: the rays fit.
   void append(const PathBatch& other, bool footprints) {
     const auto copy = [&](auto& to, const auto& from) {
       std::copy_n(from.values.begin(), other.rays.count, to.values.begin() + rays.count);

@@ -23,56 +23,56 @@ inline constexpr const char* precision_name(bool double_precision) {
   return double_precision ? "double" : "float";
 }
 
-// One choice the plan made, for people to read.
+// Decision of the plan, in text for the user.
 struct Decision {
   std::string subject, choice, reason;
   Bound bound;
 };
 
-// All that a render needs to know beside the scene: what will be modelled and, in `decisions`, why no more.
+// Render plan: all inputs of a render in addition to the scene. `decisions` explain its choices.
 struct Plan {
-  RenderSettings asked;  // every option: by the request, or else the scene, or else its default
+  RenderSettings asked;  // every option: from the request, the scene, or the default
   int width = 0, height = 0, samples = 1;
   CameraFrame frame;
   std::shared_ptr<const Camera> camera;
   const TechniqueType* technique = nullptr;
-  std::vector<const char*> not_followed;  // kinds of light that the technique does not find in this scene
+  std::vector<const char*> not_followed;  // kinds of light that the technique misses in this scene
   const AcceleratorType* accelerator = nullptr;
-  bool try_accelerators = false;  // for few primitives: others may be cheaper, see settle()
+  bool try_accelerators = false;  // few primitives: another structure may be cheaper, see settle()
   bool double_precision = false;
-  double time = 0;              // of the scene's motion, seconds
-  double shutter = 0;           // seconds that the shutter is open from then on; 0: an instant
-  int max_depth = 0;            // deepest ray that is traced; camera rays have depth 0
-  double min_contribution = 0;  // rays whose weight is below it in every channel are not traced
-  double clamp_indirect = 0;    // what second vertices bring to a sample is cut to it, per channel; 0: is not
-  // Of the picture until whose error or time it is made: what is left to that.
-  bool free_samples = false, free_contribution = false;  // samples are then the most that may be traced
-  Space space = Space::linear;                           // that errors are told in
-  // Within which all samples of a pixel lie, as a difference, per channel, in radiance; infinite if nothing
-  // limits them.
+  double time = 0;              // scene time, seconds
+  double shutter = 0;           // exposure after `time`, seconds; 0: an instant
+  int max_depth = 0;            // largest depth that is traced; camera rays: 0
+  double min_contribution = 0;  // rays with a smaller weight in every channel are not traced
+  double clamp_indirect = 0;    // limit of a sample's indirect radiance, per channel; 0: none
+  // Parameters that an error or time budget chooses.
+  bool free_samples = false, free_contribution = false;  // `samples` is then the maximum
+  Space space = Space::linear;                           // space that errors are measured in
+  // Upper bound of the difference between samples of a pixel, per channel, in radiance; infinite if
+  // unbounded.
   double sample_range = std::numeric_limits<double>::infinity();
-  Vec3d cut_range;  // the most by which a ray that is not traced may change radiance; may be infinite
+  Vec3d cut_range;  // upper bound of the change of radiance by an untraced ray; may be infinite
   View view = View::picture;
   std::uint64_t seed = 0;
-  bool reorder = false;  // rays that are alike are asked for together
+  bool reorder = false;  // similar rays are traced together
   Prediction prediction = Prediction::none;
-  std::vector<const ChannelType*> channels;  // beside radiance
-  SurfaceFields fields;                      // what stages and channels read of surfaces
-  // Stages that are present.
+  std::vector<const ChannelType*> channels;  // in addition to radiance
+  SurfaceFields fields;                      // surface fields that stages and channels read
+  // Stages of the pipeline.
   bool direct_light = true;  // light sources are evaluated
   bool shadows = true;       // shadow rays are traced
-  bool specular = true;      // mirrored and refracted rays
-  bool filters = true;       // bodies weaken the light that crosses them
-  bool lens = false;         // camera rays leave from a lens
-  bool filtered = false;     // samples lie as the filter that was asked for has them
-  int reuse = 1;             // paths of a tile that share what their second vertices receive; a power of two
-  bool constant_half = false;  // with parallel viewer and light, the half vector is computed once a batch
-  int slice = 256;             // rays that pass through the stages together; changes no result
+  bool specular = true;      // mirrored and refracted rays are traced
+  bool filters = true;       // bodies absorb the light that crosses them
+  bool lens = false;         // camera rays start on a lens
+  bool filtered = false;     // samples are distributed by the requested filter
+  int reuse = 1;             // paths per group that share the light of their second vertices; a power of two
+  bool constant_half = false;  // parallel view and light: the half vector is computed once per batch
+  int slice = 256;             // rays that pass through the stages together; does not change results
   std::vector<Decision> decisions;
 
-  // By how much the halves of a pixel's samples may differ in the space of errors.
+  // Returns the largest possible difference between the halves of a pixel's samples, in the space of errors.
   double halves_range() const { return space == Space::display ? 1 : sample_range; }
-  // By how much one of them may exceed what a display shows when one sample of so many in all is bright.
+  // Returns how far a half may exceed display white if one of `in_all` samples is bright; 0 in linear space.
   double beyond_range(int in_all) const {
     return space == Space::display ? std::max(0.0, 2 * sample_range / in_all - 1) : 0;
   }

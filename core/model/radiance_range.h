@@ -6,12 +6,12 @@
 
 namespace orrery {
 
-// Within which all radiance of a scene lies, per channel. Nothing is known if `most` is infinite.
+// Range of all radiance in a scene, per channel. `most` is infinite if no limit is known.
 struct RadianceRange {
   Vec3d least{0.0}, most{std::numeric_limits<double>::infinity()};
 
   bool finite() const { return max_component(most) < std::numeric_limits<double>::infinity(); }
-  // The most by which `substitute` may be off.
+  // Returns the largest difference between `substitute` and a radiance in the range.
   Vec3d most_off(const Vec3d& substitute) const { return largest(most - substitute, substitute - least); }
 };
 

@@ -6,9 +6,9 @@
 
 #include "core/model/batch.h"
 
-// Records: structs of numbers alone, written once as `template <class N> struct Sphere { Vec3<N> center; N
-// radius; ... }`. The same struct holds one shape in double precision as read, one in the render's precision,
-// or lanes of them: a register full of the same one, or a different one in each lane.
+// Records: structs with only numeric members, written once as `template <class N> struct Sphere { Vec3<N>
+// center; N radius; ... }`. The same struct holds one shape in double precision as read, one in the render's
+// precision, or lanes of shapes. Lanes hold the same shape, or a different one each.
 namespace orrery {
 
 template <template <class> class Record, class N>
@@ -31,7 +31,7 @@ Record<Lanes<T>> broadcast_record(const Record<T>& one) {
   return convert_record<Record, Lanes<T>, T>(one);
 }
 
-// Lane i holds table[index[i]] where `mask` is set, and table[other] elsewhere.
+// Returns table[index[i]] in lane i if `mask` is set, else table[other].
 template <template <class> class Record, class T, class Table>
 Record<Lanes<T>> gather_records(const Table& table, const IndexLanes<T>& index, const MaskOf<Lanes<T>>& mask,
                                 IndexOf<T> other) {
@@ -51,9 +51,9 @@ Record<Lanes<T>> gather_records(const Table& table, const IndexLanes<T>& index, 
   return result;
 }
 
-// Lane i holds table[index[i]] where `mask` is set, and some valid record elsewhere. REQUIRES: any(mask).
-// Rays of one register mostly meet the same thing, so that case is a broadcast.
-// `table` is a span or anything else that gives a Record<T> for an index.
+// Returns table[index[i]] in lane i if `mask` is set, else any valid record. REQUIRES: any(mask). Rays of one
+// register mostly hit the same primitive, so this case is a broadcast. `table` is a span or another type that
+// returns a Record<T> for an index.
 template <template <class> class Record, class T, class Table>
 [[gnu::always_inline]] inline Record<Lanes<T>> fetch_records(const Table& table, const IndexLanes<T>& index,
                                                              const MaskOf<Lanes<T>>& mask) {

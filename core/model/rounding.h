@@ -5,11 +5,11 @@
 
 namespace orrery {
 
-// How fine the numbers of a render must be for one thing to look right.
+// Number precision that one feature of a scene requires.
 struct RoundingLimit {
-  // Largest distance between 1 and the next number of the type.
+  // Largest acceptable distance between 1 and the next number of the type.
   double epsilon = std::numeric_limits<double>::infinity();
-  std::string reason;  // what it is about the thing: "its beam fades within 0.05 degrees"
+  std::string reason;  // property of the feature: "its beam fades within 0.05 degrees"
 };
 
 }  // namespace orrery

@@ -21,40 +21,40 @@
 
 namespace orrery {
 
-// The largest or the smallest of the lengths of a scene, in metres, and what has it: a JSON Pointer.
+// Extreme value of a scene, in metres for lengths, and the JSON Pointer of its object.
 struct Extreme {
   double value;
   std::string where;
 };
 
-// Mirrors among which rays go to and fro: their errors grow from one to the next.
+// Mirrors that reflect each other's rays: position errors grow with each reflection.
 struct MirrorChain {
-  double growth = 1;  // of the error of a ray's place from one mirror to the next, times the share of light
-  double radius = std::numeric_limits<double>::infinity();  // of curvature, metres
+  double growth = 1;  // position error per reflection, times the share of light
+  double radius = std::numeric_limits<double>::infinity();  // radius of curvature, metres
   std::string where;
 };
 
-// What the plan wants to know about a scene, computed once.
+// Scene properties for the plan, computed once.
 struct SceneFacts {
-  MaterialTraits materials;                                          // of those that some object has
+  MaterialTraits materials;                                          // union over the materials in use
   std::size_t left_out = 0;                                          // primitives without area
-  Boundsd bounds;                                                    // of the bounded primitives
-  bool unbounded = false;                                            // whether there are others
-  RadianceRange tree_radiance, distributed_radiance, path_radiance;  // that techniques find
-  Vec3d albedo;  // the largest share that a material in use sends on of light from everywhere
-  // For the choice of the number type:
-  Extreme magnitude{0,
-                    ""};  // largest absolute coordinate, also of the points that place unbounded primitives
+  Boundsd bounds;                                                    // bounded primitives only
+  bool unbounded = false;                                            // some primitive is unbounded
+  RadianceRange tree_radiance, distributed_radiance, path_radiance;  // by kind of technique
+  Vec3d albedo;                                                      // largest albedo of a material in use
+  // Inputs to the choice of the number type:
+  // Largest absolute coordinate, including the anchors of unbounded primitives.
+  Extreme magnitude{0, ""};
   // Smallest diagonal of a bounded primitive's box, and smallest distance between two layers: the sides of
-  // one body or the surfaces of two. Infinite if there is none.
+  // one body or the surfaces of two. Infinite if there are none.
   Extreme smallest_feature{std::numeric_limits<double>::infinity(), ""},
       layer_distance{std::numeric_limits<double>::infinity(), ""};
   MirrorChain mirrors;
-  Extreme most_reflected{1, ""};  // share of light that a material in use sends on, and who has it
-  RoundingLimit rounding;         // the strictest of lights and materials; the reason names it
+  Extreme most_reflected{1, ""};  // largest albedo of a material in use, and its object
+  RoundingLimit rounding;         // strictest limit of lights and materials; `reason` names it
 };
 
-// Primitives of all sets together.
+// Returns the number of primitives of all sets.
 inline std::size_t count_primitives(const std::vector<std::unique_ptr<ShapeSet>>& sets) {
   std::size_t count = 0;
   for (const auto& shapes : sets) count += static_cast<std::size_t>(shapes->size());
@@ -64,10 +64,10 @@ inline std::size_t count_primitives(const std::vector<std::unique_ptr<ShapeSet>>
 // Shapes that instances place.
 struct Model {
   std::vector<std::unique_ptr<ShapeSet>> shapes;
-  std::vector<std::int32_t> material_of;  // of each primitive
+  std::vector<std::int32_t> material_of;  // by primitive
 };
 
-// How an instance stands: scaled first, then turned, then moved.
+// Transformation of an instance: scaling, then rotation, then translation.
 struct Placement {
   Vec3d scale{1.0, 1.0, 1.0};
   double degrees = 0;
@@ -81,8 +81,8 @@ inline Placement mix(const Placement& before, const Placement& after, double sha
 
 struct Instance {
   std::size_t model;
-  Vec3d axis;              // that it turns about
-  Keys<Placement> motion;  // one key if it rests
+  Vec3d axis;              // rotation axis
+  Keys<Placement> motion;  // one key if static
 
   Affined world_from_model(double time) const {
     const Placement placement = motion.at(time);
@@ -92,20 +92,21 @@ struct Instance {
   }
 };
 
-// From the first key of all that moves to the last, in seconds; equal if nothing moves.
+// Time from the first key of all moving objects to the last, in seconds; empty if nothing moves.
 struct TimeSpan {
   double first = 0, last = 0;
 
   bool empty() const { return !(first < last); }
-  // The moment at which the scene looks as it does at `time`, and for so many seconds afterwards.
+  // Returns the time at which an exposure of `seconds` sees the same scene as at `time`, clamped to the
+  // motion.
   double moment(double time, double seconds = 0) const {
     return empty() ? first : std::clamp(time, first - seconds, last);
   }
-  // Whether something may move during an exposure.
+  // Returns true if something may move during the exposure.
   bool within(const Exposure& exposure) const {
     return !empty() && !exposure.instant() && exposure.opens < last && exposure.closes > first;
   }
-  // The same where the motion begins again whenever it has ended.
+  // Returns the equivalent time if the motion repeats after its end.
   double moment_of_loop(double time) const {
     const double held = moment(time);
     if (empty() || held == time) return held;
@@ -114,37 +115,37 @@ struct TimeSpan {
   }
 };
 
-// Primitives with following numbers that belong to one object.
+// Consecutive primitives that belong to one object.
 struct ObjectRun {
   std::int32_t first_primitive, object;
 };
 
-// A scene as read, in double precision; never changed afterwards, shared between threads. Primitives are
-// numbered set by set in the order of `shapes`, materials likewise in the order of `materials`. Objects are
-// numbered as the scene lists them: `objects` first, then `instances`.
+// Scene as read, in double precision; immutable and shared between threads. Primitives are numbered set by
+// set in the order of `shapes`; materials in the order of `materials`. Object numbers follow the scene file:
+// `objects` first, then `instances`.
 struct Scene {
   std::string id;  // SHA-256 of the canonical JSON
   std::string canonical;
   std::string title, description;
   CameraPlacement placement;
   std::shared_ptr<const Camera> camera;
-  RenderSettings render;  // the options that scenes may give: as given, or by default
+  RenderSettings render;  // options that scenes may give, with defaults
   Vec3d ambient, background;
-  std::shared_ptr<const Environment> environment;  // in place of the background, which is 0 then; may be null
+  std::shared_ptr<const Environment> environment;  // replaces the background, which is then 0; may be null
   std::vector<std::unique_ptr<ShapeSet>> shapes;
   std::vector<std::unique_ptr<MaterialSet>> materials;
-  std::vector<Vec3d> emission;  // by material: radiance that its surfaces send out on both sides
+  std::vector<Vec3d> emission;  // by material: radiance emitted on both sides
   std::vector<std::unique_ptr<LightSet>> light_sets;
-  std::vector<LightPlace> lights;  // in the order of the file
+  std::vector<LightPlace> lights;  // in file order
   std::deque<Model> models;
-  std::vector<Instance> instances;        // their primitives are numbered after those of `shapes`
-  std::vector<std::int32_t> material_of;  // of each primitive
-  std::vector<ObjectRun> object_runs;     // ascending; each lasts until the next
+  std::vector<Instance> instances;        // primitives numbered after those of `shapes`
+  std::vector<std::int32_t> material_of;  // by primitive
+  std::vector<ObjectRun> object_runs;     // ascending; each ends at the next
   int object_count = 0;
   TimeSpan motion;
   SceneFacts facts;
 
-  // The place in object_runs of what a primitive belongs to.
+  // Returns the index in object_runs of the run that contains `primitive`.
   std::size_t object_run_of(std::int32_t primitive) const {
     const auto after =
         std::upper_bound(object_runs.begin(), object_runs.end(), primitive,

@@ -11,33 +11,33 @@
 #include "core/model/asset_source.h"
 #include "core/model/packet.h"
 
-// Shapes. A scene keeps all shapes of one type together (a ShapeSet, in double precision); for rendering each
-// set makes a ShapeKernel in the plan's number type, whose calls take whole batches.
+// Shapes. A scene keeps all shapes of one type in a ShapeSet, in double precision. For rendering, each set
+// makes a ShapeKernel in the plan's number type, whose calls process whole batches.
 namespace orrery {
 
 class Params;
 
-// The surface of one shape at one hit.
+// Surface of one shape at one hit.
 template <class N>
 struct Surface {
   Vec3<N> position;   // on the shape, to the last few ulp
   Vec3<N> geometric;  // outward unit normal
   Vec3<N> normal;     // outward unit normal for shading
-  N magnitude;  // largest absolute coordinate of the shape, at least near the hit: the scale of rounding
+  N magnitude;        // largest absolute coordinate near the hit: the scale of rounding
 };
 
-// Where on its shape one hit is.
+// Parameters of one hit on its shape.
 template <class N>
 struct SurfacePoint {
   N u, v;           // the shape's own parameters
   N s, t;           // texture coordinates
-  Vec3<N> tangent;  // unit, along which s grows, at right angles to the true normal
+  Vec3<N> tangent;  // unit, direction of increasing s, perpendicular to the geometric normal
 };
 
-// Primitives of one kernel in an order that a structure chose, laid out in blocks of kBlock<T>, so that a
-// packet meets one of them, or a single ray a block of them, at once. Hits and ties are those of
-// ShapeKernel::closest(), bit for bit. A call takes the pairs in their order, with rays and hits at the
-// places they name, and counts its work. Const and free of state.
+// Primitives of one kernel in traversal order, in blocks of kBlock<T>. A packet is tested with one primitive
+// at a time, a single ray with a whole block. Hits and ties equal those of ShapeKernel::closest() bit for
+// bit. A call processes the pairs in order; each pair indexes `rays` or `packets`, and `hits`. Immutable and
+// thread-safe.
 template <class T>
 class PackedPrimitives {
  public:
@@ -48,59 +48,61 @@ class PackedPrimitives {
                        AcceleratorCounts& counts) const = 0;
   virtual void closest(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
-  // Sets t to -1 for rays that meet something in (0, t).
+  // Sets t to -1 for rays that hit a primitive in (0, t).
   virtual void occlude(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
   virtual void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                        AcceleratorCounts& counts) const = 0;
 
-  // Has the machine fetch a block that is wanted soon; nothing if that does not pay.
+  // Prefetches a block into the CPU cache. Does nothing if prefetching does not pay off.
   virtual void prefetch(std::uint32_t /*block*/) const {}
 
   virtual std::size_t bytes() const = 0;
-  // What it was packed from: see ShapeKernel::pack().
+  // Returns the indices that were passed to ShapeKernel::pack().
   virtual std::vector<int> indices() const = 0;
 };
 template <class T>
 using PackedPrimitivesPtr = std::shared_ptr<const PackedPrimitives<T>>;
 
-inline constexpr int kNothing = -1;  // an empty place in a block
+inline constexpr int kNothing = -1;  // empty entry of a block
 
-// A triangle of a surface, by its corners.
+// Corners of a triangle of a hull.
 using HullTriangle = std::array<Vec3d, 3>;
 
-// Const and free of state: any number of threads may call it at once.
+// Intersection functions of all shapes of one type. Immutable and thread-safe.
 template <class T>
 class ShapeKernel {
  public:
   virtual ~ShapeKernel() = default;
 
-  // Tests primitive `index` of this set against the rays of `groups`; a hit in (0, hits.t) replaces the one
-  // there. At equal t the lower primitive number stays. Counts what is tested within the primitive, not that
-  // it is one.
+  // Tests primitive `index` of this set against the rays of `groups`. A hit in (0, hits.t) replaces the
+  // previous one; equal t keeps the lower primitive number. Counts tests within the primitive, not the
+  // primitive itself.
   virtual void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 
-  // Sets t_max to -1 for the rays of `groups` that meet primitive `index` in (0, t_max). Counts likewise.
+  // Sets t_max to -1 for the rays of `groups` that hit primitive `index` in (0, t_max). Counts like
+  // closest().
   virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups,
                        AcceleratorCounts& counts) const = 0;
 
-  // A surface whose convex hull holds a bounded primitive but for rounding, or nothing if its box along the
-  // axes tells as much.
+  // Returns a surface whose convex hull contains a bounded primitive, except for rounding. Returns an empty
+  // list if the axis-aligned box is as tight.
   virtual std::vector<HullTriangle> hull(int index) const = 0;
 
-  // Whether its primitives stand where they are at the rays' time.
+  // Returns true if the primitives move with the rays' time.
   virtual bool timed() const { return false; }
 
-  // The primitives with these indices, in this order, or kNothing, as many as fill whole blocks. No block is
-  // empty. They do not refer to the kernel afterwards. REQUIRES: !timed().
+  // Packs the primitives with these indices in this order; kNothing marks an empty entry. The result does not
+  // refer to the kernel. REQUIRES: `indices` fill whole blocks, no block is empty, and !timed().
   virtual PackedPrimitivesPtr<T> pack(std::span<const int> indices) const = 0;
 
-  // Fills the surface of every hit in `groups` that belongs to this set, other lanes stay as they are.
+  // Fills the surface of every hit in `groups` on this set. Other lanes are unchanged.
   virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
                        SurfaceBatch<T>& out) const = 0;
 
-  // Fills u and v of hits and surfaces and the tangent, likewise. REQUIRES: surface() was called before.
+  // Fills u and v of hits and surfaces, and the tangent; other lanes are unchanged. REQUIRES: surface() was
+  // called before.
   virtual void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
                           SurfaceBatch<T>& out) const = 0;
 };
@@ -108,29 +110,31 @@ class ShapeKernel {
 template <class T>
 using ShapeKernelPtr = std::shared_ptr<const ShapeKernel<T>>;
 
-// What the plan may use about a shape.
+// Properties of a shape type that the plan uses.
 struct ShapeTraits {
-  bool convex = false;  // encloses a convex body, or is flat: it cannot shadow or mirror itself outside
+  bool convex = false;  // convex or flat: it cannot shadow or mirror itself outside
   bool closed = false;  // has an inside
 };
 
-// A surface from whose points light can be drawn.
+// Surface that light sampling can draw points from.
 struct Patch {
   enum class Kind { rectangle, triangle, disk, sphere, box, cylinder } kind;
-  // Rectangle: a corner and two sides at right angles. Triangle: a corner and two sides. Disk: its centre and
-  // two radii at right angles. Sphere: its centre, and the radius in a.x. Box: its centre and half of its
-  // edges, at right angles. Cylinder with ends: its centre, two radii and half of its axis, likewise.
+  // Rectangle: a corner and two perpendicular sides. Triangle: a corner and two sides. Disk: centre and two
+  // perpendicular radii. Sphere: centre, and the radius in a.x. Box: centre and half of its perpendicular
+  // edges. Cylinder with ends: centre, two radii and half of its axis, all perpendicular.
   Vec3d at, a, b, c{};
 };
 
-// The primitives of a set that move, during an exposure. Const and free of state.
+// Primitives of a set that move during an exposure. Immutable and thread-safe.
 class MovingShapes {
  public:
   virtual ~MovingShapes() = default;
 
-  // Where a primitive gets, also as rays of either precision see it. REQUIRES: it moves.
+  // Returns the bounds of the whole motion, as seen by rays of either precision. REQUIRES: the primitive
+  // moves.
   virtual Boundsd bounds(int index) const = 0;
-  // Timed kernels of those that move. Primitives have the numbers that they have in the set, from `first` on.
+  // Returns a timed kernel of the moving primitives, which keep their numbers in the set, counted from
+  // `first`.
   virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;
   virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
 };
@@ -139,21 +143,22 @@ class ShapeSet {
  public:
   virtual ~ShapeSet() = default;
 
-  // Reads one object; returns how many primitives it added.
+  // Reads one object. Returns the number of primitives added.
   virtual int add(Params& params, MeshSource& meshes) = 0;
   virtual int size() const = 0;
-  // Primitives that were not added because no ray can meet them.
+  // Returns the number of primitives left out because no ray can hit them.
   virtual std::size_t left_out() const { return 0; }
-  // When its primitives are told to be where, in seconds; empty if they rest.
+  // Returns the times of the animation keys, in seconds; empty if the set is static.
   virtual std::vector<double> key_times() const { return {}; }
-  // The same primitives in the same order as they stand at `time`; null if they rest.
+  // Returns the same primitives in the same order at `time`, or null if the set is static.
   virtual std::unique_ptr<ShapeSet> at(double /*time*/) const { return nullptr; }
-  // Those that move, during an exposure that is no instant; null if all rest. Refers to the set.
+  // Returns the primitives that move during an exposure longer than an instant, or null if none moves. The
+  // result refers to the set.
   virtual std::unique_ptr<MovingShapes> during(const Exposure&) const { return nullptr; }
   virtual bool moves(int /*index*/) const { return false; }
-  // Infinite sides where the primitive is unbounded.
+  // Returns bounds with infinite sides for unbounded primitives.
   virtual Boundsd bounds(int index) const = 0;
-  // Where the primitive gets while it moves, and how small its box is at the least of its keys.
+  // Bounds of the primitive over its whole motion, and the smallest diagonal of its box at any key.
   struct Reach {
     Boundsd box;
     double least_diagonal = std::numeric_limits<double>::infinity();
@@ -162,13 +167,13 @@ class ShapeSet {
     const Boundsd box = bounds(index);
     return {box, box.diagonal()};
   }
-  // Largest absolute coordinate of the point that places an unbounded primitive; 0 of others.
+  // Returns the largest absolute coordinate of the anchor of an unbounded primitive; 0 for bounded ones.
   virtual double anchor_magnitude(int /*index*/) const { return 0; }
   virtual ShapeTraits traits() const = 0;
-  // The primitive's whole surface, if light can be drawn from it.
+  // Returns the primitive's whole surface, or nullopt if light cannot be sampled from it.
   virtual std::optional<Patch> patch(int /*index*/) const { return std::nullopt; }
 
-  // Kernels whose primitives are numbered from `first`. They do not refer to the set afterwards.
+  // Returns a kernel whose primitives are numbered from `first`. It does not refer to the set.
   virtual ShapeKernelPtr<float> kernel(float, int first) const = 0;
   virtual ShapeKernelPtr<double> kernel(double, int first) const = 0;
   virtual ShapeKernelPtr<long double> kernel(long double, int first) const = 0;

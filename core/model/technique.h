@@ -11,34 +11,33 @@
 
 namespace orrery {
 
-// What the camera rays of one batch found, by slot. Not averaged, not clamped.
+// Result of one batch of camera rays, by slot; not averaged or clamped.
 template <class T>
 struct TraceResult {
   Vec3Array<T> radiance;
-  // The ledger of what was left out: the most by which it may change radiance, per channel. Of rays that were
-  // not traced the weight times Plan::cut_range.
+  // Upper bound of the change of radiance by untraced rays, per channel: their weight times Plan::cut_range.
   Vec3Array<T> omitted;
-  Vec3Array<T> clamped;                   // radiance that Plan::clamp_indirect took away, if that is above 0
-  std::vector<ChannelBatch<T>> channels;  // of Plan::channels, in that order
+  Vec3Array<T> clamped;                   // radiance removed by Plan::clamp_indirect, if that is above 0
+  std::vector<ChannelBatch<T>> channels;  // in the order of Plan::channels
 };
 
-inline constexpr int kMostLooks = 16;  // rays a sample that only look: see Tracer::looks()
+inline constexpr int kMostLooks = 16;  // maximum emission-only rays per sample: see Tracer::looks()
 
-// How light is followed. One tracer belongs to one thread and is used again and again; it keeps its batches.
+// Light transport algorithm. A tracer belongs to one thread and is reused, together with its batches.
 template <class T>
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  // Follows the camera rays to the end. Slots of inactive rays get the background. `draws` has the random
-  // numbers of the batch's slots. `checkpoint` is asked now and then; once the work is to end the rest is
-  // left, the result means nothing and false is returned.
+  // Traces the camera rays to the end. Slots of inactive rays get the background. `draws` holds the random
+  // numbers of the slots. Polls `checkpoint`; returns false, with undefined results, if the work is
+  // cancelled.
   virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
                      TraceCounts& counts, const Checkpoint& checkpoint = {}) = 0;
 
-  // Whether what shines by itself is found by look() alone, with camera rays elsewhere within the pixels: it
-  // has the sharpest edges of a picture, and a ray that only looks costs little.
+  // Returns true if only look() finds directly visible emission, with separate camera rays. Emitters have the
+  // sharpest edges of a picture, and emission-only rays are cheap.
   virtual bool looks() const { return false; }
-  // Adds `share` of the light of surfaces that emit, and of the background, that the rays meet first.
+  // Adds `share` of the emission and background that the camera rays hit first.
   virtual void look(const RayBatch<T>& /*camera_rays*/, T /*share*/, TraceResult<T>& /*out*/,
                     TraceCounts& /*counts*/) {}
 };
@@ -46,17 +45,18 @@ class Tracer {
 template <class T>
 using TracerPtr = std::unique_ptr<Tracer<T>>;
 
-// The plan and what the world refers to outlive the tracer.
+// Type of light transport algorithm. The plan and the objects that the world refers to must outlive the
+// tracer.
 struct TechniqueType {
   const char* name;
   const char* summary;
-  int max_depth;                // unless a request or a scene tells
+  int max_depth;                // unless a request or a scene sets it
   bool secondary_rays = false;  // follows mirrored and refracted rays
-  // One light source and one direction a vertex are drawn: surfaces that emit and the environment are light
-  // sources, and lenses blur.
+  // Samples one light source and one direction per vertex. Emitting surfaces and the environment are then
+  // light sources, and lenses blur.
   bool draws_light = false;
-  bool interreflects = false;                  // diffuse surfaces light each other, in place of ambient light
-  std::vector<const char*> not_followed = {};  // kinds of light that its pictures lack, whatever the scene
+  bool interreflects = false;                  // diffuse surfaces light each other, instead of ambient light
+  std::vector<const char*> not_followed = {};  // kinds of light missing in every scene
   TracerPtr<float> (*make_float)(const World<float>&, const Plan&);
   TracerPtr<double> (*make_double)(const World<double>&, const Plan&);
 };
