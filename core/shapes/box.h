@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// A box along the axes.
+// Axis-aligned box.
 template <class N>
 struct Box {
   Vec3<N> lo, hi;
@@ -23,9 +23,8 @@ struct Box {
     return {Patch::Kind::box, lo + half, {half.x, 0, 0}, {0, half.y, 0}, {0, 0, half.z}};
   }
 
-  // The nearer face ahead of the origin: of the interval inside all three slabs, the entry, or from within
-  // the exit. A ray in the plane of a face gives NaN there (0 * infinity), which loses against the other
-  // slabs.
+  // Returns the distance of the entry into all three slabs, or of the exit if the origin is inside. A ray in
+  // the plane of a face gives NaN for it (0 * infinity), which the other slabs override.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -41,12 +40,11 @@ struct Box {
     slab(lo.z, hi.z, ray.origin.z, ray.direction.z);
     const N t = select(enter > N(T(0)), enter, leave);
     const Vec3<N> sum = ray.origin + ray.direction;
-    const N whole =
-        sum.x + sum.y + sum.z;  // NaN if the ray itself holds one, which must not lose: it is no ray
+    const N whole = sum.x + sum.y + sum.z;  // NaN if the ray contains NaN: no hit
     return select(enter <= leave && t > N(T(0)) && whole == whole, t, infinity);
   }
 
-  // The face is the one that lies nearest, measured in half edges.
+  // Computes the surface of the nearest face, measured in half edges.
   Surface<N> surface(const Ray<N>& ray, const N& t) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));
@@ -70,7 +68,8 @@ struct Box {
     return {position, normal, normal, magnitude};
   }
 
-  // Over each face from 0 to 1: x and y where it faces z, x and z where it faces y, z and y where it faces x.
+  // Returns parameters from 0 to 1 on each face: (x, y) if it faces z, (x, z) if it faces y, (z, y) if it
+  // faces x.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));

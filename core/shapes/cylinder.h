@@ -9,13 +9,13 @@
 
 namespace orrery {
 
-// A round column, with caps or infinitely long.
+// Cylinder, with caps or infinitely long.
 template <class N>
 struct Cylinder {
   Vec3<N> center, axis;  // the axis is a unit vector
   N radius;
-  N half_length;  // infinite if the cylinder is
-  N magnitude;    // largest absolute coordinate of the finite part that is known, at most
+  N half_length;  // infinite for an infinite cylinder
+  N magnitude;    // upper bound of the absolute coordinates; at `center` if infinite
 
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = true};
 
@@ -39,9 +39,9 @@ struct Cylinder {
     return round_hull(Vec3d(center), Vec3d(axis), double(radius), double(half_length));
   }
 
-  // A capped cylinder is where an infinite one and a slab overlap: the hit is the entry into that interval,
-  // or from within its end. The wall's roots come from the residue as for the sphere, in the plane across the
-  // axis.
+  // Returns the distance of the entry into the intersection of an infinite cylinder and a slab, or of the
+  // exit if the origin is inside. The wall's roots are computed from the residue as for the sphere, in the
+  // plane across the axis.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::signbit;
@@ -70,7 +70,7 @@ struct Cylinder {
     return select(meets && enter <= leave && t > zero && t < infinity, t, infinity);
   }
 
-  // Wall or cap: whichever is nearer.
+  // Computes the surface of the wall or the cap, whichever is nearer.
   Surface<N> surface(const Ray<N>& ray, const N& t) const {
     using T = ScalarOf<N>;
     using std::abs;
@@ -90,8 +90,8 @@ struct Cylinder {
     return {position, normal, normal, max(magnitude, max_component(orrery::abs(position)))};
   }
 
-  // u: around the axis, anticlockwise seen from its tip, in turns; v: on the wall 0 at the base and 1 at the
-  // top, or metres from `point` if there are no ends; on a cap 0 at the centre and 1 at the edge.
+  // Returns u: turns around the axis, anticlockwise seen from its tip. v on the wall: 0 at the base, 1 at the
+  // top, or metres from `point` without caps. v on a cap: 0 at the centre, 1 at the edge.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     using std::abs;

@@ -7,12 +7,12 @@
 
 namespace orrery {
 
-// A flat round plate.
+// Flat disk.
 template <class N>
 struct Disk {
   Vec3<N> center, normal;
   N radius;
-  N magnitude;  // largest absolute coordinate, at most
+  N magnitude;  // upper bound of the absolute coordinates
 
   static constexpr ShapeTraits kTraits = {.convex = true, .closed = false};
 
@@ -42,7 +42,7 @@ struct Disk {
     return {near - normal * dot(near - center, normal), normal, normal, magnitude};
   }
 
-  // u: around the normal, anticlockwise seen from its tip, in turns; v: 0 at the centre, 1 at the edge.
+  // Returns u: turns around the normal, anticlockwise seen from its tip. v: 0 at the centre, 1 at the edge.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     const Tangents<N> axes = tangents_of(normal);

@@ -83,13 +83,13 @@ class MeshSet final : public ShapeSet {
 
  private:
   static constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 30;
-  static constexpr std::uint64_t kRoomForMoments = 16;  // times the pairs that are always together
+  static constexpr std::uint64_t kRoomForMoments = 16;  // factor over the pairs that coincide at all keys
 
   std::size_t part_number(std::size_t triangle) const {
     return static_cast<std::size_t>(&table_.part_of(triangle) - table_.parts.data());
   }
 
-  // Both false if there was a problem, which is noted.
+  // Returns false after a problem, which `p` records.
   bool take_resting(MeshObject& object, Params& p, MeshSource& source) {
     left_out_ += drop_degenerate(object.mesh);
     drop_unused(object.mesh);
@@ -112,8 +112,8 @@ class MeshSet final : public ShapeSet {
     return true;
   }
 
-  // Notes that smoothing compares so many pairs of triangles; false, and a problem, if there are too many
-  // now.
+  // Adds to the number of triangle pairs that smoothing compares. Returns false and records a problem if the
+  // limit is exceeded.
   static bool may_compare(std::uint64_t pairs, Params& p, MeshSource& source) {
     source.pairs += pairs;
     if (source.pairs <= kMostPairs) return true;
@@ -148,7 +148,7 @@ class MeshSet final : public ShapeSet {
 
   void append(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return;
-    Boundsd box;  // of the vertices that are used
+    Boundsd box;  // bounds of the vertices in use
     const auto first_vertex = static_cast<std::uint32_t>(table_.positions.size());
     const std::size_t first = table_.triangles.size();
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -167,7 +167,7 @@ class MeshSet final : public ShapeSet {
     return std::make_shared<PrimitiveKernel<MeshTriangle, T, MeshRecords<T>>>(MeshRecords<T>(table_), first);
   }
 
-  MeshTable<double> table_;                   // as if nothing moved; what moves is not smoothed
+  MeshTable<double> table_;                   // without motion; moving parts are not smoothed
   std::map<std::size_t, MovingMesh> moving_;  // by part
   std::size_t left_out_ = 0;
 };

@@ -8,7 +8,7 @@ namespace {
 constexpr MeshLimits kLimits;
 constexpr std::size_t kMostNameLength = 1024;
 
-// Consistent, whatever was wrong and has been noted.
+// Returns a consistent mesh, even after recorded problems.
 TriangleMesh read_inline(Params& p) {
   TriangleMesh mesh;
   mesh.positions = p.points("positions", "Vertices, in metres.", {3, kLimits.vertices});
@@ -39,7 +39,7 @@ TriangleMesh read_inline(Params& p) {
   return mesh;
 }
 
-// What `read` gives; its errors become those of `key`.
+// Returns the result of `read`; reports its errors at `key`.
 template <class Read>
 TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
   if (name.empty()) {
@@ -100,7 +100,7 @@ MeshObject MeshReader::read(Params& p) {
   return object;
 }
 
-// Where the vertices of the mesh are at one time.
+// Reads the vertices of the mesh at one time.
 VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest) {
   std::vector<Vec3d> positions =
       p.points("positions", "Vertices, as many as the mesh has.", {0, kLimits.vertices});

@@ -7,14 +7,14 @@ namespace orrery {
 
 class Params;
 
-// What a scene says about one mesh.
+// Mesh object of a scene.
 struct MeshObject {
-  TriangleMesh mesh;  // empty if there was a problem, which is noted
+  TriangleMesh mesh;  // empty after a problem, which Params records
   std::optional<double> crease_degrees;
-  Keys<VertexKey> keys;  // none if it rests
+  Keys<VertexKey> keys;  // empty if static
 };
 
-// Reads the meshes of a scene, which have limits together: many objects and keys may name one file.
+// Reads the meshes of a scene. Limits apply to their sum, because many objects and keys may name one file.
 class MeshReader {
  public:
   explicit MeshReader(MeshSource& source) : source_(source) {}
@@ -22,7 +22,7 @@ class MeshReader {
 
  private:
   VertexKey read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest);
-  // Notes so many more; false, and a problem, if there are too many now.
+  // Adds to the running totals. Returns false and records a problem if a limit is exceeded.
   bool fits(std::size_t vertices, std::size_t triangles, Params& p);
 
   MeshSource& source_;

@@ -10,11 +10,11 @@
 
 namespace orrery {
 
-// One triangle of a mesh, with the normals to interpolate at its vertices.
+// Triangle of a mesh with its vertex normals.
 template <class N>
 struct MeshTriangle {
   Corners<N> corners, normals;
-  Vec3<N> normal;  // of the flat triangle
+  Vec3<N> normal;  // normal of the flat triangle
   N magnitude;     // largest absolute coordinate of the mesh
 
   std::vector<HullTriangle> hull() const { return corners.hull(); }
@@ -23,12 +23,12 @@ struct MeshTriangle {
   const Core& core() const { return corners; }
   N distance(const Ray<N>& ray) const { return corners.distance(ray); }
 
-  // The interpolated normal falls back to the flat one where the three cancel.
+  // Interpolates the normal; uses the flat one if the vertex normals cancel.
   Surface<N> surface(const Ray<N>& ray, const N&) const {
     const Vec3<N> weights = corners.weights(ray);
     const Vec3<N> sum = normals.mix(weights);
     const N size = length(sum);
-    const auto usable = size > N(ScalarOf<N>(0.001));  // unit normals: below it they point opposite ways
+    const auto usable = size > N(ScalarOf<N>(0.001));  // smaller: the vertex normals are opposite
     const auto choose = [&](const N& x, const N& flat) { return select(usable, N(x / size), flat); };
     return {corners.mix(weights),
             normal,
@@ -37,14 +37,14 @@ struct MeshTriangle {
   }
 };
 
-// What maps a triangle of a mesh to its parameters.
+// Mapping from a mesh triangle to its parameters.
 template <class N>
 struct MeshMapping {
   Corners<N> corners;
-  Vec3<N> s, t;  // texture coordinates of its vertices
+  Vec3<N> s, t;  // texture coordinates of the vertices
 
-  // u, v: weights of the second and the third vertex. The tangent is that of s where s and t span the
-  // triangle, and its first edge elsewhere.
+  // Returns u and v as weights of the second and third vertex. The tangent is that of s if s and t span the
+  // triangle, else its first edge.
   SurfacePoint<N> parameters(const Ray<N>& ray, const Vec3<N>&) const {
     using std::abs;
     using T = ScalarOf<N>;
@@ -58,12 +58,12 @@ struct MeshMapping {
   }
 };
 
-// Triangles of several meshes over shared vertices.
+// Triangles of several meshes with shared vertices.
 template <class T>
 struct MeshTable {
   struct Part {
-    std::size_t first;                                 // triangle
-    std::size_t first_vertex, first_normal, first_uv;  // a normal a vertex, if it is smooth; likewise uvs
+    std::size_t first;                                 // first triangle
+    std::size_t first_vertex, first_normal, first_uv;  // one normal per vertex if smooth, one uv if mapped
     bool smooth, mapped;
     T magnitude;
   };
@@ -82,7 +82,7 @@ struct MeshTable {
   }
 };
 
-// MeshTriangles in a render's precision, put together when they are asked for.
+// MeshTriangles in the render's precision, assembled on access.
 template <class T>
 class MeshRecords {
  public:
@@ -103,7 +103,7 @@ class MeshRecords {
   }
 
   std::size_t size() const { return flat_.size(); }
-  // Of a triangle without area, which rounding could let a ray meet, one corner: that none meets.
+  // Returns one corner three times for a triangle without area, so that rounding cannot produce a hit.
   Corners<T> core(std::size_t i) const {
     const Corners<T> corners = table_.corners(i);
     return flat_[i] == Vec3<T>() ? Corners<T>{corners.a, corners.a, corners.a} : corners;
@@ -120,7 +120,8 @@ class MeshRecords {
 
   template <class N>
   using Mapping = MeshMapping<N>;
-  // Of a mesh without texture coordinates, they are the weights of the second and the third vertex.
+  // Mappings of the triangles. Without texture coordinates they use the weights of the second and third
+  // vertex.
   struct Mappings {
     const MeshRecords& records;
     MeshMapping<T> operator[](std::size_t i) const {

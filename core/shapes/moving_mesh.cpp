@@ -3,7 +3,7 @@
 namespace orrery {
 namespace {
 
-// Shared if both are the same.
+// Interpolates the vectors. Returns the shared vector itself if both keys share it.
 template <class Mix>
 SharedVectors mixed(const SharedVectors& before, const SharedVectors& after, const Mix& mix_one) {
   if (before == after) return before;

@@ -10,30 +10,30 @@ namespace orrery {
 
 using SharedVectors = std::shared_ptr<const std::vector<Vec3d>>;
 
-// Where the vertices of a mesh are, and what they are shaded with: as many of each, or no normals.
+// Vertex positions of a mesh at one time, with one normal per vertex or none.
 struct VertexKey {
   SharedVectors positions, normals;
 };
 
-// Each vertex on a straight line; normals of length 1 again.
+// Interpolates vertices linearly, and renormalizes normals.
 VertexKey mix(const VertexKey& before, const VertexKey& after, double share);
 
-// A mesh whose vertices move. Triangles that have no area for a while stay.
+// Mesh with moving vertices. Keeps triangles that have no area for a while.
 struct MovingMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::array<double, 2>> uvs;  // one a vertex, or none
+  std::vector<std::array<double, 2>> uvs;  // one per vertex, or empty
   Keys<VertexKey> keys;
-  // If there is a crease, normals are those of smooth_normals(): of vertices that stand together, or, where
-  // that compares more than `most_pairs` because much of the mesh meets for a moment, of those that do so at
-  // all keys.
+  // If set, smooth_normals() computes the normals, around vertices that coincide at the time. If that
+  // compares more than `most_pairs` pairs, because many vertices meet for a moment, only those that coincide
+  // at all keys are used.
   std::optional<double> crease_degrees;
-  PositionIndices always;  // together at all keys
+  PositionIndices always;  // vertices that coincide at all keys
   std::uint64_t most_pairs;
 
-  // The mesh as it stands at `time`, in seconds. Its triangles keep their order.
+  // Returns the mesh at `time`, in seconds, with its triangles in the same order.
   TriangleMesh at(double time) const;
-  // Directions from which those of all corners, three a triangle, come by being mixed between the moments of
-  // an exposure: the keys' own, or those smoothed at that moment. None of a flat mesh.
+  // Returns vectors for all corners, three per triangle, to interpolate between the moments of an exposure:
+  // the keys' normals, or the smoothed normals at `time`. Empty for a flat mesh.
   std::vector<Vec3d> corner_normals(double time) const;
 };
 

@@ -14,7 +14,7 @@ std::vector<Vec3<T>> in_precision(const std::vector<Vec3d>& from) {
   return to;
 }
 
-// Largest coordinate of a vertex that a triangle uses.
+// Returns the largest absolute coordinate of a vertex in use.
 double magnitude_of(const MovingTriangles& mesh) {
   double magnitude = 0;
   for (const SharedVectors& positions : mesh.positions)
@@ -24,7 +24,7 @@ double magnitude_of(const MovingTriangles& mesh) {
   return magnitude;
 }
 
-// One mesh in a render's precision.
+// Mesh in the render's precision.
 template <class T>
 class Mesh {
  public:
@@ -43,14 +43,14 @@ class Mesh {
   int first() const { return first_; }
   int last() const { return first_ + static_cast<int>(triangles_.size()); }
 
-  // Two triangles with a vertex in common see it at the same place.
+  // Returns the corners at `time`. Triangles that share a vertex get the same position for it.
   [[gnu::always_inline]] Corners<N> corners(std::size_t triangle, const N& time) const {
     return between(time, [&, &vertices = triangles_[triangle]](std::size_t moment, std::size_t corner) {
       return positions_[moment][vertices[corner]];
     });
   }
 
-  // REQUIRES: `flat` is the normal of the corners.
+  // Returns the triangle at `time`. REQUIRES: `flat` is the normal of `corners`.
   MeshTriangle<N> record(std::size_t triangle, const Corners<N>& corners, const Vec3<N>& flat,
                          const N& time) const {
     if (normals_.front().empty()) return {corners, {flat, flat, flat}, flat, N(magnitude_)};
@@ -75,7 +75,7 @@ class Mesh {
   }
 
  private:
-  // at(moment, corner): what stands there then.
+  // Interpolates at(moment, corner), the value of a corner at a moment.
   template <class At>
   [[gnu::always_inline]] Corners<N> between(const N& time, const At& at) const {
     Corners<N> now{};
@@ -97,8 +97,8 @@ class Mesh {
   T magnitude_;
 };
 
-// Unit normal by the right-hand rule; NaN of a triangle without area. The sides are scaled first, so that
-// nothing depends on the triangle's size.
+// Returns the unit normal by the right-hand rule, or NaN for a triangle without area. Scales the sides first,
+// so that the size of the triangle does not matter.
 template <class N>
 Vec3<N> flat_normal(const Corners<N>& corners) {
   const auto side = [&](const Vec3<N>& to) {
@@ -167,14 +167,15 @@ class Kernel final : public ShapeKernel<T> {
   }
 
  private:
-  // Null of a triangle that rests.
+  // Returns null for static triangles.
   const Mesh<T>* mesh_of(int index) const {
     const auto mesh = std::upper_bound(meshes_.begin(), meshes_.end(), index,
                                        [](int i, const Mesh<T>& m) { return i < m.last(); });
     return mesh != meshes_.end() && index >= mesh->first() ? &*mesh : nullptr;
   }
 
-  // Of a triangle without area, which rounding could let a ray meet, infinity.
+  // Returns the distance of a hit, or infinity for a triangle without area, which rounding could otherwise
+  // let a ray hit.
   [[gnu::always_inline]] static N distance(const Mesh<T>& mesh, int index, const RayBatch<T>& rays, int i,
                                            const N& limit) {
     const Corners<N> corners = mesh.corners(static_cast<std::size_t>(index - mesh.first()), rays.time.at(i));
@@ -203,14 +204,14 @@ class Kernel final : public ShapeKernel<T> {
   }
 
   std::vector<Mesh<T>> meshes_;
-  int number_;  // of the set's first primitive
+  int number_;  // number of the set's first primitive
 };
 
 class Moving final : public MovingShapes {
  public:
   explicit Moving(std::vector<MovingTriangles> meshes) : meshes_(std::move(meshes)) {}
 
-  // Grown for the rounding of vertices on their way.
+  // Returns the bounds over the exposure, padded for the rounding of interpolated vertices.
   Boundsd bounds(int index) const override {
     const auto mesh =
         std::prev(std::upper_bound(meshes_.begin(), meshes_.end(), static_cast<std::size_t>(index),

@@ -11,7 +11,7 @@
 
 namespace orrery {
 
-// The part of a record that distance() needs: what it names as Core, or all of it.
+// Part of a record that distance() needs: its Core if it names one, else the whole record.
 template <template <class> class Record, class N>
 struct CoreOf {
   using type = Record<N>;
@@ -24,12 +24,12 @@ struct CoreOf<Record, N> {
   static const type& of(const Record<N>& record) { return record.core(); }
 };
 
-// See PackedPrimitives. A core that has a distance() for a SingleRay or a Packet is asked that way, others
-// see the rays as they are.
+// Implementation of PackedPrimitives. Uses a core's distance() for a SingleRay or Packet if it has one, else
+// its distance() for plain rays.
 template <template <class> class Record, class T>
 class PackedRecords final : public PackedPrimitives<T> {
  public:
-  // records.core(i) is what distance() needs of record i. REQUIRES: each block of indices has a primitive.
+  // Packs records.core(i), the input of distance() for record i. REQUIRES: no block of `indices` is empty.
   template <class Records>
   PackedRecords(const Records& records, int first, std::span<const int> indices) : first_(first) {
     blocks_.reserve(indices.size() / kB);
@@ -120,14 +120,14 @@ class PackedRecords final : public PackedPrimitives<T> {
   using B = BlockLanes<T>;
   template <class M>
   using Core = typename CoreOf<Record, M>::type;
-  static constexpr T kFar = std::numeric_limits<T>::max();  // no hit is farther
+  static constexpr T kFar = std::numeric_limits<T>::max();  // largest distance of a hit
   static constexpr std::size_t kB = static_cast<std::size_t>(kBlock<T>);
   static constexpr std::size_t kCoreFields = sizeof(Core<T>) / sizeof(T);
 
   struct Block {
-    Core<B> core;  // empty places repeat another
+    Core<B> core;  // empty entries repeat the last one
     std::array<IndexOf<T>, kB> id;
-    unsigned count;  // filled places, which come first
+    unsigned count;  // number of filled entries, which come first
     unsigned filled() const { return (1u << count) - 1u; }
   };
 
@@ -158,7 +158,7 @@ class PackedRecords final : public PackedPrimitives<T> {
     else
       return core.distance(Ray<B>{Vec3<B>(single.ray.origin), Vec3<B>(single.ray.direction)});
   }
-  // Of one primitive, in every lane.
+  // Returns the distance of one primitive in every lane.
   [[gnu::always_inline]] static N distance(const Core<T>& core, const Packet<T>& packet) {
     if constexpr (requires { core.distance(packet); }) {
       return core.distance(packet);
@@ -177,7 +177,8 @@ class PackedRecords final : public PackedPrimitives<T> {
     return static_cast<unsigned>(stdx::popcount(hit.t > N(T(0))));
   }
 
-  // Of the lanes `reached`, which lie at hit.t or nearer, the nearest one with the lowest number.
+  // Stores the nearest hit of the lanes `reached`, with the lowest number. REQUIRES: t <= hit.t in these
+  // lanes.
   static void take_nearest(const Block& block, const B& t, unsigned reached, SingleHit<T>& hit) {
     for (; reached != 0; reached &= reached - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
@@ -187,8 +188,8 @@ class PackedRecords final : public PackedPrimitives<T> {
     }
   }
 
-  // Calls `visit` with the core of each primitive that the packet may meet, and its number.
-  // Takes the tests off the budget.
+  // Calls `visit` with the core and the number of each primitive that the packet may hit. Subtracts the tests
+  // from `budget`.
   template <class Visit>
   [[gnu::always_inline]] static void for_each(const Block& block, const Packet<T>& packet, int& budget,
                                               const Visit& visit) {

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// An infinite flat surface.
+// Infinite plane.
 template <class N>
 struct Plane {
   Vec3<N> point, normal;
@@ -18,7 +18,7 @@ struct Plane {
   Boundsd bounds() const { return Boundsd::everything(); }
   Vec3d anchor() const { return point; }
 
-  // A ray along the plane never meets it: the quotient is then infinite or NaN, and neither is a hit.
+  // Returns infinity for a parallel ray: its quotient is infinite or NaN.
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     const N t = dot(point - ray.origin, normal) / dot(ray.direction, normal);
@@ -32,7 +32,7 @@ struct Plane {
     return {position, normal, normal, max(max_component(abs(position)), max_component(abs(point)))};
   }
 
-  // Metres from `point` along two axes of the plane.
+  // Returns metres from `point` along two axes of the plane.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     const Tangents<N> axes = tangents_of(normal);
     const Vec3<N> from = position - point;

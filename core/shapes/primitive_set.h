@@ -6,21 +6,21 @@
 
 // A shape type is one record, `template <class N> struct Sphere`, with
 //   static constexpr ShapeTraits kTraits;
-//   static void read(Params&, std::vector<Sphere<double>>& out);   appends what one object holds; in the
-//                                                 .cpp, which registers the type
+//   static void read(Params&, std::vector<Sphere<double>>& out);   appends the primitives of one object;
+//                                                 in the .cpp, which registers the type
 //   Boundsd bounds() const;                                        of a Sphere<double>
 //   N distance(const Ray<N>&) const;              the smallest t > 0 of a hit, or +infinity (or NaN) for none
 //   Surface<N> surface(const Ray<N>&, const N& t) const;
 //   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const;   of a position on the shape
 //   Vec3d anchor() const;                         if it may be unbounded: a point that places it
-//   std::vector<HullTriangle> hull() const;       if it knows better than bounds(): see ShapeKernel
-//   Patch patch() const;                          of a Sphere<double>, if light can be drawn from it; or
-//                                                 std::optional<Patch>, if not from all
+//   std::vector<HullTriangle> hull() const;       if tighter than bounds(): see ShapeKernel
+//   Patch patch() const;                          of a Sphere<double>, if light can be sampled from it; or
+//                                                 std::optional<Patch>, if only from some
 //   Core, core()                                  if distance() needs only a part: see packed_records.h
-// and `make_shape_set<Sphere>` is its factory. Formulas see scalars or lanes; nothing else is needed.
+// and `make_shape_set<Sphere>` as its factory. Formulas are evaluated for scalars and for lanes.
 namespace orrery {
 
-// Records in a render's precision, as read.
+// Records converted to the render's precision.
 template <template <class> class Record, class T>
 class PlainRecords {
  public:
@@ -32,7 +32,7 @@ class PlainRecords {
   const Record<T>& operator[](std::size_t i) const { return records_[i]; }
   decltype(auto) core(std::size_t i) const { return CoreOf<Record, T>::of(records_[i]); }
 
-  // What maps positions to parameters.
+  // Record that maps positions to parameters.
   template <class N>
   using Mapping = Record<N>;
   const PlainRecords& mappings() const { return *this; }
@@ -41,7 +41,7 @@ class PlainRecords {
   std::vector<Record<T>> records_;
 };
 
-// Writes the lanes of `mine` of register i, on the side that rays along `direction` come from.
+// Writes the lanes of `mine` of register i, with normals on the side that rays along `direction` come from.
 template <class T>
 [[gnu::always_inline]] inline void put_surface(const Surface<Lanes<T>>& s, const Vec3<Lanes<T>>& direction,
                                                int i, const MaskOf<Lanes<T>>& mine, SurfaceBatch<T>& out) {
@@ -64,7 +64,7 @@ template <class T>
   out.tangent.put(i, mine, point.tangent);
 }
 
-// Records: PlainRecords or what has its members.
+// Kernel of one shape type. `Records` is PlainRecords or a class with the same members.
 template <template <class> class Record, class T, class Records = PlainRecords<Record, T>>
 class PrimitiveKernel final : public ShapeKernel<T> {
  public:

@@ -5,10 +5,10 @@
 
 namespace orrery {
 
-// A flat plate with four right angles.
+// Flat rectangle.
 template <class N>
 struct Rectangle {
-  Vec3<N> corner, a, b;          // two sides at right angles
+  Vec3<N> corner, a, b;          // two perpendicular sides
   Vec3<N> per_a, per_b, normal;  // a / |a|^2, b / |b|^2, unit
   N magnitude;                   // largest absolute coordinate
 
@@ -23,7 +23,7 @@ struct Rectangle {
   }
   Patch patch() const { return {Patch::Kind::rectangle, corner, a, b}; }
 
-  // Shares of the two sides at a point of its plane.
+  // Coordinates of a point in units of the two sides.
   struct Shares {
     N u, v;
   };

@@ -4,7 +4,8 @@
 
 namespace orrery {
 
-// One line a type, in the order in which primitives are numbered; the rest is in the file of its name.
+// One line per type, in the order in which primitives are numbered. Each type is defined in the file of its
+// name.
 // clang-format off
 #define ORRERY_SHAPES(add) \
   add(sphere)              \

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Every shape type, in the order in which primitives are numbered.
+// Returns all shape types, in the order in which primitives are numbered.
 std::span<const ShapeType> shape_types();
 
 }  // namespace orrery

@@ -6,13 +6,14 @@
 
 namespace orrery {
 
-// How far a circle of radius 1 across the unit vector `axis` reaches along x, y and z: sqrt(1 - a^2) of each
-// component a, from the other two, as the difference is 0 for a tilt below 1.5e-8.
+// Returns the extent along x, y and z of a circle of radius 1 perpendicular to the unit vector `axis`. It is
+// sqrt(1 - a^2) for each component a, computed from the other two, because 1 - a^2 rounds to 0 for a tilt
+// below 1.5e-8.
 inline Vec3d round_reach(const Vec3d& axis) {
   return {std::hypot(axis.y, axis.z), std::hypot(axis.x, axis.z), std::hypot(axis.x, axis.y)};
 }
 
-// The box around a cylinder, turned as its axis is; flat where half_length is 0.
+// Returns the box around a cylinder, aligned with its axis; flat if half_length is 0.
 inline std::vector<HullTriangle> round_hull(const Vec3d& center, const Vec3d& axis, double radius,
                                             double half_length) {
   const Vec3d w = safe_normalize(axis), size = abs(w);

@@ -6,15 +6,16 @@
 
 namespace orrery {
 
-// What a test of a ray needs of a sphere.
+// Sphere data for the intersection test.
 template <class N>
 struct Ball {
   Vec3<N> center;
   N radius;
 
-  // The discriminant is taken from the part of origin - centre perpendicular to the ray, and the constant
-  // term as a product: neither cancels when the origin is far away or close to a huge sphere (Haines,
-  // Guenther, Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
+  // Returns the distance of the nearest hit. The discriminant uses the part of origin - centre perpendicular
+  // to the ray, and the constant term is a product. Neither cancels if the origin is far away or close to a
+  // huge sphere (Haines, Guenther, Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection", Ray
+  // Tracing Gems, 2019).
   N distance(const Ray<N>& ray) const {
     using T = ScalarOf<N>;
     using std::sqrt;
@@ -36,9 +37,9 @@ struct Ball {
     return select(meets, nearest, infinity);
   }
 
-  // Whether an active ray of the packet may meet it: not if the rays, as they are sheared to run along z,
-  // pass the centre on one side of it at its own z, farther away than the radius over the least cosine of
-  // their angle with z. The radius grows by what rounding may make of the distance.
+  // Returns false for spheres that no active ray of the packet can hit. Sheared to run along z, all rays then
+  // pass the centre, at its own z, on the same side. Their distance exceeds the radius over the smallest
+  // cosine of their angle with z. The radius is padded for the rounding of this distance.
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     using T = ScalarOf<N>;
     if (!packet.one_origin) return MaskOf<N>(true);
@@ -60,7 +61,7 @@ struct Ball {
   }
 };
 
-// Points at one distance from a centre.
+// Sphere.
 template <class N>
 struct Sphere {
   Ball<N> ball;
@@ -83,7 +84,8 @@ struct Sphere {
     return {ball.center + normal * ball.radius, normal, normal, magnitude};
   }
 
-  // u: around the y axis, anticlockwise seen from above, from +x, in turns; v: 0 at the bottom, 1 at the top.
+  // Returns u: turns around the y axis from +x, anticlockwise seen from above. v: 0 at the bottom, 1 at the
+  // top.
   SurfacePoint<N> parameters(const Ray<N>&, const Vec3<N>& position) const {
     using T = ScalarOf<N>;
     using std::sqrt;

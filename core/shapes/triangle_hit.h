@@ -6,16 +6,16 @@
 
 namespace orrery {
 
-// Where a ray crosses a triangle: distance and barycentric weights of the vertices, which sum to 1.
+// Intersection of a ray and a triangle: distance and barycentric weights of the vertices, which sum to 1.
 template <class N>
 struct TriangleHit {
-  N t;  // +infinity: no crossing ahead of the origin
+  N t;  // +infinity: no hit ahead of the origin
   N weight_a, weight_b, weight_c;
 };
 
 namespace detail {
 
-// One coordinate of a point as seen from `origin`; each may be a number for all lanes.
+// Returns one coordinate of a point relative to `origin`. Either may be the same for all lanes.
 template <class N, class V, class O>
 [[gnu::always_inline]] inline N moved(const Vec3<V>& point, const Vec3<O>& origin, int axis) {
   return N(point[axis]) - N(origin[axis]);
@@ -23,13 +23,13 @@ template <class N, class V, class O>
 
 }  // namespace detail
 
-// A point as a ray sees it that is turned and sheared to run along its largest axis z.
+// Point in the space of a ray that is permuted and sheared to run along its largest axis z.
 template <class N>
 struct Sheared {
   N x, y, z;
 };
 
-// Each lane has its own ray and so its own axes.
+// Transform with separate axes for each lane's ray.
 template <class N>
 class OwnAxes {
  public:
@@ -48,7 +48,7 @@ class OwnAxes {
   Shear<N> shear_;
 };
 
-// All lanes have the same axes: those of a SingleRay or a Packet.
+// Transform with the same axes for all lanes: those of a SingleRay or a Packet.
 template <class N, class Rays>
 class SharedAxes {
  public:
@@ -66,12 +66,12 @@ class SharedAxes {
   const Rays& rays_;
 };
 
-// Watertight: a ray through a shared edge or vertex meets one of the triangles around it, in any precision.
-// Each edge is judged by the sign of a 2D edge function that its two triangles compute from the same numbers
-// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). The products of the edge
-// functions are not rounded before they are subtracted: so the weights of the vertices are as exact as the
-// vertices are seen, however thin the triangle or flat the ray, and what they mix lies within a few roundings
-// of the ray.
+// Intersects a ray with a triangle, watertight: a ray through a shared edge or vertex hits one of the
+// triangles around it, in any precision. Each edge is classified by the sign of a 2D edge function that both
+// its triangles compute from the same numbers (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection",
+// JCGT 2013). The products of the edge functions are not rounded before subtraction. The vertex weights are
+// therefore as exact as the sheared vertices, even for thin triangles and grazing rays. Points interpolated
+// by the weights lie within a few roundings of the ray.
 template <class N, class Axes, class V>
 [[gnu::always_inline]] inline TriangleHit<N> intersect_triangle(const Axes& axes, const Vec3<V>& a,
                                                                 const Vec3<V>& b, const Vec3<V>& c) {
@@ -85,14 +85,14 @@ template <class N, class Axes, class V>
   const auto inside = min_first(min_first(u, v), w) >= zero || max_first(max_first(u, v), w) <= zero;
   const N determinant = u + v + w, inverse = N(T(1)) / determinant;
   const N z = (u * sa.z + v * sb.z + w * sc.z) * inverse, t = z / axes.along();
-  // What is as near as the rounding error of its distance is where the ray starts.
+  // Hits within the rounding error of their distance are the ray's own origin.
   const N farthest = max_first(max_first(abs(sa.z), abs(sb.z)), abs(sc.z));
   const auto met = inside && determinant != zero && t > zero &&
                    abs(z) > farthest * (4 * std::numeric_limits<T>::epsilon());
   return {select(met, t, infinity), u * inverse, v * inverse, w * inverse};
 }
 
-// What stands at the corners of a triangle; if it is where they are, all that a test of a ray needs.
+// Values at the corners of a triangle. Positions are all that the intersection test needs.
 template <class N>
 struct Corners {
   Vec3<N> a, b, c;
@@ -104,18 +104,19 @@ struct Corners {
   N distance(const SingleRay<ScalarOf<N>>& single) const {
     return distance_by(SharedAxes<N, SingleRay<ScalarOf<N>>>(single));
   }
-  // Of one triangle, in every lane.
+  // Returns the distance of one triangle in every lane.
   template <class T>
   Lanes<T> distance(const Packet<T>& packet) const requires std::is_same_v<T, N> {
     return intersect_triangle<Lanes<T>>(SharedAxes<Lanes<T>, Packet<T>>(packet), a, b, c).t;
   }
-  // Whether an active ray of the packet may cross: not if the corners, as all these rays see them, lie on one
-  // side of an axis. Their rounded shears are between those of the limits, because rounding keeps order.
+  // Returns false for triangles that no active ray of the packet can hit: their corners, sheared for these
+  // rays, lie on one side of an axis. Rounded shears stay within the rounded limits, because rounding is
+  // monotonic.
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     if (!packet.one_origin) return MaskOf<N>(true);
     return !beside(packet, 0) && !beside(packet, 1);
   }
-  // Barycentric weights where the ray crosses.
+  // Returns the barycentric weights of the intersection.
   Vec3<N> weights(const Ray<N>& ray) const {
     const TriangleHit<N> hit = intersect_triangle<N>(OwnAxes<N>(ray), a, b, c);
     return {hit.weight_a, hit.weight_b, hit.weight_c};
