@@ -4,8 +4,8 @@ namespace orrery {
 namespace {
 
 // Cook, Porter, Carpenter, "Distributed Ray Tracing" (SIGGRAPH 1984): samples are distributed over lights,
-// lens, time and the directions of gloss and translucency, along one path each and no tree. Diffuse surfaces
-// end it.
+// lens, time and the directions of gloss and translucency. Each sample follows one path instead of a tree.
+// Paths end at diffuse surfaces.
 template <class T>
 class Distributed final : public PathTracer<T> {
  public:
@@ -14,7 +14,7 @@ class Distributed final : public PathTracer<T> {
 
 }  // namespace
 
-// The depth of Whitted's trees, and the ray to a light source, which counts along a path.
+// The default depth is that of Whitted's trees, plus the ray to a light source, which counts along a path.
 TechniqueType distributed_type() {
   return {
       .name = "distributed",

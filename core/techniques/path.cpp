@@ -3,7 +3,7 @@
 namespace orrery {
 namespace {
 
-// Kajiya, "The rendering equation" (SIGGRAPH 1986): light from everywhere, along paths that follow all lobes.
+// Kajiya, "The rendering equation" (SIGGRAPH 1986): full light transport, along paths that follow all lobes.
 template <class T>
 class Path final : public PathTracer<T> {
  public:
@@ -12,7 +12,8 @@ class Path final : public PathTracer<T> {
 
 }  // namespace
 
-// Eight bounces and the ray to a light source: the box of Cornell is 0.4 % too dark then.
+// The default depth is eight bounces plus the ray to a light source. The Cornell box is 0.4 % too dark at
+// this depth.
 TechniqueType path_type() {
   return {.name = "path",
           .summary = "Light from everywhere, along paths that are drawn (Kajiya 1986).",

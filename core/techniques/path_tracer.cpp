@@ -51,7 +51,7 @@ void PathTracer<T>::shade(const Groups& groups, const Groups& met) {
   const Geometry<T>& geometry = this->geometry_;
   const bool ends = paths->depth >= this->plan_.max_depth, looked = paths->depth == 0 && looks_;
   if (looked)
-    for (const int i : groups) radiance.put(i, Vec3<N>(N(T(0))));  // look() finds what shines
+    for (const int i : groups) radiance.put(i, Vec3<N>(N(T(0))));  // look() adds emission and background
   if (!with_diffuse(followed_)) {
     add_ambient(geometry, paths->rays, surface, met, ends ? Lobes::all : Lobes::diffuse, radiance);
     if (ends) add_ambient_of_mirrors(met);
@@ -99,7 +99,7 @@ bool PathTracer<T>::finish() {
 template <class T>
 void PathTracer<T>::add_clamped() {
   const N most(static_cast<T>(this->plan_.clamp_indirect));
-  const auto kept = [&](const N& x) { return select(x > most, most, x); };  // NaN stays
+  const auto kept = [&](const N& x) { return select(x > most, most, x); };  // NaN stays NaN
   Vec3Array<T>& radiance = Wavefront<T>::sums(0);
   for (const int i : Groups::covering(0, kBatch, kWidth<T>)) {
     const Vec3<N> all = indirect_->at(i), some(kept(all.x), kept(all.y), kept(all.z));
@@ -116,7 +116,7 @@ void PathTracer<T>::add_what_shines(const Groups& groups, const Groups& met) {
   if (apart)
     for (const int i : groups) emission_.put(i, none);
   if (second && indirect_)
-    for (const int i : groups) {  // what is seen beyond the scene shines, too
+    for (const int i : groups) {  // radiance of missed rays counts as emission
       const auto missed = !surface_lanes(i);
       emission_.put(i, missed, radiance.at(i));
       radiance.put(i, missed, none);
@@ -159,7 +159,7 @@ template <class T>
 void PathTracer<T>::scatter(const Groups& met) {
   const auto& v = *this->vertices_;
   if (!with_diffuse(followed_))
-    for (const int i : met) scatter_.weight.put(i, Vec3<N>(N(T(0))));  // of materials that are not followed
+    for (const int i : met) scatter_.weight.put(i, Vec3<N>(N(T(0))));  // for lobes not followed
   for (const auto& m : this->geometry_.materials)
     if (m.traits.has(followed_))
       m.kernel->sample(v.paths->rays, v.hits, v.surface, this->draws(), met, followed_, scatter_);

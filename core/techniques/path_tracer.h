@@ -8,16 +8,15 @@
 
 namespace orrery {
 
-// Techniques that follow one path a sample: each vertex draws one light source, which lights all lobes, and
-// one direction of the lobes that are followed. Emission counts up to rays of the plan's depth, and light
-// sources from the vertices above. From the second vertex on, paths survive with the probability of the root
-// of their throughput (Russian roulette). Where diffuse lobes are not followed, what ambient light makes
-// leave them stands in for what other surfaces send them; they may draw a direction too, which finds what
-// shines alone.
+// Base of techniques that follow one path per sample. Each vertex samples one light source, which lights all
+// lobes, and one direction of the followed lobes. Emission counts up to the plan's maximum depth, light
+// sources at all vertices before it. From the second vertex on, paths survive with the square root of their
+// throughput as probability (Russian roulette). If diffuse lobes are not followed, their ambient light
+// replaces interreflection. They may then sample a direction that finds only emitters.
 template <class T>
 class PathTracer : public Wavefront<T> {
  public:
-  // `followed`: all lobes, or all but the diffuse ones.
+  // `followed` is all lobes, or all except the diffuse ones.
   PathTracer(const World<T>& world, const Plan& plan, Lobes followed);
 
   bool looks() const final { return looks_; }
@@ -34,36 +33,36 @@ class PathTracer : public Wavefront<T> {
   }
   void shade(const Groups& groups, const Groups& met) final;
 
-  // Where smooth surfaces would mirror and refract light on.
+  // Adds ambient light in place of the light that smooth surfaces would mirror and refract.
   void add_ambient_of_mirrors(const Groups& met);
   void add_what_shines(const Groups& groups, const Groups& met);
-  // Adds emission_ at second vertices to the light of the first: it is found from there by light sources as
-  // well, shared by nobody, and not indirect.
+  // Adds emission_ of second vertices to the light of the first ones. The first vertices find this light by
+  // light sampling too, and it is neither shared nor indirect.
   void add_emission_to_first(const Groups& groups);
-  // Adds indirect light as far as Plan::clamp_indirect lets.
+  // Adds indirect light up to Plan::clamp_indirect.
   void add_clamped();
-  // Draws directions, and sends on what goes along them.
+  // Samples directions and spawns the rays along them.
   void scatter(const Groups& met);
   void go_on(int i);
-  // Light that longer paths would bring is left out, or ambient light stands in: the ledger has what they
-  // could carry.
+  // Ends the paths. Light of longer paths is left out or replaced by ambient light, and its limit is recorded
+  // as omitted.
   void end(const Groups& met);
 
   MaskOf<N> surface_lanes(int i) const {
     const auto primitive = load_index<T>(this->vertices_->hits.primitive, i);
     return mask_cast<N>(primitive != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
   }
-  // What the paths had from their first vertex, where they share what they find after it.
+  // Returns the paths' throughput at their first vertex, for paths that share their second vertices.
   Vec3<N> first_weights(int i) const;
-  // Those whose light looks the same from everywhere.
+  // Returns the lanes whose reflected light does not depend on the view.
   MaskOf<N> even_lanes(int i) const;
 
   const Lobes followed_;
   SampledLight<T> sampled_light_;
   const bool looks_;
-  std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null: there are none
-  std::unique_ptr<PathReuse<T>> reuse_;           // null: paths share nothing
-  std::unique_ptr<Vec3Array<T>> indirect_;        // by slot; null: it is not clamped
+  std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null if none are needed
+  std::unique_ptr<PathReuse<T>> reuse_;           // null without path reuse
+  std::unique_ptr<Vec3Array<T>> indirect_;        // by slot; null without clamping
   ScatterBatch<T> scatter_;
   SpecularBatch<T> specular_;
   Vec3Array<T> emission_;

@@ -3,8 +3,8 @@
 namespace orrery {
 namespace {
 
-// Appel, "Some techniques for shading machine renderings of solids" (1968): what the eye sees, and shadows.
-// Specular surfaces show ambient light in place of what they would mirror.
+// Appel, "Some techniques for shading machine renderings of solids" (1968): visible surfaces and shadows.
+// Specular surfaces show ambient light instead of reflections.
 template <class T>
 class Raycast final : public SpecularTree<T> {
  public:

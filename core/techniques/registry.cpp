@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// One line a type; the rest is in the file of its name.
+// One line per type. Each type is defined in the file of its name.
 // clang-format off
 #define ORRERY_TECHNIQUES(add) \
   add(raycast)                 \

@@ -7,8 +7,8 @@
 
 namespace orrery {
 
-// Techniques that light surfaces by ambient light and by every light source, and follow perfectly specular
-// directions alone, all of them.
+// Base of techniques that light surfaces by ambient light and every light source, and follow only perfectly
+// specular directions, all of them.
 template <class T>
 class SpecularTree : public Wavefront<T> {
  public:
@@ -18,16 +18,16 @@ class SpecularTree : public Wavefront<T> {
   SpecularTree(const World<T>& world, const Plan& plan);
 
  protected:
-  // Sends on the light of specular surfaces: calls follow() or cut() for the lanes of each group. Groups name
-  // the registers with a specular surface.
+  // Continues at specular surfaces: calls follow() or cut() for the lanes of each group. `groups` are the
+  // registers with a specular surface.
   virtual void scatter(const Groups& groups) = 0;
 
-  // A ray from the surface at register i along `direction` with `weight` (per channel) of what it will find.
-  // If it would be too deep or too weak it is cut instead.
+  // Spawns a ray from the surface at register i along `direction`, with `weight` per channel. Cuts the ray
+  // instead if it is too deep or too weak.
   void follow(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& weight);
-  // Stands in for rays that are not traced: ambient light, entered into the ledger.
+  // Replaces untraced rays by ambient light, and records them as omitted.
   void cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
-  // Lanes of register i whose material is specular.
+  // Returns the lanes of register i whose material is specular.
   MaskOf<N> specular_lanes(int i) const {
     return lanes_with(this->geometry_, this->vertices_->surface, i, &MaterialTraits::mirrors);
   }

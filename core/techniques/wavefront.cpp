@@ -21,7 +21,7 @@ bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, Tra
   checkpoint_ = &checkpoint;
   start(camera_rays);
   begin();
-  while (!waiting_.empty()) {  // a tree of glass in glass can grow to billions of rays
+  while (!waiting_.empty()) {  // nested glass can grow a tree of billions of rays
     auto batch = std::move(waiting_.back());
     waiting_.pop_back();
     run(*batch);
@@ -136,7 +136,8 @@ void Wavefront<T>::spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction,
 template <class T>
 void Wavefront<T>::note_cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
   const Vec3<T> range(plan_.cut_range);
-  const auto product = [](T share, T most) { return share > 0 ? share * most : T(0); };  // not 0 infinities
+  // Avoids 0 * infinity.
+  const auto product = [](T share, T most) { return share > 0 ? share * most : T(0); };
   for (unsigned bits = bits_of(mask); bits != 0; bits &= bits - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
     const int slot = static_cast<int>(vertices_->paths->slot[i + static_cast<int>(lane)]);

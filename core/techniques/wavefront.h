@@ -5,11 +5,11 @@
 #include "core/model/path.h"
 #include "core/model/technique.h"
 
-// The loop that all techniques share. A batch of rays passes whole through the stages
-//   closest hit -> surface -> shading, which is the technique's -> deposit
-// and the rays that shading sends out form the next batches. Nothing recurses: batches wait on a stack, at
-// most two a depth, so memory is bounded whatever the scene. Which rays form a batch, and so the order in
-// which a slot's light is summed, depends on the scene alone, not on lane width, slice or thread.
+// Main loop of all techniques. Each batch of rays passes as a whole through the stages
+//   closest hit -> surface -> shading (by the technique) -> deposit
+// and the rays spawned by shading form the next batches. There is no recursion: batches wait on a stack, at
+// most two per depth, so memory is bounded for every scene. The rays of a batch, and so the order in which a
+// slot's light is summed, depend only on the scene. They do not depend on lane width, slice or thread.
 namespace orrery {
 
 template <class T>
@@ -22,35 +22,37 @@ class Wavefront : public Tracer<T> {
              const Checkpoint& checkpoint) final;
 
  protected:
-  // What the current batch met.
+  // Hits of the current batch.
   struct Vertices {
     PathBatch<T>* paths;
     HitBatch<T> hits;
     SurfaceBatch<T> surface;
-    Vec3Array<T> radiance;  // toward each ray's origin, so far: background for rays that met nothing
+    // Radiance so far toward each ray's origin: the background for rays that miss everything.
+    Vec3Array<T> radiance;
   };
 
-  // Adds the light that leaves surfaces toward the origins of the rays of `groups`, and sends on rays by
-  // spawn(). `met`: the registers of them with a surface.
+  // Adds the light that leaves surfaces toward the origins of the rays of `groups`, and continues paths by
+  // spawn(). `met`: those registers with a surface.
   virtual void shade(const Groups& groups, const Groups& met) = 0;
 
-  // Before a batch of camera rays, and after all that followed from it; false once the work is to end.
+  // Hooks before a batch of camera rays and after all rays spawned from it. finish() returns false if the
+  // work is cancelled.
   virtual void begin() {}
   virtual bool finish() { return true; }
-  // Where the light of rays of this depth goes, by slot.
+  // Returns the sums that the light of rays of this depth is added to, by slot.
   virtual Vec3Array<T>& sums(int /*depth*/) { return out_->radiance; }
 
   enum class Kind { reflected, refracted };
-  // A ray from the surface at register i along `direction` that carries `throughput` to its slot. Returns the
-  // bits of the mask.
+  // Spawns a ray from the surface at register i along `direction` that carries `throughput` to its slot.
+  // Returns the mask as bits.
   unsigned spawn(Kind kind, int i, const MaskOf<N>& mask, const Vec3<N>& direction,
                  const Vec3<N>& throughput);
-  // The only one from there, and the density with which it was drawn.
+  // Spawns the only ray from this vertex, with its sampling density.
   void spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput, const N& pdf);
-  // Enters rays that are not traced into the ledger, by their weights.
+  // Records untraced rays as omitted, by their weights.
   void note_cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
 
-  // Light that is taken away, by slot.
+  // Returns the light removed by clamping, by slot.
   Vec3Array<T>& clamped() { return out_->clamped; }
 
   const Draws& batch_draws() const { return *draws_; }
@@ -66,7 +68,7 @@ class Wavefront : public Tracer<T> {
  private:
   void start(const RayBatch<T>& camera_rays);
   void run(PathBatch<T>& paths);
-  // Rays are of the time of their camera ray.
+  // Gives each ray the time of its camera ray.
   void inherit_times(PathBatch<T>& paths) const;
   void run_slice(const Groups& groups);
   void record_channels(const Groups& groups, const Groups& met);
@@ -75,7 +77,7 @@ class Wavefront : public Tracer<T> {
 
   std::vector<std::unique_ptr<PathBatch<T>>> waiting_, spare_;
   std::unique_ptr<PathBatch<T>> reflected_, refracted_;
-  Array<T> time_;  // of camera rays, by slot; filled only with Plan::shutter
+  Array<T> time_;  // times of camera rays, by slot; filled only if Plan::shutter > 0
   const Draws* draws_ = nullptr;
   TraceResult<T>* out_ = nullptr;
   TraceCounts* counts_ = nullptr;

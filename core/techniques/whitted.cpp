@@ -4,7 +4,7 @@
 namespace orrery {
 namespace {
 
-// Whitted, "An improved illumination model for shaded display" (1980): one mirrored and one refracted ray a
+// Whitted, "An improved illumination model for shaded display" (1980): one mirrored and one refracted ray per
 // specular surface.
 template <class T>
 class Whitted final : public SpecularTree<T> {
