@@ -16,11 +16,11 @@ class EmitterList {
   EmitterList(const Scene& scene, const Exposure& exposure, Geometry<T>& geometry)
       : scene_(scene), exposure_(exposure), geometry_(geometry) {}
 
-  // Those of all sets of the scene, and then of its instances.
+  // Returns the bounds of the emitters: first those of the scene's sets, then those of its instances.
   std::vector<LightBounds> find() {
     for (const auto& shapes : scene_.shapes) {
       const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
-      if (skip_dark(last)) {  // else there is nothing to be posed
+      if (skip_dark(last)) {  // skips posing of sets without emitters
         const auto posed = shapes->at(exposure_.opens);
         add(*shapes, posed ? *posed : *shapes, last, nullptr);
       }
@@ -50,13 +50,13 @@ class EmitterList {
     return scene_.emission[static_cast<std::size_t>(scene_.material_of[primitive])];
   }
 
-  // To the next primitive that emits; false if there is none before `last`.
+  // Advances to the next primitive that emits. Returns false if there is none before `last`.
   bool skip_dark(std::size_t last) {
     while (primitive_ < last && radiance_of(primitive_) == Vec3d(0)) interruption_point(++primitive_);
     return primitive_ < last;
   }
 
-  // Whether no more than so many primitives from here on emit.
+  // Returns true if at most `most` primitives from here on emit.
   bool emits_at_most(std::size_t most) const {
     std::size_t count = 0;
     for (std::size_t p = primitive_; p < scene_.material_of.size() && count <= most; ++p) {
@@ -66,7 +66,7 @@ class EmitterList {
     return count <= most;
   }
 
-  // Those of a set that end before `last`.
+  // Adds the emitters of a set whose primitives end before `last`.
   void add(const ShapeSet& shapes, const ShapeSet& now, std::size_t last, const Affined* world_from_model) {
     for (int i = now.size() - static_cast<int>(last - primitive_); primitive_ < last; ++i, ++primitive_) {
       interruption_point(primitive_);
@@ -93,7 +93,8 @@ class EmitterList {
     if (emitter.is_solid() && holds_all(now.bounds(index))) return {};
     return emitter;
   }
-  // Whether the rest of the scene lies within: a solid is seen from inside then, where nothing is drawn.
+  // Returns true if the rest of the scene lies within the box. The solid is then seen from inside, where no
+  // light is sampled.
   bool holds_all(const Boundsd& box) const {
     const Boundsd& all = scene_.facts.bounds;
     return scene_.material_of.size() > 1 && !scene_.facts.unbounded && box.contains(all.lo) &&

@@ -13,9 +13,9 @@ namespace {
 
 using ShapeSets = std::vector<std::unique_ptr<ShapeSet>>;
 
-// Kernels of the sets, and their primitives, which are numbered on from `number`. `before`: the kernels they
-// had at another moment, of which those of resting sets stay, or null. What moves during the exposure gets
-// kernels of its own, which go to `moving`: they are to be asked for surfaces after all others.
+// Adds kernels of the sets and their primitives, numbered from `number` on. `before` (or null) holds the
+// kernels at another moment; those of static sets are reused. Shapes that move during the exposure get
+// separate kernels in `moving`, which must be queried for surfaces after all others.
 template <class T>
 void add_shapes(const ShapeSets& sets, const Exposure& exposure, const std::vector<ShapeKernelPtr<T>>* before,
                 std::vector<ShapeKernelPtr<T>>& kernels, std::vector<ShapeKernelPtr<T>>& moving,
@@ -65,9 +65,9 @@ template <class T>
 Placed<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, const Affined& world_from_model,
                 int first) {
   const Affined model_from_world = inverse(world_from_model);
-  // Rows of the inverse stand at right angles, because instances are scaled before they are turned: so what
-  // rounding moves a point across its surface grows with its coordinates alone, not with how uneven the scale
-  // is. 2 > sqrt(3), the most by which a sum of three rows' errors exceeds their length.
+  // Rows of the inverse are perpendicular, because instances are scaled before they are rotated. Rounding
+  // therefore moves a point across its surface in proportion to its coordinates, however uneven the scale.
+  // The factor 2 exceeds sqrt(3), the largest ratio of the sum of three rows' errors to their length.
   const double base =
       2 * 8 * double{std::numeric_limits<T>::epsilon()} * max_component(abs(world_from_model.origin));
   return {model,
@@ -79,7 +79,7 @@ Placed<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, const Affi
           static_cast<T>(base)};
 }
 
-// Instances that move during the exposure have a kernel of their own, which goes to `moving`.
+// Adds the instances. Those that move during the exposure get a separate kernel in `moving`.
 template <class T>
 void add_instances(const Scene& scene, const AcceleratorType& inner, const Exposure& exposure,
                    const Geometry<T>* before, Geometry<T>& geometry, std::vector<ShapeKernelPtr<T>>& moving,

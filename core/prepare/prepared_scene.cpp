@@ -13,7 +13,8 @@ namespace {
 template <class T>
 using Moments = std::list<PreparedScene::Parts::Moment<T>>;
 
-// Puts the moment of that exposure first.
+// Moves the moment of `exposure` to the front. Adds it if necessary, and then evicts the last of too many
+// moments.
 template <class T>
 void bring_forward(Moments<T>& moments, const Exposure& exposure) {
   const auto known =
@@ -23,8 +24,8 @@ void bring_forward(Moments<T>& moments, const Exposure& exposure) {
   if (moments.size() > PreparedScene::kMoments) moments.pop_back();
 }
 
-// What was made with the accelerator for another moment than the first, the newest; an empty world if there
-// is none.
+// Returns the newest world built with this accelerator type for a moment other than the first, or an empty
+// world.
 template <class T>
 World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   for (auto moment = std::next(moments.begin()); moment != moments.end(); ++moment)
@@ -32,7 +33,8 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
   return {};
 }
 
-// For what is built now, of the client that has it built; null if nobody counts.
+// Opens a memory account for a build, from the source of the current client's account. Returns null if memory
+// is not counted.
 std::shared_ptr<MemoryAccount> open_account(PreparedScene::Parts& parts) {
   const MemoryAccount* const client = WorkScope::current().memory;
   if (!client) return nullptr;
@@ -62,7 +64,7 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, con
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
   };
   const auto memory = open_account(parts);
-  const WorkScope scope({nullptr, &stop});  // no turn: who has the mutex gives way to nobody
+  const WorkScope scope({nullptr, &stop});  // no turn: the owner of the mutex must not yield
   if (memory)
     memory->run(stop, make);
   else
