@@ -10,15 +10,15 @@
 
 namespace orrery {
 
-// Bytes of answers that are being sent; those that several connections share count once. A client may be sent
-// half of them, or one answer; and one answer of any size is sent while there is no other. Safe from any
-// thread.
+// Byte quota of responses being sent. Bytes shared by several connections count once. A client may use half
+// of the quota, or more for a single response. A response of any size is sent if no other is. Thread-safe.
 class AnswerBudget {
  public:
   explicit AnswerBudget(std::size_t most) : most_(most) {}
 
   using Share = std::shared_ptr<const void>;
-  // Takes these bytes for as long as the share lives; a few are free. Throws OverLimit or ClientBusy.
+  // Charges `bytes` to `client` until the share is destroyed. Up to 64 KiB are free (null share). Throws
+  // OverLimit or ClientBusy.
   Share take(const SharedBytes& bytes, const std::string& client) {
     constexpr std::size_t kFree = 64 * 1024;
     if (bytes.size() <= kFree) return nullptr;
@@ -31,7 +31,7 @@ class AnswerBudget {
   static constexpr double kRetry_s = 2;
 
   struct Sent {
-    std::map<const char*, int> connections;  // that are sent the bytes which begin there
+    std::map<const char*, int> connections;  // number of senders, by address of the bytes
     std::size_t bytes = 0;
 
     bool has_room(const SharedBytes& more, std::size_t most) const {
@@ -68,7 +68,7 @@ class AnswerBudget {
   }
 
   const std::size_t most_;
-  std::mutex mutex_;  // guards all below
+  std::mutex mutex_;  // guards the members below
   Sent all_;
   std::map<std::string, Sent> clients_;
 };

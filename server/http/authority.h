@@ -4,16 +4,16 @@
 
 namespace orrery {
 
-// Whether this is what a Host header or an absolute target may name: host, or host:port (RFC 3986, 3.2.2 and
-// 3.2.3), without user information. The host is a name, an IPv4 address or an IPv6 address in brackets, and
-// is not empty (RFC 9110, 4.2.1); the port may be.
+// Whether `text` is valid in a Host header or an absolute target: host or host:port (RFC 3986, 3.2.2 and
+// 3.2.3) without user information. The host is a name, an IPv4 address or an IPv6 address in brackets. It
+// must not be empty (RFC 9110, 4.2.1); the port may be.
 bool is_authority(std::string_view text);
 
-// Whether this is what browsers send as an Origin (RFC 6454, 6.1): scheme://host or scheme://host:port, in
+// Whether `text` is an origin as browsers send it (RFC 6454, 6.1): scheme://host or scheme://host:port, in
 // lower case and without a path.
 bool is_origin(std::string_view text);
 
-// Whether its host is an address or localhost: what no owner of a domain can let stand for this machine.
+// Whether the host is an IP address or localhost, so that DNS rebinding is impossible.
 // REQUIRES: is_authority(text).
 bool names_no_domain(std::string_view text);
 

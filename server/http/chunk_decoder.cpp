@@ -14,7 +14,7 @@ constexpr std::size_t kLongestLine = 256, kMostOverhead = 16 * 1024;
   throw HttpError(400, std::string("The body is not in chunks: ") + why);
 }
 
-// The line at the front, without its CR LF; none: its end has not come.
+// Returns the first line without its CR LF, or nullopt if it is incomplete.
 std::optional<std::string_view> line_of(std::string_view bytes) {
   const std::size_t end = bytes.find("\r\n");
   const std::string_view line = bytes.substr(0, end);

@@ -8,14 +8,14 @@
 
 namespace orrery {
 
-// Reads a body in chunks (RFC 9112, 7.1), strictly: sizes are hexadecimal digits alone, lines end with CR LF.
-// Extensions and trailers are skipped, a few bytes of them.
+// Decodes a chunked body (RFC 9112, 7.1) strictly: sizes are hexadecimal digits only, lines end with CR LF.
+// Skips extensions and trailers of up to 16 KiB in total.
 class ChunkDecoder {
  public:
   explicit ChunkDecoder(const BodyLimit& limit) : limit_(limit) {}
 
-  // Moves what is understood from the front of `bytes` to the body. Returns whether that is its end. Throws
-  // HttpError 400 for what are no chunks, 413 for more than the limit.
+  // Decodes as much of `bytes` as possible, removes it and appends the data to body(). Returns true at the
+  // end of the body. Throws HttpError 400 if the chunks are malformed, 413 if the body exceeds the limit.
   bool take(std::string& bytes);
 
   std::string& body() { return body_; }
@@ -23,7 +23,7 @@ class ChunkDecoder {
  private:
   enum class Expects { size, data, end_of_data, trailer, nothing };
 
-  // One step from the front of `bytes`; returns how many it took, 0: it needs more.
+  // Decodes one element at the front of `bytes`. Returns its length, or 0 if more bytes are needed.
   std::size_t step(std::string_view bytes);
   std::size_t take_size(std::string_view bytes);
   std::size_t take_data(std::string_view bytes);
@@ -33,11 +33,11 @@ class ChunkDecoder {
   const BodyLimit limit_;
   std::string body_;
   Expects expects_ = Expects::size;
-  std::size_t left_ = 0;      // of the chunk
+  std::size_t left_ = 0;      // bytes left in the current chunk
   std::size_t overhead_ = 0;  // bytes of extensions and trailers
 };
 
-// What is thrown for a body of so many bytes, or of more than the limit if that is all that is known.
+// Returns the 413 error for a body of `bytes` bytes; `bytes` is a text such as "more than 1000".
 HttpError body_too_long(const BodyLimit& limit, const std::string& bytes);
 
 }  // namespace orrery

@@ -41,7 +41,7 @@ bool takes_gzip(const Request& request) {
 std::string gzip(std::string_view bytes) {
   constexpr int kWindowBits = 15, kGzip = 16, kMemoryLevel = 8;
   z_stream stream{};
-  // The quickest level: at 100 MB/s and more the handler's slot is held for 10 ms at most.
+  // Fastest level: at 100 MB/s or more, the handler holds its slot for at most 10 ms.
   if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kWindowBits + kGzip, kMemoryLevel,
                    Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
@@ -70,7 +70,7 @@ void compress(const Request& request, Response& response) {
     const std::string others = header("Vary");
     response.set("Vary", (others.empty() ? "" : others + ", ") + "Accept-Encoding");
   };
-  if (response.status == 304) {  // of the answer that the client has, which may be the compressed one
+  if (response.status == 304) {  // the client may have cached the compressed body
     const std::string weak = "W/" + header("ETag");
     if (joined(request.headers, "If-None-Match").find(weak) == std::string::npos) return;
     response.set("ETag", weak);

@@ -25,7 +25,7 @@ int milliseconds_until(Clock::time_point deadline) {
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, std::numeric_limits<int>::max()));
 }
 
-// Drops the first `bytes` of what is left of a message.
+// Drops the first `bytes` bytes of a message.
 void take_from(msghdr& left, std::size_t bytes) {
   for (; left.msg_iovlen > 0 && bytes >= left.msg_iov->iov_len; ++left.msg_iov, --left.msg_iovlen)
     bytes -= left.msg_iov->iov_len;
@@ -36,10 +36,10 @@ void take_from(msghdr& left, std::size_t bytes) {
 
 }  // namespace
 
-// By when the next bytes must have crossed.
+// Deadline for the next bytes of a message.
 class Connection::Pace {
  public:
-  // Of so many bytes; 0: nobody knows.
+  // `bytes`: size of the message; 0 if unknown.
   Pace(std::size_t bytes, const Patience& patience)
       : window_(patience.window),
         end_(Clock::now() + patience.whole + patience.window),
@@ -58,7 +58,7 @@ class Connection::Pace {
   const std::chrono::seconds window_;
   const Clock::time_point end_;
   const std::size_t bytes_a_window_;
-  std::size_t crossed_ = 0;  // in this window
+  std::size_t crossed_ = 0;  // bytes in this window
   Clock::time_point deadline_ = Clock::now() + window_;
 };
 
@@ -118,7 +118,7 @@ bool Connection::make_room(Waiting::Kind kind) {
   pollfd ready{fd_, waiting_.events(), 0};
   const bool goes_on = kind == Waiting::Kind::client && poll(&ready, 1, 0) > 0;
   if (goes_on || !waiting_.give_up(kind)) return false;
-  if (kind == Waiting::Kind::client)  // a client that sent too slowly can still be told so
+  if (kind == Waiting::Kind::client)  // a client that sends too slowly can still receive a 408
     shutdown(fd_, waiting_.events() == POLLIN ? SHUT_RD : SHUT_RDWR);
   std::stop_source request;
   {
@@ -130,7 +130,7 @@ bool Connection::make_room(Waiting::Kind kind) {
 }
 
 bool Connection::skip_empty_lines() {
-  constexpr int kMost = 8;  // any more are taken for the request, and refused
+  constexpr int kMost = 8;  // further empty lines are parsed as the request and rejected
   while (empty_lines_ < kMost && received_.starts_with("\r\n")) {
     received_.erase(0, 2);
     ++empty_lines_;
@@ -139,13 +139,13 @@ bool Connection::skip_empty_lines() {
 }
 
 bool Connection::wait_for_request() {
-  constexpr std::chrono::milliseconds kFirstWord{200};  // for who has connected, but not said anything yet
+  constexpr std::chrono::milliseconds kFirstWord{200};  // for the first request of a connection at shutdown
   bool fresh = std::exchange(fresh_, false);
   reading_since_ = Clock::now();
   writing_since_.reset();
   auto deadline = reading_since_ + patience_.idle;
   while (!skip_empty_lines()) {
-    // A request that is here already is answered even if idle connections are to end.
+    // A request that has already arrived is answered even during shutdown.
     const Ready ready = wait(POLLIN, deadline, true);
     if (ready == Ready::none) return false;
     if (ready == Ready::wake) {
@@ -230,10 +230,10 @@ Head Connection::read_head() {
 
 std::string Connection::read_body(const Head& head, const BodyLimit& limit, const Received& received) {
   if (!head.chunked && !head.content_length) {
-    body_left_ = std::numeric_limits<std::size_t>::max();  // whatever comes is no request, but a body
+    body_left_ = std::numeric_limits<std::size_t>::max();  // all further input belongs to the body
     throw HttpError(411, "A body must come with its Content-Length, or in chunks");
   }
-  const std::size_t length = head.content_length.value_or(limit.bytes);  // at most
+  const std::size_t length = head.content_length.value_or(limit.bytes);  // upper bound
   if (length > limit.bytes) throw body_too_long(limit, std::to_string(length));
   if (const auto expect = head.header("Expect")) {
     if (!equal_ignoring_case(*expect, "100-continue"))
@@ -256,7 +256,7 @@ std::string Connection::read_counted(std::size_t length, const Received& receive
   }
   std::string rest = received_.substr(length);
   received_.resize(length);
-  return std::exchange(received_, std::move(rest));  // which keeps no room for another body
+  return std::exchange(received_, std::move(rest));  // received_ does not keep the body's capacity
 }
 
 std::string Connection::read_chunks(const BodyLimit& limit, const Received& received) {
@@ -284,7 +284,7 @@ void Connection::abandon() const {
 bool Connection::write(std::initializer_list<std::string_view> pieces) {
   assert(pieces.size() <= kMostPieces);
   std::array<iovec, kMostPieces> vectors;
-  msghdr left{};  // what is not sent yet
+  msghdr left{};  // unsent rest
   left.msg_iov = vectors.data();
   std::size_t size = 0;
   for (const std::string_view piece : pieces) {

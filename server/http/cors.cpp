@@ -14,12 +14,12 @@ bool is_listed(const Request& request, const std::vector<std::string>& origins) 
                                [&](const std::string& listed) { return listed == "*" || listed == *origin; });
 }
 
-// Throws HttpError 403 for a domain with a dot that no listed origin has.
+// Throws HttpError 403 if `host` is a domain with a dot and not that of a listed origin.
 void require_known(const std::string& host, const std::vector<std::string>& origins) {
   const bool listed = std::any_of(origins.begin(), origins.end(), [&](const std::string& origin) {
     return origin == "*" || equal_ignoring_case(origin.substr(origin.find("//") + 2), host);
   });
-  const bool may_be_owned = host.find('.') != std::string::npos;  // on the internet
+  const bool may_be_owned = host.find('.') != std::string::npos;  // by someone on the internet
   if (!listed && may_be_owned && !names_no_domain(host))
     throw HttpError(
         403, "The host " + host.substr(0, 100) +
@@ -55,7 +55,7 @@ void refuse_foreign(const Request& request, const std::vector<std::string>& orig
 
 void refuse_foreign_host(const Request& request, const std::vector<std::string>& origins) {
   require_known(request.header("Host").value_or(""), origins);
-  require_known(request.told_host, origins);  // which may be the client's word, where the proxy tells none
+  require_known(request.told_host, origins);  // may come from the client if the proxy does not set it
 }
 
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response) {

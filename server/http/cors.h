@@ -7,21 +7,22 @@
 
 namespace orrery {
 
-// Cross-origin requests (the Fetch standard's CORS protocol) from origins that are listed; "*" lists all.
+// Cross-origin requests (CORS protocol of the Fetch standard) from listed origins. "*" lists all origins.
 
-// The answer to a preflight request; none if this is none, or its origin is not listed.
+// Returns the response to a preflight request. Returns nullopt for other requests and for unlisted origins.
 std::optional<Response> preflight(const Request& request, const std::vector<std::string>& origins);
 
-// Refuses what a page of another origin, not listed, asks a browser to change: browsers send some such
-// requests without asking first. `domains`: whether a domain may be our own origin. Without access control it
-// may not, as its owner can let it stand for this machine (DNS rebinding). Throws HttpError 403.
+// Rejects requests from pages of other, unlisted origins, except with the methods GET, HEAD and OPTIONS.
+// Browsers send some such requests without a preflight. `domains`: whether the service's own origin may be a
+// domain. Must be false without access control, since a domain's owner can point it at this machine (DNS
+// rebinding). Throws HttpError 403.
 void refuse_foreign(const Request& request, const std::vector<std::string>& origins, bool domains);
 
-// Refuses what is asked of a domain with a dot that no listed origin has: its owner may have let it stand for
-// this machine, so that his pages read what is here. Throws HttpError 403.
+// Rejects requests for a host that is a domain with a dot and not that of a listed origin. The owner of such
+// a domain can point it at this machine and read responses (DNS rebinding). Throws HttpError 403.
 void refuse_foreign_host(const Request& request, const std::vector<std::string>& origins);
 
-// Lets pages of a listed origin read the answer.
+// Adds the headers that let pages of a listed origin read the response.
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response);
 
 }  // namespace orrery

@@ -1,7 +1,7 @@
-# orrery_embed(<out.cpp> <file>...): writes a source that defines embedded_files() of embedded.h over the
-# given files (paths from the repository root). The assembler reads the bytes (.incbin), so a large file
-# costs nothing to compile, and the object is rebuilt when one of them changes. Scripts and style sheets are
-# embedded as strip_text.cmake leaves them.
+# orrery_embed(<out.cpp> <file>...): generates a source file that defines embedded_files() of embedded.h for
+# the given files (paths from the repository root). The assembler includes the bytes (.incbin), so that large
+# files take no time to compile. The object is rebuilt when a file changes. Scripts and style sheets are
+# stripped by strip_text.cmake first.
 set(strip_script ${CMAKE_CURRENT_LIST_DIR}/strip_text.cmake)
 function(orrery_embed out)
   list(SORT ARGN)
@@ -55,7 +55,7 @@ std::span<const EmbeddedFile> embedded_files() {
 
 }  // namespace orrery
 ]==])
-  add_custom_target(strip_text DEPENDS ${all_stripped})  # its commands belong to a target, or there is no rule
-  # A unity build would forget what the source depends on.
+  add_custom_target(strip_text DEPENDS ${all_stripped})  # without a target, the commands would have no rule
+  # A unity build would lose OBJECT_DEPENDS.
   set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${inputs}" SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -5,13 +5,13 @@
 
 namespace orrery {
 
-// A file of web/ or scenes/ that was put into the program when it was built.
+// A file of web/ or scenes/ that is compiled into the program.
 struct EmbeddedFile {
   std::string_view path;   // from the repository root: "web/index.html", "scenes/paper.json"
   std::string_view bytes;  // lives as long as the program
 };
 
-// All embedded files, in ascending order of path. Safe from any thread.
+// Returns all embedded files in ascending order of path. Thread-safe.
 std::span<const EmbeddedFile> embedded_files();
 
 }  // namespace orrery

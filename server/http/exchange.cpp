@@ -9,22 +9,22 @@
 namespace orrery {
 namespace {
 
-constexpr int kClientGone = 499;  // the status of work that was given up
+constexpr int kClientGone = 499;  // status of cancelled requests
 
-// The host of an absolute target is meant, whatever Host says (RFC 9112, 3.2.2).
+// Replaces Host by the host of an absolute target, which takes precedence (RFC 9112, 3.2.2).
 void name_host(Fields& headers, const std::string& authority) {
   std::erase_if(headers, [](const auto& field) { return equal_ignoring_case(field.first, "Host"); });
   headers.emplace_back("Host", authority);
 }
 
-// Takes over what the head says. Throws HttpError for a target that cannot be understood.
+// Fills `request` from the head. Throws HttpError if the target is malformed.
 void read_head_into(Request& request, const Head& head, const IpAddress& peer, const Forwarding& forwarding) {
   request.method = head.method;
-  request.path = head.target.substr(0, head.target.find('?'));  // for the log, should the rest fail
+  request.path = head.target.substr(0, head.target.find('?'));  // for the log, if parsing fails
   request.headers = head.headers;
   request.client = peer.network();
   if (const auto id = head.header("X-Request-ID"); id && is_request_id(*id)) request.id = *id;
-  if (head.target == "*" && head.method == "OPTIONS") return;  // the server as a whole (RFC 9112, 3.2.4)
+  if (head.target == "*" && head.method == "OPTIONS") return;  // server-wide (RFC 9112, 3.2.4)
   Target target = parse_target(head.target);
   request.path = std::move(target.path);
   request.segments = std::move(target.segments);
@@ -46,16 +46,16 @@ bool Exchanger::exchange(Connection& connection) {
     framing = {.head_only = head.method == "HEAD", .minor_version = head.minor_version, .keep_alive = false};
     read_head_into(request, head, connection.peer(), forwarding_);
   } catch (const HttpError&) {
-    if (connection.left()) return false;  // it only came and went
+    if (connection.left()) return false;  // disconnected without a request
     return send(connection, request, handler_.refuse(request, std::current_exception()), framing);
   }
   framing.keep_alive = head.keep_alive;
-  const std::string client = request.client;  // by its address: tokens name it otherwise
-  Budget::Share body(bodies_, client);        // as long as it is used
+  const std::string client = request.client;  // by address; a token may replace it in `request`
+  Budget::Share body(bodies_, client);        // held while the body is used
   HttpServer::Admitted admitted;
   try {
     admitted = handler_.admit(request);
-    if (admitted.body)  // takes of the budget what has come: what is only announced takes nothing from others
+    if (admitted.body)  // charges bytes as they arrive, not the announced length
       request.body =
           Body(connection.read_body(head, *admitted.body, [&](std::size_t bytes) { body.grow(bytes); }));
   } catch (...) {
@@ -63,7 +63,7 @@ bool Exchanger::exchange(Connection& connection) {
   }
   const std::stop_source gone = connection.begin_request(client);
   request.gone = gone.get_token();
-  // HTTP/1.0 knows no interim responses.
+  // HTTP/1.0 has no interim responses.
   HangupMonitor::Watching watching = monitor_.watch(connection.fd(), gone, framing.minor_version == 1);
   std::optional<HandlerSlots::Handler> handler;
   Response response;
@@ -86,7 +86,7 @@ Response Exchanger::refuse(const Connection& connection, const Request& request,
 }
 
 bool Exchanger::send(Connection& connection, const Request& request, Response response, Framing framing) {
-  const bool ends_with_it = response.stream && framing.minor_version == 0;  // which knows no chunks
+  const bool ends_with_it = response.stream && framing.minor_version == 0;  // HTTP/1.0 has no chunks
   if (ends_with_it || draining_ || connection.body_unread() || connection.made_room())
     framing.keep_alive = false;
   const Sender sender{answers_, request.client, request.gone};
@@ -99,10 +99,10 @@ bool Exchanger::send(Connection& connection, const Request& request, Response re
   const std::uint64_t before = connection.bytes_written();
   const bool written = write_response(connection, response, framing, sender);
   if (response.stream) {
-    const HandlerSlots::Wait released;  // the end of a stream may wait for its threads
+    const HandlerSlots::Wait released;  // the stream's end may wait for its threads
     response.stream = nullptr;
   }
-  // Who leaves after the last byte has got its answer.
+  // A client that disconnects after the last byte has received the whole response.
   const bool gone =
       connection.left() || response.status == kClientGone || (!written && response.note.empty());
   handler_.served(request, response, connection.bytes_written() - before, gone);

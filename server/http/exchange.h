@@ -11,11 +11,10 @@
 
 namespace orrery {
 
-// One request and its answer, on any connection, in one direction: head, admission, body, handler, answer.
-// Safe from any thread.
+// Handles one request on a connection: head, admission, body, handler, response. Thread-safe.
 class Exchanger {
  public:
-  // `handler` and `monitor` must outlive it.
+  // `handler` and `monitor` must outlive the exchanger.
   Exchanger(const HttpServer::Options& options, const HttpServer::Handler& handler, HangupMonitor& monitor)
       : handler_(handler),
         monitor_(monitor),
@@ -24,15 +23,15 @@ class Exchanger {
         answers_(options.max_answers),
         forwarding_(options.forwarding) {}
 
-  // Reads and answers the request that begins there. False if the connection ends with it. Throws nothing but
-  // std::bad_alloc and its like.
+  // Reads the next request and writes its response. Returns false if the connection must close. Throws only
+  // std::bad_alloc and similar errors.
   bool exchange(Connection& connection);
 
-  // From now on connections end with their next answer.
+  // Closes each connection after its next response.
   void drain() { draining_ = true; }
 
  private:
-  // The answer to what was thrown about the request.
+  // Returns the response to an exception that the request caused.
   Response refuse(const Connection& connection, const Request& request, std::exception_ptr error) const;
   bool send(Connection& connection, const Request& request, Response response, Framing framing);
 

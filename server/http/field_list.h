@@ -5,23 +5,23 @@
 
 #include "server/http/message.h"
 
-// Headers whose values are lists (RFC 9110, 5.6.1).
+// Header fields whose values are lists (RFC 9110, 5.6.1).
 namespace orrery {
 
-std::string_view trimmed(std::string_view text);  // without the blanks and tabs around it
+std::string_view trimmed(std::string_view text);  // without leading and trailing blanks and tabs
 
-// A header that has several lines is one list.
+// Returns the values of all fields with this name as one list, separated by ", ".
 std::string joined(const Fields& headers, std::string_view name);
 
-// Calls `part` with each entry between separators that stand in no quotes, without the blanks around it.
-// Empty ones are none.
+// Calls `part` with each trimmed entry of the list. Separators in quotes do not count; empty entries are
+// skipped.
 template <class Part>
 void for_each_entry(std::string_view list, char separator, const Part& part) {
   bool quoted = false;
   std::size_t begin = 0;
   for (std::size_t i = 0; i <= list.size(); ++i) {
     if (quoted && i + 1 < list.size() && list[i] == '\\') {
-      ++i;  // what it stands before is no end of the quotes
+      ++i;  // skips the escaped character
       continue;
     }
     if (i < list.size() && list[i] == '"') quoted = !quoted;
@@ -31,14 +31,14 @@ void for_each_entry(std::string_view list, char separator, const Part& part) {
   }
 }
 
-// Whether quotes that it opens do not end.
+// Whether `text` ends within a quoted string.
 bool ends_in_quotes(std::string_view text);
 
-// The value of the parameter `name` among those of an entry, "0.5" of "image/*;q=0.5", without quotes; "" if
-// there is none, or several.
+// Returns the value of parameter `name` of a list entry without quotes: "0.5" for `q` in "image/*;q=0.5".
+// Returns "" if the parameter is missing or repeated.
 std::string_view parameter_of(std::string_view entry, std::string_view name);
 
-// How much an entry is liked, 0..1: its q, or 1.
+// Returns the quality value of an entry, 0..1: its q, or 1.
 double weight_of(std::string_view entry);
 
 }  // namespace orrery

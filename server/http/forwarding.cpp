@@ -14,18 +14,18 @@ namespace {
 constexpr std::size_t kLongestPrefix = 200;
 constexpr const char* kNobody = "for=unknown";  // RFC 7239, 6.3
 
-// The entries of a header, the nearest proxy's last.
+// Returns the entries of a header, the nearest proxy's last.
 std::vector<std::string> entries_of(const Request& request, std::string_view name) {
   std::vector<std::string> entries;
   std::string list = joined(request.headers, name);
   for (char& c : list)
-    if (c == '"') c = ' ';  // these headers have no quotes: a client's would hide what a proxy has appended
+    if (c == '"') c = ' ';  // not quoting here: a client's quote would hide what a proxy has appended
   for_each_entry(list, ',', [&](std::string_view entry) { entries.emplace_back(entry); });
   return entries;
 }
 
-// The entries of Forwarded, likewise. Each line is read for itself: quotes that a client has opened end with
-// its line. A line that ends within quotes is one entry, of nobody.
+// Returns the entries of Forwarded, the nearest proxy's last. Lines are parsed separately, so that a client's
+// open quote ends with its line. A line that ends within quotes becomes one unknown entry.
 std::vector<std::string> entries_of_forwarded(const Request& request) {
   std::vector<std::string> entries;
   for (const auto& [name, line] : request.headers) {
@@ -38,7 +38,7 @@ std::vector<std::string> entries_of_forwarded(const Request& request) {
   return entries;
 }
 
-// Whom an entry of Forwarded names: "" if it has no `for`.
+// Returns the node that an entry of Forwarded names, or "" if the entry has no `for`.
 std::string node_of(const std::string& entry) {
   const std::string_view node = parameter_of(entry, "for");
   if (!node.empty()) return std::string(node);
@@ -46,10 +46,10 @@ std::string node_of(const std::string& entry) {
   for_each_entry(entry, ';', [&](std::string_view pair) {
     named = named || equal_ignoring_case(trimmed(pair.substr(0, pair.find('='))), "for");
   });
-  return named ? "unknown" : "";  // by none, or by several
+  return named ? "unknown" : "";  // empty or repeated `for`
 }
 
-// Digits, or a name that begins with _ (RFC 7239, 6.2).
+// Whether `text` is a port of 1 to 5 digits or an obfuscated port that begins with _ (RFC 7239, 6.2).
 bool is_node_port(std::string_view text) {
   constexpr std::size_t kMostDigits = 5;
   const bool number =
@@ -57,8 +57,8 @@ bool is_node_port(std::string_view text) {
   return !text.empty() && (number || (text.front() == '_' && is_token(text)));
 }
 
-// "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]" and "[2001:db8::1]:80"; none for names, and for
-// the addresses of nobody.
+// Parses "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]" and "[2001:db8::1]:80". Returns nullopt
+// for names and for unspecified addresses.
 std::optional<IpAddress> address_of(std::string_view node) {
   std::string_view host = node, rest;
   if (node.starts_with('[')) {
@@ -75,7 +75,7 @@ std::optional<IpAddress> address_of(std::string_view node) {
   return address == IpAddress() || address == IpAddress::parse("0.0.0.0") ? std::nullopt : address;
 }
 
-// Whether links may begin with it: the path of no other host, without escapes.
+// Whether `text` is valid as a prefix of links: an absolute path without escapes that cannot name a host.
 bool is_prefix(std::string_view text) {
   constexpr std::string_view kMarks = "-._~/";
   const bool plain = std::all_of(text.begin(), text.end(), [&](char c) {
@@ -88,14 +88,14 @@ bool is_prefix(std::string_view text) {
 
 std::string last_of(const std::vector<std::string>& entries) { return entries.empty() ? "" : entries.back(); }
 
-// The host that the client asked, as the nearest proxy tells it.
+// Returns the host that the client requested, as reported by the nearest proxy.
 std::string host_of(const Request& request) {
   const std::string host = last_of(entries_of(request, "X-Forwarded-Host"));
   const std::string told = last_of(entries_of_forwarded(request));
   return host.empty() ? std::string(parameter_of(told, "host")) : host;
 }
 
-// Takes the prefix off the path. False if the path does not begin with it.
+// Strips the prefix from the path. Returns false if the path does not begin with it.
 bool take_off(std::string_view prefix, Request& request) {
   if (prefix.empty()) return false;
   const std::vector<std::string> wanted = parse_target(prefix).segments;
@@ -103,7 +103,7 @@ bool take_off(std::string_view prefix, Request& request) {
   if (segments.size() < wanted.size() || !std::equal(wanted.begin(), wanted.end(), segments.begin()))
     return false;
   segments.erase(segments.begin(), segments.begin() + static_cast<std::ptrdiff_t>(wanted.size()));
-  if (segments == std::vector<std::string>{""}) segments.clear();  // "/" has none
+  if (segments == std::vector<std::string>{""}) segments.clear();  // "/" has no segments
   request.path.erase(0, prefix.size());
   return true;
 }
@@ -128,7 +128,7 @@ IpAddress Forwarding::client_of(const IpAddress& peer, const std::vector<std::st
   IpAddress client = peer;
   for (auto hop = hops.rbegin(); hop != hops.rend() && trusts(client); ++hop) {
     const auto address = address_of(*hop);
-    if (!address) break;  // the last proxy that is known asks for somebody without an address
+    if (!address) break;  // the last known proxy reports a client without an address
     client = *address;
   }
   return client;

@@ -10,21 +10,21 @@
 
 namespace orrery {
 
-// What proxies in front of the service say of a request: Forwarded (RFC 7239), X-Forwarded-For, -Host and
-// -Prefix. Only proxies that are trusted are believed.
+// Request data reported by reverse proxies: Forwarded (RFC 7239), X-Forwarded-For, -Host and -Prefix. Headers
+// of untrusted peers are ignored.
 class Forwarding {
  public:
-  Forwarding() = default;  // there are none
-  // trusted_proxies: addresses and networks. path_prefix: what all addresses begin with for clients, such as
-  // "/render"; empty: nothing. Throws InputError without a place.
+  Forwarding() = default;  // no proxies
+  // `trusted_proxies`: addresses and networks. `path_prefix`: path prefix that clients see, such as
+  // "/render"; may be empty. Throws InputError with an empty pointer.
   Forwarding(const std::vector<std::string>& trusted_proxies, std::string_view path_prefix);
 
   bool trusts(const IpAddress& peer) const;
 
-  // Fills request.client, prefix and told_host of what came from `peer`, and takes the prefix off its path,
-  // if the proxy has not. The client is the last one of the list that is no trusted proxy. Where Forwarded
-  // and X-Forwarded-For name two, one of them comes from the client itself, and `peer` is taken for it. The
-  // path of what was asked of the prefix itself, without a slash after it, is then empty.
+  // Sets client, prefix and told_host of a request from `peer`, and strips the prefix from its path if the
+  // proxy has not. The client is the last address in the list that is no trusted proxy. If Forwarded and
+  // X-Forwarded-For name different clients, one of them is forged, and `peer` becomes the client. A request
+  // for the prefix itself without a trailing slash gets an empty path.
   void apply(const IpAddress& peer, Request& request) const;
 
  private:

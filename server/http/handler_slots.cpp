@@ -58,7 +58,7 @@ void HandlerSlots::resume() {
 }
 
 void HandlerSlots::Handler::give_way() {
-  constexpr std::chrono::milliseconds kSlice{5};  // what a handler takes at most, as a rule
+  constexpr std::chrono::milliseconds kSlice{5};  // time slice while other handlers wait
   if (current != this || !has_slot_ || slots_.waiting() == 0) return;
   if (std::chrono::steady_clock::now() - since_ < kSlice) return;
   release();

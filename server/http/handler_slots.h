@@ -14,31 +14,32 @@
 
 namespace orrery {
 
-// Limits how many handlers compute at once on their connections' threads. A handler holds a slot while it
-// computes, and none while it waits for its client or for other threads. Free slots go round-robin to the
-// clients that have handlers waiting, and in order of arrival within a client. A burst of requests therefore
-// delays a request of another client by one handler of each client at most. Safe from any thread.
+// Limits how many handlers compute at once on the connections' threads. A handler holds a slot while it
+// computes, but not while it waits for its client or for other threads. Free slots go round-robin to the
+// clients with waiting handlers, and in order of arrival within a client. A burst of requests delays another
+// client's request by at most one handler of each client. Thread-safe.
 class HandlerSlots {
  public:
   explicit HandlerSlots(std::size_t slots) : free_(slots) {}
   HandlerSlots(const HandlerSlots&) = delete;
 
-  // The handler of one request, for the thread that runs it. Holds a slot from its construction to its end,
-  // except while a Wait lives on the same thread. What it computes gives way at interruption points.
+  // Slot holder of one request, for the thread that runs it. Holds a slot for its lifetime, except while a
+  // Wait exists on the same thread. Yields at interruption points.
   class Handler final : public Turn {
    public:
-    // Waits for a slot, at most until `gone` is requested; throws Cancelled then. `state` shows others that
-    // it waits; both outlive the handler.
+    // Waits for a slot. Throws Cancelled if `gone` is requested first. `state` shows the wait to other
+    // threads. `slots` and `state` must outlive the handler.
     Handler(HandlerSlots& slots, std::string client, std::stop_token gone, Waiting& state);
     ~Handler();
     Handler(const Handler&) = delete;
 
-    // Lets other clients go first if the thread has held its slot for a while. Other threads have none.
+    // Yields the slot if other handlers wait and the thread has held it for 5 ms. Does nothing on other
+    // threads.
     void give_way() override;
 
    private:
     friend class HandlerSlots;
-    // Returns without a slot once `gone_` is requested.
+    // Returns without a slot if `gone_` is requested.
     void acquire();
     void release();
 
@@ -46,31 +47,31 @@ class HandlerSlots {
     const std::string client_;
     const std::stop_token gone_;
     Waiting& state_;
-    Handler* const outer_;  // of the thread, before
+    Handler* const outer_;  // previous handler of the thread
     const WorkScope scope_{{nullptr, nullptr, this}};
     bool has_slot_ = false, has_begun_ = false;
-    std::chrono::steady_clock::time_point since_;  // it has the slot
+    std::chrono::steady_clock::time_point since_;  // start of holding the slot
   };
 
-  // The thread waits as long as this lives, and its handler, if it has one, holds no slot.
+  // Releases the slot of the thread's handler, if any, while the thread waits.
   class Wait {
    public:
-    // Of the kind client: the connection shows that it waits.
+    // Kind::client: the connection shows the wait itself.
     explicit Wait(Waiting::Kind kind = Waiting::Kind::turn);
-    ~Wait();  // waits for a slot again
+    ~Wait();  // takes a slot again
     Wait(const Wait&) = delete;
-    // Ends the wait without taking a slot: what the thread waited for bounds how many compute.
+    // Ends the wait without taking a slot, because its end already limits the number of computing threads.
     void end_without_slot();
 
    private:
-    Handler* const handler_;  // null: the thread runs none
-    const bool shown_;        // by the handler's state
+    Handler* const handler_;  // null if the thread runs none
+    const bool shown_;        // whether the handler's state shows the wait
     bool ended_ = false;
   };
 
   // Takes a slot again after Wait::end_without_slot().
   static void resume();
-  // Has the thread's handler give way, if there is one.
+  // Yields the slot of the thread's handler, if any; see Handler::give_way().
   static void give_way();
 
   std::size_t waiting() const { return waiting_; }
@@ -82,18 +83,19 @@ class HandlerSlots {
   };
   struct Client {
     std::string name;
-    std::deque<Waiter*> waiters;  // the next first; never empty
+    std::deque<Waiter*> waiters;  // next first; never empty
   };
 
-  // Whether it got a slot. Handlers that go on come before those of the same client that begin.
+  // Returns true if a slot was granted. `goes_on`: the handler has begun and queues before others of its
+  // client.
   bool take(const std::string& client, const std::stop_token& gone, bool goes_on);
   void give_back();
-  void remove(const std::string& client, Waiter& waiter);  // with mutex_ held
+  void remove(const std::string& client, Waiter& waiter);  // requires mutex_
 
-  mutable std::mutex mutex_;             // guards all below
-  std::size_t free_;                     // 0 while anybody waits
-  std::list<Client> clients_;            // that wait, the next first
-  std::atomic<std::size_t> waiting_{0};  // handlers; changes with mutex_ held
+  mutable std::mutex mutex_;             // guards the members below
+  std::size_t free_;                     // 0 while a handler waits
+  std::list<Client> clients_;            // clients with waiting handlers, next first
+  std::atomic<std::size_t> waiting_{0};  // waiting handlers; written with mutex_ held
 };
 
 }  // namespace orrery

@@ -15,7 +15,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::uint64_t kEnd = 0;  // no socket's number: the monitor ends
+constexpr std::uint64_t kEnd = 0;  // number of end_; no socket has it
 
 void control(int epoll, int operation, int fd, std::uint32_t events, std::uint64_t number) {
   epoll_event event{.events = events, .data = {.u64 = number}};
@@ -26,7 +26,7 @@ void control(int epoll, int operation, int fd, std::uint32_t events, std::uint64
 constexpr int kAsks = 4;
 constexpr std::chrono::milliseconds kBetweenAsks{50};
 
-// False if nothing can be sent any more.
+// Sends a probe. Returns false if nothing can be sent any more.
 bool send_interim(int fd) {
   constexpr std::string_view kInterim = "HTTP/1.1 100 Continue\r\n\r\n";
   const ssize_t sent = send(fd, kInterim.data(), kInterim.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -53,8 +53,8 @@ HangupMonitor::~HangupMonitor() {
 HangupMonitor::Watching HangupMonitor::watch(int fd, std::stop_source work, bool asks) {
   const std::lock_guard lock(mutex_);
   const std::uint64_t number = ++last_number_;
-  // Numbers never return: an event that was on its way when its socket was forgotten finds nobody. Broken
-  // connections are reported unasked.
+  // Numbers are never reused, so a late event for a forgotten socket finds no client. epoll reports broken
+  // connections even without a flag for them.
   control(epoll_, EPOLL_CTL_ADD, fd, EPOLLRDHUP | EPOLLONESHOT, number);
   clients_.emplace(number, Client{fd, std::move(work), asks ? kAsks : 0});
   return Watching(*this, fd, number);
@@ -79,7 +79,7 @@ void HangupMonitor::heed(std::uint64_t number, bool broken) {
     if (found == clients_.end()) return;
     Client& client = found->second;
     if (!broken && client.asks > 0 && ask(client, number))
-      return control(epoll_, EPOLL_CTL_MOD, client.fd, EPOLLONESHOT, number);  // until it is broken
+      return control(epoll_, EPOLL_CTL_MOD, client.fd, EPOLLONESHOT, number);  // HUP and ERR only
     work = client.work;
   }
   work->request_stop();

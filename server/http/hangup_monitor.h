@@ -11,27 +11,27 @@
 
 namespace orrery {
 
-// Tells those who work for a client that it has gone: one thread waits for all sockets at once. Safe from any
-// thread.
+// Cancels work whose client has disconnected. One thread watches all sockets. Thread-safe.
 //
-// Who sends no more may still wait for its answer, and looks just like who has closed its socket. It is asked
-// by an interim response, "100 Continue", which every client of HTTP/1.1 skips (RFC 9110, 15.2): a closed
-// socket answers that with a reset. It is asked several times, as a relay in between learns that its client
-// has gone by the first, can send no more at the second, and is itself closed at the third.
+// A client that has shut down its sending side may still wait for its response, and looks like one that has
+// closed its socket. The monitor probes it with interim responses, "100 Continue", which every HTTP/1.1
+// client skips (RFC 9110, 15.2). A closed socket answers a probe with a reset. A relay needs several probes:
+// it learns from the first that its client has closed, cannot send the second, and is closed at the third.
 class HangupMonitor {
  public:
-  // Throws std::system_error if the system has no descriptors left.
+  // Throws std::system_error if no descriptors are left.
   HangupMonitor();
   ~HangupMonitor();
   HangupMonitor(const HangupMonitor&) = delete;
 
-  // A socket that is being watched, as long as this lives. The monitor and the socket must outlive it.
+  // Registration of a watched socket, removed by the destructor. Monitor and socket must outlive it.
   class Watching {
    public:
     ~Watching() { monitor_.forget(fd_, number_); }
     Watching(const Watching&) = delete;
 
-    // The answer begins: from now on who sends no more has gone.
+    // Ends probing, since the response begins. A client that then shuts down its sending side has
+    // disconnected.
     void stop_asking() { monitor_.stop_asking(number_); }
 
    private:
@@ -43,16 +43,17 @@ class HangupMonitor {
     const std::uint64_t number_;
   };
 
-  // Requests a stop of `work` on the monitor's thread once the client has closed its socket, or the
-  // connection is broken; soon, if that is so already. What the stop calls must be short. A socket is watched
-  // once at a time. asks: whether interim responses may be sent; who sends no more has gone, without.
+  // Requests a stop of `work` on the monitor's thread when the client closes its socket or the connection
+  // breaks, even if that has already happened. Stop callbacks must be short. A socket may be watched once at
+  // a time. `asks`: whether to send probes. Without probes, a client that shuts down its sending side counts
+  // as disconnected.
   [[nodiscard]] Watching watch(int fd, std::stop_source work, bool asks);
 
  private:
   struct Client {
     int fd;
     std::stop_source work;
-    int asks;  // that may still be sent
+    int asks;  // probes left
   };
   struct NextAsk {
     Clock::time_point at;
@@ -65,15 +66,15 @@ class HangupMonitor {
   void heed(std::uint64_t number, bool broken);
   void ask_again();
   int milliseconds_to_next_ask() const;
-  // Asks the client, if it may be asked. False if it has gone.
+  // Sends a probe and schedules the next one. Returns false if the client has disconnected.
   bool ask(Client& client, std::uint64_t number);
 
   const int epoll_, end_;
   std::mutex mutex_;
   std::uint64_t last_number_ = 0;            // guarded by mutex_
   std::map<std::uint64_t, Client> clients_;  // by number; guarded by mutex_
-  std::deque<NextAsk> next_asks_;            // the next first; for thread_
-  std::thread thread_;                       // last: it uses the others
+  std::deque<NextAsk> next_asks_;            // next first; for thread_
+  std::thread thread_;                       // last: uses the other members
 };
 
 }  // namespace orrery

@@ -10,7 +10,7 @@
 namespace orrery {
 namespace {
 
-// CONNECT is not among them: its target is of no form that this service could serve.
+// CONNECT is missing because its form of target is not supported.
 constexpr std::array<std::string_view, 8> kMethods{"GET",    "HEAD",    "POST",  "PUT",
                                                    "DELETE", "OPTIONS", "TRACE", "PATCH"};
 
@@ -61,7 +61,8 @@ void judge_coding(std::string_view coding, Head& head) {
   head.chunked = true;
 }
 
-// Headers that say where the request ends: who reads them differently than a neighbour reads another request.
+// Checks the headers that determine the end of the request. A proxy that reads them differently would see
+// another request (request smuggling).
 void judge_framing(Head& head) {
   int hosts = 0;
   for (const auto& [name, value] : head.headers) {
@@ -138,7 +139,7 @@ void screen_head(std::string_view bytes, std::size_t from) {
     if ((byte < 0x20 && byte != '\t' && byte != '\r' && byte != '\n') || byte == 0x7F)
       throw HttpError(400, "The request has control characters");
   }
-  constexpr std::size_t kAroundTarget = 20;  // method, blanks and version have fewer bytes
+  constexpr std::size_t kAroundTarget = 20;  // bytes; method, blanks and version take fewer
   const std::size_t end = bytes.find("\r\n");
   Head head;
   if (end != std::string_view::npos && end + 2 > from) parse_request_line(bytes.substr(0, end), head);

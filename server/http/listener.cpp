@@ -38,13 +38,14 @@ int port_of(int fd) {
 }  // namespace
 
 Listener::Listener(const std::string& host, int port) {
-  constexpr int kBacklog = 1024;  // connections that have not been accepted yet
+  constexpr int kBacklog = 1024;  // connections that are not accepted yet
   const Addresses addresses = resolve(host, port);
   int reason = 0;
   for (const addrinfo* a = addresses.get(); a; a = a->ai_next) {
     fd_ = socket(a->ai_family, a->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK, a->ai_protocol);
     if (fd_ < 0) continue;
-    // Not SO_REUSEPORT: a second server on the port has to fail, not to take half of its connections.
+    // SO_REUSEPORT is not set: a second server on the port must fail instead of taking half of the
+    // connections.
     const int on = 1;
     setsockopt(fd_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (bind(fd_, a->ai_addr, a->ai_addrlen) == 0 && listen(fd_, kBacklog) == 0) {
@@ -66,8 +67,8 @@ int Listener::accept() {
   if (fd < 0) return -1;
   const int on = 1;
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  // Bytes that the kernel takes before the client's network can: more would only grow old there, and a slow
-  // viewer would see every frame late instead of missing some.
+  // Limits the unsent bytes in the kernel. More would become outdated there: a slow viewer would see every
+  // frame late instead of skipping some.
   const int most_unsent = 128 * 1024;
   setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &most_unsent, sizeof most_unsent);
   return fd;

@@ -4,10 +4,10 @@
 
 namespace orrery {
 
-// A socket that waits for connections.
+// A listening TCP socket.
 class Listener {
  public:
-  // Port 0: a free one. Throws Error if the address cannot be had.
+  // Port 0 selects a free port. Throws Error if the address is unavailable.
   Listener(const std::string& host, int port);
   ~Listener();
   Listener(const Listener&) = delete;
@@ -15,9 +15,9 @@ class Listener {
   int fd() const { return fd_; }
   int port() const { return port_; }
 
-  // The next connection, or -1 if there is none right now, or no room for one.
+  // Returns the next connection, or -1 if none is pending or no descriptor is left.
   int accept();
-  // Whether the last accept() found that the process, or the system, has no room for another socket.
+  // Whether the last accept() failed for lack of descriptors or memory.
   bool out_of_room() const { return out_of_room_; }
 
  private:
@@ -25,7 +25,8 @@ class Listener {
   bool out_of_room_ = false;
 };
 
-// Whether only this machine reaches what listens there. REQUIRES: `host` is a name or an address.
+// Whether `host`, a name or an address, can be reached from this machine only. Throws Error if it cannot be
+// resolved.
 bool is_loopback(const std::string& host);
 
 }  // namespace orrery

@@ -13,21 +13,21 @@
 #include "core/base/error.h"
 #include "server/http/shared_bytes.h"
 
-// What routes see of HTTP. No library shows through.
+// HTTP messages as routes see them, independent of any library.
 namespace orrery {
 
 struct Route;
 
-// Names and values in the order they came.
+// Names and values in order of arrival.
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
-// The value of the first field of that name, whatever its case.
+// Returns the value of the first field with this name, ignoring case, or nullopt.
 std::optional<std::string> find_field(const Fields& fields, std::string_view name);
 
 class App;
 
-// The bytes of a request's body. Routes cannot read them: only App::read() and App::add_asset() can, which
-// open the client's memory account, take a turn where that takes long, and stop once the client has gone.
+// Bytes of a request body. Only App::read() and App::add_asset() can read them. They charge the client's
+// memory account, wait for a turn if the work is long, and stop when the client disconnects.
 class Body {
  public:
   Body() = default;
@@ -40,40 +40,40 @@ class Body {
   std::string bytes_;
 };
 
-// How long a body may be.
+// Maximum length of a body.
 struct BodyLimit {
   std::size_t bytes;
-  const char* name;  // in /v1/limits
+  const char* name;  // name in /v1/limits
 };
 
 struct Request {
-  std::string method;                 // "HEAD" is answered as "GET", without the body
+  std::string method;                 // "HEAD" is answered like "GET", without the body
   std::string path;                   // decoded
-  std::vector<std::string> segments;  // of the path, each decoded
-  const Route* route = nullptr;       // whose path it has; null: none has
-  std::string id;         // of this request: sent by the client, or made up; letters, digits, . _ -
-  std::string client;     // who asks: the address, or what it is known as
-  std::string told_host;  // that the client asked, by a proxy; "": none told
-  std::string prefix;     // what paths begin with for the client, which `path` does not: "" or "/render"
-  Fields query;           // decoded; names are unique
-  Fields path_values;     // of the route's {places}
+  std::vector<std::string> segments;  // decoded path segments
+  const Route* route = nullptr;       // route with this path, or null
+  std::string id;                     // sent by the client or generated; letters, digits, . _ -
+  std::string client;                 // address, or name of the token
+  std::string told_host;              // host requested by the client according to a proxy, or ""
+  std::string prefix;                 // path prefix that clients see, stripped from `path`: "" or "/render"
+  Fields query;                       // decoded; names are unique
+  Fields path_values;                 // values of the route's {placeholders}
   Fields headers;
-  Body body;  // if the route has one read
+  Body body;  // if the route reads one
   std::chrono::steady_clock::time_point start;
 
-  std::stop_token gone;  // requested once the client has gone
+  std::stop_token gone;  // stop requested when the client disconnects
 
   std::optional<std::string> header(std::string_view name) const { return find_field(headers, name); }
-  // REQUIRES: the route has that place.
+  // REQUIRES: the route has a placeholder with this name.
   const std::string& path_value(std::string_view name) const;
 };
 
-// Where the parts of a long answer go.
+// Destination of a streamed response.
 class Sink {
  public:
   virtual ~Sink() = default;
-  // Writes all three, one after the other, and waits. False: the client has gone. Throws OverLimit if too
-  // much is being sent already.
+  // Writes the three pieces in order and waits. Returns false if the client has disconnected. Throws
+  // OverLimit if too many response bytes are being sent.
   virtual bool write(std::string_view bytes, const SharedBytes& more = {}, std::string_view end = {}) = 0;
 };
 
@@ -81,26 +81,25 @@ struct Response {
   int status = 200;
   Fields headers = {};
   SharedBytes body = {};
-  SharedBytes gzip = {};  // the body compressed, where that is kept; empty: not made
-  // Instead of a body: called once, writes the parts as they come to be and returns at the end. Throws if it
-  // cannot go on: the answer is then broken off, so that nobody takes it for a whole one, and the log says
-  // why.
+  SharedBytes gzip = {};  // compressed body if cached, or empty
+  // Writer of a streamed body, called once instead of sending `body`. If it throws, the response is cut off
+  // so that the client cannot take it for complete, and the reason is logged.
   std::function<void(Sink&)> stream = {};
-  // For the log: rays traced for this answer, and what went wrong inside.
+  // For the log: rays traced for this response, and internal errors.
   std::uint64_t rays = 0;
   std::string note = {};
-  const char* refusal = nullptr;  // the limit that refused the request, or "draining" if the service ends
+  const char* refusal = nullptr;  // limit that rejected the request, or "draining" during shutdown
 
-  Response& set(std::string_view name, std::string value);  // replaces
+  Response& set(std::string_view name, std::string value);  // replaces the header
 };
 
 Response text_response(int status, std::string_view type, SharedBytes body);
 Response json_response(int status, std::string json);
 
-// A refusal that is about HTTP itself.
+// An error of HTTP itself, with its status.
 class HttpError : public Error {
  public:
-  // limit: the name of the one that was hit, if one was, which lives as long as the program.
+  // `limit`: name of the limit that was hit, or null. Must live as long as the program.
   HttpError(int status, const std::string& detail, Fields headers = {}, const char* limit = nullptr)
       : Error(detail), status_(status), headers_(std::move(headers)), limit_(limit) {}
   int status() const noexcept { return status_; }
@@ -113,7 +112,7 @@ class HttpError : public Error {
   const char* limit_;
 };
 
-// "Not Found"
+// Returns "Not Found" for 404, for instance.
 std::string_view reason_phrase(int status);
 
 bool equal_ignoring_case(std::string_view a, std::string_view b);

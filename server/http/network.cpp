@@ -11,10 +11,10 @@
 namespace orrery {
 namespace {
 
-constexpr std::array<std::uint8_t, 12> kMapped{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};  // before IPv4
+constexpr std::array<std::uint8_t, 12> kMapped{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};  // IPv4-mapped
 constexpr int kMappedBits = 96;
 
-// Whether the first `bits` are the same.
+// Whether the first `bits` bits are equal.
 bool begin_alike(const IpAddress& a, const IpAddress& b, int bits) {
   for (std::size_t i = 0; bits > 0; ++i, bits -= 8) {
     const int unlike = a.bytes()[i] ^ b.bytes()[i];

@@ -6,10 +6,10 @@
 
 namespace orrery {
 
-// There is no room for the work now because a limit of the service is reached.
+// Thrown if a limit of the service is reached, so that the request cannot be served now.
 class OverLimit : public Busy {
  public:
-  // limit: its name in /v1/limits; lives as long as the program.
+  // `limit`: name in /v1/limits. Must live as long as the program.
   OverLimit(const std::string& message, double retry_after_s, const char* limit)
       : Busy(message, retry_after_s), limit_(limit) {}
   const char* limit() const noexcept { return limit_; }
@@ -18,7 +18,7 @@ class OverLimit : public Busy {
   const char* limit_;
 };
 
-// This client has so much under way that what it asks for now, or last, is turned away.
+// Thrown if the client has reached its share of a limit. Rejects its current or its newest request.
 class ClientBusy : public OverLimit {
  public:
   using OverLimit::OverLimit;

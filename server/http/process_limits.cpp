@@ -20,7 +20,7 @@ std::size_t allow_descriptors(std::size_t count) {
   if (limit.rlim_cur >= count) return limit.rlim_cur;
   limit.rlim_cur = std::min<rlim_t>(count, limit.rlim_max);
   setrlimit(RLIMIT_NOFILE, &limit);
-  getrlimit(RLIMIT_NOFILE, &limit);  // it may have been refused
+  getrlimit(RLIMIT_NOFILE, &limit);  // setrlimit() may have failed
   return limit.rlim_cur;
 }
 
@@ -32,8 +32,9 @@ std::size_t allowed_addresses() {
 
 std::size_t addresses_for(std::size_t connections, std::size_t renderers) {
   constexpr std::size_t kProgram = 256 << 20, kUsualStack = 8 << 20;
-  constexpr std::size_t kOthers = 8;  // accept, signals, timers and the like
-  // Each renderer has one beside it for background work, and while they give way to others one more each.
+  constexpr std::size_t kOthers = 8;  // accept, signals, timers and others
+  // Each renderer has a second thread for background work. Each of the two may have another one while it
+  // yields.
   const std::size_t threads = connections + kHealthConnections + 4 * renderers + kOthers;
   rlimit stack{};
   getrlimit(RLIMIT_STACK, &stack);

@@ -4,18 +4,19 @@
 
 namespace orrery {
 
-inline constexpr std::size_t kHealthConnections = 16;  // of the health port
+inline constexpr std::size_t kHealthConnections = 16;  // for the health port
 
-// Files and sockets that a server of so many connections may have open, with all others of the process.
+// Returns the number of descriptors that a server with `connections` connections may need, including other
+// files.
 std::size_t descriptors_for(std::size_t connections);
 
-// Has the process allowed to open so many, if it can be. Returns how many it may.
+// Raises the descriptor limit of the process to `count` if possible. Returns the resulting limit.
 std::size_t allow_descriptors(std::size_t count);
 
-// Bytes of addresses that the process may use, however little memory is behind them; SIZE_MAX: no limit.
+// Returns the address space limit of the process in bytes, or SIZE_MAX if it is unlimited.
 std::size_t allowed_addresses();
-// What a server of so many connections takes at most, beside its memory, where so many threads render: stacks
-// of all threads, and the program.
+// Returns the maximum address space in bytes of a server with `connections` connections and `renderers`
+// render threads: stacks and program, without the memory limit.
 std::size_t addresses_for(std::size_t connections, std::size_t renderers);
 
 }  // namespace orrery

@@ -11,7 +11,7 @@ namespace orrery {
 
 std::string random_hex(std::size_t bytes) {
   std::array<char, 64> random{};
-  [[maybe_unused]] const ssize_t filled = getrandom(random.data(), bytes, 0);  // so few always come
+  [[maybe_unused]] const ssize_t filled = getrandom(random.data(), bytes, 0);  // never fails for 64 bytes
   return hex_of({random.data(), bytes});
 }
 

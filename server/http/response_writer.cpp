@@ -10,7 +10,7 @@
 namespace orrery {
 namespace {
 
-// Whether an answer of this status may have a body at all (RFC 9110, 6.4.1).
+// Whether a response with this status may have a body (RFC 9110, 6.4.1).
 bool may_have_body(int status) { return status >= 200 && status != 204 && status != 304; }
 
 bool is_streamed(const Response& response, const Framing& framing) {
@@ -26,7 +26,7 @@ void append_header(std::string& text, std::string_view name, std::string_view va
   text += "\r\n";
 }
 
-// The parts of an answer as chunks, or as they are, to the end of the connection (RFC 9112, 7.1 and 6.3).
+// Writes a body in chunks, or plainly up to the end of the connection (RFC 9112, 7.1 and 6.3).
 class BodySink final : public Sink {
  public:
   BodySink(Connection& connection, bool chunked, const Sender& sender)
@@ -35,7 +35,7 @@ class BodySink final : public Sink {
   bool write(std::string_view bytes, const SharedBytes& more, std::string_view end) override {
     if (sender_.gone.stop_requested()) return whole_ = false;
     const std::size_t count = bytes.size() + more.size() + end.size();
-    if (count == 0) return whole_;  // an empty chunk would be the last
+    if (count == 0) return whole_;  // an empty chunk would end the body
     HandlerSlots::give_way();
     const auto share = sender_.answers.take(more, sender_.client);
     if (!chunked_) return whole_ = whole_ && connection_.write({bytes, more, end});
@@ -53,7 +53,7 @@ class BodySink final : public Sink {
   Connection& connection_;
   const bool chunked_;
   const Sender& sender_;
-  bool whole_ = true;  // so far
+  bool whole_ = true;  // all writes succeeded
 };
 
 }  // namespace
@@ -69,7 +69,7 @@ std::string response_head(const Response& response, const Framing& framing) {
   if (is_streamed(response, framing)) {
     if (framing.minor_version == 1) append_header(text, "Transfer-Encoding", "chunked");
   } else if (!response.stream && may_have_body(response.status)) {
-    // A route may answer HEAD without making the body: its length is then unknown, not 0.
+    // A route may answer HEAD without creating the body. Its length is then unknown, not 0.
     const bool unknown = framing.head_only && response.body.empty();
     if (!unknown) append_header(text, "Content-Length", std::to_string(response.body.size()));
   }
@@ -93,7 +93,7 @@ bool write_response(Connection& connection, Response& response, const Framing& f
     response.stream(sink);
   } catch (const std::exception& error) {
     response.note = error.what();
-    if (framing.minor_version == 0) connection.end_by_reset();  // where the end is that of the body
+    if (framing.minor_version == 0) connection.end_by_reset();  // a normal end would complete the body
     return false;
   }
   return sink.finish();

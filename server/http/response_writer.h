@@ -8,31 +8,31 @@
 
 namespace orrery {
 
-// How an answer is framed (RFC 9112, 6): by what its request was, and whether another may follow it.
+// Message framing of a response (RFC 9112, 6).
 struct Framing {
   bool head_only = false;  // the request was HEAD: no body follows
-  int minor_version = 1;   // of the request: HTTP/1.0 knows no chunks
-  bool keep_alive = true;  // false: the connection ends after the answer
+  int minor_version = 1;   // the request's; HTTP/1.0 has no chunks
+  bool keep_alive = true;  // false: the connection closes after the response
 };
 
-// Status line and headers up to and with the empty line, Content-Length, Transfer-Encoding and Connection
-// among them; `response` has none of these. Control characters in a value become blanks, so that no value
-// can begin a header of its own.
+// Returns the status line and headers up to and including the empty line. Adds Content-Length,
+// Transfer-Encoding and Connection, which `response` must not have. Replaces control characters in values
+// with blanks, so that a value cannot start another header.
 std::string response_head(const Response& response, const Framing& framing);
 
-// Whether a body follows the head of the answer, or would if it were not empty.
+// Whether a body, possibly empty, follows the head of the response.
 bool has_body(const Response& response, const Framing& framing);
 
-// For whom an answer is sent.
+// Client of a response, and the quota for its bytes.
 struct Sender {
   AnswerBudget& answers;
   std::string client;
-  std::stop_token gone = {};  // requested once the client has gone
+  std::stop_token gone = {};  // stop requested when the client disconnects
 };
 
-// Writes all of the answer and returns true; false: the client has left, or `response.stream` threw, which
-// `response.note` then tells. A stream ends once the client has gone; what it writes counts among the
-// answers. REQUIRES: keep_alive is false if a stream answers HTTP/1.0.
+// Writes the response. Returns false if the client has disconnected or if `response.stream` threw; the error
+// text is then in `response.note`. A stream ends when the client disconnects; its bytes count against
+// `sender.answers`. REQUIRES: keep_alive is false for a stream to an HTTP/1.0 client.
 bool write_response(Connection& connection, Response& response, const Framing& framing, const Sender& sender);
 
 }  // namespace orrery

@@ -24,7 +24,7 @@
 namespace orrery {
 namespace {
 
-// Wakes all who wait for it, from now on until it is silenced.
+// Event that wakes all waiting threads until it is silenced.
 class Alarm {
  public:
   Alarm() : fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
@@ -41,10 +41,10 @@ class Alarm {
   const int fd_;
 };
 
-constexpr int kNothing = -1;                     // to wait for
-constexpr std::chrono::milliseconds kRetry{50};  // to accept a connection that there was no room for
+constexpr int kNothing = -1;                     // no descriptor to wait for
+constexpr std::chrono::milliseconds kRetry{50};  // between attempts to accept without free descriptors
 
-// Waits until one of both can be read, or the deadline.
+// Waits until `a` or `b` is readable or the deadline has passed.
 void wait_for_either(int a, int b, Clock::time_point deadline) {
   pollfd ready[] = {{a, POLLIN, 0}, {b, POLLIN, 0}};
   int limit_ms = -1;
@@ -86,7 +86,7 @@ class HttpServer::Parts {
     }
     if (!answer_all(Clock::now() + options_.grace)) end_now();
     accept_all();
-    listener_.reset();  // who comes now is refused at once instead of being left without an answer
+    listener_.reset();  // rejects new connections at once instead of leaving them unanswered
   }
 
   void drain() {
@@ -97,7 +97,7 @@ class HttpServer::Parts {
 
  private:
   void wait_for_connection_or(const Alarm& alarm, Clock::time_point deadline) {
-    if (listener_->out_of_room())  // a connection stays to be accepted: waiting for one would not wait
+    if (listener_->out_of_room())  // the pending connection keeps the listener readable
       wait_for_either(kNothing, alarm.fd(), std::min(deadline, Clock::now() + kRetry));
     else
       wait_for_either(listener_->fd(), alarm.fd(), std::min(deadline, shed_.next_close()));
@@ -122,9 +122,9 @@ class HttpServer::Parts {
     }
   }
 
-  // Connections that one network may have: the others keep a quarter.
+  // Returns the maximum number of connections of one network. A quarter remains for the others.
   std::size_t share_of_one() const { return options_.max_connections - options_.max_connections / 4; }
-  // Counts one more of that network, and returns how many it has then.
+  // Counts another connection of the network. Returns the new number.
   std::size_t count(const std::string& network) {
     const std::lock_guard lock(mutex_);
     return ++of_network_[network];
@@ -136,16 +136,16 @@ class HttpServer::Parts {
   }
 
   struct Candidate {
-    // The client's connections, the most first; what they wait for; those that have waited a while, the
-    // oldest first; the others, the newest first.
+    // Eviction order: most connections of the client first, then by kind of wait, then waits of 100 ms or
+    // more before shorter ones. The oldest of the longer waits and the newest of the shorter ones come first.
     std::tuple<std::ptrdiff_t, Waiting::Kind, bool, Clock::duration> rank;
     Connection* connection;
   };
-  // Connections that may be evicted for a newcomer whose client then has `of_newcomer`, the first one first.
-  // With mutex_ held.
+  // Returns the connections that may be evicted for a newcomer, in eviction order. `of_newcomer`: connections
+  // of the newcomer's client, including the new one. Requires mutex_.
   std::vector<Candidate> candidates(std::size_t of_newcomer) const {
-    constexpr std::chrono::milliseconds kWhile{100};  // what is sent at once has come by then
-    std::map<std::string, std::size_t> counts;        // by client, which a proxy may have named
+    constexpr std::chrono::milliseconds kWhile{100};  // input that is sent at once arrives by then
+    std::map<std::string, std::size_t> counts;        // by client, possibly behind a proxy
     for (const Connection* connection : open_) ++counts[connection->client()];
     std::vector<Candidate> found;
     for (Connection* connection : open_) {
@@ -162,8 +162,9 @@ class HttpServer::Parts {
     return found;
   }
 
-  // Evicts a connection for a newcomer of that network, if there is one that may be: with `own`, one of the
-  // same network that waits for its client. `known`: the newcomer's client is that network.
+  // Evicts a connection for a newcomer of that network. Returns false if none can be evicted. `own`: evicts
+  // only connections of the same network that wait for their client. `known`: the newcomer's client is that
+  // network.
   bool make_room(const std::string& network, bool own, bool known) {
     const std::lock_guard lock(mutex_);
     const std::vector<Candidate> found = candidates(known ? of_network_[network] : 1);
@@ -174,7 +175,7 @@ class HttpServer::Parts {
     });
   }
 
-  // What those get who cannot be heard.
+  // Returns the response for rejected connections, whose requests are not read.
   std::string refusal(bool over_share) const {
     Request request;
     request.start = Clock::now();
@@ -190,7 +191,7 @@ class HttpServer::Parts {
     return response_head(response, {.keep_alive = false}).append(response.body);
   }
 
-  // Waits until no request is being answered. False if one still is at the deadline.
+  // Waits until no request is being answered. Returns false if one still is at the deadline.
   bool answer_all(Clock::time_point deadline) {
     while (busy_ > 0 && Clock::now() < deadline) {
       wait_for_connection_or(idle_, deadline);
@@ -200,7 +201,7 @@ class HttpServer::Parts {
     return busy_ == 0;
   }
 
-  // The handler is told that time is up; connections that do not end even then are broken off.
+  // Calls Handler::grace_over(). Shuts down the connections that are still open 2 s later.
   void end_now() {
     handler_.grace_over();
     if (answer_all(Clock::now() + std::chrono::seconds(2))) return;
@@ -210,7 +211,7 @@ class HttpServer::Parts {
 
   using Open = std::list<Connection*>;
 
-  // False if the connection ends with it.
+  // Returns false if the connection ends with the response.
   bool answer(Connection& connection) {
     struct Counted {
       Parts& parts;
@@ -228,7 +229,7 @@ class HttpServer::Parts {
       while (connection.wait_for_request() && answer(connection)) {
       }
       connection.linger();
-    } catch (const std::exception&) {  // out of memory where there is no request to answer
+    } catch (const std::exception&) {  // out of memory without a request to answer
     }
     {
       const std::lock_guard lock(mutex_);
@@ -246,7 +247,7 @@ class HttpServer::Parts {
   const Handler handler_;
   std::optional<Listener> listener_;
   const int port_;
-  const Alarm wake_, idle_;  // the service ends; nothing is being answered, while it ends
+  const Alarm wake_, idle_;  // shutdown begins; no request is left during shutdown
   HangupMonitor monitor_;
   Exchanger exchanger_;
   Shed shed_;
@@ -254,9 +255,9 @@ class HttpServer::Parts {
   std::atomic<int> busy_{0};  // requests being read or answered
   std::atomic<std::uint64_t> refused_{0};
   mutable std::mutex mutex_;
-  Open open_;                                      // guarded by mutex_, the newest last
-  std::map<std::string, std::size_t> of_network_;  // connections accepted; likewise
-  ConnectionThreads threads_;                      // last: its threads use the others
+  Open open_;                                      // newest last; guarded by mutex_
+  std::map<std::string, std::size_t> of_network_;  // accepted connections; guarded by mutex_
+  ConnectionThreads threads_;                      // last: its threads use the other members
 };
 
 HttpServer::HttpServer(const Options& options, Handler handler)

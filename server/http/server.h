@@ -13,59 +13,61 @@
 
 namespace orrery {
 
-// An HTTP/1.1 server: sockets, threads and bytes. What requests mean is the handler's matter. The connections
-// of one network take at most three quarters of all. When all are taken, a new one evicts one of the client
-// that has most: first one that waits for its client, then one whose request waits for its turn (answered
-// 429), then one whose work or stream has begun and waits to go on. Of a client that has no more than the
-// newcomer's, only connections that have waited for their client for a while are evicted. If there is none,
-// the newcomer is told to come back.
+// An HTTP/1.1 server: sockets, threads and parsing. The handler interprets the requests. One network may have
+// at most three quarters of the connections.
+//
+// When all connections are in use, a new one evicts a connection of the client with the most connections.
+// Connections that wait for their client are evicted first. Requests that wait for their turn are next
+// (answered 429), then started work or streams that wait to go on. A client with no more connections than the
+// newcomer's loses only those that have waited for the client for 100 ms. If no connection can be evicted,
+// the newcomer is rejected.
 class HttpServer {
  public:
   struct Options {
     std::string host = "127.0.0.1";
-    int port = 0;                         // 0: a free one
-    std::size_t max_bodies = 256 << 20;   // of all that are read or used at one time (bodies_bytes)
-    std::size_t max_answers = 256 << 20;  // of all that are sent at one time (answers_bytes)
+    int port = 0;                         // 0: any free port
+    std::size_t max_bodies = 256 << 20;   // request bodies being read or used (bodies_bytes)
+    std::size_t max_answers = 256 << 20;  // responses being sent (answers_bytes)
     std::size_t max_connections = 256;
-    std::size_t handlers = 4;        // that compute at one time on connections' threads (HandlerSlots)
-    std::chrono::seconds grace{30};  // for running requests once drain() was called
-    Forwarding forwarding = {};      // its trusted proxies may take all connections
+    std::size_t handlers = 4;        // that compute at a time (HandlerSlots)
+    std::chrono::seconds grace{30};  // for running requests after drain()
+    Forwarding forwarding = {};      // trusted proxies may use all connections
   };
 
-  // A request that was judged by its head: what is left to be done.
+  // Result of admission by the request's head.
   struct Admitted {
-    std::optional<BodyLimit> body;  // of the body that is read first; none: none is read
+    std::optional<BodyLimit> body;  // limit of the body to read first; nullopt: no body is read
     std::function<Response(Request&)> answer;
   };
 
-  // All are called on several threads at once. What admit() and Admitted::answer() throw is handed
-  // to refuse(); the others throw nothing.
+  // Functions that are called on several threads at once. Exceptions of admit() and Admitted::answer() are
+  // passed to refuse(); the other functions must not throw.
   struct Handler {
     std::function<Admitted(Request&)> admit;
-    // The answer to what was thrown about a request, which may not even be understood as one.
+    // Returns the response to an exception. The request may be incomplete.
     std::function<Response(const Request&, std::exception_ptr)> refuse;
-    // After the answer: bytes sent, and whether the client had left by then.
+    // Called after each response. `gone`: whether the client had disconnected by then.
     std::function<void(const Request&, const Response&, std::uint64_t bytes, bool gone)> served;
-    // When the grace after drain() is over: running requests must end now.
+    // Called when `grace` has passed after drain(): running requests must end now.
     std::function<void()> grace_over;
   };
 
-  // Listens at once. Throws Error if the address cannot be had.
+  // Starts to listen. Throws Error if the address is unavailable.
   HttpServer(const Options& options, Handler handler);
   ~HttpServer();
 
   int port() const;
 
-  std::size_t connections() const;  // that are open
-  std::uint64_t refused() const;    // connections, because there were too many
-  bool exhausted() const;           // a new client's connection would be refused
+  std::size_t connections() const;  // open connections
+  std::uint64_t refused() const;    // connections rejected for lack of room
+  bool exhausted() const;           // whether a new client's connection would be rejected
 
-  // Accepts connections until drain() was called and the last request was answered.
+  // Accepts connections until drain() is called and the last request is answered.
   void run();
 
-  // Ends idle connections, those with half a request after a last call, and each other one after its next
-  // answer. New connections are served until run() returns, so that those who ask learn that the service
-  // ends. From any thread.
+  // Begins a graceful shutdown. Closes idle connections at once, incomplete requests after
+  // Patience::last_call and other connections after their next response. New connections are served until
+  // run() returns, so that clients learn of the shutdown. Thread-safe.
   void drain();
 
  private:

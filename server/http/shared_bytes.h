@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Bytes that many read and nobody copies.
+// Immutable bytes, shared without copies.
 class SharedBytes {
  public:
   SharedBytes() = default;
@@ -15,7 +15,7 @@ class SharedBytes {
     *this = SharedBytes(own, *own);
   }
   SharedBytes(const char* text) : SharedBytes(std::string(text)) {}
-  // Bytes that live as long as `owner`; without one, as long as the program.
+  // Refers to bytes that live as long as `owner`, or as long as the program if it is null.
   SharedBytes(std::shared_ptr<const void> owner, std::string_view bytes)
       : owner_(std::move(owner)), bytes_(bytes) {}
 

@@ -6,17 +6,17 @@
 
 namespace orrery {
 
-// Turns connections away that no thread is free for: answers without reading what they ask. For one thread.
+// Rejects connections that no thread is free for, without reading their requests. Not thread-safe.
 class Shed {
  public:
-  static constexpr std::size_t kMost = 128;  // sockets kept open for clients that still send
+  static constexpr std::size_t kMost = 128;  // sockets kept open until their clients have read the response
 
   ~Shed();
-  // Takes the socket. `bytes`: the whole answer.
+  // Takes ownership of the socket and sends `bytes`, the whole response.
   void refuse(int fd, std::string_view bytes);
-  // Closes the sockets whose clients had the time to read the answer.
+  // Closes the sockets whose time to read the response has passed.
   void close_old();
-  // When the next of them is to be closed; never, if there is none.
+  // Returns the time of the next close, or time_point::max() if no socket is open.
   std::chrono::steady_clock::time_point next_close() const;
 
  private:
@@ -24,7 +24,7 @@ class Shed {
     int fd;
     std::chrono::steady_clock::time_point close_at;
   };
-  std::deque<Refused> refused_;  // the oldest first
+  std::deque<Refused> refused_;  // oldest first
 };
 
 }  // namespace orrery

@@ -1,6 +1,7 @@
-# cmake -DINPUT=<file> -DOUTPUT=<file> -P strip_text.cmake: copies a script or style sheet without comments and
-# without indentation. A comment after code stays where it has quotes, which may be those of a text around it. Line
-# numbers stay, for who reads an error in the browser. No text of the page may span lines: its indentation would be lost.
+# cmake -DINPUT=<file> -DOUTPUT=<file> -P strip_text.cmake: copies a script or style sheet without comments
+# and indentation. Trailing comments with quotes stay, since the quotes may belong to a string around them.
+# Line numbers stay the same, for error messages of browsers. String literals must not span lines, or they
+# would lose their indentation.
 file(READ ${INPUT} text)
 set(text "\n${text}")
 if(INPUT MATCHES "\\.css$")

@@ -15,7 +15,7 @@ int digit_of(char c) {
   return -1;
 }
 
-// Length of the UTF-8 sequence (RFC 3629) at `i`, or 0 if there is none.
+// Returns the length of the UTF-8 sequence (RFC 3629) at `i`, or 0 if it is invalid.
 std::size_t utf8_length(std::string_view text, std::size_t i) {
   const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
   const unsigned lead = byte(i);
@@ -85,7 +85,8 @@ Fields parse_query(std::string_view text) {
   return query;
 }
 
-// Removes "http://host:port" from the front and returns "host:port"; without a scheme, nothing.
+// Removes "http://host:port" from the front of `target` and returns "host:port". Returns "" if there is no
+// scheme.
 std::string_view take_authority(std::string_view& target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (!equal_ignoring_case(target.substr(0, scheme.size()), scheme)) continue;

@@ -8,20 +8,20 @@
 
 namespace orrery {
 
-// The target of a request, taken apart.
+// A parsed request target.
 struct Target {
-  std::vector<std::string> segments;  // of the path, decoded; "/" has none, "/a/" has "a" and ""
+  std::vector<std::string> segments;  // decoded; "/" has none, "/a/" has "a" and ""
   std::string path;                   // decoded
   Fields query;                       // decoded; names are unique
-  std::string authority;              // "host:port" of an absolute target; empty if it is a path
+  std::string authority;              // "host:port" of an absolute target; empty for a path
 };
 
-// Takes a path from the root, or an absolute address of http or https (RFC 9112, 3.2.2), whose path may be
-// empty. Throws HttpError 400 for anything else, a broken %-escape, text that is not UTF-8 or has control
-// characters, or a name that the query has twice.
+// Parses an absolute path, or an http or https URI (RFC 9112, 3.2.2), whose path may be empty. Throws
+// HttpError 400 for other targets, malformed %-escapes, invalid UTF-8, control characters and repeated query
+// parameters.
 Target parse_target(std::string_view target);
 
-// "?" and the fields, encoded; none: "".
+// Returns "?" and the encoded fields, or "" if there are none.
 std::string query_text(const Fields& query);
 
 }  // namespace orrery

@@ -9,21 +9,21 @@
 
 namespace orrery {
 
-// A thread a connection, made when first needed and used again. A few more serve newcomers while connections
-// that were evicted for them come to their ends.
+// Pool with a thread for each connection. Threads start when needed and are reused. A few extra threads serve
+// new connections while evicted ones end.
 class ConnectionThreads {
  public:
   explicit ConnectionThreads(std::size_t most) : most_(most) {}
   ~ConnectionThreads();  // waits for all work to end
 
-  // Whether fewer than `most` pieces of work are under way, and a thread is free for one more.
+  // Whether fewer than `most` connections are served and a thread is free, or can be started.
   bool has_room();
-  // Has the work done by the first thread that is free; it throws nothing. REQUIRES: one is, or will be soon.
+  // Runs `work` on the next free thread. `work` must not throw. REQUIRES: a thread is free or will be soon.
   void start(std::function<void()> work);
 
  private:
   void serve();
-  bool add_thread();  // with mutex_ held; false if the machine has no more
+  bool add_thread();  // requires mutex_; false if the system has no more
 
   const std::size_t most_;
   std::mutex mutex_;

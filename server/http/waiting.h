@@ -6,20 +6,20 @@
 
 namespace orrery {
 
-// What other threads may know of a connection's thread while it waits: for what, and since when. They may
-// tell it to give up, but only while it waits. begin(), begin_turn(), end() and gave_up() are for that
-// thread, the rest for any.
+// Wait state of a connection's thread, visible to other threads. They can evict the thread, but only while it
+// waits. begin(), begin_turn(), end() and gave_up() are for the connection's thread, the other functions for
+// any thread.
 class Waiting {
  public:
   using Clock = std::chrono::steady_clock;
-  // client: for bytes from the client, or for it to take some. turn: for other threads, before its work
-  // begins. begun: the same for work or a stream that has begun.
+  // client: waits for input from the client, or for the client to read. turn: waits for other threads before
+  // its work begins. begun: waits for other threads during work or a stream.
   enum class Kind { client, turn, begun };
 
-  // It waits from the start for its client, for what `events` say.
+  // Starts with a wait for the client. `events`: poll() events.
   explicit Waiting(short events) : events_(events) {}
 
-  // Waits for the client. Both are false once it was told to give up.
+  // Begins and ends a wait for the client. Both return false after an eviction.
   bool begin(Clock::time_point since, short events) {
     since_ = since.time_since_epoch().count();
     events_ = events;
@@ -32,13 +32,13 @@ class Waiting {
     return state != State::given_up;
   }
   bool gave_up() const { return state_ == State::given_up; }
-  // Waits for other threads.
+  // Begins a wait for other threads.
   void begin_turn(Kind kind) {
     since_ = Clock::now().time_since_epoch().count();
     change(State::working, kind == Kind::turn ? State::turn : State::begun);
   }
 
-  // Nullopt if it does not wait.
+  // Returns nullopt if the thread is not waiting.
   std::optional<Kind> kind() const {
     switch (state_.load()) {
       case State::client: return Kind::client;
@@ -49,7 +49,7 @@ class Waiting {
   }
   Clock::time_point since() const { return Clock::time_point(Clock::duration(since_)); }
   short events() const { return events_; }
-  // False if it does not wait for that any more.
+  // Evicts the thread. Returns false if it no longer waits for `kind`.
   bool give_up(Kind kind) {
     return change(kind == Kind::client ? State::client
                   : kind == Kind::turn ? State::turn
