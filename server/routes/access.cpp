@@ -9,10 +9,10 @@ namespace orrery {
 namespace {
 
 constexpr std::string_view kExpires = "expires", kSignature = "signature";
-// The option that can make a picture take a thousand times as long and changes nothing of it.
+// Option that needs the scope render: it can make a render a thousand times slower and changes no pixel.
 constexpr std::string_view kChosen = "accelerator";
 
-// One text for the address, however it was escaped.
+// Returns the canonical text of the URL, independent of its escapes.
 std::string address_of(const Request& request) {
   std::string text = request.path;
   for (const auto& [name, value] : request.query) {
@@ -22,7 +22,8 @@ std::string address_of(const Request& request) {
   return text;
 }
 
-// Whether it is a link that holds. Throws HttpError 403 if it is one that does not.
+// Returns true for a valid signed link, false for other requests. Throws HttpError 403 if the link is invalid
+// or expired.
 bool pass_by_link(const Access& access, Request& request) {
   const auto signature = find_field(request.query, kSignature);
   if (!signature) return false;

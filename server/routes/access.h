@@ -5,20 +5,20 @@
 
 namespace orrery {
 
-// Who may see the answer: all, all who show a token, or who has the link.
+// Clients that may see a response: everyone, holders of a token, or holders of a signed link.
 enum class Audience { all, holders, link };
 
-// Lets a request pass that shows a token of the scope it needs or, to read, a signed link, or needs neither;
-// notes who it is from. A link's own parameters are taken out of the query. Throws HttpError 401 or 403.
+// Authorizes a request by its token or, for the scope read, by a signed link. Sets request.client to the name
+// of the token and removes the link's parameters from the query. Throws HttpError 401 or 403.
 Audience require_access(const Access& access, Scope needed, Request& request);
 
-// Whether the request may remove what other clients made, which takes a token of the scope admin. Without
-// tokens, nobody may: there clients are known by their addresses.
+// Whether the request may remove objects of other clients, which needs a token of the scope admin. Always
+// false without tokens, because addresses identify clients then.
 bool may_remove_others(const Access& access, const Request& request);
 
-// Whether the address has parameters of a link.
+// Whether the query has parameters of a signed link.
 bool is_link(const Request& request);
-// The parameters that make an address a link: "expires=...&signature=...".
+// Returns the query parameters of a signed link: "expires=...&signature=...".
 std::string link_parameters(const Access& access, const Request& target, std::int64_t expires);
 
 }  // namespace orrery

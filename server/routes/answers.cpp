@@ -12,7 +12,7 @@
 namespace orrery {
 namespace {
 
-// The query as an object: "/azimuth" (RFC 6901).
+// Returns the JSON Pointer of a query parameter, such as "/azimuth" (RFC 6901).
 std::string pointer_to(std::string_view name) {
   std::string pointer = "/";
   for (const char c : name.substr(0, 100)) {
@@ -26,7 +26,7 @@ std::string pointer_to(std::string_view name) {
   return pointer;
 }
 
-// What a client believes to have asked for must not be passed over.
+// Throws InputError if there are query parameters, which would otherwise be ignored silently.
 void require_no_query(const Request& request) {
   if (!request.query.empty())
     throw InputError(pointer_to(request.query.begin()->first),
@@ -38,7 +38,7 @@ void require_json(const Request& request) {
   require_no_query(request);
   const std::string header = request.header("Content-Type").value_or("");
   const std::string_view type = trimmed(std::string_view(header).substr(0, header.find(';')));
-  // curl and forms call every body x-www-form-urlencoded; it is read as JSON all the same.
+  // curl and HTML forms send x-www-form-urlencoded by default; such a body is read as JSON, too.
   constexpr std::array<std::string_view, 4> kTypes{"", "application/json",
                                                    "application/x-www-form-urlencoded", "text/plain"};
   const bool known =
@@ -50,9 +50,9 @@ void require_json(const Request& request) {
     throw HttpError(415, "Expected JSON in UTF-8 (RFC 8259), got " + std::string(charset.substr(0, 40)));
 }
 
-// How well one entry of an Accept header, such as "image/*;q=0.5", fits a type: 0..1 by its weight, or none.
+// Match of an entry of an Accept header, such as "image/*;q=0.5", with a media type. `weight`: 0..1.
 struct Fit {
-  int exactness = -1;  // 2: the type itself, 1: image/*, 0: */*
+  int exactness = -1;  // 2: the type itself, 1: image/*, 0: */*, -1: no match
   double weight = 0;
 };
 Fit fit_of(std::string_view entry, std::string_view type) {

@@ -10,40 +10,41 @@
 #include "server/app/app.h"
 #include "server/routes/router.h"
 
-// What several routes need to read a request and to write an answer.
+// Helpers of the routes that read requests and write responses.
 namespace orrery {
 
 Caller caller_of(const Request& request);
 
-// A body of JSON, of at most `body_bytes`. Refuses other content types, what is compressed, and a query.
+// JSON body of at most `body_bytes`. Rejects other content types, compressed bodies and query parameters.
 RouteBody json_body(const App& app);
-// Throws HttpError 415 for a body that is compressed.
+// Throws HttpError 415 if the body is compressed.
 void refuse_compressed(const Request& request);
 
-// The options of a render in the query. `more` names what else the query may have; its values are left alone.
-// Throws InputError, with pointers such as "/azimuth".
+// Returns the render options of the query. `more`: other query parameters that are allowed and not read here.
+// Throws InputError with pointers such as "/azimuth".
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more = {});
-// What a client wrote, or the start of it, as errors show it.
+// Returns up to 40 bytes of a client's text in quotes, for error messages.
 std::string quoted(const std::string& text);
 
-// Whether the client has what the ETag stands for.
+// Whether If-None-Match lists `etag` (weak comparison) or "*".
 bool has_current(const Request& request, std::string_view etag);
 
-// The type of `offered` that the Accept header likes best; the first of equals. Throws HttpError 406.
+// Returns the type of `offered` with the highest weight in the Accept header, the first of several. Throws
+// HttpError 406.
 std::string_view negotiate(const Request& request, std::span<const std::string_view> offered);
 
-// "load;dur=1.25, render;dur=40.1": the steps that took any time.
+// Returns "load;dur=1.25, render;dur=40.1": the nonzero steps in ms.
 std::string server_timing(const Timing& timing);
 
-// Sets Orrery-Warning, unless there are none.
+// Sets Orrery-Warning if there are warnings.
 void set_warnings(Response& response, std::span<const Problem> warnings);
 
-// A picture, and what it took: Server-Timing with the steps, the structure and its counted work, and X-Rays;
-// X-RMSE where its samples tell their error.
+// Returns a response with the picture and its cost: Server-Timing with the steps, the accelerator and its
+// counted work, and X-Rays. Sets X-RMSE if the error was estimated from the samples.
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);
 
-// Of a picture that was made to a budget: Orrery-Budget, what became of it; and of PNG Content-Location, the
-// address that gives the same bytes without it, below `prefix`.
+// Sets the headers of a picture with a budget: Orrery-Budget with the outcome and, for PNG, Content-Location.
+// The latter is a URL below `prefix` that gives the same bytes without a budget.
 void set_budget(Response& response, std::string_view type, const Scene& scene, const Picture& picture,
                 const std::string& prefix);
 

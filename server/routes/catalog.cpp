@@ -5,7 +5,7 @@
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 
-// GET /v1/catalog: all that scenes and requests can name.
+// GET /v1/catalog: all names that scenes and requests can use.
 namespace orrery {
 
 void add_catalog_routes(Router& router, App&) {

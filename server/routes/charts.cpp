@@ -6,13 +6,13 @@
 #include "server/app/picture_key.h"
 #include "server/routes/job_answers.h"
 
-// /v1/scenes/{id}/charts: speed against accuracy of a picture, measured by a job.
+// /v1/scenes/{id}/charts: jobs that chart render time against error.
 namespace orrery {
 namespace {
 
 using nlohmann::ordered_json;
 
-// The pictures that make a chart, which are not kept.
+// Renders the pictures of a chart and discards them after measurement.
 class ChartWork final : public JobWork {
  public:
   ChartWork(const Scene& scene, const RenderRequest& view, const Study::Extent& extent)
@@ -65,7 +65,7 @@ ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
   return order;
 }
 
-// All that a chart depends on: also what changes no picture, but its time.
+// Returns all inputs of a chart, including options that change only the time, as text.
 std::string canonical_chart(const Scene& scene, const ChartOrder& order) {
   return "chart " + scene.id + " " + canonical_work(scene, order.view) + " " +
          std::to_string(order.extent.samples) + " " + std::to_string(order.extent.rounds) + " " +

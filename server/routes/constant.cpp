@@ -18,7 +18,7 @@ class Constant {
 
   Response answer(const Request& request) {
     std::call_once(made_, [this] {
-      const WorkScope nobody({});  // whose request is the first is chance
+      const WorkScope nobody({});  // charged to no client, since any request may be the first
       bytes_ = make_();
       gzip_ = gzip_of(type_, bytes_);
       etag_ = "\"" + sha256_hex(bytes_).substr(0, 32) + "\"";
@@ -36,8 +36,8 @@ class Constant {
   const std::string type_;
   const std::function<SharedBytes()> make_;
   std::once_flag made_;
-  SharedBytes bytes_, gzip_;  // once made; const from then on
-  std::string etag_;          // likewise
+  SharedBytes bytes_, gzip_;  // const after the first request
+  std::string etag_;          // const after the first request
 };
 
 }  // namespace

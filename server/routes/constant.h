@@ -7,9 +7,9 @@
 
 namespace orrery {
 
-// Adds a GET route whose answer is the same for every request: `make` is called for the first, and then the
-// bytes, their ETag and their compressed form are kept and shared. The answer has to be asked about each time
-// (no-cache), which 304 then ends.
+// Adds a GET route with the same response for every request. `make` is called for the first request; its
+// bytes, their ETag and their compressed form are cached. Clients must revalidate (no-cache) and then receive
+// a 304.
 void add_constant(Router& router, std::string_view pattern, Scope scope, std::string_view type,
                   std::function<SharedBytes()> make);
 

@@ -4,8 +4,8 @@
 #include "server/http/embedded.h"
 #include "server/routes/constant.h"
 
-// Serves files that are built into the program: GET / and the page's files, GET /scenes/{name}.json and
-// GET /scenes/thumbnails/{name}.webp.
+// Serves embedded files: GET / and the files of the page, GET /scenes/{name}.json and GET
+// /scenes/thumbnails/{name}.webp.
 namespace orrery {
 namespace {
 

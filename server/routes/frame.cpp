@@ -3,8 +3,7 @@
 #include "server/app/picture_key.h"
 #include "server/routes/answers.h"
 
-// GET /v1/scenes/{id}/frame.png: one picture, a pure function of its address unless that has a budget of
-// time.
+// GET /v1/scenes/{id}/frame.png: one picture, a pure function of its URL unless that has a time budget.
 namespace orrery {
 namespace {
 
@@ -21,7 +20,7 @@ Response frame(App& app, Request& request) {
   Response response;
   const std::string etag = etag_of(scene->scene(), wanted);
   bool lasts = wanted.seconds.value_or(0) == 0;
-  // Whether a budget is met is known once it is made, or by who has what was made.
+  // A picture that missed its budget has no ETag. An ETag of the client proves a met budget; "*" does not.
   const bool named = !has_budget(wanted) || request.header("If-None-Match") != "*";
   if (lasts && named && has_current(request, etag)) {
     response.status = 304;
@@ -33,7 +32,7 @@ Response frame(App& app, Request& request) {
                                          caller_of(request), timing);
     response = picture_response("image/png", rendered, timing);
     set_budget(response, "image/png", scene->scene(), *rendered.picture, request.prefix);
-    // Another service may have more rays to spend.
+    // Another instance may be able to spend more rays.
     lasts = lasts && !is_missed(rendered.picture->budget);
   }
   if (!lasts) return response.set("Cache-Control", "no-store");

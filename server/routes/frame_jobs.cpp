@@ -7,13 +7,13 @@
 #include "server/routes/job_answers.h"
 #include "server/routes/render_order.h"
 
-// POST /v1/jobs: pictures and orbits that take longer than anybody holds a connection open for.
+// POST /v1/jobs: renders pictures and orbits that take too long for one HTTP request.
 namespace orrery {
 namespace {
 
 using nlohmann::ordered_json;
 
-// The frames of an orbit, or one picture, each a PNG file.
+// Renders one picture or the frames of an orbit to PNG files.
 class FrameWork final : public JobWork {
  public:
   FrameWork(const std::shared_ptr<const PreparedScene>& scene, const OrbitPath& path, int frames)
@@ -60,10 +60,10 @@ class FrameWork final : public JobWork {
  private:
   static std::string folder(const std::string& job_id) { return job_path(job_id) + "/frames/"; }
 
-  const std::weak_ptr<const PreparedScene> scene_;  // the job's, while it renders
+  const std::weak_ptr<const PreparedScene> scene_;  // owned by the job while it renders
   OrbitPath path_;
   OrbitBudget budget_;
-  std::vector<SharedBytes> files_;  // by step; empty before it is done
+  std::vector<SharedBytes> files_;  // by step; empty until the step is done
 };
 
 struct FrameOrder {

@@ -1,7 +1,7 @@
 #include "server/app/app.h"
 #include "server/routes/answers.h"
 
-// GET /healthz: the process answers. GET /readyz: it takes new work.
+// GET /healthz: the process responds. GET /readyz: the service accepts new work.
 namespace orrery {
 namespace {
 

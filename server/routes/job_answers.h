@@ -2,22 +2,22 @@
 
 #include "server/routes/answers.h"
 
-// What routes that start and follow jobs share.
+// Helpers of the routes that start and follow jobs.
 namespace orrery {
 
 std::string job_path(const std::string& job_id);
-// Links of JobWork as clients need them.
+// Returns the links of JobWork below `prefix`.
 nlohmann::ordered_json with_prefix(nlohmann::ordered_json links, const std::string& prefix);
-// How far it is, and where its results are: links begin with `prefix`.
+// Returns the progress of the job and its links below `prefix`.
 nlohmann::ordered_json job_json(const Job& job, const JobStatus& status, const std::string& prefix);
 
-// Starts it, once for an Idempotency-Key with the same `content`: 202. Throws HttpError, and what
-// Jobs::start() does.
+// Starts a job and returns 202. A repeated Idempotency-Key with the same `content` returns the existing job.
+// Throws HttpError and the errors of Jobs::start().
 Response start_job(App& app, Request& request, JobSpec spec, const std::string& content,
                    const Timing& timing);
 
-// The file of the job that has the request's path; 304 for who knows it, and then it is not written. Throws
-// NotFound, and HttpError 409 for a file that is not made yet, or will not be.
+// Returns the result file at the request's path, or 304 without creating the file if the client has it.
+// Throws NotFound, and HttpError 409 if the file is not finished.
 Response job_result(App& app, const Request& request, const std::string& job_id);
 
 }  // namespace orrery

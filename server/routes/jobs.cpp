@@ -6,7 +6,7 @@
 #include "server/routes/access.h"
 #include "server/routes/job_answers.h"
 
-// /v1/jobs/{id}: how far jobs are, of whatever kind, and their end.
+// /v1/jobs/{id}: progress and removal of jobs of all kinds.
 namespace orrery {
 namespace {
 
@@ -23,18 +23,18 @@ std::string event(std::string_view name, int id, const ordered_json& data) {
   return "event: " + std::string(name) + "\nid: " + std::to_string(id) + "\ndata: " + data.dump() + "\n\n";
 }
 
-// Events are numbered by the steps that are done when they are sent, the last one by one more: who comes
-// back with the number it saw last misses none.
+// Server-sent events of a job. The ID of an event is the number of steps done when it is sent, plus one for
+// the last event. A client that reconnects with Last-Event-ID misses no event.
 struct Events {
   std::shared_ptr<Job> job;
-  std::string prefix;       // of links
-  int seen;                 // steps that the client knows of
-  std::int64_t tiles = -1;  // likewise
+  std::string prefix;       // prefix of links
+  int seen;                 // steps that were reported to the client
+  std::int64_t tiles = -1;  // tiles that were reported to the client
   bool ended = false;
 
   void send(Sink& sink, const Timer& timer, const std::stop_token& gone) {
-    constexpr std::chrono::milliseconds kLeast{100};  // between two reports of progress
-    constexpr std::chrono::seconds kSilence{10};      // after which the client is told that the line is open
+    constexpr std::chrono::milliseconds kLeast{100};  // between two progress events
+    constexpr std::chrono::seconds kSilence{10};      // until a comment keeps the connection alive
     for (JobStatus status = job->status(); tell(sink, status) && !ended && !gone.stop_requested();) {
       const HandlerSlots::Wait wait(Waiting::Kind::begun);
       const auto spoke = timer.now();
@@ -45,7 +45,7 @@ struct Events {
   }
 
  private:
-  // Sends what the client does not know yet, event by event. False once it has gone.
+  // Sends the events that the client has not seen. Returns false if the client has disconnected.
   bool tell(Sink& sink, const JobStatus& status) {
     const bool moved = std::exchange(tiles, status.tiles_done) != status.tiles_done,
                late = seen < status.steps_done;
@@ -74,7 +74,7 @@ Response get_events(App& app, Request& request) {
     seen = number_in<int>(*last).value_or(-1);
     if (seen < 0) throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
   }
-  if (seen > job->status().steps) return {.status = 204};  // it has seen the end: no need to come again
+  if (seen > job->status().steps) return {.status = 204};  // ends the client's reconnects
   Response response;
   response.set("Content-Type", "text/event-stream");
   response.set("Cache-Control", "no-store").set("X-Accel-Buffering", "no");

@@ -9,11 +9,11 @@
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 
-// GET /v1/limits: what no request may exceed, under the names that errors use.
+// GET /v1/limits: the limits of requests, under the names that errors use.
 namespace orrery {
 namespace {
 
-// Of each render option: what JSON Schema says beside the description, such as {"minimum": 1, "maximum": 32}.
+// Returns the JSON Schema of each render option without description: {"minimum": 1, "maximum": 32}.
 nlohmann::ordered_json option_limits() {
   nlohmann::ordered_json limits = option_schemas();
   for (auto& schema : limits) schema.erase("description");
@@ -42,7 +42,7 @@ nlohmann::ordered_json limits_json(const Settings& settings, const nlohmann::ord
                                  {"picture_texels", PictureLimits{}.texels}};
   for (const Setting& limit : limits()) json[std::string(limit.name)] = std::stoll(limit.text(settings));
   json["work_bytes"] = work_bytes(settings);
-  json["storage"] = "memory";  // of scenes, assets, pictures and jobs: they end with the service
+  json["storage"] = "memory";  // scenes, assets, pictures and jobs end with the service
   json["options"] = options;
   return json;
 }

@@ -8,10 +8,10 @@
 #include "server/routes/answers.h"
 #include "server/routes/constant.h"
 
-// GET /openapi.json: the service's description of itself. The file openapi.json has all but the render
-// options:
-//   "render options" in a list of parameters  stands for those of a query;
-//   components.schemas                        lacks camera, image and render, the parts of a request's body;
+// GET /openapi.json: the OpenAPI description of the service. The file openapi.json has everything except the
+// render options:
+//   "render options" in a list of parameters  is replaced by those of a query;
+//   components.schemas                        lacks camera, image and render, the parts of a request body;
 //   components.schemas.Explanation            lacks the options of the section render;
 //   components.schemas.Limits                 lacks the limits that are settings.
 namespace orrery {
@@ -28,7 +28,7 @@ ordered_json file_part() {
   return ordered_json::parse(file->bytes);
 }
 
-// As it is asked for under `name` in a query: lists with commas.
+// Returns the query parameter `name` of an option; lists are separated by commas.
 ordered_json parameter_of(std::string_view name, const RenderOption& option, ordered_json schema) {
   std::string description = schema["description"];
   schema.erase("description");
@@ -59,7 +59,7 @@ void add_limits(ordered_json& schema) {
   }
 }
 
-// Replaces the placeholder in all lists of parameters; returns the parameters that it stands for, by name.
+// Replaces the placeholder in all lists of parameters. Returns the parameters that replace it, by name.
 ordered_json expand_parameters(ordered_json& paths, const ordered_json& options) {
   ordered_json components = ordered_json::object(), references = ordered_json::array();
   for (const std::string_view name : render_option_names()) {

@@ -12,13 +12,14 @@
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 
-// GET /v1/scenes/{id}/orbit: the frames of a turn of the camera, as they are rendered.
+// GET /v1/scenes/{id}/orbit: streams the frames of an orbit of the camera as they are rendered.
 namespace orrery {
 namespace {
 
 constexpr std::array<std::string_view, 4> kOwnParameters{"frames", "step", "time_step", "fps"};
 
-// The number a parameter has, or `fallback`. Notes what is wrong with it.
+// Returns the value of a query parameter, or `fallback` if it is missing. Appends an invalid value to
+// `problems`.
 double number_of(const Request& request, std::string_view name, double min, double max, double fallback,
                  std::vector<Problem>& problems) {
   for (const auto& [key, text] : request.query) {
@@ -75,7 +76,7 @@ SharedBytes picture_of(const std::shared_ptr<const OrbitFrame>& frame) {
   return {frame, frame->picture.bytes};
 }
 
-// What is sent of an orbit whose first frame is there.
+// State of an orbit stream whose first frame is rendered.
 struct OrbitRequest {
   std::shared_ptr<const void> place;
   std::shared_ptr<OrbitCast::Viewer> viewer;
@@ -97,7 +98,7 @@ void send(const OrbitRequest& orbit, PictureWriter&& writer) {
                         .fields = {{"Orrery-Error-Bound", bound_text(frame->picture.certificate)}},
                         .last = orbit.viewer->at_end()});
       if (!written) return;
-    } catch (const OverLimit&) {  // the frame is skipped, as if its viewer were slow
+    } catch (const OverLimit&) {  // skips the frame, as for a slow viewer
     }
   writer.end();
 }
@@ -117,7 +118,7 @@ Response orbit(App& app, Request& request) {
                      .viewer = app.orbits().watch(spec),
                      .first = {},
                      .gone = request.gone};
-  orbit.first = next_of(orbit, Waiting::Kind::turn);  // what fails here has a status of its own
+  orbit.first = next_of(orbit, Waiting::Kind::turn);  // errors can still set the status
   if (!orbit.first && request.gone.stop_requested()) throw Cancelled("the client has gone");
   if (!orbit.first) throw Busy("The service ends", 5);
   response.stream = [orbit, format](Sink& sink) { send(orbit, PictureWriter(sink, format)); };

@@ -7,21 +7,22 @@
 
 #include "server/http/message.h"
 
-// Answers of many PNG pictures, one after the other: multipart/x-mixed-replace, which browsers show, or
-// application/x-orrery-frames, [length of the header, 4 bytes, big-endian][header, JSON][PNG] each.
+// Streams of PNG pictures, either multipart/x-mixed-replace, which browsers can show, or
+// application/x-orrery-frames: [length of the header, 4 bytes, big-endian][header, JSON][PNG] for each
+// picture.
 namespace orrery {
 
 enum class StreamFormat { multipart, frames };
 
-// What the Accept header likes best. Throws HttpError 406.
+// Returns the preferred format of the Accept header. Throws HttpError 406.
 StreamFormat negotiate_stream(const Request& request);
-// Content-Type, and that nobody between is to keep or gather the pictures.
+// Sets Content-Type and the headers that keep proxies from caching and buffering.
 void set_stream_headers(Response& response, StreamFormat format);
 
 struct StreamedPicture {
   SharedBytes png;
-  const nlohmann::ordered_json& header;  // of a frame; its length, "bytes", is added
-  Fields fields = {};                    // of a part
+  const nlohmann::ordered_json& header;  // for `frames`; the PNG length, "bytes", is added
+  Fields fields = {};                    // for `multipart`
   bool last = false;
 };
 
@@ -29,20 +30,20 @@ class PictureWriter {
  public:
   PictureWriter(Sink& sink, StreamFormat format) : sink_(sink), format_(format) {}
 
-  // Waits until it is sent. False once the client has gone. Throws OverLimit if too much is being sent
-  // already; the picture is then left out.
+  // Writes a picture and waits until it is sent. Returns false if the client has disconnected. Throws
+  // OverLimit without sending it if too many response bytes are being sent.
   bool write(const StreamedPicture& picture);
-  // After the last picture that there is.
+  // Ends the stream after the last picture.
   void end();
 
  private:
   bool write_frame(const StreamedPicture& picture);
-  // The boundary that ends a part goes with it: a browser shows a picture when it sees the next one.
+  // Writes a part together with its closing boundary, since browsers show a part only at the next boundary.
   bool write_part(const StreamedPicture& picture);
 
   Sink& sink_;
   const StreamFormat format_;
-  bool begun_ = false, ended_ = false;  // the parts
+  bool begun_ = false, ended_ = false;  // multipart body
 };
 
 }  // namespace orrery

@@ -14,11 +14,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostBytes = 64 * 1024;  // of an answer
-constexpr std::size_t kMostCharacters = 4500;  // of its detail; each takes at most 6 bytes
+constexpr std::size_t kMostBytes = 64 * 1024;  // response body
+constexpr std::size_t kMostCharacters = 4500;  // detail; at most 6 bytes each
 
-// The body, without the last of its errors where all would take more than kMostBytes. REQUIRES: there is room
-// for one error.
+// Returns the body, without its last errors if all of them would exceed kMostBytes. REQUIRES: one error fits.
 std::string text_of(ordered_json problem) {
   const auto text = [&] {
     return problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -55,7 +54,7 @@ ordered_json list_of(const std::vector<Problem>& problems) {
 
 Response try_later(int status, const Busy& error, std::string_view request_id, const char* refusal) {
   Response response = respond(status, error.what(), request_id);
-  // Those who are refused at one time are not all to come back at one time.
+  // Spreads Retry-After, so that clients rejected together do not all return together.
   const auto seconds = static_cast<std::size_t>(std::ceil(error.retry_after_s()));
   const std::size_t spread = std::hash<std::string_view>()(request_id) % (1 + seconds / 4);
   response.set("Retry-After", std::to_string(seconds + spread));
@@ -72,7 +71,7 @@ Response malformed(const MalformedJson& error, std::string_view request_id) {
                  more);
 }
 
-// What could be had instead.
+// Returns a 422 with the outcome that was possible: the budget and its certificate.
 Response missed(const BudgetMissed& error, std::string_view request_id) {
   const BudgetOutcome& outcome = error.outcome();
   ordered_json more = list_of({{outcome.error_met ? "/budget/seconds" : "/budget/error", outcome.reason}});

@@ -7,8 +7,8 @@
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 
-// GET /v1/scenes/{id}/refinement: one picture, from few samples to all that are asked for, as passes of one
-// render: each is what frame.png gives for so many samples.
+// GET /v1/scenes/{id}/refinement: one picture in passes, from few samples to all requested ones. Each pass
+// equals the frame.png with its number of samples.
 namespace orrery {
 namespace {
 
@@ -31,7 +31,7 @@ Fields fields_of(const Refinement::Step& step) {
   return fields;
 }
 
-// What is sent of a refinement whose first picture is there.
+// State of a refinement stream whose first picture is rendered.
 struct RefinementRequest {
   std::shared_ptr<const void> place;
   std::shared_ptr<Refinement> refinement;
@@ -39,8 +39,8 @@ struct RefinementRequest {
   std::stop_token gone;
 };
 
-// A picture for which there is no room among the answers is left out, but not the last one. False once the
-// client has gone.
+// Writes a picture. Skips a picture that exceeds the quota of response bytes, unless it is the last. Returns
+// false if the client has disconnected.
 bool write(PictureWriter& writer, const Refinement& refinement, const Refinement::Step& step) {
   const auto header = header_of(step, refinement.plan());
   try {
@@ -59,7 +59,7 @@ void send(const RefinementRequest& request, PictureWriter&& writer) {
     for (auto step = request.first; step; step = request.refinement->next(request.gone))
       if (!write(writer, *request.refinement, *step)) return;
   } catch (const Cancelled&) {
-    return;  // the client has gone
+    return;  // the client has disconnected
   }
   writer.end();
 }
@@ -81,7 +81,7 @@ Response refine(App& app, Request& request) {
                             .refinement = app.refine({scene, wanted, plan, request.client}),
                             .first = {},
                             .gone = request.gone};
-  refined.first = refined.refinement->next(request.gone);  // what fails here has a status of its own
+  refined.first = refined.refinement->next(request.gone);  // errors can still set the status
   set_warnings(response, refined.first->picture->warnings);
   response.stream = [refined, format](Sink& sink) { send(refined, PictureWriter(sink, format)); };
   return response;

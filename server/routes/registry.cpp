@@ -2,7 +2,7 @@
 
 namespace orrery {
 
-// One line a file; the paths are in it.
+// A line for each file of routes; the paths are in the file.
 // clang-format off
 #define ORRERY_ROUTES(add) \
   add(render)              \

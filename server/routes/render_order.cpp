@@ -7,7 +7,7 @@ namespace orrery {
 namespace {
 
 SceneStore::Prepared find(App& app, const Document& id) {
-  const std::string text = id.canonical();  // in quotes if it is one
+  const std::string text = id.canonical();  // in quotes if it is a string
   if (!text.starts_with('"'))
     throw InputError("/scene_id", "expected the id of a scene in quotes, got " + text.substr(0, 40));
   return app.scenes().find(text.substr(1, text.size() - 2));

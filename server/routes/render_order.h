@@ -9,14 +9,14 @@ namespace orrery {
 
 class Params;
 
-// What a body orders: a scene, written in it or named by its id, and how it is to be seen.
+// Scene and render options of a request body.
 struct RenderOrder {
   SceneStore::Prepared scene;
   RenderRequest request;
 };
 
-// Reads {scene or scene_id, camera, image, render} or, if it has neither of the first two, a scene; `more`
-// may read other keys of the former. Takes the request's body. Throws what App::read and read_request do.
+// Reads either {scene or scene_id, camera, image, render} or a bare scene. `more` may read further keys of
+// the former. Consumes the request's body. Throws the errors of App::read and read_request.
 RenderOrder read_render_order(App& app, Request& request, Timing& timing,
                               const std::function<void(Params&)>& more = {});
 

@@ -13,51 +13,51 @@
 
 namespace orrery {
 
-// The body that a route has read before its handler is called.
+// Body that is read before the route's handler is called.
 struct RouteBody {
   BodyLimit limit;
-  void (*require)(const Request&);  // throws what refuses the body by the request's head
+  void (*require)(const Request&);  // throws to reject the body by the request's head
 };
 
 struct Route {
   using Handler = std::function<Response(Request&)>;
 
   std::string method, pattern;
-  std::vector<std::string> segments;  // of the pattern
-  Scope scope;                        // that a token must have
-  LogLevel log;                       // of a request that went well
-  std::optional<RouteBody> body;      // none: a body is not read
+  std::vector<std::string> segments;  // segments of the pattern
+  Scope scope;                        // required of the token
+  LogLevel log;                       // level of successful requests
+  std::optional<RouteBody> body;      // nullopt: no body is read
   Handler handler;
 };
 
-// Finds the route of a method and a path. Filled once, then const and safe from any thread.
+// Finds the route for a method and a path. Thread-safe once all routes are added.
 class Router {
  public:
-  // `pattern` is a path in which {name} stands for any one segment: "/v1/scenes/{id}/frame.png". A GET route
-  // answers HEAD as well. Routes added first are tried first.
+  // Adds a route. In `pattern`, {name} stands for any one segment: "/v1/scenes/{id}/frame.png". A GET route
+  // also answers HEAD. Routes are tried in order of addition.
   void add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
            Route::Handler handler);
   void add(std::string_view method, std::string_view pattern, Scope scope, LogLevel log,
            const RouteBody& body, Route::Handler handler);
 
-  // The route of the request. Fills request.route, also if only the path has one, and request.path_values.
-  // Throws HttpError 404 or 405.
+  // Returns the route of the request. Sets request.route and request.path_values, also if only the path
+  // matches. Throws HttpError 404 or 405.
   const Route& find(Request& request) const;
 
-  // In the order they were added.
+  // Returns all routes in order of addition.
   const std::deque<Route>& routes() const { return routes_; }
 
-  // "GET, HEAD, OPTIONS": the methods that there are for the request's path, for "*" those of all routes (RFC
-  // 9110, 9.3.7). Fills as find(). Throws HttpError 404.
+  // Returns the methods of the request's path, such as "GET, HEAD, OPTIONS"; for "*" those of all routes (RFC
+  // 9110, 9.3.7). Sets the same members as find(). Throws HttpError 404.
   std::string allowed_methods(Request& request) const;
 
  private:
   static bool matches(const Route& route, Request& request);
-  // "PUT /v1/assets/{sha256}, GET ...": routes that name something right below the path; empty if there are
-  // none.
+  // Returns the routes whose last segment is a placeholder below the path, such as "PUT /v1/assets/{sha256},
+  // GET ...". Returns "" if there are none.
   std::string named_below(const Request& request) const;
 
-  std::deque<Route> routes_;  // requests refer to them
+  std::deque<Route> routes_;  // a deque, since requests point to its elements
 };
 
 }  // namespace orrery

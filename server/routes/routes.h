@@ -5,10 +5,10 @@
 
 namespace orrery {
 
-// Every endpoint, one line each in registry.cpp. The app outlives the router.
+// Adds all endpoints of registry.cpp. The app must outlive the router.
 void add_routes(Router& router, App& app);
 
-// Those alone that supervisors ask, beside /metrics.
+// Adds the health endpoints only, for the health port.
 void add_health_routes(Router& router, App& app);
 
 }  // namespace orrery

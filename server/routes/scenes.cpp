@@ -4,7 +4,7 @@
 #include "server/routes/access.h"
 #include "server/routes/answers.h"
 
-// /v1/scenes: scenes that are kept to be rendered again and again, by the hash of what they say.
+// /v1/scenes: scenes stored for repeated renders, by the hash of their content.
 namespace orrery {
 namespace {
 
@@ -61,7 +61,7 @@ Response get_scene(App& app, Request& request) {
   if (!has_current(request, etag))
     response = text_response(200, "application/json", {prepared, scene.canonical});
   response.set("ETag", etag);
-  response.set("Cache-Control", "no-cache");  // it may be gone: ask each time
+  response.set("Cache-Control", "no-cache");  // the scene may be removed: revalidate each time
   return response;
 }
 

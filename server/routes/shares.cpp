@@ -7,13 +7,13 @@
 #include "server/routes/access.h"
 #include "server/routes/answers.h"
 
-// POST /v1/shares: an address that needs no token, for a time.
+// POST /v1/shares: signs a URL that needs no token until it expires.
 namespace orrery {
 namespace {
 
 Response share(App& app, const Router& router, Request& request) {
   constexpr std::int64_t kLongest_s = 366 * 86400, kUsual_s = 7 * 86400;
-  constexpr std::size_t kLongestPath = 1900;  // what is added has its place in a target, too
+  constexpr std::size_t kLongestPath = 1900;  // leaves room for the link's parameters in a target
   std::string path;
   std::int64_t seconds = kUsual_s;
   Timing timing;
@@ -43,7 +43,7 @@ Response share(App& app, const Router& router, Request& request) {
     throw InputError("/path", error.what());
   }
   target.headers = request.headers;
-  require_access(app.access(), Scope::read, target);  // what a link gives, its maker has to have
+  require_access(app.access(), Scope::read, target);  // the signer needs the access that the link grants
   const std::int64_t expires =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
           .count() +
