@@ -13,7 +13,7 @@ auto AssetFiles::read_with(const std::string& name, const Read& read) const {
     throw InputError("", "expected the name of a file, got a NUL in it");
   std::error_code error;
   const fs::path folder = fs::canonical(folder_.empty() ? "." : folder_, error);
-  const fs::path path = fs::canonical(folder / name, error);  // where links lead
+  const fs::path path = fs::canonical(folder / name, error);  // resolves symbolic links
   if (error) throw InputError("", "cannot read " + (folder_ / name).string() + ": " + error.message());
   if (std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first != folder.end())
     throw InputError("", "expected a file in the scene's folder or below it, got " + name);

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Meshes and pictures in files in the folder of a scene or below it.
+// Mesh and picture files in the folder of a scene or below it.
 class AssetFiles final : public AssetSource {
  public:
   explicit AssetFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -14,7 +14,7 @@ class AssetFiles final : public AssetSource {
   TexelsPtr picture_file(const std::string& name) const override;
 
  private:
-  // What read(bytes) makes of the file. Throws InputError with its name.
+  // Returns read(bytes) for the file. Throws InputError with the file's name.
   template <class Read>
   auto read_with(const std::string& name, const Read& read) const;
 

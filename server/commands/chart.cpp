@@ -48,13 +48,13 @@ RenderResult render_picture(const PreparedScene& scene, const RenderRequest& req
   return render_frame(scene, plan, storage, pool, {.stop = signals.interrupted()});
 }
 
-// "2-whitted-5-float-16.png": what sorts by cost.
+// Returns "2-whitted-5-float-16.png", which sorts by cost.
 std::string picture_name(std::size_t place, const Configuration& c) {
   return std::to_string(place) + "-" + c.technique + "-" + std::to_string(c.max_depth) + "-" +
          precision_name(c.double_precision) + "-" + std::to_string(c.samples) + ".png";
 }
 
-// The first round's pictures of the points on the front, rendered again.
+// Renders the Pareto front again with the seeds of the first round, and writes the pictures.
 void write_pictures(const std::string& folder, const Study& study, const PreparedScene& scene,
                     WorkerPool& pool, const SignalWatch& signals) {
   const std::vector<std::size_t> front = study.chart().front();

@@ -28,7 +28,7 @@ nlohmann::ordered_json json_of(const std::string& file, const Problem& problem, 
   return {{"file", file}, {"severity", severity}, {"pointer", problem.pointer}, {"detail", problem.detail}};
 }
 
-// Checks files one by one and prints what it finds: at once, or with `json` all together at the end.
+// Checks files one by one. Prints findings at once, or with `json` all together at the end.
 class Checker {
  public:
   explicit Checker(bool json) : json_(json) {}
@@ -49,7 +49,7 @@ class Checker {
     }
   }
 
-  // Returns the status of the program: that of a file that cannot be read before that of a bad scene.
+  // Returns the exit status. An unreadable file takes precedence over an invalid scene.
   int finish() const {
     if (json_) std::cout << found_.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
     return status_;

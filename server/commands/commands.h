@@ -8,8 +8,7 @@ class App;
 
 namespace orrery {
 
-// A subcommand: its part of the command line, and its work once that is parsed, which returns the exit status
-// or throws.
+// A subcommand. `run` is called after parsing and returns the exit status or throws.
 struct Command {
   CLI::App* app;
   std::function<int()> run;

@@ -17,7 +17,7 @@ namespace orrery {
 namespace {
 
 constexpr std::string_view kPrefix = "ORRERY_";
-// What the page's curl lines call their user's token. It is no setting, and yet no mistake.
+// Token variable of the page's curl examples. Not a setting, but not reported as unknown.
 constexpr std::string_view kTokenOfClients = "ORRERY_TOKEN";
 
 std::string variable_of(std::string_view name) {
@@ -38,7 +38,7 @@ std::vector<std::string> names_as(const Spell& spell) {
   return names;
 }
 
-// Says that `name` does not exist, and which of `known` was probably meant.
+// Returns a problem for the unknown `name`, with the most similar name of `known` as a suggestion.
 Problem unknown(const std::string& place, const std::string& what, const std::string& name,
                 const std::vector<std::string>& known) {
   const std::vector<std::string_view> views(known.begin(), known.end());
@@ -63,7 +63,7 @@ void take(Settings& settings, const Setting& setting, const std::string& text, c
   }
 }
 
-// A value of a file as the text that its flag would have. Throws InputError.
+// Returns a value of the JSON file as the text for its flag. Throws InputError.
 std::string text_of(const nlohmann::json& value, bool list) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean() || value.is_number()) return value.dump();
@@ -98,7 +98,7 @@ void read_members(Settings& settings, const nlohmann::json& json, const std::str
   }
 }
 
-// Its object of settings; null if it cannot be used.
+// Returns the object of settings, or null if the file is unusable.
 nlohmann::json read_file_of_settings(const std::string& path, std::vector<Problem>& problems) {
   try {
     const Document document = parse_document(read_file(path));
@@ -112,7 +112,8 @@ nlohmann::json read_file_of_settings(const std::string& path, std::vector<Proble
   return nullptr;
 }
 
-// From the command line or, as CLI11 asks for that, else from the environment.
+// Reads a setting from its flag or, as CLI11 provides it, from its variable. Also checks a variable that the
+// flag overrides.
 void read_flag(Settings& settings, const Setting& setting, const CLI::Option& option,
                std::vector<Problem>& problems) {
   if (option.count() == 0) return;
@@ -142,7 +143,7 @@ void refuse_unknown_flags(const std::vector<std::string>& words, const CLI::App&
                           std::vector<Problem>& problems) {
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options()) known.push_back("--" + option->get_lnames().at(0));
-  bool after_flag = false;  // what follows one that does not exist is its value
+  bool after_flag = false;  // a word after an unknown flag is its value
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
     const bool flag = word.starts_with('-');
@@ -164,7 +165,7 @@ void add_setting_flags(CLI::App& app) {
 }
 
 Settings read_settings(const CLI::App& app, const std::string& config_file, std::vector<Problem>& problems) {
-  // Read once: a pipe has nothing to give the second time.
+  // Reads the file only once, since a pipe cannot be read twice.
   const nlohmann::json file = config_file.empty() ? nullptr : read_file_of_settings(config_file, problems);
   const auto read_over = [&](Settings settings, std::vector<Problem>& found) {
     if (!file.is_null()) read_members(settings, file, config_file, found);
@@ -173,7 +174,7 @@ Settings read_settings(const CLI::App& app, const std::string& config_file, std:
     return settings;
   };
   Settings settings = read_over(Settings(), problems);
-  if (settings.memory_bytes != Settings().memory_bytes) {  // what is not given depends on it
+  if (settings.memory_bytes != Settings().memory_bytes) {  // other defaults depend on it
     std::vector<Problem> told_already;
     settings = read_over(settings_within(settings.memory_bytes), told_already);
   }

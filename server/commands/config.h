@@ -12,18 +12,17 @@ class App;
 
 namespace orrery {
 
-// How the service is configured: every setting has one name, and comes from a flag (--body-bytes), or else
-// the environment (ORRERY_BODY_BYTES), or else a JSON file ("body_bytes"), or else its default.
+// Configuration of the service. Each setting has one name. Its value comes from a flag (--body-bytes), else
+// from the environment (ORRERY_BODY_BYTES), else from a JSON file ("body_bytes"), else from its default.
 
-// Adds a flag for each setting, and lets flags pass that do not exist, for read_settings() to name.
+// Adds a flag for each setting. Unknown flags are accepted here and reported by read_settings().
 void add_setting_flags(CLI::App& app);
 
-// After parsing: the settings from all sources; config_file may be empty. Whatever is wrong in any of them,
-// names that do not exist included, is appended to `problems` with its place: "--port", "ORRERY_PORT" or the
-// file.
+// Returns the settings from all sources after parsing; `config_file` may be empty. Appends all errors,
+// including unknown names, to `problems` with their place: "--port", "ORRERY_PORT" or the file.
 Settings read_settings(const CLI::App& app, const std::string& config_file, std::vector<Problem>& problems);
 
-// All settings as such a file.
+// Returns all settings as a JSON file for --config.
 std::string config_text(const Settings& settings);
 
 }  // namespace orrery

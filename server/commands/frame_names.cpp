@@ -17,7 +17,7 @@ FrameNames::FrameNames(const std::string& pattern) {
       const std::size_t letter = pattern.find_first_not_of("0123456789", i + 1);
       const std::string width = pattern.substr(i + 1, letter - i - 1);
       if (found || letter == std::string::npos || pattern[letter] != 'd' || width.size() > 3) throw bad;
-      if (!width.empty() && width[0] != '0') throw bad;  // padding with blanks
+      if (!width.empty() && width[0] != '0') throw bad;  // padding with blanks is not supported
       if (!width.empty()) digits_ = std::stoul(width);
       found = true;
       i = letter;

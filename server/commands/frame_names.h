@@ -6,18 +6,17 @@
 namespace orrery {
 
 // File names of numbered frames, from a pattern such as "frame-%04d.png": %d or %0<width>d becomes the
-// number,
-// %% a percent sign.
+// number, %% a percent sign.
 class FrameNames {
  public:
-  // Throws InputError unless there is exactly one number in it.
+  // Throws InputError unless the pattern has exactly one number.
   explicit FrameNames(const std::string& pattern);
 
   std::string of(std::int64_t number) const;
 
  private:
   std::string before_, after_;
-  std::size_t digits_ = 0;  // at least
+  std::size_t digits_ = 0;  // minimum
 };
 
 }  // namespace orrery

@@ -30,7 +30,7 @@ the frames that every browser plays, its sides made even:
   ffmpeg -framerate 30 -i frame-%04d.png -vf "pad=ceil(iw/2)*2:ceil(ih/2)*2" -pix_fmt yuv420p orbit.mp4
 )";
 
-// CLI::Range lets NaN pass.
+// Unlike CLI::Range, rejects NaN.
 CLI::Validator within(double min, double max) {
   const CLI::Range range(min, max);
   return CLI::Validator(
@@ -53,8 +53,8 @@ struct OrbitOptions {
 struct Totals {
   int frames = 0;
   std::uint64_t bytes = 0, rays = 0;
-  int refitted = 0;  // frames whose structure followed from the one before
-  double worst = 1;  // of these
+  int refitted = 0;  // frames with a refitted accelerator
+  double worst = 1;  // maximum surface area growth of refitted ones
   double build_ms = 0;
   double render_ms = 0, encode_ms = 0;
   double seconds = 0, cpu_s = 0;
@@ -99,7 +99,7 @@ void print(const Totals& t, int threads) {
         t.build_ms / t.frames, t.refitted, t.frames - t.refitted, t.worst);
 }
 
-// One turn of the camera: what is rendered, and where it goes.
+// Renders the frames of an orbit and writes them to files.
 class Turn {
  public:
   explicit Turn(const OrbitOptions& options)
@@ -143,7 +143,7 @@ class Turn {
     return totals;
   }
 
-  // Null without one.
+  // Returns null if there is no budget.
   nlohmann::ordered_json budget() const { return budget_.json(options_.frames); }
 
  private:
@@ -163,7 +163,7 @@ class Turn {
   PreparedScene scene_;
   OrbitPath path_;
   OrbitBudget budget_;
-  SignalWatch signals_;  // after reading the scene, before the pool, whose threads leave the signals to it
+  SignalWatch signals_;  // after the scene is read, before the pool starts its threads
   WorkerPool pool_;
 };
 

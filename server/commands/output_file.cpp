@@ -14,14 +14,14 @@ namespace orrery {
 
 namespace {
 
-// Where the name is no plain file (a device, a pipe), there is nothing to put in its place.
+// Whether the file is written by replacement. Devices and pipes are not.
 bool is_replaced(const std::string& path) {
   std::error_code ignored;
   const auto kind = std::filesystem::status(path, ignored).type();
   return kind == std::filesystem::file_type::regular || kind == std::filesystem::file_type::not_found;
 }
 
-// What a link leads to.
+// Returns the path behind symbolic links.
 std::string target_of(const std::string& path) {
   std::error_code ignored;
   const std::string target = std::filesystem::weakly_canonical(path, ignored).string();

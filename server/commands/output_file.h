@@ -7,19 +7,19 @@
 
 namespace orrery {
 
-// ".png" of "a/b.PNG".
+// Returns the extension in lower case: ".png" for "a/b.PNG".
 std::string ending_of(const std::string& path);
-// The format that the ending of a file's name stands for. Throws InputError.
+// Returns the format for the extension of a file name. Throws InputError if it is unknown.
 FileFormat format_of(const std::string& path);
 
-// However they are written.
+// Whether both paths lead to the same file after symbolic links are resolved.
 bool is_same_file(const std::string& a, const std::string& b);
 
-// Throws FileError if a file cannot be made there: what takes long asks before it begins.
+// Throws FileError if the file cannot be written. For checks before long work.
 void require_writable(const std::string& path);
 
-// Writes all or nothing: the bytes go to a file beside it that takes its name once it is complete. Throws
-// FileError.
+// Writes all or nothing: writes a temporary file in the same folder and renames it. Devices and pipes are
+// written directly. Throws FileError.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace orrery

@@ -6,14 +6,14 @@
 
 namespace orrery {
 
-// A line on the terminal that says how far the work is and how long it will take. Silent where standard error
-// is no terminal. Safe to update from several threads at once.
+// Terminal line with the progress and the estimated time left. Silent if standard error is no terminal. say()
+// and update() are thread-safe.
 class ProgressBar {
  public:
-  explicit ProgressBar(std::string unit);  // what is counted: "tiles"
-  ~ProgressBar();                          // takes the line away
+  explicit ProgressBar(std::string unit);  // unit of the count: "tiles"
+  ~ProgressBar();                          // clears the line
 
-  // What is done before there is anything to count.
+  // Shows a step that has no count.
   void say(const std::string& what);
   void update(int done, int total);
 
@@ -21,7 +21,7 @@ class ProgressBar {
   const std::string unit_;
   const bool shown_;
   const std::chrono::steady_clock::time_point start_;
-  std::mutex mutex_;  // guards what follows, and the line
+  std::mutex mutex_;  // guards the members below and the line
   bool written_ = false;
   int done_ = 0;
   std::chrono::steady_clock::time_point drawn_;

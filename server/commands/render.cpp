@@ -32,7 +32,7 @@ struct RenderOptions {
   RenderFlags render;
 };
 
-// The plan that a budget came to.
+// Returns the plan with the settings that the budget chose.
 Plan made_plan(Plan plan, const std::optional<BudgetOutcome>& budget) {
   if (!budget) return plan;
   plan.asked = budget->settings;
@@ -70,7 +70,7 @@ int render(const RenderOptions& options) {
   bar->say("reading " + options.render.scene);
   const PreparedScene scene(load_scene_file(options.render.scene));
   stats.load_ms = milliseconds_since(start);
-  const SignalWatch signals;  // after reading, which a signal ends as it would any program
+  const SignalWatch signals;  // after the read, which signals end by default
   Plan plan = make_plan(scene.scene(), request);
   WorkerPool pool(options.threads);
   stats.threads = pool.threads();

@@ -11,7 +11,7 @@
 namespace orrery {
 namespace {
 
-// What errors call it.
+// Returns the flag name that errors use.
 std::string short_flag_of(const RenderOption& option) {
   return flag_of(option.short_name.empty() ? option.key : option.short_name);
 }
@@ -20,12 +20,12 @@ std::string flags_of(const RenderOption& option) {
   return option.short_name.empty() ? flag_of(option.key) : short_flag_of(option) + "," + flag_of(option.key);
 }
 
-// Help has no full stops.
+// Returns the help text without its full stop.
 std::string help_of(const RenderOption& option) {
   return std::string(option.help.substr(0, option.help.size() - option.help.ends_with('.')));
 }
 
-// An address counts from its "?" on, and may have none.
+// Returns the options of --plan. A URL counts from its "?" on; without "?" it has no options.
 std::vector<OptionText> texts_of_plan(std::string_view plan) {
   if (plan.find('?') == plan.npos && plan.find('/') != plan.npos) return {};
   const auto called = [](std::string_view name) { return "--plan " + std::string(name); };

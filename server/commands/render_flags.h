@@ -15,12 +15,12 @@ class Option;
 
 namespace orrery {
 
-// The options of every command that renders or plans. Must stay where it is once added to a command line.
+// Flags of every command that renders or plans. Must not move after add_render_flags().
 struct RenderFlags {
-  std::string scene;                  // a file's name, or "-"
-  std::string plan;                   // options as a query has them
-  std::vector<std::string> texts;     // of values, as render_options()
-  std::vector<CLI::Option*> options;  // likewise
+  std::string scene;                  // file name, or "-"
+  std::string plan;                   // options as a query
+  std::vector<std::string> texts;     // values, in the order of render_options()
+  std::vector<CLI::Option*> options;  // in the order of render_options()
   bool full_model = false;
   int slice = Plan{}.slice;
 };
@@ -28,11 +28,12 @@ struct RenderFlags {
 void add_render_flags(CLI::App& app, RenderFlags& flags);
 void add_threads_flag(CLI::App& app, int& threads);
 
-// Throws InputError with the names of the flags.
+// Returns the request of the flags. Throws InputError with flag names.
 RenderRequest read_render_flags(const RenderFlags& flags);
-// Likewise, of a picture for a file of this format; none: that is not kept.
+// Returns the request for a picture in a file of this format; nullopt: no file. Throws InputError with flag
+// names.
 RenderRequest read_picture_flags(const RenderFlags& flags, std::optional<FileFormat> format);
-// The same problems, with the names of flags in place of pointers to options.
+// Returns the same problems with flag names instead of pointers to options.
 InputError with_flag_names(const InputError& error);
 
 }  // namespace orrery

@@ -30,7 +30,7 @@ std::string read_all(std::istream& in, const std::string& name) {
   return bytes;
 }
 
-// Input may hold what a terminal would obey.
+// Escapes control characters, which a terminal would interpret.
 std::string printable(const std::string& text) {
   std::string shown;
   for (const char c : text) {
@@ -44,14 +44,14 @@ std::string printable(const std::string& text) {
 }  // namespace
 
 BadScene::BadScene(const std::string& file, const InputError& error) : InputError(error.problems()) {
-  const bool malformed = dynamic_cast<const MalformedJson*>(&error);  // its text says the line and column
+  const bool malformed = dynamic_cast<const MalformedJson*>(&error);  // its text has line and column
   for (const Problem& p : problems())
     lines_.push_back(printable(file + ": " + (malformed ? p.detail : p.text())));
 }
 
 std::string read_file(const std::string& path) {
   if (path == "-") return read_all(std::cin, shown_name(path));
-  std::error_code no_file;  // what is none, a pipe for instance, tells its size only at its end
+  std::error_code no_file;  // pipes and other special files have no size
   if (const auto size = std::filesystem::file_size(path, no_file); !no_file && size > kMostBytes)
     refuse_size(path);
   errno = 0;

@@ -8,27 +8,27 @@
 
 namespace orrery {
 
-// A file that cannot be read or written. what() names it and says why.
+// Thrown if a file cannot be read or written. what() has its name and the reason.
 class FileError : public Error {
  public:
   using Error::Error;
 };
 
-// What is wrong with the scene in a file.
+// Thrown if a scene file is invalid.
 class BadScene : public InputError {
  public:
   BadScene(const std::string& file, const InputError& error);
-  // A line a problem: "file: /pointer: sentence".
+  // One line for each problem: "file: /pointer: sentence".
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:
   std::vector<std::string> lines_;
 };
 
-// All bytes of a file; "-" is standard input. Throws FileError.
+// Returns all bytes of a file; "-" is standard input. Throws FileError, also above 1 GiB.
 std::string read_file(const std::string& path);
 
-// Throws FileError, BadScene.
+// Loads a scene and its assets. Throws FileError or BadScene.
 std::shared_ptr<const Scene> load_scene_file(const std::string& path);
 
 }  // namespace orrery

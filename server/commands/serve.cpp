@@ -41,7 +41,7 @@ struct ServeOptions {
   std::string config, log = isatty(STDERR_FILENO) ? "text" : "json";
 };
 
-// Appends what is wrong with settings of which each is a value that it may have.
+// Appends errors that involve several settings or the meaning of a value.
 void check_values(const Settings& settings, std::vector<Problem>& problems) {
   const auto note = [&](const char* flag, const auto& read) {
     try {
@@ -67,14 +67,15 @@ void check_values(const Settings& settings, std::vector<Problem>& problems) {
   note("--memory-bytes", [&] { work_bytes(settings); });
 }
 
-// Appends what other machines may not reach, and what the process may not have of what these settings take.
+// Appends errors of the environment: a host open to other machines without tokens, and process limits that
+// are too low for these settings.
 void check_surroundings(const Settings& settings, std::vector<Problem>& problems) {
   try {
     if (!settings.insecure && settings.tokens_file.empty() && !is_loopback(settings.host))
       problems.push_back({"--host", settings.host +
                                         " can be reached from other machines, and everyone who reaches it "
                                         "may render; give --tokens-file, or --insecure if that is meant"});
-  } catch (const Error& error) {  // there is no such address
+  } catch (const Error& error) {  // the host cannot be resolved
     problems.push_back({"--host", error.what()});
   }
   const std::size_t threads =
@@ -93,7 +94,7 @@ void check_surroundings(const Settings& settings, std::vector<Problem>& problems
                                              std::to_string(allowed) + " (ulimit -n)"});
 }
 
-// How many tokens there are. Appends what is wrong with the files.
+// Returns the number of tokens. Appends the errors of the token and key files.
 std::size_t count_tokens(const Settings& settings, std::vector<Problem>& problems) try {
   return Access(settings.tokens_file, settings.share_key_file).tokens();
 } catch (const InputError& error) {
@@ -107,12 +108,12 @@ void announce(const Service& service, const Settings& settings, const Log& log) 
             << service.port() << "\nhealth and metrics on port " << service.health_port() << std::endl;
   if (std::cout) return;
   log.write(LogLevel::warning, "cannot write to standard output", nlohmann::ordered_json::object());
-  std::cout.clear();  // the service runs without it
+  std::cout.clear();  // the service continues without it
 }
 
-// `read`: the settings as they are when it is called.
+// `read`: returns the settings at the time of the call.
 int run_service(const Settings& settings, const Log& log, const std::function<Settings()>& read) {
-  // The signals are taken before the service starts threads; it learns of them once it is there.
+  // The signals are blocked before the service starts threads. Handlers use the service once it exists.
   std::mutex mutex;
   Service* running = nullptr;  // guarded by mutex
   const auto tell = [&](const auto& what) {
@@ -143,7 +144,7 @@ int run_service(const Settings& settings, const Log& log, const std::function<Se
 }
 
 int serve(const CLI::App& app, const ServeOptions& options) {
-  signal(SIGPIPE, SIG_IGN);  // the reader of the log may end before the service
+  signal(SIGPIPE, SIG_IGN);  // the reader of the log may exit first
   std::vector<Problem> problems;
   const Settings settings = read_settings(app, options.config, problems);
   check_values(settings, problems);
@@ -159,7 +160,7 @@ int serve(const CLI::App& app, const ServeOptions& options) {
   const Log log(options.log == "json" ? LogForm::json : LogForm::text,
                 options.quiet ? LogLevel::warning : LogLevel::info);
   return run_service(settings, log, [&] {
-    // A pipe has nothing to give the second time, or keeps us waiting.
+    // A pipe cannot be read twice, or may block.
     if (!options.config.empty() && !std::filesystem::is_regular_file(options.config)) return settings;
     std::vector<Problem> found;
     const Settings fresh = read_settings(app, options.config, found);

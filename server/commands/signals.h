@@ -6,16 +6,16 @@
 
 namespace orrery {
 
-// Takes SIGINT and SIGTERM for itself while it lives. The first one calls `on_first` on a thread of its own;
-// a second one ends the process at once with status 130. Threads started meanwhile leave the signals to it,
-// so make one before any other thread. With `on_hangup`, SIGHUP calls that, each time.
+// Handles SIGINT and SIGTERM during its lifetime. The first signal calls `on_first` on a separate thread, the
+// second ends the process at once with status 130. With `on_hangup`, each SIGHUP calls it. Create it before
+// other threads, since only threads started later leave the signals to it.
 class SignalWatch {
  public:
   explicit SignalWatch(std::function<void()> on_first = {}, std::function<void()> on_hangup = {});
   ~SignalWatch();
   SignalWatch(const SignalWatch&) = delete;
 
-  // Requested by the first signal, before `on_first` is called.
+  // Stop requested by the first signal, before `on_first` is called.
   std::stop_token interrupted() const;
 
  private:

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Counts by depth without the zeros at the end.
+// Returns the counts by depth without trailing zeros.
 ordered_json by_depth(const RayCounts::ByDepth& counts) {
   std::size_t size = counts.size();
   while (size > 0 && counts[size - 1] == 0) --size;
@@ -66,7 +66,7 @@ void prediction_text(std::string& text, const Plan& plan, const TraceCounts& cou
 ordered_json stats_json(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
   ordered_json json = options_json(settings_of(plan));
-  json["accelerator"] = stats.render.accelerator->name;  // which the render may have settled
+  json["accelerator"] = stats.render.accelerator->name;  // as settled by the render
   const ordered_json measured = {{"instructions", instruction_level()},
                                  {"threads", stats.threads},
                                  {"rays",

@@ -8,19 +8,19 @@
 
 namespace orrery {
 
-// What a render did and what it cost.
+// Statistics of a render command.
 struct RunStats {
   int threads = 0;
   double load_ms = 0, encode_ms = 0;
-  double render_cpu_s = 0;  // while rendering: building included, loading and encoding not
+  double render_cpu_s = 0;  // CPU time with building, without loading and encoding
   RenderStats render;
   Certificate certificate = {};
   std::optional<BudgetOutcome> budget = {};
 };
 
 nlohmann::ordered_json stats_json(const Plan& plan, const RunStats& stats);
-// {"version", "scene", "plan", "certificate", "cost", "budget"}: the scene's id, a query that gives the
-// picture again, what is promised of it, what it took, and what became of its budget, if it had one.
+// Returns {"version", "scene", "plan", "certificate", "cost", "budget"}. "scene" is the scene's ID, "plan" a
+// query that renders the same picture. "budget" is missing if there was none.
 nlohmann::ordered_json certificate_file_json(const Scene& scene, const Plan& plan, const RunStats& stats);
 std::string stats_text(const Plan& plan, const RunStats& stats);
 
