@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kLeastKeyBytes = 32;
 constexpr std::size_t kMostFileBytes = 1 << 20;
 
-// Only of a file that lies there: a pipe might never end.
+// Reads a regular file. Rejects pipes, which might never end.
 std::string read_file(const std::string& path) {
   std::error_code problem;
   if (!std::filesystem::is_regular_file(path, problem)) throw InputError(path, "is no file that can be read");
@@ -29,7 +29,7 @@ std::string read_file(const std::string& path) {
   return bytes;
 }
 
-constexpr Scope scope_number(std::size_t i) { return static_cast<Scope>(1U << i); }  // of kScopes
+constexpr Scope scope_number(std::size_t i) { return static_cast<Scope>(1U << i); }  // `i`: index in kScopes
 
 std::string read_key(const std::string& path) {
   std::string key = read_file(path);

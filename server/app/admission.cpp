@@ -10,16 +10,16 @@
 namespace orrery {
 namespace {
 
-constexpr double kRaysAByte = 1;                      // of JSON or of a mesh: measured between 0.5 and 2
-constexpr double kExpectedRate = 10e6;                // rays a second, in all places together
-constexpr std::chrono::milliseconds kLeastPlace{50};  // that work keeps a place, whoever waits
-constexpr auto kOwnPlace = 4 * kLeastPlace;           // where its own client waits
-constexpr double kMostDebt = 16;  // places that a client may owe, so that it waits for seconds, not minutes
+constexpr double kRaysAByte = 1;                      // JSON or mesh data; measured: 0.5 to 2
+constexpr double kExpectedRate = 10e6;                // rays per second, all slots together
+constexpr std::chrono::milliseconds kLeastPlace{50};  // until other clients may preempt work
+constexpr auto kOwnPlace = 4 * kLeastPlace;           // until its own client may preempt it
+constexpr double kMostDebt = 16;  // maximum debt in units of kLeastPlace: a wait of seconds, not minutes
 constexpr double kSmallCost = 2 * kLeastCost;
-constexpr double kMemory_s = 10;  // seconds of work after which a measurement has faded to 1/e
+constexpr double kMemory_s = 10;  // busy seconds in which a measurement decays to 1/e
 
-// What is charged for a place of so many. A rate that was measured would charge little after work that was
-// slower than expected, and it is then that the charge matters.
+// Returns the charge for time in one of `places` slots, in rays. Uses a constant rate. The measured rate
+// would charge too little after slow work, when the charge matters most.
 double rays_in(std::chrono::duration<double> held, int places) {
   return held.count() * kExpectedRate / places;
 }
@@ -30,7 +30,7 @@ std::string whole(double rays) {
   return text;
 }
 
-// Of what clients have waiting; not of nothing.
+// Returns the client with the highest cost. REQUIRES: `costs` is not empty.
 std::pair<std::string, double> greediest(const std::map<std::string, double>& costs) {
   return *std::max_element(costs.begin(), costs.end(),
                            [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -78,7 +78,7 @@ bool Admission::full() const {
 
 Clock::duration Admission::longest_wait() const {
   const std::lock_guard lock(mutex_);
-  std::map<std::string, Clock::time_point> first;  // of a client
+  std::map<std::string, Clock::time_point> first;  // by client
   for (const Work& w : works_)
     if (w.state == State::waits && w.entry == Entry::first && w.demand.lane == Lane::interactive &&
         !has_lost_many(w.demand))
@@ -96,7 +96,7 @@ Admission::Ticket Admission::enter_again(const Demand& demand, const std::stop_t
 }
 
 Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std::stop_token& stop) {
-  HandlerSlots::Wait wait;  // released once the lock is
+  HandlerSlots::Wait wait;  // destroyed after the lock
   std::unique_lock lock(mutex_);
   if (entry == Entry::first && !may_begin(demand, entry)) make_room(demand);
   const double charge = std::min(demand.cost, kLeastCost + rays_in(kLeastPlace, limits_.running));
@@ -185,7 +185,7 @@ Admission::Sharing::~Sharing() {
   const std::lock_guard lock(in_.mutex_);
   sharers_->erase(sharers_->find(client_));
   update_works();
-  in_.start_next();  // what it kept from its place as its own may have it now
+  in_.start_next();  // work of `client_` may preempt it sooner now
 }
 
 void Admission::Sharing::update_works() {
@@ -226,7 +226,7 @@ void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, c
   work.state = State::waits;
   start_next();
   work.changed.wait(lock, stop, [&] { return work.state != State::waits; });
-  if (work.has_begun()) {  // who gives up finds it soon, as does who has lost its place since
+  if (work.has_begun()) {  // a stop or preemption shows at the next checkpoint
     waits_[static_cast<int>(lane)].Observe(std::chrono::duration<double>(timer_.now() - asked).count());
     return;
   }
@@ -281,7 +281,7 @@ void Admission::leave(Work& work, bool done) {
   if (done)
     measure(work.demand.cost);
   else if (running_ > 0)
-    measured_ = timer_.now();  // it was broken off: nobody knows how much of it was done
+    measured_ = timer_.now();  // aborted: the share done is unknown
   if (work.state == State::runs) give_up_place(work);
   if (work.state != State::dropped) charge_overruns(work);
   works_.remove_if([&](const Work& other) { return &other == &work; });
@@ -297,7 +297,7 @@ void Admission::charge_overrun(const Work& work, const std::string& client, Cloc
   const int lane = static_cast<int>(work.demand.lane);
   const auto from = std::max(since, work.charged_from.value_or(charged_from(work)));
   const double used = kLeastCost + rays_in(timer_.now() - from, limits_.running);
-  const bool came_later = since > work.since;  // to work that did not run in its turn
+  const bool came_later = since > work.since;  // joined running work of others
   const double overrun = used - (came_later ? kLeastCost : std::max(kLeastCost, work.charge));
   if (overrun <= 0) return;
   const double most = virtual_time_[lane] + kMostDebt * rays_in(kLeastPlace, limits_.running);
@@ -359,7 +359,7 @@ Admission::Work* Admission::next() {
   return best;
 }
 
-// What has lost its place does not wait for what its client asked for later.
+// Preempted work does not queue behind later requests of its client.
 double Admission::virtual_finish(const Work& work, const std::string& client) const {
   const bool again = work.entry == Entry::again;
   const int lane = static_cast<int>(work.demand.lane);
@@ -413,8 +413,8 @@ Admission::Work* Admission::newest_to_begin(Lane lane, const std::string& client
   return newest == works_.rend() ? nullptr : &*newest;
 }
 
-// What has begun cannot be dropped, and what it has left must not shut others out: who has less waiting than
-// the greediest is let in all the same.
+// Drops new work of the client with the most queued work until `demand` fits. Begun work cannot be dropped,
+// but must not lock others out: a client with less queued work is admitted anyway.
 void Admission::make_room(const Demand& demand) {
   const Lane lane = demand.lane;
   while (!fits(lane, demand.cost)) {

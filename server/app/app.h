@@ -26,27 +26,27 @@
 
 namespace orrery {
 
-// Milliseconds that the steps of an answer took.
+// Durations of the steps of a response, in milliseconds.
 struct Timing {
   double load = 0, plan = 0, queue = 0, build = 0, render = 0, encode = 0;
 };
 
 struct Rendered {
   std::shared_ptr<const Picture> picture;
-  bool made_now;  // rendered for this request, and not for another one before
+  bool made_now;  // rendered for this request, neither cached nor shared
 };
 
-// Who asks for something.
+// Client of a request.
 struct Caller {
-  std::string client;    // whose share of the work it is
-  std::stop_token gone;  // requested once nobody waits for it any more
+  std::string client;    // client that the work is charged to
+  std::stop_token gone;  // stop is requested once no client waits for the result
 };
 
-// All that the service owns, and what its routes ask of it. Safe from any thread.
+// Owner of the stores, caches, queues and threads of the service, and its interface to the routes. Safe from
+// any thread.
 class App {
  public:
-  // Throws InputError for files of the settings that cannot be used.
-  // `timer` must outlive it.
+  // Throws InputError if a file in the settings cannot be used. `timer` must outlive the app.
   App(const Settings& settings, Timer& timer);
   App(const App&) = delete;
 
@@ -64,60 +64,62 @@ class App {
   const WorkMemory& memory() const { return memory_; }
   Meters& meters() { return meters_; }
 
-  // The one door for bodies of requests. Both take the body, count the memory of the work in the client's
-  // account, wait for a turn if it takes long, and stop once the client has gone. Both throw ClientBusy,
-  // Busy, Cancelled and TimedOut.
+  // The only functions that take request bodies. Both charge memory to the client, wait for a slot if the
+  // work is long, and stop once the client disconnects. Both throw ClientBusy, Busy, Cancelled and TimedOut.
   //
-  // Parses a body of JSON and calls `work` to read it; it may name assets. Throws what both do.
+  // Parses a JSON body and calls `work` to read the document, which may name assets. Also throws the errors
+  // of both.
   using ReadDocument = std::function<void(const Document&, const AssetSource&)>;
   void read(Body& body, const Caller& caller, Timing& timing, const ReadDocument& work);
   AssetStore::Added add_asset(const std::string& sha256, Body& body, const Caller& caller);
 
-  // The picture of that plan, which `key` names whatever its format: one made before, or rendered and encoded
-  // in its turn, once for all who ask; one with a budget of time, which counts from now, for each. Throws as
-  // read(), BudgetMissed, and TooManyRays instead of rendering it.
+  // Returns the image of the plan: cached, or rendered and encoded once for all requests that wait for it.
+  // `key` names the image in any format. An image with a time budget is rendered for each request, and the
+  // steps in `timing` count towards the budget. Throws as read(), BudgetMissed, and TooManyRays instead of
+  // rendering.
   Rendered render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                   const Caller& caller, Timing& timing);
 
-  // Passes of a picture, to be asked for one by one. Throws Busy while draining, TooManyRays.
+  // Returns a progressive render, which the caller advances pass by pass. Throws Busy while draining, and
+  // TooManyRays.
   std::unique_ptr<Refinement> refine(RefinementSpec spec);
 
-  // Throws TooManyRays for a picture that is expected to take more than one request may ask for.
+  // Throws TooManyRays if the estimated cost of the image exceeds the limit of one request.
   void require_request_rays(const Scene& scene, const Plan& plan);
 
-  // Settles the plan in its turn, as render() would. Throws likewise.
+  // Settles the plan in a slot, as render() would. Throws as render() does.
   SettledPlan settle(const PreparedScene& scene, const Plan& plan, const Caller& caller);
 
-  // Foretells what render() would take, in its turn. Throws likewise.
+  // Predicts the cost and the error of render(), in a slot. Throws as render() does.
   Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, const Caller& caller);
 
-  // The service is about to end: no new work; what runs goes on.
+  // Returns whether the service is draining: it completes running work and rejects new work.
   bool draining() const { return drains_.stop_requested(); }
-  // Whether new work should be sent here: "ok", or why not: "draining", "full" or "slow".
+  // Returns "ok" if new work should be sent here, else the reason: "draining", "full" or "slow".
   std::string_view readiness() const;
-  // `readiness`: of the HTTP server, "full" where a new client would get no connection, else "ok". Called
-  // before others use the app.
+  // Sets the readiness of the HTTP server: "full" if it would reject a new connection, else "ok". Call this
+  // before other threads use the app.
   void watch_connections(std::function<std::string_view()> readiness) { connections_ = std::move(readiness); }
-  void retire() { retires_ = true; }  // new work is still taken, but should go elsewhere
+  void retire() { retires_ = true; }  // reports "draining" but still accepts work
   void drain();
-  // What still runs ends now.
+  // Cancels all running work.
   void end() { ends_.request_stop(); }
 
   // Throws Busy while draining.
   void require_open() const;
 
  private:
-  // Calls work(stop), which is stopped when it should end early and tells `stage` what it is at; its time
-  // counts from `since`. It takes memory of the caller's share.
+  // Calls work(stop) and charges its memory to the caller. Requests `stop` once the client disconnects, the
+  // service ends, or request_seconds have passed since `since`. `stage`: current step of the work.
   template <class Work>
   void watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work);
-  // A turn; throws OverLimit once it cannot come within so many seconds, of which some were used before
-  // `since`. 0: whenever it comes.
+  // Waits for a slot. Throws OverLimit if there is none within `seconds`, of which `used_s` had passed before
+  // `since`. 0: no time limit.
   Admission::Ticket enter_in_time(const Demand& demand, Clock::time_point since, double seconds,
                                   double used_s, const std::stop_token& ends);
-  // What a budget of one request may spend.
+  // Returns the limits for the budget of one request.
   RenderControl limits_of(const Scene& scene, const Plan& plan) const;
-  // Renders it, unless a film of it is kept, and encodes it. The client has waited since `since`.
+  // Renders the image, unless its film is cached, and encodes it. The client has waited since `since`.
   Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,
                Stage& stage);
@@ -129,11 +131,11 @@ class App {
   Meters meters_;
   Access access_;
   WorkerPool pool_;
-  const Settings settings_;  // with what is left to the machine decided
+  const Settings settings_;  // with automatic values resolved
   WorkMemory memory_;
   SceneStore scenes_;
   AssetStore assets_;
-  SharersByKey sharers_;  // of pictures, whatever their format
+  SharersByKey sharers_;  // by image, in any format
   Pictures pictures_;
   Films films_;
   Admission admission_;

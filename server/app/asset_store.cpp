@@ -14,12 +14,12 @@ namespace {
 std::size_t bytes_of(const Texels& picture) { return picture.rgb.size() * sizeof(float); }
 
 std::size_t bytes_of(const AssetStore::Asset& asset) {
-  constexpr std::size_t kEntry = 1024;  // of an entry besides its file and texels
+  constexpr std::size_t kEntry = 1024;  // overhead of an entry
   const auto* const picture = std::get_if<AssetStore::Asset::Picture>(&asset.content);
   return kEntry + asset.bytes.size() + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
 }
 
-// Keeps the texels of a picture that takes at most `most_texel_bytes`.
+// Parses the file. Keeps the texels of an image if they take at most `most_texel_bytes`.
 decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::size_t most_texel_bytes) {
   if (is_picture(bytes)) {
     auto texels = std::make_shared<const Texels>(read_picture(bytes));
@@ -54,7 +54,7 @@ AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes, 
   if (least > most)
     throw InputError("", "the file takes " + std::to_string(least) + " bytes of memory, at most " +
                              std::to_string(most) + " are kept (asset_store_bytes)");
-  // So that one picture does not evict most of the others.
+  // Limits texels to a quarter of the store, so that one image does not evict most others.
   asset->content = content_of(asset->bytes, std::min(most / 4, most - least));
   const auto add = [&] { return assets_.add(sha256, client, bytes_of(*asset), [&] { return asset; }); };
   auto added = add();

@@ -9,7 +9,7 @@
 
 namespace orrery {
 
-// Mesh and picture files by the SHA-256 of their bytes, held by the clients that have put them. Safe from any
+// Mesh and image files by the SHA-256 of their bytes, held by the clients that uploaded them. Safe from any
 // thread.
 class AssetStore final : public AssetSource {
  public:
@@ -21,29 +21,29 @@ class AssetStore final : public AssetSource {
     struct Picture {
       PictureFormat format;
       int width, height;
-      TexelsPtr texels;  // null if they take more of the store than one picture may
+      TexelsPtr texels;  // null if too large to store
     };
     std::string bytes;
     std::variant<Mesh, Picture> content;
   };
   using AssetPtr = std::shared_ptr<const Asset>;
 
-  // Throws InputError if this can be no SHA-256.
+  // Throws InputError unless `name` is a SHA-256 of 64 digits 0-9, a-f.
   static void require_name(const std::string& name);
 
   explicit AssetStore(std::size_t most_bytes) : assets_(most_bytes, std::chrono::hours(1)) {}
 
   struct Added {
     AssetPtr asset;
-    bool known;  // it was there before
+    bool known;  // it was already stored
   };
-  // Throws InputError if the bytes have another hash, are neither mesh nor picture, or take more than all
-  // assets may; OverLimit if others leave no room for them.
+  // Stores a file for the client. Throws InputError if the bytes have another hash, are neither mesh nor
+  // image, or exceed the limit of the store. Throws OverLimit if other clients leave no room.
   Added add(const std::string& sha256, std::string bytes, const std::string& client);
   // Throws NotFound.
   AssetPtr find(const std::string& sha256);
-  // The client holds the asset no more: it goes unless others do, or with `of_all` in any case. Throws
-  // NotFound, and HttpError 403 if others alone hold it.
+  // Releases the asset for the client, or with `of_all` for all clients. Removes it once no client holds it.
+  // Throws NotFound, or HttpError 403 if only other clients hold it.
   void remove(const std::string& sha256, const std::string& client, bool of_all);
 
   std::size_t bytes() const { return assets_.bytes(); }
@@ -53,10 +53,10 @@ class AssetStore final : public AssetSource {
   TexelsPtr picture_asset(const std::string& sha256) const override;
 
  private:
-  // Throws InputError if there is none.
+  // Throws InputError if the asset is not stored.
   AssetPtr find_for_scene(const std::string& sha256) const;
 
-  mutable Lru<AssetPtr> assets_;  // reading one counts as its use
+  mutable Lru<AssetPtr> assets_;  // a read counts as a use
 };
 
 }  // namespace orrery

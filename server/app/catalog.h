@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Everything that can be named in a scene or a request, the sample scenes and the defaults, for menus.
+// Returns the types that scenes and requests can name, the sample scenes and the defaults, for menus.
 nlohmann::ordered_json catalog_json();
 
 }  // namespace orrery

@@ -30,7 +30,7 @@ ordered_json interval_json(const std::optional<Interval>& interval) {
   return {{"low", interval->low}, {"high", interval->high}};
 }
 
-// What is one number or word: the columns of the table.
+// Returns the scalar values of a point: the columns of the table.
 ordered_json figures_json(const Point& point, double cheapest_ms) {
   const auto mean = [&](double Difference::*value) {
     return point.mean([&](const Measurement& s) { return s.difference.*value; });
@@ -57,7 +57,8 @@ ordered_json figures_json(const Point& point, double cheapest_ms) {
   return json;
 }
 
-// Of a picture whose CPU time is the point's; an interval where the rounds tell one.
+// Returns the predicted seconds of the full-size image. `low` and `high` are null if the rounds give no
+// interval.
 ordered_json full_size_json(const Chart& chart, const Point& point) {
   const auto interval = point.cpu_ms_interval();
   return {{"seconds", chart.full_seconds(point.cpu_ms())},
@@ -94,8 +95,8 @@ ordered_json recommendations_json(const Chart& chart) {
   return all;
 }
 
-// A line of names, then one for each point; nothing between the commas for null. RFC 4180: a plan with commas
-// has quotes.
+// Returns a header line and a line for each point. A null value is an empty field. A plan with commas is
+// quoted (RFC 4180).
 std::string csv_of(const Chart& chart, const std::string&) {
   ordered_json points = ordered_json::array();
   for (const Point& point : chart.points) points.push_back(figures_json(point, chart.cheapest_ms()));

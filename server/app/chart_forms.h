@@ -12,16 +12,15 @@ class Params;
 // Reads {samples, rounds, width}.
 void read_extent(Params& p, Study::Extent& extent);
 
-// What a chart can be had as.
+// Output format of a chart.
 struct ChartForm {
   std::string_view ending, type;                                  // ".svg", "image/svg+xml"
-  std::string (*write)(const Chart&, const std::string& prefix);  // links in it stand below `prefix`
+  std::string (*write)(const Chart&, const std::string& prefix);  // links start with `prefix`
 };
-// The form that a file's name ends in; null if it is none of them.
+// Returns the format for the extension of a file name, or null if it is unknown.
 const ChartForm* chart_form_of(std::string_view name);
 
-// The flags that give a command line the plan of a chart's point, but for its seed: "--max-depth 3 --samples
-// 16".
+// Returns the plan of a chart's point as command-line flags, without its seed: "--max-depth 3 --samples 16".
 std::string flags_of_plan(const std::string& plan);
 
 }  // namespace orrery

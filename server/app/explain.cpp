@@ -23,7 +23,7 @@ std::uint64_t camera_rays(const Plan& plan) {
   return std::uint64_t(plan.width) * std::uint64_t(plan.height) * std::uint64_t(plan.samples);
 }
 
-// Nothing where nothing changes.
+// Returns a note on the error bound, or "" if the bound is exact.
 std::string bound_note(const Bound& bound) {
   if (bound.kind == Bound::Kind::exact) return "";
   char text[96];
@@ -69,7 +69,7 @@ ordered_json forecast_json(const Scene& scene, const Forecast& forecast) {
   return json;
 }
 
-// What a request of the plan says: what a budget chooses is left to it.
+// Returns the settings that request the plan. Options that its budget chooses are unset.
 RenderSettings requested(const Plan& plan) {
   RenderSettings settings = settings_of(plan);
   if (plan.free_samples) settings.samples.reset();

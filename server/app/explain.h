@@ -10,9 +10,9 @@
 
 namespace orrery {
 
-// What a render will model and, choice by choice, why no more. The member "request" is the body of a
-// POST /v1/render that gives the same picture, with every option.
-// `forecast`: what the picture would take, where that was measured.
+// Explains what a render will model and what it leaves out, decision by decision. The member "request" is the
+// body of a POST /v1/render for the same image, with every option. `forecast`: predicted cost and error, if
+// measured.
 nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan,
                                     const std::optional<Forecast>& forecast = {});
 std::string explain_text(const Scene& scene, const Plan& plan, const std::optional<Forecast>& forecast = {});

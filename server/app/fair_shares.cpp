@@ -140,8 +140,8 @@ std::optional<FairShares::Loss> FairShares::longest_unused(Rank below) const {
   return std::nullopt;
 }
 
-// Uses since an entry was put into the client's order are caught up with here, where that matters: a use by
-// itself takes no longer for an entry that many hold.
+// Returns the client's least recently used entry. Brings the client's order up to date only here, so a use
+// costs the same however many clients hold the entry.
 std::optional<FairShares::Loss> FairShares::least_used(Clients::iterator client, Rank below) {
   for (Rank rank = 0; rank < below; ++rank) {
     auto& entries = client->second.entries[rank];

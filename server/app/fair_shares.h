@@ -15,63 +15,63 @@
 
 namespace orrery {
 
-// The clients that hold the entries of a store, and which entries a full store evicts. An entry counts in
-// full for each client that holds it, and stays until the last of them gives it up. The client that holds
-// most gives up its least recently used entry first. So a client that loses an entry holds at least an equal
-// share of the store, whatever others add. Entries that nobody has used for a long time go before all others,
-// so that clients that never return leave their shares to those that came after them. Not thread-safe.
+// Eviction policy of a store that clients share. An entry counts in full for each client that holds it, and
+// stays until the last client releases it. The client with the largest share gives up its least recently used
+// entry first. A client that loses an entry therefore holds at least an equal share, whatever others add.
+// Entries that were unused for a long time go before all others, so clients that never return lose their
+// shares. Not thread-safe.
 class FairShares {
  public:
-  // A client gives up all its entries of a lower rank before those of a higher one.
+  // Eviction order. A client gives up all entries of a lower rank before any of a higher rank.
   using Rank = std::size_t;
   static constexpr Rank kRanks = 3;
 
-  // protected_for: after its latest use, an entry belongs to the share of its holders.
+  // Entries unused for more than `protected_for` are evicted first, whatever their holders' shares.
   explicit FairShares(Clock::duration protected_for, std::function<Clock::time_point()> now = Clock::now)
       : protected_for_(protected_for), now_(std::move(now)) {}
   FairShares(const FairShares&) = delete;
 
-  // From now on the client holds the entry, by that rank; that is a use. A new entry weighs nothing.
+  // Makes the client a holder of the entry with that rank, which counts as a use. A new entry has weight 0.
   void hold(const std::string& id, const std::string& client, Rank rank = 0);
-  void set_weight(const std::string& id, std::size_t weight);  // REQUIRES: somebody holds it
-  void touch(const std::string& id);                           // it is used
-  // The client does not hold the entry any more. Whether it was the last one.
+  void set_weight(const std::string& id, std::size_t weight);  // REQUIRES: a client holds it
+  void touch(const std::string& id);                           // records a use
+  // Releases the entry for the client. Returns whether it was the last holder.
   bool release(const std::string& id, const std::string& client);
   void erase(const std::string& id);
 
   bool holds(const std::string& id, const std::string& client) const { return rank(id, client).has_value(); }
-  // The rank by which the client holds it, and the highest by which anybody does; none: not at all.
+  // Returns the client's rank for the entry, or the highest rank of any client. Returns nullopt if not held.
   std::optional<Rank> rank(const std::string& id, const std::string& client) const;
   std::optional<Rank> rank(const std::string& id) const;
   std::vector<std::string> holders(const std::string& id) const;
-  std::size_t weight(const std::string& id) const;  // 0: nobody holds it
-  std::size_t weight() const { return weight_; }    // of all entries, each counted once
+  std::size_t weight(const std::string& id) const;  // 0 if not held
+  std::size_t weight() const { return weight_; }    // all entries, each counted once
 
-  // Which entries may be given up: those of ranks below these.
+  // Limits on eviction: the client and others only give up entries of ranks below these.
   struct Ranks {
     Rank own = kRanks, others = kRanks;
   };
-  // Has clients give up entries until all weigh at most `most` beside `more` that the client is about to add.
-  // Returns the entries that nobody holds any more; or none if the client would hold most and has nothing
-  // else to give up, and then nothing has changed.
+  // Evicts entries until the total weight is at most `most` - `more`, as the client is about to add `more`.
+  // Returns the entries that no client holds any more. Returns nullopt and changes nothing if the client
+  // would hold the most and has nothing else to give up.
   std::optional<std::vector<std::string>> make_room(const std::string& client, std::size_t more,
                                                     std::size_t most, Ranks ranks);
 
  private:
   struct Hold {
     Rank rank;
-    std::uint64_t seen;  // use of the entry by which the client's list has it: the latest, or one before
+    std::uint64_t seen;  // use number in the client's list; may be outdated
   };
   struct Entry {
     std::size_t weight = 0;
-    std::uint64_t use = 0;  // the number of its latest use
+    std::uint64_t use = 0;  // number of the latest use
     Clock::time_point used{};
     std::map<std::string, Hold> holders;
     std::array<std::size_t, kRanks> holders_by_rank{};
-    Rank rank() const;  // the highest of its holders
+    Rank rank() const;  // highest of all holders
   };
   using Entries = std::map<std::string, Entry>;
-  using ByUse = std::array<std::map<std::uint64_t, Entries::iterator>, kRanks>;  // of each rank
+  using ByUse = std::array<std::map<std::uint64_t, Entries::iterator>, kRanks>;  // by rank and use number
   struct Client {
     std::size_t weight = 0;
     ByUse entries;
@@ -91,7 +91,7 @@ class FairShares {
   void set_weight_of(Clients::iterator client, std::size_t weight);
   void set_use(Entries::iterator entry, std::uint64_t use, Clock::time_point used);
   void restore(const Loss& loss);
-  // What is given up next; none: the client would hold most.
+  // Returns the next hold to give up, or nullopt if the client would hold the most.
   std::optional<Loss> next_loss(const std::string& client, std::size_t more, Ranks ranks);
   std::optional<Loss> longest_unused(Rank below) const;
   std::optional<Loss> least_used(Clients::iterator client, Rank below);
@@ -100,8 +100,8 @@ class FairShares {
   const std::function<Clock::time_point()> now_;
   Entries entries_;
   ByUse by_use_;
-  Clients clients_;                                          // those that hold entries
-  std::set<std::pair<std::size_t, std::string>> by_weight_;  // the same
+  Clients clients_;                                          // clients with entries
+  std::set<std::pair<std::size_t, std::string>> by_weight_;  // (weight, client)
   std::size_t weight_ = 0;
   std::uint64_t uses_ = 0;
 };

@@ -10,19 +10,19 @@
 
 namespace orrery {
 
-// For pictures that are shown once and thrown away: the time to encode counts more than the bytes.
+// PNG options for images that are shown once: encoding time matters more than size.
 inline constexpr PngOptions kFrameOfStream{.level = 1};
 
-// A rendered and encoded picture.
+// Rendered and encoded image.
 struct Frame {
   std::string bytes;
   RenderStats stats;
   Certificate certificate = {};
   double render_ms = 0, encode_ms = 0;
-  MemoryCharge charge = {};  // for the bytes, where they are counted
+  MemoryCharge charge = {};  // for `bytes`, if accounted
 };
 
-// Adds what `encoder` makes of the film, and how long that took.
+// Encodes the film and measures the encoding time.
 template <class Encoder>
 Frame encode_frame(RenderResult&& rendered, double render_ms, const Encoder& encoder) {
   const auto start = Clock::now();

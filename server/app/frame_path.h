@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// The address of a scene's picture below `prefix`, for a query of query_of():
+// Returns the URL of a scene's image below `prefix`. `query` is from query_of():
 // "/v1/scenes/5f0c/frame.png?samples=4".
 inline std::string frame_path(const std::string& prefix, const std::string& scene_id,
                               const std::string& query) {

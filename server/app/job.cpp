@@ -10,7 +10,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kMostPlanned = 1000;  // steps whose cost is looked at before the first; others cost as much
+constexpr int kMostPlanned = 1000;  // steps in the cost estimate; more are sampled evenly
 
 }  // namespace
 
@@ -86,7 +86,7 @@ RenderResult Job::render(int step, const Watch& watch) {
 void Job::take(int step, const RenderResult& rendered) {
   spec_.work->add(rendered);
   const int steps = work().steps();
-  const bool changed = steps < steps_ || rendered.budget;  // which settles how the others are made
+  const bool changed = steps < steps_ || rendered.budget;  // a budget fixes the settings of later steps
   const double rays = step + 1 < steps && changed ? rays_of_all() : rays_;
   const std::lock_guard lock(mutex_);
   steps_ = steps;
@@ -99,7 +99,7 @@ RenderResult Job::try_render(int step, const Watch& watch) {
   Demand demand = services_.demand_of(scene, asked, spec_.client);
   demand.lane = Lane::batch;
   auto ticket = services_.admission.enter_again(demand, watch.stop());
-  memory_->settle(0);  // gives back what the steps before had
+  memory_->settle(0);  // returns the grant of earlier steps
   const int tiles = TileGrid(asked.width, asked.height).size();
   {
     const std::lock_guard lock(mutex_);
@@ -108,18 +108,18 @@ RenderResult Job::try_render(int step, const Watch& watch) {
     tiles_a_step_ = tiles;
     state_ = JobState::running;
   }
-  // Others take as long as the one that a budget makes.
+  // Assumes that all steps take as long as the step with the budget.
   RenderControl control{.stop = watch.stop(),
                         .background = true,
                         .most_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
-  const bool has_passes = has_budget(asked.asked);  // how many is not known
+  const bool has_passes = has_budget(asked.asked);  // their number is unknown
   if (!has_passes)
     control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int) {
       count(step, done, rays);
     };
   RenderResult rendered = memory_->run(
       watch.stop(), [&] { return services_.render(ticket, *spec_.scene, asked, work().storage(), control); });
-  if (has_passes) {  // counts when it ends, as much as the others will, and not what it took to choose that
+  if (has_passes) {  // counts the chosen settings, not the search for them
     RenderRequest made;
     static_cast<RenderSettings&>(made) = rendered.budget->settings;
     count(step, tiles, expected_rays(scene, make_plan(scene, made)));
@@ -130,7 +130,7 @@ RenderResult Job::try_render(int step, const Watch& watch) {
 void Job::count(int step, std::int64_t done, double rays) {
   const std::lock_guard lock(mutex_);
   const std::int64_t tiles = step * tiles_a_step_ + done;
-  if (tiles <= tiles_done_) return;  // done before, when there was no memory for the others
+  if (tiles <= tiles_done_) return;  // counted in an attempt that ran out of memory
   rays_done_ += rays * static_cast<double>(tiles - tiles_done_) / static_cast<double>(tiles_a_step_);
   tiles_done_ = tiles;
   changed_.notify_all();

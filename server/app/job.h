@@ -18,7 +18,7 @@
 
 namespace orrery {
 
-// Long work, and who asked for it.
+// Work of a job and its client.
 struct JobSpec {
   std::shared_ptr<const PreparedScene> scene;
   std::unique_ptr<JobWork> work;
@@ -32,26 +32,26 @@ inline constexpr std::string_view name_of(JobState state) {
 }
 inline constexpr bool has_ended(JobState state) { return state >= JobState::done; }
 
-// How far a job is.
+// Progress of a job.
 struct JobStatus {
   JobState state = JobState::waiting;
-  int steps = 1, steps_done = 0;           // pictures
-  std::int64_t tiles = 0, tiles_done = 0;  // of all steps; `tiles` is 0 before the first one began
-  double elapsed_s = 0;                    // since its first turn
-  std::optional<double> remaining_s;       // at the rate so far; none before anything is known
-  std::exception_ptr error;                // why it failed
+  int steps = 1, steps_done = 0;           // images
+  std::int64_t tiles = 0, tiles_done = 0;  // all steps; `tiles` is 0 before the first one begins
+  double elapsed_s = 0;                    // since its first slot
+  std::optional<double> remaining_s;       // at the rate so far; nullopt if unknown
+  std::exception_ptr error;                // reason of a failure
 };
 
-// Does its work on a thread of its own, step by step in the batch lane's turn; keeps what it made, but not
-// the scene once it has ended. Safe from any thread.
+// Long work on a thread of its own. Each step waits for a slot in the batch lane. The job keeps its results
+// after its end, but not its scene. Safe from any thread.
 class Job {
  public:
-  // `room`: called with the bytes of each step before they are kept; throws if there is no room for them.
+  // Called with the bytes of each step's result before it is stored. Throws if there is no room for them.
   using Room = std::function<void(std::size_t bytes)>;
 
-  // What `services` refers to must outlive it. It ends as TimedOut after `limit`.
+  // The objects in `services` must outlive the job. The job fails with TimedOut after `limit`.
   Job(std::string id, JobSpec spec, const RenderServices& services, std::chrono::seconds limit, Room room);
-  ~Job();  // cancels it
+  ~Job();  // cancels the job and joins its thread
   Job(const Job&) = delete;
 
   const std::string& id() const { return id_; }
@@ -60,23 +60,23 @@ class Job {
   JobStatus status() const;
   std::optional<Clock::time_point> ended() const;
 
-  // Waits until more than `steps` are done, the job has ended, `until` has come or `stop` is requested; if
-  // `tiles` is given, also until another number of tiles is done.
+  // Waits until more than `steps` are done, the job has ended, `until` has passed or `stop` is requested. If
+  // `tiles` is given, also returns once the number of finished tiles differs from it.
   JobStatus wait(int steps, std::optional<std::int64_t> tiles, Clock::time_point until,
                  const std::stop_token& stop) const;
 
   void cancel();
-  // Gives its thread back. REQUIRES: it has ended; one caller at a time.
+  // Joins the thread. REQUIRES: the job has ended; one caller at a time.
   void release();
 
  private:
   void run();
   Plan plan(int step) const;
   void take(int step, const RenderResult& rendered);
-  double rays_of_all() const;  // expected of all steps, by their plans alone: their proportions stay
+  double rays_of_all() const;  // estimate for all steps from their plans alone
   RenderResult render(int step, const Watch& watch);
-  RenderResult try_render(int step, const Watch& watch);  // throws OverLimit where memory is short now
-  // So many tiles of a step, which takes so many rays in all, are done.
+  RenderResult try_render(int step, const Watch& watch);  // throws OverLimit if memory is short
+  // Records that `done` tiles of a step are finished. `rays`: estimated cost of the whole step.
   void count(int step, std::int64_t done, double rays);
   void keep(int step, Frame&& frame);
   void end(std::exception_ptr error);
@@ -87,7 +87,7 @@ class Job {
   const RenderServices services_;
   const std::chrono::seconds limit_;
   const Room room_;
-  std::shared_ptr<MemoryAccount> memory_;  // of films; for its thread, which gives it back at the end
+  std::shared_ptr<MemoryAccount> memory_;  // films; the thread resets it at the end
   std::stop_source cancelled_;
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable_any changed_;
@@ -97,7 +97,7 @@ class Job {
   std::int64_t tiles_a_step_ = 0, tiles_done_ = 0;
   double rays_done_ = 0, rays_ = 0;  // see rays_of_all()
   std::optional<Clock::time_point> started_, ended_;
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // last: uses the members above
 };
 
 }  // namespace orrery

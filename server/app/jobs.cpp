@@ -14,7 +14,7 @@ constexpr FairShares::Rank kEnded = 0, kUnderWay = 1;
 Jobs::~Jobs() {
   std::vector<Entry> entries;
   const std::lock_guard lock(mutex_);
-  entries.swap(entries_);  // jobs may still ask for room while they end
+  entries.swap(entries_);  // destroyed without the lock: ending jobs call make_room()
 }
 
 Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::string& content) {
@@ -28,7 +28,7 @@ Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::strin
     throw InputError("", "another job was started by the Idempotency-Key " + key.substr(0, 80));
   }
   require_place(spec.client);
-  constexpr std::size_t kIdBytes = 16;  // nobody can guess it
+  constexpr std::size_t kIdBytes = 16;  // unguessable
   const std::string id = random_hex(kIdBytes), client = spec.client;
   auto job = std::make_shared<Job>(id, std::move(spec), services_, limits_.run_time,
                                    [this, id, client](std::size_t bytes) { make_room(id, client, bytes); });
@@ -102,7 +102,7 @@ void Jobs::forget_old() {
   }
 }
 
-// The files of a job that has not ended stay until it has.
+// Cancels running jobs; their files stay until they have ended.
 void Jobs::forget(const std::vector<std::string>& ids) {
   for (const std::string& id : ids) {
     bytes_.erase(id);

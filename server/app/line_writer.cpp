@@ -15,8 +15,8 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-// A descriptor of our own. That of a pipe does not block: it is opened anew, because the mode would otherwise
-// change for every process that shares the pipe's description.
+// Returns a duplicate descriptor. Reopens a pipe in non-blocking mode, because changing the mode of the
+// shared description would affect every process that uses the pipe.
 int duplicate(int fd) {
   struct stat status {};
   if (fstat(fd, &status) == 0 && S_ISFIFO(status.st_mode)) {
@@ -55,7 +55,7 @@ bool LineWriter::wait_until_writable(Clock::time_point until) const {
   }
 }
 
-// Writes at most PIPE_BUF bytes at once: a pipe, socket or terminal that is ready takes as many.
+// Writes at most PIPE_BUF bytes at once: a ready pipe, socket or terminal accepts that many.
 void LineWriter::write_rest() {
   constexpr std::chrono::milliseconds kPatience{100};
   const auto now = Clock::now();
@@ -69,7 +69,7 @@ void LineWriter::write_rest() {
       bytes.remove_prefix(static_cast<std::size_t>(count));
     else if (errno == EAGAIN && Clock::now() >= until)  // another process has filled the pipe
       break;
-    else if (errno != EINTR && errno != EAGAIN)  // nobody reads it, or the disk is full
+    else if (errno != EINTR && errno != EAGAIN)  // no reader, or the disk is full
       break;
   }
   rest_.erase(0, rest_.size() - bytes.size());

@@ -30,7 +30,7 @@ std::string dumped(const ordered_json& value) {
   return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-// The same text with its control characters of Latin-1 escaped: a terminal may obey them.
+// Returns the text with C1 control characters escaped, because a terminal may interpret them.
 std::string without_c1(const std::string& utf8) {
   std::string text;
   for (std::size_t i = 0; i < utf8.size(); ++i) {
@@ -43,7 +43,8 @@ std::string without_c1(const std::string& utf8) {
   return text;
 }
 
-// "request  method=GET path=/v1/limits": what is plain stays plain, the rest is quoted.
+// Returns a line such as "request method=GET path=/v1/limits". Values with blanks or special characters are
+// quoted.
 std::string text_of(std::string_view event, const ordered_json& fields) {
   std::string text(event);
   for (const auto& [name, value] : fields.items()) {
@@ -55,7 +56,7 @@ std::string text_of(std::string_view event, const ordered_json& fields) {
   return text;
 }
 
-// The fields with texts cut to a length at which thousands of lines may be queued.
+// Returns the fields with strings cut to kLongest bytes, because thousands of lines may be queued.
 ordered_json cut(ordered_json fields) {
   constexpr std::size_t kLongest = 2048;
   for (auto& value : fields)
@@ -64,14 +65,14 @@ ordered_json cut(ordered_json fields) {
   return fields;
 }
 
-// Signals are for the threads that wait for them.
+// Blocks all signals, which other threads handle.
 void block_signals() {
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
 }
 
-// What follows the time and the level.
+// Returns the rest of a line, after its time and level.
 std::string line_of(LogForm form, std::string_view event, const ordered_json& fields) {
   if (form == LogForm::text) return without_c1(text_of(event, fields));
   ordered_json line = {{"event", event}};
@@ -85,7 +86,7 @@ std::string line_of(LogForm form, std::string_view event, const ordered_json& fi
 // Writes lines on the log's thread.
 class Log::Sink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
-  // `queue` must outlive its thread.
+  // `queue`: thread pool that calls this sink. Must outlive its thread.
   Sink(LogForm form, int fd, spdlog::details::thread_pool& queue) : form_(form), queue_(queue), writer_(fd) {}
 
   std::uint64_t dropped() const { return not_written_ + queue_.overrun_counter(); }
@@ -103,7 +104,7 @@ class Log::Sink final : public spdlog::sinks::base_sink<std::mutex> {
     formatter_->format(message, line);
     return writer_.write({line.data(), line.size()});
   }
-  // False: lines were dropped, and none can be written yet.
+  // Returns false if dropped lines cannot be reported yet.
   bool report_dropped() {
     const std::uint64_t count = dropped();
     if (count == reported_) return true;
@@ -117,7 +118,7 @@ class Log::Sink final : public spdlog::sinks::base_sink<std::mutex> {
   spdlog::details::thread_pool& queue_;
   LineWriter writer_;
   std::atomic<std::uint64_t> not_written_{0};
-  std::uint64_t reported_ = 0;  // of those dropped
+  std::uint64_t reported_ = 0;  // dropped lines reported so far
 };
 
 Log::Log(LogForm form, LogLevel lowest, int fd) : form_(form) {
@@ -128,7 +129,7 @@ Log::Log(LogForm form, LogLevel lowest, int fd) : form_(form) {
                                                    spdlog::async_overflow_policy::overrun_oldest);
   logger_->set_error_handler([sink = sink_](const std::string&) { sink->drop(); });
   logger_->set_level(level_of(lowest));
-  // Time in UTC with milliseconds, and the level; the rest is ours.
+  // Time with milliseconds (JSON: UTC, text: local time), level and message.
   logger_->set_pattern(
       form == LogForm::json ? R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l",%v})" : "%H:%M:%S.%e %-7l %v",
       form == LogForm::json ? spdlog::pattern_time_type::utc : spdlog::pattern_time_type::local);

@@ -19,18 +19,17 @@ namespace orrery {
 enum class LogForm { json, text };
 enum class LogLevel { debug, info, warning, error };
 
-// What the service writes on standard error: an event a line, as a JSON object or for people. A thread of its
-// own writes the lines, so that no caller waits for the reader. Lines are dropped where the queue is full,
-// and where the reader is gone or does not read; the next line that is written follows one with their number.
-// Safe from any thread.
+// Log on standard error, with one event per line, as JSON or as text. A thread of its own writes the lines,
+// so callers never wait for the reader. Lines are dropped if the queue is full, or if the reader has stalled
+// or is gone. The next written line follows a line with the number of dropped lines. Safe from any thread.
 class Log {
  public:
   Log(LogForm form, LogLevel lowest, int fd = STDERR_FILENO);
-  // Writes what is queued, for at most a second.
+  // Writes the queued lines, for at most 1 second.
   ~Log();
   Log(const Log&) = delete;
 
-  // `fields` is an object; its members follow time, level and event.
+  // Writes a line. `fields` is an object; its members follow time, level and event.
   void write(LogLevel level, std::string_view event, const nlohmann::ordered_json& fields) const;
 
   std::uint64_t dropped() const;  // lines, since the start

@@ -10,21 +10,22 @@
 
 namespace orrery {
 
-// Values by id, held by clients. Once they take more than the limit, some are evicted as FairShares says.
-// Values are shared pointers: an evicted one lives as long as it is used. Safe from any thread.
+// Size-limited cache of values by id, held by clients. FairShares selects the values to evict. Values are
+// shared pointers, so an evicted value lives as long as it is used. Safe from any thread.
 template <class Value>
 class Lru {
  public:
-  // protected_for: see FairShares.
+  // `protected_for`: see FairShares.
   Lru(std::size_t most_bytes, Clock::duration protected_for)
       : most_bytes_(most_bytes), shares_(protected_for) {}
 
   struct Added {
     Value value;
-    bool known;  // it was there before, and that one is returned
+    bool known;  // it was already stored
   };
-  // `make` gives the value, which the client holds from now on. Returns none if the client would hold most of
-  // the store by this value alone, and others leave no room for it. REQUIRES: bytes <= most_bytes().
+  // Returns the stored value, or stores make(). The client holds the value from now on. Returns nullopt if
+  // others leave no room and the client would hold the most with this value alone. REQUIRES: bytes <=
+  // most_bytes().
   template <class Make>
   std::optional<Added> add(const std::string& id, const std::string& client, std::size_t bytes,
                            const Make& make) {
@@ -52,7 +53,7 @@ class Lru {
   }
 
   enum class Removed { yes, not_held, unknown };
-  // The client holds the value no more, which goes if nobody else holds it, or with `of_all` in any case.
+  // Releases the value for the client, or with `of_all` for all clients. Removes it once no client holds it.
   Removed remove(const std::string& id, const std::string& client, bool of_all) {
     const std::lock_guard lock(mutex_);
     if (values_.count(id) == 0) return Removed::unknown;
@@ -62,7 +63,7 @@ class Lru {
     return Removed::yes;
   }
 
-  // Values that were evicted, since the start.
+  // Returns the number of evictions since the start.
   std::uint64_t evictions() const {
     const std::lock_guard lock(mutex_);
     return evictions_;

@@ -10,8 +10,8 @@
 
 namespace orrery {
 
-// How many things took how many seconds, in steps that tell a cached picture from a quick and from a long
-// one. Safe from any thread.
+// Histogram of durations in seconds. Its buckets separate cached, fast and slow renders. Safe from any
+// thread.
 class SecondsHistogram : public prometheus::Histogram {
  public:
   SecondsHistogram() : Histogram(boundaries()) {}
@@ -20,20 +20,20 @@ class SecondsHistogram : public prometheus::Histogram {
   }
 };
 
-// What the work for a request is at. A render builds its structure and traces.
+// Current stage of a request's work. `render` includes building the acceleration structure.
 enum class Stage : std::size_t { read, queue, settle, render, encode };
 inline constexpr std::array<std::string_view, 5> kStages{"read", "queue", "settle", "render", "encode"};
 
-// What is counted of the work, since the start. Safe from any thread.
+// Counters since the start. Safe from any thread.
 struct Meters {
   const std::chrono::system_clock::time_point started = std::chrono::system_clock::now();
   std::atomic<std::uint64_t> rays{0};
-  std::atomic<std::uint64_t> pictures_found{0}, pictures_made{0};  // of those asked for
-  std::atomic<std::uint64_t> films_found{0};                       // of pictures made: encoded, not rendered
+  std::atomic<std::uint64_t> pictures_found{0}, pictures_made{0};  // cached, encoded
+  std::atomic<std::uint64_t> films_found{0};                       // images encoded from a cached film
   std::atomic<std::uint64_t> jobs_done{0}, jobs_failed{0}, jobs_cancelled{0};
-  std::array<std::atomic<std::uint64_t>, kStages.size()> given_up{};  // work before its end, by stage
+  std::array<std::atomic<std::uint64_t>, kStages.size()> given_up{};  // aborted work by stage
   std::atomic<std::uint64_t> reloads_failed{0};                       // on SIGHUP
-  SecondsHistogram render;  // of a frame: building its structure and tracing it
+  SecondsHistogram render;                                            // per frame: building and tracing
 };
 
 }  // namespace orrery

@@ -38,7 +38,7 @@ ordered_json option_schemas() {
     if (option.in_scene && !option.by_technique)
       description += " As the scene says, or " + option.text(default_settings()) + ".";
     if (!option.changes_pixels) description += " Changes no pixel.";
-    if (schema.contains("$ref")) {  // shared definitions lie within the schema of requests only
+    if (schema.contains("$ref")) {  // only the request schema has the shared definitions
       const std::string reference = schema["$ref"];
       schema.erase("$ref");
       schema.update(request.at(ordered_json::json_pointer(reference.substr(1))));

@@ -4,15 +4,15 @@
 
 #include "core/plan/options.h"
 
-// Render options as JSON objects for answers.
+// Render options as JSON objects for responses.
 namespace orrery {
 
-// {key: value} of the options of a section, or of all. REQUIRES: they are given.
+// Returns {key: value} for the options of a section, or for all options. REQUIRES: these options are set.
 nlohmann::ordered_json section_json(const RenderSettings& settings, Section section);
 nlohmann::ordered_json options_json(const RenderSettings& settings);
 
-// {key: JSON Schema} of all options as requests have them, from the code that reads them. Each has a
-// description, which says the default too where that is the scene's.
+// Returns {key: JSON Schema} for all options of a request, from the code that reads them. Each description
+// names the default if the scene can set the option.
 nlohmann::ordered_json option_schemas();
 
 }  // namespace orrery

@@ -15,14 +15,14 @@
 
 namespace orrery {
 
-inline constexpr double kLongestStep_s = 3600;  // of the motion, from frame to frame
+inline constexpr double kLongestStep_s = 3600;  // motion time per frame
 
-// A turn of the camera about a scene, while what moves in it moves, again and again.
+// Camera path around a scene, while the motion of the scene repeats.
 struct OrbitPath {
-  RenderRequest first;      // frame; every option is given, but with a budget only what it does not choose
-  TimeSpan motion;          // of the scene
-  double step_degrees = 3;  // of azimuth, from frame to frame
-  double step_seconds = 0;  // of the motion, likewise
+  RenderRequest first;      // first frame; all options set, except those its budget chooses
+  TimeSpan motion;          // time span of the scene's motion
+  double step_degrees = 3;  // azimuth per frame
+  double step_seconds = 0;  // motion time per frame
 
   RenderRequest at(std::int64_t frame) const {
     RenderRequest request = first;
@@ -33,7 +33,7 @@ struct OrbitPath {
   double azimuth_degrees(std::int64_t frame) const {
     return *first.azimuth_degrees + static_cast<double>(frame) * step_degrees;
   }
-  // Every other frame is made by the settings that made the first one. Errors stay in their space.
+  // Sets the settings of all later frames to those of the first one. Keeps the error space.
   void go_on_as(const RenderSettings& settings) {
     const std::optional<Space> space = first.space;
     static_cast<RenderSettings&>(first) = settings;
@@ -41,7 +41,7 @@ struct OrbitPath {
   }
 };
 
-// One turn in so many frames, and what is left of the scene's motion.
+// Returns one full turn in `frames` frames, during which the rest of the scene's motion plays.
 inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int frames) {
   OrbitPath path{first, scene.motion, 360.0 / frames};
   const RenderSettings all = resolve(scene, first);
@@ -52,8 +52,8 @@ inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int f
   return path;
 }
 
-// Throws InputError, with the pointer of the step, if the last frame is turned farther than one picture may
-// be.
+// Throws InputError with the pointer of the step if the azimuth of the last frame exceeds the limit for an
+// image.
 inline void require_range(const OrbitPath& path, int frames, std::string_view step_pointer) {
   const double azimuth = path.azimuth_degrees(frames - 1);
   if (!(std::abs(azimuth) <= kMaxOrbitDegrees))
@@ -62,21 +62,21 @@ inline void require_range(const OrbitPath& path, int frames, std::string_view st
                                                     " degrees of azimuth, got " + number_text(azimuth));
 }
 
-// How an orbit is shown to those who watch it.
+// Parameters of an orbit stream.
 struct OrbitSpec {
   std::shared_ptr<const PreparedScene> scene;
   OrbitPath path;
   int frames = 120;
-  double fps = 30;     // at most; 0: as fast as the fastest viewer takes them
+  double fps = 30;     // maximum; 0: as fast as the fastest viewer reads
   std::string key;     // equal for equal orbits
-  std::string client;  // who asked for it first
+  std::string client;  // client that requested it first
 };
 
-// One picture of it, shared by all who watch.
+// Frame of an orbit, shared by all viewers.
 struct OrbitFrame {
   int frame = 0;
   Orbit orbit;
-  double time = 0;  // of the motion, seconds
+  double time = 0;  // motion time, seconds
   int width = 0, height = 0;
   Frame picture;
 };

@@ -9,28 +9,29 @@
 
 namespace orrery {
 
-// How far the frames of an orbit may be off, and its budget, if there is one: the first frame is made within
-// it, and all others of what that one took, so that quality does not change from frame to frame.
+// Error bounds of the frames of an orbit, and its budget if there is one. The first frame is rendered within
+// the budget. Later frames use the settings of the first one, so the quality stays constant.
 class OrbitBudget {
  public:
   explicit OrbitBudget(int frames) : frames_(static_cast<std::size_t>(frames)) {}
 
-  // Takes the next frame of the path. After the first one it goes on without a budget. Throws BudgetMissed
-  // where the frame may be farther off than is asked and that is to be an error.
+  // Records the next frame of the path. After the first frame, the path continues without a budget. Throws
+  // BudgetMissed if the error bound of the frame exceeds the budget and a miss is an error.
   void add(const Scene& scene, const RenderResult& frame, OrbitPath& path);
 
-  // REQUIRES of all below: the frame, or so many, were added.
-  // {"kind", "rms", "max", "space"}.
+  // REQUIRES for the functions below: the frame, or the first `frames` frames, were added.
+  // Returns {"kind", "rms", "max", "space"}.
   nlohmann::ordered_json bound_json(int frame) const;
-  // What budget_json() tells of the first frame, and {"plan", "frames_met", "largest_bound"}: the query of
-  // that plan, frames whose bound is at most the error asked, null if none was, and the largest RMS of any
-  // bound, null if one has none. Null without a budget.
+  // Returns budget_json() of the first frame with "plan", "frames_met" and "largest_bound", or null without a
+  // budget. "plan" is the query of the first frame's plan. "frames_met" is the number of frames whose bound
+  // is within the error budget, null if there is none. "largest_bound" is the largest RMS bound, null if a
+  // frame has none.
   nlohmann::ordered_json json(int frames) const;
 
  private:
   struct Frame {
     Bound bound;
-    Space space = Space::linear;  // that it is in
+    Space space = Space::linear;  // error space of `bound`
   };
   const Frame& at(int frame) const { return frames_[static_cast<std::size_t>(frame)]; }
   bool keeps_error(int frame) const;
@@ -38,7 +39,7 @@ class OrbitBudget {
   std::vector<Frame> frames_;
   int next_ = 0;
   std::optional<BudgetOutcome> of_first_;
-  std::string plan_;  // of all others, as a query
+  std::string plan_;  // plan of the later frames, as a query
 };
 
 }  // namespace orrery

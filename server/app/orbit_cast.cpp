@@ -9,8 +9,8 @@
 namespace orrery {
 namespace {
 
-constexpr std::int64_t kAhead = 3;        // frames rendered before a mailbox takes the first of them
-constexpr double kLongestPeriod_s = 1e6;  // a clock counts no more than 292 years
+constexpr std::int64_t kAhead = 3;        // frames rendered ahead of the mailboxes
+constexpr double kLongestPeriod_s = 1e6;  // a clock overflows after 292 years
 
 }  // namespace
 
@@ -132,7 +132,7 @@ RenderResult OrbitCast::try_render(const Plan& plan, const std::stop_token& stop
   Demand demand = services_.demand_of(spec_.scene->scene(), plan, spec_.client);
   demand.sharers = sharers_;
   auto ticket = services_.admission.enter_again(demand, stop);
-  memory_->settle(0);  // gives back what the frames before had
+  memory_->settle(0);  // returns the grant of earlier frames
   return memory_->run(
       stop, [&] { return services_.render(ticket, *spec_.scene, plan, FilmStorage::srgb8, {.stop = stop}); });
 }

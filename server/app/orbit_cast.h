@@ -12,14 +12,13 @@
 
 namespace orrery {
 
-// Renders an orbit once for all who watch it. The frames run in a circle, numbered on and on; each viewer
-// gets as many as the orbit has, beginning with the one that is shown when it comes in. A viewer has a
-// mailbox for one frame: a newer frame takes the place of one that was not fetched in time. Nothing is
-// rendered that nobody would see: the cast waits while all mailboxes are full. With fps 0 it then goes on
-// where it was; else with the frame whose time has come.
+// Renders an orbit once for all its viewers. Frames repeat in a circle with increasing numbers. Each viewer
+// gets one orbit, starting with the frame shown when it joins. A viewer has a mailbox for one frame: a newer
+// frame replaces one that was not fetched in time. Rendering pauses while all mailboxes are full. It then
+// resumes at the next frame if fps is 0, else at the frame that is due.
 class OrbitCast {
  public:
-  // frame_time: that one frame may take.
+  // `frame_time`: time limit for one frame.
   OrbitCast(OrbitSpec spec, const RenderServices& services, std::chrono::seconds frame_time);
   ~OrbitCast();
 
@@ -27,16 +26,17 @@ class OrbitCast {
   bool is_watched_by(const std::string& client) const;
 
   class Viewer;
-  // None once the cast is ending. Each frame is rendered in the earliest turn of any viewer's client.
+  // Adds a viewer. Returns null once the orbit is ending. Each frame is queued at the earliest position of
+  // any viewer's client.
   static std::unique_ptr<Viewer> join(const std::shared_ptr<OrbitCast>& cast, const std::string& client);
 
  private:
   struct Mailbox {
     std::string client;
-    std::int64_t begin, end;  // numbers of the frames this viewer gets
+    std::int64_t begin, end;  // numbers of this viewer's frames
     std::shared_ptr<const OrbitFrame> frame;
-    std::int64_t number = 0;   // of `frame`
-    std::int64_t fetched = 0;  // how many
+    std::int64_t number = 0;   // number of `frame`
+    std::int64_t fetched = 0;  // number of fetched frames
     bool wants(std::int64_t n) const { return n >= begin && n < end; }
   };
 
@@ -45,44 +45,44 @@ class OrbitCast {
   RenderResult render(std::int64_t number);
   RenderResult try_render(const Plan& plan, const std::stop_token& stop);
   void deliver(std::int64_t number, Frame&& frame);
-  // Below: with mutex_ held.
-  void post();  // puts finished frames into the mailboxes, as far as they may
+  // REQUIRES for the functions below: mutex_ is held.
+  void post();  // moves finished frames into the mailboxes
   bool anyone_free(std::int64_t number) const;
   bool anyone_wants(std::int64_t number) const;
-  bool at_end(const Mailbox& mailbox) const;  // nothing more will be put into it
+  bool at_end(const Mailbox& mailbox) const;  // no more frames will arrive
 
   const OrbitSpec spec_;
   const RenderServices services_;
-  const std::shared_ptr<MemoryAccount> memory_;  // of films; frames have another like it
+  const std::shared_ptr<MemoryAccount> memory_;  // films; encoded frames have another account
   const std::shared_ptr<Sharers> sharers_ = std::make_shared<Sharers>();
   const std::chrono::seconds frame_time_;
-  std::stop_source nobody_watches_;  // then nobody can join either
+  std::stop_source nobody_watches_;  // requested when the last viewer leaves
   mutable std::mutex mutex_;         // guards all below
   std::condition_variable_any changed_;
   std::list<Mailbox> mailboxes_;
   std::int64_t next_ = 0;  // number of the frame to render next
-  std::deque<std::pair<std::int64_t, std::shared_ptr<const OrbitFrame>>> finished_;  // not delivered yet
-  std::int64_t delivered_ = 0;                // all before it are in the mailboxes or lost
-  std::shared_ptr<const OrbitFrame> latest_;  // the one before it; none at first
-  Clock::time_point start_;     // when frame 0 was due; moves on when rendering is slower than fps
-  bool closed_ = false;         // no frames will be rendered any more
-  bool over_ = false;           // none will be delivered any more
-  std::exception_ptr failure_;  // why no frame could follow
-  std::thread thread_;          // last: it uses the others
+  std::deque<std::pair<std::int64_t, std::shared_ptr<const OrbitFrame>>> finished_;  // not yet delivered
+  std::int64_t delivered_ = 0;                // earlier frames are posted or skipped
+  std::shared_ptr<const OrbitFrame> latest_;  // last delivered frame, or null
+  Clock::time_point start_;                   // due time of frame 0; moves on if rendering is slower than fps
+  bool closed_ = false;                       // no more frames will be rendered
+  bool over_ = false;                         // no more frames will be delivered
+  std::exception_ptr failure_;                // error that ended rendering
+  std::thread thread_;                        // last: uses the members above
 };
 
-// One who watches. For one thread.
+// Viewer of an orbit. For one thread.
 class OrbitCast::Viewer {
  public:
   ~Viewer();
   Viewer(const Viewer&) = delete;
 
-  // The newest frame not seen yet; waits for it. None at the end of the orbit, when the service ends, or once
-  // `gone` is requested. Throws what kept a frame from being rendered, such as TimedOut.
+  // Waits for the newest unseen frame and returns it. Returns null at the end of the orbit, when the service
+  // ends, or once `gone` is requested. Throws the error that ended rendering, such as TimedOut.
   std::shared_ptr<const OrbitFrame> next(const std::stop_token& gone);
-  // Frames of the orbit up to the last one got that this viewer missed.
+  // Returns the number of frames that this viewer missed, up to the last fetched frame.
   std::int64_t skipped() const { return skipped_; }
-  // Whether the frame got last was the last.
+  // Returns whether the last fetched frame was the final one.
   bool at_end() const { return at_end_; }
 
  private:

@@ -8,21 +8,23 @@
 
 namespace orrery {
 
-// One text for all requests that lead to the same picture of the scene, however they were written: what is
-// not given takes the scene's value; options that change no pixel are left out.
+// Returns the same text for all requests that give the same image of the scene, however they are written.
+// Missing options take the scene's values. Options that change no pixel are left out.
 std::string canonical_request(const Scene& scene, const RenderRequest& request);
 
-// Likewise for all that lead to the same picture by the same work: with the options that change no pixel.
+// Returns the same text for all requests that give the same image by the same work. Includes the options that
+// change no pixel.
 std::string canonical_work(const Scene& scene, const RenderRequest& request);
 
-// The same with the scene. What is under way goes by this: a picture that is asked for by a structure which
-// takes a thousand times as long must not keep who asks for the same pixels.
+// Returns the hash of the scene and canonical_work(), the key of work in progress. Requests for the same
+// pixels with different acceleration structures do not share work, because one may take 1,000 times as long.
 std::string work_key(const Scene& scene, const RenderRequest& request);
 
-// Likewise for the frames of an orbit.
+// Returns the same text for all orbits with the same frames by the same work.
 std::string canonical_orbit(const Scene& scene, const OrbitPath& path, int frames);
 
-// A strong ETag, quotes included: the hash of scene, canonical request and program version.
+// Returns a strong ETag with its quotes: the hash of the scene, the canonical request and the version of the
+// images.
 std::string etag_of(const Scene& scene, const RenderRequest& request);
 
 }  // namespace orrery

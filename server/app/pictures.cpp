@@ -6,7 +6,7 @@ namespace orrery {
 
 namespace {
 
-// What missed its budget is not kept: there may be more time another time.
+// Size of an image that missed its budget. It exceeds the cache, because a later request may have more time.
 constexpr std::size_t kTooMany = std::numeric_limits<std::size_t>::max() / 2;
 
 }  // namespace

@@ -10,26 +10,26 @@
 
 namespace orrery {
 
-// An encoded picture and what it took.
+// Encoded image and its statistics.
 struct Picture {
   std::string bytes;
   RenderStats stats;
   Certificate certificate = {};
   std::vector<Problem> warnings = {};  // see find_warnings()
   std::optional<BudgetOutcome> budget = {};
-  bool of_kept_film = false;  // nothing was rendered for it
+  bool of_kept_film = false;  // encoded from a cached film
 };
 std::size_t held_bytes(const Picture& picture);
-// By format and by `work`, the key of what it is a picture of.
+// Returns the key of an image in a format. `work`: key of the image in any format.
 std::string picture_key(const std::string& work, FileFormat format);
 using Pictures = SingleFlight<Picture>;
 
 std::size_t held_bytes(const RenderResult& rendered);
-// Films of which pictures in other formats may be asked for.
+// Cache of films, from which images in other formats are encoded.
 using Films = SingleFlight<RenderResult>;
 
-// How the film of a picture in that format is kept: as what all formats are views of, unless such a film
-// takes more than `most_bytes`; else as little as the format needs.
+// Returns the storage for the film of an image: linear32, which serves all formats, if srgb8 would suffice
+// and the film fits in `most_bytes`. Otherwise returns the smallest storage that the format needs.
 FilmStorage shared_storage(FileFormat format, const Plan& plan, std::size_t most_bytes);
 
 }  // namespace orrery

@@ -9,17 +9,16 @@
 namespace orrery {
 namespace {
 
-constexpr std::int64_t kUnderWay = 3;  // frames in memory at once: one being rendered, two being encoded
+constexpr std::int64_t kUnderWay = 3;  // frames in memory: one in rendering, two in encoding
 
-// The frames between rendering and delivery. They are encoded at once and end in any order, but leave in the
-// order in which they came.
+// Frames between rendering and delivery. They are encoded in parallel and delivered in order.
 class Line {
  public:
   explicit Line(const Pipeline& pipeline)
       : pipeline_(pipeline), memory_(pipeline.memory ? pipeline.memory->open_another() : nullptr) {}
   ~Line() { wait_until_empty(); }
 
-  // Waits until one more frame may be rendered. False if one before failed.
+  // Waits until another frame may be rendered. Returns false if an earlier frame failed.
   bool wait_for_room() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return entered_ - left_ < kUnderWay; });
@@ -27,7 +26,7 @@ class Line {
   }
 
   void enter(std::int64_t number, RenderResult&& rendered, double render_ms) {
-    const std::int64_t place = entered_;  // which changes on this thread alone
+    const std::int64_t place = entered_;  // only this thread changes entered_
     const auto shared = std::make_shared<RenderResult>(std::move(rendered));
     pipeline_.pool.enqueue(pipeline_.background, [this, place, number, shared, render_ms] {
       Encoded encoded{.number = number, .frame = {}, .error = {}};
@@ -42,7 +41,7 @@ class Line {
     ++entered_;
   }
 
-  // Waits for all that entered. Throws what the first of them that failed threw.
+  // Waits for all frames. Throws the error of the first one that failed.
   void finish() {
     wait_until_empty();
     if (error_) std::rethrow_exception(error_);
@@ -55,7 +54,7 @@ class Line {
     std::exception_ptr error;
   };
 
-  // Where memory is short, frames of less than 32 MiB are kept all the same, and the next one waits for it.
+  // Encodes a frame. If memory is short, frames below 32 MiB are still kept, and the next render waits.
   Frame encode(RenderResult&& rendered, double render_ms) const {
     const WorkScope scope({nullptr, &pipeline_.stop});
     Frame frame = encode_frame(std::move(rendered), render_ms, pipeline_.encode);
@@ -63,7 +62,7 @@ class Line {
     frame.bytes.shrink_to_fit();
     const auto charge = [&] { return MemoryCharge(frame.bytes.capacity()); };
     frame.charge = memory_->run(pipeline_.stop, charge);
-    memory_->settle(0);  // all frames that there are count, also where that was refused
+    memory_->settle(0);  // charges all frames, even over the limit
     return frame;
   }
 
@@ -92,11 +91,11 @@ class Line {
   }
 
   const Pipeline& pipeline_;
-  const std::shared_ptr<MemoryAccount> memory_;  // beside that of the films, which wait until there is room
+  const std::shared_ptr<MemoryAccount> memory_;  // encoded frames; the films have another account
   std::mutex mutex_;                             // guards all below
   std::condition_variable changed_;
   std::int64_t entered_ = 0, left_ = 0;
-  std::map<std::int64_t, Encoded> waiting_;  // by place in the line, for those before them
+  std::map<std::int64_t, Encoded> waiting_;  // by position, until earlier frames leave
   std::exception_ptr error_;
 };
 

@@ -9,21 +9,20 @@
 
 namespace orrery {
 
-// A row of frames in which one is rendered while those before it are encoded. `next` and `render` are called
-// on the caller's thread, each may wait. `encode` and `deliver` are called on the pool's, which so have work
-// from the first frame to the last and no others to share the cores with; they must not wait.
+// Sequence of frames, each rendered while earlier ones are encoded. `next` and `render` run on the caller's
+// thread and may wait. `encode` and `deliver` run on pool threads and must not wait. The pool therefore has
+// work from the first frame to the last, and shares the cores with no other threads.
 struct Pipeline {
   WorkerPool& pool;
-  bool background;                                    // others come first
-  std::function<std::optional<std::int64_t>()> next;  // number of the frame to render; none: the end
+  bool background;                                    // yields to other work
+  std::function<std::optional<std::int64_t>()> next;  // number of the frame to render, or nullopt at the end
   std::function<RenderResult(std::int64_t)> render;
-  std::function<std::string(const Film&)> encode;  // several at once
-  std::stop_token stop = {};                       // ends what is being encoded, with Cancelled
-  MemoryAccount* memory = nullptr;  // encoded frames are charged to another like it; none: nullptr
-  std::function<void(std::int64_t, Frame&&)> deliver;  // one at a time, in the order of `next`
+  std::function<std::string(const Film&)> encode;      // called by several threads at once
+  std::stop_token stop = {};                           // cancels encoding, which throws Cancelled
+  MemoryAccount* memory = nullptr;                     // opens the account of encoded frames; may be null
+  std::function<void(std::int64_t, Frame&&)> deliver;  // called one at a time, in the order of `next`
 
-  // Returns once all frames are delivered. What a stage throws ends it and is thrown here, after the frames
-  // before have been delivered.
+  // Returns once all frames are delivered. If a stage throws, delivers the earlier frames and rethrows.
   void run() const;
 };
 

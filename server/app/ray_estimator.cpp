@@ -30,7 +30,7 @@ void RayEstimator::learn(const Scene& scene, const Plan& plan, std::uint64_t ray
   const double weight = std::min(1.0, camera_rays / kEnoughCameraRays);
   const double seen =
       std::clamp(static_cast<double>(rays) / expected_rays(scene, plan), 1 / kMostFactor, kMostFactor);
-  const std::string nobody;  // factors are no client's
+  const std::string nobody;  // factors belong to no client
   const auto added = factors_.add(key_of(scene, plan), nobody, 1,
                                   [&] { return std::make_shared<double>(1 + weight * (seen - 1)); });
   if (!added->known) return;

@@ -10,20 +10,21 @@
 
 namespace orrery {
 
-// Expects how many rays renders trace, and learns from what they traced. Safe from any thread.
+// Estimates the number of rays of renders, and learns from finished ones. Safe from any thread.
 class RayEstimator {
  public:
-  // Rays, of all kinds: expected_rays() of the plan, times the factor learned from renders of that scene by
-  // the same technique, depth and least contribution, whatever their size, samples and camera; 1 before the
-  // first, and never beyond 1/8 and 8: a client chooses what others learn from.
+  // Returns the estimated rays of all kinds: expected_rays() of the plan times a learned factor. Renders of a
+  // scene with the same technique, depth and least contribution share a factor, whatever their size, samples
+  // and camera. It starts at 1 and stays within 1/8 and 8, because a client's renders affect the estimates of
+  // others.
   double estimate(const Scene& scene, const Plan& plan);
-  // A whole picture was rendered by the plan and traced so many rays. The factor moves to the one seen, later
-  // half the way: orbits change what is seen, and so the truth. Of a picture of fewer than 4,096 camera rays
-  // it moves their share of that.
+  // Learns from a complete render of the plan that traced `rays`. The first render sets the factor. Later
+  // ones move it half of the way, because orbits change the view. An image of fewer than 4,096 camera rays
+  // moves the factor proportionally less.
   void learn(const Scene& scene, const Plan& plan, std::uint64_t rays);
 
  private:
-  static constexpr std::size_t kMostFactors = 1024;  // kept, those used last
+  static constexpr std::size_t kMostFactors = 1024;  // most recently used ones
 
   Lru<std::shared_ptr<double>> factors_{kMostFactors, Clock::duration::max()};
   std::mutex mutex_;  // guards the numbers that factors_ points to

@@ -8,7 +8,7 @@ Reading::Reading(const AssetSource& assets, Admission& admission, std::string cl
       admission_(admission),
       demand_{Lane::interactive, std::move(client), cost_of_reading(bytes)},
       stop_(std::move(stop)) {
-  constexpr std::size_t kSmall = 64 * 1024;  // read in about a millisecond
+  constexpr std::size_t kSmall = 64 * 1024;  // parsed in about 1 ms
   if (bytes > kSmall) take_turn();
 }
 

@@ -9,11 +9,11 @@
 
 namespace orrery {
 
-// Meshes and pictures for a scene that is being read. Small scenes are read at once; large ones, and those
-// that have such read, take their turn first and keep it as long as this lives. For one thread.
+// Asset source for a scene that is being parsed. Small scenes without assets are parsed at once. Other scenes
+// wait for a slot first and hold it as long as this object lives. For one thread.
 class Reading final : public AssetSource {
  public:
-  // `bytes`: of the scene's text. Waits as Admission::enter() if that is large.
+  // `bytes`: size of the scene's text. Waits as Admission::enter() if it is large.
   Reading(const AssetSource& assets, Admission& admission, std::string client, std::size_t bytes,
           std::stop_token stop);
 

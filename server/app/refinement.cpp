@@ -38,7 +38,7 @@ std::optional<Refinement::Step> Refinement::next(const std::stop_token& gone) {
                     {pass_time_, "request_seconds"});
   const std::stop_token stop = watch.stop();
   Stage stage = Stage::queue;
-  const std::size_t pass = std::exchange(next_, samples_.size());  // the end, if this throws
+  const std::size_t pass = std::exchange(next_, samples_.size());  // at_end() if render() throws
   try {
     Step step = memory_->run(stop, [&] { return render(samples_[pass], stop, stage); });
     next_ = pass + 1;
@@ -51,7 +51,7 @@ std::optional<Refinement::Step> Refinement::next(const std::stop_token& gone) {
 
 Refinement::Step Refinement::render(int samples, const std::stop_token& stop, Stage& stage) {
   const Scene& scene = spec_.scene->scene();
-  Plan pass = spec_.plan;  // what it costs
+  Plan pass = spec_.plan;  // for its cost
   pass.samples = samples - done_;
   const Demand demand = services_.demand_of(scene, pass, spec_.client);
   auto ticket =
@@ -78,7 +78,7 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
                   .stats = stats,
                   .certificate = certify(plan(), stats),
                   .warnings = find_warnings(scene, spec_.plan, stats.counts)};
-  picture.bytes.shrink_to_fit();  // it may be kept
+  picture.bytes.shrink_to_fit();  // it may be cached
   step.encode_ms = milliseconds_since(start);
   step.picture = std::make_shared<const Picture>(std::move(picture));
   pictures_.keep(key_of(samples), spec_.client, step.picture);

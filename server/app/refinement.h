@@ -11,39 +11,39 @@
 
 namespace orrery {
 
-// What is refined, and for whom.
+// Progressive render and its client.
 struct RefinementSpec {
   std::shared_ptr<const PreparedScene> scene;
   RenderRequest request;
-  Plan plan;  // of the request
+  Plan plan;  // plan of `request`
   std::string client;
 };
 
-// One picture in passes of samples, each of which gives the PNG that would be made of all samples so far at
-// once. No sample is traced twice. Each pass waits for its own turn, and between passes the film is all that
-// is held. For one thread.
+// Progressive render of one image. Each pass adds samples, and returns the same PNG as one render with all
+// samples so far. No sample is traced twice. Each pass waits for a slot of its own. Only the film is held
+// between passes. For one thread.
 class Refinement {
  public:
-  // A picture on the way to the last one.
+  // Image after a pass.
   struct Step {
-    int samples;  // a pixel
+    int samples;  // per pixel
     std::shared_ptr<const Picture> picture;
-    double render_ms = 0, encode_ms = 0;  // of this pass; 0 where the picture was kept
-    std::uint64_t rays = 0;               // likewise
+    double render_ms = 0, encode_ms = 0;  // this pass; 0 if the image was cached
+    std::uint64_t rays = 0;               // this pass
   };
 
-  // `pictures`: where those of passes are kept, too. pass_time: that one pass may take.
+  // `pictures`: cache for the images of the passes. `pass_time`: time limit for one pass.
   Refinement(RefinementSpec spec, const RenderServices& services, Pictures& pictures,
              std::chrono::seconds pass_time);
 
   const Scene& scene() const { return spec_.scene->scene(); }
   const Plan& plan() const { return spec_.plan; }
-  // Whether the last picture is kept: it is then the only one, and nothing is rendered.
+  // Returns whether the final image is cached. It is then the only step, and nothing is rendered.
   bool is_known() const { return known_ != nullptr; }
   bool at_end() const { return next_ == samples_.size(); }
 
-  // The next picture; none after the last. What a first pass throws as App::render(), a later one throws as
-  // well, except that it is not turned away for what waits already. Nothing comes after what it throws.
+  // Returns the next image, or nullopt after the last one and while draining. Throws as App::render(), except
+  // that only the first pass is rejected if too much work is queued. Returns nullopt after an exception.
   std::optional<Step> next(const std::stop_token& gone);
 
  private:
@@ -54,12 +54,12 @@ class Refinement {
   const RenderServices services_;
   Pictures& pictures_;
   const std::chrono::seconds pass_time_;
-  const std::vector<int> samples_;  // after each pass
+  const std::vector<int> samples_;  // samples per pixel after each pass
   const std::shared_ptr<const Picture> known_;
   const std::shared_ptr<MemoryAccount> memory_;
-  std::unique_ptr<ProgressiveRender> progress_;  // none before the first pass
+  std::unique_ptr<ProgressiveRender> progress_;  // null before the first pass
   std::size_t next_ = 0;
-  int done_ = 0;  // samples
+  int done_ = 0;  // samples per pixel
 };
 
 }  // namespace orrery

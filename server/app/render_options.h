@@ -11,27 +11,28 @@
 #include "core/plan/request.h"
 #include "server/http/message.h"
 
-// Render options as queries and command lines have them: names and texts.
+// Render options as names and texts, from queries and command lines.
 namespace orrery {
 
-// The option that has the name or the short name; null if none has.
+// Returns the option with that name or short name, or null if there is none.
 const RenderOption* find_render_option(std::string_view name);
-// All names and short names.
+// Returns all names and short names.
 std::vector<std::string_view> render_option_names();
 
 struct OptionText {
   const RenderOption* option;
-  std::string given_as;  // what errors call it: "/azimuth" in a query, "--azimuth" on the command line
+  std::string given_as;  // in errors: "/azimuth" (query), "--azimuth" (command line)
   std::string text;
 };
 
-// The options of a query, which errors call what `called` makes of their names; the names of `more` are
-// passed over. Throws InputError for all others, and where an option has both of its names.
+// Returns the options of a query. `called` maps a name to the name in error messages. Skips the names in
+// `more`. Throws InputError for other unknown names, and if an option is given under both of its names.
 std::vector<OptionText> option_texts(const Fields& query,
                                      const std::function<std::string(std::string_view)>& called,
                                      std::span<const std::string_view> more = {});
 
-// Lists have commas between their values. Throws InputError, as read_request() but with the names given.
+// Parses the options. The values of a list are separated by commas. Throws InputError as read_request(), but
+// with the given names.
 RenderRequest read_option_texts(std::span<const OptionText> texts);
 
 }  // namespace orrery

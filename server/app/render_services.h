@@ -13,7 +13,7 @@
 
 namespace orrery {
 
-// Of the time that work may take: what budgets may, so that the best that was made is told.
+// Share of the time limit that a budget may use. The rest is for returning the best image so far.
 inline constexpr double kShareOfBudgets = 0.9;
 
 // Services that all renders share. They must outlive every render that uses them.
@@ -21,24 +21,24 @@ struct RenderServices {
   WorkerPool& pool;
   Admission& admission;
   Timer& timer;
-  std::stop_token draining;  // no new work; what goes on and on ends at its next frame
-  std::stop_token ends;      // all work ends at once
+  std::stop_token draining;  // no new work; streams end at the next frame
+  std::stop_token ends;      // cancels all work
   Meters& meters;
   RayEstimator& estimator;
   WorkMemory& memory;
   SceneStore& scenes;
-  double interactive_rays;  // of one frame, beyond which it is batch work
+  double interactive_rays;  // limit for a frame in the interactive lane
 
-  // What a frame is expected to cost, in usual rays: for those that it traces, and a little for its fixed
-  // work. It is batch work if either the plan alone or what was learned says so.
+  // Returns the slot request for a frame. Its cost is the estimate in usual rays plus kLeastCost. The frame
+  // is batch work if either the plan alone or the learned estimate exceeds interactive_rays.
   Demand demand_of(const Scene& scene, const Plan& plan, const std::string& client) const {
     const double rays = estimator.estimate(scene, plan), weight = ray_weight(scene, plan);
     const bool small = weight * std::max(rays, expected_rays(scene, plan)) <= interactive_rays;
     return {small ? Lane::interactive : Lane::batch, client, kLeastCost + weight * rays};
   }
 
-  // What render() returns; where it throws OverLimit, because others have the memory that it needs, it is
-  // called again after a while. Throws what else it throws, and Cancelled once `stop` is requested.
+  // Returns render(). If it throws OverLimit because other work holds the memory, waits and calls it again.
+  // Throws its other errors, and Cancelled once `stop` is requested.
   template <class Render>
   RenderResult once_there_is_memory(const std::stop_token& stop, const Render& render) const {
     for (;;) try {
@@ -48,8 +48,8 @@ struct RenderServices {
       }
   }
 
-  // A frame, in the turn that `ticket` gives; tells it what the frame has cost, and the store what the scene
-  // takes. Throws Cancelled.
+  // Renders a frame in the slot of `ticket`. Reports the measured cost to the ticket and the size of the
+  // scene to the store. Throws Cancelled.
   RenderResult render(Admission::Ticket& ticket, const PreparedScene& scene, const Plan& plan,
                       FilmStorage storage, const RenderControl& control) const {
     RenderControl shared = control;
@@ -65,7 +65,7 @@ struct RenderServices {
     return result;
   }
 
-  // Tells all who want to know it what the samples of that plan have cost.
+  // Records the measured cost of the plan's samples in the ticket, the estimator and the metrics.
   void count(Admission::Ticket& ticket, const Scene& scene, const Plan& plan, std::uint64_t rays,
              double ms) const {
     ticket.set_cost(kLeastCost + ray_weight(scene, plan) * static_cast<double>(rays));
@@ -75,7 +75,7 @@ struct RenderServices {
   }
 
  private:
-  // Throws Cancelled once `stop` is requested.
+  // Waits for `seconds`. Throws Cancelled once `stop` is requested.
   void pause(double seconds, const std::stop_token& stop) const {
     std::mutex mutex;
     std::condition_variable_any nothing;

@@ -151,7 +151,8 @@ bool SceneStore::make_room(const std::string& client, std::size_t bytes, FairSha
   return true;
 }
 
-// A cached scene goes with what was built for it, which a kept one can do without.
+// Updates the weight of a scene. A cached scene includes its structures. Those of a kept scene are a separate
+// entry, which can be evicted alone.
 void SceneStore::weigh(const std::string& id) {
   const Entry& entry = scenes_.at(id);
   const std::size_t loaded = entry.scene->loaded_bytes();

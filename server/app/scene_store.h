@@ -16,12 +16,12 @@
 
 namespace orrery {
 
-// Scenes by id, the hash of what they say, with what rendering has built for them. Some are kept on purpose;
-// others were only rendered and are cached. Both are held by the clients that posted them. Where room is
-// needed, FairShares says which client gives up what: first its cached scenes, then what was built for its
-// kept ones, and kept ones only for others that are kept, so that a client that may only render cannot remove
-// what others keep. While a scene is here the store answers for its memory, before and after that the
-// client's work. Safe from any thread.
+// Scenes by id, the hash of the document, with the structures built for rendering. Some scenes are kept on
+// request; others were only rendered and are cached. Both are held by the clients that posted them.
+// FairShares selects the client that gives up entries. It gives up cached scenes first, then the structures
+// of kept scenes. Kept scenes are evicted only for other kept scenes, so a client that may only render cannot
+// evict them. The store accounts for the memory of a stored scene; before and after, the client's work does.
+// Safe from any thread.
 class SceneStore {
  public:
   using Prepared = std::shared_ptr<const PreparedScene>;
@@ -32,23 +32,23 @@ class SceneStore {
 
   struct Kept {
     Prepared scene;
-    bool known = false;  // it was kept before
+    bool known = false;  // it was already kept
   };
-  // Keeps the scene that `document` says; loads it only if it is not here, also not as a cached one. Throws
-  // what load_scene() does, InputError if the scene alone is over the limit, OverLimit if others leave no
-  // room for it, and as WorkMemory::open() says.
+  // Keeps the scene of `document`. Loads it only if it is not stored, not even as a cached scene. Throws as
+  // load_scene() and WorkMemory::open(), InputError if the scene alone exceeds the limit, and OverLimit if
+  // other clients leave no room.
   Kept keep(const Document& document, const AssetSource& assets, const std::string& client);
-  // The scene that `document` says, loaded only if it is not here, and then cached if there is room. Throws
-  // likewise.
+  // Returns the scene of `document`. Loads it only if it is not stored, and then caches it if there is room.
+  // Throws as load_scene() and WorkMemory::open().
   Prepared get(const Document& document, const AssetSource& assets, const std::string& client);
 
-  // Kept or cached. Throws NotFound.
+  // Returns a kept or cached scene. Throws NotFound.
   Prepared find(const std::string& id);
-  // The client holds it no more: it goes unless others hold it, too, or with `of_all` in any case. Throws
-  // NotFound if it is not here, HttpError 403 if others alone hold it.
+  // Releases the scene for the client, or with `of_all` for all clients. Removes it once no client holds it.
+  // Throws NotFound, or HttpError 403 if only other clients hold it.
   void remove(const std::string& id, const std::string& client, bool of_all);
 
-  // Until its end something may be built for the scene, which is measured then.
+  // Scope in which structures may be built for the scene. Its end updates the size of the stored scene.
   class Measured {
    public:
     Measured(SceneStore& store, const PreparedScene& scene) : store_(store), scene_(scene) {}
@@ -61,27 +61,27 @@ class SceneStore {
   };
 
   std::size_t bytes() const;
-  // Since the start, of scenes asked for by what they say: found here, and loaded.
+  // Returns the number of scenes requested by document since the start: found in the store, and loaded.
   std::uint64_t hits() const { return hits_; }
   std::uint64_t loads() const { return loads_; }
-  std::uint64_t evictions() const { return evictions_; }  // cached and kept
+  std::uint64_t evictions() const { return evictions_; }  // cached and kept scenes
 
  private:
   struct Entry {
     Prepared scene;
-    std::size_t built = 0;  // bytes, when they were last measured
+    std::size_t built = 0;  // bytes at the last measurement
   };
 
   Prepared find_or_load(const std::string& id, const Document& document, const AssetSource& assets,
                         const std::string& client);
   Prepared load(const Document& document, const AssetSource& assets, const std::string& client) const;
   void measure(const PreparedScene& scene);
-  // Below: with mutex_ held.
-  Prepared find_locked(const std::string& id);  // a use of it; null: it is not here
+  // REQUIRES for the functions below: mutex_ is held.
+  Prepared find_locked(const std::string& id);  // counts as a use; null if not stored
   bool is_kept(const std::string& id) const;
   void hold(const std::string& id, const std::string& client, FairShares::Rank rank);
   bool add(const Prepared& scene, const std::string& client, FairShares::Rank rank);
-  // Has clients give up what FairShares says. False if the client would hold most.
+  // Evicts entries as FairShares::make_room(). Returns false if the client would hold the most.
   bool make_room(const std::string& client, std::size_t bytes, FairShares::Ranks ranks);
   void weigh(const std::string& id);
   static void drop_built(Entry& entry);
@@ -91,7 +91,7 @@ class SceneStore {
   WorkMemory& work_;
   mutable std::mutex mutex_;  // guards all below
   std::map<std::string, Entry> scenes_;
-  // By id; what was built for a kept scene is an entry of its own.
+  // Entries by id; the structures of a kept scene have an entry of their own.
   FairShares shares_{std::chrono::hours(1)};
   std::atomic<std::uint64_t> hits_{0}, loads_{0}, evictions_{0};
 };

@@ -34,7 +34,7 @@ constexpr std::array kSettings{
     Setting{"path_prefix", &S::path_prefix, "PATH",
             "What addresses begin with for clients, such as /render; links begin with it, and requests may"},
     Setting{"insecure", &S::insecure, "", "Allow an address that other machines can reach without tokens"},
-    // The limits.
+    // Limits.
     Setting{
         "memory_bytes", &S::memory_bytes, "N",
         "Bytes of memory that the service takes; the other budgets are parts of it, and what they leave is "
@@ -85,12 +85,12 @@ constexpr std::array kSettings{
 constexpr std::size_t kFirstLimit = 11;
 static_assert(kSettings[kFirstLimit].name == "memory_bytes");
 
-// Parts of memory_bytes.
+// Memory limits that are parts of memory_bytes.
 constexpr std::array kBudgets{&S::bodies_bytes,  &S::answers_bytes, &S::store_bytes, &S::asset_store_bytes,
                               &S::picture_bytes, &S::film_bytes,    &S::job_bytes};
 
 std::int64_t whole_number(std::string_view text, std::int64_t min, std::int64_t max) {
-  constexpr double kMostExact = 1e15;  // 1e6 is a whole number, too
+  constexpr double kMostExact = 1e15;  // 1e6 is an integer, too
   auto number = number_in<std::int64_t>(text);
   if (const auto real = number_in<double>(text);
       !number && real && std::trunc(*real) == *real && std::abs(*real) < kMostExact)
@@ -148,7 +148,7 @@ std::size_t work_bytes(const Settings& settings) {
   constexpr std::size_t kProgram = 32 << 20, kConnection = 64 << 10, kLeast = 16 << 20;
   const std::size_t one_body = std::max(settings.body_bytes, settings.asset_bytes);
   std::size_t others = kProgram + settings.connections * kConnection;
-  if (one_body > settings.bodies_bytes) others += one_body - settings.bodies_bytes;  // one is always read
+  if (one_body > settings.bodies_bytes) others += one_body - settings.bodies_bytes;  // one always fits
   for (const auto budget : kBudgets) others += settings.*budget;
   if (settings.memory_bytes >= others + kLeast) return settings.memory_bytes - others;
   throw InputError("", "memory_bytes is " + std::to_string(settings.memory_bytes) +

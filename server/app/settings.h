@@ -11,13 +11,13 @@
 
 namespace orrery {
 
-// What the service may use, and how it is reached.
+// Configuration of the service.
 struct Settings {
   std::string host = "127.0.0.1";
   int port = 8080;
   std::string health_host = "127.0.0.1";
-  int health_port = 8081;  // of /healthz, /readyz and /metrics, for supervisors
-  int threads = 0;         // that render; 0: one a core
+  int health_port = 8081;  // serves /healthz, /readyz and /metrics, for supervisors
+  int threads = 0;         // render threads; 0: one per core
 
   // Limits; see limits().
   std::size_t memory_bytes = std::size_t{3} << 30;
@@ -45,43 +45,43 @@ struct Settings {
   std::chrono::seconds drain_delay_seconds{0};
   std::chrono::seconds grace_seconds{30};
 
-  // Who may ask; empty: everyone who can.
-  bool insecure = false;  // also from other machines
+  // Access control. Empty values allow every client that can connect.
+  bool insecure = false;  // allow other machines without tokens
   std::string tokens_file, share_key_file;
   std::vector<std::string> cors_origins;
 
-  // What stands in front of it.
+  // Reverse proxy.
   std::vector<std::string> trusted_proxies;
   std::string path_prefix;
 };
 
-// One setting, under the one name that flags (--body-bytes), environment (ORRERY_BODY_BYTES), files,
-// /v1/limits and errors use.
+// Setting with one name for flags (--body-bytes), environment (ORRERY_BODY_BYTES), files, /v1/limits and
+// error messages.
 struct Setting {
   using Member = std::variant<std::size_t Settings::*, int Settings::*, double Settings::*,
                               std::chrono::seconds Settings::*, bool Settings::*, std::string Settings::*,
                               std::vector<std::string> Settings::*>;
   std::string_view name;
   Member member;
-  std::string_view value;  // what the help calls its value
+  std::string_view value;  // placeholder for the value in the help
   std::string_view help;
-  std::int64_t min = 0, max = 0;  // of a number; numbers are whole
+  std::int64_t min = 0, max = 0;  // range of a number, which must be an integer
 
-  // The value as read() takes it; the entries of a list have commas between them.
+  // Returns the value in the format of read(). List entries are separated by commas.
   std::string text(const Settings& settings) const;
-  // Throws InputError without a place for a text that is no value of it.
+  // Parses the value. Throws InputError with an empty pointer if the text is invalid.
   void read(Settings& settings, std::string_view text) const;
 };
 
-// The settings as they are if only memory_bytes is given: the other budgets are as large a part of it as by
+// Returns the settings if only memory_bytes is given. The other memory limits have the same share of it as by
 // default.
 Settings settings_within(std::size_t memory_bytes);
 
-// Bytes that work may hold: what memory_bytes leaves beside the other budgets and what the service itself
-// takes. Throws InputError without a place if that is too little for a picture.
+// Returns the bytes that work may hold: memory_bytes minus the other memory limits and the needs of the
+// service itself. Throws InputError with an empty pointer if the rest is too small for an image.
 std::size_t work_bytes(const Settings& settings);
 
-// All of them; and those that /v1/limits tells, which are numbers.
+// Returns all settings, or only the limits that /v1/limits reports, which are numbers.
 std::span<const Setting> all_settings();
 std::span<const Setting> limits();
 

@@ -8,10 +8,10 @@
 
 namespace orrery {
 
-// Clients that want one piece of work, once for each of their requests. Admission guards it.
+// Clients that wait for the same work, once for each request. Guarded by Admission.
 using Sharers = std::multiset<std::string>;
 
-// Who shares what, by its key, for as long as somebody holds it. Safe from any thread.
+// Sharers by key, for as long as a caller holds them. Safe from any thread.
 class SharersByKey {
  public:
   std::shared_ptr<Sharers> of(const std::string& key) {

@@ -18,22 +18,21 @@
 
 namespace orrery {
 
-// Values made lately, by key, and those being made: what several ask for at one time is made once. A value
-// is kept if it takes at most `largest` bytes, of at most `most_bytes` of all, in the share of the client
-// that it was made for (see FairShares); std::size_t held_bytes(const Value&) tells how many. Safe from any
-// thread.
+// Cache of values by key that computes a value only once for concurrent requests. Caches values of at most
+// `largest` bytes, and `most_bytes` in total, in the share of the client that a value was made for (see
+// FairShares). The size of a value is std::size_t held_bytes(const Value&). Safe from any thread.
 template <class Value>
 class SingleFlight {
  public:
   using ValuePtr = std::shared_ptr<const Value>;
-  // Makes a value; a stop request says that nobody wants it any more.
+  // Computes a value. The token is stopped once no caller waits for the value.
   using Make = std::function<Value(const std::stop_token&)>;
-  // Who asks for a value, and is one of `sharers` until it has it or is gone.
+  // Caller, which is one of `sharers` until it has the value or disconnects.
   struct Client {
     std::stop_token gone;
     std::string name = {};
-    std::shared_ptr<Sharers> sharers = {};  // of all who ask for the value; null: they are not told
-    Admission* admission = nullptr;         // of the sharers, if there are any
+    std::shared_ptr<Sharers> sharers = {};  // clients that wait for the value; null: not tracked
+    Admission* admission = nullptr;         // guards `sharers`, if any
   };
 
   explicit SingleFlight(std::size_t most_bytes) : SingleFlight(most_bytes, most_bytes) {}
@@ -42,12 +41,12 @@ class SingleFlight {
 
   struct Found {
     ValuePtr value;
-    bool made_here;  // for this caller; or else it was kept, or made for another
+    bool made_here;  // by this call; else cached or made by another
   };
-  // The value called `key`. Where there is none, calls `make` on this thread, with a token that is stopped
-  // once neither this caller nor others who came meanwhile wait any more. Throws what `make` throws, also for
-  // those others, except that Busy, Cancelled and TimedOut concern the maker alone: one of the others then
-  // makes it. Throws Cancelled once the client is gone.
+  // Returns the value of `key`. If there is none, calls `make` on this thread, with a token that is stopped
+  // once neither this caller nor later callers wait. Throws the error of `make`, also to the waiting callers.
+  // Busy, Cancelled and TimedOut concern only the caller of `make`; a waiting caller then computes the value.
+  // Throws Cancelled once the client disconnects.
   Found get(const std::string& key, const Client& client, const Make& make) {
     for (;;) {
       std::unique_lock lock(mutex_);
@@ -67,7 +66,7 @@ class SingleFlight {
       if (first) return make_for_all(key, client.name, work, make);
       ValuePtr value;
       std::exception_ptr error;
-      {  // ends before `leaves` goes, which may be waiting for the mutex
+      {  // unlocks before `leaves` ends, whose callback may wait for mutex_
         const HandlerSlots::Wait wait;
         std::unique_lock again(mutex_);
         work->changed.wait(again, client.gone, [&] { return work->done; });
@@ -80,14 +79,14 @@ class SingleFlight {
     }
   }
 
-  // The value called `key`, if it is kept.
+  // Returns the value of `key` if it is cached, else null.
   ValuePtr find(const std::string& key) {
     const auto kept = kept_.find(key);
     return kept ? *kept : nullptr;
   }
-  // Keeps a value that was made elsewhere for the client, as get() would.
+  // Caches a value that was made elsewhere for the client, as get() would.
   void keep(const std::string& key, const std::string& client, const ValuePtr& value) {
-    constexpr std::size_t kBeside = 4096;  // what the allocator adds to a large block, and the entries here
+    constexpr std::size_t kBeside = 4096;  // overhead of the allocator and of the entries
     const std::size_t bytes = kBeside + key.size() + held_bytes(*value);
     if (bytes <= largest_) kept_.add(key, client, bytes, [&] { return value; });
   }
@@ -95,7 +94,7 @@ class SingleFlight {
   std::size_t bytes() const { return kept_.bytes(); }
   std::uint64_t evictions() const { return kept_.evictions(); }
   std::size_t largest() const { return largest_; }
-  // How many wait for the value called `key`, which is being made, with the one who makes it.
+  // Returns the number of callers waiting for a value in progress, including its maker.
   int waiting(const std::string& key) const {
     const std::lock_guard lock(mutex_);
     const auto work = under_way_.find(key);
@@ -104,11 +103,11 @@ class SingleFlight {
 
  private:
   struct Work {
-    int waiting = 0;                // how many want it
-    std::stop_source nobody_waits;  // requested once none of them is left
+    int waiting = 0;                // number of callers that want the value
+    std::stop_source nobody_waits;  // requested once `waiting` is 0
     bool done = false;
-    ValuePtr value;            // once done, unless it failed
-    std::exception_ptr error;  // likewise; none: somebody else has to make it
+    ValuePtr value;            // set once done, unless `make` failed
+    std::exception_ptr error;  // set if the error concerns all callers
     std::condition_variable_any changed;
   };
   using WorkPtr = std::shared_ptr<Work>;
@@ -124,16 +123,16 @@ class SingleFlight {
   Found make_for_all(const std::string& key, const std::string& client, const WorkPtr& work,
                      const Make& make) {
     std::exception_ptr error;
-    bool theirs = false;  // whether the error concerns the others
+    bool theirs = false;  // the error concerns all callers
     ValuePtr value;
     try {
       value = std::make_shared<const Value>(make(work->nobody_waits.get_token()));
       keep(key, client, value);
     } catch (const Busy&) {
       error = std::current_exception();
-    } catch (const Cancelled&) {  // another may have come at the last moment
+    } catch (const Cancelled&) {  // a new caller may have joined meanwhile
       error = std::current_exception();
-    } catch (const TimedOut&) {  // it came first, and others have more time
+    } catch (const TimedOut&) {  // later callers have more time
       error = std::current_exception();
     } catch (...) {
       error = std::current_exception();
@@ -154,7 +153,7 @@ class SingleFlight {
   Lru<ValuePtr> kept_;
   const std::size_t largest_;
   mutable std::mutex mutex_;
-  std::map<std::string, WorkPtr> under_way_;  // guarded by mutex_, and what it points at
+  std::map<std::string, WorkPtr> under_way_;  // guarded by mutex_, as are the entries
 };
 
 }  // namespace orrery

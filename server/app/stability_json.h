@@ -7,7 +7,8 @@
 
 namespace orrery {
 
-// {"rows": [{"id", "name", "quantity", "unit", "known": {...}, "ours": {...}, "holds"}], "holds": of all}
+// Returns {"rows": [{"id", "name", "quantity", "unit", "known": {...}, "ours": {...}, "holds"}], "holds": of
+// all}.
 nlohmann::ordered_json stability_json(std::span<const StabilityResult> results);
 
 }  // namespace orrery

@@ -6,7 +6,7 @@ namespace orrery {
 
 class Streams::Slot {
  public:
-  // With mutex_ held.
+  // REQUIRES: of.mutex_ is held.
   Slot(Streams& of, const std::string& client) : of_(of), entry_(of.by_client_.try_emplace(client).first) {
     ++entry_->second;
     ++of_.all_;

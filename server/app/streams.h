@@ -8,14 +8,15 @@
 
 namespace orrery {
 
-// Answers that go on, such as events: each holds a connection, and so they leave a quarter of these to
-// others. Safe from any thread.
+// Limit on long-lived responses such as event streams. Each holds a connection, and together they may hold
+// three quarters of all connections. Safe from any thread.
 class Streams {
  public:
   explicit Streams(std::size_t connections)
       : most_(std::max(1, static_cast<int>(connections - (connections + 3) / 4))) {}
 
-  // One more for this client, as long as the object lives. Throws Busy or ClientBusy if that is too much.
+  // Opens a stream for the client, as long as the returned object lives. Throws OverLimit or ClientBusy if
+  // there are too many.
   std::shared_ptr<const void> open(const std::string& client);
 
  private:
@@ -24,7 +25,7 @@ class Streams {
   const int most_;
   std::mutex mutex_;
   std::map<std::string, int> by_client_;  // guarded by mutex_
-  int all_ = 0;                           // likewise
+  int all_ = 0;                           // guarded by mutex_
 };
 
 }  // namespace orrery

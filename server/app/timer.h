@@ -11,8 +11,7 @@
 
 namespace orrery {
 
-// The time, and what is to be done at some time. An interface so that tests can drive the time by hand. Safe
-// from any thread.
+// Clock with alarms. An interface, so that tests can set the time. Safe from any thread.
 class Timer {
  public:
   using Action = std::function<void()>;
@@ -23,8 +22,8 @@ class Timer {
 
   virtual Clock::time_point now() const = 0;
 
-  // An action that is to be done. The timer must outlive it. Once it is destroyed the action is neither done
-  // nor being done, except where the action itself destroys it.
+  // Scheduled action. The timer must outlive it. After its destructor the action neither runs nor will run,
+  // unless the action itself destroys the alarm.
   class Alarm {
    public:
     ~Alarm() { timer_.cancel(key_); }
@@ -37,17 +36,17 @@ class Timer {
     const std::pair<Clock::time_point, std::uint64_t> key_;
   };
 
-  // Calls `action` at that time, or at once on the calling thread if it has come already. Actions are called
-  // one at a time and must be short; what they lock must not be locked while their alarm is destroyed.
+  // Calls `action` at `when`, or at once on the calling thread if `when` has passed. Actions are called one
+  // at a time and must be short. Do not destroy an alarm with a mutex held that its action locks.
   [[nodiscard]] Alarm at(Clock::time_point when, Action action);
 
  protected:
   using Lock = std::unique_lock<std::mutex>;
 
-  // Does the first thing that is due by `time`. False if there is none. REQUIRES: `lock` is held, of mutex();
-  // it is released meanwhile.
+  // Runs the first action that is due by `time`. Returns false if there is none. REQUIRES: `lock` holds
+  // mutex(); it is released during the action.
   bool do_first(Lock& lock, Clock::time_point time);
-  // When the next alarm is due. REQUIRES: mutex() is held.
+  // Returns the time of the next alarm, or the maximum if there is none. REQUIRES: mutex() is held.
   Clock::time_point next_due() const;
   std::mutex& mutex() const { return mutex_; }
   // Called with mutex() held after an alarm was added that is due before all others.
@@ -60,11 +59,11 @@ class Timer {
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable done_;
   std::map<Key, Action> alarms_;
-  std::uint64_t last_number_ = 0, being_done_ = 0;  // numbers of alarms, from 1
-  std::thread::id doer_;                            // who does `being_done_`
+  std::uint64_t last_number_ = 0, being_done_ = 0;  // alarm numbers, from 1
+  std::thread::id doer_;                            // thread that runs `being_done_`
 };
 
-// By the machine's steady clock; a thread of its own does what is due.
+// Timer on the steady clock. A thread of its own runs the actions.
 class SteadyTimer final : public Timer {
  public:
   SteadyTimer();
@@ -80,9 +79,9 @@ class SteadyTimer final : public Timer {
   std::thread thread_;
 };
 
-// Waits on `changed` until ready(), a stop is requested or `until` has come; returns ready(), which is called
-// with the mutex held. REQUIRES: `lock` holds its mutex, which guards what ready() reads; it is released
-// while waiting.
+// Waits on `changed` until ready(), a stop request or `until`. Returns ready(), which is called with the
+// mutex held. REQUIRES: `lock` holds the mutex that guards the state of ready(). It is released while
+// waiting.
 template <class Ready>
 bool wait_until(Timer& timer, std::condition_variable_any& changed, std::unique_lock<std::mutex>& lock,
                 const std::stop_token& stop, Clock::time_point until, const Ready& ready) {

@@ -5,42 +5,45 @@
 
 #include "core/render/renderer.h"
 
-// What a picture tells of its own error: RMSE of linear radiance, with what it took.
+// Reports on the error of an image, as JSON and as values of response headers.
 namespace orrery {
 
-// {"rmse", "rmse_low", "rmse_high"} of a pixel and the ends of its interval of 95 %, of which the upper one
-// is null where one tile alone tells it; "rmse_4" and "rmse_32" of means of 4 x 4 and 32 x 32 pixels;
-// "samples" a pixel; "rays" traced. REQUIRES: stats.error.known().
+// Returns {"rmse", "rmse_low", "rmse_high", "rmse_4", "rmse_32", "samples", "rays"}. "rmse" is the RMSE of a
+// pixel in linear radiance, with its 95 % interval. "rmse_4" and "rmse_32" are RMSEs of means of 4 x 4 and 32
+// x 32 pixels. "samples" counts per pixel. "rmse_high" is null for fewer than two tiles. REQUIRES:
+// stats.error.known().
 nlohmann::ordered_json error_json(const RenderStats& stats);
 
-// The same for a header: "0.0049; low=0.0046; high=0.0053; of-4=0.0014; of-32=0.0004; samples=16; rays=9000".
-// REQUIRES: stats.error.known().
+// Returns error_json() for a header: "0.0049; low=0.0046; high=0.0053; of-4=0.0014; of-32=0.0004; samples=16;
+// rays=9000". REQUIRES: stats.error.known().
 std::string error_text(const RenderStats& stats);
 
-// {"kind", "rms", "max"}, where null is what is not known.
+// Returns {"kind", "rms", "max"}. Unknown values are null.
 nlohmann::ordered_json bound_json(const Bound& bound);
 
-// {"reference", "space", "confidence", "terms": [{"subject", "bound", "reason"}], "total", "known", "light",
-// "estimate", "biases": [{"option", "value", "mean", "standard_error"}]}: a reason where the bound is
-// unknown, an estimate where samples tell one, biases where there are some. Against all light that there is,
-// `light` is the total, or unknown because of kinds of light that the technique does not follow.
+// Returns {"reference", "space", "confidence", "terms": [{"subject", "bound", "reason"}], "total", "known",
+// "light", "estimate", "least_provable", "biases": [{"option", "value", "mean", "standard_error"}]}. "reason"
+// explains an unknown bound. "estimate", "least_provable" and "biases" are present if known. "light" is the
+// total bound, or unknown if the technique ignores some kinds of light.
 nlohmann::ordered_json certificate_json(const Certificate& certificate);
 
-// The same for a header: "rms=0.0044;kind=estimated;max=unknown;confidence=0.95;estimate=0.0031;
-// reference=technique;space=linear"; where the kind is unknown, with because="precision, samples", and with
-// known, known-kind and known-max of what is known.
+// Returns the total bound for a header:
+// "rms=0.0044;kind=estimated;max=unknown;confidence=0.95;estimate=0.0031;reference=technique;space=linear".
+// If the kind is unknown, adds because="precision, samples", and known, known-kind and known-max for the
+// known terms.
 std::string bound_text(const Certificate& certificate);
 
-// {"met", "error", "error_met", "seconds", "seconds_met", "used_s", "reachable_error", "least_seconds",
-// "reason"}: what was asked, the least error that can be proved, null if none can, the time that the least
-// picture would take where it was given up for that, and a reason where it was missed.
+// Returns {"met", "error", "error_met", "seconds", "seconds_met", "used_s", "reachable_error",
+// "least_seconds", "reason"}. "reachable_error" is the least provable error, null if there is none.
+// "least_seconds" is the time of the cheapest image, if the render was given up for lack of time. "reason"
+// explains a miss.
 nlohmann::ordered_json budget_json(const BudgetOutcome& outcome);
 
-// The same for a header: "met=?0;error=0.001;reason=\"...\"" or "met=?1;seconds=2;used=1.83".
+// Returns the outcome for a header: "met=?0;error=0.001;reason=\"...\"" or "met=?1;seconds=2;used=1.83".
 std::string budget_text(const BudgetOutcome& outcome);
 
-// Of each bias for a header: "clamp_indirect=10;mean=-0.0012 -0.001 -0.0008;error=0.0001 0.0001 0.0001", by
-// channel; empty if there is none.
+// Returns each bias by channel for a header, or "" if there is none: "clamp_indirect=10;mean=-0.0012 -0.001
+// -0.0008;error=0.0001 0.0001 0.0001".
 std::string bias_text(const Certificate& certificate);
 
 }  // namespace orrery

@@ -9,28 +9,28 @@
 
 namespace orrery {
 
-// The work took longer than it may.
+// Error for work that exceeds its time limit.
 class TimedOut : public Error {
  public:
   using Error::Error;
 };
 
-// Stops the work for a request early: once the client has gone, its time is up, or the service ends. Safe
+// Cancels the work of a request once its client disconnects, its time limit expires or the service ends. Safe
 // from any thread.
 class Watch {
  public:
   struct Limit {
     std::chrono::seconds time;
-    const char* name;  // in /v1/limits
+    const char* name;  // name in /v1/limits
   };
-  // The limit counts from `since`. `timer` must outlive the watch.
+  // The limit counts from `since`. `timer` must outlive this object.
   Watch(const std::stop_token& gone, const std::stop_token& service_ends, Timer& timer,
         Clock::time_point since, const Limit& limit);
 
-  // Requested by what comes first.
+  // Returns a token that is stopped by the first of these events.
   std::stop_token stop() const { return source_.get_token(); }
 
-  // Throws what came first: Cancelled, Busy or TimedOut.
+  // Throws the error for the first event: Cancelled, Busy or TimedOut.
   [[noreturn]] void explain() const;
 
  private:
@@ -44,7 +44,7 @@ class Watch {
   const Limit limit_;
   std::stop_source source_;
   std::atomic<Reason> reason_{Reason::none};
-  // Last: these use the others.
+  // Last: these use the members above.
   const std::stop_callback<Stop> on_gone_, on_end_;
   const Timer::Alarm on_time_;
 };

@@ -15,7 +15,7 @@ std::string bytes_text(std::size_t bytes) { return std::to_string(bytes) + " byt
 
 }  // namespace
 
-// What one account has taken; given back with it.
+// Bytes of one account, released by the destructor.
 class WorkMemory::Share {
  public:
   Share(WorkMemory& from, std::string client) : from_(from), client_(std::move(client)) {}
@@ -45,8 +45,8 @@ std::size_t WorkMemory::bytes() const {
 }
 
 std::size_t WorkMemory::resize(const std::string& client, std::size_t own, std::size_t bytes, bool already) {
-  constexpr std::size_t kStep = 256 * 1024;  // so that it is not asked for each block
-  constexpr std::size_t kSmall = 2 * kStep;  // what a small picture takes, and has whatever others hold
+  constexpr std::size_t kStep = 256 * 1024;  // granularity, to be called less often
+  constexpr std::size_t kSmall = 2 * kStep;  // a small image; always granted
   const std::size_t rounded = (bytes + kStep - 1) / kStep * kStep;
   const std::lock_guard lock(mutex_);
   if (rounded == own) return own;
@@ -62,7 +62,7 @@ void WorkMemory::require_room(const std::string& client, std::size_t own, std::s
   const auto known = taken_by_.find(client);
   const std::size_t others_of_client = (known == taken_by_.end() ? 0 : known->second) - own;
   const std::size_t of_others = taken_ - own - others_of_client;
-  // Whether it leaves as much as the client then has; sums of few terms below 2^62.
+  // Returns whether the client leaves as much as it then holds. Sums of few terms stay below 2^62.
   const auto fits = [&](std::size_t beside, std::size_t client_has) {
     return beside + 2 * (client_has + bytes) <= most_;
   };

@@ -10,16 +10,14 @@
 
 namespace orrery {
 
-// Bytes that all pieces of work hold together. A client may hold as many as it leaves to the others: so one
-// alone may have half, two may have a third each, and there is always room for a small picture. Safe from any
-// thread; outlives the accounts.
+// Memory quota for all work. A client may hold as many bytes as it leaves to others: one client alone may
+// hold half, two a third each. A small image always fits. Safe from any thread. Must outlive its accounts.
 class WorkMemory {
  public:
   explicit WorkMemory(std::size_t most_bytes) : most_(most_bytes) {}
 
-  // An account without bytes, for work of that client. Where it may not hold more, its run() throws
-  // InputError if there could never be room for it, ClientBusy if the client's other work has it, else
-  // OverLimit.
+  // Opens an empty account for work of the client. Its run() throws InputError if the work could never fit,
+  // ClientBusy if other work of the client holds the memory, else OverLimit.
   std::shared_ptr<MemoryAccount> open(const std::string& client);
 
   std::size_t bytes() const;
@@ -27,14 +25,15 @@ class WorkMemory {
 
  private:
   class Share;
-  // Changes a share of `own` bytes; returns how many it has then.
+  // Resizes a share of `own` bytes and returns its new size. Skips the quota check if the bytes are `already`
+  // in use.
   std::size_t resize(const std::string& client, std::size_t own, std::size_t bytes, bool already);
   void require_room(const std::string& client, std::size_t own, std::size_t bytes) const;
 
   const std::size_t most_;
   mutable std::mutex mutex_;  // guards all below
   std::size_t taken_ = 0;
-  std::map<std::string, std::size_t> taken_by_;  // clients that have taken some
+  std::map<std::string, std::size_t> taken_by_;  // by client, without zeros
 };
 
 }  // namespace orrery
