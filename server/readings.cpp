@@ -21,7 +21,7 @@ template <class Number>
 ClientMetric value(const Number& number, Labels labels = {}) {
   ClientMetric metric;
   metric.label = std::move(labels);
-  metric.gauge.value = metric.counter.value = static_cast<double>(number);  // the family says which it is
+  metric.gauge.value = metric.counter.value = static_cast<double>(number);  // the family has one type
   return metric;
 }
 
@@ -44,7 +44,7 @@ std::ptrdiff_t open_files() {
   return std::distance(begin(files), end(files));
 }
 
-// Under the names that client libraries of Prometheus agree on.
+// Appends the process metrics under the standard names of Prometheus client libraries.
 void append_process_metrics(std::vector<MetricFamily>& families, const Meters& meters) {
   constexpr MetricType kCounter = MetricType::Counter, kGauge = MetricType::Gauge;
   const double started = std::chrono::duration<double>(meters.started.time_since_epoch()).count();

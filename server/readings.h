@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// What is true of the service and its process at this moment, a row a metric.
+// Returns the current metrics of the service and its process.
 std::vector<prometheus::MetricFamily> read_metrics(App& app, const HttpServer& server, const Log& log);
 
 }  // namespace orrery

@@ -34,7 +34,7 @@ int fail(int status, const std::string& message) {
   return status;
 }
 
-// What is wrong with the first word, if it names no command.
+// Returns an error message if the first argument is a word that names no command, else nullopt.
 std::optional<std::string> unknown_command(int argc, char** argv, const std::vector<Command>& commands) {
   if (argc < 2 || argv[1][0] == '-') return std::nullopt;
   const std::string word = argv[1];
@@ -45,7 +45,8 @@ std::optional<std::string> unknown_command(int argc, char** argv, const std::vec
   return "there is no command " + word + did_you_mean(word, views) + "; see orrery --help";
 }
 
-// The flags, or else the words, that the command does not know, with the flags that may be meant.
+// Returns an error message with the unknown flags and suggestions, or with all unexpected words if no flag is
+// unknown.
 std::string unknown_words(const CLI::App& app) {
   const CLI::App& command = *app.get_subcommands().front();
   std::vector<std::string> flags;

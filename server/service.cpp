@@ -19,7 +19,8 @@
 namespace orrery {
 namespace {
 
-// "Sun, 06 Nov 1994 08:49:37 GMT" (RFC 9110, 5.6.7), whatever the locale.
+// Returns the current time as an HTTP date (RFC 9110, 5.6.7), such as "Sun, 06 Nov 1994 08:49:37 GMT".
+// Ignores the locale.
 std::string http_date() {
   constexpr const char* kDays[] = {"Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"};
   constexpr const char* kMonths[] = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",
@@ -33,7 +34,7 @@ std::string http_date() {
   return text;
 }
 
-// The query for the log, without what a link proves itself by.
+// Returns at most 200 bytes of the query for the log, without the signature of a link.
 std::string query_of(const Request& request) {
   std::string text;
   for (const auto& [name, value] : request.query)
@@ -41,7 +42,6 @@ std::string query_of(const Request& request) {
   return text.substr(0, 200);
 }
 
-// What every answer carries.
 void add_common_headers(const Request& request, Response& response) {
   response.set("X-Request-ID", request.id)
       .set("Date", http_date())
@@ -51,7 +51,8 @@ void add_common_headers(const Request& request, Response& response) {
       .set("Content-Security-Policy", "default-src 'self'");
 }
 
-// What not everyone may see is kept by nobody but who asked; and what a link gave, not beyond the link's end.
+// Makes public responses private unless anyone may see them. Responses to signed links must also be
+// revalidated, so that no cache outlives the link.
 void keep_private(Audience audience, Response& response) {
   const std::string kept = find_field(response.headers, "Cache-Control").value_or("");
   constexpr std::string_view kPublic = "public, ";
@@ -158,7 +159,7 @@ HttpServer::Admitted Service::admit(const Router& router, Request& request) {
   const auto answered = [this](const Response& response) -> HttpServer::Admitted {
     return {.body = {}, .answer = [this, response](Request& r) { return finished(r, response); }};
   };
-  if (request.path.empty())  // links of the page begin at its folder
+  if (request.path.empty())  // relative links of the page need the final slash
     return answered(
         {.status = 308,
          .headers = {{"Location", "/" + query_text(request.query)}, {"Cache-Control", "no-store"}}});

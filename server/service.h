@@ -8,22 +8,22 @@
 
 namespace orrery {
 
-// The whole service: app, routes and HTTP servers: one for all, and one for health and metrics with threads
-// of its own, so that nothing can silence it. Both listen once it is made.
+// The app, its routes and two HTTP servers. The second server answers health and metrics requests on its own
+// threads, so load on the first cannot block it. Both servers listen once the constructor returns.
 class Service {
  public:
-  // Throws Error if an address cannot be had, InputError for files that cannot be used.
+  // Throws Error if an address cannot be bound, InputError if a file cannot be used.
   Service(const Settings& settings, const Log& log);
 
   int port() const { return server_.port(); }
   int health_port() const { return health_.port(); }
-  // Serves until stop() was called and what ran then is done.
+  // Serves requests until stop() is called and the running requests have ended.
   void run();
-  // Both from any thread.
-  void stop();  // after drain_delay_seconds
-  // Reads the files of tokens and keys again, unless `read` returns the names of others, and takes the
-  // cors_origins of what it returns. The log names the other settings that differ, which need a restart, or
-  // says what was thrown: then all stays as it is.
+  // Starts draining after drain_delay_seconds. Safe from any thread.
+  void stop();
+  // Reads the token and key files again, unless read() returns other file names. Takes cors_origins from the
+  // result of read(). Logs the names of other changed settings, which need a restart. If reading fails, logs
+  // the error and changes nothing. Safe from any thread.
   void reload(const std::function<Settings()>& read);
 
  private:
@@ -35,7 +35,7 @@ class Service {
   std::vector<std::string> origins() const;
   void note(const Request& request, const Response& response, std::uint64_t bytes, bool gone);
 
-  const Settings settings_;  // as they were given
+  const Settings settings_;  // as passed to the constructor
   const Log& log_;
   SteadyTimer timer_;
   App app_;
@@ -43,7 +43,7 @@ class Service {
   mutable std::mutex mutex_;
   std::vector<std::string> origins_;  // guarded by mutex_
   Router router_, health_router_;
-  HttpServer server_, health_;  // their threads use the others
+  HttpServer server_, health_;  // their threads use the members above
   std::unique_ptr<Timer::Alarm> drain_;
 };
 
