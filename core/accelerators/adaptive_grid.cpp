@@ -3,8 +3,8 @@
 namespace orrery {
 namespace {
 
-// The grain follows the local density, as the survey proposes: crowded cells hold grids of their own
-// (Jevans and Wyvill, "Adaptive Voxel Subdivision for Ray Tracing", 1989).
+// Grid whose resolution follows the local density: crowded cells hold nested grids (Jevans and Wyvill,
+// "Adaptive Voxel Subdivision for Ray Tracing", 1989).
 constexpr GridOptions kNested{.cells = 0.25, .references = 12, .most = 12, .levels = 8};
 
 template <class T>

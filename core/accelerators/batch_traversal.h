@@ -4,13 +4,13 @@
 
 namespace orrery {
 
-// The rays of a batch on their way through a tree: registers of rays that run alike as packets, the others
-// one by one.
+// Traverses a tree with the rays of a batch: registers of coherent rays as packets, the others as single
+// rays.
 template <class T>
 class BatchTraversal {
  public:
-  // `t`: the ends of the active rays, which become the distances of hits, or -1 where occluded.
-  // `primitive`: of the hits, or null. REQUIRES: all outlive this.
+  // `t` holds the ends of the active rays and receives hit distances, or -1 for occluded rays. `primitive`
+  // receives the primitives that were hit, or is null. REQUIRES: all arguments outlive this object.
   BatchTraversal(const WideTree<T>& tree, const RayBatch<T>& rays, const Groups& groups, Array<T>& t,
                  Array<IndexOf<T>>* primitive)
       : tree_(tree), rays_(rays), groups_(groups), t_(t), primitive_(primitive) {}
@@ -28,13 +28,14 @@ class BatchTraversal {
 
  private:
   using N = Lanes<T>;
-  // A packet that is wider than so many leaves meets too much that most of its rays do not.
+  // Maximum width of a packet, relative to the mean leaf. Wider packets test many boxes that most of their
+  // rays miss.
   static constexpr T kMaxPacketExtent = 1;
-  // Tests of a packet with blocks and their primitives after which its rays go on one by one.
+  // Tests of a packet with blocks and primitives after which its rays continue one by one.
   static constexpr int kPacketBudget = 200;
-  // If the first packets take more than so many tests each, some rays are taken alone and what they cost is
-  // compared; what is dearer is not done for the rest of the batch. Costs are in ns on one machine: only
-  // ratios mean something.
+  // If the first packets take more than kDearTests tests each, some rays are traced alone and the costs
+  // compared. The rest of the batch uses the cheaper method. Costs are in ns on one machine; only their
+  // ratios matter.
   static constexpr int kTrialPackets = 8, kTrialSingles = 2 * kWidth<T>, kDearTests = 48;
   static constexpr double kPacketCost = 100, kPacketVisitCost = 12, kPacketTestCost = 14;
   static constexpr double kSingleCost = 30, kSingleVisitCost = 9, kSingleTestCost = 3.5;
@@ -64,7 +65,7 @@ class BatchTraversal {
     trial_ = Trial::over;
   }
 
-  // Returns how many tests they took.
+  // Returns the number of tests.
   template <Query kQuery>
   double run_packets(AcceleratorCounts& counts) {
     run_all<kQuery>(packets_, counts);
@@ -119,7 +120,8 @@ class BatchTraversal {
     packets_.add(packet, probe, {t, primitive, stdx::hmax(t), kPacketBudget}, group);
   }
 
-  // Those of the register that `chosen` names. `x`, `y`: those whose largest axis is that.
+  // Adds the rays of a register that `chosen` selects. `x` and `y` select the rays whose largest axis is x or
+  // y.
   void add_singles(const Ray<N>& ray, const Shear<N>& shear, unsigned x, unsigned y, unsigned chosen,
                    int group) {
     const typename SingleProbe<T>::Register probes(ray);
@@ -152,13 +154,13 @@ class BatchTraversal {
             {largest(active, shear.x), largest(active, shear.y)}};
   }
 
-  // Those whose directions have the same signs agree about what is nearer: they go together.
+  // Groups traversals by the signs of their directions, because these agree on which node is nearer.
   template <Query kQuery, class Traversals>
   void run_all(Traversals& traversals, AcceleratorCounts& counts) const {
     if (traversals.count == 0) return;
     using Streaming = Stream<kQuery, T, Traversals>;
     const auto octant = [&](int i) -> std::size_t { return traversals.probes[i].octant(); };
-    std::array<int, 9> begin{};  // of each octant; the last is the end of all
+    std::array<int, 9> begin{};  // start of each octant, then the end of the last
     for (int i = 0; i < traversals.count; ++i) ++begin[octant(i) + 1];
     for (std::size_t o = 0; o < 8; ++o) begin[o + 1] += begin[o];
     std::array<std::int32_t, Traversals::kCapacity + Streaming::kPad> ids;
@@ -178,7 +180,7 @@ class BatchTraversal {
   TraversalGroup<SingleRay<T>, SingleProbe<T>, SingleHit<T>, kBatch> singles_;
   Trial trial_ = Trial::packets;
   bool packets_pay_ = true;
-  double packet_cost_ = 0;  // a ray
+  double packet_cost_ = 0;  // per ray
 };
 
 }  // namespace orrery

@@ -8,7 +8,7 @@
 namespace orrery {
 namespace {
 
-// What rays of a batch are to boxes, by register.
+// Registers of a batch, prepared for box tests.
 template <class T>
 class BoxRays {
  public:
@@ -68,7 +68,7 @@ class BesideMoving final : public Accelerator<T> {
   using N = Lanes<T>;
   using Node = typename BoxTree<T>::Node;
 
-  // The registers with a ray that enters the node's box before it ends.
+  // Returns the registers with a ray that enters the node's box before its end.
   static Groups entering(const Node& node, const Groups& groups, const BoxRays<T>& boxes,
                          const Array<T>& ends, AcceleratorCounts& counts) {
     Groups in;
@@ -81,7 +81,7 @@ class BesideMoving final : public Accelerator<T> {
     return in;
   }
 
-  // The nearer child first, as the first ray sees their middles.
+  // Visits the nearer child first, judged by the first ray and the box centres.
   void find(std::uint32_t at, const Groups& groups, const BoxRays<T>& boxes, const RayBatch<T>& rays,
             HitBatch<T>& hits, AcceleratorCounts& counts) const {
     const Node& node = tree_.nodes[at];
@@ -121,7 +121,7 @@ class BesideMoving final : public Accelerator<T> {
   }
 
   PrimitiveList<T> resting_, moving_;
-  AcceleratorPtr<T> behind_;  // null: nothing rests
+  AcceleratorPtr<T> behind_;  // null if all primitives are timed
   std::unique_ptr<Unbounded<T>> unbounded_;
   BoxTree<T> tree_;
 };
@@ -130,7 +130,7 @@ class BesideMoving final : public Accelerator<T> {
 
 template <class T>
 bool any_timed(const PrimitiveList<T>& primitives) {
-  const ShapeKernel<T>* last = nullptr;  // primitives of one kernel mostly follow each other
+  const ShapeKernel<T>* last = nullptr;  // primitives of one kernel are mostly adjacent
   return std::any_of(primitives.begin(), primitives.end(), [&last](const Primitive<T>& primitive) {
     if (primitive.kernel == last) return false;
     last = primitive.kernel;

@@ -4,13 +4,13 @@
 
 namespace orrery {
 
-// Whether some primitives stand where they are at the rays' time (ShapeKernel::timed()).
+// Returns whether the position of any primitive depends on the rays' time (ShapeKernel::timed()).
 template <class T>
 bool any_timed(const PrimitiveList<T>& primitives);
 
-// A structure of `type` over the primitives that rest, and beside it one over those that are timed: a tree of
-// boxes around all that each passes, which batches of rays walk. `before`: one at another moment or null,
-// whose part for what rests is followed where it can be.
+// Builds a structure of `type` over the resting primitives and a separate box tree over the timed ones. Boxes
+// of the tree enclose the whole motion of their primitives; batches of rays traverse it together. `before` is
+// null or a structure for another time, whose resting part is refitted if possible.
 template <class T>
 AcceleratorPtr<T> build_beside_moving(const AcceleratorType& type, const PrimitiveList<T>& primitives,
                                       const Accelerator<T>* before);

@@ -9,12 +9,12 @@
 
 namespace orrery {
 
-// A block of packed primitives of one kernel: which pack (5 bits) and which block of it (26 bits). The
-// highest bit is free for a structure's own use. A world has one kernel for each type of shape in it and one
-// for its instances, so that 5 bits are enough for 31 types of shape.
+// Handle of a block of packed primitives of one kernel: pack (5 bits) and block in the pack (26 bits). The
+// highest bit is free for the structure's own use. A scene has one kernel per type of shape and one for
+// instances, so 5 bits suffice for 31 types of shape.
 using BlockName = std::uint32_t;
 
-// Primitives in the order that a structure chose, packed in blocks of kBlock<T>.
+// Primitives in the order of a structure, packed in blocks of kBlock<T>.
 template <class T>
 class Blocks {
  public:
@@ -22,7 +22,8 @@ class Blocks {
   static std::size_t pack_number(BlockName name) { return name >> kBlockBits & (kMaxPacks - 1); }
   static std::uint32_t block_of(BlockName name) { return name & kBlockMask; }
 
-  // Adds a block of 1 to kSize primitives of one kernel, named by their places in `primitives`.
+  // Adds a block of 1 to kSize primitives of one kernel, given by their indices in `primitives`. Throws
+  // InputError if a kernel has too many blocks.
   BlockName add(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places) {
     const auto* kernel = primitives[places.front()].kernel;
     references_ += places.size();
@@ -39,8 +40,8 @@ class Blocks {
     indices.resize((block + 1) * kSize, kNothing);
     return static_cast<BlockName>(making - makings_.begin()) << kBlockBits | block;
   }
-  // Adds as many blocks as these primitives need, in any number, and their names to `names`. REQUIRES: places
-  // ascend, so that primitives of one kernel follow each other.
+  // Adds as many blocks as these primitives need and appends their names to `names`. REQUIRES: `places`
+  // ascend, so that primitives of one kernel are adjacent.
   void add_all(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places,
                std::vector<BlockName>& names) {
     while (!places.empty()) {
@@ -51,15 +52,15 @@ class Blocks {
       places = places.subspan(count);
     }
   }
-  // To be called once all are added, before any is asked for.
+  // Packs the blocks. Must be called after the last block is added and before any block is read.
   void pack() {
     for (const Making& making : makings_)
       packs_.push_back({making.kernel, making.place, making.kernel->pack(making.indices)});
     makings_ = {};
   }
 
-  // Takes the primitives as they stand in `moved`, in the same order. Returns the boxes of all blocks of each
-  // pack, by their numbers; of a pack whose primitives stay where they are, none.
+  // Repacks the primitives as they are in `moved`, in the same order. Returns the boxes of all blocks by
+  // pack; the list is empty for a pack whose primitives have not moved.
   std::vector<std::vector<Bounds<T>>> follow(const PrimitiveList<T>& moved) {
     std::vector<std::vector<Bounds<T>>> boxes;
     for (Pack& pack : packs_) {
@@ -90,7 +91,8 @@ class Blocks {
  private:
   static constexpr int kBlockBits = 26;
   static constexpr std::uint32_t kBlockMask = (1u << kBlockBits) - 1, kMaxPacks = 1u << 5;
-  // Of a kernel's primitives, by their indices: the list may lack some. Null: not in the list.
+  // Returns the bounds of a kernel's primitives by their indices; null for primitives that are not in the
+  // list.
   static std::vector<const Boundsd*> bounds_of(const ShapeKernel<T>& kernel,
                                                const PrimitiveList<T>& primitives) {
     std::vector<const Boundsd*> bounds;
@@ -103,10 +105,10 @@ class Blocks {
     return bounds;
   }
 
-  // A pack that is being put together.
+  // Pack under construction.
   struct Making {
     const ShapeKernel<T>* kernel;
-    std::size_t place;  // of one of its primitives in the list
+    std::size_t place;  // index of one of its primitives in the list
     std::vector<int> indices;
   };
   struct Pack {

@@ -6,10 +6,10 @@
 namespace orrery {
 namespace {
 
-// From the bottom up, as the survey of acceleration describes: near boxes are put into one around them, again
-// and again, until one is left. Near means a small surface of the box around both, among the neighbours along
-// a space-filling curve (Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
-// Hierarchy Construction", TVCG 2018). Few primitives of one kernel become a leaf.
+// Bottom-up builder: merges near boxes until one is left. The distance of two boxes is the surface area of
+// the box around both; candidates are neighbours along a space-filling curve (Meister and Bittner, "Parallel
+// Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", TVCG 2018). Few primitives of one
+// kernel become a leaf.
 template <class T>
 class Grouping {
  public:
@@ -24,12 +24,12 @@ class Grouping {
 
  private:
   static constexpr std::uint32_t kMixed = ~0u, kSingle = ~0u;
-  static constexpr std::size_t kGrain = 4096;  // groups that are worth a thread
-  static constexpr int kReach = 8;             // neighbours looked at on each side
+  static constexpr std::size_t kGrain = 4096;  // groups that justify a task
+  static constexpr int kReach = 8;             // neighbours compared on each side
 
   struct Group {
     Bounds<T> box;
-    std::uint32_t left, right;  // groups; of a single item: the item and kSingle
+    std::uint32_t left, right;  // child groups; for a single item its index and kSingle
     std::uint32_t count, kernel;
   };
 
@@ -51,7 +51,7 @@ class Grouping {
 
   static Vec3d center(const TreeItem<T>& item) { return (Vec3d(item.box.lo) + Vec3d(item.box.hi)) * 0.5; }
 
-  // Place along the Z-order curve through `all`, 21 bits an axis.
+  // Returns the position along the Z-order curve through `all`, 21 bits per axis.
   static std::uint64_t curve_place(const Boundsd& all, const Vec3d& at) {
     const auto spread = [](double from, double to, double x) {
       const double cells = 2097151;
@@ -67,8 +67,8 @@ class Grouping {
            spread(all.lo.z, all.hi.z, at.z) << 2;
   }
 
-  // Groups that are each other's nearest become one. There always are such: of equally near ones a group
-  // chooses the closest along the curve, and of two equally close the one that chooses it in turn.
+  // Merges groups that are each other's nearest neighbour. Such a pair always exists: ties go to the group
+  // closest along the curve, then to the one that makes the choice mutual.
   void merge_neighbours() {
     const int count = static_cast<int>(line_.size());
     std::vector<int> nearest(line_.size());
@@ -82,8 +82,8 @@ class Grouping {
       if (!mutual) next.push_back(at(i));
       if (mutual && i < j) next.push_back(merge(at(i), at(j)));
     }
-    // Where sizes or gaps grow from one to the next, only one pair is mutual: neighbours are merged as they
-    // stand then, so that the number of passes stays a logarithm.
+    // If sizes or gaps grow steadily, only one pair is mutual. Adjacent groups are then merged, which keeps
+    // the number of passes logarithmic.
     constexpr std::size_t kFewest = 32;
     if (next.size() + next.size() / kFewest > line_.size()) next = pairs_of(next);
     line_ = std::move(next);
@@ -124,7 +124,7 @@ class Grouping {
     return static_cast<std::uint32_t>(groups_.size() - 1);
   }
 
-  // Node `node` becomes the group.
+  // Fills node `node` from the group.
   void fill(std::size_t node, std::uint32_t group, int depth) {
     interruption_point();
     const Group& g = groups_[group];
@@ -185,7 +185,7 @@ class Grouping {
 
   std::vector<TreeItem<T>> items_;
   std::vector<Group> groups_;
-  std::vector<std::uint32_t> line_;  // groups not in another, along the curve
+  std::vector<std::uint32_t> line_;  // unmerged groups, along the curve
   BoxTree<T> tree_;
 };
 

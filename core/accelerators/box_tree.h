@@ -7,21 +7,21 @@
 
 namespace orrery {
 
-// What a tree is built over.
+// Bounded primitive as input of a tree builder.
 template <class T>
 struct TreeItem {
   Bounds<T> box;
-  std::uint32_t primitive;  // place in the PrimitiveList
+  std::uint32_t primitive;  // index in the PrimitiveList
   std::uint32_t kernel;     // items of different kernels never share a leaf
 };
 
-// The bounded primitives.
+// Returns the bounded primitives of the list.
 template <class T>
 std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   std::vector<TreeItem<T>> items;
   items.reserve(primitives.size());
   const ShapeKernel<T>* last = nullptr;
-  std::uint32_t kernel = 0;  // primitives of one kernel follow each other
+  std::uint32_t kernel = 0;  // primitives of one kernel are adjacent
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     interruption_point(i);
     if (primitives[i].kernel != last) ++kernel;
@@ -32,17 +32,17 @@ std::vector<TreeItem<T>> items_of(const PrimitiveList<T>& primitives) {
   return items;
 }
 
-// Builders halve the items of nodes below this level, so that no input makes a much deeper tree: 28 levels
-// halve 2^31 items to blocks, and no more than 8 divide a block by kernels.
+// Level below which builders halve the items of a node. It bounds the depth for any input: 28 levels halve
+// 2^31 items to blocks, and at most 8 more divide a block by kernels.
 inline constexpr int kDepthGuard = 48;
 inline constexpr int kDeepestTree = kDepthGuard + 28 + 8;
 
-// A binary tree of boxes. nodes[0] is the root; the leaves name stretches of items.
+// Binary tree of boxes. nodes[0] is the root; leaves refer to ranges of items.
 template <class T>
 struct BoxTree {
   struct Node {
     Bounds<T> box;
-    std::uint32_t left = 0, right = 0;  // children; of a leaf: first item and the one after the last
+    std::uint32_t left = 0, right = 0;  // children; of a leaf: first item and end
     bool leaf = false;
   };
   std::vector<Node> nodes;  // some may be unused

@@ -3,8 +3,7 @@
 namespace orrery {
 namespace {
 
-// One axis-aligned box a primitive, tested first (slabs; survey of acceleration, bounding volumes). Unbounded
-// primitives stand apart and are always tested.
+// One axis-aligned box per primitive, tested first by slabs. Unbounded primitives are tested by every ray.
 template <class T>
 class Boxes final : public Accelerator<T> {
  public:

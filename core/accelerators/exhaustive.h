@@ -4,10 +4,10 @@
 
 namespace orrery {
 
-// What is asked for rays: the nearest hit, or whether there is one.
+// Query for a ray: the closest hit, or whether there is any.
 enum class Query { closest, occlude };
 
-// Every ray against every primitive of a list.
+// Tests every ray against every primitive of a list.
 
 template <class T>
 void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const Groups& groups,
@@ -18,7 +18,7 @@ void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& r
   counts.primitive_tests += primitives.size() * active_rays(rays, groups);
 }
 
-// Returns the registers with rays that met none of them.
+// Returns the registers with rays that hit no primitive.
 template <class T>
 Groups occlude_exhaustive(const PrimitiveList<T>& primitives, RayBatch<T>& rays, const Groups& groups,
                           AcceleratorCounts& counts) {

@@ -3,7 +3,7 @@
 namespace orrery {
 namespace {
 
-// The uniform grid (Fujimoto et al., "ARTS: Accelerated Ray-Tracing System", 1986).
+// Uniform grid (Fujimoto et al., "ARTS: Accelerated Ray-Tracing System", 1986).
 constexpr GridOptions kUniform{.cells = 2, .references = 16, .most = 0, .levels = 1};
 
 template <class T>

@@ -10,14 +10,13 @@ namespace orrery {
 
 using CellIndex = std::array<int, 3>;
 
-// A box cut into equal cells by planes whose places follow from their numbers alone, so that errors do not
-// add up.
+// Box divided into equal cells. Planes are computed from their indices alone, so errors do not add up.
 template <class T>
 class GridLayout {
  public:
-  // About `cells` in all, nearly cubes as far as the box is not too thin for them.
+  // Makes about `cells` cells, nearly cubic unless the box is too thin.
   GridLayout(const Bounds<T>& box, double cells) : box_(box), count_(sides_for(box.hi - box.lo, cells)) {
-    constexpr T kWider = 1 + 4 * std::numeric_limits<T>::epsilon();  // so that the last plane is not inside
+    constexpr T kWider = 1 + 4 * std::numeric_limits<T>::epsilon();  // keeps the last plane outside the box
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const T extent = box.hi[axis] - box.lo[axis];
       T& size = size_[axis];
@@ -35,14 +34,14 @@ class GridLayout {
                static_cast<std::size_t>(count_[0]) +
            static_cast<std::size_t>(i[0]);
   }
-  // Side i - 1 and side i of a layer meet here.
+  // Returns the plane between layers i - 1 and i.
   T plane(std::size_t axis, int i) const { return box_.lo[axis] + size_[axis] * static_cast<T>(i); }
   Bounds<T> cell(const CellIndex& i) const {
     return {{plane(0, i[0]), plane(1, i[1]), plane(2, i[2])},
             {plane(0, i[0] + 1), plane(1, i[1] + 1), plane(2, i[2] + 1)}};
   }
 
-  // Calls visit(index) for the cells that touch a box.
+  // Calls visit(index) for each cell that touches the box.
   template <class Visit>
   void for_each_touching(const Bounds<T>& box, const Visit& visit) const {
     const auto [x0, x1] = touching(0, box.lo.x, box.hi.x);
@@ -53,10 +52,10 @@ class GridLayout {
         for (int x = x0; x <= x1; ++x) visit(CellIndex{x, y, z});
   }
 
-  // Calls visit(index, from, to) for the cells that the ray may touch in from..to, from near to far, while
-  // open(from) says so: layers across its main axis, in each the rows that it crosses, in each the cells
-  // (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987). Next to a plane
-  // both its sides are visited.
+  // Calls visit(index, from, to) for the cells that the ray may touch in [from, to], from near to far, while
+  // open(from) is true. Steps through layers along the main axis, rows in each layer and cells in each row
+  // (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987). Close to a plane,
+  // visits both sides of it.
   template <class Open, class Visit>
   void for_each_along(const SingleRay<T>& ray, const SingleProbe<T>& probe, T from, T to, const Open& open,
                       const Visit& visit) const {
@@ -99,13 +98,13 @@ class GridLayout {
     return count;
   }
 
-  // The layer that a number of layers from the low side lies in.
+  // Returns the layer at a distance of `layers` cells from the low side, clamped to the grid.
   int layer(std::size_t axis, T layers) const {
     const T last = static_cast<T>(count_[axis] - 1);
     return layers > 0 ? static_cast<int>(std::min(layers, last)) : 0;
   }
 
-  // First and last layer that touch lo..hi.
+  // Returns the first and the last layer that touch [lo, hi].
   std::array<int, 2> touching(std::size_t axis, T lo, T hi) const {
     const T from = box_.lo[axis], per = per_size_[axis];
     int i = layer(axis, (lo - from) * per), j = layer(axis, (hi - from) * per);
@@ -132,7 +131,7 @@ class GridLayout {
   }
 
   Bounds<T> box_;
-  Vec3<T> size_, per_size_;  // of a cell, and one over it; 0 where the box is flat
+  Vec3<T> size_, per_size_;  // cell size and its reciprocal; 0 for a flat box
   CellIndex count_;
 };
 

@@ -11,21 +11,21 @@
 namespace orrery {
 
 struct GridOptions {
-  double cells;            // a primitive, about
-  std::size_t references;  // a primitive, on average, at most
-  std::size_t most;        // items of a cell; with more it gets a grid of its own, if that helps
-  int levels;              // grids in grids, at most
+  double cells;            // per primitive, approximate
+  std::size_t references;  // per primitive, maximum of the mean
+  std::size_t most;        // per cell; with more items a nested grid is tried
+  int levels;              // maximum nesting of grids
 };
 
-// A box cut into equal cells, as many a side as keep them nearly cubes; a primitive belongs to every cell
-// that its box reaches into. A crowded cell may hold a grid of its own, around what is in it.
+// Grid of nearly cubic cells. A primitive belongs to every cell that its box touches. A crowded cell may hold
+// a nested grid around its items.
 template <class T, const GridOptions& kOptions>
 class GridTree {
  public:
   explicit GridTree(const PrimitiveList<T>& primitives) {
     const std::vector<TreeItem<T>> items = items_of(primitives);
     if (items.empty()) return;
-    std::size_t left = (kOptions.references - 1) * items.size();  // references that may still be made
+    std::size_t left = (kOptions.references - 1) * items.size();  // references that may still be added
     Bounds<T> all;
     for (const auto& item : items) all.include(item.box);
     cells_.emplace_back();
@@ -61,20 +61,20 @@ class GridTree {
  private:
   struct Grid {
     GridLayout<T> layout;
-    std::size_t first;  // cell
+    std::size_t first;  // index of the first cell
   };
   static constexpr std::uint32_t kGrid = ~0u;
   struct Cell {
-    std::uint32_t first = 0, count = 0;  // block names; or the place of a grid, and kGrid
+    std::uint32_t first = 0, count = 0;  // range of block names; or index of a grid, and kGrid
   };
-  // A cell that may become a grid.
+  // Cell that may become a grid.
   struct PendingCell {
     Bounds<T> box;
-    std::span<const std::uint32_t> items;  // places in the list of TreeItems, ascending
+    std::span<const std::uint32_t> items;  // indices of TreeItems, ascending
     int level;
     std::size_t cell;
   };
-  // Cells of one level. Their items stand in one list, cell after cell, so that there is little to free.
+  // Cells of one level. One list holds their items, cell after cell, to save allocations.
   struct LevelCell {
     Bounds<T> box;
     std::size_t items, cell;
@@ -84,7 +84,7 @@ class GridTree {
     std::vector<std::uint32_t> items;
   };
 
-  // What of the items lies in the box.
+  // Returns the box around the items' parts inside the cell.
   static Bounds<T> around(const PendingCell& cell, const std::vector<TreeItem<T>>& items) {
     Bounds<T> box;
     for (const std::uint32_t item : cell.items) {
@@ -99,7 +99,8 @@ class GridTree {
     return box;
   }
 
-  // Makes a grid of the cell, with fewer cells while they would share too many; false if none helps.
+  // Replaces the cell by a grid, with fewer cells if items would be shared by too many. Returns false if no
+  // grid helps.
   bool divide(const PendingCell& cell, const std::vector<TreeItem<T>>& items, std::size_t& left,
               Level& next) {
     const std::size_t count = cell.items.size();
@@ -134,8 +135,7 @@ class GridTree {
         layout.for_each_touching(items[item].box, [&](const CellIndex& i) { visit(layout.number(i), item); });
       }
     };
-    std::vector<std::size_t> places(
-        layout.cells());  // first the items of each cell, then where the next goes
+    std::vector<std::size_t> places(layout.cells());  // items per cell, then next free place
     for_each_item_in_cell([&](std::size_t i, std::uint32_t) { ++places[i]; });
     std::size_t end = next.items.size();
     layout.for_each_touching(layout.box(), [&](const CellIndex& i) {
@@ -172,7 +172,7 @@ class GridTree {
   }
 
   std::vector<Grid> grids_;
-  std::vector<Cell> cells_;  // the first is the whole
+  std::vector<Cell> cells_;  // cells_[0] is the root
   std::vector<BlockName> names_;
   Blocks<T> blocks_;
   int depth_ = 0;

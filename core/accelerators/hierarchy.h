@@ -5,8 +5,7 @@
 
 namespace orrery {
 
-// A hierarchy of boxes: Builder::build() makes a BoxTree of TreeItems. Unbounded primitives stand apart and
-// are always tested.
+// Bounding volume hierarchy over a BoxTree from Builder::build(). Every ray tests all unbounded primitives.
 template <class T, class Builder>
 class Hierarchy final : public Accelerator<T> {
  public:

@@ -4,16 +4,16 @@
 
 #include "core/model/accelerator.h"
 
-// What instances are as primitives, however they stand. An Instance<T> has
+// Instances as primitives, at rest or moving. An Instance<T> has
 //   std::shared_ptr<const ModelGeometry<T>> model;
-//   int first, last;                  numbers of its primitives in the scene: first..last-1
-//   T step_scale, step_base;          the step off a surface in the world: from the model's, and what is
-//   added static constexpr bool kTimed;     whether it moves with the rays' time Pose pose(rays, i) const;
-//   how it stands for register i: to_model(ray), and to the world point(p),
-//                                     vector(v) and normal(n), whose lengths are as they come out
+//   int first, last;                numbers of its primitives in the scene: first..last-1
+//   T step_scale, step_base;        step off a surface in the world: model's step * scale + base
+//   static constexpr bool kTimed;   whether it moves with the rays' time
+//   Pose pose(rays, i) const;       transforms for register i: to_model(ray), and to the world
+//                                   point(p), vector(v), normal(n), which do not normalise
 namespace orrery {
 
-// Rays on their way through one model, and what they meet there.
+// Rays transformed into one model, and their hits there.
 template <class T>
 struct ModelVisit {
   using N = Lanes<T>;
@@ -29,8 +29,8 @@ struct ModelVisit {
   }
 };
 
-// Lanes whose hit in the model of an instance, at register i, takes the place of (best, best_id), and its
-// number in the scene. `first`: of the instance.
+// Hits of register i in an instance's model. `nearer` marks the lanes that replace (best, best_id); `id` is
+// the primitive's number in the scene. `first` is the instance's first number.
 template <class T>
 struct TakenHits {
   using N = Lanes<T>;
@@ -53,7 +53,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
   using N = Lanes<T>;
   using List = std::vector<Instance>;
 
-  // In the order of their numbers.
+  // `placed` is ordered by primitive numbers.
   explicit InstanceKernelOf(List placed) : placed_(std::make_shared<const List>(std::move(placed))) {}
 
   bool timed() const override { return Instance::kTimed; }
@@ -124,7 +124,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
   std::shared_ptr<const List> placed_;
 
  private:
-  // Takes the rays of register i to the model.
+  // Transforms the rays of register i into the model.
   static auto enter(const Instance& placed, const RayBatch<T>& rays, int i, const N& t,
                     ModelVisit<T>& visit) {
     const auto pose = placed.pose(rays, i);
@@ -133,8 +133,8 @@ class InstanceKernelOf : public ShapeKernel<T> {
     return pose;
   }
 
-  // Calls visit(i, mask, instance, ids within its model) for each register of `groups` and each instance that
-  // is hit in it: a register may hold hits of several, of which each takes its own lanes.
+  // Calls visit(i, mask, instance, ids in its model) for each register of `groups` and each instance hit in
+  // it. Lanes of one register may hit different instances.
   template <class Visit>
   void for_each_hit(const HitBatch<T>& hits, const Groups& groups, const Visit& visit) const {
     const auto owner = [this](IndexOf<T> id) {
@@ -149,7 +149,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
         const Instance& placed = *owner(one);
         const auto here = open && id >= IndexOf<T>(placed.first) && id < IndexOf<T>(placed.last);
         open = open && !here && id != one;
-        if (!any(here)) continue;  // none of these
+        if (!any(here)) continue;  // hit of another kernel
         IndexLanes<T> in_model(IndexOf<T>{kNoPrimitive});
         stdx::where(here, in_model) = id - IndexOf<T>(placed.first);
         visit(i, mask_cast<N>(here), placed, in_model);

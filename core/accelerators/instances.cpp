@@ -3,7 +3,7 @@
 namespace orrery {
 namespace {
 
-// Instances in blocks. Single rays are put together to batches first: all that meet one instance.
+// Packed instances. Single rays that enter the same instance are gathered into batches first.
 template <class T>
 class PackedInstances final : public PackedPrimitives<T> {
  public:
@@ -77,7 +77,7 @@ class PackedInstances final : public PackedPrimitives<T> {
  private:
   static constexpr std::size_t kSize = static_cast<std::size_t>(kBlock<T>);
 
-  // Calls act(instance, pairs) with up to `most` pairs of one block, for each instance in it.
+  // Calls act(instance, pairs) for each instance of a block, with up to `most` pairs of that block.
   template <class Act>
   void each_instance(RayBlockPairs pairs, int most, const Act& act) const {
     while (!pairs.empty()) {

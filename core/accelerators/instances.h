@@ -6,26 +6,26 @@
 #include "core/model/accelerator.h"
 #include "core/model/scene.h"
 
-// Instances: one model, with a structure of its own, met in many places. Rays are taken to the model's
-// coordinates with their direction's length as it comes out, so that distances stay those of the world.
+// Instances: models with their own structure, placed many times. Rays are transformed to model coordinates
+// without normalising their direction, so distances stay those of the world.
 namespace orrery {
 
-// A model in a render's precision. Its primitives are numbered from 0.
+// Model in a render's precision. Its primitives are numbered from 0.
 template <class T>
 struct ModelGeometry {
   std::vector<ShapeKernelPtr<T>> shapes;
   PrimitiveList<T> primitives;
-  Boundsd bounds;  // of all
+  Boundsd bounds;  // box around all primitives
   AcceleratorPtr<T> accelerator;
 };
 
-// A model somewhere.
+// Model placed in the world, at rest.
 template <class T>
 struct Placed {
   std::shared_ptr<const ModelGeometry<T>> model;
   int first, last;  // numbers of its primitives in the scene: first..last-1
   Affine<T> world_from_model, model_from_world;
-  T step_scale, step_base;  // the step off a surface in the world: from the model's, and what is added
+  T step_scale, step_base;  // step off a surface in the world: model's step * scale + base
 
   static constexpr bool kTimed = false;
   struct Pose {
@@ -47,13 +47,13 @@ struct Placed {
 template <class T>
 using PlacedList = std::vector<Placed<T>>;
 
-// Box of a placed box. REQUIRES: it is bounded.
+// Returns the box around a transformed box. REQUIRES: `model` is bounded.
 Boundsd box_around(const Boundsd& model, const Affined& world_from_model);
 
-// Box of a placed model in the world, grown for the rounding of rays that are taken to it in float.
+// Returns the world box of a placed model, padded for the rounding of rays transformed in float.
 Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model);
 
-// The instances of a scene as primitives, whose hits have the numbers of the models' own.
+// Instances of a scene as primitives. Hits carry the scene's numbers of the models' primitives.
 template <class T>
 class InstanceKernel final : public InstanceKernelOf<T, Placed<T>> {
  public:

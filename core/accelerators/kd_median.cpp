@@ -3,8 +3,8 @@
 namespace orrery {
 namespace {
 
-// The plane halves the items of a cell across its longest side, as the survey describes. Unlike there, a ray
-// visits both sides of a plane that it crosses.
+// Splits a cell at the median of its items, across its longest side. A ray visits both sides of a plane that
+// it crosses.
 template <class T>
 class MedianSplitter {
  public:
@@ -24,7 +24,7 @@ class MedianSplitter {
     }
     const auto middle = centers.begin() + static_cast<std::ptrdiff_t>(centers.size() / 2);
     std::nth_element(centers.begin(), middle, centers.end());
-    if (cut(cell, axis, *middle) * 4 > cell.items.size() * 3) return {};  // most would be on both sides
+    if (cut(cell, axis, *middle) * 4 > cell.items.size() * 3) return {};  // most items would be on both sides
     return SpacePlane{axis, *middle};
   }
 

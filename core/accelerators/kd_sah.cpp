@@ -5,8 +5,8 @@
 namespace orrery {
 namespace {
 
-// The plane with the least expected cost by the surface area heuristic (MacDonald and Booth, "Heuristics for
-// ray tracing using space subdivision", 1990), among 31 a side (Hurley et al., "Fast Ray Tracing for Modern
+// Chooses the plane of least cost by the surface area heuristic (MacDonald and Booth, "Heuristics for ray
+// tracing using space subdivision", 1990), among 31 per axis (Hurley et al., "Fast Ray Tracing for Modern
 // General Purpose CPU", 2002).
 template <class T>
 class SurfaceSplitter {
@@ -26,7 +26,7 @@ class SurfaceSplitter {
 
  private:
   static constexpr std::size_t kBins = 32;
-  // Relative costs of a visit and of a block, and what is taken off the cost of planes that cut empty space.
+  // Relative costs of a visit and of a block, and the cost factor of planes that cut off empty space.
   static constexpr double kVisitCost = 0.6, kBlockCost = 1, kEmptyShare = 0.8;
 
   static double cost_of(std::size_t items) {

@@ -6,13 +6,13 @@
 namespace orrery {
 namespace {
 
-constexpr int kMostPieces = 64;      // of a stretch
-constexpr double kPieceDegrees = 4;  // that a piece turns by, if these are enough
+constexpr int kMostPieces = 64;      // maximum pieces per motion segment
+constexpr double kPieceDegrees = 4;  // maximum turn per piece, within kMostPieces
 
-// Box of what a point, which is scaled, turned and moved, passes between two placements. It turns about an
-// axis of length 1 while its scaled place v runs straight: then its second derivative is at most
-// |turn|^2 |v| + 2 |turn| |v'|, and a path is off its chord by an eighth of that at most, time running from
-// 0 to 1.
+// Includes the path between two placements of a point that is scaled, rotated and translated. The point
+// rotates about a unit axis while its scaled position v moves linearly. Its second derivative is then at most
+// |turn|^2 |v| + 2 |turn| |v'|, for time from 0 to 1. The path deviates from its chord by at most an eighth
+// of that.
 void include_path(const Vec3d& axis, const Placement& from, const Placement& to, const Vec3d& point,
                   Boundsd& box) {
   const auto at = [&](const Placement& p) {
@@ -21,14 +21,14 @@ void include_path(const Vec3d& axis, const Placement& from, const Placement& to,
   const double turn = std::abs(to.degrees - from.degrees) * (std::numbers::pi / 180);
   const double reach = std::max(length(point * from.scale), length(point * to.scale));
   const double off = turn * (turn * reach + 2 * length(point * (to.scale - from.scale))) / 8;
-  const Vec3d pad(std::min(off, 2 * reach));  // it stays within its reach
+  const Vec3d pad(std::min(off, 2 * reach));  // the path stays within its reach
   for (const Vec3d& end : {at(from), at(to)}) {
     box.include(end - pad);
     box.include(end + pad);
   }
 }
 
-// How uneven the scale is.
+// Returns the ratio of the largest to the smallest scale factor.
 double condition_of(const Vec3d& scale) {
   const Vec3d size = abs(scale);
   return max_component(size) / std::min({size.x, size.y, size.z});
@@ -89,8 +89,8 @@ MovingPlaced<T>::MovingPlaced(const Instance& instance, std::shared_ptr<const Mo
       most_translate = std::max(most_translate, max_component(abs(placement.translate)));
     }
   }
-  // Twice as far as instances that rest: the turn is rounded once more. sqrt(3) < 2 bounds what a turn does
-  // to the largest coordinate.
+  // Twice the step of resting instances, because the rotation is rounded once more. sqrt(3) < 2 bounds how
+  // much a rotation enlarges the largest coordinate.
   step_scale = static_cast<T>(8 * most_scale);
   step_base = static_cast<T>(32 * double{std::numeric_limits<T>::epsilon()} * most_translate);
 }

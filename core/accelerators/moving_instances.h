@@ -4,28 +4,28 @@
 #include "core/math/elementary.h"
 #include "core/math/stretches.h"
 
-// Instances that move while the shutter is open, or whose models do: each ray is taken to the model as it
-// stands at the ray's time.
+// Instances that move while the shutter is open, or whose models do. Each ray is transformed into the model
+// at the ray's time.
 namespace orrery {
 
-// A model on its way. Between two moments it is scaled and moved evenly and turns evenly about its axis.
+// Model in motion. Between two moments its scale, translation and angle about its axis change linearly.
 template <class T>
 struct MovingPlaced {
   using N = Lanes<T>;
 
-  // How it stands at one of the moments, and where it goes from there.
+  // Placement at one moment, and the change until the next.
   struct Moment {
-    // Where the model's x, y and z point: turned further by an angle, along + across cos + beyond sin, the
-    // parts along the axis, across it, and at right angles to both.
+    // Rotated axes of the model: along + across cos + beyond sin. The terms are the components parallel to
+    // the rotation axis, across it, and perpendicular to both.
     std::array<Vec3<T>, 3> along, across, beyond;
-    T turns;                                               // whole turns until the next moment
-    Vec3<T> scale, more_scale, translate, more_translate;  // and what is added until then
+    T turns;                                               // rotation until the next moment, in turns
+    Vec3<T> scale, more_scale, translate, more_translate;  // placement, and its change until then
   };
 
   std::shared_ptr<const ModelGeometry<T>> model;
   int first, last;  // numbers of its primitives in the scene: first..last-1
   Stretches<T> stretches;
-  std::vector<Moment> moments;  // but the last
+  std::vector<Moment> moments;  // all but the last
   T step_scale, step_base;      // see Placed
 
   MovingPlaced(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of, int number,
@@ -33,7 +33,7 @@ struct MovingPlaced {
 
   static constexpr bool kTimed = true;
   struct Pose {
-    std::array<Vec3<N>, 3> axes;       // unit, where the model's x, y and z point
+    std::array<Vec3<N>, 3> axes;       // unit vectors of the model's x, y and z
     Vec3<N> scale, shrink, translate;  // shrink: 1 / scale
 
     Vec3<N> back(const Vec3<N>& v) const {
@@ -65,8 +65,8 @@ struct MovingPlaced {
   }
 };
 
-// Box of what an instance of a model with these bounds passes during an exposure, grown for the rounding of
-// rays that are taken to it in float.
+// Returns the box that an instance sweeps during an exposure, for a model with these bounds. The box is
+// padded for the rounding of rays transformed in float.
 Boundsd bounds_during(const Boundsd& model, const Instance& instance, const Exposure& exposure);
 
 template <class T>

@@ -4,8 +4,8 @@
 namespace orrery {
 namespace {
 
-// A binary tree whose nodes also have a box turned as what is in them lies, where that is much smaller
-// (Gottschalk, Lin, Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
+// Binary tree whose nodes have an additional oriented box where it is much smaller (Gottschalk, Lin, Manocha,
+// "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
 template <class T>
 class OrientedTree {
  public:
@@ -53,8 +53,8 @@ class OrientedTree {
   static constexpr std::uint32_t kNone = ~0u;
   struct Node {
     Bounds<T> box;
-    std::uint32_t oriented = kNone;  // its place
-    std::uint32_t next = 0;          // first child, the other follows; of a leaf: its block
+    std::uint32_t oriented = kNone;  // index, or kNone
+    std::uint32_t next = 0;          // first of two adjacent children; of a leaf: its block
     bool leaf = false;
   };
   struct Entry {
@@ -71,7 +71,7 @@ class OrientedTree {
     return oriented_[node.oriented].clip(state.ray.ray, from, to);
   }
 
-  // Node `me` becomes node `at` of the tree; what is in it is added to `hull`.
+  // Converts node `at` of the tree to node `me`. Appends the triangles of its primitives to `hull`.
   SurfaceMoments fill(std::size_t me, const BoxTree<T>& tree, std::uint32_t at,
                       const PrimitiveList<T>& primitives, int level, std::vector<HullTriangle>& hull) {
     interruption_point();

@@ -3,8 +3,8 @@
 namespace orrery {
 namespace {
 
-// A cell is cut into eight like ones at its middle (Glassner, "Space Subdivision for Fast Ray Tracing",
-// 1984), kept as three planes, one an axis.
+// Splits a cell at its middle into eight equal ones (Glassner, "Space Subdivision for Fast Ray Tracing",
+// 1984), stored as three planes, one per axis.
 template <class T>
 class OctantSplitter {
  public:
@@ -22,7 +22,8 @@ class OctantSplitter {
  private:
   static constexpr int kDeepest = 3 * 24;
 
-  // Not where most of the items would be in many of the eight.
+  // Returns false for few items, at the maximum depth, or if items would reach into three or more octants on
+  // average.
   bool pays(const SpaceCell<T>& cell) const {
     if (cell.items.size() <= Blocks<T>::kSize || cell.depth >= kDeepest) return false;
     const Vec3<T> middle = (cell.box.lo + cell.box.hi) * T(0.5);

@@ -5,8 +5,8 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-// Turns rows and columns p and q of the symmetric `m` so that m[p][q] becomes 0, and `axes` along (Jacobi
-// 1846; Golub and Van Loan, "Matrix Computations", 8.5).
+// Rotates rows and columns p and q of the symmetric `m` so that m[p][q] becomes 0. Rotates `axes` accordingly
+// (Jacobi 1846; Golub and Van Loan, "Matrix Computations", 8.5).
 void rotate(Matrix& m, Matrix& axes, std::size_t p, std::size_t q) {
   if (m[p][q] == 0) return;
   const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
@@ -67,12 +67,12 @@ std::array<Vec3d, 3> principal_axes(const SurfaceMoments& moments) {
            covariance(s[4], mean.x, mean.z)},
           {0, covariance(s[1], mean.y, mean.y), covariance(s[5], mean.y, mean.z)},
           {0, 0, covariance(s[2], mean.z, mean.z)}}};
-    // What rounding leaves of terms that cancel is not a direction.
+    // Clears entries that consist of rounding errors only.
     const double noise = 1e-12 * (m[0][0] + m[1][1] + m[2][2]);
     for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}})
       m[j][i] = m[i][j] = std::abs(m[i][j]) > noise ? m[i][j] : 0;
   }
-  constexpr int kSweeps = 12;  // it converges by squares
+  constexpr int kSweeps = 12;  // converges quadratically
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     rotate(m, axes, 0, 1);
     rotate(m, axes, 0, 2);

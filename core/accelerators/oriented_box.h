@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Sums over surfaces from which their principal axes follow: area, and integrals of x and x x^T. Sums of
-// parts are those of the whole.
+// Area of a surface and its integrals of x and x x^T, which determine its principal axes. Moments of parts
+// add up to those of the whole.
 struct SurfaceMoments {
   double area = 0;
   Vec3d first;
@@ -15,19 +15,19 @@ struct SurfaceMoments {
   void add(const SurfaceMoments& other);
 };
 
-// Three unit vectors at right angles along which a surface spreads most and least: eigenvectors of its
-// covariance, weighted by area so that how finely it is cut into triangles does not matter (Gottschalk, Lin,
-// Manocha, "OBBTree", 1996). Surfaces without area get the axes of the world.
+// Returns the principal axes of a surface: three orthogonal unit eigenvectors of its covariance. Weights by
+// area make them independent of the tessellation (Gottschalk, Lin, Manocha, "OBBTree", 1996). Surfaces
+// without area get the world axes.
 std::array<Vec3d, 3> principal_axes(const SurfaceMoments& moments);
 
-// A box along axes of its own.
+// Oriented bounding box.
 template <class T>
 struct OrientedBox {
   Vec3<T> center;
-  std::array<Vec3<T>, 3> axes;  // nearly at right angles: rounding is no matter, `box` is measured along them
-  Bounds<T> box;                // of the differences from the center, padded for rounding
+  std::array<Vec3<T>, 3> axes;  // nearly orthogonal; exact enough, because `box` is measured along them
+  Bounds<T> box;                // relative to the center, padded for rounding
 
-  // Around all corners of the hulls.
+  // Returns the box along `axes` around all corners of the triangles.
   static OrientedBox around(const std::array<Vec3d, 3>& axes, std::span<const HullTriangle> hull);
 
   double half_area() const {
@@ -39,7 +39,7 @@ struct OrientedBox {
     return size.x * size.y * size.z;
   }
 
-  // Leaves what of from..to lies in the box; false if nothing does.
+  // Clips [from, to] to the box. Returns false if nothing remains.
   bool clip(const Ray<T>& ray, T& from, T& to) const {
     return SingleProbe<T>({along(ray.origin - center), along(ray.direction)}).clip(box, from, to);
   }
@@ -48,18 +48,18 @@ struct OrientedBox {
   Vec3<T> along(const Vec3<T>& v) const { return {dot(axes[0], v), dot(axes[1], v), dot(axes[2], v)}; }
 };
 
-// The triangles of a box's sides.
+// Returns the triangles of the box's six sides.
 std::vector<HullTriangle> sides_of(const Boundsd& box);
 
-// The hull of a primitive.
+// Returns the hull of a primitive, or of its box if it has no hull.
 template <class T>
 std::vector<HullTriangle> hull_of(const Primitive<T>& primitive) {
   std::vector<HullTriangle> hull = primitive.kernel->hull(primitive.index);
   return hull.empty() ? sides_of(primitive.bounds) : hull;
 }
 
-// Whether the oriented box is so much smaller than the one along the axes that testing it as well pays: it
-// takes three times as long.
+// Returns whether the oriented box is small enough to be worth its test, which takes three times as long as
+// that of an axis-aligned box.
 template <class T>
 bool oriented_pays(const OrientedBox<T>& oriented, const Bounds<T>& box) {
   constexpr double kShare = 0.7;

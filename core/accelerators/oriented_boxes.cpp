@@ -4,7 +4,7 @@
 namespace orrery {
 namespace {
 
-// One box a primitive, turned as the primitive lies where that makes it much smaller.
+// One box per primitive, with an additional oriented box where it is much smaller.
 template <class T>
 class OneEach {
  public:
@@ -41,7 +41,7 @@ class OneEach {
   static constexpr std::uint32_t kNone = ~0u;
   struct Boxed {
     Bounds<T> box;
-    std::uint32_t oriented;  // its place, or kNone
+    std::uint32_t oriented;  // index, or kNone
     BlockName block;
   };
 

@@ -7,24 +7,23 @@
 #include "core/math/compress.h"
 #include "core/model/packet.h"
 
-// Probes: what a ray, or a packet, is to the boxes of a wide node, which it meets all at once.
+// Probes: precomputed data of a ray or packet for slab tests against all children of a wide node.
 //
-// A probe is conservative: a box in which a primitive's computed hit may lie is never refused. Boxes are
-// grown by padded() for the rounding of what is in them; each probe moves its planes apart by kRounding ulp
-// of the origin's largest coordinate, and stretches the far end by a few ulp, for the rounding of distances
-// in the slab test and in the hits (Ize, "Robust BVH Ray Traversal", JCGT 2013, extended to the hits' own
+// Probes are conservative: they never reject a box in which a primitive's computed hit may lie. padded()
+// enlarges boxes for the rounding of their contents. Each probe moves the planes apart by kRounding times the
+// origin's largest coordinate and extends the far end by a few ulp. This covers the rounding of distances in
+// the slab test and in the hits (Ize, "Robust BVH Ray Traversal", JCGT 2013, extended to the hits' own
 // errors).
 namespace orrery {
 
 template <class T>
 inline constexpr T kFarther = 1 + 8 * std::numeric_limits<T>::epsilon();
 
-// Boxes of the children of one node: planes[2 * axis] holds their low sides, planes[2 * axis + 1] their high
-// sides.
+// Boxes of one node's children: planes[2 * axis] holds the low sides, planes[2 * axis + 1] the high sides.
 template <class T>
 using BoxPlanes = std::array<Lanes<T>, 6>;
 
-// Of the active lanes. REQUIRES: any(active).
+// Return the maximum and the minimum over the active lanes. REQUIRES: any(active).
 template <class N>
 inline ScalarOf<N> largest(const MaskOf<N>& active, const N& v) {
   return stdx::hmax(select(active, v, N(-std::numeric_limits<ScalarOf<N>>::infinity())));
@@ -39,12 +38,12 @@ class SingleProbe {
  public:
   using N = Lanes<T>;
 
-  // Those of a register of rays, worked out together.
+  // Data of all rays of a register, computed together.
   struct Register {
     using Array = std::array<T, static_cast<std::size_t>(kWidth<T>)>;
     struct Axis {
       alignas(64) Array inverse, near_offset, far_offset;
-      unsigned descending;  // lanes
+      unsigned descending;  // one bit per lane
     };
     std::array<Axis, 3> axis;
 
@@ -82,12 +81,12 @@ class SingleProbe {
     set(2, ray.origin.z, ray.direction.z, pad, least);
   }
 
-  // Signs of the direction, bit by bit.
+  // Returns the signs of the direction, one bit per axis.
   std::uint8_t octant() const {
     return static_cast<std::uint8_t>((near_[0] & 1) | (near_[1] & 1) << 1 | (near_[2] & 1) << 2);
   }
 
-  // Where it enters each box; the bits name those it enters in [0, limit].
+  // Stores the entry distance of each box in `near`. Returns the bits of the boxes entered in [0, limit].
   [[gnu::always_inline]] unsigned enter(const BoxPlanes<T>& planes, T limit, N& near) const {
     near = N(T(0));
     N far = N(limit);
@@ -101,10 +100,10 @@ class SingleProbe {
   }
 
   bool descending(std::size_t axis) const { return (near_[axis] & 1) != 0; }
-  // Where it crosses a plane of an axis, at the earliest and at the latest.
+  // Return the earliest and the latest distance at which the ray may cross a plane of an axis.
   T earliest(std::size_t axis, T plane) const { return plane * inverse_[axis] - near_offset_[axis]; }
   T latest(std::size_t axis, T plane) const { return plane * inverse_[axis] - far_offset_[axis]; }
-  // Leaves what of from..to lies in the box; false if nothing does.
+  // Clips [from, to] to the box. Returns false if nothing remains.
   bool clip(const Bounds<T>& box, T& from, T& to) const {
     for (std::size_t axis = 0; axis < 3; ++axis) clip(axis, box.lo[axis], box.hi[axis], from, to);
     return from <= to;
@@ -115,8 +114,8 @@ class SingleProbe {
   }
 
  private:
-  // A direction of 0, or next to it, counts as one so small that the ray leaves no box sideways: no infinity
-  // arises.
+  // Replaces a direction component near 0 by one so small that the ray leaves no box sideways. This avoids
+  // infinities.
   void set(std::size_t axis, T origin, T direction, T pad, T least) {
     if (std::abs(direction) < least) direction = std::copysign(least, direction);
     const T inverse = 1 / direction;
@@ -130,14 +129,14 @@ class SingleProbe {
   std::array<T, 3> inverse_, near_offset_, far_offset_;
 };
 
-// Between the smallest and the largest of the origins and directions of its rays: what one of them enters, it
+// Probe with the intervals of a packet's origins and directions. It enters every box that one of the rays
 // enters.
 template <class T>
 class PacketProbe {
  public:
   using N = Lanes<T>;
 
-  // For those of `active`. REQUIRES: any(active).
+  // Covers the `active` rays. REQUIRES: any(active).
   PacketProbe(const Ray<N>& rays, const MaskOf<N>& active) {
     std::array<Interval, 3> origin, direction;
     T pad = 0, size = 0;
@@ -152,16 +151,16 @@ class PacketProbe {
     origin_ = {origin[0].lo, origin[1].lo, origin[2].lo};
   }
 
-  // Whether the rays start at one point, which is origin().
+  // Returns whether all rays start at origin().
   bool one_origin() const { return one_origin_; }
   const Vec3<T>& origin() const { return origin_; }
   std::uint8_t octant() const {
     return static_cast<std::uint8_t>((axis_[0].near & 1) | (axis_[1].near & 1) << 1 |
                                      (axis_[2].near & 1) << 2);
   }
-  // Whether the rays are so much alike that they can walk together.
+  // Returns whether the rays are coherent enough to be traversed together.
   bool narrow() const { return narrow_; }
-  // How far apart they are where they come to the box, about.
+  // Returns the approximate distance between the rays where they reach the box.
   T width_at(const Bounds<T>& box) const {
     T distance = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -200,7 +199,7 @@ class PacketProbe {
     bool empty() const { return lo == hi; }
   };
 
-  // `size`: the largest part of a direction.
+  // `size` is the largest component of all directions.
   void set(std::size_t axis, const Interval& origin, const Interval& direction, T pad, T size) {
     const T kLeast = T(1e-18) * size, kWidest = T(0.3) * size;
     const auto [lo, hi] = direction;
@@ -214,7 +213,7 @@ class PacketProbe {
   }
 
   std::array<Axis, 3> axis_;
-  T origins_ = 0, directions_ = 0;  // their spread, of directions as for length 1
+  T origins_ = 0, directions_ = 0;  // spread of origins; of directions relative to their size
   bool narrow_ = true, one_origin_ = false;
   Vec3<T> origin_;
 };

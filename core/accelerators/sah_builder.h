@@ -10,13 +10,13 @@
 
 namespace orrery {
 
-// A box as two registers, each with the sides of all axes; the fourth lane means nothing.
+// Box as two registers, for its low and high sides on all axes; the fourth lane is undefined.
 template <class T>
 struct BoxLanes {
   using Sides = stdx::simd<T, stdx::simd_abi::deduce_t<T, 4>>;
   Sides lo{std::numeric_limits<T>::infinity()}, hi{-std::numeric_limits<T>::infinity()};
 
-  // Each register is read at once; the second takes a number that follows the box along.
+  // Loads each register at once. The second load includes the number that follows the box in TreeItem.
   static BoxLanes of(const TreeItem<T>& item) {
     static_assert(offsetof(TreeItem<T>, box) == 0 && sizeof item >= 7 * sizeof(T));
     const T* sides = reinterpret_cast<const T*>(&item);
@@ -30,12 +30,13 @@ struct BoxLanes {
   Bounds<T> bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-// Top down by the surface area heuristic (Goldsmith and Salmon 1987), binned (Wald, "On fast Construction of
-// SAH-based Bounding Volume Hierarchies", 2007). The tree depends on the items alone, not on threads.
+// Top-down builder with the surface area heuristic (Goldsmith and Salmon 1987), binned (Wald, "On fast
+// Construction of SAH-based Bounding Volume Hierarchies", 2007). The tree depends on the items only, not on
+// threads.
 template <class T>
 class SahBuilder {
  public:
-  // Relative costs: of visiting a node, and of testing a block of items.
+  // Relative costs of visiting a node and of testing a block of items.
   static constexpr T kNodeCost = T(0.5), kBlockCost = T(1);
 
   static BoxTree<T> build(std::vector<TreeItem<T>> items) {
@@ -48,20 +49,20 @@ class SahBuilder {
 
  private:
   static constexpr std::size_t kBins = 16, kBinsOfFew = 8;
-  static constexpr std::uint32_t kFew = 16;         // items that fewer bins are enough for
-  static constexpr std::uint32_t kParallel = 4096;  // items worth a task of their own
+  static constexpr std::uint32_t kFew = 16;         // items up to which fewer bins suffice
+  static constexpr std::uint32_t kParallel = 4096;  // minimum items for a separate task
   using Sides = typename BoxLanes<T>::Sides;
   struct Bin {
     BoxLanes<T> box;
     std::uint32_t count = 0;
   };
-  using Bins = std::array<std::array<Bin, 3>, kBins>;  // by axis in each
+  using Bins = std::array<std::array<Bin, 3>, kBins>;  // [bin][axis]
   struct Split {
-    T parts = std::numeric_limits<T>::infinity();  // half areas of both, times the cost of what they hold
+    T parts = std::numeric_limits<T>::infinity();  // sum of half area times cost over both sides
     std::size_t axis = 0, bin = 0;
   };
-  // Maps twice the centre of a box to a place along each axis: bin i holds the places from i to i + 1, the
-  // first and the last whatever lies beyond them.
+  // Maps twice a box's centre to a place along each axis. Bin i holds the places in [i, i + 1); the first and
+  // the last bin also hold all places outside.
   struct Scale {
     Sides from, factor;
     Sides places(const BoxLanes<T>& box) const { return (box.lo + box.hi - from) * factor; }
@@ -69,7 +70,7 @@ class SahBuilder {
 
   explicit SahBuilder(BoxTree<T>& tree) : tree_(tree) {}
 
-  // Node `at` gets the items from..to-1; its 2(to - from) - 2 descendants take the places after it.
+  // Fills node `at` with items [from, to). Its 2(to - from) - 2 descendants occupy the places after it.
   void fill(std::uint32_t at, std::uint32_t from, std::uint32_t to, int depth) {
     auto& node = tree_.nodes[at];
     BoxLanes<T> box, centers;
@@ -102,7 +103,7 @@ class SahBuilder {
     }
   }
 
-  // Reorders the items and returns the first of the right child, or `from` for a leaf.
+  // Reorders the items. Returns the first item of the right child, or `from` for a leaf.
   std::uint32_t choose_middle(const Bounds<T>& box, const BoxLanes<T>& centers, std::uint32_t from,
                               std::uint32_t to, bool mixed, int depth) {
     const std::uint32_t count = to - from;

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// One ray on its way through a structure.
+// State of one ray in a traversal.
 template <class T>
 struct TraversalState {
   SingleRay<T> ray;
@@ -14,7 +14,7 @@ struct TraversalState {
   SingleHit<T> hit;
   AcceleratorCounts& counts;
 
-  // Whether what it meets at `from` or beyond may still matter. (Occluded rays have t -1.)
+  // Returns whether hits at `from` or beyond may still matter. Occluded rays have t = -1.
   bool open(T from) const { return from <= hit.t * kFarther<T>; }
 
   template <Query kQuery>
@@ -30,10 +30,10 @@ struct TraversalState {
   }
 };
 
-// A structure that rays walk one by one: Tree is built from a PrimitiveList and has
-//   template <Query> void traverse(TraversalState<T>&) const;   takes a ray through it
+// Structure that rays traverse one by one. Tree is built from a PrimitiveList and has
+//   template <Query> void traverse(TraversalState<T>&) const;   traces one ray through the tree
 //   bool empty() const; AcceleratorFacts facts() const;
-// Unbounded primitives stand apart and are always tested.
+// Every ray tests all unbounded primitives.
 template <class T, class Tree>
 class SingleRayAccelerator final : public Accelerator<T> {
  public:

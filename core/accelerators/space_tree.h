@@ -10,12 +10,12 @@
 
 namespace orrery {
 
-// A cell of space that is to be divided, and what reaches into it.
+// Cell that may be divided, and the items that reach into it.
 template <class T>
 struct SpaceCell {
   Bounds<T> box;
-  std::span<const std::uint32_t> items;  // places in the list of TreeItems, ascending
-  int depth;                             // planes that were drawn to make it
+  std::span<const std::uint32_t> items;  // indices of TreeItems, ascending
+  int depth;                             // number of planes above it
   std::size_t node;
 };
 
@@ -24,12 +24,12 @@ struct SpacePlane {
   double at;
 };
 
-// Space divided by planes, again and again; a primitive belongs to every cell that its box reaches into
-// (Bentley 1975; Fussell and Subramanian, "Fast Ray Tracing Using K-D Trees", 1988). Splitter says where:
+// k-d tree over space. A primitive belongs to every cell that its box touches (Bentley 1975; Fussell and
+// Subramanian, "Fast Ray Tracing Using K-D Trees", 1988). Splitter chooses the planes:
 //   Splitter(const std::vector<TreeItem<T>>& items)
-//   std::optional<SpacePlane> split(const SpaceCell<T>&) const;   none: the cell becomes a leaf
-//   static constexpr std::size_t kReferences;                     a primitive, on average, at most
-// Cells are divided level by level, so that the last references are shared fairly.
+//   std::optional<SpacePlane> split(const SpaceCell<T>&) const;   nullopt: the cell becomes a leaf
+//   static constexpr std::size_t kReferences;                     maximum mean per primitive
+// Cells are divided level by level, so that they compete fairly for the last references.
 template <class T, class Splitter>
 class SpaceTree {
  public:
@@ -65,8 +65,8 @@ class SpaceTree {
             .references = blocks_.references()};
   }
 
-  // Cells from near to far. Where a ray crosses a plane so close to the end of a stretch that rounding may
-  // decide, both sides are walked.
+  // Visits cells from near to far. If a ray crosses a plane so close to the end of an interval that rounding
+  // may decide, visits both sides.
   template <Query kQuery>
   void traverse(TraversalState<T>& state) const {
     Stretch at{0, 0, state.hit.t};
@@ -95,23 +95,23 @@ class SpaceTree {
       } else if (enters_far) {
         at = far;
       } else {
-        at = near;  // only numbers that are none come here: any cell will do
+        at = near;  // reached only with NaN: any cell will do
       }
     }
   }
 
  private:
   static constexpr std::uint32_t kLeaf = 3;
-  static constexpr int kDeepest = 80;  // planes between the whole and a cell, at most
+  static constexpr int kDeepest = 80;  // maximum number of planes above a cell
   struct Node {
     T plane;
-    std::uint32_t axis, first, count;  // first child, the other follows; of a leaf: its block names
+    std::uint32_t axis, first, count;  // first of two adjacent children; of a leaf: its block names
   };
   struct Stretch {
     std::uint32_t node;
     T from, to;
   };
-  // Cells of one depth. Their items stand in one list, cell after cell, so that there is little to free.
+  // Cells of one depth. One list holds their items, cell after cell, to save allocations.
   struct LevelCell {
     Bounds<T> box;
     std::size_t items, node;
@@ -125,7 +125,7 @@ class SpaceTree {
     return state.probe.latest(node.axis, node.plane) * kFarther<T>;
   }
 
-  // False, and nothing is changed, if that would help no ray or cost too many references.
+  // Divides a cell. Returns false and changes nothing if that helps no ray or adds too many references.
   bool divide(const SpaceCell<T>& cell, const SpacePlane& plane, const std::vector<TreeItem<T>>& items,
               std::size_t& left, Level& next) {
     const T at = static_cast<T>(plane.at);

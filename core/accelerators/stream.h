@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// Room for things that are put there one by one; what was not put there is not initialised.
+// Array whose elements stay uninitialised until put().
 template <class X, int kMost>
 class Slots {
  public:
@@ -26,14 +26,14 @@ class Slots {
   };
 };
 
-// Rays, or packets, that walk a tree side by side, with their probes and hits.
+// Rays or packets that traverse a tree together, with their probes and hits.
 template <class RaysOf, class ProbeOf, class HitOf, int kMost>
 struct TraversalGroup {
   static constexpr int kCapacity = kMost;
   Slots<RaysOf, kMost> rays;
   Slots<ProbeOf, kMost> probes;
   Slots<HitOf, kMost> hits;
-  Slots<int, kMost> place;  // in the batch
+  Slots<int, kMost> place;  // index in the batch
   int count = 0;
 
   void add(const RaysOf& ray, const ProbeOf& probe, const HitOf& hit, int at) {
@@ -44,16 +44,16 @@ struct TraversalGroup {
   }
 };
 
-// Takes many rays through a tree together: each node is opened once for all that enter it, so that the
-// machine finds long loops instead of guesses (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream
-// Tracing", HPG 2009). For Query::closest they go on in the order of distance, as those agree about it.
+// Traverses a tree with many rays together. Opens each node once for all rays that enter it: long SIMD loops,
+// few mispredicted branches (Tsakok, "Faster Incoherent Rays: Multi-BVH Ray Stream Tracing", HPG 2009). For
+// Query::closest, children are visited by distance, on which the rays mostly agree.
 template <Query kQuery, class T, class Traversals>
 class Stream {
  public:
   Stream(const WideTree<T>& tree, Traversals& traversals, AcceleratorCounts& counts)
       : tree_(tree), traversals_(traversals), counts_(counts), far_(tree.bytes() > kNear) {}
 
-  // The traversals with these numbers. REQUIRES: kPad more can be read behind them.
+  // Runs the traversals with these numbers. REQUIRES: `ids` has kPad more readable elements.
   static constexpr int kPad = 16;
   void run(const std::int32_t* ids, int count) { visit(tree_.root(), ids, count, count, room_.data()); }
 
@@ -63,7 +63,7 @@ class Stream {
   static constexpr std::size_t kLists = static_cast<std::size_t>(kWidth<T>);
   static constexpr int kStep = static_cast<int>(Id::size());
 
-  // The traversals that enter one child of a node.
+  // Traversals that enter one child of a node.
   struct List {
     T near;
     Child child;
@@ -72,15 +72,16 @@ class Stream {
   };
   using Lists = std::array<List, kLists>;
 
-  // Where no more than so many enter a node, each goes on alone: what lists cost is not shared any more.
+  // Up to this many traversals in a node continue one by one, because a list is no longer worth its cost.
   static constexpr int kFew = 2;
-  // A tree of more bytes has to be waited for. Nodes and blocks are asked for ahead, and rays that go on
-  // alone take steps in turn, so that one is worked on while others wait. This pays earlier than lists cease
-  // to: where so few enter a node, and where rays part, so many, of which a quarter enter one child.
+  // Trees of more than kNear bytes miss the cache. Nodes and blocks are prefetched, and rays that continue
+  // alone take turns to hide the latency. This pays for up to kFewFar traversals in a node. For
+  // Query::closest it pays for up to kParting if at most one in kPartingShare of the parent's traversals
+  // enters the node.
   static constexpr std::size_t kNear = std::size_t{16} << 20;
   static constexpr int kFewFar = 8, kParting = 64, kPartingShare = 4, kInTurn = 16;
 
-  // Lists are read and written by whole registers, so each has kPad places more than it needs.
+  // Whole registers read and write the lists, so each has kPad more elements than it needs.
   static constexpr int room_for(int count) { return (kWidth<T> + 1) * (count + kPad); }
   static constexpr int kReserve = (kDeepestTree + 1) * room_for(1);
   static constexpr int kRoom = kReserve + 2 * room_for(kBatch);
@@ -90,7 +91,7 @@ class Stream {
     return count <= kFewFar || (kQuery == Query::closest && count <= kParting && count * kPartingShare <= of);
   }
 
-  // `of`: how many entered the parent. `room` is free from there on.
+  // `of` is the number of traversals in the parent. `room` is the start of the free elements.
   void visit(Child at, const std::int32_t* ids, int count, int of, std::int32_t* room) {
     if (WideTree<T>::is_leaf(at)) {
       meet(at, ids, count);
@@ -118,12 +119,12 @@ class Stream {
     flush();
   }
 
-  // A child of a node that a traversal enters, and where.
+  // Child that a traversal enters, and its distance.
   struct Waiting {
     T near;
     Child child;
   };
-  // A traversal alone on its way: of Query::closest by distance, as far as it may still matter.
+  // Traversal that continues alone. For Query::closest its stack is ordered by distance.
   struct Walker {
     std::int32_t id;
     Child at;
@@ -131,7 +132,7 @@ class Stream {
     std::array<Waiting, (kDeepestTree + 1) * kLists> stack;
   };
 
-  // Each alone through a subtree.
+  // Takes each traversal through a subtree alone.
   void walk(Child root, const std::int32_t* ids, int count) {
     const auto begin = [&](Walker& walker, std::int32_t id) {
       walker.id = id;
@@ -165,7 +166,7 @@ class Stream {
     }
   }
 
-  // To the next node or block; false if there is none.
+  // Advances to the next node or block. Returns false if there is none.
   template <bool kFar>
   [[gnu::always_inline]] bool step(Walker& walker) {
     auto& hit = traversals_.hits[walker.id];
@@ -203,8 +204,8 @@ class Stream {
     }
   }
 
-  // Holds the traversals against the children of a node; returns how many of these get a list. Lists go to
-  // `room`, which is moved on.
+  // Tests the traversals against the children of a node. Returns the number of children that get a list.
+  // Appends the lists to `room` and advances it.
   std::size_t enter(const typename WideTree<T>::Node& node, const std::int32_t* ids, int count,
                     std::int32_t*& room, Lists& lists) {
     Lanes<T> nearest(std::numeric_limits<T>::infinity());
@@ -239,7 +240,7 @@ class Stream {
     return found;
   }
 
-  // Writes those of `ids` that have the bit in their mask to `to`; returns how many.
+  // Copies the ids whose mask has the bit to `to`. Returns their number.
   static int collect(std::int32_t bit, const std::int32_t* ids, const std::int32_t* masks, int count,
                      std::int32_t* to) {
     std::int32_t* end = to;
@@ -252,7 +253,7 @@ class Stream {
     return static_cast<int>(end - to);
   }
 
-  // Notes that the traversals have to be tested with a block.
+  // Queues tests of the traversals with a block.
   void meet(Child leaf, const std::int32_t* ids, int count) {
     if (met_ > 0 && Blocks<T>::pack_number(leaf) != Blocks<T>::pack_number(leaf_)) flush();
     leaf_ = leaf;
@@ -268,7 +269,7 @@ class Stream {
     met_ = 0;
   }
 
-  // With blocks of the pack that `leaf` is of.
+  // Tests pairs with blocks of the pack that `leaf` belongs to.
   void test(Child leaf, std::span<const RayBlockPair> pairs) {
     const auto& pack = tree_.blocks().pack_of(leaf);
     if constexpr (kQuery == Query::closest)
@@ -282,7 +283,7 @@ class Stream {
   AcceleratorCounts& counts_;
   const bool far_;
   std::array<Walker, static_cast<std::size_t>(kInTurn)> walkers_;
-  Child leaf_ = 0;  // one of the pack that pairs_ are with
+  Child leaf_ = 0;  // a block of the pack that pairs_ refer to
   std::size_t met_ = 0;
   std::array<RayBlockPair, 1024> pairs_;
   alignas(64) std::array<std::int32_t, kRoom> room_;

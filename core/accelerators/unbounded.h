@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// The primitives without bounds (planes, endless cylinders): no box holds them, so every ray tests them all.
+// Primitives without bounds (planes, infinite cylinders). No box holds them, so every ray tests them all.
 template <class T>
 class Unbounded {
  public:
@@ -18,7 +18,7 @@ class Unbounded {
     closest_exhaustive(primitives_, rays, groups, hits, counts);
   }
 
-  // Returns the registers with rays that met none of them.
+  // Returns the registers with rays that hit no primitive.
   Groups occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const {
     return occlude_exhaustive(primitives_, rays, groups, counts);
   }

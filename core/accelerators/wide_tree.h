@@ -11,18 +11,18 @@
 
 namespace orrery {
 
-// A tree of boxes whose nodes have as many children as a register has lanes, over primitives packed in
+// Bounding volume hierarchy with as many children per node as a register has lanes, over primitives packed in
 // blocks.
 template <class T>
 class WideTree {
  public:
-  // The place of a node, or kLeaf and the name of a block.
+  // Index of a node, or kLeaf | BlockName.
   using Child = std::uint32_t;
 
   static constexpr std::size_t kPlaces = static_cast<std::size_t>(kWidth<T>);
 
   struct Node {
-    BoxPlanes<T> planes;  // of places without a child: inside out, so that nothing enters
+    BoxPlanes<T> planes;  // inverted in unused places, so that no ray enters
     std::array<Child, kPlaces> child;
 
     bool has(std::size_t place) const { return planes[0][place] <= planes[1][place]; }
@@ -52,7 +52,7 @@ class WideTree {
     relative_surface_area_as_built_ = relative_surface_area_;
   }
 
-  // Has the boxes follow the primitives, which stand in the order they had, to where they are now.
+  // Refits the boxes to primitives that have moved. REQUIRES: `moved` has the order of the original list.
   void follow(const PrimitiveList<T>& moved) {
     const auto boxes = blocks_.follow(moved);
     const auto box_now = [&](Child child, const Bounds<T>& before) {
@@ -69,9 +69,9 @@ class WideTree {
       if (primitive.bounds.bounded()) held += half_area(padded<T>(primitive.bounds));
     measure(held);
   }
-  // How much larger the boxes have become beside what they hold since the tree was built, by their surfaces,
-  // to which the rays that enter them are proportional. (By what they hold and not by the root's box: of a
-  // tree that was built while all stood in one place, this tells that it is worth nothing elsewhere.)
+  // Returns the growth of the relative box area since the tree was built: the area of all boxes over that of
+  // the primitives' boxes. The expected number of box entries is proportional to it. The reference is not the
+  // root's box, because a tree built while all primitives were in one place must count as useless elsewhere.
   double surface_area_growth() const { return relative_surface_area_ / relative_surface_area_as_built_; }
 
   bool empty() const { return blocks_.empty(); }
@@ -80,7 +80,7 @@ class WideTree {
   Child root() const { return root_; }
   const Node& node(Child child) const { return nodes_[child]; }
   const Blocks<T>& blocks() const { return blocks_; }
-  // Has the machine fetch a node or a block that is wanted soon.
+  // Prefetches a node or a block.
   void prefetch(Child child) const {
     if (is_leaf(child))
       blocks_.pack_of(child).prefetch(Blocks<T>::block_of(child));
@@ -88,7 +88,7 @@ class WideTree {
       prefetch_lines(nodes_[child]);
   }
   const Bounds<T>& box() const { return box_; }
-  // Mean of the longest side of a leaf's box.
+  // Returns the mean of the longest side of the leaf boxes.
   T mean_leaf_extent() const { return mean_leaf_extent_; }
   static bool is_leaf(Child child) { return (child & kLeaf) != 0; }
 
@@ -115,10 +115,10 @@ class WideTree {
     return static_cast<Child>(me);
   }
 
-  // The largest descendants that make a full node.
+  // Children of a wide node, found by opening the largest nodes of the binary tree.
   struct Children {
     std::array<std::uint32_t, kPlaces> node;
-    std::array<T, kPlaces> area;  // of what may be opened; else -1
+    std::array<T, kPlaces> area;  // half area of an inner node; -1 for a leaf
     std::size_t count = 0;
 
     void set(std::size_t place, const BoxTree<T>& tree, std::uint32_t child) {
@@ -150,7 +150,7 @@ class WideTree {
     return kLeaf | blocks_.add(primitives, std::span(places).first(count));
   }
 
-  // `held`: the surface of what it holds, of each primitive half that of its box.
+  // `held` is the summed half area of the primitives' boxes.
   void measure(double held) {
     interruption_point();
     double area = 0, sides = 0;
@@ -174,7 +174,7 @@ class WideTree {
   Bounds<T> box_;
   T mean_leaf_extent_ = 0;
   double relative_surface_area_ = 1,
-         relative_surface_area_as_built_ = 1;  // surface of all boxes over that of the primitives' own
+         relative_surface_area_as_built_ = 1;  // half area of all boxes over that of the primitives' boxes
   std::vector<Node> nodes_;
   Blocks<T> blocks_;
 };
