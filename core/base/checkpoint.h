@@ -5,10 +5,10 @@
 
 namespace orrery {
 
-// The right to work on a thread that others wait for as well.
+// Time slice on a thread that other work may be waiting for.
 class Turn {
  public:
-  // Returns when it is this work's turn again: at once as long as its turn has not lasted long, or nobody
+  // Blocks until this work may run again. Returns at once if the slice has been short so far or no other work
   // waits.
   virtual void give_way() = 0;
 
@@ -16,14 +16,14 @@ class Turn {
   ~Turn() = default;
 };
 
-// What long work asks every few milliseconds.
+// Cancellation and scheduling check that long work calls every few milliseconds.
 class Checkpoint {
  public:
   Checkpoint() = default;
-  // `turn`, if there is one, outlives it.
+  // `turn` may be null; otherwise it must outlive the checkpoint.
   Checkpoint(std::stop_token stop, Turn* turn = nullptr) : stop_(std::move(stop)), turn_(turn) {}
 
-  // Lets others go first if they have waited long enough. False: the work is to end.
+  // Yields to waiting work if the time slice is used up. Returns false if a stop was requested.
   bool go_on() const {
     if (turn_) turn_->give_way();
     return !stop_.stop_requested();

@@ -5,18 +5,18 @@
 #include <string>
 #include <vector>
 
-// What the core throws. The edge of the program (server/) turns each class into its own answer: a status
-// code over HTTP, an exit code and a line of text on the command line. Nothing else leaves the core on
-// purpose; a std::logic_error or std::bad_alloc that does is our own bug or the machine's limit.
+// Exceptions of the core. The server and the command line map each class to an HTTP status or to an exit code
+// with one line of text. A std::logic_error or std::bad_alloc that escapes the core is a bug or a machine
+// limit.
 
 namespace orrery {
 
-// One thing that is wrong with the input.
+// One problem in the input.
 struct Problem {
-  std::string pointer;  // JSON Pointer (RFC 6901) of the value; "" is the whole document
-  std::string detail;   // one sentence without the place: what was expected and what came
+  std::string pointer;  // JSON Pointer (RFC 6901) to the value; "" for the whole document
+  std::string detail;   // one sentence without the place: expected and actual value
 
-  // The place, if there is one, before the sentence.
+  // Returns the detail, preceded by the pointer unless that is empty.
   std::string text() const { return pointer.empty() ? detail : pointer + ": " + detail; }
 };
 
@@ -25,17 +25,17 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The input says something that cannot be done: wrong type, out of range, unknown name, no meaning.
-// what() is a readable summary: the first problem with its place, and how many more there are.
+// Invalid input: wrong type, out of range, unknown name or contradictory values. what() returns the first
+// problem with its place and the number of further ones.
 class InputError : public Error {
  public:
-  // At most this many problems are kept: more help nobody and let a bad document ask for unbounded memory.
+  // Maximum number of problems kept. It bounds the memory that a bad document can request.
   static constexpr std::size_t kMaxProblems = 20;
-  // Characters of a pointer and of a detail; longer ones are shortened. Those who write them cut names,
-  // values and lists long before.
+  // Maximum characters of a pointer and of a detail; longer ones are shortened. Callers already shorten
+  // names, values and lists far below this limit.
   static constexpr std::size_t kMaxCharacters = 2048;
 
-  // REQUIRES: problems is not empty. Problems past kMaxProblems are dropped.
+  // REQUIRES: problems is not empty. Drops problems past kMaxProblems.
   explicit InputError(std::vector<Problem> problems);
   InputError(std::string pointer, std::string detail);
 
@@ -45,10 +45,10 @@ class InputError : public Error {
   std::vector<Problem> problems_;
 };
 
-// The text is not JSON at all. Its one problem points at the innermost value that was being read.
+// Text that is not JSON. Its only problem points to the innermost value that was being parsed.
 class MalformedJson : public InputError {
  public:
-  // offset: bytes before the offending one, from 0. line and column count from 1, columns in characters.
+  // `offset` counts bytes from 0. `line` and `column` count from 1, columns in characters.
   MalformedJson(std::string pointer, std::string detail, std::size_t offset, std::size_t line,
                 std::size_t column);
 
@@ -60,13 +60,13 @@ class MalformedJson : public InputError {
   std::size_t offset_, line_, column_;
 };
 
-// A scene, a sample or another named thing does not exist (any more).
+// Unknown or deleted scene, sample or other named resource.
 class NotFound : public Error {
  public:
   using Error::Error;
 };
 
-// There is no room for the work now; the same request may succeed after retry_after_s seconds.
+// Server is at capacity. The same request may succeed after retry_after_s seconds.
 class Busy : public Error {
  public:
   Busy(const std::string& message, double retry_after_s) : Error(message), retry_after_s_(retry_after_s) {}
@@ -76,7 +76,7 @@ class Busy : public Error {
   double retry_after_s_;
 };
 
-// The one who asked has gone or called the work off: nobody waits for an answer.
+// Work was cancelled or its client disconnected. No response is expected.
 class Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}

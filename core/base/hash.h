@@ -5,19 +5,19 @@
 
 namespace orrery {
 
-// Two lower-case hexadecimal digits a byte.
+// Returns two lower-case hexadecimal digits per byte.
 std::string hex_of(std::string_view bytes);
 
-// SHA-256 (FIPS 180-4) of the bytes, as 64 lower-case hexadecimal digits. Safe to call from any thread.
+// Returns the SHA-256 (FIPS 180-4) of the bytes as 64 lower-case hexadecimal digits. Thread-safe.
 std::string sha256_hex(std::string_view bytes);
 
-// Whether the text can be what sha256_hex() returns.
+// Returns whether the text has the form of a sha256_hex() result.
 bool is_sha256_hex(std::string_view text);
 
-// HMAC-SHA-256 (RFC 2104) of the bytes under the key, likewise.
+// Returns the HMAC-SHA-256 (RFC 2104) of the bytes as 64 lower-case hexadecimal digits. Thread-safe.
 std::string hmac_sha256_hex(std::string_view key, std::string_view bytes);
 
-// Whether both are the same, in a time that depends on their lengths alone.
+// Compares two strings. The time depends on their lengths only, not on their bytes.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
 
 }  // namespace orrery

@@ -8,7 +8,8 @@
 
 namespace orrery {
 
-// The number that the whole text is, and nothing beside it; none if it is not, or T cannot hold it.
+// Parses the whole text as a number. Returns nullopt if any character is left over or T cannot hold the
+// value.
 template <class T>
 std::optional<T> number_in(std::string_view text) {
   T number{};
@@ -17,7 +18,7 @@ std::optional<T> number_in(std::string_view text) {
   return number;
 }
 
-// With three digits that count: "0.0123", "1.5e+09".
+// Formats a number with three significant digits: "0.0123", "1.5e+09".
 inline std::string rounded(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);

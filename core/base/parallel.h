@@ -10,16 +10,16 @@
 #include <sanitizer/tsan_interface.h>
 
 #include <algorithm>
-#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // first steps on a worker, before Handover::take()
+#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // hides a worker's code before Handover::take()
 #else
 #define ORRERY_UNSEEN
 #endif
 
-// Work on several threads by oneTBB.
+// Parallel loops on oneTBB.
 namespace orrery {
 
-// Hands data to or from the workers. oneTBB orders the two sides already, but is not instrumented: this tells
-// ThreadSanitizer, and does nothing elsewhere.
+// Reports a hand-over between the caller and the workers to ThreadSanitizer, which cannot see into oneTBB.
+// Does nothing in other builds, since oneTBB already orders both sides.
 class Handover {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -31,8 +31,8 @@ class Handover {
 #endif
 };
 
-// Calls act(0), ..., act(count - 1), in any order, at least `grain` of them on one thread; between those it
-// is an interruption point.
+// Calls act(0), ..., act(count - 1) in any order, in chunks of at least half of `grain` calls. Each chunk
+// starts with an interruption point.
 template <class Act>
 void in_parallel(std::size_t count, std::size_t grain, const Act& act) {
   using Range = tbb::blocked_range<std::size_t>;
@@ -52,7 +52,7 @@ void in_parallel(std::size_t count, std::size_t grain, const Act& act) {
   from_workers.take();
 }
 
-// Calls both, on two threads if there are.
+// Calls both functions, on two threads if available.
 template <class First, class Second>
 void both_in_parallel(const First& first, const Second& second) {
   Handover to_workers, from_workers;
@@ -71,7 +71,7 @@ void both_in_parallel(const First& first, const Second& second) {
 template <class Iterator>
 void sort_in_parallel(Iterator begin, Iterator end) {
 #ifdef __SANITIZE_THREAD__
-  std::sort(begin, end);  // oneTBB moves elements where no handover can be told
+  std::sort(begin, end);  // ThreadSanitizer cannot follow oneTBB's element moves
 #else
   tbb::parallel_sort(begin, end);
 #endif

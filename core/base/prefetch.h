@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Has the machine fetch all lines of something that is wanted soon.
+// Prefetches all cache lines of an object.
 template <class X>
 [[gnu::always_inline]] inline void prefetch_lines(const X& what) {
   constexpr std::size_t kLine = 64;  // bytes

@@ -7,27 +7,28 @@
 
 namespace orrery {
 
-// Whether the byte is a later one of a UTF-8 character.
+// Returns whether the byte is a UTF-8 continuation byte.
 inline bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
-// Number of Unicode characters in valid UTF-8.
+// Returns the number of Unicode characters in valid UTF-8.
 inline std::size_t character_count(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return !continues_character(c); }));
 }
 
-// The first `characters` characters of valid UTF-8, or all of them. Reads no more than that.
+// Returns the first `characters` characters of valid UTF-8, or all of them if there are fewer. Reads no byte
+// past the first character left out.
 inline std::string_view first_characters(std::string_view text, std::size_t characters) {
   for (std::size_t i = 0; i < text.size(); ++i)
     if (!continues_character(text[i]) && characters-- == 0) return text.substr(0, i);
   return text;
 }
 
-// Characters of a name that an error message repeats.
+// Maximum characters of a name quoted in an error message.
 inline constexpr std::size_t kMaxNameCharacters = 128;
 
-// The text, or its first `characters` characters with an ellipsis and the original length:
-// "aaaa... (8000000 characters)". Never builds a longer string than it returns.
+// Returns the text. If it is longer than `characters`, returns its start, an ellipsis and the original
+// length: "aaaa... (8000000 characters)". Never builds a string longer than the result.
 inline std::string shortened(std::string_view text, std::size_t characters = kMaxNameCharacters) {
   const std::string_view first = first_characters(text, characters);
   if (first.size() == text.size()) return std::string(text);

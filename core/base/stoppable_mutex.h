@@ -6,12 +6,12 @@
 
 namespace orrery {
 
-// A mutex for work that takes long: who waits for it can be told to give up. Meets BasicLockable.
+// Mutex for long critical sections whose waiters can be cancelled. Meets BasicLockable.
 class StoppableMutex {
  public:
   void lock() { lock_unless({}); }
 
-  // Waits for the mutex. False if a stop was requested while another thread held it.
+  // Locks the mutex. Returns false if a stop is requested while another thread holds it.
   bool lock_unless(const std::stop_token& stop) {
     std::unique_lock guard(mutex_);
     if (!changed_.wait(guard, stop, [&] { return !held_; })) return false;

@@ -8,22 +8,22 @@
 namespace orrery {
 namespace {
 
-// The model is the one of a library that is there from the start, and takes fewer steps.
+// Avoids a call per access; valid because this library is loaded at program start.
 [[gnu::tls_model("initial-exec")]] constinit thread_local Work current_work;
 
-#ifndef ORRERY_SANITIZED  // sanitizers have an operator new of their own
-// Stands before each block of operator new.
+#ifndef ORRERY_SANITIZED  // sanitizers replace operator new themselves
+// Header in front of each block of operator new.
 struct alignas(__STDCPP_DEFAULT_NEW_ALIGNMENT__) Header {
   MemoryAccount* account;
   std::size_t bytes;
 };
 
-// Large blocks begin with a cache line, as the allocator's own do: arrays of nodes then straddle no more of
-// them.
+// Large blocks start on a cache line, as the allocator's own large blocks do. Arrays of nodes then straddle
+// as few lines as possible.
 constexpr std::size_t kCacheLine = 64, kLargeBlock = 4096;
-constexpr std::size_t kOnCacheLine = 1;  // in Header::bytes, which are even beside
+constexpr std::size_t kOnCacheLine = 1;  // flag in Header::bytes, whose values are even
 
-// Bytes from the start of what the allocator gives to the block.
+// Returns the bytes between the allocator's pointer and the block.
 std::size_t offset_of(std::size_t alignment) { return std::max(sizeof(Header), alignment); }
 
 Header& header_of(void* block) { return *(static_cast<Header*>(block) - 1); }
@@ -31,7 +31,7 @@ Header& header_of(void* block) { return *(static_cast<Header*>(block) - 1); }
 void* take_block(std::size_t size, std::size_t alignment) {
   const bool on_cache_line = size >= kLargeBlock && alignment < kCacheLine;
   if (on_cache_line) alignment = kCacheLine;
-  constexpr std::size_t kChunk = 16;  // what the allocator rounds to, and less than it adds
+  constexpr std::size_t kChunk = 16;  // allocator granularity, below its overhead per block
   const std::size_t offset = offset_of(alignment), all = (size + offset + kChunk - 1) / kChunk * kChunk;
   if (all < size) throw std::bad_alloc();
   MemoryAccount* const account = current_work.memory;
@@ -75,7 +75,8 @@ void MemoryAccount::close() {
 }
 
 void MemoryAccount::add(std::size_t bytes) {
-  // More than nlohmann's destructor takes, which must not throw, for the nodes that a document may have.
+  // Larger than the allocation in nlohmann::json's destructor for the largest allowed document. That
+  // destructor must not throw.
   constexpr std::size_t kLarge = 32 << 20;
   if (held_.fetch_add(bytes) + bytes <= granted_ + kOpen) return;
   const bool taken_anyhow = bytes < kLarge || std::uncaught_exceptions() > 0;
@@ -92,7 +93,7 @@ void MemoryAccount::remove(std::size_t bytes) {
   if (held_.fetch_sub(bytes) == bytes) delete this;
 }
 
-// False: refused.
+// Returns false if the resize was refused.
 bool MemoryAccount::grow() {
   const WorkScope nobody({});
   const std::lock_guard lock(mutex_);
@@ -114,7 +115,7 @@ void MemoryAccount::settle(std::size_t bytes) {
   resize_locked(true);
 }
 
-// With mutex_ held.
+// REQUIRES: mutex_ is held.
 void MemoryAccount::resize_locked(bool already) {
   const std::size_t held = bytes(), settled = std::min(held, settled_);
   granted_ = resize_ ? settled + resize_(held - settled, already) : held;
@@ -149,7 +150,7 @@ void* operator new(std::size_t size) { return orrery::take_block(size, __STDCPP_
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return orrery::take_block(size, static_cast<std::size_t>(alignment));
 }
-// The library's own do not call the ones above.
+// Own nothrow versions, because the standard library's do not call the operators above.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return operator new(size);

@@ -14,32 +14,33 @@
 
 namespace orrery {
 
-// Bytes that a piece of work holds: operator new adds to the account of the WorkScope that its thread is in,
-// operator delete takes off the account that was added to, on whichever thread. What lives longer than its
-// account is nobody's. Safe from any thread.
+// Memory account of one piece of work. operator new charges the account of the current WorkScope; operator
+// delete credits the account that was charged, on any thread. A block that outlives its account is no longer
+// counted. Thread-safe.
 class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
  public:
-  // Asked for the right to hold so many bytes in all, more or fewer than before. Returns how many it may hold
-  // from now on, at least that; or throws why it may not hold more, unless it holds them `already`.
+  // Requests the right to hold `bytes` in all, more or fewer than before. Returns the new limit, at least
+  // `bytes`. Throws if the request is refused, but not if `already` states that the bytes are held.
   using Resize = std::function<std::size_t(std::size_t bytes, bool already)>;
-  // `source`: called for this account, and for those that open_another() gives. Closes with its last owner.
+  // Factory of the resize callback, called once per account: for this one and each one from open_another().
+  // The account closes with its last owner.
   using Source = std::function<Resize()>;
   static std::shared_ptr<MemoryAccount> open(Source source);
-  std::shared_ptr<MemoryAccount> open_another() const { return open(source_); }  // of the same source
+  std::shared_ptr<MemoryAccount> open_another() const { return open(source_); }  // uses the same source
   MemoryAccount(const MemoryAccount&) = delete;
 
-  std::size_t bytes() const { return held_ - kOpen; }  // also what the allocator adds to each block
+  std::size_t bytes() const { return held_ - kOpen; }  // includes the allocator's overhead per block
 
-  // From now on, others answer for so many of the bytes: they need no right.
+  // Excludes `bytes` of the account from its limit, because another owner is charged for them.
   void settle(std::size_t bytes);
 
-  // Calls work() with the thread in the scope of this account and of `stop`, and of the same turn as before.
-  // Where that threw because the account was refused more bytes, throws what refused them.
+  // Calls work() with this account, `stop` and the current turn as the thread's WorkScope. If work() throws
+  // std::bad_alloc because the account was refused memory, throws the reason of the refusal instead.
   template <class Act>
   auto run(const std::stop_token& stop, const Act& work);
 
-  // Where it may not hold a block of 32 MiB or more, that throws std::bad_alloc. Smaller ones are always
-  // taken, so that nothing fails where nobody expects it, but require_granted() throws afterwards.
+  // Throws std::bad_alloc if a block of 32 MiB or more exceeds the limit. Smaller blocks always succeed, so
+  // that no unprepared code fails; require_granted() throws afterwards.
   void add(std::size_t bytes);
   void remove(std::size_t bytes);
   void require_granted() {
@@ -47,7 +48,7 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   }
 
  private:
-  static constexpr std::size_t kOpen = 1;  // in held_ until it is closed; blocks have even sizes
+  static constexpr std::size_t kOpen = 1;  // counted in held_ while open; block sizes are even
 
   explicit MemoryAccount(Source source) : source_(std::move(source)), resize_(source_()) {}
   void close();
@@ -58,20 +59,21 @@ class MemoryAccount : public std::enable_shared_from_this<MemoryAccount> {
   const Source source_;
   std::atomic<std::size_t> held_{kOpen}, granted_{0};
   std::atomic<bool> overdrawn_{false};
-  std::mutex mutex_;  // guards all below
-  Resize resize_;     // none: closed
+  std::mutex mutex_;  // guards the members below
+  Resize resize_;     // null once the account is closed
   std::size_t settled_ = 0;
   std::exception_ptr refusal_;
 };
 
-// What a thread works for; the pointers may be null.
+// Context of the work that a thread does. Each pointer may be null.
 struct Work {
-  MemoryAccount* memory = nullptr;        // whose memory it takes
-  const std::stop_token* stop = nullptr;  // ends it
-  Turn* turn = nullptr;                   // on which it works; asked from any thread
+  MemoryAccount* memory = nullptr;        // account charged for allocations
+  const std::stop_token* stop = nullptr;  // cancels the work
+  Turn* turn = nullptr;                   // time slice of the work; called from any thread
 };
 
-// Sets what this thread works for, until its end. Workers that a caller waits for are in its scope as well.
+// Sets the calling thread's context until the end of the scope. Parallel helpers that the caller waits for
+// inherit it.
 class WorkScope {
  public:
   explicit WorkScope(const Work& work);
@@ -84,11 +86,11 @@ class WorkScope {
   const Work before_;
 };
 
-// Bytes that are taken in another way than by operator new.
+// Charge for memory that is not allocated by operator new.
 class MemoryCharge {
  public:
   MemoryCharge() = default;
-  // Adds them to the account that the thread is in, if it is in one. Throws std::bad_alloc.
+  // Charges the current account, if there is one. Throws std::bad_alloc.
   explicit MemoryCharge(std::size_t bytes);
   ~MemoryCharge();
   MemoryCharge(MemoryCharge&& from) noexcept
@@ -115,11 +117,11 @@ auto MemoryAccount::run(const std::stop_token& stop, const Act& work) {
   }
 }
 
-// Lets others go first if they have waited long enough. Throws Cancelled once what the thread works for is to
-// end, and std::bad_alloc once it holds more memory than it may. Loops over input of any size ask it at each
-// step, with no lock held that others need; it takes a few ns.
+// Yields to waiting work if the time slice is used up. Throws Cancelled if a stop was requested, and
+// std::bad_alloc if the work holds more memory than granted. Takes a few ns; loops over input of any size
+// call it at each step, never while holding a lock that others need.
 void interruption_point();
-// The same for loops of steps that take less: asks at every 4,096th.
+// Calls interruption_point() at every 4,096th step, for loops with short steps.
 inline void interruption_point(std::size_t step) {
   if (step % 4096 == 0) interruption_point();
 }
