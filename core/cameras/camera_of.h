@@ -6,10 +6,10 @@
 
 namespace orrery {
 
-// A Camera from a class with one template
+// Base of a Camera whose rays come from one template:
 //   Ray<N> ray(const CameraView<N>& view, const N& sx, const N& sy) const;
-// that gives the ray through a point of the picture: sx to the right and sy upward of its middle, in units of
-// CameraFrame::half_extent over half the picture's height.
+// It returns the ray through the image point sx to the right of and sy above the image centre. Both are in
+// units of CameraFrame::half_extent per half image height.
 template <class N>
 struct CameraView {
   Vec3<N> eye, right, up, forward;
@@ -32,7 +32,7 @@ class CameraOf : public Camera {
   void fill(const CameraFrame& frame, int width, int height, const TileView& tile, const TileSamples& samples,
             RayBatch<T>& out) const {
     using N = Lanes<T>;
-    const T scale = static_cast<T>(frame.half_extent / height);  // half a pixel, in x and y alike
+    const T scale = static_cast<T>(frame.half_extent / height);  // half a pixel, in x and y
     const CameraView<N> view{Vec3<N>(Vec3<T>(frame.eye)), Vec3<N>(Vec3<T>(frame.right)),
                              Vec3<N>(Vec3<T>(frame.up)), Vec3<N>(Vec3<T>(-frame.back))};
     const Pixels& pixels = slot_pixels();
@@ -40,7 +40,7 @@ class CameraOf : public Camera {
     for (int i = 0; i < kBatch; i += kWidth<T>) {
       const N in_x = lanes(pixels.x, i), in_y = lanes(pixels.y, i);
       const N px = in_x + T(tile.x0), py = in_y + T(tile.y0);
-      // Exact for pixel centres, so that a picture mirrored about its middle is mirrored to the bit.
+      // Exact for pixel centres: mirroring an image about its centre mirrors every bit.
       const N sx = (T(2) * (px + lanes(samples.u, i)) - T(width)) * scale;
       const N sy = (T(height) - T(2) * (py + lanes(samples.v, i))) * scale;
       const Ray<N> ray = static_cast<const Derived*>(this)->ray(view, sx, sy);

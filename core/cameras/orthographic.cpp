@@ -20,7 +20,7 @@ class Orthographic final : public CameraOf<Orthographic> {
   }
 
  private:
-  double height_;  // metres that the picture's height shows
+  double height_;  // metres, covered by the image height
 };
 
 std::unique_ptr<Camera> read(Params& p) {

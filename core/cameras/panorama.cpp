@@ -7,15 +7,15 @@
 namespace orrery {
 namespace {
 
-// Equirectangular: rows are latitudes, columns longitudes, evenly spaced. The height is half a turn, so that
-// a picture twice as wide as high holds every direction once; a wider one repeats them.
+// Equirectangular camera: rows are latitudes, columns longitudes, evenly spaced. The image height covers 180
+// degrees. An image twice as wide as high shows every direction once; a wider one repeats directions.
 class Panorama final : public CameraOf<Panorama> {
  public:
   const char* type() const override { return "panorama"; }
   std::vector<Parameter> parameters() const override { return {}; }
   bool parallel() const override { return false; }
   bool all_around() const override { return true; }
-  // As angle, in radians.
+  // In radians.
   double half_extent(double) const override { return std::numbers::pi / 2; }
 
   template <class N>

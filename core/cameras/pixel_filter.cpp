@@ -20,18 +20,18 @@ double usual_width(Filter filter) {
   return 1;
 }
 
-// sin(pi x) / (pi x)
+// Computes sin(pi x) / (pi x).
 double sinc(double x) { return x == 0 ? 1 : sine_cosine_degrees(180 * x).sine / (std::numbers::pi * x); }
 
-// Mitchell and Netravali, "Reconstruction Filters in Computer Graphics" (SIGGRAPH 1988), B = C = 1/3, for x
-// in [0, 2].
+// Evaluates the filter of Mitchell and Netravali, "Reconstruction Filters in Computer Graphics" (SIGGRAPH
+// 1988), B = C = 1/3, for x in [0, 2].
 double mitchell(double x) {
   constexpr double b = 1.0 / 3, c = 1.0 / 3;
   if (x < 1) return (((12 - 9 * b - 6 * c) * x + (-18 + 12 * b + 6 * c)) * x * x + (6 - 2 * b)) / 6;
   return ((((-b - 6 * c) * x + (6 * b + 30 * c)) * x + (-12 * b - 48 * c)) * x + (8 * b + 24 * c)) / 6;
 }
 
-// At a share of the way from the middle to the edge.
+// Evaluates the filter at `share` of the distance from its centre to its edge.
 double height(Filter filter, double share) {
   switch (filter) {
     case Filter::box: return 1;
@@ -68,7 +68,7 @@ float PixelFilter::Lobes::at(float u) const {
 
 PixelFilter::PixelFilter(Filter filter, double width)
     : half_width_((width > 0 ? width : usual_width(filter)) / 2) {
-  constexpr int kSteps = 8;  // of quadrature, a cell
+  constexpr int kSteps = 8;  // quadrature steps per cell
   double above = 0, below = 0;
   for (int cell = 0; cell < kCells; ++cell) {
     double mass = 0;
@@ -85,19 +85,19 @@ PixelFilter::PixelFilter(Filter filter, double width)
   negative_ = 2 * above_.mass * below_.mass;
 }
 
-// From the pixel's corner, in pixels.
+// Returns an offset from the pixel's corner, in pixels.
 float PixelFilter::offset(const Lobes& lobes, float u) const {
   const float signed_share = 2 * u - 1;
   const float share = lobes.at(std::min(std::abs(signed_share), 1 - 0x1p-24f));
   return 0.5f + std::copysign(share, signed_share) * static_cast<float>(half_width_);
 }
 
-// Both axes are above or both are below 0 in the positive part, one of them in the other; u chooses between
-// these, and what is left of it is even again.
+// The lobes of x and y have the same sign in the positive part and different signs in the negative part. u
+// selects one of the two cases and is rescaled to [0, 1).
 void PixelFilter::place(Part part, TileSamples& samples) const {
   const bool alike = part == Part::positive;
   const float first =
-      alike ? static_cast<float>(above_.mass * above_.mass / positive_) : 0.5f;  // that x is above 0
+      alike ? static_cast<float>(above_.mass * above_.mass / positive_) : 0.5f;  // P(x in above_)
   for (int slot = 0; slot < kBatch; ++slot) {
     const float u = samples.u[slot], v = samples.v[slot];
     const bool x_above = u < first, y_above = x_above == alike;

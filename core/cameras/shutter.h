@@ -4,9 +4,8 @@
 
 namespace orrery {
 
-// Gives camera rays their times: shares of the exposure, evenly spread, and stratified together with the
-// points of the lens, which are of the same set (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH
-// 1984).
+// Assigns times to camera rays: uniform shares of the exposure, stratified together with the lens points of
+// the same sample set (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984).
 template <class T>
 void draw_times(const Draws& draws, SampleSet set, RayBatch<T>& rays) {
   const IndexLanes<T> lane([](int i) { return static_cast<IndexOf<T>>(i); });
@@ -14,7 +13,7 @@ void draw_times(const Draws& draws, SampleSet set, RayBatch<T>& rays) {
     rays.time.put(i, draws.third<T>(set, 0, lane + static_cast<IndexOf<T>>(i)));
 }
 
-// The middle of the exposure for all.
+// Sets all rays to the middle of the exposure.
 template <class T>
 void put_middle_time(RayBatch<T>& rays) {
   rays.time.values.fill(T(0.5));

@@ -9,7 +9,7 @@
 
 namespace orrery {
 
-// Points of the lens, for its radius 1: evenly spread over its disk or its polygon.
+// Uniform sampling of a lens aperture of radius 1: a disk or a regular polygon.
 template <class T>
 class LensShape {
  public:
@@ -26,8 +26,7 @@ class LensShape {
     }
   }
 
-  // u chooses the triangle between the middle and a side, and what is left of it the distance from the
-  // middle.
+  // u selects the triangle between the centre and one side; its fraction gives the distance from the centre.
   [[gnu::always_inline]] Point at(const SamplePoint<N>& sample) const {
     using std::sqrt;
     if (blades_ == 0) {
@@ -51,11 +50,11 @@ class LensShape {
 
  private:
   int blades_;
-  std::array<T, kMaxBlades + 1> right_, up_;  // of the corners, the first at both ends
+  std::array<T, kMaxBlades + 1> right_, up_;  // corner coordinates, the first corner repeated at the end
 };
 
-// Has camera rays leave from points of a thin lens about the eye, toward where they cross the plane that is
-// sharp (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984). REQUIRES: the frame's aperture
+// Moves ray origins from the eye to points of a thin lens and aims the rays at their points in the plane of
+// focus (Cook, Porter, Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984). REQUIRES: the frame's aperture
 // is not 0.
 template <class T>
 void apply_thin_lens(const CameraFrame& frame, const Draws& draws, SampleSet set, RayBatch<T>& rays) {
