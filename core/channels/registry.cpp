@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// One line a channel; the rest is in the file of its name.
+// One line per channel, implemented in the file of the same name.
 // clang-format off
 #define ORRERY_CHANNELS(add) \
   add(depth)                 \

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Every film channel beside radiance, in the order in which they are written to files.
+// Returns every film channel except radiance, in the order of the output file.
 std::span<const ChannelType> channel_types();
 
 }  // namespace orrery
