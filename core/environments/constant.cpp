@@ -4,7 +4,7 @@
 namespace orrery {
 namespace {
 
-// What `background` says as well.
+// Uniform radiance, equivalent to the scene's `background`.
 template <class N>
 struct Constant {
   Vec3<N> everywhere;

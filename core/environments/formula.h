@@ -3,12 +3,12 @@
 #include "core/model/environment.h"
 #include "core/model/record.h"
 
-// An environment that is a formula is one record, `template <class N> struct Gradient`, with
+// Environments given by a formula. Each type is one record, `template <class N> struct Gradient`, with
 //   static Gradient<double> read(Params&);               in the .cpp, which registers the type
-//   Vec3<N> radiance(const Vec3<N>& direction) const;    of a unit direction from the scene
-//   Vec3<N> most() const;                                the largest of it, per channel
-// and `read_formula<Gradient>` reads it. Light is not drawn from it: it varies so little that the directions
-// in which materials scatter find it as well.
+//   Vec3<N> radiance(const Vec3<N>& direction) const;    for a unit direction from the scene
+//   Vec3<N> most() const;                                maximum radiance per channel
+// `read_formula<Gradient>` is its factory. Formulas are not light-sampled: they vary so little that BSDF
+// sampling finds them as well.
 namespace orrery {
 
 template <template <class> class Record, class T>

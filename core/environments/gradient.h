@@ -4,8 +4,7 @@
 
 namespace orrery {
 
-// A sky whose radiance grows linearly with the height of the direction, over ground that is the same
-// everywhere. Up is +y.
+// Sky whose radiance grows linearly with the direction's y, over ground of constant radiance. Up is +y.
 template <class N>
 struct Gradient {
   Vec3<N> zenith, horizon, ground;

@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-// A light map that is turned about +y and scaled.
+// Light map with a rotation about +y and a scale.
 struct TurnedMap {
   LightMap map;
   SineCosine turn;
@@ -65,7 +65,7 @@ class ImageKernel final : public LightKernel<T> {
     Vec3<N> radiance;
     N pdf;  // per solid angle
   };
-  // `sine`: of the angle from +y.
+  // `sine` is the sine of the angle from +y.
   Found find(const LightMap::Place<N>& place, const N& sine) const {
     Found found;
     N by_texel;

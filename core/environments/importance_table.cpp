@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNumbers = 0x1p24;
 
-// Of weights whose sum, added in their order, is `sum` > 0. (So the last that is not 0 ends at the last
-// number.)
+// Appends the CDF of the weights in units of 2^-24. REQUIRES: `sum` > 0 is their sum, added in this order, so
+// that the last nonzero weight ends at exactly 2^24.
 template <class Weights>
 void append_ends(const Weights& weights, double sum, std::vector<std::uint32_t>& ends) {
   double end = 0;

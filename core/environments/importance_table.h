@@ -6,12 +6,11 @@
 
 namespace orrery {
 
-// Cells of a grid drawn in proportion to weights: a row first, then a column of it. Probabilities are whole
-// shares of the 2^24 random numbers that decide each, so that they are exactly those with which cells are
-// drawn.
+// Discrete 2D distribution over grid cells: samples a row, then a column in it. Probabilities are multiples
+// of 2^-24, the resolution of the random numbers, so they match the sampling exactly.
 class ImportanceTable {
  public:
-  // `weights`: row by row, at least 0. All 0: the table is empty.
+  // `weights` are row-major and >= 0. The table is empty if all are 0.
   ImportanceTable(int width, int height, std::span<const float> weights);
 
   bool empty() const { return column_ends_.empty(); }
@@ -21,7 +20,7 @@ class ImportanceTable {
   struct Cell {
     int column, row;
   };
-  // The cell that u and v in [0, 1), multiples of 2^-24, choose. REQUIRES: !empty().
+  // Returns the cell selected by u and v in [0, 1), multiples of 2^-24. REQUIRES: !empty().
   Cell draw(double u, double v) const;
   double probability(const Cell& cell) const;
 
@@ -29,7 +28,7 @@ class ImportanceTable {
   std::span<const std::uint32_t> columns_of(int row) const;
 
   int width_, height_;
-  std::vector<std::uint32_t> row_ends_, column_ends_;  // the first number beyond each one's own
+  std::vector<std::uint32_t> row_ends_, column_ends_;  // CDF at the end of each row or column, times 2^24
 };
 
 }  // namespace orrery

@@ -11,11 +11,11 @@ double luminance(const float* rgb) {  // ITU-R BT.709
   return 0.2126 * double{rgb[0]} + 0.7152 * double{rgb[1]} + 0.0722 * double{rgb[2]};
 }
 
-// Of the angle from +y, in the middle of a row.
+// Returns the sine of the angle from +y at the middle of a row.
 double sine_of(int row, int height) { return sine_cosine_turns((row + 0.5) / (2 * height)).sine; }
 
 std::vector<float> weights_of(const Texels& picture, LightMap::Weights weights) {
-  constexpr double kLeast = 1e-6;  // of the light: where all have less it is the same from everywhere
+  constexpr double kLeast = 1e-6;  // share of all light; with less above the mean, light counts as uniform
   const auto width = static_cast<std::size_t>(picture.width);
   double light = 0, sines = 0;
   const auto for_each_row = [&](const auto& visit) {

@@ -12,29 +12,28 @@
 
 namespace orrery {
 
-// Radiance by direction, as an equirectangular picture: its centre lies toward -z, its top toward +y, and its
-// right half is toward +x. Between the centres of texels it is bilinear.
+// Equirectangular radiance map: its centre lies toward -z, its top toward +y, its right half toward +x.
+// Radiance is interpolated bilinearly between texel centres.
 //
-// Directions are drawn with a density that is bilinear between the same centres: a texel by its weight, and
-// from there a point of the tent that it has in the interpolation. Weights are luminance times the sine of
-// the angle from +y.
+// The sampling density is bilinear between the same centres: draw() samples a texel by its weight, then a
+// point of its tent filter. Weights are luminance times the sine of the angle from +y.
 class LightMap {
  public:
-  // How texels are weighted. compensated: by what they have above the mean luminance of all directions, since
-  // where they have less, the directions in which materials scatter serve as well (Karlik, Sik, Vevoda,
-  // Skrivan, Krivanek, "MIS Compensation", SIGGRAPH Asia 2019).
+  // Texel weights. `compensated` subtracts the mean luminance over all directions and clamps at 0, because
+  // BSDF sampling covers the darker texels (Karlik, Sik, Vevoda, Skrivan, Krivanek, "MIS Compensation",
+  // SIGGRAPH Asia 2019).
   enum class Weights { plain, compensated };
   explicit LightMap(const Texels& picture, Weights weights = Weights::compensated);
 
-  // Whether some texel has weight. (Where light is the same from everywhere none has.)
+  // Returns whether any texel has weight. False for uniform light.
   bool sampled() const { return !table_.empty(); }
 
-  // Where a direction lies: texels from the left and from the top.
+  // Map coordinates of a direction, in texels from the left and from the top.
   template <class N>
   struct Place {
     N x, y;
   };
-  // Of any direction but 0.
+  // REQUIRES: direction is not 0.
   template <class N>
   Place<N> place_of(const Vec3<N>& direction) const {
     using T = ScalarOf<N>;
@@ -47,7 +46,7 @@ class LightMap {
   template <class N>
   struct Direction {
     Vec3<N> toward;  // unit
-    N sine;          // of its angle from +y
+    N sine;          // sine of the angle from +y
   };
   template <class N>
   Direction<N> direction_of(const Place<N>& place) const {
@@ -57,21 +56,21 @@ class LightMap {
     return {{down.sine * across.sine, down.cosine, -down.sine * across.cosine}, down.sine};
   }
 
-  // Radiance there, and density per solid angle of the directions that draw() gives there.
+  // Radiance at a place and the sampling density of draw() there.
   template <class T>
   struct Value {
     Vec3<T> radiance;
-    T by_texel;  // times density_factor() over the sine of the angle from +y
+    T by_texel;  // pdf per solid angle is by_texel * density_factor() / sine
   };
   template <class T>
   Value<T> at(T x, T y) const;
-  Vec3d most() const;  // the largest radiance, per channel
+  Vec3d most() const;  // maximum radiance, per channel
   double density_factor() const {
     return table_.width() * (table_.height() / (2 * std::numbers::pi * std::numbers::pi));
   }
 
-  // The place that the first pair chooses, a texel, and the second, from there. All in [0, 1), multiples of
-  // 2^-24. REQUIRES: sampled().
+  // Samples a place: u and v select a texel, `along` and `down` a point of its tent. All are in [0, 1),
+  // multiples of 2^-24. REQUIRES: sampled().
   template <class T>
   Place<T> draw(T u, T v, T along, T down) const;
 
@@ -111,7 +110,7 @@ LightMap::Value<T> LightMap::at(T x, T y) const {
 
 template <class T>
 LightMap::Place<T> LightMap::draw(T u, T v, T along, T down) const {
-  // From the middle of a tent of width 2, whose density is 1 there.
+  // Samples a tent of width 2, centred at 0.
   const auto tent = [](T share) {
     return share < T(0.5) ? std::sqrt(2 * share) - 1 : 1 - std::sqrt(2 * (1 - share));
   };
@@ -119,7 +118,7 @@ LightMap::Place<T> LightMap::draw(T u, T v, T along, T down) const {
   const T width = T(table_.width()), height = T(table_.height());
   T x = T(cell.column) + T(0.5) + tent(along), y = T(cell.row) + T(0.5) + tent(down);
   x = x < 0 ? x + width : x >= width ? x - width : x;
-  y = y < 0 ? -y : y > height ? 2 * height - y : y;  // as the rows at the poles go on beyond them
+  y = y < 0 ? -y : y > height ? 2 * height - y : y;  // the rows at the poles extend past them
   return {x, y};
 }
 
