@@ -4,7 +4,7 @@
 #include "core/base/work_scope.h"
 #include "core/image/files.h"
 
-// What the codecs of this room share. Sizes are checked against the header before anything is decoded.
+// Shared helpers of the image codecs. Decoders check the header's size before they decode.
 namespace orrery {
 
 Image decode_png(std::span<const std::byte> bytes, std::size_t max_pixels);

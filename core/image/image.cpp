@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
-// Codes 0..255 nearest to the sRGB curve over lanes of linear values; NaN gives 0.
+// Returns the nearest sRGB codes, 0..255, of linear values. NaN gives 0.
 [[gnu::always_inline]] inline IndexLanes<float> srgb_codes(const Lanes<float>& linear) {
   return stdx::static_simd_cast<IndexLanes<float>>(encode_srgb(linear) * 255.0f + 0.5f);
 }
@@ -54,7 +54,7 @@ void Image::set_row(int x, int y, int count, const float* red, const float* gree
                        srgb_codes(load(blue + from)) << 16;
     codes.copy_to(pixels.data(), stdx::vector_aligned);
     const auto lanes = static_cast<std::size_t>(std::min(kLanes, count - from));
-    // Each store but the last spills one byte into the next pixel, which then overwrites it.
+    // All stores but the last write one byte too many; the next pixel overwrites it.
     for (std::size_t i = 0; i + 1 < lanes; ++i, out += 3) std::memcpy(out, &pixels[i], 4);
     std::memcpy(out, &pixels[lanes - 1], 3);
     out += 3;

@@ -11,22 +11,22 @@
 namespace orrery {
 
 enum class PixelFormat {
-  srgb8,    // 3 bytes a pixel, sRGB-encoded (IEC 61966-2-1), values above 1 cut
-  linear32  // 3 floats a pixel, linear, unbounded
+  srgb8,    // 3 bytes per pixel, sRGB-encoded (IEC 61966-2-1), clamped to 1
+  linear32  // 3 floats per pixel, linear, unbounded
 };
 
-// A picture, row 0 at the top. Several threads may set different pixels at once.
+// Image with row 0 at the top. Threads may write different pixels concurrently.
 class Image {
  public:
-  // Pixels are not initialised.
+  // Does not initialise the pixels.
   Image(int width, int height, PixelFormat format);
 
   int width() const { return width_; }
   int height() const { return height_; }
   PixelFormat format() const { return format_; }
 
-  // Sets pixels (x, y) .. (x + count - 1, y) from linear colour. The channel arrays are aligned to 64 bytes
-  // and may be read up to the next multiple of 16 entries.
+  // Sets pixels (x, y) .. (x + count - 1, y) from linear colour. The channel arrays must be aligned to 64
+  // bytes and readable up to the next multiple of 16 entries.
   void set_row(int x, int y, int count, const float* red, const float* green, const float* blue);
 
   std::size_t row_bytes() const { return static_cast<std::size_t>(width_) * pixel_bytes(); }
@@ -36,12 +36,12 @@ class Image {
   }
   std::span<std::byte> bytes() { return {data_.get(), row_bytes() * static_cast<std::size_t>(height_)}; }
 
-  // Red, green and blue of all pixels, row by row. REQUIRES: linear32.
+  // Returns red, green and blue of all pixels, row by row. REQUIRES: linear32.
   std::span<const float> values() const;
 
   Image copy() const;
 
-  // Linear colour of a pixel, whatever the format.
+  // Returns the linear colour of a pixel in either format.
   Vec3f linear(int x, int y) const;
 
  private:
@@ -50,11 +50,11 @@ class Image {
   };
   int width_, height_;
   PixelFormat format_;
-  MemoryCharge charge_;  // of data_
+  MemoryCharge charge_;  // for data_
   std::unique_ptr<std::byte[], Free> data_;
 };
 
-// The same picture for the eye. REQUIRES: linear32.
+// Converts a linear32 image to srgb8. REQUIRES: linear32.
 Image srgb_of(const Image& linear);
 
 }  // namespace orrery

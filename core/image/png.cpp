@@ -35,8 +35,8 @@ std::string encode_png(const Image& image, const PngOptions& options) {
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_compression_level(writer.png, options.level);
-  // On rendered pictures this one filter gives as few bytes as trying all of them row by row, in half the
-  // time.
+  // On rendered images, this filter alone gives as few bytes as choosing per row among all filters, in half
+  // the time.
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_write_info(writer.png, writer.info);
   const auto bytes = image.bytes();

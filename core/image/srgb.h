@@ -6,14 +6,14 @@
 
 #include "core/math/lanes.h"
 
-// The curve of sRGB (IEC 61966-2-1), over a scalar or lanes.
+// Transfer function of sRGB (IEC 61966-2-1), for a scalar or lanes.
 namespace orrery {
 namespace srgb {
 
 inline constexpr double kEndOfLine = 0.0031308;
 
-// 1.055 x^(1/2.4) - 0.055 over x^(1/4), for x from kEndOfLine to 1: interpolated at Chebyshev points; the
-// error is below 0.0006 of a code.
+// Polynomial in x^(1/4) for 1.055 x^(1/2.4) - 0.055, x from kEndOfLine to 1. Interpolates at Chebyshev
+// points; the error is below 0.0006 of a code.
 inline constexpr std::array kCurve = {-0.059739011f, 0.14195826f,  1.3545726f,  -0.82528002f,
                                       0.62100228f,   -0.29424764f, 0.061734308f};
 
@@ -31,7 +31,7 @@ template <class N>
 
 }  // namespace srgb
 
-// From [0, 1] to [0, 1], within 3e-6; what is beyond counts as the end, and what is no number as 0.
+// Encodes linear [0, 1] to sRGB [0, 1] within 3e-6. Clamps other values; NaN gives 0.
 template <class N>
 [[gnu::always_inline]] inline N encode_srgb(const N& linear) {
   using Scalar = ScalarOf<N>;
@@ -40,7 +40,7 @@ template <class N>
                 srgb::curve(x));
 }
 
-// Linear value of an sRGB code / 255, both in [0, 1].
+// Decodes an sRGB code / 255 to linear, both in [0, 1].
 inline float decode_srgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
