@@ -4,26 +4,26 @@
 
 namespace orrery {
 
-// What arrives at a surface point from a light without extent.
+// Light that arrives at a surface point from a point light or one direction.
 template <class N>
 struct Arrival {
   Vec3<N> direction;  // unit, toward the light
-  N distance;         // metres to it; infinite if it is directional, -1 where it sends nothing
+  N distance;         // metres to the light; infinite if directional, -1 if no light arrives
   Vec3<N> incident;   // per channel
 };
 
-// What arrives from a point of a light that was drawn: see LightBatch.
+// Light that arrives from a sampled point of a light: see LightBatch.
 template <class N>
 struct Drawn {
   Arrival<N> arrival;
-  N pdf;  // per solid angle; 0 of a light that no ray can hit
+  N pdf;  // per solid angle; 0 if no ray can hit the light
 };
 
-// What a direction sees of a light that is infinitely far away.
+// Radiance of an infinitely distant light in one direction.
 template <class N>
 struct Seen {
   Vec3<N> radiance;
-  N pdf;  // of Drawn, in that direction
+  N pdf;  // density of draw() in that direction
 };
 
 }  // namespace orrery

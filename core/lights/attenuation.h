@@ -7,8 +7,8 @@ namespace orrery {
 
 class Params;
 
-// Weakening with distance: f(d) = min(1 / (c0 + c1 d + c2 d^2), most). In [0, 1] for every d >= 0, unless a
-// physical light is asked for: then `most` is what keeps numbers finite.
+// Distance attenuation f(d) = min(1 / (c0 + c1 d + c2 d^2), most). In [0, 1] for d >= 0 if limited; for
+// physical falloff, `most` only keeps values finite.
 template <class N>
 struct Attenuation {
   N c0, c1, c2, most;

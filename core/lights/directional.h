@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Light from infinitely far away: parallel, or from a disc in the sky. The disc's radiance is such that a
-// white Lambert surface which faces it reads its intensity.
+// Infinitely distant light, parallel or from a disc in the sky. A white Lambert surface facing the disc reads
+// `intensity`.
 template <class N>
 struct Directional {
   Vec3<N> from, intensity;
@@ -21,18 +21,18 @@ struct Directional {
 
   LightBounds bounds() const { return {.strength = max_component(intensity), .parallel = true}; }
 
-  Vec3d most_at(double) const { return intensity * (2 / (2 - height)); }  // of a disc that is faced
+  Vec3d most_at(double) const { return intensity * (2 / (2 - height)); }  // surface facing the disc
 
   Vec3d most_seen() const { return height > 0 ? intensity * (1 / (height * (2 - height))) : Vec3d(0); }
 
   Arrival<N> arrive(const Vec3<N>&) const { return {from, N(std::numeric_limits<T>::infinity()), intensity}; }
 
-  // A disc that is narrower than directions are rounded to is parallel light.
+  // Discs narrower than the rounding of directions count as parallel light.
   MaskOf<N> extended() const {
     constexpr T kRounded = std::numeric_limits<T>::epsilon();
     return height > N(kRounded * kRounded);
   }
-  // Evenly by solid angle.
+  // Samples the disc uniformly by solid angle.
   Drawn<N> draw(const Vec3<N>&, const N& u, const N& v) const {
     using std::sqrt;
     const N h = u * height, across = sqrt(h * (T(2) - h));
@@ -43,7 +43,7 @@ struct Directional {
     return {{direction, N(std::numeric_limits<T>::infinity()), intensity * (T(2) / (T(2) - height))},
             density()};
   }
-  // Radiance from the disc and density with which draw() gives a direction; 0 beside it.
+  // Returns the disc's radiance and the density of draw(), both 0 outside the disc.
   Seen<N> beyond(const Vec3<N>& direction) const {
     const Vec3<N> chord = direction - from;
     const auto inside = dot(chord, chord) <= T(2) * height && extended();

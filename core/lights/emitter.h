@@ -8,15 +8,15 @@
 
 namespace orrery {
 
-// The angle of a rectangle as seen from a point, and points drawn in proportion to it (Ureña, Fajardo, King,
-// "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013). The solid angle is a sum of arc
-// sines, where the arc cosines of the paper would cancel with a constant.
+// Spherical rectangle: solid angle of a rectangle and uniform samples of it (Ureña, Fajardo, King, "An
+// Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013). The solid angle is a sum of arc
+// sines, because the paper's arc cosines suffer cancellation against a constant.
 template <class N>
 class SphericalRectangle {
   using T = ScalarOf<N>;
 
  public:
-  // `from`: from the point to the corner. `a`, `b`: the sides' unit vectors and lengths.
+  // `from` points from the shading point to the corner. `a` and `b` are the unit vectors of the sides.
   SphericalRectangle(const Vec3<N>& from, const Vec3<N>& a, const N& length_a, const Vec3<N>& b,
                      const N& length_b, const Vec3<N>& normal) {
     using std::abs;
@@ -36,7 +36,7 @@ class SphericalRectangle {
 
   const N& angle() const { return angle_; }  // steradians
 
-  // The shares of the two sides, as lengths from the corner, of the point that u and v in [0, 1) choose.
+  // Distances along the two sides from the corner to the sample for u and v in [0, 1).
   struct Lengths {
     N along_a, along_b;
   };
@@ -70,19 +70,19 @@ class SphericalRectangle {
   N x0_, x1_, y0_, y1_, z0_, b0_, b1_, k_, angle_;
 };
 
-// A surface that sends out light on both sides, drawn from as a point sees it: rectangles and spheres by
-// solid angle, triangles and disks by area; for boxes and cylinders see SolidEmitter.
+// Two-sided emitting surface, sampled from a shading point: rectangles and spheres by solid angle, triangles
+// and disks by area. SolidEmitter samples boxes and cylinders.
 template <class N>
 struct Emitter {
-  Vec3<N> at, a, b;  // see Patch; a and b of a rectangle or a solid are unit vectors
-  Vec3<N> normal;    // unit, of a flat one; c of a solid, likewise
+  Vec3<N> at, a, b;  // see Patch; a and b are unit vectors for a rectangle or solid
+  Vec3<N> normal;    // unit; of a solid the direction of Patch::c
   Vec3<N> radiance;
-  N length_a, length_b, length_c;  // of Patch's vectors
+  N length_a, length_b, length_c;  // lengths of the vectors in Patch
   N kind, area, magnitude;
 
   struct Drawn {
-    Vec3<N> point, normal;  // on the emitter; the normal on any side
-    N pdf;                  // per solid angle; 0: nothing comes from there
+    Vec3<N> point, normal;  // on the emitter; the normal may face either side
+    N pdf;                  // per solid angle; 0 if no light arrives
   };
   Drawn draw(const Vec3<N>& from, const N& u, const N& v) const {
     const auto round = is(Patch::Kind::sphere);
@@ -97,11 +97,10 @@ struct Emitter {
 
   MaskOf<N> is_solid() const { return is(Patch::Kind::box) || is(Patch::Kind::cylinder); }
 
-  // Of a rectangle as seen from there, in steradians; 0 where it looks so small that it is drawn from by
-  // area.
+  // Returns a rectangle's solid angle in steradians, or 0 if it is so small that draw() samples by area.
   N angle(const Vec3<N>& from) const { return large_angle(spherical(from)); }
 
-  // Density with which draw() finds the direction of a unit ray that hits the emitter at t.
+  // Returns the density of draw() for the direction of a unit ray that hits the emitter at t.
   N pdf(const Ray<N>& ray, const N& t) const {
     using std::abs;
     const auto round = is(Patch::Kind::sphere);
@@ -117,8 +116,7 @@ struct Emitter {
 
  private:
   using T = ScalarOf<N>;
-  static constexpr T kLeastAngle =
-      T(0.02);  // steradians; a rectangle that looks smaller is drawn from by area
+  static constexpr T kLeastAngle = T(0.02);  // steradians; smaller rectangles are sampled by area
 
   N density(const N& distance2, const N& cosine) const {
     return select(cosine > N(T(0)), N(distance2 / (cosine * area)), N(T(0)));
@@ -169,9 +167,9 @@ struct Emitter {
     return {point, normal, select(by_angle > N(T(0)), select(cosine > N(T(0)), by_angle, N(T(0))), by_area)};
   }
 
-  // The cone in which a sphere is seen from outside.
+  // Cone of directions in which an outside point sees a sphere.
   struct Cone {
-    N height;   // 1 - the cosine of its half angle, without cancelling; 0 from inside
+    N height;   // 1 - cosine of the half angle, without cancellation; 0 from inside
     N density;  // per solid angle
   };
   Cone cone(const Vec3<N>& from) const {
@@ -179,7 +177,7 @@ struct Emitter {
     const Vec3<N> toward = at - from;
     const N distance2 = dot(toward, toward), zero(T(0)), one(T(1));
     const N sine2 = length_a * length_a / distance2;
-    // A point on the sphere, but for rounding, sees it from inside or not at all.
+    // Up to rounding, a point on the sphere sees it from inside or not at all.
     const N rounding = T(128) * std::numeric_limits<T>::epsilon() * magnitude * length_a;
     const auto outside = distance2 - length_a * length_a > rounding;
     const N height = sine2 / (one + sqrt(max_first(zero, N(one - sine2))));
@@ -193,12 +191,12 @@ struct Emitter {
     const auto [height, by_angle] = cone(from);
     const auto outside = height > zero;
     const auto [sine_v, cosine_v] = sine_cosine_turns(v);
-    // Of the direction from the centre (inside: any; outside: within the part that is seen).
+    // Samples a direction from the centre: any if `from` is inside, else one of the visible cap.
     const Vec3<N> toward = at - from;
     const N distance2 = dot(toward, toward), distance = sqrt(distance2);
     const N h = u * height, sine2 = h * (T(2) - h), cosine = one - h;
     const N root = sqrt(max_first(zero, N(length_a * length_a - distance2 * sine2)));
-    const N along = distance * cosine - root;  // to the hit
+    const N along = distance * cosine - root;  // distance to the hit
     const N axial = (distance - along * cosine) / length_a, across = along * sqrt(sine2) / length_a;
     const N z = select(outside, axial, N(one - T(2) * u));
     const N r = select(outside, across, sqrt(max_first(zero, N(one - z * z))));

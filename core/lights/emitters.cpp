@@ -65,8 +65,8 @@ class EmitterKernel final : public LightKernel<T> {
     return any(mine) ? select(mine, SolidEmitter<N>(emitter, ray.origin).pdf(ray, t), other) : other;
   }
 
-  // The shadow ray ends where it is as far above the emitter as rounding may move that or the ray's origin: a
-  // point of the emitter itself is not lit by it.
+  // Fills one register of `out`. The shadow ray stops short of the emitter by the possible rounding error of
+  // the emitter and of the ray's origin. A point of the emitter therefore does not light itself.
   static void put(const Emitter<N>& emitter, const SurfaceBatch<T>& surface, const PathDraws<T>& draws, int i,
                   const MaskOf<N>& mine, const N& probability, LightBatch<T>& out) {
     const N zero(T(0));
@@ -163,7 +163,7 @@ std::optional<Emitter<double>> make_emitter(const Patch& patch, const Vec3d& rad
       break;
   }
   Emitter<double> emitter = make_emitter(placed, radiance);
-  // Hits are off by what rounding moves them in the model, and on the way from there: see Placed.
+  // Hits move by rounding in the model and on the way to the world: see Placed.
   const double in_model = make_emitter(patch, radiance).magnitude;
   const double moved = stretch(world_from_model) * in_model + max_component(abs(world_from_model.origin));
   emitter.magnitude = std::max(emitter.magnitude, 2 * moved);
@@ -198,7 +198,7 @@ LightBounds bounds_of(const Emitter<double>& e) {
           e.kind == static_cast<double>(Patch::Kind::box) ? std::hypot(e.length_a, e.length_b) : e.length_a;
       bounds.radius = std::hypot(across, e.length_c);
       bounds.normal = Vec3d(0);
-      seen_area /= 4;  // of any convex body, in the mean over directions (Cauchy)
+      seen_area /= 4;  // mean projected area of a convex body (Cauchy)
       break;
     }
   }

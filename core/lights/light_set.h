@@ -6,20 +6,21 @@
 #include "core/model/light.h"
 #include "core/model/record.h"
 
-// A light type that one point or direction stands for is one record, `template <class N> struct Point`, with
+// Light types that one point or direction represents.
+// Each type is one record, `template <class N> struct Point`, with
 //   static constexpr LightTraits kTraits;
 //   static Point<double> read(Params&);                in the .cpp, which registers the type
-//   Vec3<N> intensity;                                 at the source, or whole_intensity(), likewise
-//   RoundingLimit rounding() const;                    of a Point<double>, if it has one
-//   LightBounds bounds() const;                        of a Point<double>
-//   Vec3d most_at(double distance) const;              likewise; see LightSet
-//   Arrival<N> arrive(const Vec3<N>& position) const;  what arrives at a surface point
-// and, if it may have an extent that paths see,
-//   MaskOf<N> extended() const;                        whether it has
-//   Drawn<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  from a point that u and v choose
-//   Seen<N> beyond(const Vec3<N>& direction) const;    if it is infinitely far away, and then
-//   Vec3d most_seen() const;                           of a Point<double>; see LightSet
-// and `make_light_set<Point>` is its factory.
+//   Vec3<N> intensity;                                 at the source; or whole_intensity()
+//   RoundingLimit rounding() const;                    optional, of Point<double>
+//   LightBounds bounds() const;                        of Point<double>
+//   Vec3d most_at(double distance) const;              of Point<double>; see LightSet
+//   Arrival<N> arrive(const Vec3<N>& position) const;  light that arrives at a surface point
+// and, if path tracing samples its extent,
+//   MaskOf<N> extended() const;                        whether it has an extent
+//   Drawn<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  samples a point by u and v
+//   Seen<N> beyond(const Vec3<N>& direction) const;    only for infinitely distant lights, with
+//   Vec3d most_seen() const;                           of Point<double>; see LightSet
+// `make_light_set<Point>` is its factory.
 namespace orrery {
 
 template <template <class> class Record, class T>

@@ -8,7 +8,7 @@
 
 namespace orrery {
 
-// A line without width, every point of which sends out the same in all directions. Rays do not meet it.
+// Line light without width, of uniform intensity along its length and in all directions. Rays cannot hit it.
 template <class N>
 struct Line {
   Vec3<N> start, along;  // along: unit
@@ -20,7 +20,7 @@ struct Line {
 
   Vec3<N> whole_intensity() const { return intensity * extent; }
 
-  // Of the whole power from its middle, bounded by what arrives half its length away.
+  // Treats the whole power as emitted at the midpoint, bounded by the value at half the line's length.
   LightBounds bounds() const {
     return {.centre = start + along * (extent / 2),
             .radius = extent / 2,
@@ -35,7 +35,7 @@ struct Line {
     return {of(intensity.x), of(intensity.y), of(intensity.z)};
   }
 
-  // Of the whole power from its middle.
+  // Treats the whole power as emitted at the midpoint.
   Arrival<N> arrive(const Vec3<N>& position) const {
     const Vec3<N> line = start + along * (extent * T(0.5)) - position;
     const N distance2 = dot(line, line), distance = length(line);
@@ -46,9 +46,9 @@ struct Line {
   }
 
   MaskOf<N> extended() const { return extent > N(T(0)); }
-  // Evenly by the angle under which the line is seen: that cancels the square of the distance. With h metres
-  // from the line, and s and t along it from the nearest point to its start and to where it is met after an
-  // angle d, t = h (s cos d + h sin d) / (h cos d - s sin d).
+  // Samples the line uniformly by the angle it subtends, which cancels the squared distance. h is the
+  // distance from the line. s and t are positions along the line, from the nearest point to its start and to
+  // the sample. After an angle d from the start, t = h (s cos d + h sin d) / (h cos d - s sin d).
   Drawn<N> draw(const Vec3<N>& position, const N& u, const N&) const {
     const Vec3<N> toward_start = start - position;
     const N s = dot(toward_start, along), end = s + extent;

@@ -6,7 +6,7 @@
 
 namespace orrery {
 
-// Light from one point in all directions.
+// Point light, uniform in all directions.
 template <class N>
 struct PointLight {
   Vec3<N> position, intensity;

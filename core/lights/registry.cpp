@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// One line a type; the rest is in the file of its name.
+// One line per light type, implemented in the file of the same name.
 // clang-format off
 #define ORRERY_LIGHTS(add) \
   add(directional)         \

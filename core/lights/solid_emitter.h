@@ -4,14 +4,14 @@
 
 namespace orrery {
 
-// The wall of a cylinder as a point outside sees it: drawn from evenly across what is seen of its width, and
-// along it by the angle.
+// Cylinder wall visible from an outside point. Samples are uniform across its visible width and uniform in
+// the sine of the elevation along its length.
 template <class N>
 class SeenWall {
   using T = ScalarOf<N>;
 
  public:
-  // `from`: from the cylinder's centre to the point. `axis`: a unit vector.
+  // `from` points from the cylinder's centre to the shading point. `axis` is a unit vector.
   SeenWall(const Vec3<N>& from, const Vec3<N>& axis, const N& radius, const N& half_length)
       : axis_(axis), radius_(radius), along_(dot(from, axis)) {
     using std::sqrt;
@@ -29,8 +29,8 @@ class SeenWall {
     half_width_ = sqrt(max_first(zero, N((one - share) * (one + share))));
   }
 
-  const MaskOf<N>& outside() const { return outside_; }  // of the cylinder without ends
-  // Steradians, about: exact for a thin one.
+  const MaskOf<N>& outside() const { return outside_; }  // whether the point is outside the infinite cylinder
+  // Returns the approximate solid angle in steradians, exact for a thin cylinder.
   N angle() const { return T(2) * radius_ / reach_ * range_; }
 
   struct Point {
@@ -47,7 +47,7 @@ class SeenWall {
     return {axis_ * (along_ + z) + normal * radius_, normal};
   }
 
-  // Per area, with which draw() finds a point.
+  // Returns the density of draw() per area.
   N density(const Point& point) const {
     using std::sqrt;
     const N zero(T(0)), z = dot(point.from_centre, axis_) - along_, squares = z * z + reach_ * reach_;
@@ -67,9 +67,9 @@ class SeenWall {
   MaskOf<N> outside_;
 };
 
-// Boxes and cylinders that send out light: one of their faces, or the wall, is drawn from, of those that a
-// point outside sees, by about the angle under which it is seen. Nothing is drawn from inside, where they
-// fill the view, and whose points by rounding lie outside. Other lanes are meaningless.
+// Emitting box or cylinder, sampled from an outside point: selects one of its visible faces, or the wall, by
+// approximate solid angle. The density is 0 from inside: the solid fills the view, and rounding may move
+// points of its inner surface outside. Lanes of other emitters are undefined.
 template <class N>
 class SolidEmitter {
   using T = ScalarOf<N>;
@@ -108,7 +108,7 @@ class SolidEmitter {
             select(share > zero, N(select(on_wall, round.pdf, flat.pdf) * share / sum_), zero)};
   }
 
-  // Density with which draw() finds the direction of a unit ray from the point that hits the solid at t.
+  // Returns the density of draw() for the direction of a unit ray that hits the solid at t.
   N pdf(const Ray<N>& ray, const N& t) const {
     const Vec3<N> hit = ray.at(t);
     N nearest(std::numeric_limits<T>::infinity()), share(T(0));
@@ -129,9 +129,9 @@ class SolidEmitter {
   }
 
  private:
-  static constexpr int kParts = 6;  // of a cylinder three: its ends and the wall, which stays a cylinder
+  static constexpr int kParts = 6;  // a cylinder has three: two ends and the wall, which keeps Kind::cylinder
 
-  // Outward normals.
+  // Returns part k, with its normal outward.
   Emitter<N> part(int k) const {
     const std::array<Vec3<N>, 3> axes{solid_.normal, solid_.a, solid_.b};
     const std::array<N, 3> half{solid_.length_c, solid_.length_a, solid_.length_b};

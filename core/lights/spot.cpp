@@ -20,7 +20,7 @@ Spot<double> Spot<N>::read(Params& p) {
   return {position, direction, intensity, attenuation, cos_inner, cos_outer, cos_inner - cos_outer};
 }
 
-// The cosine of a direction is off by some epsilon, and with it a smooth step by 1.5 epsilon over its width.
+// Cosines of directions are off by about an epsilon; the smooth step multiplies this by 1.5 over its width.
 template <class N>
 RoundingLimit Spot<N>::rounding() const {
   constexpr double kMostError = 2e-4;

@@ -6,8 +6,7 @@
 
 namespace orrery {
 
-// Light from one point in a cone: full inside the inner cone, nothing outside the outer one, a smooth step in
-// the cosine between.
+// Spot light: full inside the inner cone, 0 outside the outer cone, a smooth step in the cosine between.
 template <class N>
 struct Spot {
   Vec3<N> position, direction, intensity;
@@ -19,7 +18,7 @@ struct Spot {
 
   RoundingLimit rounding() const;
 
-  // Of the cone's inside, everywhere.
+  // Assumes the full beam in every direction.
   LightBounds bounds() const {
     return {.centre = position,
             .strength = max_component(intensity),
@@ -39,7 +38,7 @@ struct Spot {
             intensity * (attenuation.at(distance) * beam)};
   }
 
-  // Equal angles make the quotient infinite or NaN: a step, full at the angle itself.
+  // Equal angles make the quotient infinite or NaN. The result is then a step, full at the angle itself.
   N cone(const N& cosine) const {
     using T = ScalarOf<N>;
     const N x = (cosine - cos_outer) / cos_range;
