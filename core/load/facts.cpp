@@ -19,7 +19,7 @@ void take_smaller(Extreme& extreme, double value, const std::string& where) {
   if (value < extreme.value) extreme = {value, where};
 }
 
-// What a list of sets says alone; each primitive is asked once.
+// Extents of a list of shape sets, computed in one pass over the primitives.
 struct Extents {
   struct Length {
     double value;
@@ -52,13 +52,13 @@ struct Extents {
   }
 };
 
-// Largest coordinate that a point of the model may have: on its way between two keys it turns.
+// Returns a bound on the coordinates of a model's point, including its rotation between two keys.
 double reach_of(const Instance& instance, const Affined& world_from_model, const Vec3d& point) {
   if (instance.motion.times.size() == 1) return max_component(abs(world_from_model.point(point)));
   return max_component(abs(world_from_model.origin)) + length(world_from_model.vector(point));
 }
 
-// Of instances in the world and, because rays are taken there, in their models.
+// Adds instances in world coordinates and, because rays are traced there, in model coordinates.
 void add_instances(const Scene& scene, SceneFacts& facts) {
   std::vector<Extents> of_models;
   for (const Model& model : scene.models) {
@@ -74,7 +74,7 @@ void add_instances(const Scene& scene, SceneFacts& facts) {
       take_larger(facts.magnitude, own.magnitude.value, where);
       take_smaller(facts.smallest_feature, own.smallest.value / stretch(inverse(world_from_model)), where);
       facts.unbounded = facts.unbounded || own.has_unbounded;
-      if (own.has_unbounded)  // the point that places it
+      if (own.has_unbounded)  // anchor point of an unbounded primitive
         take_larger(
             facts.magnitude,
             max_component(abs(world_from_model.origin)) + stretch(world_from_model) * own.magnitude.value,
@@ -97,7 +97,7 @@ void add_lights(const Scene& scene, SceneFacts& facts) {
   }
 }
 
-// The first primitive that has each material; -1: none.
+// Returns the first primitive of each material, or -1 if the material is unused.
 std::vector<std::int32_t> find_first_users(const Scene& scene) {
   std::vector<std::int32_t> first_user;
   for (std::size_t p = scene.material_of.size(); p-- > 0;) {
@@ -108,7 +108,7 @@ std::vector<std::int32_t> find_first_users(const Scene& scene) {
   return first_user;
 }
 
-// Of the materials that some primitive has.
+// Adds the materials that some primitive uses.
 void add_materials(const Scene& scene, std::span<const std::int32_t> first_user, SceneFacts& facts) {
   std::size_t first = 0;
   for (const auto& set : scene.materials) {

@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// What the plan wants to know about a scene that is read but for this. REQUIRES: its primitives, materials
-// and objects are numbered, its motion is known.
+// Computes the facts about a scene that the plan needs. REQUIRES: primitives, materials and objects are
+// numbered, and scene.motion is set.
 SceneFacts gather_facts(const Scene& scene);
 
 }  // namespace orrery

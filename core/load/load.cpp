@@ -59,7 +59,8 @@ void read_camera(Params& p, Scene& scene) {
     p.fail("up", "expected a direction that is not along the view");
 }
 
-// Reads each mesh once, however often a scene names it. (Pictures are named once.)
+// Asset source that loads each mesh once, however often the scene names it. Images are not cached, because a
+// scene names only one.
 class ReadOnce final : public AssetSource {
  public:
   explicit ReadOnce(const AssetSource& from) : from_(from) {}
@@ -83,7 +84,7 @@ class ReadOnce final : public AssetSource {
   mutable Meshes files_, assets_;
 };
 
-// Where the primitives of a scene or a model get their material from.
+// Reads the objects of a scene or model and records the material of each.
 class ObjectReader {
  public:
   explicit ObjectReader(std::vector<std::unique_ptr<ShapeSet>>& shapes) : shapes_(shapes) {
@@ -100,7 +101,7 @@ class ObjectReader {
     objects_by_shape_[*type].push_back({material, primitives, count_++});
   }
 
-  // Calls visit(material name, primitives, object) in the order of the primitives' numbers.
+  // Calls visit(material name index, primitive count, object) in the order of primitive numbers.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& objects : objects_by_shape_)
@@ -112,7 +113,7 @@ class ObjectReader {
   struct ObjectOf {
     std::size_t material;
     int primitives;
-    std::int32_t object;  // counted as they were read
+    std::int32_t object;  // index in reading order
   };
   std::int32_t count_ = 0;
   std::vector<std::unique_ptr<ShapeSet>>& shapes_;
@@ -131,7 +132,7 @@ Vec3d read_scale(Params& p, const Fallback<Vec3d>& fallback) {
   return {scale[0], scale[1], scale[2]};
 }
 
-// How it stands at one time; what is left out is as in `rest`.
+// Reads the placement at one key. Missing values default to those of `rest`.
 Placement read_key(Params& p, const Placement& rest) {
   Placement key{read_scale(p, derived(rest.scale)),
                 p.number("degrees", "About the axis of 'rotate'; more than a turn is several.", kTurns,
@@ -206,7 +207,7 @@ class SceneReader {
                       [&](Params& r) { read_scene_options(r, Section::render, scene_->render); });
   }
 
-  // To be called once all is read without a problem.
+  // REQUIRES: the whole scene was read without a problem.
   std::shared_ptr<const Scene> finish(const Document& document) {
     scene_->canonical = document.canonical();
     scene_->id = sha256_hex(scene_->canonical);
@@ -215,7 +216,7 @@ class SceneReader {
     gather_motion();
     scene_->facts = gather_facts(*scene_);
     const Extreme& smallest = scene_->facts.smallest_feature;
-    if (smallest.value > 0 && smallest.value < kMinSize)  // 0 for a while: triangles that move
+    if (smallest.value > 0 && smallest.value < kMinSize)  // moving triangles may have size 0 at times
       throw InputError(smallest.where, "expected shapes and triangles of at least " + number_text(kMinSize) +
                                            " m in size, got " + number_text(smallest.value));
     return scene_;
@@ -224,7 +225,7 @@ class SceneReader {
  private:
   struct MaterialPlace {
     std::size_t set;
-    int index;  // within the set
+    int index;  // in the set
     Vec3d emission;
   };
 
@@ -267,7 +268,7 @@ class SceneReader {
            [&](Params& o) { objects.read(o, names_, meshes_); });
   }
 
-  // Materials are numbered set by set, and each primitive learns its number.
+  // Numbers the materials set by set and stores the number for each primitive.
   void number_materials() {
     std::vector<int> first(scene_->materials.size(), 0);
     for (std::size_t set = 1; set < first.size(); ++set)
@@ -290,7 +291,8 @@ class SceneReader {
     }
   }
 
-  // Which primitives belong to which object: each run lasts until the next, so empty ones are left out.
+  // Records which primitives belong to which object. A run lasts until the next one, so empty runs are
+  // skipped.
   void number_objects() {
     std::int32_t primitive = 0, resting = 0;
     const auto add = [&](std::size_t primitives, std::int32_t object) {
@@ -305,7 +307,7 @@ class SceneReader {
       add(scene_->models[instance.model].material_of.size(), resting++);
   }
 
-  // Of what stands in the scene.
+  // Sets the time span of everything that moves in the scene.
   void gather_motion() {
     std::vector<double> times;
     const auto add = [&times](const std::vector<double>& some) {
@@ -327,10 +329,10 @@ class SceneReader {
   }
 
   const ReadOnce assets_;
-  MeshSource meshes_{assets_};  // of all models
+  MeshSource meshes_{assets_};  // shared by the scene and its models
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};
-  std::vector<MaterialPlace> places_;  // by number of the name
+  std::vector<MaterialPlace> places_;  // by index of the material name
   ObjectReader objects_;
   Names model_names_{"model"};
   std::deque<ObjectReader> model_objects_;  // in the order of scene_->models

@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-// Without 0 times infinity.
+// Multiplies component by component; 0 times infinity is 0.
 Vec3d product(const Vec3d& a, const Vec3d& b) {
   const auto times = [](double x, double y) { return x == 0 || y == 0 ? 0 : x * y; };
   return {times(a.x, b.x), times(a.y, b.y), times(a.z, b.z)};
@@ -16,12 +16,12 @@ double distance_to(const Boundsd& box, const Vec3d& p) {
   return length(largest(zero, largest(box.lo - p, p - box.hi)));
 }
 
-// All that light sources may bring to a point at once: taken for points, and as far as they are wide.
+// Upper bounds of the light that all sources together bring to one point, as point lights and with extents.
 struct DirectLight {
   Vec3d of_points{0.0}, of_extents{0.0};
 };
 
-// Where something moves or is unbounded, nothing is known of distances.
+// Assumes distance 0 to all lights if the scene moves or is unbounded.
 DirectLight find_direct_light(const Scene& scene, const SceneFacts& facts) {
   const bool anywhere = facts.unbounded || !scene.motion.empty() || !facts.bounds.bounded();
   DirectLight found;
@@ -35,12 +35,12 @@ DirectLight find_direct_light(const Scene& scene, const SceneFacts& facts) {
   return found;
 }
 
-// Seen by rays that meet nothing.
+// Returns the maximum radiance of rays that miss all surfaces.
 Vec3d most_beyond(const Scene& scene) {
   return scene.environment ? scene.environment->most() : scene.background;
 }
 
-// The least that satisfies V = own + albedo V; nothing grows from nothing.
+// Returns the smallest V with V = own + albedo V per channel: 0 if own is 0, else infinite if albedo >= 1.
 Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
   const auto series = [](double of_itself, double share) {
     return of_itself == 0 ? 0 : share < 1 ? of_itself / (1 - share) : kUnlimited;
@@ -50,14 +50,15 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
 
 }  // namespace
 
-// What a surface sends out by itself and of light sources is its own; what it mirrors and refracts, or sends
-// on of what others send, is an average over their radiance. So a maximum V over all surfaces is at most
-// that over surfaces of own + albedo V. Trees send on nothing but what is mirrored and refracted, a share R,
-// and then own is at most 1 - R of a limit but for what shines by itself.
+// Bounds the radiance that each technique can find. `own` is the radiance that a surface emits and reflects
+// directly from light sources. All other radiance that it reflects or refracts is an average over other
+// surfaces. The maximum V over all surfaces is therefore at most the maximum of own + albedo V. Ray trees
+// follow only mirror reflection and refraction, a share R; `own` is then at most 1 - R of the limit, except
+// for emission.
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
   const DirectLight light = find_direct_light(scene, facts);
   Vec3d tree = most_beyond(scene), paths = tree;
-  for (const LightPlace& place : scene.lights)  // suns stand before the sky, and may overlap
+  for (const LightPlace& place : scene.lights)  // sun discs are in front of the sky and may overlap
     paths = paths + scene.light_sets[place.set]->most_seen(place.index);
   Vec3d distributed = paths;
   std::size_t number = 0;

@@ -16,37 +16,37 @@ namespace orrery {
 namespace {
 
 constexpr std::size_t kMostPrimitives = 256;
-// Of a motion: evenly spread ones, the first and the last among them, and times of keys, where things rest.
+// Sample times of a motion: evenly spaced ones, both ends included, and key times.
 constexpr int kEvenMoments = 9;
 constexpr std::size_t kMostKeyTimes = 16;
-// Rays toward all primitives, but so many at least toward each, as far as kMostTests allows.
+// Rays toward all primitives in total and the minimum per primitive, within kMostTests.
 constexpr std::size_t kManyRays = 1024, kFewestRays = 6;
-constexpr std::size_t kMostTests = 1u << 19;  // of a ray with a primitive, at all moments
-constexpr double kCoincident = 1e-13;         // of the largest coordinate: what is as near is one surface
-constexpr double kBeside = 0.05;              // of a primitive's size
-constexpr double kSame = 1e-6;                // relative difference of distances that are one
-constexpr double kLayerGap = 1e-3;            // of a primitive's size: farther surfaces are no layers
-constexpr double kParallel = 0.99;            // least cosine between the normals of surfaces that run alike
+constexpr std::size_t kMostTests = 1u << 19;  // ray-primitive tests, over all sample times
+constexpr double kCoincident = 1e-13;         // times the largest coordinate; nearer surfaces count as one
+constexpr double kBeside = 0.05;              // shift to a neighbouring ray, times the primitive's size
+constexpr double kSame = 1e-6;                // relative tolerance of equal distances
+constexpr double kLayerGap = 1e-3;  // times the primitive's size; surfaces farther apart are not layers
+constexpr double kParallel = 0.99;  // minimum cosine between the normals of parallel surfaces
 
-// A primitive where it stands.
+// Primitive in the world at one time.
 struct Placed {
   bool moves;
-  std::size_t object;  // place in Scene::object_runs
+  std::size_t object;  // index into Scene::object_runs
   const ShapeSet* shapes;
   const ShapeKernel<double>* kernel;
-  int index, number;  // within the set; within the scene
+  int index, number;  // in the set; in the scene
   Affined world_from_model, model_from_world;
   Boundsd box;  // in the world
 };
 
 struct SurfaceAt {
   Vec3d position;
-  Vec3d outward;    // unit normal of the primitive
-  Vec3d shading;    // the one that light sees, which rounds off meshes
-  double distance;  // along the ray, in its lengths
+  Vec3d outward;    // unit geometric normal
+  Vec3d shading;    // shading normal, smoothed on meshes
+  double distance;  // along the ray, in lengths of its direction
 };
 
-// Meets primitives with single rays.
+// Intersects single rays with primitives and counts the tests.
 class Probe {
  public:
   std::optional<SurfaceAt> meet(const Placed& placed, const Ray<double>& ray) {
@@ -61,7 +61,7 @@ class Probe {
     placed.kernel->closest(placed.index, rays_, kOne, hits_, uncounted);
     if (hits_.primitive[0] == kNoPrimitive) return std::nullopt;
     placed.kernel->surface(rays_, hits_, kOne, met_);
-    const auto to_world = [&](const Vec3d& n) {  // by the inverse transposed
+    const auto to_world = [&](const Vec3d& n) {  // normals transform by the inverse transpose
       return safe_normalize(Vec3d(dot(into.x, n), dot(into.y, n), dot(into.z, n))) * met_.side[0];
     };
     return SurfaceAt{placed.world_from_model.point(met_.position[0]), to_world(met_.geometric[0]),
@@ -83,7 +83,8 @@ bool may_meet(const Boundsd& box, const Ray<double>& ray) {
                 std::numeric_limits<double>::max());
 }
 
-// Curved mirrors that one of them sees, the distance to the nearest, and the radius there.
+// Curved mirrors visible from one curved mirror, the distance to the nearest, and the radius of curvature of
+// the viewing mirror there.
 struct MirrorsSeen {
   std::set<std::size_t> others;
   double distance = std::numeric_limits<double>::infinity(), radius = 0;
@@ -129,7 +130,8 @@ class Gauge {
     return times;
   }
 
-  // What moves, or everything: round by round one ray toward each primitive, then pairs that overlap.
+  // Measures all primitives, or only moving ones. Each round traces one ray toward each primitive;
+  // overlapping pairs follow.
   void measure_placed(bool moving_alone, std::size_t before, std::size_t tests) {
     most_tests_ = before + tests / 2;
     std::vector<std::vector<Ray<double>>> rays;
@@ -150,7 +152,8 @@ class Gauge {
     measure_pairs(moving_alone);
   }
 
-  // Layers of two primitives that overlap only in part: by rays through the middle of what their boxes share.
+  // Measures layers of two primitives that overlap only in part, by rays through the middle of their boxes'
+  // intersection.
   void measure_pairs(bool moving_alone) {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
       interruption_point();
@@ -173,7 +176,7 @@ class Gauge {
                                                                  : Vec3d(0, 0, 1);
     const auto first = probe_.meet(one, {middle - along * size, along});
     if (!first) return;
-    // From just outside of it, at three points that are not on one line.
+    // Compares both surfaces from just outside the first one, at three points that are not collinear.
     const Tangents<double> aside = tangents_of(first->outward);
     double distance = 0;
     for (const Vec3d& shift : {Vec3d(), aside.first, aside.second}) {
@@ -185,7 +188,7 @@ class Gauge {
     }
     if (distance > kCoincident * magnitude_) take_distance(one, distance);
   }
-  // Of distances that are the same but for rounding, the object that comes first is named.
+  // Keeps the smaller layer distance. If distances are equal up to rounding, reports the first object.
   void take_distance(const Placed& from, double distance) {
     const double ratio = distance / spacing_.layer_distance.value;
     const int object = scene_.object_runs[from.object].object;
@@ -235,9 +238,9 @@ class Gauge {
     return box;
   }
 
-  // Rays that may meet the primitive: of a triangle at its middle and near its corners, along its normal; of
-  // what has no bounds from where the camera looks and from beside it; of others toward the middle of the
-  // box.
+  // Returns rays that may hit the primitive. For a triangle: along its normal, at its middle and near its
+  // corners. For an unbounded primitive: from look_at and from a point near it. For others: toward the middle
+  // of the box.
   std::vector<Ray<double>> rays_at(const Placed& placed) const {
     std::vector<Ray<double>> rays;
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
@@ -256,7 +259,7 @@ class Gauge {
     if (!bounded) add_toward(beside_look_at(), 0, rays);
     return rays;
   }
-  // Rays from `away` metres off `middle` toward it, from all sides.
+  // Adds rays from all sides that start `away` metres from `middle` and aim at it.
   static void add_toward(const Vec3d& middle, double away, std::vector<Ray<double>>& rays) {
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
@@ -266,14 +269,14 @@ class Gauge {
           rays.push_back({middle + toward * away, -toward});
         }
   }
-  // Off the lines on which surfaces that are placed about look_at may cross.
+  // Returns a point off the lines in which surfaces placed about look_at may intersect.
   Vec3d beside_look_at() const {
     const Vec3d &at = scene_.placement.look_at, back = scene_.placement.eye - at;
     return at + (back + tangents_of(safe_normalize(back)).first * length(back) * 0.5) * 0.25;
   }
   static Vec3d mix(const Vec3d& corner, const Vec3d& middle) { return corner * 0.8 + middle * 0.2; }
 
-  // At three points beside each other, for two spheres that touch are near at one point alone.
+  // Measures at three neighbouring points, because two touching spheres are close at a single point only.
   void look_around(const Placed& from, const Ray<double>& ray, MirrorsSeen& seen) {
     const auto first = probe_.meet(from, ray);
     if (!first) return;
@@ -291,7 +294,8 @@ class Gauge {
     if (complete_) look_for_mirrors(from, at, seen);
   }
 
-  // From a point to two beside it: of a triangle, however thin, such as are on it.
+  // Returns the shifts to two neighbouring points. On a triangle they follow its sides, so that the points
+  // stay on it however thin it is.
   static std::pair<Vec3d, Vec3d> beside(const Placed& placed, const SurfaceAt& at, double size) {
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
     if (hull.size() == 1) {
@@ -328,8 +332,9 @@ class Gauge {
     seen.others.insert(*other);
     if (distance < seen.distance) seen.distance = distance, seen.radius = radius;
   }
-  // The errors of rays to mirrors at distance d grow by 1 + 2 d / r; but of all rays that leave a mirror only
-  // the share (r / (d + r))^2, about, meets each of the others, and the mean square is what counts.
+  // Ray errors grow by 1 + 2 d / r on the way to a mirror at distance d. About (r / (d + r))^2 of the rays
+  // that leave a mirror hit any one of the others. The growth is weighted by the root of the share that hits
+  // any, because errors count by their mean square.
   void take_mirror(const Placed& from, const MirrorsSeen& seen) {
     const auto& [others, d, r] = seen;
     if (others.empty()) return;
@@ -338,7 +343,8 @@ class Gauge {
     if (counted > spacing_.mirrors.growth)
       spacing_.mirrors = {counted, r, pointer_to_object(scene_, from.number)};
   }
-  // From the curvatures along two directions at right angles: exact for a cylinder, r / sqrt 2 for a sphere.
+  // Estimates the radius from the curvatures in two perpendicular directions: exact for a cylinder, r / sqrt
+  // 2 for a sphere.
   static double radius_at(const std::array<SurfaceAt, 3>& at) {
     const auto curvature = [&](const SurfaceAt& beside) {
       return length(beside.shading - at[0].shading) / length(beside.position - at[0].position);
@@ -359,8 +365,8 @@ class Gauge {
     return shares_[static_cast<std::size_t>(scene_.material_of[static_cast<std::size_t>(placed.number)])];
   }
 
-  // Distance to the nearest primitive along `along` of which is_such(primitive, surface there); none:
-  // infinite.
+  // Returns the distance to the nearest primitive along `along` for which is_such(primitive, surface) holds,
+  // or infinity.
   template <class IsSuch>
   double nearest(const SurfaceAt& from, const Vec3d& along, const IsSuch& is_such) {
     const double least = kCoincident * magnitude_;
@@ -378,15 +384,15 @@ class Gauge {
   const Scene& scene_;
   const double magnitude_;
   std::vector<std::unique_ptr<ShapeSet>> moved_;
-  std::deque<ShapeKernelPtr<double>> kernels_;                 // of what has moved
-  std::map<const ShapeSet*, ShapeKernelPtr<double>> resting_;  // of what has not
+  std::deque<ShapeKernelPtr<double>> kernels_;                 // kernels of moving shapes
+  std::map<const ShapeSet*, ShapeKernelPtr<double>> resting_;  // kernels of resting shapes
   std::vector<Placed> placed_;
-  bool complete_ = true;        // nothing was left out: else it is unknown which mirrors see each other
-  std::vector<double> shares_;  // mirrored, of each material
+  bool complete_ = true;        // false if primitives were skipped; mirrors are then not measured
+  std::vector<double> shares_;  // mirrored share of each material
   Probe probe_;
-  std::vector<MirrorsSeen> mirrors_;  // by each object
-  int layer_object_ = 0;              // that has the layers
-  std::size_t most_tests_ = 0;        // at this moment and those before
+  std::vector<MirrorsSeen> mirrors_;  // by object
+  int layer_object_ = 0;              // object of spacing_.layer_distance
+  std::size_t most_tests_ = 0;        // up to and including this sample time
   Spacing spacing_;
 };
 

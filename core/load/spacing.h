@@ -4,17 +4,17 @@
 
 namespace orrery {
 
-// How near to each other the surfaces of a scene run, measured by rays in double precision that leave a few
-// points of each primitive along its normal, at nine moments of the scene's motion and at times of its keys.
-// Looks at the first 256 primitives, and for mirrors at scenes of no more.
+// Distances between the surfaces of a scene. Double-precision rays leave a few points of each primitive along
+// its normal, at nine times of the scene's motion and at key times. Covers the first 256 primitives; measures
+// mirrors only in scenes with no more.
 struct Spacing {
-  // Smallest distance between two surfaces that run alike: the sides of one body, or those of two.
+  // Smallest distance between two parallel surfaces, of one body or of two.
   Extreme layer_distance{std::numeric_limits<double>::infinity(), ""};
-  // The curved mirror from which errors grow most toward other curved mirrors: see take_mirror().
+  // Curved mirror with the largest error growth toward other curved mirrors: see take_mirror().
   MirrorChain mirrors;
 };
 
-// `facts`: magnitude and bounds are known.
+// REQUIRES: facts.magnitude is set.
 Spacing measure_spacing(const Scene& scene, const SceneFacts& facts);
 
 }  // namespace orrery
