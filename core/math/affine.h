@@ -7,14 +7,15 @@
 
 namespace orrery {
 
-// p -> x p.x + y p.y + z p.z + origin.
+// Affine map p -> x p.x + y p.y + z p.z + origin.
 template <class N>
 struct Affine {
   Vec3<N> x{N(1), N(0), N(0)}, y{N(0), N(1), N(0)}, z{N(0), N(0), N(1)}, origin;
 
   Vec3<N> vector(const Vec3<N>& v) const { return x * v.x + y * v.y + z * v.z; }
   Vec3<N> point(const Vec3<N>& p) const { return vector(p) + origin; }
-  // The linear part transposed, times v. Of the inverse: takes normals, of any length, to normals.
+  // Multiplies `v` by the transpose of the linear part. On the inverse map, this transforms normals without
+  // normalising them.
   Vec3<N> transposed(const Vec3<N>& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
 
   template <class M>
@@ -25,34 +26,34 @@ struct Affine {
 
 using Affined = Affine<double>;
 
-// First `inner`, then `outer`.
+// Returns the map that applies `inner`, then `outer`.
 inline Affined compose(const Affined& outer, const Affined& inner) {
   return {outer.vector(inner.x), outer.vector(inner.y), outer.vector(inner.z), outer.point(inner.origin)};
 }
 
-// The linear part over its largest entry, so that products of three entries stay in range.
+// Returns the linear part over its largest entry, so that products of three entries stay in range.
 inline Affined scaled(const Affined& a) {
   const double largest =
       std::max({max_component(abs(a.x)), max_component(abs(a.y)), max_component(abs(a.z))});
   return largest > 0 ? Affined{a.x / largest, a.y / largest, a.z / largest, {}} : a;
 }
 
-// Signed volume that the unit cube gets, with the largest entry scaled to 1: negative turns anticlockwise
-// into clockwise, 0 has no inverse.
+// Returns the determinant with the largest entry scaled to 1. Negative if the map mirrors, 0 if it has no
+// inverse.
 inline double scaled_determinant(const Affined& a) {
   const Affined s = scaled(a);
   return dot(s.x, cross(s.y, s.z));
 }
 
-// The normal of a transformed surface, of any length: by the inverse transpose, which is the matrix of
-// cofactors over the determinant.
+// Transforms a surface normal without normalising it. Uses the inverse transpose, which is the cofactor
+// matrix over the determinant.
 inline Vec3d transformed_normal(const Affined& a, const Vec3d& n) {
   const Affined s = scaled(a);
   const Vec3d turned = cross(s.y, s.z) * n.x + cross(s.z, s.x) * n.y + cross(s.x, s.y) * n.z;
   return scaled_determinant(a) < 0 ? -turned : turned;
 }
 
-// REQUIRES: scaled_determinant(a) != 0.
+// Returns the inverse map. REQUIRES: scaled_determinant(a) != 0.
 inline Affined inverse(const Affined& a) {
   const double largest =
       std::max({max_component(abs(a.x)), max_component(abs(a.y)), max_component(abs(a.z))});
@@ -64,10 +65,11 @@ inline Affined inverse(const Affined& a) {
   return inverse;
 }
 
-// Most that the linear part stretches the largest coordinate of a vector.
+// Returns the largest factor by which the linear part scales a vector's largest coordinate.
 inline double stretch(const Affined& a) { return max_component(abs(a.x) + abs(a.y) + abs(a.z)); }
 
-// `degrees` anticlockwise about the unit vector `axis`, seen from its tip (Rodrigues).
+// Returns the rotation by `degrees` about the unit vector `axis`, anticlockwise as seen from its tip
+// (Rodrigues).
 inline Affined rotation(const Vec3d& axis, double degrees) {
   const SineCosine turn = sine_cosine_degrees(degrees);
   const double c = turn.cosine, s = turn.sine;

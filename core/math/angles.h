@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-// Sine, cosine and tangent of an angle in degrees, in double precision, from IEEE operations alone: the same
-// bits on every machine, exact at multiples of 90 degrees, periodic to the bit.
+// Sine, cosine and tangent of an angle in degrees, in double precision. IEEE operations only: the same bits
+// on every machine, exact at multiples of 90 degrees, exactly periodic.
 namespace orrery {
 
 struct SineCosine {

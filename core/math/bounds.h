@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// An axis-aligned box. Empty when made by default; infinite sides are allowed.
+// Axis-aligned box. Empty by default; sides may be infinite.
 template <class T>
 struct Bounds {
   Vec3<T> lo{Vec3<T>(std::numeric_limits<T>::infinity())};
@@ -20,7 +20,7 @@ struct Bounds {
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
   }
-  void include(const Bounds& b) {  // nothing changes if that is empty
+  void include(const Bounds& b) {  // no effect if b is empty
     lo = {std::min(lo.x, b.lo.x), std::min(lo.y, b.lo.y), std::min(lo.z, b.lo.z)};
     hi = {std::max(hi.x, b.hi.x), std::max(hi.y, b.hi.y), std::max(hi.z, b.hi.z)};
   }
@@ -32,7 +32,7 @@ struct Bounds {
     return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z && p.z <= hi.z;
   }
   T diagonal() const { return length(hi - lo); }
-  // Largest absolute coordinate.
+  // Returns the largest absolute coordinate.
   T magnitude() const { return std::max(max_component(abs(lo)), max_component(abs(hi))); }
 
   static Bounds of(std::initializer_list<Vec3<T>> points) {
@@ -60,8 +60,8 @@ inline std::array<Vec3<double>, 8> corners_of(const Boundsd& b) {
   return corners;
 }
 
-// The box in another precision, grown outward by 4 ulp of its largest coordinate on every side, so that a
-// hit computed in that precision and put back on its shape still lies inside.
+// Converts the box to another precision and pads each side by 4 ulp of its largest coordinate. A hit computed
+// in that precision and projected back onto its shape then lies inside.
 template <class T>
 [[gnu::always_inline]] inline Bounds<T> padded(const Boundsd& b) {
   const T pad = static_cast<T>(b.magnitude()) * std::numeric_limits<T>::epsilon() * 4;
@@ -71,16 +71,16 @@ template <class T>
   return grown;
 }
 
-// How far testing a primitive may move it, per metre of the ray's origin from 0: boxes are met as much
-// larger.
+// Rounding error of a primitive test, relative to the ray origin's largest coordinate. Box tests enlarge
+// boxes by as much.
 template <class T>
 inline constexpr T kRounding = 16 * std::numeric_limits<T>::epsilon();
 
-// A ray for testing boxes.
+// Ray prepared for box tests.
 template <class N>
 struct BoxRay {
-  Vec3<N> above, below;  // the origin, as far up and down each axis as rounding may move what is in a box
-  Vec3<N> inverse;       // 1 / direction, infinite where that is 0
+  Vec3<N> above, below;  // origin moved up and down each axis by the rounding error of primitives in a box
+  Vec3<N> inverse;       // 1 / direction, infinite for components of 0
 
   BoxRay(const Vec3<N>& origin, const Vec3<N>& direction)
       : inverse(N(ScalarOf<N>(1)) / direction.x, N(ScalarOf<N>(1)) / direction.y,
@@ -91,11 +91,11 @@ struct BoxRay {
   }
 };
 
-// Lanes that may enter the box at a distance in [0, t_max]; conservative: a ray that touches it is never
-// lost. Near and far planes are chosen by the sign bit of the direction; a NaN (0 * infinity, a ray in the
-// plane of a face) loses against the interval so far; the far side grows by 4 ulp (Ize, "Robust BVH Ray
-// Traversal", JCGT 2013), and so does t_max: what lies in the box may be as near as the hit so far, or nearer
-// by rounding.
+// Returns the lanes whose ray may enter the box at a distance in [0, t_max]. Conservative: a ray that touches
+// the box is never missed. The sign bit of the direction selects near and far planes. A NaN (0 * infinity, a
+// ray in the plane of a face) leaves the interval unchanged. The far side grows by 4 ulp (Ize, "Robust BVH
+// Ray Traversal", JCGT 2013). So does t_max, because a hit in the box may be as near as the current hit or,
+// by rounding, nearer.
 template <class N>
 [[gnu::always_inline]] inline MaskOf<N> enters(const BoxRay<N>& ray, const Vec3<N>& lo, const Vec3<N>& hi,
                                                const N& t_max) {

@@ -8,7 +8,7 @@
 
 namespace orrery {
 
-// The lanes of a mask as bits, lane 0 lowest.
+// Returns the lanes of a mask as bits, lane 0 lowest.
 template <class T, class Abi>
 [[gnu::always_inline]] inline unsigned bits_of(const stdx::simd_mask<T, Abi>& m) {
   if constexpr (stdx::simd_mask<T, Abi>::size() == 1) {
@@ -16,16 +16,16 @@ template <class T, class Abi>
   } else {
     auto bits = static_cast<unsigned>(m.__to_bitset().to_ulong());
 #if defined(ORRERY_SANITIZED) && defined(__AVX512F__)
-    // With checks of threads, GCC 12 stores 8 or 16 bits of a mask register on the stack and reads 32 there.
-    // In a general register they are extended.
+    // With ThreadSanitizer, GCC 12 stores 8 or 16 bits of a mask register on the stack and reads 32 there.
+    // This forces a general register, where the bits are zero-extended.
     asm("" : "+r"(bits));
 #endif
     return bits;
   }
 }
 
-// Writes the lanes named by `bits` to consecutive places from `to`, in order. May write a whole register's
-// width: `to` needs that much room.
+// Stores the lanes selected by `bits` to consecutive elements from `to`, in order. May write a whole
+// register's width: `to` needs that much room.
 template <class V, class T>
 [[gnu::always_inline]] inline void compress_store(const V& v, unsigned bits, T* to) {
 #if defined(__AVX512F__)

@@ -2,9 +2,9 @@
 
 #include "core/math/lanes.h"
 
-// Powers and exponentials over scalars and lanes, made of IEEE operations alone, so that every machine and
-// every width gives the same bits (libm chooses variants by processor). Series: atanh for the logarithm
-// (|s| <= 0.172), Taylor for 2^f (|f| <= 1/2), each long enough for half an ulp of its type.
+// Elementary functions of scalars and lanes. IEEE operations only, so every machine and vector width gives
+// the same bits, unlike libm, which selects variants by processor. The logarithm uses the atanh series (|s|
+// <= 0.172), 2^f the Taylor series (|f| <= 1/2). Both are long enough for half an ulp of the type.
 namespace orrery {
 
 namespace detail {
@@ -55,7 +55,7 @@ template <class N>
 
 }  // namespace detail
 
-// log2(x). REQUIRES: x positive and normal (other values give a meaningless finite number).
+// Computes log2(x). REQUIRES: x is positive and normal; other values give an arbitrary finite number.
 template <class N>
 [[gnu::always_inline]] inline N log2_normal(const N& x) {
   using T = ScalarOf<N>;
@@ -73,7 +73,7 @@ template <class N>
   return detail::convert<N>(exponent) + s * series * kTwoOverLn2;
 }
 
-// 2^y; 0 where y is below the smallest normal exponent. REQUIRES: y below the largest exponent.
+// Computes 2^y; 0 if y is below the smallest normal exponent. REQUIRES: y is below the largest exponent.
 template <class N>
 [[gnu::always_inline]] inline N exp2_flushed(const N& y) {
   using T = ScalarOf<N>;
@@ -81,7 +81,7 @@ template <class N>
   using Integer = typename detail::IntegerOf<N>::type;
   constexpr T kLowest = T(1 - Format::kExponentBias);
   const N clamped = select(y > N(kLowest), y, N(kLowest));
-  // Adding and taking away 1.5 * 2^mantissa rounds to the nearest integer.
+  // Adding and subtracting 1.5 * 2^mantissa rounds to the nearest integer.
   constexpr T kRounder = T(3) * T(std::int64_t{1} << (Format::kMantissaBits - 1));
   const N whole = (clamped + kRounder) - kRounder;
   constexpr T kLn2 = T(0.693147180559945309417232121458176568L);
@@ -94,8 +94,8 @@ template <class N>
   return select(y < N(kLowest), N(T(0)), series * std::bit_cast<N>(scale));
 }
 
-// x^y for x in [0, 1] and y >= 0, with 0^0 = 1 and results below the smallest normal number flushed to 0.
-// Relative error: 2 y |log2 x| ulp at most; 2.5e-5 (float), 4e-13 (double) wherever the result is normal.
+// Computes x^y for x in [0, 1] and y >= 0, with 0^0 = 1. Flushes results below the smallest normal number to
+// 0. The relative error is at most 2 y |log2 x| ulp: 2.5e-5 (float), 4e-13 (double) for normal results.
 template <class N>
 [[gnu::always_inline]] inline N pow_unit(const N& x, const N& y) {
   using T = ScalarOf<N>;
@@ -105,7 +105,7 @@ template <class N>
   return select(vanishing, select(y > N(T(0)), N(T(0)), N(T(1))), power);
 }
 
-// Sine and cosine of `turns` whole turns, for |turns| <= 2^20: within 2 ulp of 1, exact at quarters.
+// Sine and cosine of an angle in turns, |turns| <= 2^20: within 2 ulp of 1, exact at quarter turns.
 template <class N>
 struct SineCosineOf {
   N sine, cosine;
@@ -134,8 +134,9 @@ template <class N>
   return {select(sine_negative, N(-s), s), select(cosine_negative, N(-c), c)};
 }
 
-// Angle of the direction (x, y) from the x axis toward the y axis, in turns, in [-1/2, 1/2]; 0 for (0, 0).
-// The tangent's angle is halved three times, atan t = 2 atan(t / (1 + sqrt(1 + t^2))); then Taylor's series.
+// Returns the angle of the direction (x, y) from the x axis toward the y axis, in turns in [-1/2, 1/2]; 0 for
+// (0, 0). Halves the angle three times by atan t = 2 atan(t / (1 + sqrt(1 + t^2))), then uses Taylor's
+// series.
 template <class N>
 [[gnu::always_inline]] inline N direction_turns(const N& x, const N& y) {
   using T = ScalarOf<N>;
@@ -159,7 +160,7 @@ template <class N>
   return select(y < zero, N(-turns), turns);
 }
 
-// The same in [0, 1].
+// Returns direction_turns() mapped to [0, 1].
 template <class N>
 [[gnu::always_inline]] inline N positive_turns(const N& x, const N& y) {
   using T = ScalarOf<N>;

@@ -2,7 +2,7 @@
 
 namespace orrery {
 
-// While a shutter is open, in seconds: an instant if it closes when it opens.
+// Interval in which the shutter is open, in seconds. An instant if it closes when it opens.
 struct Exposure {
   double opens = 0, closes = 0;
 

@@ -9,7 +9,7 @@ namespace orrery {
 
 namespace detail {
 
-// b - a, and what rounding took from it (Knuth's exact sum).
+// b - a and its rounding error (Knuth's exact sum).
 struct ExactDifference {
   double high, low;
   ExactDifference(double b, double a) : high(b - a) {
@@ -20,9 +20,8 @@ struct ExactDifference {
 
 }  // namespace detail
 
-// Unit normal of a triangle by the right-hand rule, or 0 if it has no area. Nothing is lost where two long
-// sides of a thin triangle run almost alike: the sides are differences without rounding, their products
-// nearly so.
+// Returns a triangle's unit normal by the right-hand rule, or 0 if its area is 0. Accurate for thin triangles
+// with two long, nearly parallel sides: the side vectors are exact, their products nearly exact.
 inline Vec3d face_normal(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   using Difference = detail::ExactDifference;
   const std::array<Difference, 3> e{Difference(b.x, a.x), Difference(b.y, a.y), Difference(b.z, a.z)};

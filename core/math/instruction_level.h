@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// The instruction level of the code that traces rays ("x86-64-v3"; "plain" off x86-64). Speed depends on it,
-// pictures do not.
+// Returns the instruction level of the ray tracing code ("x86-64-v3"; "plain" off x86-64). It affects speed,
+// but not images.
 std::string_view instruction_level();
 
 }  // namespace orrery

@@ -7,22 +7,22 @@
 
 namespace orrery {
 
-// A value that changes with time: what it is at some moments, its keys. Between two keys it is
-// mix(before, after, share), 0 < share < 1; outside of all it rests as the nearest.
+// Keyframed value. Between two keys it is mix(before, after, share), 0 < share < 1; outside of them it is
+// constant.
 template <class V>
 struct Keys {
   std::vector<double> times;  // seconds, ascending
-  std::vector<V> values;      // as many
+  std::vector<V> values;      // one per time
 
   bool empty() const { return times.empty(); }
 
-  // REQUIRES: !empty().
+  // Returns the value at `time`. REQUIRES: !empty().
   V at(double time) const {
     return between(time,
                    [](const V& before, const V& after, double share) { return mix(before, after, share); });
   }
 
-  // The same with another mix.
+  // Returns the value at `time` with `mix_two` in place of mix(). REQUIRES: !empty().
   template <class Mix>
   V between(double time, const Mix& mix_two) const {
     const auto next =
@@ -33,8 +33,7 @@ struct Keys {
     return mix_two(values[last], values[next], (time - times[last]) / (times[next] - times[last]));
   }
 
-  // The moments of an exposure between which the value is on its way from one to the next: the first, the
-  // last, and the keys within.
+  // Returns the times that divide an exposure into motion segments: its start, the keys within, and its end.
   std::vector<double> moments(const Exposure& exposure) const {
     std::vector<double> all{exposure.opens};
     for (const double time : times)

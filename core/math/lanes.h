@@ -10,8 +10,8 @@
 
 #include "core/math/registers.h"
 
-// Lanes: several numbers of one type that go through the same formula at once. A formula written over a
-// number type N takes a scalar or lanes alike; the few operations that differ stand here.
+// SIMD lanes: numbers of one type that one formula processes at once. Formulas are templates over a number
+// type N, either a scalar or lanes. This file has the few operations that differ.
 namespace orrery {
 
 namespace stdx = std::experimental;
@@ -21,16 +21,16 @@ struct LanesOf {
   using type = stdx::native_simd<T>;
 };
 template <>
-struct LanesOf<long double> {  // oracles: one lane
+struct LanesOf<long double> {  // for reference results: one lane
   using type = stdx::simd<long double, stdx::simd_abi::scalar>;
 };
 
-// As many numbers as one register of this machine level holds.
+// Full SIMD register of T at this instruction level.
 template <class T>
 using Lanes = typename LanesOf<T>::type;
 
-// Primitives that lie together in structures, so that one ray meets all of them at once: half the widest
-// register, because more memory a node or leaf costs more than a wider register saves.
+// Number of primitives per block, which one ray tests at once. At most half the widest register, because more
+// memory per node or leaf costs more than a wider register saves.
 template <class T>
 inline constexpr int kBlock = std::max(1, std::min(static_cast<int>(Lanes<T>::size()), 8));
 template <class T>
@@ -44,7 +44,7 @@ struct BlockLanesOf<long double> {
 template <class T>
 using BlockLanes = typename BlockLanesOf<T>::type;
 
-// Integers as wide as T, so that a mask of one serves the other.
+// Integer as wide as T, so that masks of both are compatible.
 template <class T>
 using IndexOf = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
 template <class T>
@@ -63,7 +63,7 @@ struct NumberTraits<stdx::simd<T, Abi>> {
   using Scalar = T;
   using Mask = stdx::simd_mask<T, Abi>;
 };
-// The scalar behind a number type, and what a comparison of it yields.
+// Scalar behind a number type, and the type of its comparisons.
 template <class N>
 using ScalarOf = typename NumberTraits<N>::Scalar;
 template <class N>
@@ -91,7 +91,7 @@ template <class T, class Abi>
   return stdx::all_of(m);
 }
 
-// A mask of one element type as the mask of another with as many lanes.
+// Converts a mask to another element type with the same number of lanes.
 template <class To, class T, class Abi>
 [[gnu::always_inline]] inline typename To::mask_type mask_cast(const stdx::simd_mask<T, Abi>& m) {
   if constexpr (std::is_same_v<typename To::mask_type, stdx::simd_mask<T, Abi>>)
@@ -105,8 +105,8 @@ template <class T>
   return Lanes<T>(from, stdx::vector_aligned);
 }
 
-// Smaller and larger of two numbers; where one is NaN the other is returned if it stands first, so an
-// accumulator passed first wins over a NaN (and -0 and +0 count as equal: the first is kept).
+// Return the smaller and the larger number. They return `accumulator` if either number is NaN or both are
+// equal, -0 and +0 included; a NaN `x` therefore never replaces it.
 template <class N>
 [[gnu::always_inline]] inline N min_first(const N& accumulator, const N& x) {
   if constexpr (registers::kFits<ScalarOf<N>, N>) {
@@ -126,8 +126,8 @@ template <class N>
   }
 }
 
-// a * b - c, rounded once where the machine can and twice elsewhere: only for bounds that are padded for
-// either.
+// Computes a * b - c, rounded once with FMA and twice without. Use it only for bounds padded for either
+// result.
 template <class N>
 [[gnu::always_inline]] inline N multiply_subtract(const N& a, const N& b, const N& c) {
 #if defined(__FMA__)

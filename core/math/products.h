@@ -4,13 +4,12 @@
 
 #include "core/math/lanes.h"
 
-// Products whose rounding errors are known: the same bits at every instruction level, with a fused operation
-// or without.
+// Products with known rounding errors: the same bits at every instruction level, with or without FMA.
 namespace orrery {
 
 namespace detail {
 
-// High half of a number: 26 bits of a double.
+// Returns the high half of a number: 26 bits of a double.
 inline double high_half(double x) {
   const double scaled = 134217729 * x;  // 2^27 + 1
   return scaled - (scaled - x);
@@ -18,9 +17,8 @@ inline double high_half(double x) {
 
 }  // namespace detail
 
-// a * b - p exactly, where p is a * b rounded (Dekker, "A floating-point technique for extending the
-// available precision", 1971, where there is no fused operation). REQUIRES: neither p nor the result
-// underflows.
+// Returns a * b - p exactly, where p is a * b rounded. Without FMA it follows Dekker, "A floating-point
+// technique for extending the available precision", 1971. REQUIRES: neither p nor the result underflows.
 inline float product_error(float a, float b, float p) {
   return static_cast<float>(static_cast<double>(a) * static_cast<double>(b) - static_cast<double>(p));
 }
@@ -44,8 +42,8 @@ template <class T, class Abi>
   return N([&](auto i) { return product_error(a[i], b[i], p[i]); });
 }
 
-// a * b - c * d within two roundings of its exact value, of its sign or 0, and exactly opposite for exchanged
-// products.
+// Computes a * b - c * d within two roundings of the exact value. The result is 0 or has the exact sign.
+// Exchanging the products negates it exactly.
 template <class N>
 [[gnu::always_inline]] inline N difference_of_products(const N& a, const N& b, const N& c, const N& d) {
   const N ab = a * b, cd = c * d;

@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-// Instructions that std::experimental::simd does not reach, for one register of float or double.
+// Instructions that std::experimental::simd does not expose, for one register of float or double.
 namespace orrery::registers {
 
 template <class T, std::size_t kBytes>
@@ -52,7 +52,7 @@ ORRERY_FUSED(__m512d, _mm512, pd)
 #undef ORRERY_REGISTER
 #undef ORRERY_FUSED
 
-// The compiler's type for V if that is one register of T, or else void.
+// Compiler's vector type for V if V is one register of T, else void.
 template <class T, class V>
 using RawOf = typename Raw<T, sizeof(V)>::type;
 template <class T, class V>

@@ -7,21 +7,21 @@
 
 namespace orrery {
 
-// The moments of an exposure, ascending, and between which two of them each lane's time lies. Times are
-// shares of the exposure, in [0, 1).
+// Motion segments of an exposure and the assignment of lanes to them by time. Times are shares of the
+// exposure in [0, 1).
 template <class T>
 class Stretches {
  public:
   using N = Lanes<T>;
 
-  // In seconds. REQUIRES: the first and the last differ.
+  // `moments` are in seconds, ascending. REQUIRES: the first and the last differ.
   explicit Stretches(const std::vector<double>& moments) {
     const double opens = moments.front(), length = moments.back() - opens;
     for (const double moment : moments) moments_.push_back(static_cast<T>((moment - opens) / length));
   }
 
-  // Calls visit(lanes, moment, share) for each stretch that holds some of the times: `share` of the way from
-  // the moment of that number to the next.
+  // Calls visit(lanes, moment, share) for each segment that contains some of the times. `moment` is the index
+  // of its start; `share` is the position within it, from 0 to 1.
   template <class Visit>
   [[gnu::always_inline]] void for_each(const N& time, const Visit& visit) const {
     MaskOf<N> open(true);

@@ -4,9 +4,9 @@
 
 namespace orrery {
 
-// A sum of numbers that comes in any order to the same: what rounding takes from it is summed besides (Knuth,
-// "The Art of Computer Programming", volume 2, 4.2.2, theorem B). Only a last bit that lies within 1e-16 of a
-// tie might tell orders apart.
+// Compensated sum, independent of the order of its terms. Rounding errors are summed separately (Knuth, "The
+// Art of Computer Programming", volume 2, 4.2.2, theorem B). Only a last bit within 1e-16 of a tie may
+// differ.
 class Sum {
  public:
   Sum(double first = 0) : sum_(first) {}

@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Three components of one number type: a scalar (float, double, long double) or lanes of it.
-// Points, directions and linear colours all use it; which one is meant stands in the variable's name.
+// Vector of three components of one number type: a scalar (float, double, long double) or lanes. Used for
+// points, directions and linear colours; the variable's name states which.
 template <class N>
 struct Vec3 {
   N x{}, y{}, z{};
@@ -22,14 +22,14 @@ struct Vec3 {
   requires(!std::is_same_v<M, N>) constexpr explicit Vec3(const Vec3<M>& v)
       : x(static_cast<N>(v.x)), y(static_cast<N>(v.y)), z(static_cast<N>(v.z)) {}
 
-  // The component along `axis`: 0 is x, 1 is y, 2 is z. REQUIRES: axis < 3.
+  // Returns the component along `axis`: 0 is x, 1 is y, 2 is z. REQUIRES: axis < 3.
   [[gnu::always_inline]] constexpr N& operator[](std::size_t axis) { return at(*this, axis); }
   [[gnu::always_inline]] constexpr const N& operator[](std::size_t axis) const { return at(*this, axis); }
 
   bool operator==(const Vec3&) const = default;
 
  private:
-  // At run time one indexed load and no branch: traversals choose the axis per ray.
+  // Compiles to one indexed load without a branch: traversals select the axis per ray.
   template <class V>
   [[gnu::always_inline]] static constexpr auto& at(V& v, std::size_t axis) {
     static_assert(sizeof(Vec3) == 3 * sizeof(N), "the components follow each other in memory");
@@ -85,14 +85,14 @@ template <class N>
   return sqrt(dot(a, a));
 }
 
-// Unit vector along `a`. REQUIRES: dot(a, a) neither overflows nor underflows to 0; for input of any
-// magnitude use `safe_normalize`.
+// Returns the unit vector along `a`. REQUIRES: dot(a, a) neither overflows nor underflows to 0. Use
+// `safe_normalize` for input of any magnitude.
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> normalize(const Vec3<N>& a) {
   return a * (N(1) / length(a));
 }
 
-// The larger of each component.
+// Returns the component-wise maximum.
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> largest(const Vec3<N>& a, const Vec3<N>& b) {
   return {max_first(a.x, b.x), max_first(a.y, b.y), max_first(a.z, b.z)};
@@ -108,15 +108,15 @@ template <class N>
   return {abs(a.x), abs(a.y), abs(a.z)};
 }
 
-// Components of `a` where the mask is set, of `b` elsewhere.
+// Returns the components of `a` where the mask is set, else those of `b`.
 template <class N>
 [[gnu::always_inline]] inline Vec3<N> select(const std::type_identity_t<MaskOf<N>>& mask, const Vec3<N>& a,
                                              const Vec3<N>& b) {
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// Unit vector of a scalar vector of any finite magnitude: the largest component is scaled to 1 first, so
-// that neither 1e-200 nor 1e200 leaves the range. The zero vector stays zero.
+// Returns the unit vector along a scalar vector of any finite magnitude, or 0 for 0. Scales the largest
+// component to 1 first, so that neither 1e-200 nor 1e200 leaves the range.
 template <class N>
 requires std::is_floating_point_v<N>
 [[gnu::always_inline]] inline Vec3<N> safe_normalize(const Vec3<N>& a) {
