@@ -15,7 +15,7 @@ struct ShadowRay {
   T t_max;
 };
 
-// Every n-th of the rays it is given; n doubles whenever there are too many.
+// Keeps every n-th ray that is added. n doubles whenever more than kMost are kept.
 template <class T>
 class DecimatingSampler {
  public:
@@ -34,7 +34,7 @@ class DecimatingSampler {
   std::uint64_t given_ = 0, every_ = 1;
 };
 
-// Passes on what it is asked, and keeps shadow rays. For one thread.
+// Accelerator wrapper that records shadow rays. Not thread-safe.
 template <class T>
 class Recorder final : public Accelerator<T> {
  public:
@@ -58,7 +58,7 @@ class Recorder final : public Accelerator<T> {
   DecimatingSampler<T>& into_;
 };
 
-// What up to a batch of rays meet.
+// Appends the first hits of up to one batch of rays.
 template <class T>
 void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay<T>> some,
                     std::vector<OcclusionSample>& samples) {
@@ -70,7 +70,7 @@ void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay
     const ShadowRay<T>& ray = some[static_cast<std::size_t>(real ? i : 0)];
     rays->set(i, ray.ray, real ? ray.t_max : T(-1));
   }
-  rays->time.values.fill(T(0.5));  // as try_tiles() has them
+  rays->time.values.fill(T(0.5));  // as in try_tiles()
   hits->t = rays->t_max;
   hits->primitive.values.fill(kNoPrimitive);
   AcceleratorCounts counts;

@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-// Shadow rays of some tiles of the picture that the plan asks for, spread evenly over all of them, and what
-// each met first. At most 16,384. Throws Cancelled once `stop` is requested.
+// Returns shadow rays of tiles spread evenly over the plan's image, each with its first hit. At most 16,384.
+// Throws Cancelled if `stop` is requested.
 template <class T>
 std::vector<OcclusionSample> sample_occlusion(const World<T>& world, const Plan& plan,
                                               std::stop_token stop = {});

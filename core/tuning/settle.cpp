@@ -10,13 +10,13 @@
 namespace orrery {
 namespace {
 
-constexpr int kTiles = 3, kDeepest = 3;                 // of the rays that are tried
-constexpr int kListMayPay = 64, kBoxesMayPay = 10'000;  // primitives
-constexpr double kGain = 0.85;  // of its cost, at most, must another take to replace the usual one
+constexpr int kTiles = 3, kDeepest = 3;                 // tiles and maximum ray depth of a trial
+constexpr int kListMayPay = 64, kBoxesMayPay = 10'000;  // maximum primitives for a trial
+constexpr double kGain = 0.85;  // maximum cost of a replacement, relative to the planned accelerator
 
 struct TrialResult {
   const AcceleratorType* type;
-  double cost;  // a ray
+  double cost;  // ns per ray
 };
 
 template <class T>

@@ -7,14 +7,14 @@
 
 namespace orrery {
 
-// A plan in which nothing is left open: the only thing that renders.
+// Plan without open choices. Only settled plans are rendered.
 class SettledPlan {
  public:
   const Plan& operator*() const { return plan_; }
   const Plan* operator->() const { return &plan_; }
-  double settle_ms() const { return settle_ms_; }  // that the decision took; 0 if it was known
+  double settle_ms() const { return settle_ms_; }  // time of the decision; 0 if it was cached
 
-  // One that traces weaker rays, too, or fewer.
+  // Returns a copy that traces rays down to another weight.
   SettledPlan with_min_contribution(double weight) const {
     SettledPlan other = *this;
     other.plan_.min_contribution = weight;
@@ -28,9 +28,9 @@ class SettledPlan {
   double settle_ms_;
 };
 
-// If the plan leaves the accelerator open: takes the one whose counted work on some tiles of the picture
-// costs least, and says so in the plan's decisions. Once for a scene and number type; later plans follow, so
-// that frames of one scene do not change it. Throws Cancelled once `stop` is requested.
+// Chooses the accelerator if the plan leaves it open: the one with the lowest cost for the work counted on
+// some tiles of the image. Records the choice in the plan's decisions. Decides once per scene and number
+// type, so that all frames of a scene use the same accelerator. Throws Cancelled if `stop` is requested.
 SettledPlan settle(const PreparedScene& scene, Plan plan, std::stop_token stop = {});
 
 }  // namespace orrery

@@ -4,9 +4,9 @@
 
 namespace orrery {
 
-// The scene with the accelerator of a settled plan and the stages that it wants in front of it, which change
-// no answer: prediction first, then reordering. Of these only the network takes time to make, once for a
-// scene; adds the milliseconds spent building. Throws Cancelled once `stop` is requested.
+// Returns the scene with the accelerator of a settled plan behind its stages: occluder prediction first, then
+// ray reordering. Stages do not change results. Only the network takes time to build, once per scene. Adds
+// the time spent building to `build_ms`. Throws Cancelled if `stop` is requested.
 template <class T>
 World<T> staged_world(PreparedScene::Parts& parts, const SettledPlan& plan, double& build_ms,
                       std::stop_token stop = {});

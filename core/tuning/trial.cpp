@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kMostRays = 1'000'000;
 
-// Requests a stop once so many rays were counted.
+// Requests a stop once kMostRays rays are counted.
 class RayLimit final : public Turn {
  public:
   RayLimit(const TraceCounts& counts, std::stop_source& enough) : counts_(counts), enough_(enough) {}

@@ -7,9 +7,9 @@
 
 namespace orrery {
 
-// Traces up to `most` tiles of the picture that the plan asks for, spread over it, one sample a pixel.
-// Returns what that took. Ends after a million rays, or a little more: the same ones for every accelerator.
-// Throws Cancelled once `stop` is requested.
+// Traces up to `most` tiles spread over the plan's image, one sample per pixel. Returns the counted work.
+// Ends after a million rays or a few more, at the same ray for every accelerator. Throws Cancelled if `stop`
+// is requested.
 template <class T>
 TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, std::stop_token stop = {});
 
