@@ -11,41 +11,41 @@
 #include "core/render/worker_pool.h"
 #include "core/tuning/settle.h"
 
-// Where tiles are rendered: on threads of this machine, or elsewhere.
+// Interface of the code that renders tiles, on threads of this process or elsewhere.
 namespace orrery {
 
-// How a caller follows a render.
+// Cancellation, progress and limits of a render.
 struct RenderControl {
-  std::stop_token stop = {};                               // a stop request ends it with Cancelled
-  std::function<void(int done, int total)> progress = {};  // tiles; called from several threads at once
-  bool background = false;                                 // others come first
-  bool spread = false;   // any first part of the tiles that are rendered lies all over the picture
-  Pass* pass = nullptr;  // as for_each() takes it
-  // For budgets: seconds that the caller's client has waited, from any thread; those since the call if empty.
+  std::stop_token stop = {};                               // a stop request ends the render with Cancelled
+  std::function<void(int done, int total)> progress = {};  // counts tiles; called concurrently
+  bool background = false;                                 // other renders have priority
+  bool spread = false;   // tiles are ordered so that any prefix covers the picture
+  Pass* pass = nullptr;  // as for WorkerPool::for_each()
+  // Returns the seconds that the client has waited. Thread-safe. If empty, budgets measure from the call.
   std::function<double()> used_s = {};
-  // What a budget may spend, whatever it says.
+  // Hard limits of a budget, regardless of the request.
   double most_rays = std::numeric_limits<double>::infinity();
   double most_s = std::numeric_limits<double>::infinity();
 };
 
-// What a render took, and how far its film may be off.
+// Cost of a render and error statistics of its film.
 struct RenderStats : FilmError {
   TraceCounts counts;
   const AcceleratorType* accelerator = nullptr;
-  AcceleratorFacts structure;  // what the rays were traced with
-  double build_ms = 0;         // making the scene ready, where it was not yet
+  AcceleratorFacts structure;  // structure that the rays were traced with
+  double build_ms = 0;         // time to prepare the scene, if needed
   double trace_ms = 0;         // wall clock
-  double cpu_ms = 0;           // of tracing, on all threads together
+  double cpu_ms = 0;           // tracing, all threads together
 };
 
-// A scene and a settled plan, ready to render.
+// Scene and settled plan, ready to render.
 class Prepared {
  public:
   virtual ~Prepared() = default;
-  // Adds the samples that each tile names to the film; a tile whose first sample is not 0 goes on from the
-  // sums that are there. Adds to stats what that took. The film depends on scene and plan alone: not on the
-  // backend, its threads, their order or the machine's vector width. Throws Cancelled once a stop is
-  // requested: the film is then worth nothing. REQUIRES: FilmStorage::sums unless each tile has all samples.
+  // Adds the samples of each tile to the film, and their cost to `stats`. A tile whose first sample is not 0
+  // continues from the sums in the film. The film depends on scene and plan alone: not on the backend, its
+  // threads, their order or the SIMD width. Throws Cancelled once a stop is requested; the film is then
+  // invalid. REQUIRES: FilmStorage::sums unless each tile has all samples.
   virtual void render(std::span<const TileView> tiles, Film& film, RenderStats& stats,
                       const RenderControl& control) = 0;
 };
@@ -53,12 +53,13 @@ class Prepared {
 class Backend {
  public:
   virtual ~Backend() = default;
-  // Makes ready what is not yet and adds that to stats. Throws Cancelled once `stop` is requested.
+  // Prepares the scene as far as needed and adds the cost to `stats`. Throws Cancelled once `stop` is
+  // requested.
   virtual std::unique_ptr<Prepared> prepare(const PreparedScene& scene, const SettledPlan& plan,
                                             RenderStats& stats, std::stop_token stop) = 0;
 };
 
-// The threads of this process. The pool outlives it.
+// Returns a backend on the threads of `pool`, which must outlive it.
 std::unique_ptr<Backend> threads_backend(WorkerPool& pool);
 
 }  // namespace orrery

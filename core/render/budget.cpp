@@ -21,18 +21,19 @@
 namespace orrery {
 namespace {
 
-constexpr double kNearLeast = 1.25;  // of the least that can be proved
-// Of the error, what rays that are not traced may take, and may seem to a pilot, which sees few of them.
+constexpr double kNearLeast = 1.25;  // factor on the smallest provable error
+// Shares of the error for rays that are not traced. The share is smaller in a pilot, which sees few such
+// rays.
 constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
-// By which the least contribution is divided, after a pilot and after a pass, and how often.
+// Divisors of min_contribution after a pilot and after a pass, and how often each is applied at most.
 constexpr double kStep = 4, kStepOfPass = 16;
 constexpr int kMostPilots = 10, kMostDeepenings = 3;
-constexpr double kHeavy = 10;            // times the least contribution a ray weighs that is surely too deep
-constexpr double kShareOfPilots = 0.25;  // of the time that there is
-constexpr double kSlower = 1.1;          // than the last pass may the next be
-constexpr double kLastPassReach = 4.4;   // of this many times the samples, more than one pass is left
-constexpr int kSeenTiles = 16;           // of the first pass, before its time is foretold
-constexpr double kSurelyLate = 1.5;      // times the time that there is
+constexpr double kHeavy = 10;            // mean weight of rays cut by depth, in min_contribution
+constexpr double kShareOfPilots = 0.25;  // maximum share of the time limit
+constexpr double kSlower = 1.1;          // factor on the time of the last pass
+constexpr double kLastPassReach = 4.4;   // beyond this factor on the samples, several passes are left
+constexpr int kSeenTiles = 16;           // tiles of the first pass before its time is predicted
+constexpr double kSurelyLate = 1.5;      // factor on the time limit
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
 constexpr const char* kNoMemory = "there is no memory for another pass";
@@ -51,14 +52,14 @@ class BudgetedRender {
         made_{.plan = plan} {}
 
   RenderResult render() {
-    made_.certificate = certify(*made_.plan, made_.stats, doubt_of_look(1));  // of nothing so far
+    made_.certificate = certify(*made_.plan, made_.stats, doubt_of_look(1));  // no samples yet
     if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), made_.certificate);
     choose_contribution();
-    while (!render_passes()) {  // what a pilot did not see
+    while (!render_passes()) {  // a pass found light that the pilots missed
       made_.plan = made_.plan.with_min_contribution(made_.plan->min_contribution / kStepOfPass);
       ++deepenings_;
     }
-    made_.stats.counts.add(lost_.counts);  // it was traced, too
+    made_.stats.counts.add(lost_.counts);  // discarded rays were traced, too
     made_.stats.build_ms += lost_.build_ms;
     made_.stats.trace_ms += lost_.trace_ms;
     made_.stats.cpu_ms += lost_.cpu_ms;
@@ -71,7 +72,7 @@ class BudgetedRender {
     choose_contribution();
     const double begin_s = used_s();
     const ForecastPilots pilots(scene_, made_.plan, pool_, control_);
-    ahead_s_ = begin_s - used_s();  // the picture does without these
+    ahead_s_ = begin_s - used_s();  // excludes the time of these pilots
     rays_per_sample_ = pilots.rays_per_sample();
     pass_s_per_sample_ = pilots.cpu_s_per_sample() / threads_at_work();
     int next = has_budget(made_.plan->asked) ? progressive_samples(*made_.plan).front() : made_.plan->samples;
@@ -79,7 +80,7 @@ class BudgetedRender {
       ahead_s_ += (next - made_.samples) * pass_s_per_sample_;
       made_.samples = next;
       look(pilots.foretold(made_.samples));
-      for (Certificate::Term& term : made_.certificate.terms)  // some pixels prove nothing of others
+      for (Certificate::Term& term : made_.certificate.terms)  // a subset of pixels proves nothing
         if (term.bound.kind == Bound::Kind::proved) term.bound = Bound::estimated(*term.bound.rms);
       if (made_.samples % 2 == 0 && is_enough()) break;
     }
@@ -98,30 +99,31 @@ class BudgetedRender {
 
   bool fails_on_miss() const { return *made_.plan->asked.on_miss == OnMiss::fail; }
 
-  // Of one that may end it, from 1 on; the last one alone counts where the samples are given.
+  // Returns the error probability of the `look`-th certificate, counted from 1, which may end the render. If
+  // the samples are given, only the last certificate counts.
   double doubt_of_look(int look) const {
     return Certificate::kDoubt * (made_.plan->free_samples ? std::exp2(-look) : 1);
   }
 
-  // Whether the clock may end it.
+  // Returns whether a time limit may end the render.
   bool is_timed() const { return std::isfinite(limit_s_); }
   double used_s() const {
     return ahead_s_ + (control_.used_s ? control_.used_s() : milliseconds_since(begin_) / 1000);
   }
-  // When tracing must have ended.
+  // Returns the time at which tracing must end to leave time for encoding.
   double deadline_s() const {
     const double pixels = double(made_.plan->width) * made_.plan->height;
     return limit_s_ * (1 - kShareOfEncoding) - pixels / kEncodedPixelsPerSecond;
   }
 
-  // By pilots, where it is free: the largest with which rays that are not traced take little of the error, or
-  // mostly those do that depth leaves out.
+  // Chooses min_contribution by pilots if it is free. Takes the largest value for which omitted rays cause a
+  // small part of the error, or are mostly cut by depth.
   void choose_contribution() {
     if (!made_.plan->free_contribution) return;
     for (int pilots = 1;; ++pilots) {
       const RenderStats pilot = trace_pilot(scene_, made_.plan, 1, pool_, control_).stats;
       lose(pilot);
-      lost_.build_ms += pilot.build_ms;  // of what the passes find ready
+      lost_.build_ms += pilot.build_ms;  // the passes reuse this work
       const bool late = seconds_ > 0 && used_s() > kShareOfPilots * seconds_;
       if (pilots == kMostPilots || late || are_too_deep(pilot) ||
           share_of_cuts(certify(*made_.plan, pilot)) <= kShareOfPilot * error_)
@@ -130,15 +132,15 @@ class BudgetedRender {
     }
   }
 
-  // Whether what was left out is nearly all of rays that a smaller least contribution would not trace either:
-  // too weak ones have less than that each.
+  // Returns whether nearly all omitted light is due to depth, so that a smaller min_contribution would not
+  // help. A ray cut by its weight weighs less than min_contribution.
   bool are_too_deep(const RenderStats& stats) const {
     const auto& [x, y, z] = made_.plan->cut_range;
     const double least = made_.plan->min_contribution * (x + y + z);
     return stats.omitted.sum >= kHeavy * least * static_cast<double>(stats.counts.cut_rays);
   }
 
-  // What was traced and is not in the picture.
+  // Adds the cost of rays that are not in the picture.
   void lose(const RenderStats& traced) {
     lost_.counts.add(traced.counts);
     lost_.trace_ms += traced.trace_ms;
@@ -149,7 +151,7 @@ class BudgetedRender {
     return certificate.terms.front().bound.rms.value_or(0);
   }
 
-  // False if weaker rays are to be traced, too.
+  // Renders the passes. Returns false if weaker rays must be traced, too.
   bool render_passes() {
     made_.samples = 0;
     const auto passes = begin_passes();
@@ -170,7 +172,7 @@ class BudgetedRender {
       }
       if (is_enough()) break;
     }
-    if (before_) {  // there was no time for a better one, or no memory
+    if (before_) {  // no time or memory for a better picture
       if (made_.samples > 0) lose(made_.stats);
       made_ = std::move(*before_);
     } else if (!made_.film) {
@@ -179,7 +181,7 @@ class BudgetedRender {
     return true;
   }
 
-  // None if there is a picture already and no memory for another.
+  // Returns null if a picture exists and there is no memory for another.
   std::unique_ptr<ProgressiveRender> begin_passes() try {
     return std::make_unique<ProgressiveRender>(scene_, made_.plan, pool_, control_.stop);
   } catch (const std::bad_alloc&) {
@@ -198,8 +200,8 @@ class BudgetedRender {
     return of_a && (!of_b || *of_a < *of_b);
   }
 
-  // False if time is up, or there is no memory to keep the film of the passes before, which is then the last
-  // one. Without any, that is a miss.
+  // Traces one pass. Returns false if time is up, or if there is no memory to copy the film. The film of the
+  // passes before is then the last one. Throws BudgetMissed if the first pass is late.
   bool trace(ProgressiveRender& passes, int samples) {
     if (is_timed() && made_.samples > 0 && !keep(passes.film())) return false;
     std::stop_source late;
@@ -226,7 +228,7 @@ class BudgetedRender {
     return true;
   }
 
-  // False if there is no memory for it.
+  // Copies the film. Returns false if there is no memory.
   bool keep(const Film& film) try {
     made_.film = film.copy();
     return true;
@@ -235,7 +237,8 @@ class BudgetedRender {
     return false;
   }
 
-  // Of the first pass, after so many of its tiles, which lie all over the picture.
+  // Returns whether the first pass will surely end late. REQUIRES: the tiles that are done cover the whole
+  // picture.
   bool is_surely_late(double begin_s, int done, int total) {
     const double now_s = used_s();
     if (done == total) return false;
@@ -255,7 +258,7 @@ class BudgetedRender {
   static bool is_beside_samples(const Certificate::Term& term) {
     return term.subject != Certificate::kSamples;
   }
-  // Of all but the samples; none if unknown.
+  // Returns the RMS of all terms but the samples, or nullopt if it is unknown.
   std::optional<double> rest() const { return made_.certificate.total_of(is_beside_samples).rms; }
   double rest_known() const {
     return *made_.certificate
@@ -267,14 +270,15 @@ class BudgetedRender {
 
   bool is_proved() const { return made_.certificate.total().rms && *made_.certificate.total().rms <= error_; }
 
-  // What a request names is not a budget's to change, unless it is to end at a time.
+  // Returns whether the samples are those of the request. Only a time limit may reduce requested samples.
   bool has_samples_asked() const {
     return made_.plan->free_samples || seconds_ > 0 || made_.samples == made_.plan->samples;
   }
 
   bool is_provable() const { return least() && *least() <= error_; }
 
-  // Proved, or as near to what can be proved as is worth the samples: a smaller error never takes fewer.
+  // Returns whether the error is proved, or is so close to the smallest provable error that more samples are
+  // not worth their cost. A smaller requested error never takes fewer samples.
   bool is_near_enough() const {
     const SampledError& error = made_.stats.error;
     if (!error.known()) return false;
@@ -286,12 +290,12 @@ class BudgetedRender {
     return !bound || *bound <= std::max(error_, kNearLeast * *least());
   }
 
-  // Whether there is no sense in more passes.
+  // Returns whether more passes are useless.
   bool is_enough() const {
     return error_ > 0 && (is_hopeless() || (made_.plan->free_samples && is_near_enough()));
   }
 
-  // Where a miss is an error, and no samples would help.
+  // Returns whether a miss is an error and no number of samples avoids it.
   bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
 
   bool is_too_coarse() const {
@@ -302,7 +306,8 @@ class BudgetedRender {
            !are_too_deep(made_.stats);
   }
 
-  // At least twice as many as before, so that both halves are there and tell the error; 0: none.
+  // Returns the next number of samples that is at least twice the current one, or 0 if there is none. It is
+  // even, so that both halves estimate the error, unless it is the plan's maximum.
   int doubled_samples() const {
     for (const int samples : progressive_samples(*made_.plan)) {
       const int told = samples == made_.plan->samples ? samples : samples / 2 * 2;
@@ -311,7 +316,7 @@ class BudgetedRender {
     return 0;
   }
 
-  // After the pass that has ended; 0: none.
+  // Returns the number of samples after the next pass, or 0 if there is none.
   int next_samples() {
     const int most = made_.plan->samples;
     int next = doubled_samples();
@@ -375,7 +380,7 @@ class BudgetedRender {
     return std::string(first ? "the first" : "the last") + " pass took longer";
   }
 
-  // The smallest error that can be proved; none if none can.
+  // Returns the smallest provable error, or nullopt if no error can be proved.
   std::optional<double> least() const {
     if (!rest() || !made_.certificate.least_provable) return {};
     return *rest() + *made_.certificate.least_provable;
@@ -384,26 +389,26 @@ class BudgetedRender {
   const PreparedScene& scene_;
   WorkerPool& pool_;
   const RenderControl& control_;
-  const double error_, seconds_;  // 0: not asked
-  const double limit_s_;          // of time; may be infinite
+  const double error_, seconds_;  // 0: no limit
+  const double limit_s_;          // time limit; may be infinite
   const Clock::time_point begin_;
-  double ahead_s_ = 0;  // of the clock, in a forecast
+  double ahead_s_ = 0;  // added to the clock by a forecast
   int deepenings_ = 0, looks_ = 0;
-  bool gave_up_ = false;               // a pass
-  std::atomic<bool> is_late_ = false;  // the first pass, and was given up
-  std::atomic<double> least_s_ = 0.0;  // until the first pass would have ended, if it was given up
-  double pass_s_per_sample_ = 0, rays_per_sample_ = 0;  // of the last pass that has ended
-  RenderStats lost_;                                    // of pilots, and pictures that cut too much
-  // After so many samples.
+  bool gave_up_ = false;                                // a pass other than the first was given up
+  std::atomic<bool> is_late_ = false;                   // the first pass was late and was given up
+  std::atomic<double> least_s_ = 0.0;                   // predicted end of a first pass that was given up
+  double pass_s_per_sample_ = 0, rays_per_sample_ = 0;  // last complete pass
+  RenderStats lost_;                                    // pilots, and pictures that cut too much
+  // Picture after `samples` samples per pixel.
   struct Made {
     SettledPlan plan;
     RenderStats stats = {};
     Certificate certificate = {};
     int samples = 0;
-    std::optional<Film> film = {};  // while a pass may be given up, and in the end
+    std::optional<Film> film = {};  // set while a pass may be given up, and in the end
   };
   Made made_;
-  std::optional<Made> before_;  // with fewer rays, until there is a better one with more
+  std::optional<Made> before_;  // picture with fewer rays, until a better one exists
   std::string reason_;          // why there was no further pass
 };
 

@@ -4,34 +4,35 @@
 
 namespace orrery {
 
-// Renders one frame in passes, each of which doubles the samples, until the certificate's bound is at most
-// the error asked or the next pass would not end in time. Only whole passes count. The film keeps sums and is
-// the one that the outcome's settings give.
-//  - Error: what is decided depends on the picture alone, not on clocks. The looks share the certificate's
-//    doubt: the k-th has 2^-k of it. Where the least contribution is free, pilots choose it, so that rays
-//    that are not traced take an eighth of the error; where a pass tells that they take more, a sixteenth of
-//    it is tried, three times at most. Where nothing can be proved, as of samples without a range, the
-//    picture is made until the estimate is as asked; where a picture of that size proves less, also until
-//    the bound is within a quarter of that. Both count as missed.
-//  - Seconds: a pass is begun if it ends in time at the pace of the one before and a tenth more. The last may
-//    have any even number of samples. One that takes longer all the same is given up, but not the first.
+// Renders one frame in passes, each of which doubles the samples. Ends when the certificate's bound is at
+// most the requested error, or when the next pass would end late. Only complete passes count. The film keeps
+// sums and equals the film of the outcome's settings.
+//  - Error: decisions depend on the picture alone, not on clocks. The certificates of all passes share the
+//    doubt: the k-th has 2^-k of it. If min_contribution is free, pilots choose it so that rays that are not
+//    traced take an eighth of the error. If a pass shows that they take more, min_contribution is divided by
+//    16, at most three times. If nothing can be proved, e.g. because samples have no range, passes continue
+//    until the estimate meets the error. If the smallest provable error is larger than the requested one,
+//    they continue until the bound is also at most 1.25 times the smallest. Both cases count as
+//    missed.
+//  - Seconds: a pass starts if it ends in time at the pace of the pass before plus a tenth. The last pass may
+//    have any even number of samples. A pass that is late is given up, unless it is the first.
 // Throws Cancelled once control.stop is requested. REQUIRES: has_budget(plan->asked).
 RenderResult render_within_budget(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                                   const RenderControl& control);
 
-// What render_frame() is foretold to take of the plan, whether it has a budget or not.
+// Predicted cost and result of render_frame(), with or without a budget.
 struct Forecast {
-  BudgetOutcome outcome;    // its settings are those that the picture would come to
-  Certificate certificate;  // that the picture would have
-  double rays = 0;          // all, with those of pilots
-  double seconds = 0;       // by the clock: of making ready and tracing, on the threads of the pool
+  BudgetOutcome outcome;    // with the predicted settings
+  Certificate certificate;  // predicted for the picture
+  double rays = 0;          // all rays, including those of pilots
+  double seconds = 0;       // wall clock, to prepare and trace on the pool
 };
 
-// From ForecastPilots, and those that choose the least contribution. Errors are taken to fall as from 4
-// samples to 16, at least with their root. What few pixels or paths alone bring is missed, and so are passes
-// that trace weaker rays for it. Without a budget the samples are those of the plan, however long they take.
-// What is foretold of rays and samples depends on the plan alone but where it has a budget of time. Throws
-// Cancelled once control.stop is requested.
+// Predicts from ForecastPilots and from the pilots that choose min_contribution. Errors are assumed to fall
+// as from 4 to 16 samples, and at least with the root of the samples. Light that only few pixels or paths see
+// is missed, and so are the passes that it would cause. Without a budget, the samples are those of the plan.
+// Predicted rays and samples depend on the plan alone, unless it has a time limit. Throws Cancelled once
+// control.stop is requested.
 Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                   const RenderControl& control = {});
 

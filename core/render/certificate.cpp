@@ -6,9 +6,9 @@
 namespace orrery {
 namespace {
 
-// What a difference that is known in radiance may be on a screen: the curve e of sRGB is concave and 0 at 0,
-// so no two values differ by more than e of their difference; and the mean of e^2 is at most the concave
-// envelope of e^2 at the mean, a chord from 0 to where it touches and e^2 beyond.
+// Converts bounds in radiance to display values. The sRGB curve e is concave and 0 at 0, so display values
+// differ by at most e of the radiance difference. The mean of e^2 is at most the concave envelope of e^2 at
+// the mean. The envelope is a chord from 0 to the point of contact, and e^2 beyond it.
 constexpr double kCurveError = 3e-6;
 double display_max(double max) { return std::min(1.0, encode_srgb(max) + kCurveError); }
 double display_rms(double mean) {
@@ -17,7 +17,7 @@ double display_rms(double mean) {
   return std::min(1.0, std::sqrt(mean < kTouches ? kSlope * mean : encoded * encoded) + kCurveError);
 }
 
-// Of what stats tell: estimated unless it may be told the largest difference.
+// Returns the bound of light that was taken away. An estimated bound has no maximum.
 Bound bound_of(const Plan& plan, const Omitted& away, bool proved) {
   const bool display = plan.space == Space::display;
   const double max = display ? display_max(away.max()) : away.max();
@@ -25,7 +25,8 @@ Bound bound_of(const Plan& plan, const Omitted& away, bool proved) {
   return proved ? Bound::proved(max, rms) : Bound::estimated(rms);
 }
 
-// Rays that were not traced: what the ledger says. Weights of paths are those that were drawn.
+// Bounds rays that were not traced, from the ledger. Weights of paths are random, so their bound is an
+// estimate.
 Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   const char* const subject = "rays not traced";
   if (stats.counts.cut_rays == 0) return {subject, {}};
@@ -35,7 +36,7 @@ Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   return {subject, bound_of(plan, omitted, !plan.technique->draws_light)};
 }
 
-// Light that was met and cut.
+// Bounds the light that the clamp removed.
 Certificate::Term clamp_term(const Plan& plan, const RenderStats& stats) {
   const char* const subject = "clamp of indirect light";
   const Omitted& away = stats.clamped.pixels;
@@ -50,9 +51,10 @@ Certificate::Term precision_term(const Plan& plan) {
   return {"precision", Bound::unknown(), "no ray was traced in double precision besides"};
 }
 
-// Means over tiles have 1 / 1024 of the mean square error of pixels that err independently, times chi^2 over
-// its degrees of freedom, of which there is one a tile if all err as much: more than the quantile to which z
-// belongs (Wilson, Hilferty 1931) by a chance of 1e-7.
+// Returns whether the errors of a tile's pixels are correlated. If they are independent, means over tiles
+// have 1/1024 of the pixels' mean square error, times chi^2 over its degrees of freedom. There is one degree
+// per tile if all tiles err alike. The limit is the quantile of z (Wilson, Hilferty 1931), exceeded by a
+// chance of 1e-7.
 bool pixels_are_alike(const SampledError& error) {
   constexpr double kLeastTiles = 16, kZ = 5.2;
   const double pixel = error.pixel.rmse(), tile = error.block32.rmse();
@@ -61,10 +63,10 @@ bool pixels_are_alike(const SampledError& error) {
   return error.block32.values >= 3 * kLeastTiles && tile * tile > most * pixel * pixel / kBatch;
 }
 
-// With means a and b of the halves, (a - b)^2 / 4 is on average at least the squared error of their mean; and
-// no difference is larger than the range. On a display bright values that few samples meet are cut, and what
-// the others would show of them is missing: about as much light as one half met and the other did not. (Where
-// one sample more is too little to be cut, it shows in the difference.)
+// Bounds the sampling error. For means a and b of the halves, (a - b)^2 / 4 is on average at least the
+// squared error of their mean. No difference exceeds the range. A display clips bright values that few
+// samples find. The light that is hidden is about the excess that one half found and the other did not. (If
+// one more sample is too weak to be clipped, it shows in the difference.)
 Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, double doubt) {
   const char* const subject = Certificate::kSamples;
   if (!stats.error.known()) return {subject, Bound::unknown(), "only an even number of them tells its error"};
@@ -78,7 +80,7 @@ Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, doub
   return {subject, Bound::estimated(seen + display_rms(stats.halves.upper_beyond(part, beyond)))};
 }
 
-// Codes of 8 bits lie by half of one at most beside what they stand for; evenly, where nothing else is known.
+// Bounds the rounding to 8-bit codes: half a code at most, and uniformly distributed if it was not measured.
 Certificate::Term encoding_term(const RenderStats& stats) {
   const char* const subject = "codes of 8 bits";
   constexpr double kHalf = 0.5 / 255;

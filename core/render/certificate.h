@@ -10,59 +10,60 @@
 
 namespace orrery {
 
-// How far a picture may be from the reference: the picture that its technique makes without cuts, of
-// endlessly many samples over each pixel, by exact arithmetic. (Light that the technique does not follow at
-// all is no part of it.) In the plan's space.
+// Error of a picture relative to its reference, in the plan's space. The reference is the picture of the same
+// technique without cuts, with infinitely many samples per pixel and exact arithmetic. Light that the
+// technique does not follow is missing in the reference, too.
 struct Certificate {
-  static constexpr double kConfidence = 0.95, kDoubt = 1 - kConfidence;  // of what is estimated, over seeds
+  static constexpr double kConfidence = 0.95,
+                          kDoubt = 1 - kConfidence;  // confidence of estimates, over seeds
 
-  static constexpr const char* kSamples = "samples";  // the subject of what they leave
+  static constexpr const char* kSamples = "samples";  // subject of the sampling error
 
   struct Term {
     std::string subject;
     Bound bound;
-    std::string reason = {};  // why it is unknown
+    std::string reason = {};  // why the bound is unknown
   };
   std::vector<Term> terms;
   Space space = Space::linear;
-  // RMS below which no samples of a picture of that size can prove their error; none if no size can.
+  // Smallest RMS that the samples of a picture of this size can prove, or nullopt if they can prove none.
   std::optional<double> least_provable = {};
-  // RMSE that the halves of the samples tell: of noise, so it is no part of a sum.
+  // RMSE estimated from the halves of the samples. It is noisy and not part of a sum.
   std::optional<double> estimate = {};
 
-  // What an option takes away on purpose: the mean over the picture by which this run differs from the one
-  // without it, per channel, exactly; and the standard error of that as a bias, infinite where one tile
-  // tells.
+  // Intended bias of an option. `mean` is the exact mean difference per channel from the same render without
+  // the option. `standard_error` is that of `mean` as an estimate of the bias, and infinite for a single
+  // tile.
   struct Bias {
     std::string option;
     double value;
     std::array<double, 3> mean, standard_error;
   };
   std::vector<Bias> biases = {};
-  // Plan::not_followed: beside these, the reference is all light there is.
+  // Light that the reference lacks: Plan::not_followed. The reference has all other light.
   std::vector<const char*> not_followed = {};
 
-  Bound total() const;  // as weak as the weakest term
-  Bound known() const;  // of the terms that are not unknown
-  // Of the terms that keep(term) says.
+  Bound total() const;  // kind of the weakest term
+  Bound known() const;  // terms with a known bound only
+  // Returns the sum of the terms for which keep(term) is true.
   template <class Keep>
   Bound total_of(const Keep& keep) const {
     Bound sum;
     for (const Term& term : terms)
       if (keep(term)) sum = sum + term.bound;
-    if (space == Space::display)  // no two values differ by more than 1
+    if (space == Space::display)  // display values differ by at most 1
       for (std::optional<double>* most : {&sum.max, &sum.rms})
         if (*most) *most = std::min(1.0, **most);
     return sum;
   }
 };
 
-// RMS that halves of a picture of that size would prove if they agreed everywhere: the least that samples can
-// prove, of the plan's technique alone. None where nothing limits a sample.
+// Returns the RMS that the halves of a picture of this size prove if they are equal. This is the smallest
+// error that samples can prove for the plan's technique. Returns nullopt if samples have no range.
 std::optional<double> least_provable(const Plan& plan, double doubt = Certificate::kDoubt);
 
-// `doubt` is the probability with which what is estimated may be wrong: less than kDoubt if others
-// are looked at, too.
+// Returns the certificate of a picture. `doubt` is the probability that an estimate is wrong. It must be less
+// than kDoubt if several certificates of one render are examined.
 Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = Certificate::kDoubt);
 
 }  // namespace orrery

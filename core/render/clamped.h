@@ -8,11 +8,11 @@
 
 namespace orrery {
 
-// The ledger of Plan::clamp_indirect: the radiance that it took away, which the same samples without it would
-// have. Their mean is known exactly, and by how much that is off its expectation is told by how tiles differ.
+// Ledger of Plan::clamp_indirect: radiance that the clamp removed from these samples. Its mean is exact for
+// the samples. The spread between tiles gives its standard error as an estimate of the expectation.
 struct Clamped {
-  Omitted pixels;                   // of all channels
-  std::array<Sum, 3> sum, squares;  // by channel, of sums over a tile's pixels and samples
+  Omitted pixels;                   // all channels together
+  std::array<Sum, 3> sum, squares;  // per channel; a value is the sum of a tile
   double tiles = 0;
 
   double mean(std::size_t channel) const {
@@ -33,12 +33,13 @@ struct Clamped {
     }
     ++tiles;
   }
-  // Other pixels, of the same samples.
+  // Adds other pixels with the same samples.
   void add(const Clamped& other) {
     pixels.add(other.pixels);
     add_sums(other);
   }
-  // Other samples of the same pixels: their tiles count as more tiles, so the error is told rather too large.
+  // Adds other samples of the same pixels. Their tiles count as more tiles, which rather overestimates the
+  // error.
   void join(const Clamped& other) {
     pixels.join(other.pixels);
     add_sums(other);

@@ -8,15 +8,15 @@
 
 namespace orrery {
 
-// What a film tells of its own error.
+// Error statistics of a film.
 struct FilmError {
   std::uint64_t non_finite_pixels = 0;
   Omitted omitted;
   Clamped clamped;
-  Halves halves;       // over Plan::halves_range(); empty if nothing limits samples
-  SampledError error;  // of an even number of samples, of which at least the second half was traced together
+  Halves halves;       // relative to Plan::halves_range(); empty if samples have no range
+  SampledError error;  // even sample counts whose second half is one pass
 
-  // Other tiles.
+  // Adds other tiles.
   void add(const FilmError& other) {
     non_finite_pixels += other.non_finite_pixels;
     omitted.add(other.omitted);
@@ -24,7 +24,8 @@ struct FilmError {
     halves.add(other.halves);
     error.add(other.error);
   }
-  // What was told before the last pass, after which the film itself tells of all samples.
+  // Adds the ledgers of the passes before the last one. The film's other statistics cover all samples
+  // already.
   void join(const FilmError& before) {
     omitted.join(before.omitted);
     clamped.join(before.clamped);

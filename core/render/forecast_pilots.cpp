@@ -8,8 +8,8 @@ namespace orrery {
 namespace {
 
 constexpr int kSamples = 4, kSteps = 4, kTiles = 16;
-constexpr double kColdMs = 50;            // of CPU time in which first use of code and memory shows
-constexpr double kLargestExponent = 1.5;  // with which mean squares of edges fall
+constexpr double kColdMs = 50;            // CPU time below which cold caches matter
+constexpr double kLargestExponent = 1.5;  // mean squares of edges fall so
 
 double rays_of(const Pilot& pilot) { return static_cast<double>(pilot.stats.counts.rays.total()); }
 
@@ -18,19 +18,20 @@ double mean_square(const RenderStats& stats) {
   return stats.halves.known() ? stats.halves.mean() : rmse * rmse;
 }
 
-// Traced again where they took little: the first of a process are up to ten times slower.
+// Traces the tiles, and once more if they took little time. The first tiles of a process are up to ten times
+// slower.
 Pilot warm_tiles(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
                  const RenderControl& control) {
   const Pilot first = trace_tiles(scene, plan, kTiles, samples, pool, control);
   if (first.stats.cpu_ms >= kColdMs) return first;
   Pilot second = trace_tiles(scene, plan, kTiles, samples, pool, control);
-  second.stats.build_ms = first.stats.build_ms;  // of what the second found ready
+  second.stats.build_ms = first.stats.build_ms;  // the second run finds the scene prepared
   return second;
 }
 
 }  // namespace
 
-// Blocks tell most of a picture, but not what reused paths bring, nor time: whole tiles do.
+// Blocks represent most of a picture, but neither reused paths nor time. Whole tiles represent both.
 ForecastPilots::ForecastPilots(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                                const RenderControl& control)
     : samples_(plan->samples == 1 ? 1 : kSamples),

@@ -10,13 +10,13 @@
 namespace orrery {
 namespace {
 
-// Throws std::bad_alloc unless the work may hold so many bytes more, before it touches any of them.
+// Throws std::bad_alloc unless the memory account admits `bytes` more. Allocates nothing.
 void require_memory(std::size_t bytes) {
   const MemoryCharge charge(bytes);
   interruption_point();
 }
 
-// An empty film of the plan.
+// Returns an empty film for the plan.
 Film make_film(const Plan& plan, FilmStorage storage) {
   std::span<const ChannelType* const> channels;
   if (storage == FilmStorage::sums) channels = plan.channels;
@@ -24,7 +24,7 @@ Film make_film(const Plan& plan, FilmStorage storage) {
   return Film(plan.width, plan.height, storage, channels);
 }
 
-// The tiles of a film, each with these samples of its pixels.
+// Returns the tiles of a film, each with `samples` samples from `first_sample` on.
 std::vector<TileView> tiles_of(const Film& film, int first_sample, int samples) {
   const TileGrid grid(film.width(), film.height());
   std::vector<TileView> tiles;
@@ -36,7 +36,7 @@ std::vector<TileView> tiles_of(const Film& film, int first_sample, int samples) 
   return tiles;
 }
 
-// In an order in which any first part of them lies all over the picture: by steps of the golden ratio.
+// Reorders the tiles so that any prefix covers the whole picture: steps of the golden ratio.
 std::vector<TileView> spread(const std::vector<TileView>& tiles) {
   const std::size_t size = tiles.size();
   auto step = static_cast<std::size_t>(0.618 * static_cast<double>(size));

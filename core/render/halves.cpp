@@ -7,7 +7,7 @@
 namespace orrery {
 namespace {
 
-// Probability that a variable of Student's distribution lies farther than t above 0.
+// Returns the probability that a variable of Student's distribution exceeds t. REQUIRES: t >= 0.
 double student_tail(double t, int degrees) {
   const double angle = std::atan(t / std::sqrt(double(degrees)));
   const double sine = std::sin(angle), cosine = std::cos(angle), square = cosine * cosine;

@@ -7,41 +7,42 @@
 
 namespace orrery {
 
-// How the two halves of the samples differ: of each pixel the mean over channels of the squared difference,
-// over that of what samples may differ by, so in [0, 1]. On a display, also how much brighter one half is
-// than any that is shown, in radiance, where the other one is not, and how far codes of 8 bits lie beside
-// what all samples show.
+// Differences between the two halves of the samples. The value of a pixel is the mean over channels of the
+// squared difference over the squared range of a sample, so in [0, 1]. For displays, also collects rounding
+// errors of 8-bit codes, and the radiance by which one half alone exceeds the display's range.
 class Halves {
  public:
   void add(double value) { pixels_.add(value); }
-  // The sum over a tile of what was added.
+  // Adds the sum of the values of a tile.
   void add_tile(double sum) {
     sum_ += sum;
     squares_ += sum * sum;
     ++tiles_;
   }
-  // `most` that it may be, perhaps infinite.
+  // Adds the excess of a pixel, which is `most` at most. `most` may be infinite.
   void add_beyond(double value, double most) {
     beyond_.add(value / most);
     if (value > 0) beyond_sum_ += value;
   }
-  // Squares of how far so many codes are off, over the range of codes.
+  // Adds the squared rounding errors of `codes` codes, relative to the range of codes.
   void add_rounding(double squares, double codes) {
     rounding_squares_ += squares;
     codes_ += codes;
   }
-  void add(const Halves& other);  // of other tiles
-  // Of a picture with so many times the pixels and tiles, of which `squares` times as much is told.
+  void add(const Halves& other);  // adds other tiles
+  // Returns the statistics of `more_pixels` times the pixels and tiles, with `squares` times the squared
+  // differences.
   Halves scaled(double more_pixels, double squares) const;
 
   bool known() const { return pixels_.count() > 0; }
   double mean() const { return pixels_.mean(); }
   double rounding() const { return codes_ > 0 ? std::sqrt(rounding_squares_ / codes_) : 0; }  // RMS
-  // At least the mean of what they were drawn from, with probability 1 - doubt: of pixels that are
-  // independent whatever they are drawn from, see UnitHistogram. Where those of a tile depend on each other,
-  // at least what tiles tell by Student's t as well, of which there must be two, else 1.
+  // Returns an upper bound of the expected value, valid with probability 1 - doubt. Pixels are independent
+  // and may have any distribution, see UnitHistogram. If only tiles are independent, the bound is at least
+  // that of Student's t over tiles, or 1 for fewer than two tiles.
   double upper_mean(double doubt, bool tiles_alone_are_independent) const;
-  // Likewise of what is beyond, of independent pixels; where it may be infinitely much, what was met.
+  // Returns such a bound of the excess for independent pixels. If `most` is infinite, returns the mean excess
+  // found.
   double upper_beyond(double doubt, double most) const;
 
  private:
@@ -50,12 +51,13 @@ class Halves {
   UnitHistogram pixels_, beyond_;
   Sum beyond_sum_, rounding_squares_;
   double codes_ = 0, tiles_ = 0;
-  Sum sum_, squares_;  // of sums over a tile
+  Sum sum_, squares_;  // moments of the tile sums
 };
 
-// t for which a variable of Student's distribution with so many degrees of freedom is larger with probability
-// `tail` (Abramowitz and Stegun, "Handbook of mathematical functions", 26.7.3 and 26.7.4). Of more than 200
-// degrees that of 200, which is 1 % more than at the limit. REQUIRES: degrees >= 1; tail in (0, 0.5).
+// Returns the t that a variable of Student's distribution with `degrees` degrees of freedom exceeds with
+// probability `tail` (Abramowitz and Stegun, "Handbook of mathematical functions", 26.7.3 and 26.7.4). Above
+// 200 degrees, returns the value for 200, which is 1 % above the limit. REQUIRES: degrees >= 1; tail in (0,
+// 0.5).
 double student_quantile(double tail, int degrees);
 
 }  // namespace orrery

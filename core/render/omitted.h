@@ -7,12 +7,11 @@
 
 namespace orrery {
 
-// The ledger of a picture: how far what was left out may take the mean of a pixel's samples, over all pixels
-// and channels, in linear radiance. Of each value of a pixel the sum over samples b is taken first: planned
-// and full picture trace the same rays until the first that is left out, and differ there by its weight times
-// what it may have found.
+// Ledger of omitted light: bounds b of the change of a pixel's samples, over all pixels and channels, in
+// linear radiance. The samples of a pixel are summed first. Planned and full picture trace the same rays up
+// to the first omitted ray. There they differ by its weight times the radiance that it might have found.
 struct Omitted {
-  Sum sum = 0, squares = 0;  // of b
+  Sum sum = 0, squares = 0;  // sums of b and of b^2
   double largest = 0;
   double values = 0;
   int samples = 0;
@@ -21,7 +20,7 @@ struct Omitted {
   double rms() const { return values > 0 ? std::sqrt(squares / values) / samples : 0; }
   double max() const { return values > 0 ? largest / samples : 0; }
 
-  // Other pixels, of the same samples.
+  // Adds other pixels with the same samples.
   void add(const Omitted& other) {
     sum += other.sum;
     squares += other.squares;
@@ -29,7 +28,7 @@ struct Omitted {
     values += other.values;
     samples = std::max(samples, other.samples);
   }
-  // Other samples of the same pixels: the root of a mean square of sums is at most the sum of the roots.
+  // Adds other samples of the same pixels. The root mean square of a sum is at most the sum of the roots.
   void join(const Omitted& other) {
     sum += other.sum;
     const double root = std::sqrt(squares) + std::sqrt(other.squares);

@@ -10,7 +10,7 @@ namespace orrery {
 namespace {
 
 constexpr int kSide = 4;
-constexpr int kLeastBlocks = 64;  // of a picture that has as many
+constexpr int kLeastBlocks = 64;  // fewer if the picture has fewer
 
 Pilot trace(std::span<const TileView> views, const PreparedScene& scene, const SettledPlan& plan,
             WorkerPool& pool, const RenderControl& control) {
@@ -25,12 +25,13 @@ Pilot trace(std::span<const TileView> views, const PreparedScene& scene, const S
   return pilot;
 }
 
-// A number below `end` that chance names by i.
+// Returns a pseudorandom number below `end`, chosen by `i`.
 int below(int end, int i) {
   return static_cast<int>(mix_bits(static_cast<std::uint32_t>(i)) % static_cast<std::uint32_t>(end));
 }
 
-// Adds some blocks of a tile, evenly spaced from the one that chance names by the tile's number.
+// Adds up to `wanted` blocks of a tile, evenly spaced from a pseudorandom one that depends on the tile's
+// number.
 void add_blocks(const TileView& tile, int number, int wanted, std::vector<TileView>& blocks) {
   const int across = (tile.width + kSide - 1) / kSide, down = (tile.height + kSide - 1) / kSide;
   const int all = across * down, some = std::min(wanted, all);
@@ -63,7 +64,7 @@ Pilot trace_tiles(const PreparedScene& scene, const SettledPlan& plan, int most,
   const TileGrid grid(plan->width, plan->height);
   const int count = std::min(most, grid.size());
   std::vector<TileView> tiles;
-  for (int i = 0; i < count; ++i) {  // one of each of as many equal parts
+  for (int i = 0; i < count; ++i) {  // one tile of each of `count` equal parts
     const int begin = i * grid.size() / count, end = (i + 1) * grid.size() / count;
     tiles.push_back(grid.at(begin + below(end - begin, i), samples));
   }

@@ -8,23 +8,24 @@
 
 namespace orrery {
 
-// What became of the budget of a picture.
+// Result of a picture's budget.
 struct BudgetOutcome {
-  double error = 0, seconds = 0;  // asked; 0: was not
+  double error = 0, seconds = 0;  // requested; 0: no limit
   OnMiss on_miss = OnMiss::best;
-  RenderSettings settings;  // that give the picture again, without a budget
+  RenderSettings settings;  // reproduce the picture without a budget
   bool error_met = true, seconds_met = true;
-  double used_s = 0;                       // by the client's clock, in the end
-  std::optional<double> least_error = {};  // that can be proved of a picture of that size
-  std::optional<double> least_s = {};      // that the least picture would take, if it was given up for that
-  std::string reason;                      // of a miss, or empty
+  double used_s = 0;                       // at the end, by the client's clock
+  std::optional<double> least_error = {};  // smallest provable at this picture size
+  std::optional<double> least_s = {};      // predicted time of a first pass given up
+  std::string reason;                      // why it is missed, or empty
 
   bool met() const { return error_met && seconds_met; }
-  // What is done after rendering counts as well: that much time has been used when all is done.
+  // Sets the time used when all work is done. The budget may then be missed by work after rendering.
   void end_at(double seconds_used);
 };
 
-class BudgetMissed : public Error {  // where that is to be an error
+// Thrown on a budget miss if `on_miss` is `fail`.
+class BudgetMissed : public Error {
  public:
   BudgetMissed(BudgetOutcome outcome, const Certificate& certificate);
   const BudgetOutcome& outcome() const { return outcome_; }
@@ -36,7 +37,7 @@ class BudgetMissed : public Error {  // where that is to be an error
 };
 
 inline bool is_missed(const std::optional<BudgetOutcome>& budget) { return budget && !budget->met(); }
-// Throws BudgetMissed if it was missed and that is to be an error.
+// Throws BudgetMissed if the budget is missed and `on_miss` is `fail`.
 void require_met(const BudgetOutcome& outcome, const Certificate& certificate);
 
 struct RenderResult {
@@ -46,33 +47,34 @@ struct RenderResult {
   std::optional<BudgetOutcome> budget = {};
 };
 
-// Renders one frame on the pool: every tile with all its samples, or with as many as the plan's budget takes,
-// see render_within_budget(); throws BudgetMissed. Channels of the plan are kept with FilmStorage::sums
-// alone. Throws Cancelled once control.stop is requested.
+// Renders one frame on the pool. A plan with a budget gets as many samples as the budget takes and may throw
+// BudgetMissed, see render_within_budget(). Only FilmStorage::sums keeps the plan's channels. Throws
+// Cancelled once control.stop is requested.
 RenderResult render_frame(const PreparedScene& scene, const SettledPlan& plan, FilmStorage storage,
                           WorkerPool& pool, const RenderControl& control = {});
 
-// Samples a pixel after each pass of a progressive render. The last pass has all of the plan's; each before
-// it has half as many as the next, rounded down, so that both halves of an even number are there and tell its
-// error. A single sample that lies in the middle of its pixel is none of more, and then is no pass.
+// Returns the samples per pixel after each pass of a progressive render. The last pass has all samples of the
+// plan. Each pass before has half as many, rounded down, so that both halves of an even number estimate the
+// error. A pass of one sample is left out if single samples lie in the pixel's middle, as it is not part of a
+// larger set.
 std::vector<int> progressive_samples(const Plan& plan);
 
-// One frame whose samples are traced in passes. After each, the film is the one that all samples so far give
-// when they are traced at once. Scene and pool outlive it.
+// One frame that is rendered in passes. After each pass, the film equals one whose samples were traced at
+// once. Scene and pool must outlive it.
 class ProgressiveRender {
  public:
-  // Makes the scene ready and takes the film's memory. Throws Cancelled once `stop` is requested.
+  // Prepares the scene and allocates the film. Throws Cancelled once `stop` is requested.
   ProgressiveRender(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                     std::stop_token stop);
 
-  // Traces what is missing to so many samples a pixel. Whatever it throws, such as Cancelled once
-  // control.stop is requested: the film is then worth nothing. REQUIRES: more samples than before, at most
-  // the plan's.
+  // Traces the samples missing to `samples` per pixel. Throws Cancelled once control.stop is requested. After
+  // any exception the film is invalid. REQUIRES: more samples than before, at most the plan's.
   void refine(int samples, const RenderControl& control = {});
 
   const Film& film() const { return film_; }
   Film take_film() { return std::move(film_); }  // after the last pass
-  // Of all passes; the error is that of the film, where the last pass has at least doubled its samples.
+  // Returns the statistics of all passes. The error is that of the film if the last pass at least doubled its
+  // samples.
   const RenderStats& stats() const { return stats_; }
 
  private:

@@ -8,11 +8,11 @@
 
 namespace orrery {
 
-// What a picture tells of its own error: half of its samples against the other half, as each half is a net of
-// its own. For means a and b of the halves, (a - b)^2 / 4 has the mean square error of their mean as its
-// expectation, where the halves are independent, and overestimates it where they are not: of edges, RMSE
-// 1.6 times at 2 samples and 1.2 times at 16. Sums over values, three a pixel, by the side of the blocks that
-// are averaged first.
+// Error estimate of a picture from the difference between two halves of its samples. Each half is a
+// low-discrepancy net. For means a and b of the halves, the expectation of (a - b)^2 / 4 is the mean square
+// error of their mean if the halves are independent. Otherwise it is an overestimate: for edges, the RMSE is
+// 1.6 times too large at 2 samples and 1.2 times at 16. Sums are over values, three per pixel, for blocks of
+// several sizes that are averaged first.
 struct SampledError {
   struct MeanSquare {
     Sum squares = 0;
@@ -20,9 +20,9 @@ struct SampledError {
 
     double rmse() const { return values > 0 ? std::sqrt(squares / values) : 0; }
   };
-  int samples = 0;                    // of a pixel, which it is the error of
-  MeanSquare pixel, block4, block32;  // blocks lie wholly in the picture
-  // Of the tiles' mean squares: tiles are independent of each other, pixels of one may not be.
+  int samples = 0;                    // per pixel
+  MeanSquare pixel, block4, block32;  // only blocks that are wholly in the picture
+  // Moments of the tiles' mean squares. Tiles are independent, while pixels of a tile may not be.
   double tiles = 0;
   Sum tile_sum = 0, tile_squares = 0;
 
@@ -42,7 +42,7 @@ struct SampledError {
     tile_squares += other.tile_squares;
   }
 
-  // Of other samples of the pixels, with mean squares that are so many times as large.
+  // Returns the estimate for `other_samples` samples, whose mean squares are `times` times as large.
   SampledError scaled(int other_samples, double times) const {
     SampledError all = *this;
     all.samples = other_samples;
@@ -52,10 +52,10 @@ struct SampledError {
     return all;
   }
 
-  // How many tiles that err alike would have mean squares that spread as much.
+  // Returns the number of tiles with equal errors whose mean squares would spread as much.
   double tiles_that_err() const { return tile_squares > 0 ? tile_sum * tile_sum / tile_squares : tiles; }
 
-  // Of the RMSE of a pixel: 95 % of normal errors lie within.
+  // 95 % confidence interval of a pixel's RMSE, for normal errors.
   struct Interval {
     double low, high;
   };

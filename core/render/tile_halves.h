@@ -9,18 +9,18 @@
 
 namespace orrery {
 
-// The samples of one tile, of which there are an even number, and the first half of them: sums by channel and
-// slot. What they tell of the error leaves out values that are not finite, which are told besides. The same
-// bits at each machine level.
+// Samples of one tile: sums by channel and slot of the first half, and of all. Values that are not finite are
+// left out, and are reported elsewhere. Results are bit-identical at each SIMD level. REQUIRES: an even
+// number of samples.
 struct TileHalves {
   const TileView& tile;
   const std::array<TileSums::Plane, 3>&first, &all;
-  int samples;  // of all
+  int samples;  // in `all`
 
   SampledError error() const;
-  // By how much radiance differs, over what a sample of the plan's may differ by.
+  // Adds the differences of radiance, relative to the range of a sample.
   void add_to(Halves& halves, const Plan& plan) const;
-  // By how much what a display shows differs.
+  // Adds the differences of displayed values.
   void add_displayed_to(Halves& halves, const Plan& plan) const;
 };
 

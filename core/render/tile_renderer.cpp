@@ -11,7 +11,7 @@
 namespace orrery {
 namespace {
 
-// The first sample sets the sums.
+// Adds a sample to the sums. The first sample sets them.
 template <class T>
 void add(bool first, const Array<T>& value, TileSums::Plane& sum) {
   if (first)
@@ -27,7 +27,7 @@ void add_vector(bool first, const Vec3Array<T>& value, Planes& sums) {
   add(first, value.z, sums[2]);
 }
 
-// Of what met something: elsewhere the value is not set.
+// Adds the values of slots that hit something. Other values are not set.
 template <class T>
 void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, TileSums::Plane& sum) {
   if (first) sum.fill(0.0);
@@ -35,8 +35,8 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
     if (weight.values[i] > 0) sum[i] += static_cast<double>(value.values[i]);
 }
 
-// By how much pixels may be off, or are, from sums by channel and slot; none: all by 0. Where a filter takes
-// away, what it does may be below 0.
+// Returns the ledger of sums by channel and slot; all 0 without channels. Filters with negative lobes may
+// give negative sums.
 Omitted ledger_of(const TileView& tile, std::span<const TileSums::Plane> channels) {
   double sum = 0, squares = 0, largest = 0;
   for (const TileSums::Plane& channel : channels)
@@ -140,7 +140,7 @@ void TileRenderer<T>::send_rays(const TileView& tile, const TileSamples& samples
     put_middle_time(rays_);
 }
 
-// One sample is its own mean.
+// Stores a single sample as the mean.
 template <class T>
 void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   const Array<T>* const radiance[] = {&result_.radiance.x, &result_.radiance.y, &result_.radiance.z};
@@ -149,9 +149,9 @@ void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   stats_.non_finite_pixels += film.put(tile, means_);
 }
 
-// Many looks where what is seen through two opposite corners of the tile's pixels differs, or of what the
-// filter covers about them, else one. That does not depend on anything random, so that the number of looks is
-// independent of what they find.
+// Chooses the number of emission samples. It is kMostLooks with lens or motion blur, or if two opposite
+// corners of the pixels, or of the filter's support, see different emission. Otherwise it is one. The choice
+// is not random, so the number is independent of the samples.
 template <class T>
 void TileRenderer<T>::begin_looks(const TileView& tile) {
   looks_ = 0;

@@ -10,30 +10,30 @@
 
 namespace orrery {
 
-// Renders tiles, one after another, on one thread.
+// Renders tiles one after another on one thread.
 template <class T>
 class TileRenderer {
  public:
-  // World and plan outlive it.
+  // World and plan must outlive the renderer.
   TileRenderer(const World<T>& world, const Plan& plan);
 
-  // Adds the tile's samples to the film. False once the work is to end: the tile is then left as it was.
+  // Adds the tile's samples to the film. Returns false if cancelled; the film's tile is then unchanged.
   bool render(const TileView& tile, const Checkpoint& checkpoint, Film& film);
 
-  // Adds what the tiles so far took.
+  // Adds the statistics of all tiles so far.
   void add_to(RenderStats& stats) const;
 
  private:
-  // Traces one sample of every pixel. False once the work is to end.
+  // Traces one sample of every pixel. Returns false if cancelled.
   bool trace(const TileView& tile, int sample, const Checkpoint& checkpoint);
-  // Of what a part of the pixel's filter sees.
+  // Traces one sample of a part of the pixel filter.
   bool trace_part(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into,
                   const Checkpoint& checkpoint);
-  // Puts the parts together.
+  // Subtracts the negative part of the filter from the positive one.
   void take_away();
-  // Camera rays through these places, from the lens and at times that are drawn from `set`.
+  // Generates camera rays through the samples, with lens positions and times drawn from `set`.
   void send_rays(const TileView& tile, const TileSamples& samples, const Draws& draws, SampleSet set);
-  // Has the tracer look elsewhere within the pixels.
+  // Chooses the number of emission samples and their random streams. look() traces them.
   void begin_looks(const TileView& tile);
   void look(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into);
   void find_streams(const TileView& tile, SampleSet set, Array<std::uint32_t>& streams);
@@ -43,26 +43,27 @@ class TileRenderer {
   void add_clamped(const TileView& tile);
   void add_error(const TileHalves& halves);
   void put_single(const TileView& tile, Film& film);
-  // Puts colours in the place of the radiance.
+  // Replaces the radiance by the colours of its error bound.
   void show_bound(const TileView& tile);
 
   const Plan& plan_;
-  const bool places_samples_;  // elsewhere than at the pixels' centres
+  const bool places_samples_;  // false: samples lie at the pixels' centres
   TracerPtr<T> tracer_;
-  // By slot: where the samples' places within this tile's pixels come from, and those of looks.
+  // Random streams by slot: for the samples' positions in this tile's pixels, and for those of emission
+  // samples.
   Array<std::uint32_t> pixel_streams_, look_streams_;
   TileSamples samples_ = TileSamples::centres(), look_samples_ = TileSamples::centres();
-  int looks_ = 0;  // of this tile, a sample
+  int looks_ = 0;  // emission samples per sample in this tile
   RayBatch<T> rays_;
   TraceResult<T> result_;
-  std::optional<PixelFilter> filter_;           // none: samples lie in their pixels evenly
-  std::unique_ptr<TraceResult<T>> taken_away_;  // by its negative lobes; null if it has none
+  std::optional<PixelFilter> filter_;           // unset: samples cover their pixels evenly
+  std::unique_ptr<TraceResult<T>> taken_away_;  // its negative lobes; null if it has none
   TileSums sums_;
-  std::array<TileSums::Plane, 3> first_half_;  // of the radiance, after half of the tile's samples
+  std::array<TileSums::Plane, 3> first_half_;  // radiance of the first half of the samples
   TileMeans means_;
-  // The ledger of this tile, sums by channel and slot; empty as long as nothing was left out.
+  // Ledger of this tile, sums by channel and slot. Empty while nothing was left out.
   std::vector<TileSums::Plane> omitted_;
-  std::array<TileSums::Plane, 3> clamped_;  // likewise; set if Plan::clamp_indirect is above 0
+  std::array<TileSums::Plane, 3> clamped_;  // set if Plan::clamp_indirect is above 0
   RenderStats stats_;
 };
 

@@ -5,11 +5,11 @@
 
 namespace orrery {
 
-// Values in [0, 1], kept by size: how many, and their sum, in bins of a quarter of a power of two.
+// Histogram of values in [0, 1]: count and sum per bin. A bin is a quarter of a power of two.
 class UnitHistogram {
  public:
-  // Values outside of [0, 1] count as its ends. Others are rounded up to 29 bits, or to 2^-64, so that sums
-  // of up to 2^24 in a bin are exact: they come in any order to the same.
+  // Adds a value, clamped to [0, 1]. Positive values are rounded up to 29 bits and to at least 2^-64. Sums of
+  // up to 2^24 values in a bin are then exact and independent of their order.
   void add(double value) {
     if (value <= 0)
       bins_[0].count += 1;
@@ -17,30 +17,30 @@ class UnitHistogram {
       add_positive(value);
   }
   void add(const UnitHistogram& other);
-  // `counts` times as many values, each `values` times as large, about: of a bin, the mean is moved.
+  // Returns about `counts` times as many values, each `values` times as large. The mean of each bin is moved.
   UnitHistogram scaled(double counts, double values) const;
   double count() const;
   double mean() const;  // 0 without values
 
-  // At least the mean of what the values were drawn from, independently, with probability 1 - delta, whatever
-  // its distribution (Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting",
-  // JRSS B 2024): a gambler who bets that the mean is lower, with a mixture of fixed shares of his wealth,
-  // multiplies it by 1 / delta with that probability at most. Of values in a bin only the sum is known, and
-  // the least wealth that they may bring counts. 1 without values.
+  // Returns an upper bound of the expected value, valid with probability 1 - delta for independent values of
+  // any distribution (Waudby-Smith and Ramdas, "Estimating means of bounded random variables by betting",
+  // JRSS B 2024). A gambler bets with a mixture of fixed shares that the mean is lower. The gambler's wealth
+  // grows by a factor of 1/delta with probability delta at most. Only the sum of a bin is known, so the
+  // lowest wealth for that sum counts. Returns 1 without values.
   double upper_mean(double delta) const;
-  // The least that so many values may tell: upper_mean() if all of them are 0.
+  // Returns the smallest possible upper_mean() of `count` values, i.e. that of zeros.
   static double least_upper_mean(double count, double delta);
 
  private:
   static constexpr int kOctaves = 64, kPartsOfOctave = 4;
-  static constexpr std::size_t kBins = kOctaves * kPartsOfOctave + 1;  // the first is of what is smaller
+  static constexpr std::size_t kBins = kOctaves * kPartsOfOctave + 1;  // the first has all smaller values
   struct Bin {
     double count = 0, sum = 0;
   };
   void add_positive(double value);
   void add_times(double value, double times);
   static double low_of(std::size_t bin);
-  // Whether a gambler would believe that the mean is below `mean`.
+  // Returns whether the gambler's wealth proves that the expected value is below `mean`.
   bool rejects(double mean, double log_odds) const;
 
   std::array<Bin, kBins> bins_{};

@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-// Calls use(picture) with the film's radiance in that format, copying only what is kept otherwise.
+// Calls use(image) with the film's radiance in that format. Converts only if the film has another format.
 template <class Use>
 std::string with_image(const Film& film, PixelFormat format, const Use& use) {
   const bool kept = film.storage() != FilmStorage::sums && film.stored().format() == format;

@@ -9,19 +9,19 @@
 
 namespace orrery {
 
-// The least that a film of the plan must keep for a file of that format: sums where it has layers.
+// Returns the smallest film storage that a file of that format needs. Layers need sums.
 FilmStorage storage_for(FileFormat format, const Plan& plan);
 
-// Throws InputError where layers are asked for in a format that cannot keep them: EXR alone does.
+// Throws InputError if layers are requested for a format other than EXR.
 void require_layers_kept(const RenderRequest& request, FileFormat format);
 
-// Has a budget's error told in what the format keeps, where the request does not say: what a screen shows of
-// PNG, else radiance. Throws InputError where an error is asked of JPEG: what that leaves out has no bound.
+// Sets the error metric of a budget if the request leaves it open: displayed values for PNG, else radiance.
+// Throws InputError for an error budget with JPEG, whose compression has no error bound.
 void choose_space(RenderRequest& request, FileFormat format);
 
-// A file that shows the film: PNG and JPEG its radiance as sRGB; EXR its radiance as R, G and B, and each
-// channel as a layer of its name ("normal.X"), all as 32-bit floats. The same film gives the same bytes.
-// Has interruption points. REQUIRES: the film keeps what storage_for() says, or more.
+// Encodes the film. PNG and JPEG contain its radiance as sRGB. EXR contains radiance as R, G and B, and each
+// channel as a layer of its name ("normal.X"), all as 32-bit floats. The result is deterministic. Has
+// interruption points. REQUIRES: the film keeps at least the storage of storage_for().
 std::string encode_film(const Film& film, FileFormat format, const PngOptions& png = {});
 
 }  // namespace orrery

@@ -21,24 +21,26 @@ namespace orrery {
 
 namespace {
 
-// When others wait: that a turn lasts, and after which a step or task that has not asked loses its place.
+// Length of a turn while others wait, and the time after which a step or task that has not yielded loses its
+// slot.
 constexpr std::chrono::milliseconds kSlice{20}, kOverdue{50};
 
-// Threads that work on several loops at once, on each for as long as on the others.
+// Threads that share their time evenly between several loops.
 //
-// At most `count` steps and tasks have a place at a time. A step that gives way keeps its thread, which
-// waits; another takes its place, so there are at most `count` threads more for each loop. What does not ask
-// in time goes on without a place: the system shares the cores between it and who has its place then.
+// At most `count` steps and tasks hold a slot at a time. A step that yields keeps its thread, which blocks,
+// and another step takes its slot. So there are at most `count` more threads for each loop. A step that does
+// not yield in time continues without a slot. The system then shares the cores between that step and the
+// holder of its slot.
 //
-// They are our own rather than a task arena's: there, a caller that waits for its last tile may be handed the
-// whole of another's frame to do first, and a small picture waits for a large one.
+// The threads are not those of a TBB task arena. There, a caller that waits for its last tile may be given
+// another caller's whole frame first. A small picture would then wait for a large one.
 class WorkerThreads {
  public:
   WorkerThreads(int count, int niceness) : count_(count), niceness_(niceness), idle_(count) {
     try {
       for (int i = 0; i < count; ++i) threads_.emplace_back([this] { serve(); });
       watch_ = std::thread([this] { watch(); });
-    } catch (...) {  // the machine has no more
+    } catch (...) {  // the system has no more threads
       end();
       throw;
     }
@@ -83,16 +85,16 @@ class WorkerThreads {
 
  private:
   class StepTurn;
-  // A call of for_each(): lives on its caller's stack. The fields may change with mutex_ held.
+  // One call of for_each(), on the stack of its caller. The fields are guarded by mutex_.
   struct Loop {
     const WorkerPool::Step& work;
     const int count;
     Pass* const pass;
-    const Work scope = WorkScope::current();  // of the caller
+    const Work scope = WorkScope::current();  // the caller's
     std::vector<int> free_workers;
-    int next = 0, running = 0;         // steps: the next to begin; begun and not done
-    std::list<StepTurn*> paused = {};  // of those, the ones that gave way
-    Clock::duration used{};            // time spent on it, beside that of loops which were there when it came
+    int next = 0, running = 0;         // next step to start; steps started and not done
+    std::list<StepTurn*> paused = {};  // running steps that have yielded
+    Clock::duration used{};            // time used; starts at the minimum of the other loops
     std::exception_ptr error = {};
     bool pass_expired = false;
     std::condition_variable changed = {};
@@ -107,13 +109,13 @@ class WorkerThreads {
     }
   };
 
-  // Of a thread that runs a step or a task, while it may: lives on its stack.
+  // Slot of a thread that runs a step or a task, on the stack of that thread.
   struct Place {
-    const Loop* loop;  // none: a task
+    const Loop* loop;  // null: a task
     Clock::time_point since = Clock::now();
   };
 
-  // A step's turn: lives on the stack of the thread that runs it.
+  // Turn of a step, on the stack of its thread.
   class StepTurn final : public Turn {
    public:
     StepTurn(WorkerThreads& threads, Loop& loop, Place& place)
@@ -121,7 +123,7 @@ class WorkerThreads {
     void give_way() override {
       if (Clock::now() - place_.since >= kSlice) threads_.give_way(*this);
     }
-    // With the lock held: adds the time since the last call to the loop's.
+    // Adds the time since the last call to that of the loop. REQUIRES: mutex_ is held.
     void charge() {
       const auto now = Clock::now();
       loop_.used += now - std::exchange(place_.since, now);
@@ -136,9 +138,9 @@ class WorkerThreads {
     std::condition_variable changed_;
   };
 
-  // Below: with mutex_ held.
+  // Functions below require that mutex_ is held, unless they lock it themselves.
 
-  // Has it worked on, from now on as long as on the others.
+  // Starts a loop, with an equal share of the time from now on.
   void add(Loop& loop) {
     const auto least = std::min_element(loops_.begin(), loops_.end(),
                                         [](const Loop* a, const Loop* b) { return a->used < b->used; });
@@ -148,7 +150,7 @@ class WorkerThreads {
     if (contended()) contended_.notify_one();
   }
 
-  // Whether there may be work for more than one; loops whose pass is renewed are not among loops_.
+  // Returns whether several callers may have work. Loops whose pass is being renewed are not in loops_.
   bool contended() const {
     const auto others = std::count_if(places_.begin(), places_.end(), [&](const Place* place) {
       return std::find(loops_.begin(), loops_.end(), place->loop) == loops_.end();
@@ -171,7 +173,7 @@ class WorkerThreads {
     return std::find(places_.begin(), places_.end(), &place) != places_.end();
   }
 
-  // The loop that has had least of those with something to do; none: nullptr.
+  // Returns the loop with work that has used the least time, or nullptr.
   Loop* next_loop() {
     Loop* best = nullptr;
     for (Loop* loop : loops_)
@@ -179,7 +181,7 @@ class WorkerThreads {
     return best;
   }
 
-  // Whether a thread may begin a task or a step; steps that gave way and are next go on before.
+  // Returns whether a thread may start a task or a step. First resumes steps that yielded and are next.
   bool may_begin() {
     while (place_free()) {
       if (!tasks_.empty()) return true;
@@ -200,7 +202,7 @@ class WorkerThreads {
     return !tasks_.empty() ||
            std::any_of(loops_.begin(), loops_.end(), [&](const Loop* l) { return l != loop && l->waits(); });
   }
-  // Whether others come before this loop.
+  // Returns whether a task or another loop has precedence over this loop.
   bool is_over(const Loop& loop) {
     if (loop.pass_expired || !tasks_.empty()) return true;
     const Loop* const other = next_loop();
@@ -245,7 +247,8 @@ class WorkerThreads {
     if (may_begin()) changed_.notify_all();
   }
 
-  // Whether there is a thread for each place that is free, and for one more. False: the machine has none.
+  // Returns whether there are idle threads for all free slots and one more. Starts a thread if needed, and
+  // returns false if the system has none.
   bool thread_for_another() {
     if (idle_ > count_ - static_cast<int>(places_.size())) return true;
     try {
@@ -308,11 +311,11 @@ class WorkerThreads {
   }
 
   const int count_, niceness_;
-  std::mutex mutex_;  // guards all below
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::deque<std::function<void()>> tasks_;
-  std::list<Loop*> loops_;    // to work on
-  std::list<Place*> places_;  // taken
+  std::list<Loop*> loops_;    // in progress
+  std::list<Place*> places_;  // taken slots
   int idle_;                  // threads without a step or task
   bool ends_ = false;
   std::vector<std::thread> threads_;
@@ -322,14 +325,14 @@ class WorkerThreads {
 
 }  // namespace
 
-// The machine's scheduler takes a core from the background whenever the foreground has work, however long its
-// tiles are.
+// The system's scheduler moves cores from background to foreground threads whenever those have work, however
+// long tiles are.
 struct WorkerPool::Parts {
   explicit Parts(int count)
       : builders(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)),
         foreground(count, 0),
         background(count, 10) {}
-  tbb::global_control builders;  // what builds structures takes no more threads than what renders
+  tbb::global_control builders;  // accelerator builds use at most as many threads
   WorkerThreads foreground, background;
 };
 
