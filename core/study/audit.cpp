@@ -15,10 +15,10 @@
 namespace orrery {
 namespace {
 
-constexpr int kSamplesOfMiddle = 64;   // in place of the only one
-constexpr double kLeastWeight = 1e-4;  // of rays without cuts, that are not random
+constexpr int kSamplesOfMiddle = 64;   // instead of a single centred sample
+constexpr double kLeastWeight = 1e-4;  // min_contribution of ray trees without cuts
 
-// Numbers of pixels, row by row.
+// Returns the numbers of `count` random pixels. Pixels are numbered row by row.
 std::vector<std::int64_t> draw_pixels(const Plan& plan, int count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const double all = double(plan.width) * plan.height;
@@ -28,7 +28,7 @@ std::vector<std::int64_t> draw_pixels(const Plan& plan, int count, std::uint64_t
   return drawn;
 }
 
-// Each pixel once.
+// Returns a tile of one pixel for each distinct pixel.
 std::vector<TileView> tiles_of(std::vector<std::int64_t> pixels, int width, int samples) {
   std::sort(pixels.begin(), pixels.end());
   pixels.erase(std::unique(pixels.begin(), pixels.end()), pixels.end());
@@ -54,7 +54,7 @@ RenderRequest without_cuts(const Plan& plan) {
   return whole;
 }
 
-// Only these pixels of the film are set.
+// Renders these pixels. The other pixels of the film are not set.
 Film render_pixels(const PreparedScene& scene, const Plan& plan, const std::vector<std::int64_t>& pixels,
                    RenderStats& stats, WorkerPool& pool, const RenderControl& control) {
   const SettledPlan settled = settle(scene, plan, control.stop);
@@ -97,7 +97,7 @@ Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, 
     for (std::size_t c = 0; c < 3; ++c) {
       const double off = std::fabs(in_space(a[c], plan.space) - in_space(b[c], plan.space));
       most = std::max(most, off);
-      is_equal = is_equal && off <= kEqualPixels;  // values that are no numbers are not
+      is_equal = is_equal && off <= kEqualPixels;  // NaN counts as different
       sum += off * off;
       share += std::pow(std::min(1.0, (off + left_out) / range), 2) / 3;
     }

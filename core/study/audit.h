@@ -7,24 +7,25 @@ namespace orrery {
 
 inline constexpr int kMostAuditPixels = 1 << 20;
 
-// Pixels of a plan's picture beside those that its technique makes without cuts, in the plan's space.
+// Difference between a plan's picture and that of its technique without cuts, at random pixels, in the plan's
+// space.
 struct Audit {
-  int pixels = 0;           // that were drawn
-  int differing = 0;        // of these, by more than kEqualPixels in some channel
-  double rms = 0, max = 0;  // of the differences of a channel, over all of these
-  double left_out = 0;      // the most by which the pixels without cuts may be off themselves, in radiance
-  // Of the whole picture, however its differences are distributed: audited, or unknown where nothing limits
-  // how far one pixel may be off.
+  int pixels = 0;           // pixels drawn
+  int differing = 0;        // pixels with a channel off by more than kEqualPixels
+  double rms = 0, max = 0;  // differences of channels, over all pixels drawn
+  double left_out = 0;      // error bound of the pixels without cuts, in radiance
+  // Bound for the whole picture, for any distribution of the differences. Audited, or unknown if nothing
+  // limits the error of a pixel.
   Bound bound = Bound::unknown();
 };
 inline constexpr double kEqualPixels = 1e-5;
 
-// Renders pixels that are drawn at random, evenly and independently, twice by the same samples: as asked, and
-// by the whole model in double precision, as deep as rays may go, with weaker rays and nothing clamped. Where
-// the only sample lies in the pixel's middle, it is compared with 64 all over the pixel. Paths share nothing
-// in either. The bound is that of UnitHistogram::upper_mean() with the certificate's doubt. Throws what
-// make_plan() does; InputError for budgets and other views; Cancelled once control.stop is requested.
-// REQUIRES: pixels in 1..kMostAuditPixels.
+// Renders independent, uniformly drawn pixels twice with the same samples: as requested, and with the full
+// model. The full model has double precision, maximum depth, weaker rays and no clamp. A single centred
+// sample is compared with 64 samples all over the pixel. Neither render reuses paths. The bound is that of
+// UnitHistogram::upper_mean() with the certificate's doubt. Throws what make_plan() throws, InputError for
+// budgets, layers and other views, and Cancelled once control.stop is requested. REQUIRES: pixels in
+// 1..kMostAuditPixels.
 Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, std::uint64_t seed,
             WorkerPool& pool, const RenderControl& control = {});
 

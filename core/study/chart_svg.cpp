@@ -11,12 +11,13 @@ constexpr double kChartWidth = 860, kChartHeight = 520, kLeft = 84, kRight = 620
                  kZeroLane = 30;
 constexpr const char* kBelowFloor = "#999999";
 
-// The beginning, if the whole does not fit into a line.
+// Cuts a text that does not fit into one line.
 std::string shortened(const std::string& text) {
   constexpr std::size_t kFits = 70;
   std::size_t characters = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool begins = (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;  // UTF-8
+    const bool begins =
+        (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;  // first byte of a UTF-8 character
     if (begins && ++characters > kFits) return text.substr(0, i) + "...";
   }
   return text;
@@ -80,7 +81,7 @@ class Drawing {
                       printed("text-anchor=\"middle\" transform=\"rotate(-90 22 %.1f)\"", middle).c_str());
   }
 
-  // Below this, an error is the reference's own.
+  // Draws the error of the reference. Smaller errors are meaningless.
   void draw_floor() {
     if (!(chart_.reference_rmse > 0)) return;
     const double y = y_.place(chart_.reference_rmse);
@@ -122,7 +123,7 @@ class Drawing {
       text_ += svg_text(x + 8, y - 7, std::to_string(p.configuration.samples), "font-size=\"11\"");
   }
 
-  // Filled on the front, half filled where that is undecided.
+  // Draws a mark: filled on the front, half filled if undecided.
   static std::string mark(double x, double y, bool square, Standing standing, const char* color,
                           const std::string& told) {
     const std::string style = printed("fill=\"%s\" stroke=\"%s\" stroke-width=\"2\"",
@@ -138,7 +139,7 @@ class Drawing {
     return whole + "<title>" + escaped(told) + "</title>" + (square ? "</rect>" : "</circle>") + half;
   }
 
-  // One for each technique and depth.
+  // Returns the colour of a technique and depth.
   const char* color_of(const Configuration& configuration) const {
     std::size_t models = 0;
     for (std::size_t i = 0; i < chart_.points.size(); ++i) {
@@ -176,7 +177,7 @@ class Drawing {
   const Chart& chart_;
   const double cheapest_ms_;
   Axis x_{}, y_{};         // y_ has no ticks if all errors are 0
-  bool has_zero_ = false;  // and a lane for them below the axis
+  bool has_zero_ = false;  // draws zeros in a lane below the axis
   std::string text_;
 };
 

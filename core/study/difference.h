@@ -5,18 +5,18 @@
 
 namespace orrery {
 
-// How far a picture x is from a reference r, over all channels of linear colour; d = x - r.
+// Error of a picture x relative to a reference r, over all channels of linear colour. d = x - r.
 struct Difference {
-  double rmse = 0;           // sqrt(mean d^2)
-  double relative_mse = 0;   // mean of d^2 / (r + 0.01)^2: what the eye forgives in bright places counts less
-  double mean_absolute = 0;  // mean |d|
-  double largest = 0;        // max |d|
-  double bias = 0;           // mean d
-  double cut_mse = 0;        // mean d^2 of x and r cut to 0..1
-  std::uint64_t non_finite = 0;  // values of x or r left out of all the others
+  double rmse = 0;               // sqrt(mean d^2)
+  double relative_mse = 0;       // mean of d^2 / (r + 0.01)^2, which weighs bright places less
+  double mean_absolute = 0;      // mean |d|
+  double largest = 0;            // max |d|
+  double bias = 0;               // mean d
+  double cut_mse = 0;            // mean d^2 of x and r clamped to 0..1
+  std::uint64_t non_finite = 0;  // values of x or r, excluded above
 };
 
-// REQUIRES: as many values in both.
+// Compares two pictures. REQUIRES: both have the same number of values.
 Difference difference(std::span<const float> picture, std::span<const float> reference);
 
 }  // namespace orrery

@@ -5,13 +5,12 @@
 
 namespace orrery {
 
-// Where the mean lies that values were drawn around, with probability 0.95: Student's t of independent normal
-// values.
+// 95 % confidence interval of a mean: Student's t for independent normal values.
 struct Interval {
   double low = 0, high = 0;
 };
 
-// None of fewer than two values.
+// Returns the interval of the values' mean, or nullopt for fewer than two values.
 std::optional<Interval> mean_interval(std::span<const double> values);
 
 }  // namespace orrery

@@ -14,7 +14,7 @@ namespace {
 
 using Plane = std::vector<double>;
 
-// Rec. 709, as sRGB has its primaries.
+// Computes luma by Rec. 709, which has the primaries of sRGB.
 Plane luma_of(std::span<const float> linear) {
   constexpr std::array kWeights{0.2126, 0.7152, 0.0722};
   Plane luma(linear.size() / 3);
@@ -26,7 +26,7 @@ Plane luma_of(std::span<const float> linear) {
 constexpr int kReach = 5;  // pixels to each side
 constexpr double kDeviation = 1.5;
 
-// Of neighbours so many pixels away.
+// Returns the weights of neighbours by distance in pixels.
 std::array<double, kReach + 1> weights_by_distance() {
   std::array<double, kReach + 1> weights;
   for (int i = 0; i <= kReach; ++i)
@@ -34,7 +34,7 @@ std::array<double, kReach + 1> weights_by_distance() {
   return weights;
 }
 
-// Weighted means along lines of `count` values, `step` apart, that begin at multiples of `next`.
+// Computes weighted means along lines of `count` values, `step` apart, which begin at multiples of `next`.
 Plane smoothed_along(const Plane& plane, int count, std::size_t step, std::size_t lines, std::size_t next) {
   const auto by_distance = weights_by_distance();
   Plane smoothed(plane.size());

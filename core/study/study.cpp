@@ -15,10 +15,10 @@
 namespace orrery {
 namespace {
 
-constexpr int kMoreSamples = 4;  // of the reference, than the highest configuration has
-constexpr int kFirstRounds = 2;  // of every point; fewer tell no interval
+constexpr int kMoreSamples = 4;  // factor on the samples of the highest configuration
+constexpr int kFirstRounds = 2;  // for every point; an interval needs two
 constexpr double kClockStep_ms = 1e-6;
-constexpr int kStep = 4;  // from configuration to configuration
+constexpr int kStep = 4;  // factor from configuration to configuration
 static_assert(kMostChartSamples * kMoreSamples <= kMaxSamples);
 
 void require_chartable(const RenderRequest& view, const PictureSize& measured) {
@@ -33,14 +33,14 @@ void require_chartable(const RenderRequest& view, const PictureSize& measured) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-// The models that are no more than the plan's, the simplest first: techniques at their usual depths, then the
-// plan's own, ever deeper.
+// Returns the models up to the plan's, simplest first: techniques at their usual depths, then the plan's
+// technique with increasing depth.
 std::vector<Configuration> models_up_to(const Plan& plan) {
   const Configuration whole{.technique = plan.technique->name, .max_depth = plan.max_depth};
   std::vector<Configuration> models;
   if (plan.specular && plan.technique->secondary_rays) {
     for (const TechniqueType& type : technique_types()) {
-      if (type.name == whole.technique) break;  // the others model more
+      if (type.name == whole.technique) break;  // later techniques model more
       const int depth = type.secondary_rays ? std::min(type.max_depth, plan.max_depth) : 0;
       models.push_back({.technique = type.name, .max_depth = depth});
     }
@@ -58,7 +58,8 @@ bool same_work(const Point& a, const Point& b) {
   return configuration(a) == configuration(b) && a.rays() == b.rays() && a.rmse() == b.rmse();
 }
 
-// By point, whether it turned out to do what a simpler model does: the scene has no deeper rays.
+// Returns for each point whether it did the same work as a simpler model because the scene has no deeper
+// rays.
 std::vector<bool> find_same(const std::vector<Point>& points) {
   std::vector<bool> same(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -177,7 +178,7 @@ void Study::add(const RenderResult& rendered) {
   if (taken + 1 == turns_.size() || turns_[taken + 1].round != turn.round) end_round(turn.round);
 }
 
-// Takes away the turns that tell nothing more.
+// Removes the turns that add no information.
 void Study::end_round(int round) {
   if (round == 0) same_ = find_same(chart_.points);
   std::vector<Point> different;

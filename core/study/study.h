@@ -12,45 +12,45 @@ namespace orrery {
 inline constexpr int kMostChartSamples = 1024, kMostChartRounds = 16;
 inline constexpr std::int64_t kMostChartPixels = std::int64_t{1} << 20;
 
-// Charts speed against accuracy of one picture of a scene: a ladder of ways to make it (simpler techniques,
-// shallower rays, both precisions, ever more samples) against the picture itself, by its own technique in
-// double precision and with four times the samples of the highest configuration. What that technique does not
-// model is no error here. The configurations take turns, round by round; each round has a seed of its own,
-// and the reference two. What turns out to do the same as a simpler model is left out after the first round;
-// from the second on, what is beaten gets no more. One thread at a time.
+// Charts speed against accuracy for one picture of a scene. The configurations vary technique, ray depth,
+// precision and samples up to those of the picture. The reference has the picture's technique, double
+// precision and four times the samples of the highest configuration. Effects that this technique does not
+// model are not counted as errors. Each round renders all configurations with a seed of its own; the
+// reference has two. A configuration that does the same work as a simpler one is dropped after the first
+// round. From the second round on, beaten configurations get no more rounds. Not thread-safe.
 class Study {
  public:
   struct Extent {
-    int samples = 64;  // of the highest configuration; 1, 4, 16, ... up to it
-    int rounds = 3;    // pictures of each configuration, at most
-    int width = 0;     // pixels, of the pictures that are rendered; 0, or more than was asked: as asked
-    int threads = 1;   // that Chart::full_seconds() is predicted for
+    int samples = 64;  // highest configuration; 1, 4, 16, ... up to it
+    int rounds = 3;    // maximum pictures per configuration
+    int width = 0;     // pixels of the rendered pictures; 0: as requested, which is also the maximum
+    int threads = 1;   // assumed by Chart::full_seconds()
   };
-  // Of the picture that `view` asks for. Throws what make_plan() does; InputError (/image) for more than
-  // kMostChartPixels to be rendered, and (/render/samples, /render/precision) where `view` fixes what the
-  // ladder varies. The scene must live until complete(). REQUIRES: samples in 1..kMostChartSamples, rounds
-  // in 1..kMostChartRounds.
+  // Charts the picture of `view`. Throws what make_plan() throws. Throws InputError (/image) for more than
+  // kMostChartPixels, and (/render/samples, /render/precision) if `view` sets an option that the chart
+  // varies. The scene must live until complete(). REQUIRES: samples in 1..kMostChartSamples, rounds in
+  // 1..kMostChartRounds.
   Study(const Scene& scene, const RenderRequest& view, const Extent& extent);
 
-  // Pictures to render: the reference twice, then the configurations, round by round. Fewer after a round
-  // that has shown what needs no other.
+  // Returns the number of pictures to render: two of the reference, then the configurations, round by round.
+  // The number falls when a round makes later pictures unnecessary.
   int pictures() const { return kReferences + static_cast<int>(turns_.size()); }
-  // How the picture 0 <= number < pictures() is to be rendered, as FilmStorage::linear32.
+  // Returns the request of picture 0 <= number < pictures(), to be rendered as FilmStorage::linear32.
   RenderRequest request(int number) const;
-  // Takes the next picture; they come in order.
+  // Adds the next picture, in order of their numbers.
   void add(const RenderResult& rendered);
   bool complete() const { return added_ == pictures(); }
-  // Gives back what only taking pictures needs. No more come.
+  // Frees memory that only add() needs. No picture may follow.
   void end() { reference_ = std::vector<float>(); }
 
   const std::string& scene_id() const { return chart_.scene_id; }
-  // REQUIRES: complete().
+  // Returns the chart. REQUIRES: complete().
   const Chart& chart() const { return chart_; }
-  // How the first round's picture of a point was rendered. REQUIRES: complete().
+  // Returns the request of a point's first round. REQUIRES: complete().
   RenderRequest request_of(const Point& point) const { return request(point.configuration, kReferences); }
 
  private:
-  static constexpr int kReferences = 2;  // pictures that make the reference
+  static constexpr int kReferences = 2;  // pictures averaged into the reference
   struct Turn {
     std::size_t point;
     int round;
@@ -58,7 +58,7 @@ class Study {
 
   void add_configurations(const Plan& plan, int most_samples);
   RenderRequest request(const Configuration& configuration, int seed_step) const;
-  // Queries of that picture, at the size that was asked and at most kPictureWidth wide.
+  // Queries of a picture: at the requested size, and at most kPictureWidth wide.
   struct Plans {
     std::string whole, picture;
   };
@@ -68,12 +68,12 @@ class Study {
   void end_round(int round);
 
   const Scene& scene_;
-  RenderRequest view_;  // of the size that is rendered
+  RenderRequest view_;  // at the rendered size
   std::uint64_t seed_ = 0;
   int added_ = 0;
   std::vector<float> reference_;  // empty once complete
-  std::vector<Turn> turns_;       // of the points, those that were taken too
-  std::vector<bool> same_;        // by point: as a simpler model does
+  std::vector<Turn> turns_;       // pictures of the points, including those added
+  std::vector<bool> same_;        // by point: does the work of a simpler model
   Chart chart_;
 };
 

@@ -37,7 +37,7 @@ std::string escaped(const std::string& text) {
     else
       out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }
-  for (const char* never : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF
+  for (const char* never : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})  // U+FFFE, U+FFFF are invalid in XML
     for (std::size_t at; (at = out.find(never)) != std::string::npos;) out.replace(at, 3, "?");
   return out;
 }
