@@ -10,13 +10,14 @@ namespace orrery {
 template <class T>
 class LightTree;
 
-// Light from infinitely far away, of an environment and of suns, that is seen by rays which meet nothing.
-// One object belongs to one thread: it keeps its batches.
+// Light from infinite distance, from the environment and from suns, for rays that miss everything. Not
+// thread-safe: each object owns its batches.
 template <class T>
 class Beyond {
  public:
-  // The kernel and the tree outlive this. `choice`: which of its lights, and with which probability light is
-  // drawn from it, times that of the choice of `number` from the tree, if there is a tree.
+  // Adds a light source. `choice` is one of the kernel's lights and the probability with which it is sampled.
+  // With a tree, the probability is multiplied by that of choosing `number` from the tree. Kernel and tree
+  // must outlive this object.
   void see(const LightKernel<T>& kernel, const LightChoice<T>& choice, const LightTree<T>* tree = nullptr,
            std::size_t number = 0) {
     sources_.push_back({&kernel, choice, tree, number});
@@ -24,8 +25,8 @@ class Beyond {
 
   bool empty() const { return sources_.empty(); }
 
-  // Adds it to the radiance of the rays of `groups` that met nothing. by_lobe: density with which each ray's
-  // direction was drawn, 0 where no light could have been drawn instead; null: so of all.
+  // Adds the light to the radiance of rays of `groups` that missed. `by_lobe` is the density with which each
+  // direction was sampled, or 0 if no light could have been sampled instead. Null means 0 for all rays.
   void add(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups, const Array<T>* by_lobe,
            Vec3Array<T>& radiance);
 
@@ -37,7 +38,7 @@ class Beyond {
     const LightTree<T>* tree;
     std::size_t number;
   };
-  // Multiplies by_light_ by the probability of the choice, where it is needed.
+  // Multiplies by_light_ by the probability of the choice from the tree, for the lanes that need it.
   void weigh_choice(const Source& source, const RayBatch<T>& rays, const Groups& missed,
                     const Array<T>& by_lobe);
   std::vector<Source> sources_;

@@ -4,8 +4,8 @@
 
 namespace orrery {
 
-// Adds the radiance of the rays of `groups`, times their throughput, to their slots. Slots take their light
-// in the order of the rays in the batch. Camera rays set their slots.
+// Adds radiance times throughput of the rays of `groups` to their slots, in the order of the batch. Camera
+// rays set their slots.
 template <class T>
 void deposit(const PathBatch<T>& paths, const Groups& groups, Vec3Array<T>& radiance, Vec3Array<T>& slots) {
   if (paths.depth == 0) {

@@ -4,24 +4,24 @@
 
 namespace orrery {
 
-// Light that diffuse lobes find along directions which they draw, one a surface point: what shines there,
-// weighted against light sources that are drawn, and nothing else. One object belongs to one thread: it keeps
-// its batches.
+// Emitted light that diffuse lobes find, along one sampled direction per surface point. It is weighted
+// against sampled light sources and includes no reflected light. Not thread-safe: each object owns its
+// batches.
 template <class T>
 class DiffuseRays {
  public:
-  // All outlive it.
+  // Makes the stage. All arguments must outlive it.
   DiffuseRays(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan,
               SampledLight<T>& light)
       : geometry_(geometry), accelerator_(accelerator), plan_(plan), light_(light) {}
 
-  // Adds it to the radiance of the surface points of `met`.
+  // Adds the light to the radiance of the surface points of `met`.
   void add(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
            const SurfaceBatch<T>& surface, const Groups& met, Vec3Array<T>& radiance, TraceCounts& counts);
 
  private:
   using N = Lanes<T>;
-  // Draws directions and makes rays_ of them. Returns the registers with a ray.
+  // Samples directions and makes rays_ of them. Returns the registers with a ray.
   Groups draw(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
               const SurfaceBatch<T>& surface, const Groups& met);
 
@@ -32,7 +32,7 @@ class DiffuseRays {
   ScatterBatch<T> drawn_;
   PathBatch<T> rays_;  // each in the lane of its surface point
   HitBatch<T> hits_;
-  SurfaceBatch<T> surface_;  // materials alone
+  SurfaceBatch<T> surface_;  // materials only
   Vec3Array<T> found_;
 };
 

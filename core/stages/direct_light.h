@@ -9,18 +9,18 @@
 
 namespace orrery {
 
-// Light that reaches surfaces straight from light sources. Every technique shares this stage. One object
-// belongs to one thread: it keeps its batches.
+// Direct light from all light sources, sampled one after another. Used by techniques that trace ray trees.
+// Not thread-safe: each object owns its batches.
 template <class T>
 class DirectLight {
  public:
-  // Geometry, accelerator and plan outlive it.
+  // Geometry, accelerator and plan must outlive this object.
   DirectLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan)
       : geometry_(geometry), plan_(plan), lights_(geometry), shadowed_(geometry, accelerator, plan) {}
 
-  // Sets `radiance` of the lanes whose material is lit to what ambient light makes leave them, and adds what
-  // each light does. `groups`: registers with such a lane. `checkpoint` is asked before each light; once the
-  // work is to end the other lights are left.
+  // Sets `radiance` of lanes with lit materials to their reflected ambient light, and adds the light of each
+  // source. `groups` are the registers with such a lane. Checks `checkpoint` before each light and skips the
+  // remaining lights once cancelled.
   void add(const PathBatch<T>& paths, const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
            const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts, const Checkpoint& checkpoint);
 

@@ -4,7 +4,7 @@
 
 namespace orrery {
 
-// Lanes of register i whose material has the trait. REQUIRES: the register's materials are set.
+// Returns the lanes of register i whose material has the trait. REQUIRES: the register's materials are set.
 template <class T>
 MaskOf<Lanes<T>> lanes_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, int i,
                             bool MaterialTraits::*trait) {
@@ -15,7 +15,7 @@ MaskOf<Lanes<T>> lanes_with(const Geometry<T>& geometry, const SurfaceBatch<T>& 
   return lanes;
 }
 
-// The registers of `groups` with such a lane.
+// Returns the registers of `groups` with such a lane.
 template <class T>
 Groups groups_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const Groups& groups,
                    bool MaterialTraits::*trait) {

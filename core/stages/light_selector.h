@@ -4,13 +4,13 @@
 
 namespace orrery {
 
-// Which lights a surface asks. This one asks all of them, each with probability 1, in the order of the scene.
+// Selects the lights that a surface samples: all lights of the scene, in order, each with probability 1.
 template <class T>
 class LightSelector {
  public:
   explicit LightSelector(const Geometry<T>& geometry) : geometry_(geometry) {}
 
-  // Calls visit(kernel, choice, traits) for each choice.
+  // Calls visit(kernel, choice, traits) for each selected light.
   template <class Visit>
   void for_each(const Visit& visit) const {
     const Scene& scene = *geometry_.scene;

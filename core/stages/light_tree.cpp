@@ -13,7 +13,7 @@
 namespace orrery {
 namespace {
 
-using Numbers = std::span<std::int32_t>;  // of lights, ascending
+using Numbers = std::span<std::int32_t>;  // numbers of lights, ascending
 
 LightCluster<double> cluster_of(const LightBounds& light) {
   const bool flat = light.normal != Vec3d(0);
@@ -21,10 +21,10 @@ LightCluster<double> cluster_of(const LightBounds& light) {
   return {light.centre, light.normal, light.radius, flat ? 0.0 : 1.0, light.strength, c0, c1, c2};
 }
 
-// Along `normal` or against it, whichever is nearer to `axis`.
+// Returns `normal` or its opposite, whichever is closer to `axis`.
 Vec3d aligned(const Vec3d& normal, const Vec3d& axis) { return dot(normal, axis) < 0 ? -normal : normal; }
 
-// What a choice of lights to keep together is judged by.
+// Quantities that determine the cost of a group of lights.
 struct Extent {
   Boundsd box;
   double energy = 0;
@@ -37,8 +37,8 @@ struct Extent {
     axis = axis + aligned(other.axis, axis);
     count += other.count;
   }
-  // Energy by the square of the size and by how far normals are apart: 1 where they agree, 3 where they do
-  // not. (A cap evenly full of normals has a mean of length (1 + cosine) / 2.)
+  // Returns energy times squared size times a factor for the spread of normals: 1 if they are equal, up to 3
+  // otherwise. (The mean of the normals of a uniformly filled cap has length (1 + cosine) / 2.)
   double cost() const {
     if (count == 0) return 0;
     const Vec3d across = box.hi - box.lo;
@@ -47,7 +47,7 @@ struct Extent {
   }
 };
 
-// Lights in the order of the tree, and how to part them.
+// Split policy of the tree builder.
 class Parting {
  public:
   explicit Parting(std::span<const LightBounds> lights) : lights_(lights) {
@@ -69,9 +69,9 @@ class Parting {
     return all;
   }
 
-  // Reorders them so that the first of two parts, of the size that is returned, come first. Lights that are
-  // infinitely far away are parted from the rest; else bins along an axis decide, each plane between them
-  // weighed by the cost of both sides. REQUIRES: at least two.
+  // Reorders the lights into two parts and returns the size of the first. Lights at infinite distance are
+  // separated from the rest. Otherwise bins along an axis define planes, and the plane with the least cost of
+  // both sides is chosen. REQUIRES: at least two lights.
   std::size_t split(Numbers numbers) const {
     const auto parallel = [this](std::int32_t n) { return lights_[static_cast<std::size_t>(n)].parallel; };
     const auto near = std::stable_partition(numbers.begin(), numbers.end(), parallel);
@@ -92,7 +92,7 @@ class Parting {
   struct Plane {
     double cost = std::numeric_limits<double>::infinity();
     std::size_t axis = 0;
-    int bin = -1;  // the last before it
+    int bin = -1;  // last bin before the plane
   };
 
   int bin_of(std::int32_t number, const Boundsd& centres, std::size_t axis) const {
@@ -122,7 +122,7 @@ class Parting {
   }
 
   std::span<const LightBounds> lights_;
-  double scale_;  // metres; how far away energies are compared
+  double scale_;  // metres; distance at which energies are compared
 };
 
 }  // namespace
@@ -133,7 +133,7 @@ struct LightTree<T>::Builder {
   std::span<const LightBounds> lights;
   Parting parting{lights};
 
-  // Below this many levels lights are parted by number: 16 levels of 4 bits hold any tree.
+  // From this level on, lights are split by number, so that 16 levels of 4 bits hold any tree.
   static constexpr int kLevels = 8;
 
   struct Group {
@@ -141,8 +141,8 @@ struct LightTree<T>::Builder {
     double cost;
   };
 
-  // All of one light as if it were there on average, no nearer than the sphere about them is large: harmonic
-  // means of the coefficients keep the sum that is seen from afar.
+  // Merges lights into one of average properties, never closer than the radius of their bounding sphere.
+  // Harmonic means of the attenuation coefficients preserve the sum that is received far away.
   LightCluster<double> cluster(Numbers numbers) const {
     Boundsd box;
     Vec3d axis, reach;  // reach: sums of strength over each coefficient
@@ -219,13 +219,13 @@ struct LightTree<T>::Builder {
   }
 };
 
-// Down the tree, with what is left of a random number.
+// Traversal from the root that consumes one random number.
 template <class T>
 struct LightTree<T>::Descent {
   double u = 0;
   double probability = 1;
 
-  // Returns the target of the member that u chooses. As u is below 1, so is u * sum below the sum.
+  // Returns the target of the member chosen by u, and rescales u. Since u < 1, u * sum < sum.
   std::int32_t step(const Node& node, const Weights& weights, double sum) {
     constexpr double kBelowOne = 1 - std::numeric_limits<double>::epsilon() / 2;
     const double wanted = u * sum;
@@ -246,7 +246,7 @@ LightTree<T>::LightTree(std::span<const LightBounds> lights) : path_of_(lights.s
   Builder{*this, lights}.add_node(numbers, 0, 0);
 }
 
-// Where all weights are 0, or one is not finite, lights are chosen evenly.
+// Returns the sum of the weights. Sets all weights to 1 if their sum is 0 or not finite.
 template <class T>
 double LightTree<T>::sum_of(const Node& node, Weights& weights) {
   double sum = 0;
@@ -256,7 +256,7 @@ double LightTree<T>::sum_of(const Node& node, Weights& weights) {
   return static_cast<double>(node.count);
 }
 
-// Lanes are members.
+// Computes with members as lanes.
 template <class T>
 double LightTree<T>::weigh(const Node& node, const Vec3<T>& position, Weights& weights) {
   using N = Lanes<T>;
@@ -271,7 +271,7 @@ double LightTree<T>::weigh(const Node& node, const Vec3<T>& position, Weights& w
   return sum_of(node, weights);
 }
 
-// At the root, lanes are points: all of them weigh the same members.
+// Computes the root with points as lanes, since all points weigh the same members.
 template <class T>
 typename LightTree<T>::Choices LightTree<T>::choose(const Vec3<Lanes<T>>& positions,
                                                     const std::array<double, kPoints>& u) const {
@@ -289,7 +289,7 @@ typename LightTree<T>::Choices LightTree<T>::choose(const Vec3<Lanes<T>>& positi
   std::array<Descent, kPoints> descents;
   std::array<std::int32_t, kPoints> targets;
   Weights weights;
-  // The node that it comes to is fetched while the other points take their steps.
+  // Prefetches the next node while the other points take their steps.
   const auto step = [&](std::size_t point, const Node& node, double sum) {
     const std::int32_t target = targets[point] = descents[point].step(node, weights, sum);
     if (target >= 0) return prefetch_lines(nodes_[static_cast<std::size_t>(target)]);

@@ -11,15 +11,15 @@
 
 namespace orrery {
 
-// A light, or a cluster of lights, as it is weighed against others: see LightBounds.
+// Light or cluster of lights with the data of its importance, see LightBounds.
 template <class N>
 struct LightCluster {
   Vec3<N> centre, axis;
-  N radius, spread;  // sine of the angle by which normals differ from the axis or its opposite; 1: no matter
+  N radius, spread;  // sine of the largest angle between normals and axis, of either sign; 1: any angle
   N strength, c0, c1, c2;
 
-  // What arrives, times a bound on the cosine under which anything of the cluster is seen: sines of the cone
-  // of normals and of the sphere about the centre are added to that of the axis.
+  // Returns an estimate of the received light: strength over attenuation, times a bound on the cosine at the
+  // cluster. The sines of the cone of normals and of the bounding sphere are added to the cosine of the axis.
   N importance(const Vec3<N>& position) const {
     using std::abs;
     using T = ScalarOf<N>;
@@ -31,16 +31,16 @@ struct LightCluster {
   }
 };
 
-// Which light to draw at a point: in proportion to what reaches it, roughly, by position alone. A node weighs
-// up to 16 members, lights or clusters of lights with a node of their own: up to 16 lights are weighed one by
-// one (Conty and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018). Built
-// in double precision, with ties in the order of the lights. Const: any number of threads may ask it.
+// Samples a light for a point, roughly in proportion to the light that reaches its position. A node has up to
+// 16 members, lights or clusters with a node of their own. Up to 16 lights are weighed individually (Conty
+// and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018). Built in double
+// precision, with ties in the order of the lights. Const and thread-safe.
 template <class T>
 class LightTree {
  public:
   static constexpr std::size_t kMembers = 16;
 
-  // REQUIRES: at least one light.
+  // Builds the tree. REQUIRES: at least one light.
   explicit LightTree(std::span<const LightBounds> lights);
 
   std::size_t size() const { return path_of_.size(); }
@@ -50,28 +50,28 @@ class LightTree {
     std::array<std::size_t, kPoints> light;
     std::array<T, kPoints> probability;
   };
-  // The lights that numbers in [0, 1) choose at the points of a register.
+  // Chooses a light for each point of a register by random numbers u in [0, 1).
   Choices choose(const Vec3<Lanes<T>>& positions, const std::array<double, kPoints>& u) const;
-  // The probability with which that chooses a light at a point: the same bits.
+  // Returns the probability with which choose() takes a light at a point, bit for bit.
   T probability(const Vec3<T>& position, std::size_t light) const;
 
  private:
   static constexpr std::size_t kNumbers = kFields<LightCluster, T>;
   struct alignas(64) Node {
-    std::array<std::array<T, kMembers>, kNumbers> numbers;  // of LightCluster, each of all members
-    std::array<std::int32_t, kMembers> target;              // a node; ~number of a light
+    std::array<std::array<T, kMembers>, kNumbers> numbers;  // fields of LightCluster, for all members
+    std::array<std::int32_t, kMembers> target;              // index of a node, or ~number of a light
     std::size_t count = 0;
   };
   struct alignas(64) Weights : std::array<T, kMembers> {};
   struct Builder;
   struct Descent;
 
-  // Weights of a node's members at a point, and their sum.
+  // Computes the weights of a node's members at a point and returns their sum.
   static double weigh(const Node& node, const Vec3<T>& position, Weights& weights);
   static double sum_of(const Node& node, Weights& weights);
 
-  std::vector<Node> nodes_;             // the root first
-  std::vector<std::uint64_t> path_of_;  // of each light: its member of each node, 4 bits a level, root lowest
+  std::vector<Node> nodes_;             // root first
+  std::vector<std::uint64_t> path_of_;  // by light: its member in each node, 4 bits per level, root lowest
 };
 
 extern template class LightTree<float>;

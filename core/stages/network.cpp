@@ -15,7 +15,7 @@ using Scores = Network::Scores<float>;
 
 constexpr float kLog2E = 1.44269504f;
 
-// What a network thought about one example, layer by layer.
+// Activations of a network for one example.
 struct Thought {
   Hidden first, second;
   Scores share;  // probability of each answer
@@ -29,8 +29,8 @@ struct Thought {
   }
 };
 
-// Adds what the layer at `row` did to the slope of the loss, and passes on what its inputs did. An input of 0
-// was cut: nothing depends on it.
+// Backpropagates through the layer at `row`: adds its gradient to `slope` and sets the gradient of its
+// inputs. An input of 0 was clipped and has gradient 0.
 template <std::size_t kIn, std::size_t kOut>
 void add_slope(const float* row, const std::array<float, kIn>& in, const std::array<float, kOut>& of_out,
                float* slope, std::array<float, kIn>* of_in) {
@@ -57,7 +57,7 @@ void add_slope(const Network& network, const NetworkExample& example, Weights& s
   add_slope<Network::kInputs>(weights, example.in, of_first, slope.data(), nullptr);
 }
 
-// Running means of the slope and its square, which start at 0 and are weighed up for it.
+// Adam optimizer: running means of the gradient and of its square, with bias correction.
 class Adam {
  public:
   void step(Network& network, const Weights& slope, float rate) {

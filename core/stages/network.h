@@ -8,9 +8,9 @@
 
 namespace orrery {
 
-// A small network: two hidden layers whose negative sums count as 0, and a score for each of some answers.
+// Small neural network: two hidden layers with ReLU, and one score per answer.
 struct Network {
-  // Twice as many hidden ones proved a tenth more shadows for nearly three times the arithmetic.
+  // Twice as many hidden units proved a tenth more shadows, for nearly three times the arithmetic.
   static constexpr std::size_t kInputs = 6, kHidden = 16, kAnswers = 16;
   template <class N>
   using Inputs = std::array<N, kInputs>;
@@ -19,19 +19,19 @@ struct Network {
   template <class N>
   using Scores = std::array<N, kAnswers>;
 
-  // Layer by layer: for each of its outputs the weights of its inputs, and then what is added.
+  // Offsets of the layers. Each output of a layer has the weights of its inputs, followed by its bias.
   static constexpr std::size_t kSecond = kHidden * (kInputs + 1);
   static constexpr std::size_t kThird = kSecond + kHidden * (kHidden + 1);
   static constexpr std::size_t kWeights = kThird + kAnswers * (kHidden + 1);
   std::array<float, kWeights> weights{};
 
-  // N: scalars or lanes. The same bits for each lane whatever the width.
+  // Computes the scores. N is a scalar or lanes. Results are bit-identical for any width.
   template <class N>
   void score(const Inputs<N>& in, Scores<N>& out) const {
     Hidden<N> first, second;
     score(in, first, second, out);
   }
-  // With what the hidden layers make of it.
+  // Computes the scores and the activations of the hidden layers.
   template <class N>
   void score(const Inputs<N>& in, Hidden<N>& first, Hidden<N>& second, Scores<N>& out) const {
     sums(weights.data(), in, first);
@@ -41,7 +41,7 @@ struct Network {
     sums(weights.data() + kThird, second, out);
   }
 
-  // What a layer makes of its inputs. Four at a time, so that additions need not wait for each other.
+  // Computes the weighted sums of a layer. Four outputs at a time hide the latency of additions.
   template <class N, std::size_t kIn, std::size_t kOut>
   [[gnu::always_inline]] static void sums(const float* row, const std::array<N, kIn>& in,
                                           std::array<N, kOut>& out) {
@@ -70,22 +70,23 @@ struct Network {
 };
 
 struct NetworkExample {
-  Network::Inputs<float> in;  // about -1 to 1
+  Network::Inputs<float> in;  // in about -1 to 1
   std::size_t answer;
 };
 
 struct TrainingOptions {
-  int steps = 2000;    // four times as many proved a twentieth more shadows where many can be
-  int examples = 32;   // of a step
-  float rate = 3e-3f;  // of the first step; it falls in a straight line to a tenth
+  int steps = 2000;    // 8000 proved a twentieth more shadows where many are provable
+  int examples = 32;   // per step
+  float rate = 3e-3f;  // first step; falls linearly to a tenth
   std::uint32_t seed = 1;
 };
 
-// Random weights, as large as keep the sums about 1.
+// Returns random weights that keep the sums of a layer near 1.
 Network random_network(std::uint32_t seed);
 
-// A network that has seen `steps` random lots of the examples (Adam: Kingma and Ba, 2014). One thread, a
-// fixed order and IEEE operations alone: the same everywhere. REQUIRES: there are examples.
+// Trains a network with `steps` random batches of the examples (Adam: Kingma and Ba, 2014). Uses one thread,
+// a fixed order and IEEE operations only, so results are the same on every machine. REQUIRES: at least one
+// example.
 Network train_network(std::span<const NetworkExample> examples, const TrainingOptions& options = {});
 
 }  // namespace orrery

@@ -9,9 +9,10 @@
 namespace orrery {
 namespace {
 
-constexpr int kNobody = 0;  // the answer of rays that reach the light, or meet none of the candidates
+constexpr int kNobody = 0;  // answer for rays without a candidate in their way
 
-// The primitives that occlude most of the samples, most first; of as many the one of the lower number.
+// Returns the primitives that occlude the most samples, in descending order. Ties are sorted by primitive
+// number.
 std::vector<int> candidates_of(std::span<const OcclusionSample> samples) {
   std::map<int, int> met;
   for (const OcclusionSample& sample : samples)
@@ -25,7 +26,7 @@ std::vector<int> candidates_of(std::span<const OcclusionSample> samples) {
   return candidates;
 }
 
-// Half of the finite values are no larger. 0 if there are none.
+// Returns the median of the finite values, or 0 if there are none.
 double median(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return 0;
@@ -34,8 +35,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// One coordinate of the samples' origins, as the network sees it: half of them lie in -1/2 to 1/2, and all
-// between -1 and 1, so that a horizon does not shrink what stands before it to nothing.
+// Normalization of one coordinate of the ray origins. Half of the samples map to -1/2 to 1/2, and all to
+// between -1 and 1. Distant origins therefore do not compress the near ones.
 struct Framing {
   double middle = 0, scale = 0;
 
@@ -90,7 +91,7 @@ class NetworkPredictor final : public Predictor<T> {
     network_ = train_network(examples);
   }
 
-  // The candidate with the best score, if it is good enough beside kNobody's. Scores that are NaN
+  // Proposes the candidate with the best score if it exceeds the score of kNobody less kEager. NaN scores
   // propose nothing.
   void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const override {
     for (const int i : groups) {

@@ -6,14 +6,14 @@
 
 namespace orrery {
 
-// A shadow ray, and the primitive that it met, or kNoPrimitive.
+// Shadow ray and the primitive that it hit, or kNoPrimitive.
 struct OcclusionSample {
   Ray<double> ray;
   int occluder;
 };
 
-// A small network, trained on these samples, that chooses among the primitives that stood in the way of most
-// of them. The same for the same samples, wherever it is made.
+// Returns a small network trained on these samples. It chooses among the primitives that occlude most of
+// them. The same samples give the same network on every machine.
 template <class T>
 PredictorPtr<T> network_predictor(std::span<const OcclusionSample> samples);
 

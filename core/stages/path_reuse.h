@@ -15,55 +15,56 @@ template <class N>
 struct SecondVertex {
   Vec3<N> position, geometric;
   N step;
-  N shared;  // 1, or 0: nothing may be connected to it
+  N shared;  // 1, or 0 if no path may connect to it
 };
 
-// What a second vertex receives, and one over the density with which its group draws it; 0: nobody does.
+// Light received by a second vertex, and one over the density with which its group samples it, or 0 if no
+// path can.
 template <class N>
 struct Arrival {
   Vec3<N> suffix;
   N inverse_density;
 };
 
-// Paths of one tile that share what their second vertices receive: each first vertex is connected to the
-// second vertices of a group of others, which are drawn anew for each sample, and weighted with the densities
-// with which all of the group could have found them (Bekaert, Sbert, Halton, "Accelerating Path Tracing by
-// Re-Using Paths", EGWR 2002; balance heuristic, with every visibility traced, so that nothing is biased).
-// One object belongs to one thread: it keeps its batches.
+// Path reuse within a tile. Each first vertex is connected to the second vertices of a random group of paths,
+// which changes with each sample. Contributions are weighted with the densities of the whole group (Bekaert,
+// Sbert, Halton, "Accelerating Path Tracing by Re-Using Paths", EGWR 2002). The balance heuristic and traced
+// visibility keep the result unbiased. Not thread-safe: each object owns its batches.
 template <class T>
 class PathReuse {
  public:
-  // Geometry, accelerator and plan outlive it.
-  // REQUIRES: plan.reuse divides kBatch.
+  // Geometry, accelerator and plan must outlive this object. REQUIRES: plan.reuse divides kBatch.
   PathReuse(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan);
 
-  // Before a batch of camera rays.
+  // Starts a batch of camera rays.
   void begin(const Draws& draws);
 
-  // The first vertices of register i, where slots are places in the batch: the weight and the density of the
-  // direction that was drawn. `drawn`: lanes whose direction others could draw; `alive`: lanes whose path
-  // goes on, with a throughput of 1 from there; `lit`: lanes that others may be connected to, whatever became
-  // of their own draw.
+  // Stores the first vertices of register i, whose slots are their places in the batch, with weight and
+  // density of the sampled direction. `drawn`: lanes whose direction other paths could sample. `alive`: lanes
+  // whose path continues, with a throughput of 1 from there. `lit`: lanes that others may connect to, even if
+  // their own sample failed.
   void keep_first(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                   const ScatterBatch<T>& scatter, const MaskOf<Lanes<T>>& alive,
                   const MaskOf<Lanes<T>>& drawn, const MaskOf<Lanes<T>>& lit);
-  // The second vertices of register i that look the same from everywhere.
+  // Stores the second vertices of register i whose reflected light is the same in all directions.
   void keep_second(int i, const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
                    const MaskOf<Lanes<T>>& shared);
 
-  // Sums by slot of what reaches the second vertices, for throughputs that start at 1 there.
+  // Returns the light that reaches the second vertices, summed by slot, for throughputs that start at 1
+  // there.
   Vec3Array<T>& suffixes() { return suffix_; }
-  // Weight of the first direction of each slot.
+  // Returns the weight of the first direction of each slot.
   const Vec3Array<T>& weights() const { return weight_; }
 
-  // Adds what the first vertices get from there to the radiance of the slots. False once the work is to end.
+  // Adds the light that first vertices receive from second vertices to the radiance of the slots. Returns
+  // false if cancelled.
   bool finish(Vec3Array<T>& radiance, TraceCounts& counts, const Checkpoint& checkpoint);
 
  private:
   using N = Lanes<T>;
   struct Connections {
-    Array<T> density;    // area density with which the slot's first vertex draws its partner's second vertex
-    Vec3Array<T> share;  // of what leaves that and reaches the slot, per area
+    Array<T> density;    // area density of the partner's second vertex
+    Vec3Array<T> share;  // fraction of its light that reaches the slot, per area
   };
   void connect_own(Connections& own);
   void connect(int turn, Connections& to, TraceCounts& counts);
@@ -75,18 +76,18 @@ class PathReuse {
   const Accelerator<T>& accelerator_;
   const int group_;
   const Groups all_ = Groups::covering(0, kBatch, kWidth<T>);
-  Groups kept_;  // registers that have first vertices
-  // By turn and slot: the one of its group that it is connected to; at turn 0 itself.
+  Groups kept_;  // registers with first vertices
+  // Partner of each slot in its group, by turn. At turn 0 a slot is its own partner.
   std::vector<Array<IndexOf<T>>> partners_;
   // First vertices by slot.
   SurfaceBatch<T> first_;
   Vec3Array<T> ray_, weight_;
-  Array<T> pdf_;                         // 0: no other could draw the direction
+  Array<T> pdf_;                         // 0: other paths cannot sample the direction
   Array<T> lit_;                         // 1 or 0
   std::vector<SecondVertex<T>> second_;  // by slot
   Vec3Array<T> suffix_;
   std::vector<Arrival<T>> arrivals_;  // by slot
-  // One turn of connections.
+  // Temporaries of one turn.
   Vec3Array<T> toward_normal_, f_cos_;
   Array<T> lobe_pdf_;
   RayBatch<T> shadow_;

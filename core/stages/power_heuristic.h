@@ -2,9 +2,10 @@
 
 namespace orrery {
 
-// The share of what one strategy found that counts, where another would have found it with density `other`
-// (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH 1995: the
-// power heuristic with exponent 2), as a ratio: squares of densities may be out of range.
+// Returns the MIS weight of a sample with density `own` if another strategy has density `other` for it. This
+// is the power heuristic with exponent 2 (Veach and Guibas, "Optimally Combining Sampling Techniques for
+// Monte Carlo Rendering", SIGGRAPH 1995). It is computed from the ratio, since squared densities may be out
+// of range.
 template <class N>
 N power_heuristic(const N& own, const N& other) {
   const N one(1), ratio = other / own;

@@ -23,14 +23,14 @@ class Random final : public Predictor<T> {
   std::uint64_t count_;
 };
 
-// Holds primitives against shadow rays.
+// Tests primitives against shadow rays.
 template <class T>
 class Proof {
  public:
   Proof(const PrimitiveList<T>& primitives, RayBatch<T>& rays, AcceleratorCounts& counts)
       : primitives_(primitives), rays_(rays), counts_(counts) {}
 
-  // `primitive` may be any number, against all rays of register `i`.
+  // Tests a primitive against all rays of register `i`. Ignores a number that is out of range.
   void attempt(std::int64_t primitive, int i) {
     if (primitive < 0 || primitive >= static_cast<std::int64_t>(primitives_.size())) return;
     const Primitive<T>& proposed = primitives_[static_cast<std::size_t>(primitive)];
@@ -42,7 +42,7 @@ class Proof {
     counts_.proofs += open - active_rays(rays_, one);
   }
 
-  // Each of the primitives proposed for rays of register `i`, as long as one of these is open.
+  // Tests the primitives proposed for rays of register `i`, while any of these rays is active.
   void attempt_each(const Array<IndexOf<T>>& primitive, int i) {
     const IndexLanes<T> proposed = load_index<T>(primitive, i);
     for (unsigned open = active(i); open != 0; open &= active(i)) {
@@ -60,8 +60,8 @@ class Proof {
   AcceleratorCounts& counts_;
 };
 
-// What both have: the nearest hit is left to the accelerator. Even if it is known beforehand, and for
-// nothing, it saves a tenth at best (`script/bench prediction`).
+// Base class that leaves the nearest hit to the accelerator. Even a free and correct prediction of it saves a
+// tenth at best (`script/bench prediction`).
 template <class T>
 class Predicted : public Accelerator<T> {
  public:
@@ -100,8 +100,8 @@ class PredictedBy final : public Predicted<T> {
   PredictorPtr<T> predictor_;
 };
 
-// An accelerator does not say what stood in the way: that is asked for one ray of each lot in which it found
-// something.
+// Shadow rays do not return their occluder. Therefore closest() is traced for one ray of each lot with an
+// occluded ray.
 template <class T>
 class PredictedByLast final : public Predicted<T> {
  public:
@@ -125,9 +125,9 @@ class PredictedByLast final : public Predicted<T> {
   }
 
  private:
-  static constexpr int kLot = 64;  // rays that are asked for together
+  static constexpr int kLot = 64;  // rays traced together
 
-  // What the last of the rays met that were open before and are no more, or kNoPrimitive.
+  // Returns the occluder of the last ray that became occluded, or kNoPrimitive.
   int occluder(RayBatch<T>& rays, const Array<T>& before, const Groups& groups,
                AcceleratorCounts& counts) const {
     using N = Lanes<T>;

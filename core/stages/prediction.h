@@ -2,35 +2,37 @@
 
 #include "core/model/accelerator.h"
 
-// Prediction of occluders, in front of any accelerator. A primitive that is proposed for a shadow ray is held
-// against it by its own kernel: if they meet the ray is occluded, and the accelerator need not be asked. That
-// a ray reaches its light is never believed. So answers are exact whatever is proposed; only the time changes
-// (the check of Liu et al., "Intersection Prediction for Accelerated GPU Ray Tracing", MICRO 2021).
+// Prediction of occluders, in front of any accelerator. The kernel of a proposed primitive tests it against
+// the shadow ray. If they intersect, the ray is occluded and the accelerator is skipped. A prediction of no
+// occluder is never trusted. So results are exact for any prediction, and only the time changes (the check of
+// Liu et al., "Intersection Prediction for Accelerated GPU Ray Tracing", MICRO 2021).
 namespace orrery {
 
-// Const and free of state: any number of threads may call it at once.
+// Proposes occluders. Const, stateless and thread-safe.
 template <class T>
 class Predictor {
  public:
   virtual ~Predictor() = default;
 
-  // Sets what may stand in the way of each ray of `groups`: any number, kNoPrimitive for nothing.
+  // Sets the proposed occluder of each ray of `groups`: any number, or kNoPrimitive for none.
   virtual void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const = 0;
 };
 template <class T>
 using PredictorPtr = std::shared_ptr<const Predictor<T>>;
 
-// The control: for each register one primitive of `count`, by the bits of its first ray.
+// Returns a predictor for comparison: one of `count` primitives per register, chosen by the bits of its first
+// ray.
 template <class T>
 PredictorPtr<T> random_predictor(int count);
 
-// `behind`, asked only for what `predictor` could not prove. The primitives outlive it.
+// Returns an accelerator that calls `behind` only for rays that `predictor` could not prove occluded. The
+// primitives must outlive it.
 template <class T>
 std::shared_ptr<const Accelerator<T>> predicted(const PrimitiveList<T>& primitives,
                                                 std::shared_ptr<const Accelerator<T>> behind,
                                                 PredictorPtr<T> predictor);
 
-// The same with the primitive that was found last in the same call, which is all it remembers.
+// Returns an accelerator that proposes the last occluder found in the same call. It keeps no other state.
 template <class T>
 std::shared_ptr<const Accelerator<T>> predicted_by_last(const PrimitiveList<T>& primitives,
                                                         std::shared_ptr<const Accelerator<T>> behind);

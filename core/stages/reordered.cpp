@@ -5,21 +5,21 @@
 namespace orrery {
 namespace {
 
-constexpr int kCellBits = 4;  // of an axis; a key has 3 for the origin and 3 for the direction
+constexpr int kCellBits = 4;  // bits per axis; a key has 3 axes for the origin and 3 for the direction
 constexpr int kCells = 1 << kCellBits;
 constexpr int kDigitBits = 8, kDigits = 6 * kCellBits / kDigitBits;
 static_assert(kDigits * kDigitBits == 6 * kCellBits);
 
 using Keys = std::array<std::uint32_t, kBatch>;
 
-// (x - lo) * scale as a cell, whatever x is: min_first and max_first drop a NaN.
+// Returns (x - lo) * scale, clamped to the cells. min_first and max_first drop a NaN, so any x has a cell.
 template <class N>
 auto cell_of(const N& x, const N& lo, const N& scale) {
   const N cell = min_first(N(kCells - 1), max_first(N(0), N((x - lo) * scale)));
   return stdx::static_simd_cast<IndexLanes<ScalarOf<N>>>(cell);
 }
 
-// abcd becomes a00b00c00d.
+// Spreads bits: abcd becomes a00b00c00d.
 template <class I>
 I spread(I bits) {
   bits = (bits | bits << 4) & I(0x0c3);
@@ -32,7 +32,7 @@ auto morton(const Vec3<N>& v, const Vec3<N>& lo, const Vec3<N>& scale) {
          spread(cell_of(v.z, lo.z, scale.z));
 }
 
-// The least and the largest of the active ones, NaN left out.
+// Range of a coordinate over the active rays, without NaN.
 template <class T>
 struct Extent {
   using N = Lanes<T>;
@@ -43,14 +43,14 @@ struct Extent {
     hi = max_first(hi, select(active, x, hi));
   }
   T least() const { return stdx::hmin(lo); }
-  // Cells a metre; 0 where all are at one place or one is infinitely far.
+  // Returns cells per metre, or 0 if the range is empty or infinite.
   T scale() const {
     const T size = stdx::hmax(hi) - least();
     return size > 0 ? T(kCells) / size : T(0);
   }
 };
 
-// Writes the keys of the active rays and returns where these stand.
+// Writes the keys of the active rays and returns their places.
 template <class T>
 RayOrder keys_of(const RayBatch<T>& rays, const Groups& groups, Keys& keys) {
   using N = Lanes<T>;
@@ -79,7 +79,7 @@ RayOrder keys_of(const RayBatch<T>& rays, const Groups& groups, Keys& keys) {
   return order;
 }
 
-// Sorts by one digit, in a way that keeps the order of equal ones.
+// Sorts by one digit. Stable.
 void sort_by_digit(int digit, RayOrder& order, Keys& keys) {
   const auto digit_of = [&](std::uint32_t key) -> std::size_t {
     return key >> digit * kDigitBits & ((1u << kDigitBits) - 1);
@@ -140,7 +140,7 @@ class Reordered final : public Accelerator<T> {
  private:
   static int place_of(const RayOrder& order, int i) { return order.place[static_cast<std::size_t>(i)]; }
 
-  // The rays in that order, and inactive ones to the end of the last register. Returns its registers.
+  // Copies the rays in that order and fills the last register with inactive rays. Returns the registers.
   Groups gather(const RayBatch<T>& rays, const RayOrder& order, RayBatch<T>& sorted) const {
     sorted.count = order.count;
     const Groups all = Groups::covering(0, order.count, kWidth<T>);

@@ -9,8 +9,8 @@
 namespace orrery {
 namespace {
 
-// Whether rays may meet light that could not have been drawn: of surfaces that nothing is drawn from, or from
-// around. (Pictures of skies are drawn from where they are bright alone.)
+// Returns whether rays may hit light that is not sampled: an environment, a background or surfaces.
+// (Environment maps are sampled only where they are bright.)
 template <class T>
 bool has_light_beside_drawn(const Geometry<T>& geometry) {
   return geometry.environment || geometry.background != Vec3<T>() || geometry.emits_undrawn;
@@ -61,7 +61,7 @@ void SampledLight<T>::add_sources() {
   if (environment_) add(geometry_.environment.get()).back() = 0;
 }
 
-// The second random number goes on where the first one ends: a light of many has a small probability.
+// The second random number refines the first one, because a light among many has a small probability.
 template <class T>
 void SampledLight<T>::choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
                              const Groups& groups) {

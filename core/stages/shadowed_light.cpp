@@ -14,7 +14,7 @@ void ShadowedLight<T>::evaluate_diffuse(const Directions<T>& directions, const S
   }
 }
 
-// The light's direction decides on which side of the surface the shadow ray starts.
+// Shadow rays start on the side of the surface that the direction to the light selects.
 template <class T>
 Groups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
                               bool constant_half, TraceCounts& counts) {

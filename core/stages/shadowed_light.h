@@ -7,31 +7,32 @@
 
 namespace orrery {
 
-// Light on its way from light sources to surfaces: who fills `light` has surfaces answer it and asks whether
-// anything stands in between. One object belongs to one thread: it keeps its batches.
+// Light from light sources at surfaces: evaluates the materials for `light`, which the caller fills, and
+// traces shadow rays. Not thread-safe: each object owns its batches.
 template <class T>
 class ShadowedLight {
  public:
-  // Geometry, accelerator and plan outlive it. `apart`: whether diffuse lobes are told apart.
+  // `apart`: diffuse lobes are evaluated separately. Geometry, accelerator and plan must outlive this object.
   ShadowedLight(const Geometry<T>& geometry, const Accelerator<T>& accelerator, const Plan& plan,
                 bool apart = false)
       : geometry_(geometry), accelerator_(accelerator), plan_(plan), apart_(apart) {}
 
-  // Evaluates the materials of `groups` and traces the shadow rays of what they answer. Returns the registers
-  // with such a lane; light.shadow.t_max is positive where the light is seen. constant_half: see Directions.
+  // Evaluates the materials of `groups` and traces shadow rays for lanes that reflect light. Returns the
+  // registers with such a lane. light.shadow.t_max is positive if the light is visible. constant_half: see
+  // Directions.
   Groups find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
               bool constant_half, TraceCounts& counts);
 
   LightBatch<T> light;
-  // What surfaces do with it: see MaterialKernel::evaluate(). Undefined but for the registers found.
+  // Results of MaterialKernel::evaluate(). Undefined outside the registers returned.
   Vec3Array<T> f_cos;
   Array<T> pdf;
-  // If told apart, the same of diffuse lobes: f_cos and pdf are then of all others.
+  // Results for diffuse lobes if `apart`; f_cos and pdf are then those of all other lobes.
   Vec3Array<T> diffuse;
   Array<T> diffuse_pdf;
 
  private:
-  // Sets `diffuse`, and completes f_cos where diffuse lobes answer alone.
+  // Sets `diffuse`, and clears f_cos of lanes where only diffuse lobes reflect.
   void evaluate_diffuse(const Directions<T>& directions, const SurfaceBatch<T>& surface,
                         const Groups& groups);
   const Geometry<T>& geometry_;
@@ -40,8 +41,8 @@ class ShadowedLight {
   bool apart_;
 };
 
-// Sets f_cos and pdf of all lanes of `groups` by these lobes of their materials; pdf is 0 where they are not
-// lit.
+// Sets f_cos and pdf of all lanes of `groups` for these lobes of their materials. pdf is 0 if a material is
+// not lit.
 template <class T>
 void evaluate_materials(const Geometry<T>& geometry, const Directions<T>& directions,
                         const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
@@ -52,8 +53,8 @@ void evaluate_materials(const Geometry<T>& geometry, const Directions<T>& direct
       m.kernel->evaluate(directions, surface, groups, lobes, f_cos, pdf);
 }
 
-// Sets the radiance of the lanes of `groups` whose materials are lit and have such lobes to what these make
-// of ambient light.
+// Sets the radiance of lanes of `groups` to reflected ambient light, if their material is lit and has these
+// lobes.
 template <class T>
 void add_ambient(const Geometry<T>& geometry, const RayBatch<T>& rays, const SurfaceBatch<T>& surface,
                  const Groups& groups, Lobes lobes, Vec3Array<T>& radiance) {

@@ -5,8 +5,8 @@
 
 namespace orrery {
 
-// Asks the specular materials of the registers of `groups` where light goes on. With `filters`, throughput
-// takes on what bodies leave of light that crossed them.
+// Evaluates the specular materials of the registers of `groups`. With `filters`, multiplies throughput by the
+// transmittance of bodies that light has crossed.
 template <class T>
 void evaluate_specular(const Geometry<T>& geometry, bool filters, const HitBatch<T>& hits,
                        const SurfaceBatch<T>& surface, const Groups& groups, PathBatch<T>& paths,

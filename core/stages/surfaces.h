@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-// Finds what the rays of `groups` meet first, from hits that were reset() to their rays.
+// Sets the hits of `groups` to none, at the end of their rays.
 template <class T>
 void reset(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) {
   for (const int i : groups) {
@@ -14,7 +14,7 @@ void reset(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) {
   }
 }
 
-// Sets the materials of register i; -1 of rays that met nothing. (Neighbours mostly meet the same primitive.)
+// Sets the materials of register i, or -1 for rays that missed. (Neighbours mostly hit the same primitive.)
 template <class T>
 void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i, SurfaceBatch<T>& surface) {
   const auto material = [&](IndexOf<T> p) {
@@ -26,8 +26,8 @@ void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i,
   for (int lane = i; lane < i + kWidth<T>; ++lane) surface.material[lane] = material(hits.primitive[lane]);
 }
 
-// Fills the surface of every hit in `groups`, and of `fields` what is asked for; sets `radiance` to the
-// background for rays that met nothing and to 0 for the others. Returns the registers with a surface.
+// Sets the surface of every hit in `groups`, with the requested `fields`. Sets `radiance` to the background
+// for rays that missed, else to 0. Returns the registers with a surface.
 template <class T>
 Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
                      const Groups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
