@@ -7,7 +7,7 @@
 namespace orrery {
 namespace {
 
-// A sky, and a ball behind the camera.
+// Scene with a sky, and a ball behind the camera.
 constexpr const char* kSky = R"({"version": 1, "background": [0.1, 0.1, 0.1],
   "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]}, "materials": {"m": {"type": "rough"}},
   "objects": [{"type": "sphere", "center": [0, 0, 900], "radius": 1, "material": "m"}]})";

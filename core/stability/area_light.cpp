@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-// Standard deviation over mean of what estimate(u, v) gives over an even grid of n x n points.
+// Returns standard deviation over mean of estimate(u, v) on an even grid of n x n points.
 template <class Estimate>
 double relative_deviation(int n, const Estimate& estimate) {
   double sum = 0, squares = 0;
@@ -20,13 +20,13 @@ double relative_deviation(int n, const Estimate& estimate) {
   return std::sqrt(std::max(0.0, squares / n / n - mean * mean)) / mean;
 }
 
-// A square of side 1, `height` above its middle on a surface that faces it.
+// Compares estimators for a square of side 1, parallel to a surface and `height` above its middle.
 StabilityFigures deviations(double height) {
   const auto light = make_emitter(
       {Patch::Kind::rectangle, Vec3d(-0.5, height, -0.5), Vec3d(1, 0, 0), Vec3d(0, 0, 1)}, Vec3d(1));
   const double by_area = relative_deviation(1000, [&](double u, double v) {
     const double x = u - 0.5, z = v - 0.5, d2 = x * x + z * z + height * height;
-    return height * height / (d2 * d2);  // both cosines over the square of the distance
+    return height * height / (d2 * d2);  // both cosines over the squared distance
   });
   const double ours = relative_deviation(200, [&](double u, double v) {
     const auto drawn = light.draw(Vec3d(), u, v);

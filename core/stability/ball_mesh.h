@@ -10,7 +10,7 @@
 
 namespace orrery {
 
-// A closed sphere of 24 x 48 facets, with the triangles around each vertex and each edge.
+// Closed sphere of 24 x 48 facets, with the triangles around each vertex and each edge.
 struct BallMesh {
   static constexpr int kRings = 24, kSectors = 48;
   std::vector<Vec3d> positions;
@@ -38,7 +38,7 @@ struct BallMesh {
     }
   }
 
-  // Numbers of the triangles with this vertex.
+  // Returns the numbers of the triangles with this vertex.
   std::vector<int> around(int vertex) const {
     std::vector<int> found;
     for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -47,8 +47,8 @@ struct BallMesh {
     return found;
   }
 
-  // A ray from within half of the radius of 2, aimed at this vertex or at the middle of one of its edges,
-  // which one of the triangles `around` it has to stop. Positions are rounded to T.
+  // Returns a ray from within half of the radius of 2, aimed at this vertex or at the middle of one of its
+  // edges. One of the triangles in `fan` must stop the ray. Positions are rounded to T.
   template <class T>
   Ray<T> ray_at(int vertex, const std::vector<int>& fan, const Vec3d& center, SplitMix& random) const {
     const auto& triangle = triangles[static_cast<std::size_t>(

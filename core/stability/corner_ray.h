@@ -8,13 +8,13 @@
 
 namespace orrery {
 
-// A ray and a box.
+// Ray and box.
 template <class N>
 struct BoxTest {
   Vec3<N> lo, hi, origin, direction;
 
-  // The same from 0, where the margin for the origin's rounding hides nothing. REQUIRES: differences are
-  // exact.
+  // Moves the ray's origin to 0, so that the margin for its rounding hides no error. REQUIRES: differences
+  // are exact.
   void start_from_zero() {
     lo = lo - origin;
     hi = hi - origin;
@@ -27,8 +27,9 @@ struct BoxTest {
   }
 };
 
-// A ray that meets a corner of a box exactly, at a t that is a power of two: all numbers are whole multiples
-// of `unit` and leave a bit free, so that corner - origin is exact. The box has no extent along one axis.
+// Returns a ray that hits a corner of a box exactly, at a t that is a power of two. All numbers are integer
+// multiples of `unit` with one spare bit, so that corner - origin is exact. The box has no extent along one
+// axis.
 template <class T>
 BoxTest<T> ray_through_a_corner(SplitMix& random, T unit) {
   constexpr int kBits = std::numeric_limits<T>::digits - 2;

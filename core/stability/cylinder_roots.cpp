@@ -7,15 +7,15 @@
 namespace orrery {
 namespace {
 
-// The smaller root for a cylinder of radius 1 about the z axis as (-B - sqrt(D)) / 2 * A, read from left to
-// right.
+// Returns the smaller root for a cylinder of radius 1 around the z axis as (-B - sqrt(D)) / 2 * A, evaluated
+// from left to right.
 double misread_distance(const Ray<double>& ray) {
   const Vec3d o = ray.origin, d = ray.direction;
   const double a = d.x * d.x + d.y * d.y, b = 2 * (o.x * d.x + o.y * d.y), c = o.x * o.x + o.y * o.y - 1;
   return (-b - std::sqrt(b * b - 4 * a * c)) / 2 * a;
 }
 
-// Rays from x = -5 meet it at x = -1.
+// Rays from x = -5 hit the cylinder at x = -1.
 StabilityFigures measure() {
   const Cylinder<double> cylinder{Vec3d(), Vec3d(0, 0, 1), 1, std::numeric_limits<double>::infinity(), 1};
   StabilityFigures worst{0, 0};

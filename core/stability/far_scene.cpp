@@ -9,7 +9,7 @@
 namespace orrery {
 namespace {
 
-// Two balls on a floor of 2 m, all moved by the same along each axis.
+// Scene of two balls on a floor of 2 m, moved by `offset` along each axis.
 std::shared_ptr<const Scene> scene_at(double offset) {
   const auto at = [&](double x, double y, double z) {
     return printed("[%.17g, %.17g, %.17g]", offset + x, offset + y, offset + z);

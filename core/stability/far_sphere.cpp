@@ -9,23 +9,23 @@ namespace {
 
 constexpr int kRays = 20'000;
 
-// Whether b^2 - 4 a c has roots (Glassner, "An Introduction to Ray Tracing", 1989, chapter 2). The sphere is
-// that of radius 1 about 0.
+// Returns whether b^2 - 4 a c has roots (Glassner, "An Introduction to Ray Tracing", 1989, chapter 2). The
+// sphere has radius 1 and centre 0.
 bool textbook_meets(const Ray<float>& ray) {
   const float a = dot(ray.direction, ray.direction), b = 2 * dot(ray.origin, ray.direction);
   const float c = dot(ray.origin, ray.origin) - 1;
   return b * b - 4 * a * c >= 0;
 }
 
-// Whether a ray meets the sphere: it passes the centre at less than 1, in double.
+// Returns whether a ray hits the sphere, i.e. passes the centre at a distance of at most 1, in double.
 bool meets(const Ray<float>& ray) {
   const Vec3d o(ray.origin), d(ray.direction);
   const Vec3d closest = o - d * (dot(o, d) / dot(d, d));
   return dot(closest, closest) <= 1;
 }
 
-// Shares of rays that are decided wrongly, of those that start so many radii away and pass the centre at up
-// to 1.2 of them, in %.
+// Returns the percentage of rays that are decided wrongly. The rays start `distance` radii away and pass the
+// centre at up to 1.2 radii.
 StabilityFigures wrong_from(double distance) {
   const Ball<float> ball{Vec3f(), 1};
   SplitMix random(1);

@@ -4,8 +4,9 @@
 
 namespace orrery {
 
-// Reflectance of unpolarised light between dielectrics, eta the index before over that behind, as textbooks
-// print it (Born, Wolf, "Principles of Optics", 1.5.2), in long double: 1 beyond the critical angle.
+// Returns the reflectance of unpolarised light between dielectrics by the textbook formula (Born, Wolf,
+// "Principles of Optics", 1.5.2), in long double. `eta` is the index before over the index behind. Returns 1
+// beyond the critical angle.
 inline double textbook_fresnel(long double eta, long double cosine) {
   const long double sine2 = eta * eta * (1 - cosine * cosine);
   if (sine2 >= 1) return 1;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSide = 32, kSamples = 16;
 
-// White to the left of a slanted edge, black to the right.
+// Scene that is white to the left of a slanted edge and black to the right.
 constexpr const char* kEdge = R"({"version": 1, "ambient": [1, 1, 1],
   "camera": {"type": "orthographic", "eye": [0, 0, 5], "look_at": [0, 0, 0], "height": 32},
   "materials": {"m": {"type": "rough", "ka": 1, "kd": 0}},
@@ -38,7 +38,7 @@ std::vector<double> means_of(const TileSums& sums) {
   return means;
 }
 
-// Half of the difference between means of the samples of even and of odd numbers.
+// Returns half of the difference between the means of even and of odd samples.
 std::vector<double> even_odd_differences(SampledTile& tile) {
   std::vector<double> differences(kSide * kSide), before(kSide * kSide);
   for (int sample = 0; sample < kSamples; ++sample) {

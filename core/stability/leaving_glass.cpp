@@ -9,7 +9,7 @@ namespace {
 
 double degrees_of(double sine) { return 360 * direction_turns(std::sqrt((1 - sine) * (1 + sine)), sine); }
 
-// Rays inside of glass of index 1.5 that meet its surface at 1 to 41 degrees.
+// Rays inside glass of index 1.5 hit its surface at 1 to 41 degrees.
 StabilityFigures measure() {
   constexpr double kIndex = 1.5;
   const Refractive<double> glass{kIndex, 0.04, 1, Vec3d(0)};

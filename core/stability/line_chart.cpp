@@ -11,14 +11,14 @@ namespace {
 constexpr double kWidth = 660, kHeight = 360, kLeft = 84, kRight = 440, kTop = 48, kBottom = 292,
                  kZeroLane = 26;
 
-// The axis that holds these values; zeros of a logarithmic one have no place on it.
+// Returns the axis that contains the values. A logarithmic axis excludes zeros.
 Axis axis_of(std::vector<double> values, bool logarithmic, double from, double to) {
   if (logarithmic) std::erase_if(values, [](double value) { return value <= 0; });
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return {logarithmic ? *least : std::min(0.0, *least), *most, from, to, logarithmic};
 }
 
-// The same from one power of ten to another.
+// Extends a logarithmic axis to powers of ten.
 Axis to_powers_of_ten(Axis axis) {
   if (!axis.logarithmic) return axis;
   axis.low = std::pow(10, std::floor(std::log10(axis.low)));
@@ -89,7 +89,7 @@ class LineDrawing {
 
   const LineChart& chart_;
   Axis x_{}, y_{};
-  bool has_zero_ = false;  // and a lane for it below the y axis
+  bool has_zero_ = false;  // draws zeros in a lane below the y axis
   std::string text_;
 };
 

@@ -6,8 +6,8 @@
 
 namespace orrery {
 
-// A drawing of 660 x 360 of the lines, named beside them. Titles of 65 letters and names of 28 fit. REQUIRES:
-// a point other than 0 on each axis.
+// Draws the lines with 660 x 360 units, and their names to the right. Titles of 65 letters and names of 28
+// fit. REQUIRES: a non-zero value on each axis.
 std::string svg_of(const LineChart& chart);
 
 }  // namespace orrery

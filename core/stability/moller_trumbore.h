@@ -7,9 +7,9 @@
 
 namespace orrery {
 
-// Distance to a triangle, or +infinity (Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
-// Journal of Graphics Tools, 1997). The code printed there takes determinants below `epsilon` 1e-6 for 0.
-// Rows alone use it: it leaks at edges.
+// Returns the distance to a triangle, or +infinity (Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle
+// Intersection", Journal of Graphics Tools, 1997). The printed code treats determinants below `epsilon` 1e-6
+// as 0. Leaks at edges, so only stability rows use it.
 template <class T>
 T moller_trumbore(const Ray<T>& ray, const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c, T epsilon) {
   constexpr T kMissed = std::numeric_limits<T>::infinity();

@@ -7,7 +7,7 @@
 namespace orrery {
 namespace {
 
-// Moves a point off a surface by 256 steps of its last place (Waechter, Binder, "A Fast and Robust Method for
+// Moves a point off a surface by 256 units in the last place (Waechter, Binder, "A Fast and Robust Method for
 // Avoiding Self-Intersection", Ray Tracing Gems, 2019).
 float moved_by_places(float p, float normal) {
   constexpr float kOrigin = 1.0f / 32, kFloatScale = 1.0f / 65536, kIntegerScale = 256;
@@ -16,7 +16,7 @@ float moved_by_places(float p, float normal) {
   return std::bit_cast<float>(std::bit_cast<std::int32_t>(p) + (p < 0 ? -places : places));
 }
 
-// How far each moves a ray off a ball of 1 m about (1e6, 1e6, 1e6) where it looks along x.
+// Measures by how much each method moves a ray off a ball of 1 m at (1e6, 1e6, 1e6), along x.
 StabilityFigures measure() {
   const Vec3f at(1e6f + 1, 1e6f, 1e6f);
   const double known = static_cast<double>(moved_by_places(at.x, 1) - at.x);

@@ -11,11 +11,11 @@
 
 namespace orrery {
 
-// One object of a scene, asked by its kernel as stages ask it.
+// One object of a scene. Calls its kernel as the stages do.
 template <class T>
 class OneShape {
  public:
-  // `object` as JSON, of a material "m".
+  // `object` is JSON with the material "m".
   explicit OneShape(const std::string& object)
       : scene_(load_scene(
             R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]},
@@ -25,7 +25,7 @@ class OneShape {
       if (set->size() > 0) kernel_ = set->kernel(T(), 0);
   }
 
-  // What stages know of the places where the rays meet it. REQUIRES: at most kBatch rays, and all meet it.
+  // Sets surface() to the hits of the rays. REQUIRES: at most kBatch rays, and all hit the object.
   void meet(std::span<const Ray<T>> rays) {
     batch_->count = static_cast<int>(rays.size());
     for (int i = 0; i < kBatchRoom; ++i)
@@ -37,7 +37,8 @@ class OneShape {
   }
   const SurfaceBatch<T>& surface() const { return *surface_; }
 
-  // How many of the rays that leave there along these directions, one a place, meet it again.
+  // Returns the number of rays that hit the object again when they leave it along these directions, one per
+  // hit.
   int met_again(std::span<const Vec3<T>> directions) {
     const int count = batch_->count;
     for (int i = 0; i < kBatchRoom; ++i)

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kShininess = 50, kFactor = 4.02;
 
-// A unit vector, so many degrees from +z and about it.
+// Returns a unit vector from its angles to +z and around it, in degrees.
 Vec3d direction_at(double from_normal, double about) {
   const auto theta = sine_cosine_turns(from_normal / 360), phi = sine_cosine_turns(about / 360);
   return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
@@ -21,15 +21,15 @@ double highlight_of(const Rough<double>& rough, const Vec3d& light, const Vec3d&
                   rough.shininess);
 }
 
-// (R.V)^50, R mirrored by the textbook (Phong 1975), by squaring.
+// Computes (R.V)^50 by squaring, with R mirrored by the textbook formula (Phong 1975).
 double phong(const Vec3d& light, const Vec3d& viewer) {
   const Vec3d mirrored(-light.x, -light.y, light.z);
   const double c = std::max(0.0, dot(mirrored, viewer)), c2 = c * c, c8 = c2 * c2 * c2 * c2, c16 = c8 * c8;
   return c16 * c16 * c16 * c2;
 }
 
-// The largest differences over viewers within `about_most` degrees about the normal of the mirrored light,
-// or opposite of it.
+// Returns the largest differences over viewers within `about_most` degrees around the normal, from the
+// mirrored light or opposite to it.
 StabilityFigures differ_at(double light_degrees, double about_most) {
   Rough<double> blinn{}, rough{};
   blinn.shininess = kFactor * kShininess;

@@ -8,20 +8,20 @@
 
 namespace orrery {
 
-// What the plan of a scene renders, on one thread.
+// Renders a scene as planned, on one thread.
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request);
 
-// Red, green and blue of all pixels, linear. REQUIRES: as Film::image() of linear32.
+// Returns linear red, green and blue of all pixels. REQUIRES: as Film::image() of linear32.
 std::vector<float> values_of(const Film& film);
 
-// One tile whose samples are traced one after another. REQUIRES: the picture is that tile, at most 32 x 32.
+// One tile whose samples are traced step by step. REQUIRES: the picture is one tile, at most 32 x 32.
 class SampledTile {
  public:
   SampledTile(const std::shared_ptr<const Scene>& scene, const RenderRequest& request);
 
-  // Traces that many samples more, and gives the sums of all so far.
+  // Traces `samples` more samples and returns the sums of all so far.
   const TileSums& add(int samples);
-  // Of what was traced last, where it began with the first sample.
+  // Returns the error of the last samples traced. REQUIRES: they began with the first sample.
   const SampledError& error() const { return stats_.error; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr int kSide = 32;
 constexpr double kShare = 0.01, kError = 0.01;
 
-// A white dot on each pixel, over a hundredth of its area, somewhere within it.
+// Scene with a white dot in each pixel, at a random position and over a hundredth of its area.
 std::shared_ptr<const Scene> dots() {
   SplitMix random(1);
   const double radius = std::sqrt(kShare / 3.14159265358979324);
@@ -37,8 +37,9 @@ RenderRequest request_of() {
   return request;
 }
 
-// Mean of the picture where each pixel ends once the halves of its samples differ by less than the error
-// asked, at 4, 8, 16 ... samples: the first half of the samples is the picture of half as many.
+// Returns the mean of a picture that stops per pixel. A pixel stops once the halves of its samples differ by
+// at most the requested error, at 4, 8, 16 ... samples. The first half of the samples is the picture of half
+// as many.
 double mean_by_pixels(const std::shared_ptr<const Scene>& scene) {
   constexpr int kMost = 512;
   RenderRequest request = request_of();

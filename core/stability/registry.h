@@ -9,10 +9,10 @@ namespace orrery {
 
 std::span<const StabilityRow> stability_rows();
 
-// The row of that id. Throws std::out_of_range.
+// Returns the row with this id. Throws std::out_of_range if there is none.
 const StabilityRow& stability_row(const char* id);
 
-// Every row, measured: about a third of a second of one thread.
+// Measures every row, in about a third of a second on one thread.
 std::vector<StabilityResult> measure_stability();
 
 }  // namespace orrery

@@ -11,7 +11,7 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return unit == "1" ? number : number + " " + unit;
 }
 
-// As a cell of a table.
+// Escapes a text for a table cell.
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
   return text;

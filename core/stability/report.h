@@ -5,16 +5,16 @@
 
 #include "core/stability/row.h"
 
-// The measured rows for people to read.
+// Text and Markdown reports of the measured rows.
 namespace orrery {
 
-// "2.4e-7 m", "3.1 %", "12 of 13", "0"; of the unit "1" the number alone.
+// Formats a figure: "2.4e-7 m", "3.1 %", "12 of 13", "0". The unit "1" is not printed.
 std::string figure_text(double value, const char* unit);
 
-// Lines that each begin with an id; three a row.
+// Returns three lines per row. The first begins with its id.
 std::string stability_text(std::span<const StabilityResult> results);
 
-// The page docs/stability.md, whose pictures are pictures/stability-<name of the chart>.svg.
+// Returns the page docs/stability.md. Its pictures are pictures/stability-<name of the chart>.svg.
 std::string stability_markdown(std::span<const StabilityResult> results);
 
 }  // namespace orrery

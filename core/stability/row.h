@@ -5,39 +5,40 @@
 #include <utility>
 #include <vector>
 
-// Where numerical methods fail: rows that measure a known method beside the one that this program uses.
+// Stability rows: each compares the error of a known numerical method with that of the method used here.
 namespace orrery {
 
-// A few lines over one axis. A logarithmic y axis shows values of 0 in a lane below it.
+// Line chart. A logarithmic y axis shows values of 0 in a lane below it.
 struct LineChart {
   struct Series {
     std::string name;
-    std::vector<std::pair<double, double>> points;  // by rising x
+    std::vector<std::pair<double, double>> points;  // by increasing x
   };
-  std::string name;  // of the file: small letters, digits, hyphens
+  std::string name;  // file name: lower-case letters, digits, hyphens
   std::string title, x, y;
   bool log_x = false, log_y = false;
   std::vector<Series> series;
 };
 
-// Errors of both methods, in the row's unit: 0 is the best, each is finite and at least 0.
+// Errors of both methods in the row's unit: finite, at least 0; 0 is best.
 struct StabilityFigures {
   double known, ours;
   std::optional<LineChart> chart = {};
 };
 
 struct StabilityRow {
-  const char* id;        // that the tests name as well
+  const char* id;        // named by the tests, too
   const char* name;      // a few words
-  const char* quantity;  // what is computed, and what of it is measured
+  const char* quantity;  // computed quantity and its measured error
   const char* unit;
-  // The known method with its source, and what it reaches at least.
+  // Known method with its source, and a lower bound of its error.
   const char* known;
   double known_at_least;
-  // The method of this program, and what it keeps.
+  // Method used here, and an upper bound of its error.
   const char* ours;
   double ours_at_most;
-  // A pure function: the same figures on every machine, since it uses IEEE operations and square roots alone.
+  // Pure function with the same results on every machine, because it uses only IEEE operations and square
+  // roots.
   StabilityFigures (*measure)();
 };
 

@@ -12,7 +12,7 @@ namespace {
 StabilityFigures measure() {
   constexpr double kIndex = 1.5;
   StabilityFigures worst{0, 0};
-  for (int i = 0; i < 900; ++i) {  // tenths of a degree; from 41.8 on all is mirrored
+  for (int i = 0; i < 900; ++i) {  // tenths of a degree; total reflection from 41.8 degrees
     const double cosine = sine_cosine_turns(i / 3600.0).cosine;
     const double exact = textbook_fresnel(kIndex, cosine);
     worst.known = std::max(worst.known, std::abs(fresnel_schlick(0.04, cosine) - exact));

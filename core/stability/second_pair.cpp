@@ -6,8 +6,8 @@
 namespace orrery {
 namespace {
 
-// Standard deviations, over pixels, of the share of samples whose first numbers of two streams are both below
-// a half: a quarter, in the end.
+// Returns standard deviations over pixels of an estimate of 1/4. The estimate is the share of samples for
+// which the first numbers of two streams are both below 1/2.
 StabilityFigures deviations(std::uint32_t samples) {
   constexpr std::uint32_t kPixels = 256;
   StabilityFigures squares{0, 0};

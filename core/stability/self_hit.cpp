@@ -10,15 +10,15 @@ namespace {
 
 const Vec3d kNormal = safe_normalize(Vec3d(1, 2, 3));
 
-// Whether a ray from o + t d, the hit as it is computed, meets the plane again beyond a fixed epsilon of 1e-4
-// (as introductions have it: Shirley, "Ray Tracing in One Weekend", takes 1e-3).
+// Returns whether a ray from the computed hit o + t d meets the plane again beyond a fixed epsilon of 1e-4.
+// (Introductions use this test: Shirley, "Ray Tracing in One Weekend", takes 1e-3.)
 bool meets_again(const Ray<float>& ray, const Vec3f& at, const Vec3f& normal, const Vec3f& direction) {
   const float t = dot(at - ray.origin, normal) / dot(ray.direction, normal);
   const Vec3f hit = ray.at(t);
   return dot(at - hit, normal) / dot(direction, normal) > 1e-4f;
 }
 
-// Shares of rays that leave a plane through (c, c, c) and meet it at once, in %.
+// Returns the percentage of rays that leave a plane through (c, c, c) and hit it at once.
 StabilityFigures self_hits_at(double c) {
   constexpr int kBatches = 20;
   OneShape<float> plane(printed(R"({"type": "plane", "point": [%.17g, %.17g, %.17g], "normal": [1, 2, 3],

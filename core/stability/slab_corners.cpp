@@ -4,7 +4,7 @@
 namespace orrery {
 namespace {
 
-// Near and far planes by min and max, without padding (Kay, Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH
+// Intersects slabs by min and max, without padding (Kay, Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH
 // 1986).
 bool textbook_enters(const BoxTest<double>& b) {
   double near = 0, far = std::numeric_limits<double>::infinity();

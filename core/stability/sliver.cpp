@@ -8,8 +8,8 @@
 namespace orrery {
 namespace {
 
-// Weights of the vertices from edge functions whose products are rounded before they are subtracted (Woop,
-// Benthin, Wald 2013, as printed).
+// Returns the weights of the vertices from edge functions whose products are rounded before subtraction
+// (Woop, Benthin, Wald 2013, as printed).
 Vec3f rounded_weights(const Ray<float>& ray, const Corners<float>& corners) {
   const OwnAxes<float> axes(ray);
   const Sheared<float> a = axes(corners.a), b = axes(corners.b), c = axes(corners.c);
@@ -17,13 +17,13 @@ Vec3f rounded_weights(const Ray<float>& ray, const Corners<float>& corners) {
   return Vec3f(u, v, w) / (u + v + w);
 }
 
-// From a point of a triangle in the plane y = 0 to where the ray crosses that, in metres.
+// Returns the distance in metres between the point found in the plane y = 0 and the exact intersection.
 double slip(const Ray<float>& ray, const Vec3f& found) {
   const double t = -static_cast<double>(ray.origin.y) / static_cast<double>(ray.direction.y);
   return length(Vec3d(found) - (Vec3d(ray.origin) + Vec3d(ray.direction) * t));
 }
 
-// Half of a strip 100 m long and 1 mm wide, seen from 10 cm above.
+// Measures half of a strip that is 100 m long and 1 mm wide, from 10 cm above.
 StabilityFigures measure() {
   const float w = 0.0005f, l = 50;
   const Corners<float> half{{-w, 0, -l}, {-w, 0, l}, {w, 0, -l}};

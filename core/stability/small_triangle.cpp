@@ -7,8 +7,8 @@
 namespace orrery {
 namespace {
 
-// Right-angled triangles with sides of 0.99 m to 0.99 pm, each met by a ray from 1 m above: how many are
-// missed. Determinants are the squares of the sides.
+// Counts missed right triangles with sides from 0.99 m to 0.99 pm, each hit by a ray from 1 m above.
+// Determinants are the squared sides.
 StabilityFigures measure() {
   StabilityFigures missed{0, 0};
   double side = 0.99;

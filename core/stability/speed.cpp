@@ -17,7 +17,7 @@
 namespace orrery {
 namespace {
 
-// One way to do the work of a group; returns the CPU milliseconds that it took.
+// Method of a group. run() returns the CPU milliseconds of one run.
 struct Contender {
   std::string name;
   std::function<double()> run;
@@ -28,7 +28,7 @@ struct Contest {
   std::vector<Contender> contenders;
 };
 
-// 512 balls of glass over a floor.
+// Scene with 512 balls of glass over a floor.
 std::shared_ptr<const Scene> balls(const char* fresnel) {
   std::string objects =
       R"({"type": "rectangle", "corner": [-6, -4.5, -6], "a": [0, 0, 12], "b": [12, 0, 0], "material": "floor"})";
@@ -84,7 +84,7 @@ Contest reflectances() {
             "RMS " + figure_text(rms_difference(schlick, request, exact, request), "radiance")}}};
 }
 
-// Calls distance(ray, a, b, c) of every triangle of a ball with rays at its vertices.
+// Calls distance(ray, a, b, c) for every triangle of a ball and rays at its vertices.
 template <class Distance>
 std::function<double()> testing(const Distance& distance) {
   return [distance] {

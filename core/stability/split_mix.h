@@ -8,8 +8,8 @@
 
 namespace orrery {
 
-// A stream of random numbers, the same on every machine (SplitMix64: Steele, Lea, Flood, "Fast splittable
-// pseudorandom number generators", 2014). Rows and tests draw from it; pictures have Draws.
+// Random number generator with the same numbers on every machine (SplitMix64: Steele, Lea, Flood, "Fast
+// splittable pseudorandom number generators", 2014). For rows and tests; pictures use Draws.
 class SplitMix {
  public:
   explicit SplitMix(std::uint64_t seed) : state_(seed) {}
@@ -29,7 +29,7 @@ class SplitMix {
   std::uint64_t state_;
 };
 
-// A unit vector, uniform over the sphere, by portable operations alone.
+// Returns a unit vector, uniform on the sphere, computed with portable operations only.
 inline Vec3d direction_from(SplitMix& random) {
   const double z = random.between(-1, 1), across = std::sqrt(1 - z * z);
   const auto [sine, cosine] = sine_cosine_turns(random.unit());

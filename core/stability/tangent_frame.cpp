@@ -8,15 +8,15 @@
 namespace orrery {
 namespace {
 
-// Frisvad, "Building an Orthonormal Basis from a 3D Unit Vector Without Normalization", Journal of Graphics
-// Tools, 2012.
+// Computes tangents as in Frisvad, "Building an Orthonormal Basis from a 3D Unit Vector Without
+// Normalization", Journal of Graphics Tools, 2012.
 Tangents<float> frisvad_tangents(const Vec3f& n) {
   if (n.z < -0.9999999f) return {{0, -1, 0}, {-1, 0, 0}};
   const float a = 1 / (1 + n.z), b = -n.x * n.y * a;
   return {{1 - n.x * n.x * a, b, -n.x}, {b, 1 - n.y * n.y * a, -n.y}};
 }
 
-// How far lengths are from 1 and products of different vectors from 0, at most.
+// Returns the largest deviation of lengths from 1 and of dot products from 0.
 double error_of(const Tangents<float>& basis, const Vec3f& normal) {
   const Vec3d n(normal), a(basis.first), b(basis.second);
   return std::max({std::abs(length(a) - 1), std::abs(length(b) - 1), std::abs(dot(a, b)), std::abs(dot(a, n)),

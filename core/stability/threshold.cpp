@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kThreshold = 1.0 / 255;
 
-// Two slabs of glass whose surfaces mirror half of what meets them upright, before a sky of radiance 1, seen
-// from the side of a black plane. Four such surfaces let 1 / 5 through.
+// Scene with two slabs of glass before a sky of radiance 1, seen from a black plane. Each surface reflects
+// half of the light at normal incidence. Four such surfaces transmit 1 / 5.
 constexpr const char* kSlabs = R"({"version": 1, "background": [1, 1, 1],
   "camera": {"type": "orthographic", "eye": [0, 0, 5], "look_at": [0, 0, 0], "height": 1},
   "materials": {"glass": {"type": "refractive", "ior": 5.82842712474619, "fresnel": "exact"},

@@ -7,8 +7,8 @@
 namespace orrery {
 namespace {
 
-// Of values of which one in 2000 is 1 and all others are 0, 256 at a time: how often the upper end of an
-// interval of 95 % for their mean lies below it, in %. Most runs have seen none.
+// Measures how often the upper end of a 95 % interval is below the true mean, in %. A run has 256 values, of
+// which one in 2000 is 1 and all others are 0. Most runs see only zeros.
 StabilityFigures measure() {
   constexpr int kRuns = 400, kCount = 256;
   constexpr double kShare = 0.0005, kNormalQuantile = 1.645;
@@ -20,7 +20,7 @@ StabilityFigures measure() {
     for (int i = 0; i < kCount; ++i) {
       const double x = random.unit() < kShare ? 1 : 0;
       all.add(x);
-      sum += x;  // and so is the sum of squares
+      sum += x;  // the sum of squares is the same
     }
     const double mean = sum / kCount, variance = mean - mean * mean;
     missed.ours += all.upper_mean(0.05) < kShare;

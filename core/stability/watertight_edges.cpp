@@ -8,9 +8,9 @@
 namespace orrery {
 namespace {
 
-// Of 10,000 rays how many leave the closed mesh between its triangles.
+// Measures the percentage of 10,000 rays that leave the closed mesh between its triangles.
 StabilityFigures measure() {
-  constexpr int kRaysAtEach = 9;  // of 1106 vertices
+  constexpr int kRaysAtEach = 9;  // at each of 1106 vertices
   const BallMesh mesh(2, Vec3d());
   SplitMix random(7);
   int rays = 0, known = 0, ours = 0;
