@@ -8,7 +8,7 @@
 namespace orrery {
 namespace {
 
-// 600 rather than 600.0.
+// Returns an integer for integral values up to 2^53, so that the schema shows 600 and not 600.0.
 Schema number_of(double x) {
   const bool exact = x == std::trunc(x) && std::abs(x) <= 9007199254740992.0;
   return exact ? Schema(static_cast<std::int64_t>(x)) : Schema(x);
@@ -52,7 +52,7 @@ constexpr const char* kBeyond =
 const Schema kEmptyList = Schema::array();
 const Schema kEmptyObject = Schema::object();
 
-// The default that is written for a list or map.
+// Returns the default of a list or map in the schema, or null if it must not be empty.
 const Schema* if_empty_allowed(Count count, const Schema& empty) { return count.min == 0 ? &empty : nullptr; }
 
 }  // namespace

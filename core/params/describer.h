@@ -6,15 +6,14 @@
 
 #include "core/params/params.h"
 
-// Params over nothing: the describing mode. For core/params only.
+// Describing mode of Params: writes a JSON Schema instead of reading a document. For core/params only.
 
 namespace orrery {
 
 using Schema = nlohmann::ordered_json;
 
-// The choices (pick, form) met on one run of a read function. Running it again and again while advance() says
-// so takes every way through it once: the last choice that has alternatives left is turned, later ones start
-// anew.
+// Enumerates the choices (pick, form) of a read function, depth first. Run the function again while advance()
+// returns true: each run takes one combination of alternatives, and every combination is taken once.
 class Choices {
  public:
   std::size_t choose(std::size_t alternatives) {
@@ -30,18 +29,18 @@ class Choices {
   }
 
  private:
-  std::vector<std::pair<std::size_t, std::size_t>> steps_;  // taken, of how many
+  std::vector<std::pair<std::size_t, std::size_t>> steps_;  // alternative taken, number of alternatives
   std::size_t next_ = 0;
 };
 
-// One way through a read function, i.e. one set of keys that an object may have. Values asked for are
-// stand-ins.
+// Schema of one combination of choices, i.e. of one set of keys that an object may have. Every value returned
+// to the read function is a default or a placeholder.
 class Describer final : public Params {
  public:
-  // `definitions` gathers what schemas share ($defs).
+  // Schemas used more than once are added to `definitions` ($defs).
   Describer(Choices& choices, Schema& definitions) : choices_(choices), definitions_(definitions) {}
 
-  // The schema of every way through `read`: one object, or several of which exactly one fits.
+  // Returns the schema of all combinations of choices: one object, or "oneOf" several.
   static Schema describe_object(const Read& read, Schema& definitions);
 
  private:
@@ -67,7 +66,7 @@ class Describer final : public Params {
   void do_fail(Key, std::string) override {}
   std::string do_pointer(Key) const override { return ""; }
 
-  // Adds the property; `fallback` is null for none, and is not written for discarded (derived defaults).
+  // Adds a property. A null `fallback` writes no default into the schema.
   void add(Key key, Doc doc, Schema schema, bool required, const Schema* fallback = nullptr);
   template <class T>
   void add(Key key, Doc doc, Schema schema, const Fallback<T>& fallback);
@@ -77,12 +76,12 @@ class Describer final : public Params {
 
   Choices& choices_;
   Schema& definitions_;
-  std::string title_, summary_;  // of the type picked
+  std::string title_, summary_;  // from the picked Choice
   Schema properties_ = Schema::object();
   Schema required_ = Schema::array();
 };
 
-// Indented text: what fits into a line stays on one.
+// Formats a schema with indentation. Values that fit into one line are not broken.
 std::string pretty(const Schema& schema);
 
 }  // namespace orrery

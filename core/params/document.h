@@ -9,31 +9,32 @@
 
 namespace orrery {
 
-// What a JSON text may cost before it is refused. Every refusal names the limit it hit.
+// Limits of parse_document(). An error names the limit that was exceeded.
 struct JsonLimits {
-  std::size_t depth = 32;         // arrays and objects inside one another; keeps every recursion shallow
-  std::size_t nodes = 1'000'000;  // values of any kind; about 16 to 100 bytes of memory each
+  std::size_t depth = 32;         // nested arrays and objects; bounds every recursion
+  std::size_t nodes = 1'000'000;  // values of any kind; 16 to 100 bytes of memory each
 };
 
-// A parsed JSON value. Immutable and cheap to copy: copies and members share one tree, and keep it alive.
-// Safe to read from any number of threads. core/params/json.h gives the tree itself to those who must have
-// it.
+// Immutable parsed JSON value. Cheap to copy: copies and members share ownership of one tree. Thread-safe.
+// Code that needs the tree itself includes core/params/json.h.
 class Document {
  public:
   bool has(std::string_view key) const;  // false if this is not an object
 
-  // The member of an object, with errors in it still reported from the root: "/scene/objects/3".
+  // Returns the member `key`, or nullopt if there is none or this is not an object. Errors in the member
+  // carry its pointer from the root: "/scene/objects/3".
   std::optional<Document> member(std::string_view key) const;
 
-  // JSON Pointer of this value in the text it was parsed from; "" for the root.
+  // JSON Pointer (RFC 6901) of this value in the parsed text; "" for the root.
   const std::string& pointer() const noexcept { return pointer_; }
 
-  // The one way to write this value: keys sorted by their bytes, no spaces, each number as the shortest
-  // decimal that reads back to the same double (so 1, 1.0 and 10e-1 are one number, and -0 is 0), strings
-  // as UTF-8 with only the escapes that JSON demands.
+  // Returns the canonical text of this value. Keys are sorted by bytes and there are no spaces. A number is
+  // the shortest decimal that reads back to the same double: 1, 1.0 and 10e-1 are equal, and -0 is 0. Strings
+  // are UTF-8 with only the escapes that JSON requires.
   std::string canonical() const;
 
-  // SHA-256 of canonical(), 64 hexadecimal digits: equal for texts that differ only in layout.
+  // Returns the SHA-256 of canonical() as 64 hexadecimal digits. Texts that differ only in layout have one
+  // id.
   std::string id() const;
 
  private:
@@ -44,9 +45,9 @@ class Document {
   std::string pointer_;
 };
 
-// Parses one JSON text (RFC 8259, UTF-8), strictly. Throws MalformedJson for text that is not JSON, which
-// includes NaN, Infinity, comments and invalid UTF-8; throws InputError for duplicate keys, for numbers that
-// no double can hold (1e999) and for a limit that was hit.
+// Parses one JSON text (RFC 8259, UTF-8). Throws MalformedJson if the text is not JSON: NaN, Infinity,
+// comments and invalid UTF-8 are rejected. Throws InputError for duplicate keys, for numbers beyond the range
+// of double (1e999) and for an exceeded limit.
 Document parse_document(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace orrery

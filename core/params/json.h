@@ -4,14 +4,14 @@
 
 #include "core/params/document.h"
 
-// The JSON tree behind a Document, for code that speaks JSON itself (answers of the service, tests).
-// Only core/params and server/ include this; everyone else reads through Params.
+// JSON tree of a Document, for code that handles JSON directly (responses of the service, tests). Only
+// core/params and server/ include this header. All other code reads documents through Params.
 
 namespace orrery {
 
 struct DocumentAccess {
   static const nlohmann::json& tree(const Document& document) { return *document.value_; }
-  // The value `part` inside the document's tree.
+  // Returns a document of `part`, which must be inside the tree of `document`.
   static Document part(const Document& document, const nlohmann::json& part, std::string pointer) {
     return Document(std::shared_ptr<const nlohmann::json>(document.value_, &part), std::move(pointer));
   }
@@ -22,7 +22,7 @@ struct DocumentAccess {
 
 inline const nlohmann::json& json_of(const Document& document) { return DocumentAccess::tree(document); }
 
-// A document made by the program itself, e.g. a scene with changed members. REQUIRES: all numbers are finite.
+// Makes a document from a JSON value, e.g. a scene with changed members. REQUIRES: all numbers are finite.
 inline Document document_of(nlohmann::json value) {
   return DocumentAccess::make(std::make_shared<const nlohmann::json>(std::move(value)), "");
 }

@@ -7,11 +7,11 @@
 
 namespace orrery {
 
-inline constexpr double kMaxTime = 1e6;          // seconds, before or after 0
-inline constexpr std::size_t kMaxKeys = 10'000;  // motion_keys
+inline constexpr double kMaxTime = 1e6;          // seconds, absolute value
+inline constexpr std::size_t kMaxKeys = 10'000;  // keyframes of one "motion" list
 
-// The list "motion" of an object that may move: read(Params&) gives the value of one key. Empty if there is
-// none.
+// Reads the list "motion" of a movable object. `read(Params&)` returns the value of one keyframe. Returns no
+// keyframes if the list is missing.
 template <class Read>
 auto read_motion(Params& p, const Read& read) {
   Keys<decltype(read(p))> keys;

@@ -10,13 +10,13 @@
 
 namespace orrery {
 
-// Names that others may refer to, numbered in the order they were added.
+// Names that a document defines and refers to, numbered in insertion order.
 class Names {
  public:
-  // `kind` is what errors call one of them: no material "slver" (did you mean "silver"?).
+  // `kind` is the noun in errors: no material "slver" (did you mean "silver"?).
   explicit Names(std::string kind) : kind_(std::move(kind)) {}
 
-  // REQUIRES: the name is new. Returns its index.
+  // Returns the index of the new name. REQUIRES: `name` is not in the set.
   std::size_t add(std::string name) {
     return index_of_.emplace(std::move(name), index_of_.size()).first->second;
   }

@@ -17,33 +17,34 @@
 #include "core/params/document.h"
 #include "core/params/names.h"
 
-// The one door for input. A read function states, key by key, what a JSON object may hold:
+// Declarative input. A read function declares, key by key, the content of a JSON object:
 //
 //   void read_sphere(Params& p) {
 //     const Vec3d center = p.point("center", "Centre of the sphere, in metres.");
 //     const double radius = p.positive("radius", "Radius, in metres.");
 //   }
 //
-// read_document() runs it over a document: values are checked and returned. describe() runs the very same
-// function over nothing: what it asks for is written down as JSON Schema. So the two cannot disagree, as long
-// as a read function asks for the same keys whatever values come back (choices go through pick and form).
+// read_document() runs the function over a document, checks the values and returns them. describe() runs the
+// same function without a document and writes the declared keys as a JSON Schema. Reader and schema therefore
+// agree, provided that the function declares the same keys for all values. Alternatives go through pick and
+// form.
 //
-// On an error the problem is noted and a harmless stand-in inside the range is returned, so that reading goes
-// on and the user sees all problems at once. Do nothing irreversible with a value before the read has ended.
+// An invalid value adds a problem and returns a placeholder inside the range. Reading continues, so the user
+// sees all problems at once. Do not act on a value before read_document() has returned.
 
 namespace orrery {
 
-inline constexpr double kMaxCoordinate = 1e12;  // metres; beyond it squares of differences lose all meaning
+inline constexpr double kMaxCoordinate = 1e12;  // metres; squared differences lose all precision beyond
 inline constexpr double kMinLength = 1e-12;
 inline constexpr double kMaxLength = 1e12;
 inline constexpr double kMaxColor = 1e6;
-inline constexpr double kMaxInteger = 9007199254740992.0;  // 2^53: up to here a double holds every integer
+inline constexpr double kMaxInteger = 9007199254740992.0;  // 2^53; double is exact up to here
 inline constexpr std::size_t kMaxNameLength = 128;         // characters of a name in each_named()
 
-// Shortest decimal that reads back to the same double, as people write it: 1e12, 0.001, 600.
+// Returns the shortest decimal that reads back to the same double: 1e12, 0.001, 600.
 std::string number_text(double x);
 
-// The numbers allowed; an infinite end is no limit.
+// Range of allowed numbers. An infinite end means no limit.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -55,14 +56,14 @@ struct Range {
   }
 };
 
-// How many elements a list or map may have. A list or map with min 0 may be left out; it is empty then.
+// Allowed size of a list or map. If `min` is 0, the key may be missing, and the list or map is empty.
 struct Count {
   std::size_t min = 0;
   std::size_t max = std::numeric_limits<std::size_t>::max();
 };
 
-// What a missing key means: nothing given: the key is required; a value: the default, written in the schema;
-// derived(value): a default that depends on other keys, and is named only in the key's description.
+// Value of a missing key. An empty Fallback makes the key required. A value is the default, and is written to
+// the schema. derived(value) is a default that depends on other keys, and is not written to the schema.
 template <class T>
 struct Fallback {
   std::optional<T> value;
@@ -70,7 +71,8 @@ struct Fallback {
 
   Fallback() = default;
   Fallback(T v) : value(v) {}  // NOLINT: implicit, so that a call site reads p.number(key, doc, range, 0.5)
-  Fallback(const char* word) requires std::same_as<T, std::string_view> : value(word) {}  // NOLINT: likewise
+  Fallback(const char* word) requires std::same_as<T, std::string_view> : value(word) {
+  }  // NOLINT: implicit, see above
 };
 template <class T>
 Fallback<T> derived(T v) {
@@ -79,14 +81,14 @@ Fallback<T> derived(T v) {
   return fallback;
 }
 
-// A type that an object may be, for pick(): the text in the file and one sentence for the schema.
+// Type that pick() may select: its name in the document and one sentence for the schema.
 struct Choice {
   std::string_view type;
   std::string_view summary;
 };
 
-// One JSON object, being read or being described. `key` is a string literal (it is kept by reference);
-// `doc` is the sentence that the schema shows. Not for use by several threads at once.
+// One JSON object that is read or described. `key` must be a string literal, because only a reference is
+// kept. `doc` is the description in the schema. Not thread-safe.
 class Params {
  public:
   using Read = std::function<void(Params&)>;
@@ -109,72 +111,78 @@ class Params {
   std::string choice(std::string_view key, std::string_view doc,
                      std::initializer_list<std::string_view> options,
                      Fallback<std::string_view> fallback = {});
-  // A list of different options; empty if it is missing.
+  // Reads a list of distinct options. Returns an empty list if the key is missing.
   std::vector<std::string> choices(std::string_view key, std::string_view doc,
                                    std::span<const std::string_view> options);
-  // No fallback (null): the key is required. Its length counts Unicode characters.
+  // Reads a string of at most `max_length` Unicode characters. The key is required if `fallback` is null.
   std::string text(std::string_view key, std::string_view doc, std::size_t max_length,
                    const char* fallback = nullptr);
 
-  // -- Threes of numbers --
+  // -- Triples of numbers --
   Vec3d point(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {});  // |x| <= 1e12
-  // A non-zero vector, returned with length 1 however long or short it was written. The fallback likewise.
+  // Reads a non-zero vector and normalizes it. The fallback is normalized too.
   Vec3d direction(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {});
   Vec3d color(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {},
               double max = kMaxColor);
   Vec3d coefficient(std::string_view key, std::string_view doc, Fallback<Vec3d> fallback = {},
-                    double max = kMaxColor);  // a colour, or one number for all three channels
+                    double max = kMaxColor);  // a colour, or one number for all channels
   std::array<double, 3> numbers3(std::string_view key, std::string_view doc, const Range& range,
                                  Fallback<Vec3d> fallback = {});
 
   // -- Lists --
-  std::vector<Vec3d> points(std::string_view key, std::string_view doc, Count count);  // each as point()
+  std::vector<Vec3d> points(std::string_view key, std::string_view doc,
+                            Count count);  // elements as in point()
   std::vector<Vec3d> directions(std::string_view key, std::string_view doc,
-                                Count count);  // each as direction()
-  // Twos of numbers within +-kMaxCoordinate, e.g. texture coordinates.
+                                Count count);  // elements as in direction()
+  // Reads a list of pairs of numbers within +-kMaxCoordinate, e.g. texture coordinates.
   std::vector<std::array<double, 2>> pairs(std::string_view key, std::string_view doc, Count count);
-  // Threes of integers 0 <= i < bound, e.g. the corners of triangles. The schema cannot know `bound`.
+  // Reads a list of integer triples with 0 <= i < bound, e.g. triangle indices. The schema does not show
+  // `bound`.
   std::vector<std::array<std::int64_t, 3>> index_triples(std::string_view key, std::string_view doc,
                                                          Count count, std::int64_t bound);
 
-  // -- Objects inside this one. A key in them that `read` did not ask for is an error. --
-  void object(std::string_view key, std::string_view doc, const Read& read);           // required
-  void optional_object(std::string_view key, std::string_view doc, const Read& read);  // missing reads as {}
-  void object_if_given(std::string_view key, std::string_view doc, const Read& read);  // missing: not read
+  // -- Nested objects. A key that `read` does not declare is an error. --
+  void object(std::string_view key, std::string_view doc, const Read& read);  // required
+  void optional_object(std::string_view key, std::string_view doc,
+                       const Read& read);  // a missing object reads as {}
+  void object_if_given(std::string_view key, std::string_view doc,
+                       const Read& read);  // a missing object is not read
   void each(std::string_view key, std::string_view doc, Count count, const Read& read);
   void each_named(std::string_view key, std::string_view doc, Count count,
                   const ReadNamed& read);  // sorted by name
 
-  // -- Choices between sets of keys --
-  // The index of the type named by `key`; none if it is missing or unknown, and then leftover keys are no
-  // error.
+  // -- Alternatives --
+  //
+  // Returns the index of the type named by `key`, or nullopt if `key` is missing or names no type. In the
+  // second case unknown keys of the object are not reported.
   std::optional<std::size_t> pick(std::string_view key, std::string_view doc,
                                   std::span<const Choice> choices);
 
-  // Which of several sets of keys is there: form({{"base", "top"}, {"point", "axis"}}) is 0 or 1. Exactly one
-  // set must be given, and no key is in two of them. The keys themselves are then read as usual.
+  // Returns the index of the key set that the object uses: form({{"base", "top"}, {"point", "axis"}}) is 0 or
+  // 1. Exactly one set must be present, and the sets must be disjoint. The keys are then read as usual.
   std::size_t form(std::initializer_list<std::initializer_list<std::string_view>> key_sets);
 
-  // The index of a name in `names`, e.g. of the material of an object. 0 on error: good only once the read
-  // has ended.
+  // Returns the index in `names` of the name at `key`, e.g. the material of an object. Returns 0 on error.
   std::size_t reference(std::string_view key, std::string_view doc, const Names& names);
 
-  // Any value at all, unchecked; none if missing. For what another reader will read.
+  // Returns the unchecked value of `key`, to be read by another function, or nullopt if the key is missing.
   std::optional<Document> any(std::string_view key, std::string_view doc);
 
-  // -- Meaning --
-  // Whether the key was given. Only for optional keys, and never to decide which keys to ask for: see form().
+  // -- Validation across keys --
+  //
+  // Returns whether the key is present. For optional keys only. Must not decide which keys are read: use
+  // form().
   bool has(std::string_view key) const;
-  // Notes that the value of `key` (or, with "", the object) has no meaning, e.g. eye equal to look_at.
-  // Ignored if a value of this object was wrong already: it may be the stand-in that has no meaning.
+  // Reports that the value of `key` is invalid, e.g. eye equal to look_at. With "", reports the whole object.
+  // Ignored if a value of this object was already invalid, since the values may then be placeholders.
   void fail(std::string_view key, std::string detail);
-  // JSON Pointer of this object, or of its member `key`.
+  // Returns the JSON Pointer of this object or of its member `key`.
   std::string pointer(std::string_view key = "") const;
 
  protected:
-  // What a three of numbers stands for: decides the checks, the words of errors and the schema.
+  // Kind of a triple of numbers. Selects the checks, the error text and the schema.
   enum class Kind { point, direction, color, coefficient, numbers };
-  // What a missing object means: a problem, {}, or nothing.
+  // Meaning of a missing object: an error, {}, or not read.
   enum class Missing { problem, empty, nothing };
   using Key = std::string_view;
   using Doc = std::string_view;
@@ -206,14 +214,14 @@ class Params {
   virtual std::string do_pointer(Key) const = 0;
 };
 
-// Reads a document, which must be an object. Throws InputError with up to 20 problems, unknown keys among
-// them, each with a pointer from the root of the text the document was parsed from.
+// Reads a document, which must be an object. Throws InputError with up to 20 problems, including unknown
+// keys. Each problem carries a pointer from the root of the parsed text.
 void read_document(const Document& document, const Params::Read& read);
 
-// The JSON Schema (draft 2020-12) of what `read` accepts, as indented text that ends in a newline. `id` and
-// `title` become $id and title; `description` is prose for the whole, to which what a schema cannot say is
-// added. It says all that read_document checks except what fail(), reference() and the bound of
-// index_triples() check: meaning across keys, which no schema can say.
+// Returns the JSON Schema (draft 2020-12) of `read` as indented text that ends in a newline. `id` and `title`
+// become $id and title. `description` is prose for the whole schema, and a note on its limits is appended.
+// The schema covers all checks of read_document() except fail(), reference() and the bound of
+// index_triples().
 std::string describe(std::string_view id, std::string_view title, std::string_view description,
                      const Params::Read& read);
 

@@ -10,8 +10,8 @@
 #include "core/params/json.h"
 #include "core/params/words.h"
 
-// Text to tree, through nlohmann's event interface: its tree builder would keep the last of two equal keys,
-// has no limits, and words its errors for programmers.
+// Builds the tree through nlohmann's SAX interface. Its DOM parser keeps the last of two equal keys, has no
+// limits, and its error texts are meant for programmers.
 
 namespace orrery {
 namespace {
@@ -35,8 +35,8 @@ std::string in_plain_words(std::string text) {
   return text;
 }
 
-// After a value nlohmann expects only the closing bracket, though a comma may follow as well, and is what
-// people forget.
+// Rewrites an error that names only a missing closing bracket. A comma is also valid there, and is more often
+// forgotten.
 std::string comma_missing(const std::string& reason) {
   constexpr std::string_view kUnexpected = "unexpected ", kExpected = "; expected ";
   const std::size_t split = reason.find(kExpected);
@@ -48,9 +48,9 @@ std::string comma_missing(const std::string& reason) {
                                    : "a comma or " + expected + " is missing before " + came;
 }
 
-// `what` is nlohmann's message: "[json.exception...] parse error at line 1, column 2: syntax error while
-// parsing value - invalid literal; last read: '...'; expected ...". Keeps the reason, and what was expected
-// where no text of the document stands before it: that may be long and need not be valid UTF-8.
+// Returns the reason from nlohmann's message `what`: "[json.exception...] parse error at line 1, column 2:
+// syntax error while parsing value - invalid literal; last read: '...'; expected ...". Everything from "last
+// read" on is removed, because the quoted document text may be long or invalid UTF-8.
 std::string reason_of(std::string_view what) {
   const std::size_t dash = what.find(" - ");
   const std::string_view reason = dash == what.npos ? what : what.substr(dash + 3);
@@ -67,7 +67,7 @@ class TreeBuilder {
   bool number_unsigned(std::uint64_t value) { return place(value); }
   bool number_float(double value, const std::string&) { return place(value); }
   bool string(std::string& value) { return place(std::move(value)); }
-  bool binary(json::binary_t&) { return false; }  // never in JSON text
+  bool binary(json::binary_t&) { return false; }  // not in JSON text
   bool start_object(std::size_t) { return open(json::object()); }
   bool start_array(std::size_t) { return open(json::array()); }
   bool end_object() { return close(); }
@@ -92,14 +92,15 @@ class TreeBuilder {
       problems_.push_back({next_pointer(), "number too large for a double, got " + in_quotes(token)});
       throw InputError(std::move(problems_));
     }
-    // `position` counts the bytes read: the last one is the wrong character, or ends the wrong token.
+    // `position` is the number of bytes read. The last byte read is the wrong character or ends the wrong
+    // token.
     const std::string_view what = error.what();
     const std::size_t last = position > 0 ? position - 1 : 0;
     fail(what.find(" - unexpected ") == what.npos ? last : token_start(last), reason_of(what));
   }
 
   void refuse_zero_bytes() {
-    const std::size_t zero = text_.find('\0');  // nlohmann takes one for the end of the text
+    const std::size_t zero = text_.find('\0');  // nlohmann would end the text here
     if (zero != text_.npos) fail(zero, "a zero byte cannot be in JSON text");
   }
 
@@ -109,9 +110,9 @@ class TreeBuilder {
   }
 
  private:
-  struct Level {  // an array or object that is not closed yet
+  struct Level {  // unclosed array or object
     json* container;
-    const std::string* key = nullptr;  // of an object: the member being read
+    const std::string* key = nullptr;  // member being read; null in an array
     json* slot = nullptr;
   };
 
@@ -154,7 +155,7 @@ class TreeBuilder {
     return level.slot;
   }
 
-  // Where the last value or key came; of an array, its last element.
+  // Returns the pointer of the last value or key read. In an array this is the last element.
   std::string pointer() const {
     std::string text;
     for (const Level& level : levels_) {
@@ -168,7 +169,7 @@ class TreeBuilder {
     return text;
   }
 
-  // Where the value that is being read will come.
+  // Returns the pointer of the next value.
   std::string next_pointer() const {
     if (levels_.empty() || !levels_.back().container->is_array()) return pointer();
     const std::size_t size = levels_.back().container->size();
@@ -181,7 +182,7 @@ class TreeBuilder {
            c == '+' || c == '-' || c == '.';
   }
 
-  // Where the complete token starts whose last byte is at `last`.
+  // Returns the start of the complete token whose last byte is at `last`.
   std::size_t token_start(std::size_t last) const {
     if (last >= text_.size()) return text_.size();
     std::size_t first = last;
@@ -199,7 +200,7 @@ class TreeBuilder {
     return first;
   }
 
-  // The word around `offset`, e.g. NaN, to be named in the error.
+  // Returns the word around `offset`, e.g. NaN, for the error text.
   std::string_view word_at(std::size_t offset) const {
     std::size_t first = offset, last = offset;
     while (first > 0 && offset - first < 40 && in_word(text_[first - 1])) --first;

@@ -5,7 +5,7 @@ namespace {
 
 constexpr std::size_t kLineWidth = 110;
 
-// All of it on one line: {"a": 1, "b": [1, 2]}.
+// Formats a value as one line: {"a": 1, "b": [1, 2]}.
 std::string one_line(const Schema& value) {
   if (!value.is_structured()) return value.dump();
   std::string text;
@@ -17,7 +17,8 @@ std::string one_line(const Schema& value) {
   return value.is_object() ? "{" + text + "}" : "[" + text + "]";
 }
 
-// `used` is what stands left of the value on its line; `indent` is where that line starts.
+// Appends a value. `indent` is the indentation of its line, and `used` is the number of columns before the
+// value.
 void append(const Schema& value, std::size_t indent, std::size_t used, std::string& out) {
   const std::string line = one_line(value);
   if (line.size() + used <= kLineWidth || !value.is_structured()) {

@@ -14,8 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-// The value, if it is a whole number: 3 or 3.0. A double would round those above 2^53, so they are not looked
-// at as one.
+// Returns the value if it is an integer, also written as 3.0. Integers are not converted through double,
+// which would round values above 2^53.
 std::optional<std::int64_t> integer_of(const json& value) {
   if (value.is_number_float()) {
     const double x = value.get<double>();
@@ -55,7 +55,7 @@ void Reader::finish() {
   };
   for (const auto& [key, value] : object_->get_ref<const json::object_t&>()) {
     if (was_asked(key)) continue;
-    std::vector<Key> free;  // known keys that this object does not have: one of them may be meant
+    std::vector<Key> free;  // known keys that are absent; one of them may be meant
     std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(free), [&](Key k) { return !lookup(k); });
     problems_.add(pointer(), "unknown key " + in_quotes(key) + did_you_mean(key, free));
   }

@@ -5,11 +5,11 @@
 #include "core/base/error.h"
 #include "core/params/params.h"
 
-// Params over a document: the reading mode. For core/params only.
+// Reading mode of Params: reads values from a document. For core/params only.
 
 namespace orrery {
 
-// The problems of one document. Reading ends at once when there are as many as an InputError keeps.
+// Problems of one document. Throws as soon as there are InputError::kMaxProblems of them.
 class ProblemList {
  public:
   void add(std::string pointer, std::string detail) {
@@ -24,26 +24,27 @@ class ProblemList {
   std::vector<Problem> problems_;
 };
 
-// Where an object is in its parent: at a key, and if that holds a list or a map, at which element of it.
+// Position of a value in its parent: a key, and an index or name if the key holds a list or map.
 struct Location {
   std::string_view key;
   std::optional<std::size_t> index = {};
   std::optional<std::string_view> name = {};
 };
 
-// The number in `value`, if it is one and in range, with -0 turned into 0: canonical text cannot tell them
-// apart.
+// Returns the number in `value`, or nullopt if it is no number or out of range. Turns -0 into 0, since
+// canonical text does not distinguish the two.
 std::optional<double> number_in(const nlohmann::json& value, const Range& range);
 
-// One object of the document. Lives on the stack of the function that reads its parent, so the chain of
-// parents spells the place of an error, and no place is built for values that are right.
+// Reader of one object. Lives on the stack of the function that reads its parent. The chain of parents gives
+// the pointer of an error, so valid values need no pointer text.
 class Reader final : public Params {
  public:
-  // The root. REQUIRES: json_of(document) is an object.
+  // Reads the root. REQUIRES: json_of(document) is an object.
   Reader(const Document& document, ProblemList& problems);
   Reader(Reader& parent, const Location& location, const nlohmann::json& object);
 
-  // Every key must have been asked for. Not called when the type is unknown: so are its keys then.
+  // Reports every key that was not read. Does nothing if the type is unknown, since its keys are then unknown
+  // too.
   void finish();
 
  private:
@@ -69,11 +70,11 @@ class Reader final : public Params {
   void do_fail(Key, std::string detail) override;
   std::string do_pointer(Key) const override;
 
-  // What a key is for: a value that came, or none, and whether that is an error.
+  // Whether a missing key is an error.
   enum class Need { required, optional };
 
-  // The value of a key, which counts as asked for from now on. Null if it is missing; if it is needed, that
-  // is noted, with `expected` (a function that returns the words) saying what would have been right.
+  // Returns the value of `key`, or null if it is missing. Marks the key as read. A missing required key is
+  // reported with the text of `expected()`.
   template <class Expected>
   const nlohmann::json* find(Key key, Need need, const Expected& expected) {
     asked_.push_back(key);
@@ -83,17 +84,17 @@ class Reader final : public Params {
   }
   void note_missing(Key key, const std::string& expected);
   const nlohmann::json* lookup(Key key) const;
-  // The list or map at `key` if it is of the type and its size is allowed.
+  // Returns the list at `key`. Reports an error and returns null if the type or the size is wrong.
   const nlohmann::json* find_list(Key key, Count count, std::string_view noun);
 
-  // Checks one three of numbers; notes what is wrong with it and leaves `three` alone.
+  // Reads a triple of numbers. Reports an error and leaves `three` unchanged if the value is invalid.
   void read_three(const nlohmann::json& value, const Location& location, Kind kind, const Range& range,
                   Vec3d& three);
   void read_triple(const nlohmann::json& value, const Location& location, std::int64_t bound,
                    std::array<std::int64_t, 3>& triple);
-  // The word in `value` if it is one of the options; notes what is wrong with it and returns null if not.
+  // Returns the string in `value` if it is one of the options. Otherwise reports an error and returns null.
   const std::string* read_choice(const nlohmann::json& value, const Location& location, Options options);
-  // Runs `read` over the object `value`, and checks that it leaves no key unread.
+  // Runs `read` over the object `value` and reports its unread keys.
   void read_inside(const nlohmann::json& value, const Location& location, const Read& read);
 
   void note(std::string pointer, std::string detail);
@@ -107,8 +108,8 @@ class Reader final : public Params {
   ProblemList& problems_;
   const nlohmann::json* object_;
   std::vector<Key> asked_;
-  std::vector<Key> excused_;  // keys whose absence was already explained
-  bool broken_ = false;       // a value here or further in was wrong, and a stand-in was returned
+  std::vector<Key> excused_;  // keys whose absence is already reported
+  bool broken_ = false;       // a value here or in a child was invalid
   bool type_unknown_ = false;
 };
 

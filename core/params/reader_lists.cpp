@@ -6,7 +6,7 @@
 #include "core/params/reader.h"
 #include "core/params/words.h"
 
-// The part of Reader that goes into arrays and objects. Elements that are right cost no text.
+// Member functions of Reader for arrays and objects. Valid elements allocate no text.
 
 namespace orrery {
 

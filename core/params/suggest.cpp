@@ -10,7 +10,7 @@ namespace orrery {
 namespace {
 
 constexpr int kMaxSlips = 2;
-constexpr std::size_t kMaxWord = 64;  // longer words are no typing errors
+constexpr std::size_t kMaxWord = 64;  // longer words are not treated as typing errors
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -20,10 +20,10 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-// Two slips in a word of three letters would make anything of it.
+// Returns the edit distance to accept. Two edits in a word of three letters would match almost anything.
 int slips_allowed(std::size_t length) { return std::min(kMaxSlips, static_cast<int>((length + 2) / 3)); }
 
-// "w" can only be "width" where nothing else begins so.
+// Returns the candidate that begins with `word`, or nullopt unless there is exactly one.
 std::optional<std::string> only_one_beginning_with(std::string_view word,
                                                    std::span<const std::string_view> candidates) {
   std::optional<std::string> found;

@@ -8,19 +8,19 @@
 
 namespace orrery {
 
-// Candidates that are searched, at most: a bad document must not cost much.
+// Maximum number of candidates searched. Bounds the cost of an invalid document.
 inline constexpr std::size_t kMaxCandidates = 1000;
 
-// Number of single-character insertions, deletions, replacements and swaps of neighbours that turn a into b
-// (optimal string alignment: no character is edited twice), or limit + 1 if it takes more than `limit`.
+// Returns the optimal string alignment distance: insertions, deletions, replacements and transpositions of
+// adjacent characters, where no character is edited twice. Returns limit + 1 if the distance exceeds `limit`.
 int edit_distance(std::string_view a, std::string_view b, int limit);
 
-// The candidate that `word` was probably meant to be: equal but for case, at most two slips of the finger
-// away, the one it abbreviates ("fov" for "fov_degrees") or the only one that begins with it ("w" for
-// "width"). None if all are too far.
+// Returns the candidate that `word` was probably meant to be, or nullopt if none is close. Accepts, in this
+// order, a candidate within two edits (case is ignored), an abbreviation ("fov" for "fov_degrees"), and the
+// only candidate that begins with `word` ("w" for "width").
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
-// ` (did you mean "radius"?)`, or nothing.
+// Returns ` (did you mean "radius"?)`, or "" if no candidate is close.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace orrery
