@@ -60,13 +60,13 @@ const char* plugin_of(PictureFormat format) {
   return "";
 }
 
-// Bytes that the process may allocate besides kDecoderBytes.
+// Returns the bytes that the process may allocate in addition to kDecoderBytes.
 std::uint64_t allowance(const PictureFile& file) {
   const std::uint64_t rows = std::min<std::uint64_t>(file.height, kRowsAtOnce), samples = 2, sample_bytes = 4;
   return file.decoder_bytes + samples * sample_bytes * file.width * rows * 4;
 }
 
-// A file in memory with the parts that make texels.
+// Makes a file in memory of the parts that affect texels. Returns its descriptor.
 int file_of_parts(const PictureFile& file) {
   const int number = memfd_create("picture", MFD_CLOEXEC);
   if (number < 0) fail_system("memfd_create");
@@ -84,7 +84,7 @@ int file_of_parts(const PictureFile& file) {
   return number;
 }
 
-// A running decoder; killed at the end unless it has ended.
+// Decoder process. The destructor kills it if it is still running.
 class Decoder {
  public:
   Decoder(const PictureFile& file, int input, int output) {
@@ -114,7 +114,7 @@ class Decoder {
   }
   Decoder(const Decoder&) = delete;
 
-  // Waits for its end. Returns its status as waitpid() does.
+  // Waits for the process to end. Returns its status as from waitpid().
   int wait() {
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
@@ -127,9 +127,9 @@ class Decoder {
   pid_t process_ = 0;
 };
 
-// Reads until `bytes` are full or the other end is closed. Returns how many were read.
+// Reads until `bytes` is full or the other end is closed. Returns the number of bytes read.
 std::size_t read_full(int from, std::span<std::byte> bytes) {
-  constexpr int kLook_ms = 20;  // how soon a cancelled decoder is killed
+  constexpr int kLook_ms = 20;  // delay until a cancelled decoder is killed
   std::size_t got = 0;
   while (got < bytes.size()) {
     interruption_point();

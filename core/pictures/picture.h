@@ -9,20 +9,20 @@
 
 namespace orrery {
 
-// Linear light of an image file.
+// Decoded image in linear light.
 struct Texels {
   int width = 0, height = 0;
-  std::vector<float> rgb;  // red, green and blue of each texel, row by row from the top
+  std::vector<float> rgb;  // red, green, blue per texel; top row first
 };
 using TexelsPtr = std::shared_ptr<const Texels>;
 
-// What an image file may hold.
+// Limits of an image file.
 struct PictureLimits {
   int side = 16384;                 // texels
-  std::size_t texels = 33'554'432;  // in all; each takes 12 bytes
+  std::size_t texels = 33'554'432;  // width x height; each takes 12 bytes
   int channels = 4;
 
-  // Empty if a picture of that size is within the limits.
+  // Returns the error text for a size beyond the limits, or "".
   std::string problem_of(std::uint64_t width, std::uint64_t height, int of_channels) const {
     const auto within = [&](std::uint64_t of_side) {
       return of_side >= 1 && of_side <= static_cast<std::uint64_t>(side);
@@ -38,25 +38,26 @@ struct PictureLimits {
   }
 };
 
-// Largest value of a texel.
+// Maximum value of a texel.
 inline constexpr float kMaxTexel = 1e9f;
 
 enum class PictureFormat { exr, hdr, png, jpeg };
 
-// As people write it: "EXR".
+// Returns the name of a format for messages: "EXR".
 const char* name_of(PictureFormat format);
 
-// The format of a file, told by its first bytes; none if it is of no such format.
+// Returns whether the first bytes of a file are the signature of a known format.
 bool is_picture(std::string_view bytes);
-// Throws InputError (pointer "") if it is none.
+// Returns the format of a file. Throws InputError (pointer "") if the signature is unknown.
 PictureFormat picture_format(std::string_view bytes);
 
-// Reads an OpenEXR, Radiance HDR, PNG or JPEG file; its first bytes say which. EXR and HDR are linear; PNG
-// and JPEG are decoded from sRGB. One channel is grey; a second or fourth, alpha, is left out. The same bytes
-// give the same picture. The file is decoded in a process of its own (core/pictures/decode_process.h).
+// Reads an OpenEXR, Radiance HDR, PNG or JPEG file. The first bytes determine the format. EXR and HDR are
+// linear. PNG and JPEG are decoded from sRGB. One channel is grey. A second or fourth channel is alpha and is
+// dropped. The result is deterministic. The file is decoded in a separate process
+// (core/pictures/decode_process.h).
 //
-// Throws InputError (pointer "") with the value and the limit; Cancelled; std::bad_alloc. The size that a
-// file states is checked before anything is decoded. Texels must be finite, at least 0 and at most kMaxTexel.
+// The size in the header is checked before decoding. Texels must be finite and in 0 to kMaxTexel. Throws
+// InputError (pointer "") with the value and the limit, Cancelled, or std::bad_alloc.
 Texels read_picture(std::string_view bytes, const PictureLimits& limits = {});
 
 }  // namespace orrery

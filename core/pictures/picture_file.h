@@ -10,18 +10,18 @@
 
 namespace orrery {
 
-// A picture file as its header states it, before a decoder sees it.
+// Header data of a picture file, read before decoding.
 struct PictureFile {
   PictureFormat format;
   std::uint64_t width = 0, height = 0;
   int channels = 0;
-  // Bytes that a decoder allocates at most, besides what any file takes.
+  // Maximum memory of the decoder for this file, in addition to kDecoderBytes.
   std::uint64_t decoder_bytes = 0;
-  // The parts of the file that make texels, in order. Texts, profiles and thumbnails are left out: decoders
-  // spend memory and time on them.
+  // Parts of the file that affect texels, in order. Texts, profiles and thumbnails are dropped, because
+  // decoders spend memory and time on them.
   std::vector<std::string_view> parts;
 
-  // Adds bytes that follow the last part or stand apart from it.
+  // Adds bytes as a part of their own, or to the last part if they follow it directly.
   void keep(std::string_view bytes) {
     if (!parts.empty() && parts.back().data() + parts.back().size() == bytes.data())
       parts.back() = {parts.back().data(), parts.back().size() + bytes.size()};
@@ -30,18 +30,18 @@ struct PictureFile {
   }
 };
 
-// Reads the header of a file of that format without decoding anything; the parts point into `bytes`. Takes
-// time linear in the size of the file. Throws InputError (pointer "") if the file is damaged, its size is
-// beyond the limits, or its header is larger than a picture needs.
+// Reads the header of a file without decoding it. The parts point into `bytes`. Takes time linear in the file
+// size. Throws InputError (pointer "") if the file is damaged, its size exceeds the limits, or its header is
+// too large.
 PictureFile inspect_picture(std::string_view bytes, PictureFormat format, const PictureLimits& limits);
 
-// Each sets all but the format, or throws InputError (pointer "").
+// Read the header and set all members but the format. Throw InputError (pointer "") if the file is damaged.
 void inspect_png(std::string_view bytes, PictureFile& file);
 void inspect_jpeg(std::string_view bytes, PictureFile& file);
 void inspect_exr(std::string_view bytes, PictureFile& file);
 void inspect_hdr(std::string_view bytes, PictureFile& file);
 
-// Bytes of a file, read in order. Reading beyond the end throws InputError that says the file has no end.
+// Sequential reader of the bytes of a file. Reading beyond the end throws InputError: the file has no end.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
@@ -49,7 +49,7 @@ class ByteReader {
   std::size_t at() const { return at_; }
   std::size_t left() const { return bytes_.size() - at_; }
   std::string_view take(std::size_t count);
-  std::string_view take_until(char end);  // without `end`, which is read too
+  std::string_view take_until(char end);  // `end` is skipped and not returned
   unsigned byte() { return static_cast<unsigned char>(take(1)[0]); }
   std::uint32_t big_endian(int bytes);
   std::uint32_t little_endian_32();
@@ -59,7 +59,7 @@ class ByteReader {
   std::size_t at_;
 };
 
-// Throws InputError: "the picture is damaged: " and `why`.
+// Throws InputError with the text "the picture is damaged: " + `why`.
 [[noreturn]] void fail_damaged(const std::string& why);
 
 }  // namespace orrery

@@ -1,5 +1,5 @@
-// The program orrery-decode: decodes one picture file in a process of its own, whose memory and CPU time are
-// limited, so that nothing that a file does to a library harms whoever reads it.
+// Program orrery-decode: decodes one picture file in a separate process with limited memory and CPU time. A
+// file that exploits or crashes a library cannot harm the calling process.
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -28,7 +28,7 @@ using orrery::DecodedHeader;
 void write_all(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (written <= 0) std::_Exit(1);  // nobody reads
+    if (written <= 0) std::_Exit(1);  // the reader has closed the pipe
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
 }
@@ -42,7 +42,7 @@ void write_all(std::span<const std::byte> bytes) {
   std::_Exit(0);
 }
 
-// Memory that this process has mapped and may write to, as RLIMIT_DATA counts it.
+// Returns the writable memory that this process has mapped, in bytes, as RLIMIT_DATA counts it.
 rlim_t mapped_data() {
   std::FILE* const file = std::fopen("/proc/self/statm", "r");
   unsigned long pages = 0;
@@ -53,7 +53,7 @@ rlim_t mapped_data() {
 
 void limit_process() {
   constexpr rlim_t kMaxSeconds = 300;
-  constexpr int kLowerPriority = 5;  // than what answers requests
+  constexpr int kLowerPriority = 5;  // nice value, above that of the service
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   close_range(STDERR_FILENO + 1, ~0U, 0);
   [[maybe_unused]] const int priority = nice(kLowerPriority);
@@ -62,9 +62,9 @@ void limit_process() {
   setrlimit(RLIMIT_CORE, &none);
 }
 
-// Allows so many bytes besides those mapped so far.
+// Allows `bytes` in addition to the memory that is mapped so far.
 void limit_memory([[maybe_unused]] std::uint64_t bytes) {
-#ifndef ORRERY_SANITIZED  // whose own memory counts as data
+#ifndef ORRERY_SANITIZED  // the sanitizer's own memory counts as data
   const rlim_t most = mapped_data() + orrery::kDecoderRoom + bytes;
   const rlimit data{most, most};
   setrlimit(RLIMIT_DATA, &data);
@@ -80,7 +80,7 @@ std::span<std::byte> map_input() {
   return {static_cast<std::byte*>(start), size};
 }
 
-// The linear light of each code of `Code`, which are encoded in sRGB (IEC 61966-2-1).
+// Returns the linear light of each sRGB code (IEC 61966-2-1).
 template <class Code>
 std::vector<float> light_of_codes() {
   constexpr std::size_t kMaxCode = std::numeric_limits<Code>::max();
@@ -93,8 +93,8 @@ std::vector<float> light_of_codes() {
   return light;
 }
 
-// Reads the rows from `begin` to `end` as they are stored. (OpenImageIO's function for several rows allocates
-// 64 MiB whatever their size.)
+// Reads the rows from `begin` to `end` without conversion. (OpenImageIO's function for several rows always
+// allocates 64 MiB.)
 template <class Sample>
 void read_rows(OIIO::ImageInput& input, int begin, int end, std::vector<Sample>& samples) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -112,7 +112,8 @@ void read_rows(OIIO::ImageInput& input, int begin, int end, std::vector<Sample>&
   if (!read) fail("the picture is damaged: " + input.geterror());
 }
 
-// Writes red, green and blue of each texel, light(sample) of each; grey is all three, alpha is left out.
+// Writes red, green and blue of each texel, converted by `light`. Grey is written three times. Alpha is
+// dropped.
 template <class Sample>
 void decode(OIIO::ImageInput& input, const auto& light) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -144,7 +145,7 @@ void run(const char* plugin, std::uint64_t memory_bytes) {
   const std::span<std::byte> bytes = map_input();
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
   const auto input = OIIO::ImageInput::create(plugin, false, nullptr, &reader, "");
-  limit_memory(memory_bytes);  // the reader has started its thread, and has seen nothing of the file
+  limit_memory(memory_bytes);  // the reader's thread has started, and no byte of the file was parsed
   OIIO::ImageSpec spec, how;
   how.attribute("oiio:UnassociatedAlpha", 1);
   if (!input || !input->set_ioproxy(&reader) || !input->open("picture", spec, how))
@@ -173,5 +174,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     fail(std::string("the picture is damaged: ") + error.what());
   }
-  std::_Exit(0);  // what libraries would clean up goes with the process
+  std::_Exit(0);  // skips cleanup by libraries
 }

@@ -6,11 +6,11 @@
 namespace orrery {
 namespace {
 
-// OpenImageIO compares each attribute with all others; usual are 10 to 50.
+// OpenImageIO compares each attribute with all others. Typical files have 10 to 50 attributes.
 constexpr int kMaxAttributes = 1000;
 constexpr std::size_t kMaxHeader = 1 << 20;  // bytes
 
-// Rows that are compressed as one block, at most (OpenEXR, "Technical Introduction": DWAB).
+// Maximum number of rows compressed as one block (OpenEXR, "Technical Introduction": DWAB).
 constexpr std::uint64_t kBlockRows = 256;
 
 struct Attribute {
@@ -18,7 +18,7 @@ struct Attribute {
   ByteReader value;
 };
 
-// Sets `out` to the next attribute, or returns false at the end of the header.
+// Reads the next attribute into `out`. Returns false at the end of the header.
 bool next_attribute(ByteReader& reader, Attribute& out) {
   out.name = reader.take_until('\0');
   if (out.name.empty()) return false;
@@ -35,15 +35,15 @@ int count_channels(ByteReader list) {
   return channels;
 }
 
-// The number of texels from the first to the last coordinate, 0 if there are none.
+// Returns the number of texels from the first to the last coordinate, or 0 if `last` is below `first`.
 std::uint64_t extent(std::uint32_t first, std::uint32_t last) {
   const std::int64_t between =
       std::int64_t{static_cast<std::int32_t>(last)} - static_cast<std::int32_t>(first);
   return between < 0 ? 0 : static_cast<std::uint64_t>(between) + 1;
 }
 
-// Reads the attributes of one header up to an empty name, and adds their number. Returns false if there are
-// none.
+// Reads one header up to its empty name and adds the number of its attributes. Returns false if the header
+// has none.
 bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
   std::uint64_t rows = kBlockRows, tile_width = 0;
   Attribute attribute{{}, {}, ByteReader({})};
@@ -65,8 +65,8 @@ bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
       rows = attribute.value.little_endian_32();
     }
   }
-  // A row of blocks or tiles as it is stored, unpacked, and in the order of texels, at 4 bytes a sample. A
-  // tile may reach beyond the picture.
+  // Memory of a row of blocks or tiles: compressed, uncompressed, and in texel order, with 4 bytes per
+  // sample. A tile may extend beyond the picture.
   constexpr std::uint64_t kMaxSide = 1 << 16, kCopies = 3;
   const std::uint64_t width = std::min(std::max(file.width, tile_width), kMaxSide);
   file.decoder_bytes =
@@ -76,8 +76,8 @@ bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
 
 }  // namespace
 
-// A magic number, flags, then the header; of a file with several parts the headers of all up to an empty one,
-// of which the first counts.
+// Reads a magic number, flags and the header. A multi-part file has one header per part, and an empty one at
+// the end. The first header determines the size.
 void inspect_exr(std::string_view bytes, PictureFile& file) {
   constexpr std::uint32_t kDeep = 0x800, kManyParts = 0x1000;
   ByteReader reader(bytes);

@@ -6,7 +6,7 @@
 namespace orrery {
 namespace {
 
-// Takes a number from the text, such as 512 of "-Y 512 +X 1024".
+// Removes the next number from the text, such as 512 from "-Y 512 +X 1024", and returns it.
 std::uint64_t side(std::string_view& text) {
   const std::size_t digits = text.find_first_of("0123456789");
   if (digits == std::string_view::npos) fail_damaged("it has no size");
@@ -18,7 +18,7 @@ std::uint64_t side(std::string_view& text) {
 
 }  // namespace
 
-// Lines of text up to an empty one, then a line with the size: "-Y height +X width".
+// Reads text lines up to an empty one, then the size: "-Y height +X width".
 void inspect_hdr(std::string_view bytes, PictureFile& file) {
   constexpr std::size_t kMaxHeader = 1 << 16;  // bytes
   const std::size_t end = bytes.substr(0, kMaxHeader).find("\n\n");

@@ -29,26 +29,26 @@ bool is_frame(unsigned marker) {
          marker != kArithmetic;
 }
 
-// The segment of 14 bytes that says which colours the components are; its name has no other use.
+// Returns whether the segment is Adobe's marker of 14 bytes, which selects the colour transform.
 bool is_colour_transform(unsigned marker, std::string_view content) {
   return marker == kAdobe && content.starts_with("Adobe") && content.size() < 64;
 }
 
 void read_frame(unsigned marker, std::string_view content, PictureFile& file) {
   ByteReader reader(content);
-  reader.take(1);  // bits a sample
+  reader.take(1);  // bits per sample
   file.height = reader.big_endian(2);
   file.width = reader.big_endian(2);
   file.channels = static_cast<int>(reader.byte());
-  // A progressive file is decoded as a whole: two bytes a coefficient, and blocks at the edges are whole
-  // ones.
+  // A progressive file is decoded as a whole, with two bytes per coefficient. Blocks at the edges are
+  // complete.
   constexpr std::uint64_t kBlock = 32;
   if (marker == kProgressive)
     file.decoder_bytes =
         2 * static_cast<std::uint64_t>(file.channels) * (file.width + kBlock) * (file.height + kBlock);
 }
 
-// Reads the coded samples of a scan, in which a marker's first byte is followed by 0 or a restart.
+// Skips the entropy-coded data of a scan. A byte 255 in the data is followed by 0 or a restart marker.
 void skip_scan(std::string_view bytes, ByteReader& reader) {
   for (;;) {
     reader.take_until(static_cast<char>(kMarker));
@@ -62,11 +62,12 @@ void skip_scan(std::string_view bytes, ByteReader& reader) {
 
 }  // namespace
 
-// Segments: a byte 255, a marker, a length of two bytes that counts itself, the content; behind the header of
-// a scan its coded samples. libjpeg makes up what is missing at the end, and decodes all scans of a
-// progressive file as it opens it.
+// Reads segments: a byte 255, a marker, a length of two bytes that includes itself, and the content. The
+// header of a scan is followed by entropy-coded data. Truncated files are rejected, because libjpeg would
+// invent the missing data. Scans are limited, because libjpeg decodes all scans of a progressive file when it
+// opens the file.
 void inspect_jpeg(std::string_view bytes, PictureFile& file) {
-  constexpr int kMaxScans = 256;  // usual are 10
+  constexpr int kMaxScans = 256;  // typical files have 10
   ByteReader reader(bytes);
   file.keep(reader.take(2));
   for (int scans = 0;;) {

@@ -9,7 +9,7 @@ namespace {
 constexpr std::array<std::string_view, 7> kTexelChunks = {"IHDR", "PLTE", "tRNS", "gAMA",
                                                           "sRGB", "IDAT", "IEND"};
 
-// Channels of a colour type (PNG specification, 11.2.2); a palette may have an alpha chunk.
+// Returns the channels of a colour type (PNG specification, 11.2.2). A palette may have an alpha chunk.
 int channels_of(unsigned colour_type) {
   switch (colour_type) {
     case 0: return 1;
@@ -23,7 +23,7 @@ int channels_of(unsigned colour_type) {
 
 }  // namespace
 
-// A signature of 8 bytes, then chunks: a length, a type of 4 letters, the content and a checksum.
+// Reads a signature of 8 bytes, then chunks: a length, a type of 4 letters, the content and a checksum.
 void inspect_png(std::string_view bytes, PictureFile& file) {
   ByteReader reader(bytes);
   file.keep(reader.take(8));
@@ -39,8 +39,8 @@ void inspect_png(std::string_view bytes, PictureFile& file) {
       file.height = content.big_endian(4);
       const std::uint64_t depth = content.byte();
       file.channels = channels_of(content.byte());
-      content.take(2);                              // ways to compress and to filter
-      const bool interlaced = content.byte() != 0;  // decoded as a whole; others row by row
+      content.take(2);                              // compression and filter methods
+      const bool interlaced = content.byte() != 0;  // interlaced files are decoded as a whole
       if (interlaced)
         file.decoder_bytes =
             file.width * file.height * static_cast<std::uint64_t>(file.channels) * (depth > 8 ? 2 : 1);
