@@ -11,7 +11,7 @@ namespace orrery {
 namespace {
 
 constexpr int kChosenSamples = 16;
-constexpr double kSpecularShare = 0.5;  // of the rays, where some material is specular
+constexpr double kSpecularShare = 0.5;  // share of rays, if some material is specular
 
 double camera_rays_of(const Plan& plan) {
   const bool may_end_early = plan.free_samples || plan.asked.seconds.value_or(0) > 0;
@@ -19,9 +19,9 @@ double camera_rays_of(const Plan& plan) {
   return double(plan.width) * plan.height * samples;
 }
 
-// Seven of ten paths survive the roulette; each vertex sends one ray to a light source, and the first ones
-// are connected to those that others found. About two rays a sample look for what shines, and all that may
-// where lens or shutter blur. Where diffuse surfaces end paths, fewer go on.
+// Estimates that seven of ten paths survive Russian roulette. Each vertex sends one shadow ray, and the first
+// vertex is connected to those of the other paths in its group. About two rays per sample search for
+// emitters, or kMostLooks with lens or motion blur. If diffuse surfaces end paths, fewer paths continue.
 double expected_path_rays(const Scene& scene, const Plan& plan) {
   const MaterialTraits& materials = scene.facts.materials;
   const double surviving = plan.technique->interreflects || !materials.diffuse ? 0.7
@@ -42,9 +42,9 @@ double expected_tree_rays(const Scene& scene, const Plan& plan) {
   const double children = materials.transmits ? 2 : 1;
   const double most =
       plan.min_contribution > 0 ? 1 / plan.min_contribution : std::numeric_limits<double>::infinity();
-  double tree = 1;         // rays that follow from one camera ray, with it
-  double descendants = 1;  // of it in a generation, if every ray met a specular surface
-  double share = 1;        // of those that there are
+  double tree = 1;         // rays per camera ray, which is included
+  double descendants = 1;  // in one generation, if every surface were specular
+  double share = 1;        // expected fraction of `descendants`
   const int depth = branches ? plan.max_depth : 0;
   for (int generation = 1; generation <= depth; ++generation) {
     descendants = std::min(descendants * children, most);

@@ -6,10 +6,10 @@
 
 namespace orrery {
 
-// What no scene and no request may exceed.
+// Limits of every scene and request.
 inline constexpr int kMaxImageSide = 4096;
 inline constexpr std::int64_t kMaxImagePixels = 16'777'216;
-inline constexpr double kMinSize = 1e-90;  // of a primitive, metres: products of three lengths are not 0
+inline constexpr double kMinSize = 1e-90;  // metres, of a primitive; a product of three is not 0
 inline constexpr int kMaxSamples = 4096;
 inline constexpr int kMaxDepth = kDeepestRay;
 inline constexpr int kMaxReuse = 64;

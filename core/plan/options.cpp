@@ -27,7 +27,7 @@ O::Names names_of(const Types& types) {
 int max_depth_of(const TechniqueType& type) { return type.max_depth; }
 O::Names technique_names() { return names_of(technique_types()); }
 O::Names channel_names() { return names_of(channel_types()); }
-// "auto": the plan chooses.
+// Names of the accelerators, and "auto", which lets the planner choose.
 O::Names accelerator_names() {
   O::Names names = names_of(accelerator_types());
   names.insert(names.begin(), "auto");
@@ -37,7 +37,7 @@ O::Names accelerator_names() {
 static_assert(std::int64_t{kMaxImageSide} * kMaxImageSide <= kMaxImagePixels,
               "sides within their range never make too many pixels");
 
-// In the order of the schema and of help.
+// All options, in the order of the schema and of help.
 constexpr std::array kOptions{
     O{.key = "azimuth_degrees",
       .short_name = "azimuth",
@@ -203,7 +203,7 @@ constexpr std::array kOptions{
       .changes_pixels = false},
 };
 
-// The default.
+// Returns the default value of an option.
 template <class I>
 I fallback_of(const O::Integer<I>& kind) {
   return static_cast<I>(kind.fallback);
@@ -223,7 +223,8 @@ Fallback<V> missing(const V& fallback, bool in_schema) {
   return in_schema ? Fallback<V>(fallback) : derived(fallback);
 }
 
-// The value of the option's key, checked; the default if it is missing, which the schema shows or not.
+// Reads the value of the option's key. Returns the default if the key is missing; `in_schema` says whether
+// the schema shows that default.
 template <class I>
 I read(Params& p, const O& o, const O::Integer<I>& kind, bool in_schema) {
   return static_cast<I>(p.integer(o.key, o.help, kind.min, kind.max, missing(kind.fallback, in_schema)));
@@ -249,7 +250,7 @@ std::vector<std::string> read(Params& p, const O& o, const O::NameList& kind, bo
   return p.choices(o.key, o.help, kind.names());
 }
 
-// The value as JSON text. Names of registries need no escapes.
+// Formats a value as JSON text. Names in registries need no escapes.
 std::string json_string(std::string_view name) { return "\"" + std::string(name) + "\""; }
 std::string list_of(std::span<const std::string> parts) {
   std::string text = "[";
@@ -260,7 +261,7 @@ template <class I>
 std::string text_of(const O::Integer<I>&, I value) {
   return std::to_string(value);
 }
-std::string text_of(const O::Number&, double value) { return number_text(value + 0.0); }  // -0 is 0
+std::string text_of(const O::Number&, double value) { return number_text(value + 0.0); }  // turns -0 into 0
 std::string text_of(const O::Flag&, bool value) { return value ? "true" : "false"; }
 std::string text_of(const O::Point&, const Vec3d& v) {
   return list_of(std::array{number_text(v.x + 0.0), number_text(v.y + 0.0), number_text(v.z + 0.0)});
@@ -374,7 +375,7 @@ void read_request_options(Params& p, Section section, RenderSettings& settings) 
 
 namespace {
 
-// The defaults with this technique, or with the default one.
+// Returns the defaults of a technique, or those of the default technique if it is not named.
 RenderSettings defaults_of(const std::optional<std::string>& technique) {
   RenderSettings defaults = default_settings();
   for (const TechniqueType& type : technique_types())
@@ -407,13 +408,14 @@ void require_picture(const RenderSettings& settings, std::string_view what) {
 
 namespace {
 
-// From where an error asks for less: the same for all, so that a smaller one never comes to more.
+// Initial min_contribution with an error budget. It is the same for all errors, so that a smaller error never
+// yields a larger contribution.
 constexpr double kMostContribution = 1.0 / 16;
-// In a given time: a quarter of what a code of 8 bits stands for. Trees are limited by it rather than by
-// their depth, which costs hardly more where surfaces mirror and less where glass branches.
+// min_contribution with a time budget only: a quarter of one 8-bit code. It limits ray trees instead of their
+// depth, which costs hardly more for mirrors and less for branching glass.
 constexpr double kTimedContribution = 0.001;
 
-// Completes what a budget leaves free.
+// Sets every option that is left to the budget.
 void free_for_budget(RenderSettings& settings) {
   if (!settings.samples) settings.samples = kMaxSamples;
   if (!settings.max_depth) settings.max_depth = kMaxDepth;

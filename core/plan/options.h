@@ -13,14 +13,14 @@
 #include "core/model/render_settings.h"
 #include "core/params/params.h"
 
-// The render options: one row of a table each. Reader and schema of scenes and requests, queries, flags,
-// limits, the key and ETag of a picture, explain, statistics and OpenAPI are made from the rows.
+// Table of the render options, one row each. Derived from it: reader and schema of scenes and requests, query
+// parameters, flags, limits, cache key and ETag of a picture, explain, statistics and OpenAPI.
 namespace orrery {
 
 struct Scene;
 struct TechniqueType;
 
-// The member of a request's JSON that an option stands in.
+// Member of the request JSON that contains an option.
 enum class Section { camera, image, render, budget };
 inline constexpr std::array kSections{Section::camera, Section::image, Section::render, Section::budget};
 std::string_view name_of(Section section);
@@ -30,7 +30,7 @@ struct RenderOption {
   using Member = std::optional<V> RenderSettings::*;
   using Names = std::vector<std::string_view>;
 
-  // The kinds of values: where the value is kept, what it may be, and the default.
+  // Kinds of values: the member of RenderSettings, the allowed values and the default.
   template <class I>
   struct Integer {
     Member<I> member;
@@ -48,7 +48,7 @@ struct RenderOption {
   struct Point {  // coordinates in metres; default: the origin
     Member<Vec3d> member;
   };
-  struct Name {  // one of a registry's
+  struct Name {  // name from a registry
     Member<std::string> member;
     Names (*names)();
     const char* fallback;
@@ -58,7 +58,7 @@ struct RenderOption {
     Member<E> member;
     std::span<const std::string_view> names;
   };
-  struct NameList {  // distinct names of a registry; default: none
+  struct NameList {  // distinct names from a registry; default: empty
     Member<std::vector<std::string>> member;
     Names (*names)();
   };
@@ -66,67 +66,69 @@ struct RenderOption {
                             Enumeration<Precision>, Enumeration<Prediction>, Enumeration<Filter>,
                             Enumeration<Space>, Enumeration<OnMiss>, Enumeration<View>, NameList>;
 
-  std::string_view key;  // the name: in JSON, in queries and, with hyphens after --, on command lines
-  std::string_view short_name = {};  // also allowed in queries and on command lines; empty: none
+  // Name in JSON and in queries. The command line spells it with hyphens after "--".
+  std::string_view key;
+  std::string_view short_name = {};  // alias in queries and flags; may be empty
   Section section;
   Kind kind;
-  std::string_view placeholder = {};  // what help calls the value; empty: its choices, see value_name()
+  std::string_view placeholder = {};  // name of the value in help; empty: its choices
   std::string_view help;              // one sentence
-  bool in_scene = true;               // a scene may give it too, and is then the default of a request
+  bool in_scene = true;               // a scene may set it, as the default of its requests
   bool changes_pixels = true;         // another value may give another picture
-  // An integer's default where each technique has one of its own, which is in no schema then.
+  // Default of an integer that depends on the technique, or null. Schemas do not show it.
   int (*by_technique)(const TechniqueType&) = nullptr;
 
   std::string pointer() const;     // JSON Pointer in a request: "/camera/azimuth_degrees"
   std::string value_name() const;  // "DEGREES", "true|false"
-  Names choices() const;           // the words that it may be; empty for other values
+  Names choices() const;           // allowed words; empty for other values
 
-  // What a value is in JSON, for those who make JSON from text.
+  // JSON type of a value, for code that makes JSON from text.
   enum class Form { number, boolean, string, numbers, strings };
   Form form() const;
 
   bool given(const RenderSettings& settings) const;
-  void copy(const RenderSettings& from, RenderSettings& to) const;  // a missing value too
-  // The value as JSON text; equal texts for equal values only. REQUIRES: given(settings).
+  void copy(const RenderSettings& from, RenderSettings& to) const;  // copies a missing value too
+  // Returns the value as JSON text. Different values have different texts. REQUIRES: given(settings).
   std::string text(const RenderSettings& settings) const;
 
-  // Both check the value of `key` in the section `p`. In a scene, a missing one becomes the default, unless
-  // that depends on the technique; in a request, it leaves the member alone.
+  // Read and check the value of `key` in section `p`. A key missing in a scene sets the member to the
+  // default, unless that depends on the technique. A key missing in a request leaves the member unchanged.
   void read_scene(Params& p, RenderSettings& settings) const;
   void read_request(Params& p, RenderSettings& settings) const;
 };
 
 std::span<const RenderOption> render_options();
 
-// Every option's default, with the default technique.
+// Returns the default of every option, with the default technique.
 const RenderSettings& default_settings();
 
-// Read a section: of a scene, only what scenes may give. Ranges are checked here and nowhere else.
+// Read all options of a section; scenes may set only those with `in_scene`. No other code checks the ranges.
 void read_scene_options(Params& p, Section section, RenderSettings& settings);
 void read_request_options(Params& p, Section section, RenderSettings& settings);
 
-// Whether a picture is to be made until its error or its time is as asked.
+// Returns whether an error or a time limit is set.
 bool has_budget(const RenderSettings& settings);
-// Throws InputError if so, where `what` cannot keep any.
+// Throws InputError if a budget is set. `what` names the output that does not support budgets.
 void require_no_budget(const RenderSettings& settings, std::string_view what);
-// Throws InputError if another view is asked for, where `what` has the picture's alone.
+// Throws InputError unless the view is `picture`. `what` names the output that supports no other view.
 void require_picture(const RenderSettings& settings, std::string_view what);
 
-// Every option as asked or else as the scene says or else its default, the time held within the scene's
-// motion. A budget frees what is not asked, whatever the scene says: of samples there may then be as many as
-// any picture may have, rays may be as deep as any, those of trees with a least contribution of 1/16, of
-// which an error makes less, or of 0.001 where only a time is given, in double precision.
+// Returns a value for every option: from the request, else from the scene, else the default. The time is
+// clamped to the scene's motion. With a budget, samples, depth, precision and min_contribution are not taken
+// from the scene. If the request lacks them, samples and depth get their maximum, and precision is double.
+// min_contribution is then 1/16 with an error budget, which lowers it, or 0.001 with only a time limit.
 RenderSettings resolve(const Scene& scene, const RenderSettings& asked);
 
-// REQUIRES: the options of the camera are given.
+// Returns the camera orbit. REQUIRES: the camera options are given.
 Orbit orbit_of(const RenderSettings& settings);
 
-// The options that are given, as JSON text of a request: {"camera": {...}, "image": {...}, "render": {...}}
-// without empty members. Reading it gives the same settings.
+// Returns the given options as JSON text of a request: {"camera": {...}, "image": {...}, "render": {...}}.
+// Empty members are left out. Reading the text gives the same settings.
 std::string to_json(const RenderSettings& settings);
 
-// A query that gives those of the settings, all of which are given, that the scene does not give itself and
-// that change pixels: "max_depth=12&samples=16", or "". Its picture has the same bytes.
+// Returns a query with the settings that change pixels and differ from the scene's own:
+// "max_depth=12&samples=16", or "". The query renders a picture with the same bytes. REQUIRES: all settings
+// are given.
 std::string query_of(const Scene& scene, const RenderSettings& settings);
 
 }  // namespace orrery

@@ -18,7 +18,7 @@
 namespace orrery {
 namespace {
 
-// REQUIRES: a type has the name, as every name that was read has.
+// Returns the type with this name. REQUIRES: the name was validated when it was read.
 template <class Types>
 auto find_type(const Types& types, const std::string& name) {
   const auto found = std::find_if(types.begin(), types.end(), [&](const auto& t) { return name == t.name; });
@@ -56,7 +56,7 @@ class Planner {
     } else {
       plan_.cut_range = facts.tree_radiance.most_off(scene_.ambient);
       const bool negative = plan_.filtered && has_negative_lobes(*plan_.asked.filter);
-      if (!negative)  // what is cut may leave ambient light
+      if (!negative)  // rays that are cut return ambient light
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
       leave_out_for_trees();
     }
@@ -77,7 +77,7 @@ class Planner {
     plan_.decisions.push_back({std::move(subject), std::move(choice), std::move(reason), bound});
   }
 
-  // Whether a budget chooses what the request may name.
+  // Returns whether a budget chooses the value of an option that the request may set.
   template <class T>
   bool is_free(const std::optional<T>& named) const {
     return !named && has_budget(plan_.asked);
@@ -155,7 +155,7 @@ class Planner {
     }
   }
 
-  // Float where it is fine enough for everything that tells how fine its numbers must be; double beyond.
+  // Chooses float if it is precise enough for all known rounding limits, else double.
   void choose_precision() {
     const Precision asked = *plan_.asked.precision;
     if (asked != Precision::automatic) {
@@ -178,7 +178,8 @@ class Planner {
            rounding_bound());
   }
 
-  // What float does to the picture is not bounded yet; double is what other pictures are held against.
+  // Returns the error of rounding. Float has no proven bound yet. Double is the reference and counts as
+  // exact.
   Bound rounding_bound() const { return plan_.double_precision ? Bound() : Bound::unknown(); }
 
   void choose_accelerator() {
@@ -229,7 +230,7 @@ class Planner {
                          : "the only object is convex and seen from outside: nothing stands in its light");
   }
 
-  // What a scene may have that is seen along paths alone.
+  // Reports scene features that only path techniques render.
   void leave_out_for_trees() {
     const std::string only =
         std::string(plan_.technique->name) + " does not follow such light; distributed and path do";
@@ -276,7 +277,7 @@ class Planner {
   void choose_reuse() {
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
-                         : 1;  // divides a tile
+                         : 1;  // must divide a tile
     decide("reuse of paths", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
            plan_.reuse > 1     ? "connections to what others found cost less than paths of one's own"
            : shares            ? "as asked"
@@ -317,14 +318,15 @@ class Planner {
     return is_free(request_.min_contribution) ? "a quarter of what a code of 8 bits stands for" : "as asked";
   }
 
-  // Of rays that are not traced, before any is: of so much weight in all. The picture's ledger tells less.
+  // Returns an a-priori bound of rays that are not traced, of this total weight. The bound measured while
+  // rendering is tighter.
   Bound cut_bound(double weight) const {
     const double radiance = weight * max_component(plan_.cut_range);
     const double most = plan_.space == Space::display ? encode_srgb(radiance) : radiance;
     return Bound::proved(most, most);
   }
 
-  // Whether `has(set, index)` for some light.
+  // Returns whether `has(set, index)` is true for some light.
   template <class Has>
   bool any_light(const Has& has) const {
     return std::any_of(scene_.lights.begin(), scene_.lights.end(), [&](const LightPlace& light) {
@@ -332,7 +334,7 @@ class Planner {
     });
   }
 
-  // One convex primitive, and the eye surely outside of it.
+  // Returns whether the scene is one convex primitive with the eye certainly outside it.
   bool lonely_convex() const {
     if (scene_.primitive_count() != 1) return false;
     for (const auto& shapes : scene_.shapes) {
@@ -364,7 +366,7 @@ RenderSettings settings_of(const Plan& plan) {
   RenderSettings settings = plan.asked;
   settings.accelerator = plan.accelerator->name;
   settings.precision = plan.double_precision ? Precision::double_precision : Precision::single_precision;
-  // Less than was asked may hold for this view alone.
+  // The plan may have reduced the depth for this view only.
   settings.max_depth = plan.max_depth == 0 ? 0 : *plan.asked.max_depth;
   settings.min_contribution = plan.min_contribution;
   return settings;

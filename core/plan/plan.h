@@ -6,16 +6,16 @@
 
 namespace orrery {
 
-// What to model for this scene and request, and no more: a pure function, cheap enough to call for every
-// frame. The picture it leads to equals the one with every stage present (RenderRequest::full_model), bit for
-// bit. REQUIRES: the settings of the request, where given, are ones that read_request() could have returned.
+// Returns the stages that this scene and request need. A pure function, cheap enough to call for every frame.
+// The picture equals the picture with every stage present (RenderRequest::full_model), bit for bit. REQUIRES:
+// all given settings are values that read_request() could have returned.
 Plan make_plan(const Scene& scene, const RenderRequest& request);
 
-// Whether some light source has an intensity other than 0.
+// Returns whether some light source has a non-zero intensity.
 bool any_light_shines(const Scene& scene);
 
-// Every option, with what the plan decided in place of what was left to it: make_plan() of these settings
-// renders the same picture, by the same structure.
+// Returns a value for every option, including those chosen by the plan. make_plan() of these settings renders
+// the same picture with the same accelerator.
 RenderSettings settings_of(const Plan& plan);
 
 }  // namespace orrery

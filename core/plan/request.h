@@ -5,9 +5,9 @@
 
 namespace orrery {
 
-// What one render asks beside what its scene says. Settings without a value are left to the scene.
+// Settings of one render. A setting without a value is taken from the scene.
 struct RenderRequest : RenderSettings {
-  bool full_model = false;   // every stage present, whatever the scene: the planned picture must equal it
+  bool full_model = false;   // plan every stage; the picture must not change
   int slice = Plan{}.slice;  // 16..kBatch
 
   bool operator==(const RenderRequest&) const = default;

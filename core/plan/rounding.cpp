@@ -8,10 +8,10 @@
 namespace orrery {
 namespace {
 
-constexpr double kRoundings = 8;       // of the largest coordinate, by which a hit may be off
-constexpr double kMostOfLength = 0.1;  // of a length to be seen, by which hits may be off
-constexpr double kMostTurn = 0.02;     // radians, by which a mirrored ray may be off
-// Products of three lengths stay normal numbers in float from here on, with room for what is a hundredth.
+constexpr double kRoundings = 8;       // hit error, in epsilons of the largest coordinate
+constexpr double kMostOfLength = 0.1;  // allowed hit error, as a share of a visible length
+constexpr double kMostTurn = 0.02;     // radians, allowed error of a mirrored ray
+// Smallest length, in metres, whose third power is a normal float, even for parts a hundred times smaller.
 constexpr double kLeastLengthInFloat = 1e-10;
 
 std::string metres(double x) { return number_text(x) + " m"; }
@@ -50,7 +50,7 @@ class Limits {
          what + ", beside coordinates of up to " + metres(magnitude_.value) + " (" + magnitude_.where + ")"});
   }
 
-  // Width of a pixel, in metres: where the bounded primitives begin, or at look_at if that is nearer.
+  // Returns the width of a pixel in metres, at the nearest bounded primitive or at look_at if that is nearer.
   double footprint() const {
     const double pixel = 2 * plan_.frame.half_extent / plan_.height;
     if (plan_.camera->parallel()) return pixel;
@@ -66,7 +66,7 @@ class Limits {
     return std::max(outside, box.diagonal() / 16);
   }
 
-  // The error of a ray's direction after the last mirror.
+  // Limits the error of the ray direction after the last mirror.
   void take_mirrors() {
     const MirrorChain& chain = facts_.mirrors;
     if (chain.where.empty() || plan_.asked.max_depth.value_or(0) < 1) return;

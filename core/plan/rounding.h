@@ -6,9 +6,9 @@
 
 namespace orrery {
 
-// How fine the numbers must be that such a picture is computed with, and what needs them so. REQUIRES: the
-// plan's settings, camera and frame are known. Until the error of a picture is bounded, the limits are
-// calibrated: pictures in float and in double differ by 5e-4 at most (root of the mean square, off edges).
+// Returns the coarsest epsilon that this picture allows, and the feature that requires it. The limits are
+// calibrated, not proven: pictures in float and in double differ by at most 5e-4 (RMS, off edges). REQUIRES:
+// settings, camera and frame of the plan are set.
 RoundingLimit rounding_limit(const Scene& scene, const Plan& plan);
 
 }  // namespace orrery

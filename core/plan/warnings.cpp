@@ -13,10 +13,11 @@
 namespace orrery {
 namespace {
 
-// What is looked at at most, so that a warning takes milliseconds whatever the scene.
+// Maximum numbers of primitives examined, so that warnings take milliseconds for any scene.
 constexpr int kMostPrimitives = 20'000, kMostAround = 8;
 
-constexpr double kMostReflected = 1.005;  // share of light that a material may send on, for rounding's sake
+constexpr double kMostReflected =
+    1.005;  // reflected share of light that is accepted, with a margin for rounding
 
 std::string percents(double share) {
   char text[32];
@@ -24,7 +25,7 @@ std::string percents(double share) {
   return text;
 }
 
-// Whether every surface is black.
+// Returns whether every surface is black.
 bool is_unlit(const Scene& scene, const Plan& plan) {
   const MaterialTraits& used = scene.facts.materials;
   const bool surrounded = scene.background != Vec3d(0) || scene.environment;
@@ -34,7 +35,7 @@ bool is_unlit(const Scene& scene, const Plan& plan) {
          !lit_from_around;
 }
 
-// What the camera sees, as the space on one side of planes.
+// View volume of the camera: the space on one side of each plane.
 class View {
  public:
   explicit View(const Plan& plan)
@@ -44,7 +45,7 @@ class View {
         half_height_(plan.frame.half_extent),
         half_width_(half_height_ * plan.width / plan.height) {}
 
-  // Whether the box lies wholly beyond one of the planes. Never for an infinite box.
+  // Returns whether the box is entirely outside one of the planes. False for an infinite box.
   bool misses(const Affined& world_from_box, const Boundsd& box) const {
     if (all_around_) return false;
     std::array<bool, 5> beyond;
@@ -66,7 +67,7 @@ class View {
   double half_height_, half_width_;
 };
 
-// The shapes of a set as they stand at a moment.
+// Shapes of a set at one moment.
 class ShapesAt {
  public:
   ShapesAt(const ShapeSet& set, double time) : moved_(set.at(time)), shapes_(moved_ ? *moved_ : set) {}
@@ -77,8 +78,8 @@ class ShapesAt {
   const ShapeSet& shapes_;
 };
 
-// Calls visit(shapes of one set, where they stand, materials of these primitives) for the scene's own shapes
-// and for those of each instance, until one returns true; whether one did.
+// Calls visit(shapes of one set, world_from_shapes, materials of these primitives) for the scene's own shapes
+// and for those of each instance. Stops and returns true as soon as one call returns true.
 template <class Visit>
 bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   int first = 0;
@@ -100,9 +101,9 @@ bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   return false;
 }
 
-// False where more than kMostPrimitives would have to be looked at.
+// Returns false if more than kMostPrimitives would have to be examined.
 bool nothing_in_view(const Scene& scene, const Plan& plan) {
-  if (plan.shutter > 0) return false;  // what comes into view meanwhile is not looked for
+  if (plan.shutter > 0) return false;  // motion into the view is not examined
   const View view(plan);
   int seen = 0;
   return !any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
@@ -120,12 +121,12 @@ bool is_transparent(const Scene& scene, std::int32_t material) {
   return false;
 }
 
-// Asks about the surroundings of one point by single rays.
+// Tests the surroundings of one point with single rays.
 class Surroundings {
  public:
   Surroundings(const Scene& scene, const Vec3d& point) : point_(point) { find_lights(scene); }
 
-  // Whether the point is inside of primitive `index`, which is closed.
+  // Returns whether the point is inside primitive `index`. REQUIRES: the primitive is closed.
   bool inside(const ShapeKernel<double>& kernel, int index, const Affined& model_from_world) {
     send({{0, 0, 1}, std::numeric_limits<double>::infinity()}, model_from_world);
     hits_.t[0] = rays_.t_max[0];
@@ -137,7 +138,7 @@ class Surroundings {
     return met_.side[0] < 0;
   }
 
-  // Whether light arrives from some source that the primitive does not hide from the point.
+  // Returns whether some light source reaches the point without being shadowed by the primitive.
   bool lit_past(const ShapeKernel<double>& kernel, int index, const Affined& model_from_world) {
     return std::any_of(lights_.begin(), lights_.end(), [&](const ToLight& light) {
       send(light, model_from_world);
@@ -189,7 +190,8 @@ bool overlap(const Boundsd& a, const Boundsd& b) {
          b.lo.z <= a.hi.z;
 }
 
-// Whether some primitive but the one with these bounds reaches into them; true after kMostPrimitives.
+// Returns whether another primitive than the one with these bounds overlaps them. Returns true after
+// kMostPrimitives.
 bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   int overlapping = 0, seen = 0;
   return any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
@@ -202,8 +204,8 @@ bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   });
 }
 
-// Whether the eye is inside a closed opaque shape that hides all lights, and nothing else shows in there.
-// Gives up after kMostPrimitives, and after kMostAround that may be around the eye.
+// Returns whether the eye is inside a closed opaque shape that hides all lights and contains nothing visible.
+// Gives up after kMostPrimitives primitives, and after kMostAround whose bounds contain the eye.
 bool is_enclosed(const Scene& scene, const Plan& plan) {
   const bool glows = scene.ambient != Vec3d(0) || scene.facts.materials.emits;
   int seen = 0, around = 0;
@@ -233,9 +235,9 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
   return enclosed;
 }
 
-// The first of kMostPrimitives that is smooth, so that light goes on from it in single directions; -1: none.
+// Returns the first smooth primitive, i.e. one with a specular lobe, or -1. Examines kMostPrimitives.
 int smooth_primitive(const Scene& scene) {
-  std::vector<char> smooth;  // by material
+  std::vector<char> smooth;  // indexed by material
   for (const auto& set : scene.materials) {
     const MaterialTraits traits = set->traits();
     for (int i = 0; i < set->size(); ++i)
@@ -247,8 +249,8 @@ int smooth_primitive(const Scene& scene) {
   return -1;
 }
 
-// A light that no drawn direction can meet and a smooth surface: paths from the one by the other to a surface
-// that answers light have probability 0. `detail` is empty where there is no such pair.
+// Returns a light that no sampled direction can hit, together with a smooth surface. Paths from the light
+// over that surface to a lit surface have probability 0. `detail` is empty if there is no such pair.
 Problem lost_caustic(const Scene& scene, const Plan& plan) {
   if (!plan.technique->interreflects || !scene.facts.materials.lit || plan.max_depth < 2) return {};
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

@@ -7,23 +7,23 @@
 #include "core/model/plan.h"
 #include "core/model/scene.h"
 
-// Why a picture shows nothing useful although nothing is wrong with its scene. Pointers are into the scene.
+// Warnings about valid scenes whose picture is useless. Pointers refer to the scene.
 namespace orrery {
 
-// What is known before the picture is rendered:
+// Returns the warnings that are known before rendering:
 //  - no light reaches any surface: no light source, no ambient light, no emission;
-//  - the camera is inside a closed opaque shape that holds no light and, where there is ambient light or
+//  - the camera is inside a closed opaque shape that contains no light and, if there is ambient light or
 //    emission, nothing else;
-//  - paths cannot find what a light without extent throws on other surfaces by way of a smooth one;
-//  - nothing is in view, because the boxes of all primitives are outside of what the camera sees.
-// Time: bounded, whatever the scene; of more than 20,000 primitives, or 8 shapes around the camera, it may
-// miss one.
+//  - caustics of a light without extent are lost, because paths cannot hit the light;
+//  - nothing is in view, because the boxes of all primitives are outside the view volume.
+// The time is bounded for any scene. With more than 20,000 primitives, or 8 shapes around the camera, a
+// warning may be missed.
 std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan);
 
-// Likewise of a picture for which so much was traced: whether anything is in view is then known exactly.
+// Returns the warnings of a rendered picture. The ray counts show exactly whether anything is in view.
 std::vector<Problem> find_warnings(const Scene& scene, const Plan& plan, const TraceCounts& traced);
 
-// Whether paths cannot find what a light without extent throws on other surfaces by way of a smooth one.
+// Returns whether paths cannot find caustics of a light without extent.
 bool loses_caustics(const Scene& scene, const Plan& plan);
 
 }  // namespace orrery
