@@ -1,5 +1,5 @@
-// Where the service answers 401, the page asks for a token, once for all requests that wait, and keeps it for as
-// long as the tab is open.
+// Access token of the page. A 401 response opens one form for all waiting requests. The token lasts as long
+// as the tab.
 
 import { recall, remember } from "./storage.js";
 
@@ -12,7 +12,7 @@ export const access_token = () => token;
 
 export const bearer = () => (token ? { Authorization: `Bearer ${token}` } : {});
 
-// `sent` was refused. Resolves to whether there is another token now; false: the user has closed the form.
+// Asks for another token after the service rejected `sent`. Resolves to false if the user closed the form.
 export function other_token(sent) {
   if (sent !== token) return Promise.resolve(true);
   asking ??= ask(document.getElementById("access"), sent !== "").finally(() => (asking = null));

@@ -1,4 +1,4 @@
-// Wires what tells of speed and accuracy to the page: the chart and its slider, budgets, and the picture's own error.
+// Speed and accuracy controls of the page: chart and slider, budgets, and the picture's own error.
 
 import { attach_budgets, budget_of, told_of } from "./budget.js";
 import { ChartDialog } from "./chart_dialog.js";
@@ -7,9 +7,13 @@ import { Tradeoff } from "./tradeoff.js";
 
 const $ = (id) => document.getElementById(id);
 
-// `on` has: picture() -> the picture at rest without plan and budget, or null; within({seconds, error}) -> the same with
-// a budget; seen() -> the address of the one on the stage, or null; pause(); set({plan, seconds, error}), of which one is
-// given. Returns {show(), rest(), stale(), leave(), mark(state), tell(figures, state)}.
+// `on` has
+//   picture() -> the picture at rest without plan and budget, or null
+//   within({seconds, error}) -> the same with a budget
+//   seen() -> address of the picture on the stage, or null
+//   pause()
+//   set({plan, seconds, error}), at most one of them set
+// Returns `{show(), rest(), stale(), leave(), mark(state), tell(figures, state)}`.
 export function attach_accuracy(on) {
   const overlay = new Overlay($("overlay"));
   const dialog = new ChartDialog($("chart"), $("show-chart"), (index) => tradeoff.choose(index));
@@ -39,7 +43,7 @@ export function attach_accuracy(on) {
   });
   const mark_budgets = attach_budgets(chips, (budget) => {
     on.set({ plan: "", ...budget });
-    // An orbit keeps no budget.
+    // Orbits ignore budgets.
     if (budget.seconds || budget.error) on.pause();
   });
   $("drop-plan").addEventListener("click", () => on.set({ plan: "", seconds: 0, error: 0 }));

@@ -1,19 +1,19 @@
-// Requests to the service. Every failure becomes an ApiError, whatever its cause.
+// Requests to the service. Every failure but an abort throws ApiError.
 
 import { access_token, bearer, other_token } from "./access.js";
 
-const kRetryable = new Set([0, 429, 502, 503]); // 0: no answer
+const kRetryable = new Set([0, 429, 502, 503]); // 0: no response
 
-// A refusal (problem+json of RFC 9457), or no answer at all: then status is 0.
+// Error response (problem+json of RFC 9457), or no response at all: status 0.
 export class ApiError extends Error {
   constructor(fields) {
     super(fields.title ?? "The request failed");
     this.name = "ApiError";
-    // Also errors, line and column, and retry_after_seconds, where the service gives them.
+    // Optional fields from the service: errors, line and column, retry_after_seconds.
     Object.assign(this, { status: 0, detail: "", request_id: "" }, fields, { title: this.message });
   }
 
-  // Whether the same request may succeed later.
+  // Returns whether the same request may succeed later.
   get retryable() {
     return kRetryable.has(this.status);
   }
@@ -27,7 +27,7 @@ export function is_abort(error) {
   return error?.name === "AbortError";
 }
 
-// What to throw when an answer breaks off with `error`.
+// Returns the error to throw if a response breaks off with `error`.
 export const broken = (error) => (is_abort(error) ? error : no_answer(error.message));
 
 async function problem_of(response) {
@@ -35,7 +35,7 @@ async function problem_of(response) {
   try {
     Object.assign(fields, JSON.parse(await response.text()));
   } catch (error) {
-    if (is_abort(error)) throw error; // else the body is no JSON: the status line has to do
+    if (is_abort(error)) throw error; // not JSON: falls back to the status line
   }
   const seconds = Number(response.headers.get("Retry-After"));
   return new ApiError({
@@ -46,7 +46,7 @@ async function problem_of(response) {
   });
 }
 
-// fetch() that resolves only to a successful response. Throws ApiError, or AbortError once `signal` fires.
+// Resolves to a successful response of fetch(). Throws ApiError, or AbortError once `signal` fires.
 export async function request(path, options = {}) {
   const token = access_token();
   let response;
@@ -74,16 +74,16 @@ export function post_json(path, text) {
   return get_json(path, { method: "POST", headers, body: text });
 }
 
-// A body that is read, unless it breaks off.
+// Resolves to a response body. Throws ApiError if the body breaks off.
 const whole = (body) =>
   body.catch((error) => {
     throw broken(error);
   });
 
-// {id, width, height, camera, objects, lights}.
+// Posts a scene. Resolves to {id, width, height, camera, objects, lights}.
 export const post_scene = (text) => post_json("v1/scenes", text);
 
-// Server-Timing as {name: milliseconds}.
+// Parses a Server-Timing header into {name: milliseconds}.
 export function server_timing(header) {
   const timing = {};
   for (const entry of (header ?? "").split(",")) {
@@ -93,10 +93,10 @@ export function server_timing(header) {
   return timing;
 }
 
-// What the service says about a picture that it rendered but that shows little; "" where all is well.
+// Returns the service's warning about a picture that shows little, or "".
 export const warning_of = (response) => response.headers.get("Orrery-Warning") ?? "";
 
-// One picture: {png, stats}. A picture from the browser's cache carries the figures of its first rendering.
+// Fetches a picture as {png, stats}. A picture from the browser's cache has the figures of its first render.
 export async function get_frame(url, signal) {
   const response = await request(url, { signal });
   const { render: render_ms, encode: encode_ms } = server_timing(response.headers.get("Server-Timing"));

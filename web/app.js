@@ -1,4 +1,4 @@
-// Wires the page together: the URL hash is its state, the player shows it, the controls change it.
+// Page wiring: the URL hash is the state, the player shows it, the controls change it.
 
 import { attach_accuracy } from "./accuracy.js";
 import { get_json, post_scene } from "./api.js";
@@ -22,7 +22,7 @@ import { attach_tabs } from "./tabs.js";
 import { frame_url } from "./urls.js";
 import { View } from "./view.js";
 
-const kSaveMs = 1000; // the hash follows the view this often; browsers refuse much faster
+const kSaveMs = 1000; // interval of hash updates; browsers throttle shorter ones
 
 const $ = (id) => document.getElementById(id);
 const still_please = matchMedia("(prefers-reduced-motion: reduce)");
@@ -34,10 +34,10 @@ const stage = $("stage");
 const view = new View(stage, $("canvas"), $("poster"));
 const hud = new Hud($("hud"));
 const limits = { side: 4096, pixels: 2 ** 24, samples: 4096, frames: 3600 };
-let scene = null; // the scene shown; null while another is opened
+let scene = null; // scene on the stage, or null while one is being opened
 let gallery = null;
 let options = null;
-let opening = 0; // counts scene changes, so that a slow answer to an old one is dropped
+let opening = 0; // scene change counter, to drop late responses
 let save_timer = 0;
 let pans = false;
 const page = () => ({ state, scene, view, limits });
@@ -49,7 +49,7 @@ const player = new Player(camera, view, {
   stats: (kind, figures) => {
     hud.show(kind, figures);
     show_warning(figures.warning);
-    // An orbit that is held shows a picture without its budget.
+    // A still of a held orbit is rendered without a budget.
     if (kind === "still" && figures.bound && !state.playing) accuracy.tell(figures, state);
     stage.dataset.shows = kind === "still" ? "refining" : kind;
     $("notice").hidden = true;
@@ -74,7 +74,7 @@ const player = new Player(camera, view, {
 const accuracy = attach_accuracy({
   picture: () => scene && picture_to_chart(page(), camera.view),
   within: (budget) => picture_at_rest({ ...page(), state: { ...state, plan: "", ...budget } }, camera.view),
-  // Of a picture that is not made yet to its budget no bound can be drawn: then of the one without.
+  // The error view needs a resolved budget; falls back to the picture without a budget.
   seen: () => scene && frame_url({ ...player.picture, seconds: 0, error: 0 }),
   pause: () => state.playing && set_playing(false),
   set: (settings) => change(settings),
@@ -92,7 +92,7 @@ const editor = new Editor(
   async (text) => {
     const turn = opening;
     const posted = await library.post(text);
-    if (turn !== opening) return; // another was picked
+    if (turn !== opening) return; // another scene was opened meanwhile
     save_now();
     show_scene(posted, kDefaults);
     history.pushState(null, "", current_hash());
@@ -106,7 +106,7 @@ function current_picture() {
   return { picture: player.picture, name: library.sample(scene.ref)?.name ?? "scene" };
 }
 
-// Opens the scene that the state names, as soon as the service answers.
+// Opens the scene in `state`, retrying until the service responds.
 async function open_scene(at) {
   const turn = ++opening;
   const wanted = () => turn === opening;
@@ -126,7 +126,7 @@ async function open_scene(at) {
   }
 }
 
-// Replaces the former scene on the stage, its figures and its messages by the thumbnail of the scene being opened.
+// Clears stage, figures and messages, and shows the thumbnail of the scene being opened.
 function announce() {
   const sample = library.sample(state.scene);
   view.announce(sample ? thumbnail_of(sample) : "");
@@ -184,7 +184,7 @@ function pick_sample(name) {
   show_stage();
 }
 
-// On a narrow page the picture may be out of sight.
+// Scrolls the stage into view: a narrow page may have scrolled it away.
 function show_stage() {
   stage.scrollIntoView({ block: "nearest" });
 }
@@ -204,7 +204,7 @@ function save_soon() {
   save_timer ||= setTimeout(save_now, kSaveMs);
 }
 
-// The user went back, forward, or edited the address.
+// Applies the hash after the user went back, forward, or edited the address.
 function load_hash() {
   const next = parse_hash(location.hash);
   const same_scene = scene && next.scene === scene.ref;
@@ -238,7 +238,7 @@ function set_playing(playing) {
 
 const set_option = (key, value) => change({ ...(key !== "size" && { plan: "" }), [key]: value });
 
-// What the user has chosen anew.
+// Applies settings that the user has chosen.
 function change(settings) {
   save_now();
   Object.assign(state, settings);
@@ -258,13 +258,13 @@ function fail(error, actions = []) {
   show_problem($("stage-problem"), error, undefined, actions);
 }
 
-// What to do where nothing can be shown: [label, function] each.
+// Actions offered if no scene can be shown, each [label, function].
 const others = [
   ["Choose a sample", () => (select_tab("tab-scenes"), gallery?.focus())],
   ["Paste a scene", () => (select_tab("tab-json"), $("text").focus())],
 ];
 
-// Where a setting of the link is refused, every way out drops that.
+// Reports `error`. If the service rejected settings of the link, every offered action resets them.
 function fail_to_render(error) {
   const refused = refused_of(error, state);
   if (!refused) return fail(error);
@@ -310,7 +310,7 @@ function dolly(factor) {
   return changed;
 }
 
-// By pixels on the stage: what lies at the target's distance keeps under the pointer.
+// Pans by pixels on the stage. Points at the target's distance stay under the pointer.
 function pan(right, up) {
   if (!scene) return;
   const { width, height, fov } = picture_for(page(), "still", camera.view);
@@ -319,7 +319,7 @@ function pan(right, up) {
   moved();
 }
 
-// Whether plain drags, arrows and their buttons pan instead of turning.
+// Makes plain drags, arrow keys and arrow buttons pan (`on`) or rotate.
 function set_panning(on) {
   pans = on;
   $("pan").setAttribute("aria-pressed", String(on));

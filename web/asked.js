@@ -1,5 +1,5 @@
-// The pictures that the page asks for: what the user and the link have chosen, at the size that the stage has room for.
-// `at` is a view of the camera; `page` is {state, scene, view, limits}, of which the scene is one that is shown.
+// Picture requests of the page: options from the user and the link, at the size of the stage.
+// `at` is a camera view. `page` is {state, scene, view, limits}; its scene is not null.
 
 import { amount } from "./cost.js";
 import { options_of } from "./front.js";
@@ -8,7 +8,7 @@ import { picture_size } from "./size.js";
 
 const chosen = ({ technique, samples, plan }) => (plan ? options_of(plan) : { technique, samples, more: "" });
 
-// The whole picture of a view, or that of a rung, see quality.js; `purpose`: "still", "preview" or "stream".
+// Returns the picture for a view, or for a rung of quality.js. `purpose` is "still", "preview" or "stream".
 export function picture_for({ state, scene, view, limits }, purpose, at, { part, samples } = {}) {
   const { technique, samples: asked, more } = chosen(state);
   const size = picture_size({
@@ -23,11 +23,11 @@ export function picture_for({ state, scene, view, limits }, purpose, at, { part,
   return { id: scene.id, moves: Boolean(scene.motion), ...at, ...size, technique, samples: samples ?? asked, more };
 }
 
-// Those for a moving view, each cheaper than the one before. What the user has chosen is kept in an orbit, but not
-// while the view is moved by hand.
+// Returns pictures for a moving view, each cheaper than the one before. A stream keeps the samples and the
+// fixed size that the user has chosen. A preview may reduce both.
 export function moving_pictures(page, purpose, at) {
   const { state, scene } = page;
-  const asked = state.plan ? 0 : state.samples; // a plan's samples are for the picture at rest
+  const asked = state.plan ? 0 : state.samples; // the samples of a plan apply only at rest
   const kept = purpose === "stream";
   const size = !kept && state.size !== "half" ? "fit" : state.size;
   const all = rungs({ samples: kept ? asked : 0, size, own: asked || scene.samples });
@@ -35,7 +35,8 @@ export function moving_pictures(page, purpose, at) {
   return pictures.filter((picture, rung) => rung === 0 || amount(picture) < amount(pictures[rung - 1]));
 }
 
-// A budget leaves the samples open that nobody has chosen; `own` are the scene's.
+// Returns the picture at rest. With a budget, `samples` is the user's choice, 0 if open, and `own` is the
+// scene's.
 export function picture_at_rest(page, at) {
   const { state, scene, limits } = page;
   const picture = picture_for(page, "still", at);
@@ -44,7 +45,7 @@ export function picture_at_rest(page, at) {
   return { ...picture, samples: samples_at_rest(chosen(state).samples, scene.samples, limits.samples) };
 }
 
-// What a chart varies itself is left open.
+// Returns the picture for a chart, without the options that the chart varies.
 export function picture_to_chart(page, at) {
   const { technique } = page.state;
   return { ...picture_for(page, "still", at), technique, samples: undefined, more: undefined };

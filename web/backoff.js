@@ -1,13 +1,14 @@
-// Waiting times between attempts: they double from half a second to sixteen, or follow Retry-After.
+// Delays between retries: doubling from 0.5 s to 16 s, or given by Retry-After.
 
 const kFirst = 0.5;
 const kLongest = 16;
-const sleepers = new Set(); // resolve functions of the attempts that wait now
+const sleepers = new Set(); // resolve functions of the waiting retries
 
 export class Backoff {
   #next = kFirst;
 
-  // Seconds to wait after `error`. A random tenth keeps many pages from coming back at once.
+  // Returns the seconds to wait after `error`. Jitter of up to 10 % keeps pages from retrying at the same
+  // time.
   after(error) {
     const seconds = error?.retry_after_seconds ?? this.#next;
     this.#next = Math.min(kLongest, this.#next * 2);
@@ -19,8 +20,9 @@ export class Backoff {
   }
 }
 
-// Runs `task` until it succeeds, fails for good, or is no longer `wanted` (then the result is undefined).
-// Before each wait `on_waiting(error, seconds)` is called; wake_all() ends every wait.
+// Runs `task` until it succeeds. Throws its error if the error is not retryable.
+// Returns undefined if the task is no longer `wanted()` after a wait.
+// Calls `on_waiting(error, seconds)` before each wait. wake_all() ends every wait.
 export async function persist(task, on_waiting, wanted = () => true) {
   for (const backoff = new Backoff(); wanted();) {
     try {

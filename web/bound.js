@@ -1,8 +1,8 @@
-// What a picture tells of its error, in words. The service says it as parameters of a header, or as JSON.
+// Text for the error bound of a picture, from the parameters of a header or from JSON.
 
 import { rounded_up } from "./progress.js";
 
-// "rms=0.0044;kind=estimated;met=?1;reason=\"a; b\"" as {name: text}; truth values as booleans.
+// Parses "rms=0.0044;kind=estimated;met=?1;reason=\"a; b\"" into {name: text}. ?1 and ?0 become booleans.
 export function parameters_of(header) {
   const fields = {};
   for (const [, name, quoted, plain] of (header ?? "").matchAll(/([\w-]+)=(?:"([^"]*)"|([^;]*))/g)) {
@@ -12,7 +12,7 @@ export function parameters_of(header) {
   return fields;
 }
 
-// The same fields of a certificate as JSON.
+// Returns the same fields from a certificate in JSON.
 export function fields_of({ total, known, terms, space }) {
   const number = (value) => (value === null ? "unknown" : String(value));
   const because = terms.filter(({ bound }) => bound.kind === "unknown").map(({ subject }) => subject);
@@ -29,10 +29,11 @@ export function fields_of({ total, known, terms, space }) {
 const strength = (kind) => (kind === "estimated" ? "95 %, estimated" : kind);
 const at_most = (rms, kind, space) => `≤ ${rounded_up(Number(rms))} (${strength(kind)})${unit(space)}`;
 
-// Errors are in linear radiance unless they are of what a screen shows, from 0 to 1.
+// Suffix for the unit of an error: empty for linear radiance, else display values from 0 to 1.
 export const unit = (space) => (space === "display" ? ", on a display" : "");
 
-// "error ≤ 0.0044 (95 %, estimated)"; of what is unknown, that it is, why, and what the rest is at most.
+// Returns a text such as "error ≤ 0.0044 (95 %, estimated)". For an unknown error, names the cause and the
+// bound of the remaining terms.
 export function bound_words(fields) {
   const { rms, kind, because, known, space } = fields;
   if (!kind) return "error unknown: the service does not tell it";
@@ -41,7 +42,7 @@ export function bound_words(fields) {
   return `error unknown, because of ${because}; ${rest}`;
 }
 
-// What became of a budget: {missed, text}.
+// Returns {missed, text} for the outcome of a budget.
 export function budget_words(budget, bound) {
   const took = budget.used ? `${rounded_up(Number(budget.used))} s of ${budget.seconds} s` : "";
   const aim = budget.error ? `error limit: ${budget.error}` : "";

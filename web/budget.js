@@ -1,8 +1,9 @@
-// Chips that set a budget for the picture at rest instead of a plan, and what is said of the picture then.
+// Budget buttons for the picture at rest, and the text that reports the outcome.
 
 import { bound_words, budget_words, fields_of, parameters_of } from "./bound.js";
 
-// `chips`: buttons with data-seconds or data-error. `on_change({seconds, error})`: 0 for none.
+// Attaches `chips`, buttons with data-seconds or data-error. A click calls `on_change({seconds, error})`, 0
+// for no budget. Returns a function that marks the button of a state.
 export function attach_budgets(chips, on_change) {
   for (const chip of chips) {
     chip.addEventListener("click", () => {
@@ -20,7 +21,7 @@ export function attach_budgets(chips, on_change) {
 
 export const budget_of = ({ dataset }) => ({ seconds: Number(dataset.seconds ?? 0), error: Number(dataset.error ?? 0) });
 
-// What a picture that was made to a plan or a budget tells: {missed, text}; `figures` of the picture.
+// Returns {missed, text} for a picture made with a plan or a budget. `figures` are the picture's.
 export function told_of(figures, { plan, seconds, error }) {
   const { budget, bound } = figures;
   const fields = typeof bound === "object" && bound ? fields_of(bound) : parameters_of(bound);

@@ -1,13 +1,13 @@
-// The orbit camera: where the view is (`now`), where it is going (`goal`), and the glide between.
-// Degrees relative to the scene's own view, `distance` as a factor of its own, `pan` in metres by which eye and
-// target move along the scene's axes, and the `time` of what moves in it, in seconds.
+// Orbit camera: the current view (`now`), its target (`goal`) and the glide between them. Degrees are
+// relative to the scene's own view. `distance` is a factor of the scene's own distance. `pan` moves eye and
+// target along the scene's axes, in metres. `time` is the time of the scene's motion in seconds.
 
-const kElevationLimit = 89.9; // at 90 the view direction would be parallel to up
-const kDamping = 0.05; // part of the way to the goal covered in a sixtieth of a second
-const kLeastPixels = 1; // covered in a sixtieth of a second beside that part: so the glide ends
+const kElevationLimit = 89.9; // degrees; at 90 the view direction would be parallel to up
+const kDamping = 0.05; // fraction of the way to the goal per 1/60 s
+const kLeastPixels = 1; // pixels added per 1/60 s, so that the glide ends
 const kNearest = 0.02;
 const kFarthest = 50;
-const kFloorClearance = 0.01; // of the scene's own distance
+const kFloorClearance = 0.01; // fraction of the scene's own distance
 
 const own_view = () => ({ azimuth: 0, elevation: 0, distance: 1, pan: [0, 0, 0], time: 0 });
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
@@ -19,9 +19,11 @@ const mix = (a, p, b, q) => a.map((value, axis) => p * value + q * b[axis]);
 const unit = (a) => a.map((value) => value / Math.hypot(...a));
 const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 
-// Of the scene's own camera: {pole, elevation, out, side, metres, level}: degrees of its eye over the plane that
-// `pole` stands on; `out` and `side` lie in this plane, towards the eye and to its right; metres from eye to target;
-// the target's height along `pole`.
+// Returns the frame of the scene's own camera:
+// `elevation`: degrees of the eye above the plane with the normal `pole`
+// `out`, `side`: unit vectors in this plane, towards the eye and to its right
+// `metres`: distance from eye to target
+// `level`: height of the target along `pole`
 function frame_of({ eye = [0, 0, 4], look_at = [0, 0, 0], up = [0, 1, 0] } = {}) {
   const offset = mix(eye, 1, look_at, -1);
   const pole = unit(up);
@@ -33,7 +35,7 @@ function frame_of({ eye = [0, 0, 4], look_at = [0, 0, 0], up = [0, 1, 0] } = {})
   return { pole, elevation, out, side: cross(pole, out), metres: Math.hypot(...offset), level };
 }
 
-// Degrees of the scene's own eye above the plane that `up` stands on.
+// Returns the degrees of the scene's own eye above the plane with the normal `up`.
 export const elevation_of = (camera) => frame_of(camera).elevation;
 
 export class OrbitCamera {
@@ -44,8 +46,8 @@ export class OrbitCamera {
   #own = frame_of();
   #floor = -Infinity;
 
-  // The scene's own elevation limits how far the view may rise and sink, and so does its floor, a height along up
-  // that the scene's own eye is above.
+  // Sets the scene's own camera and its floor, a height along up below the scene's own eye. Both limit the
+  // elevation of the view.
   use_scene_camera(camera, floor = -Infinity) {
     this.#scene = camera;
     this.#own = frame_of(camera);
@@ -66,7 +68,7 @@ export class OrbitCamera {
     this.#keep_allowed();
   }
 
-  // Returns the factor by which the distance changes: another one at the nearest and the farthest.
+  // Multiplies the distance by `factor`. Returns the applied factor, which differs at the distance limits.
   dolly(factor) {
     const { distance } = this.#goal;
     this.#goal.distance *= factor;
@@ -74,8 +76,8 @@ export class OrbitCamera {
     return this.#goal.distance / distance;
   }
 
-  // Moves eye and target in the goal's picture plane, by parts of the height that its picture shows at the target's
-  // distance. `fov` is the picture's angle where it is not the scene's own.
+  // Moves eye and target in the picture plane of the goal, in fractions of the picture's height at the
+  // target's distance. `fov` is the picture's vertical angle if it differs from the scene's own.
   pan(right, up, fov) {
     const { azimuth, elevation, distance } = this.#goal;
     const { pole, out, side } = this.#own;
@@ -89,7 +91,7 @@ export class OrbitCamera {
     this.#keep_allowed();
   }
 
-  // Glides back to the scene's own view, the short way round.
+  // Glides back to the scene's own view by the shorter way.
   reset() {
     const { azimuth, time } = this.#now;
     this.#goal = { ...own_view(), azimuth: 360 * Math.round(azimuth / 360), time };
@@ -101,13 +103,13 @@ export class OrbitCamera {
     this.#now = { ...this.#goal };
   }
 
-  // Takes over where a streamed frame was.
+  // Jumps to the azimuth and time of a streamed frame.
   follow(azimuth, time) {
     this.#now.azimuth = this.#goal.azimuth = turn(azimuth);
     this.#now.time = this.#goal.time = time;
   }
 
-  // Moves on by `seconds`, in a picture `pixels` high. Returns whether the view still moves.
+  // Advances the glide by `seconds` in a picture `pixels` high. Returns whether the view still moves.
   step(seconds, pixels) {
     const now = this.#now;
     const goal = this.#goal;
@@ -125,8 +127,8 @@ export class OrbitCamera {
     return true;
   }
 
-  // How far what lies at the edge of the picture, at the target's distance, moves on the way to the goal: in heights
-  // of the picture.
+  // Returns the remaining motion, in picture heights, of points at the picture's edge and the target's
+  // distance.
   #heights_left() {
     const now = this.#now;
     const goal = this.#goal;
@@ -135,14 +137,14 @@ export class OrbitCamera {
     return Math.max(turned, zoomed, Math.hypot(...mix(goal.pan, 1, now.pan, -1)) / this.#shown_metres(now.distance));
   }
 
-  // Height of what the picture shows at the target's distance, a factor of the scene's own. `fov` is the picture's
-  // angle where it is not the scene's own.
+  // Returns the metres that the picture's height covers at `distance`, a factor of the scene's own distance.
+  // `fov` as in pan().
   #shown_metres(distance, fov = this.#scene?.fov_degrees ?? 45) {
     if (this.#scene?.type === "orthographic") return distance * (this.#scene.height ?? 2);
     return distance * 2 * this.#own.metres * Math.tan(radians(fov / 2));
   }
 
-  // The goal's eye comes neither too near nor too far, stays off the pole, and above the floor.
+  // Clamps the goal: distance within its limits, elevation off the pole and above the floor.
   #keep_allowed() {
     const { elevation: own, metres, pole, level } = this.#own;
     const goal = this.#goal;

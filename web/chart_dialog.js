@@ -1,11 +1,11 @@
-// The chart's drawing in a dialog. The points that are stops of the slider are buttons, for pointer and keyboard.
+// Dialog with the drawing of a chart. Points that are slider stops are buttons for pointer and keyboard.
 
 export class ChartDialog {
   #dialog;
   #box;
   #choose;
 
-  // `choose(index)` hears which of the chart's points was picked.
+  // Calls `choose(index)` with the index of the picked point.
   constructor(dialog, opener, choose) {
     this.#dialog = dialog;
     this.#box = dialog.querySelector(".drawing");
@@ -19,20 +19,21 @@ export class ChartDialog {
     });
   }
 
-  // `drawing`: SVG of the service; `points`: {index, line} of those that can be picked, by cost.
+  // Shows `drawing`, an SVG from the service. `points`: {index, line} of the selectable points, in order of
+  // cost.
   show(drawing, points) {
     const svg = new DOMParser().parseFromString(drawing, "image/svg+xml").documentElement;
     svg.setAttribute("role", "group");
     const title = svg.querySelector(":scope > title");
     svg.ariaLabel = title?.textContent ?? "Speed against accuracy";
-    title?.remove(); // else it would cover those of the points
+    title?.remove(); // it would hide the titles of the points
     this.#box.replaceChildren(document.importNode(svg, true));
     for (const { index, line } of points) {
       const mark = this.#mark(index);
       mark.setAttribute("role", "button");
       mark.setAttribute("tabindex", "0");
       mark.setAttribute("aria-label", line);
-      mark.parentNode.append(mark); // over the others, and in the order of cost for the keyboard
+      mark.parentNode.append(mark); // above the others, in tab order of cost
     }
   }
 

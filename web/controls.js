@@ -1,12 +1,16 @@
-// Turns pointer, touch, wheel and keyboard input on the stage into camera moves.
-// `on` has: rotate(azimuth, elevation) in degrees, dolly(factor) -> the factor the distance took, pan(right, up) by
-// pixels of the camera's own move, panning() -> whether plain drags and arrows pan, reset(), toggle_play(), hold(bool).
+// Camera moves from pointer, touch, wheel and keyboard input on the stage.
+// `on` has
+//   rotate(azimuth, elevation) in degrees
+//   dolly(factor) -> the applied factor
+//   pan(right, up) in pixels of the camera's own motion
+//   panning() -> whether plain drags and arrows pan
+//   reset(), toggle_play(), hold(bool)
 
-const kDollyStep = 0.95; // factor of the distance for one wheel notch
-export const kZoomStep = kDollyStep ** 3; // for a key or a button
+const kDollyStep = 0.95; // distance factor of a wheel notch
+export const kZoomStep = kDollyStep ** 3; // distance factor of a key or a button
 export const kTurnStep = 180 / 8; // degrees for an arrow key or a button
-export const kPanStep = 1 / 8; // of the stage's height, likewise
-const kFine = 1 / 22.5; // of such a step, with shift: a degree
+export const kPanStep = 1 / 8; // fraction of the stage's height for the same
+const kFine = 1 / 22.5; // fraction of a step with shift: one degree
 const kDragThreshold = 3; // pixels; less is a click
 const kWheelNotch = 100; // pixels of wheel movement that count as one step
 const kPinchGain = 8; // a trackpad pinch arrives as small wheel movements with ctrlKey
@@ -18,7 +22,7 @@ export function attach_controls(stage, on) {
   stage.addEventListener("dblclick", () => on.reset());
 }
 
-// One step of an arrow key or button: `right` and `up` are -1, 0 or 1.
+// Moves the view by one step of an arrow key or button. `right` and `up` are -1, 0 or 1.
 export function step(stage, on, right, up, { pans, fine }) {
   const size = (pans ? kPanStep * stage.clientHeight : kTurnStep) * (fine ? kFine : 1);
   if (pans) on.pan(right * size, up * size);
@@ -30,7 +34,7 @@ function attach_pointers(stage, on) {
   let dragging = false;
   let pans = false;
 
-  // Of two fingers: their distance, and what is midway between them from the middle of the stage.
+  // Returns the distance of two fingers, and their midpoint relative to the middle of the stage.
   const pinch = () => {
     const [a, b] = [...pointers.values()];
     const { left, top, width, height } = stage.getBoundingClientRect();
@@ -65,7 +69,7 @@ function attach_pointers(stage, on) {
     if (before) {
       const after = pinch();
       const factor = on.dolly(before.gap / after.gap);
-      on.pan(before.x / factor - after.x, after.y - before.y / factor); // what is midway between them stays there
+      on.pan(before.x / factor - after.x, after.y - before.y / factor); // keeps the scene under the midpoint
     } else if (pans) {
       on.pan(-dx, dy);
     } else {
@@ -83,7 +87,7 @@ function attach_pointers(stage, on) {
   stage.addEventListener("lostpointercapture", release);
 }
 
-// Whether a finger that goes up or down scrolls the page: the browser then takes it from here soon.
+// Returns whether a vertical touch drag scrolls the page. The browser then soon cancels the pointer.
 function scrolls_page(stage, { pointerType }) {
   return pointerType === "touch" && getComputedStyle(stage).touchAction === "pan-y";
 }
@@ -102,8 +106,8 @@ function attach_wheel(stage, on) {
   );
 }
 
-// Keys work on the stage, and where nothing has the focus and nothing scrolls: no form field loses a key, and a
-// long page still scrolls. Space plays and pauses in any case.
+// Handles keys on the stage and, if the page does not scroll, on the body. Form fields lose no key. Space
+// plays and pauses even if the page scrolls.
 function attach_keys(stage, on) {
   const arrow = (right, up) => (event) =>
     step(stage, on, right, up, { pans: event.ctrlKey !== on.panning(), fine: event.shiftKey });

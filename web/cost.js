@@ -1,9 +1,9 @@
-// What pictures cost, learned from those that were made.
+// Estimates of render times, from measured pictures.
 
 export class Cost {
-  #ms = new Map(); // for a sample of a pixel, by scene and technique
+  #ms = new Map(); // per sample of a pixel, by scene and technique
 
-  // A picture took so long.
+  // Records that `picture` took `ms`.
   note(picture, ms) {
     if (ms > 0) this.#ms.set(kind_of(picture), ms / amount(picture));
   }
@@ -12,18 +12,18 @@ export class Cost {
     return this.#ms.has(kind_of(picture));
   }
 
-  // NaN before the first picture of the same scene. Samples cost alike.
+  // Returns NaN before the first picture of the same scene and technique. Assumes equal cost per sample.
   expected_ms(picture) {
     return (this.#ms.get(kind_of(picture)) ?? NaN) * amount(picture);
   }
 
-  // The number of the first of `pictures` that should take at most `ms`; of the last where none does or nothing is known.
+  // Returns the index of the first picture estimated to take at most `ms`, else the last index.
   first_within(pictures, ms) {
     return first_within(pictures.map((picture) => this.expected_ms(picture)), ms);
   }
 }
 
-// The number of the first of these times that is at most `ms`; of the last where none is.
+// Returns the index of the first time that is at most `ms`, else the last index.
 export function first_within(times, ms) {
   const at = times.findIndex((time) => time <= ms);
   return at < 0 ? times.length - 1 : at;
@@ -31,5 +31,5 @@ export function first_within(times, ms) {
 
 const kind_of = ({ id, technique }) => `${id} ${technique}`;
 
-// Samples of a picture, a measure of its cost.
+// Returns the number of samples over all pixels, a measure of cost.
 export const amount = ({ width, height, samples }) => width * height * Math.max(1, samples);

@@ -1,25 +1,25 @@
-// The scene as text: edit, apply, and see and jump to what is wrong. While the user types, the service checks the
-// text: its store forgets what is not used.
+// Scene editor: edits and applies the text, lists errors and jumps to them. Typing posts the text to check
+// it: the service evicts unused scenes.
 
 import { Gutter } from "./gutter.js";
 import { locate, offset_of, place_of } from "./pointer.js";
 import { hide_problem, places_of, show_problem } from "./problem.js";
 
-const kLetterWidth = 0.61; // of a monospaced font's size
-const kCheckMs = 500; // after the last key
+const kLetterWidth = 0.61; // letter width in em of monospaced fonts
+const kCheckMs = 500; // delay after the last key
 
 export class Editor {
   #parts;
   #text;
   #gutter;
-  #loaded = ""; // the text as it was loaded or applied last
-  #draft = ""; // an edit that loading another scene has replaced
+  #loaded = ""; // text as last loaded or applied
+  #draft = ""; // unapplied edit that another scene has replaced
   #timer = 0;
-  #turn = 0; // counts what makes answers stale: edits, loads, applying
-  #told = ""; // what the card says
+  #turn = 0; // counts edits, loads and attempts, to drop late responses
+  #told = ""; // content of the card
 
   // `parts`: {text, card, note, lines, apply, restore}. `on_apply` and `on_check` take the text and return a
-  // promise; what they throw is shown in the card.
+  // promise. The card shows the errors that they throw.
   constructor(parts, on_apply, on_check) {
     this.#parts = parts;
     this.#text = parts.text;
@@ -72,7 +72,7 @@ export class Editor {
     this.#gutter.update();
   }
 
-  // Of a mere check that had no answer nothing is told.
+  // Runs `action` on the text and reports its error. A retryable error is reported only with `tell_all`.
   async #try(action, tell_all) {
     clearTimeout(this.#timer);
     const turn = ++this.#turn;
@@ -108,7 +108,7 @@ export class Editor {
       const at = offset_of(text, place.line, place.column);
       return [at, Math.min(at + 1, text.length)];
     }
-    // A sentence about an unknown key names it in quotes.
+    // The message for an unknown key quotes the key.
     const key = /key "((?:[^"\\]|\\.)*)"/.exec(place.detail ?? "")?.[1] ?? null;
     return locate(text, place.pointer, key);
   }
@@ -120,7 +120,7 @@ export class Editor {
     this.#scroll_to(...range);
   }
 
-  // Selecting alone does not bring the place into view.
+  // Scrolls to a selection, which setSelectionRange() does not do.
   #scroll_to(start, end) {
     const { line, column } = place_of(this.#text.value, start);
     const { fontSize, lineHeight } = getComputedStyle(this.#text);

@@ -1,11 +1,11 @@
-// The floor of a scene: an opaque plane across the camera's up that the scene's own eye is above.
+// Floor of a scene: an opaque plane perpendicular to the camera's up, below the scene's own eye.
 
 const kAcross = 0.9999; // cosine of the largest angle between the plane's normal and up
 
 const dot = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
 const unit = (a) => a.map((value) => value / Math.hypot(...a));
 
-// Height along up of the highest floor of a scene's JSON; -Infinity without one.
+// Returns the height along up of the highest floor in a scene's JSON, or -Infinity without one.
 export function floor_height({ objects = [], materials = {} }, { eye, up = [0, 1, 0] }) {
   const pole = unit(up);
   const heights = objects

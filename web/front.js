@@ -1,14 +1,14 @@
-// The stops of a chart: ways to make its picture, each nearer to the reference than all that cost less.
+// Slider stops of a chart: render plans, each more accurate than every cheaper one.
 
 import { rounded, rounded_up } from "./progress.js";
 
-const kNearer = 0.99; // a smaller difference of errors is none, as the service has it
-// What a link says of the view and of its size is no part of a plan.
+const kNearer = 0.99; // error ratio above which two points count as equal, as in the service
+// Query parameters of view and size, which a plan leaves out.
 const kOfView = ["azimuth", "elevation", "distance", "pan", "fov", "time", "width", "height"];
 
-// {point, place, line} each: the chart's point, where it stands from 0, the fastest, to 1 by the logarithm of its
-// cost, and what is said of it. Where rounds cannot tell two points apart, the one that is farther off by its mean
-// and costs more is no stop.
+// Returns the stops as {point, place, line}: the chart's point, its position by log cost from 0 (fastest) to
+// 1, and its description. Skips a point that costs more than a stop without a smaller mean error, even if the
+// rounds cannot distinguish the two.
 export function stops_of({ front, points, noise_floor }) {
   const stops = [];
   let nearest = Infinity;
@@ -25,7 +25,7 @@ export function stops_of({ front, points, noise_floor }) {
   }));
 }
 
-// The number of the stop that is nearest to a place.
+// Returns the index of the stop nearest to `place`.
 export function stop_at(stops, place) {
   const away = stops.map((stop) => Math.abs(stop.place - place));
   return away.indexOf(Math.min(...away));
@@ -36,7 +36,8 @@ export function duration(seconds) {
   return seconds < 99.5 ? `${rounded(seconds)} s` : `${Math.round(seconds / 60)} min`;
 }
 
-// "0.8 s, error ≤ 0.004 (95 %), whitted, depth 5, 16 samples, float". The time is predicted.
+// Returns a text such as "0.8 s, error ≤ 0.004 (95 %), whitted, depth 5, 16 samples, float". The time is
+// predicted.
 export function line_of({ full_size, interval, rmse, technique, max_depth, samples, precision }) {
   const error = interval
     ? `error ≤ ${rounded_up(interval.rmse.high)} (95 %)`
@@ -45,15 +46,15 @@ export function line_of({ full_size, interval, rmse, technique, max_depth, sampl
   return `${duration(full_size.seconds)}, ${error}, ${technique}, depth ${max_depth}, ${count}, ${precision}`;
 }
 
-// The plan of a point as a link keeps it: what makes its picture, whatever the view and the size.
+// Returns the plan of a point as a query for links, without view and size.
 export function plan_of({ plan, samples }) {
   const query = new URLSearchParams(plan);
   for (const key of kOfView) query.delete(key);
-  query.set("samples", samples); // which the plan may leave to the scene
+  query.set("samples", samples); // a plan may leave them to the scene
   return String(query);
 }
 
-// What a link's plan asks for: {technique, samples, more}, the rest as a query.
+// Parses the plan of a link into {technique, samples, more}. `more` is the rest as a query.
 export function options_of(plan) {
   const query = new URLSearchParams(plan);
   const [technique, samples] = [query.get("technique") ?? "", Number(query.get("samples"))];
@@ -62,10 +63,10 @@ export function options_of(plan) {
   return { technique, samples, more: String(query) };
 }
 
-// The bound of a picture in false colours.
+// Returns the address of a picture's error bound in false colours.
 export const bound_of = (address) => `${address}${address.includes("?") ? "&" : "?"}view=bound`;
 
-// A picture's address with another view: that of `query`, an address's parameters.
+// Returns a picture's address with the view of `query` (URLSearchParams).
 export function at_view(address, query) {
   const [path, text] = address.split("?");
   const all = new URLSearchParams(text);

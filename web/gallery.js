@@ -1,11 +1,11 @@
-// The sample scenes, a list box: one stop of the tab key, in which arrows, Home, End and first letters move.
+// List box of sample scenes: a single tab stop, navigated with arrows, Home, End and first letters.
 
 import { element } from "./problem.js";
 import { thumbnail_of, title_of } from "./scenes.js";
 
 const kFirst = "paper";
 const kHeadings = {
-  // by what a sample's name starts with, in the order shown
+  // by prefix of the sample's name, in display order
   "": "",
   material: "Materials",
   light: "Lights",
@@ -19,7 +19,7 @@ function kind_of(sample) {
   return start in kHeadings ? start : "";
 }
 
-// Where `key` leads in a list box from the option `at`; null where it leads nowhere.
+// Returns the index that `key` leads to from the option `at`, or null if it leads nowhere.
 export function next_option(key, at, titles) {
   const last = titles.length - 1;
   const moves = {
@@ -50,7 +50,7 @@ export class Gallery {
     root.replaceChildren(...Object.keys(kHeadings).flatMap((kind) => this.#group(kind)));
   }
 
-  // Selects the scene that `ref` names, if it is a sample.
+  // Selects the scene `ref` if it is a sample.
   mark(ref) {
     const options = this.#options();
     for (const option of options) option.setAttribute("aria-selected", String(option.dataset.name === ref));
@@ -65,7 +65,7 @@ export class Gallery {
     return [...this.#root.querySelectorAll('[role="option"]')];
   }
 
-  // The tab key stops at `chosen` alone.
+  // Makes `chosen` the only tab stop.
   #set_stop(chosen) {
     for (const option of this.#options()) option.tabIndex = option === chosen ? 0 : -1;
   }
@@ -90,7 +90,7 @@ export class Gallery {
     list.role = "group";
     list.ariaLabel = kHeadings[kind] || "Scenes";
     const heading = element("li", kHeadings[kind], "heading");
-    heading.ariaHidden = "true"; // the group's name says it
+    heading.ariaHidden = "true"; // the group's label says it
     list.append(...(kHeadings[kind] ? [heading] : []), ...members.map((sample) => this.#row(sample)));
     return [list];
   }

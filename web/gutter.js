@@ -1,5 +1,4 @@
-// Line numbers beside a textarea whose lines do not wrap, with marks where something is wrong. Only the rows in
-// view exist.
+// Line numbers of a textarea without wrapping, with marks on lines with errors. Only visible rows exist.
 
 import { element } from "./problem.js";
 
@@ -7,7 +6,7 @@ export class Gutter {
   #box;
   #text;
   #count = 0; // lines
-  #faults = new Map(); // line -> what is wrong in it
+  #faults = new Map(); // line -> error message
 
   constructor(box, text) {
     this.#box = box;
@@ -16,7 +15,7 @@ export class Gutter {
     new ResizeObserver(() => this.#draw()).observe(text);
   }
 
-  // The text or what is wrong in it has changed.
+  // Redraws after a change of the text or of its faults.
   update(faults = this.#faults) {
     this.#faults = faults;
     this.#count = this.#text.value.split("\n").length;

@@ -1,7 +1,7 @@
-// Which gestures move the view, in the words of the device that is in hand.
+// Hint on the gestures that move the view, worded for mouse or touch.
 
 const kFingers = matchMedia("(pointer: coarse)");
-const kScrolls = matchMedia("(pointer: coarse) and (max-height: 500px)"); // as in picture.css
+const kScrolls = matchMedia("(pointer: coarse) and (max-height: 500px)"); // same condition as in picture.css
 
 function words() {
   if (kScrolls.matches) return "Drag sideways to turn, two fingers to move, pinch to zoom";

@@ -1,11 +1,11 @@
-// A button, and a key of the page, that hold something as long as they are pressed.
+// Button and keyboard key that are active while pressed.
 
 export class Hold {
   #button;
   #held;
   #on;
 
-  // `key`: lower case; it works wherever nobody writes. `on(held)` hears both.
+  // `key`: lower case, handled outside text fields. Calls `on(held)` on press and release.
   constructor(button, key, on) {
     this.#button = button;
     this.#on = on;
@@ -15,7 +15,7 @@ export class Hold {
     });
     for (const event of ["pointerup", "pointercancel", "lostpointercapture", "blur"])
       button.addEventListener(event, () => this.#set(false));
-    // Without a pointer, as from a screen reader, it stays held until the next click.
+    // Clicks without a pointer, as from a screen reader, toggle the state.
     button.addEventListener("click", ({ detail }) => detail === 0 && this.#set(!this.#held));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
     const is_ours = ({ key: pressed, target }) =>
@@ -27,7 +27,7 @@ export class Hold {
     });
     document.addEventListener("keyup", (event) => {
       if (!is_ours(event)) return;
-      // Else some browsers click the button now.
+      // Keeps some browsers from clicking the button.
       event.preventDefault();
       this.#set(false);
     });
@@ -42,6 +42,6 @@ export class Hold {
   }
 }
 
-// The list box goes to first letters, and a dialog lies over everything.
+// Returns whether `target` uses letter keys itself (text fields, list box) or a dialog is open.
 const writes = (target) =>
   target.closest("textarea, select, input:not([type=range]), [role=listbox]") || document.querySelector("dialog[open]");

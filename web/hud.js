@@ -1,9 +1,9 @@
-// The figures under the picture. Written at most four times a second: faster cannot be read.
+// Figures under the picture, updated at most four times a second to stay readable.
 
 import { element } from "./problem.js";
 import { rounded } from "./progress.js";
 
-// [label, what it is]
+// [label, description]
 const kFields = {
   fps: ["fps", "Frames shown in a second"],
   render: ["render", "Time to trace the rays of the last picture"],
@@ -14,7 +14,7 @@ const kFields = {
   rmse: ["error", "Root mean square error of a pixel, in linear radiance, as its samples show"],
 };
 const kRefreshMs = 250;
-const kWindowMs = 1500; // frames per second are counted over this long
+const kWindowMs = 1500; // window of the frame rate
 
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
@@ -25,7 +25,7 @@ function milliseconds(value) {
 
 export class Hud {
   #fields = {}; // elements by name
-  #times = []; // when the last frames were drawn
+  #times = []; // draw times of the last frames
   #last_write = 0;
   #timer = 0;
   #figures = null;
@@ -42,7 +42,8 @@ export class Hud {
     }
   }
 
-  // `kind` is "stream", "preview" or "still"; figures that are absent keep their last value.
+  // Shows the figures of a frame. `kind` is "stream", "preview" or "still". Absent figures keep their last
+  // value.
   show(kind, figures) {
     const now = performance.now();
     this.#times = kind === "still" ? [] : [...this.#times.filter((time) => now - time < kWindowMs), now];
@@ -54,7 +55,7 @@ export class Hud {
     else this.#timer = setTimeout(() => this.#write(), wait);
   }
 
-  // Another scene is to be shown.
+  // Clears the figures before another scene is shown.
   clear() {
     clearTimeout(this.#timer);
     this.#times = [];
@@ -62,7 +63,7 @@ export class Hud {
     for (const field of Object.values(this.#fields)) field.textContent = "–";
   }
 
-  // No frames come at present.
+  // Clears the frame rate while no frames arrive.
   pause() {
     if (this.#figures) this.show("still", {});
   }

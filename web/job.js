@@ -1,11 +1,12 @@
-// Pictures and charts as jobs of the service: their progress is measured there, tile by tile.
+// Pictures and charts rendered as jobs, whose progress the service reports by tile.
 
 import { ApiError, get_frame, get_json, get_text, no_answer, post_json, request } from "./api.js";
 import { chunks } from "./stream.js";
 import { chart_body, job_body } from "./urls.js";
 
-// Returns {png, stats}, or null where the service takes no jobs. `tell({part, seconds_left})` hears how far it is.
-// The job is cancelled unless it ended. Throws ApiError, or AbortError once `signal` fires.
+// Renders a picture as a job. Returns {png, stats}, or null if the service accepts no jobs. Calls
+// `tell({part, seconds_left})` on progress. Cancels the job if it has not ended. Throws ApiError, or
+// AbortError once `signal` fires.
 export async function render_job(picture, signal, tell) {
   const address = await post_job("v1/jobs", job_body(picture));
   if (!address) return null;
@@ -14,8 +15,9 @@ export async function render_job(picture, signal, tell) {
   return { png, stats: { ...stats, render_ms: stats.render_ms ?? 1000 * job.elapsed_s } };
 }
 
-// Charts speed against accuracy of a picture: {chart, drawing}, as JSON and SVG; else as above. `picture` is of the
-// size that times are predicted for; pictures of it are rendered `width` pixels wide.
+// Makes a chart of speed and accuracy. Returns {chart, drawing} as JSON and SVG, or null if the service makes
+// no charts. Times are predicted for the size of `picture`. The chart's own pictures are `extent.width`
+// pixels wide. Progress and errors as in render_job().
 export async function make_chart(picture, extent, signal, tell) {
   const address = await post_job(`v1/scenes/${picture.id}/charts`, chart_body(picture, extent));
   if (!address) return null;
@@ -27,7 +29,7 @@ export async function make_chart(picture, extent, signal, tell) {
   return { chart, drawing };
 }
 
-// Follows a job to its end; returns what is told of it then.
+// Follows a job to its end. Returns its last state.
 async function follow_job(address, signal, tell) {
   let over = false;
   try {
@@ -44,7 +46,8 @@ async function follow_job(address, signal, tell) {
   }
 }
 
-// Not to be aborted: only its answer names the job that is then to be cancelled.
+// Returns the address of the posted job, or null if the service accepts none. Takes no abort signal: only the
+// response names the job to cancel.
 async function post_job(path, body) {
   try {
     return `v1/jobs/${(await post_json(path, JSON.stringify(body))).id}`;
@@ -54,7 +57,7 @@ async function post_job(path, body) {
   }
 }
 
-// The data of server-sent events.
+// Yields the data of server-sent events.
 async function* job_states(path, signal) {
   const { body } = await request(path, { headers: { Accept: "text/event-stream" }, signal });
   const decoder = new TextDecoder();

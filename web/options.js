@@ -1,10 +1,11 @@
-// The selects under the picture: technique, samples, size.
+// Selects under the picture: technique, samples, size.
 
 import { fixed_size, kModes, within } from "./size.js";
 
 const kSamples = [1, 4, 16, 64];
 
-// A link may ask for a value that `options`, [value, label, title] each, lacks: then it is listed too.
+// Fills `select` with `options`, each [value, label, title]. Adds `value` if it is missing: a link may ask
+// for it.
 function fill(select, options, value) {
   const is_chosen = ([key]) => String(key) === String(value);
   const all = options.some(is_chosen) ? options : [...options, [value, value]];
@@ -34,7 +35,7 @@ export class Options {
     }
   }
 
-  // Lists what may be chosen for `scene` (null: none yet) and marks what `state` says.
+  // Lists the choices for `scene` (null: none yet) and selects those of `state`.
   show(state, scene) {
     const { technique, samples, size } = this.#selects;
     const { techniques = [] } = this.#catalog;

@@ -1,12 +1,12 @@
-// Plays one orbit from the service, always the newest frame that is here.
+// Player of one orbit stream, which always shows the newest frame.
 
 import { ApiError, request, warning_of } from "./api.js";
 import { kFrameType, read_frames } from "./stream.js";
 import { decode } from "./view.js";
 
 // Calls `show(bitmap, header)` for the frames of `url` until the stream ends or `show` returns false.
-// header.skipped counts also those that gave way to a newer one here; header.warning is the answer's. Throws ApiError, or AbortError once `signal`
-// fires.
+// header.skipped includes frames dropped here. header.warning is that of the response. Throws ApiError, or
+// AbortError once `signal` fires.
 export async function play_stream(url, signal, show) {
   const response = await request(url, { headers: { Accept: kFrameType }, signal });
   const warning = warning_of(response);

@@ -1,14 +1,14 @@
-// Pictures that lie over the stage for a while, such as a chart's: fetched once, each fades into the next.
+// Temporary pictures over the stage, such as a chart's. Each is fetched once and fades into the next.
 
 import { get_frame } from "./api.js";
 import { decode } from "./view.js";
 
 export class Overlay {
   #box;
-  #canvases; // two: the one that is seen, and the one before
+  #canvases; // the visible one and the one before
   #pictures = new Map(); // address -> promise of a bitmap
   #wanted = "";
-  #ahead = []; // addresses that were fetched ahead last
+  #ahead = []; // addresses of the last prefetch
 
   // `box` holds two <canvas>.
   constructor(box) {
@@ -20,8 +20,7 @@ export class Overlay {
     return !this.#box.hidden;
   }
 
-  // Fetches what is not here yet, one after the other, so that it is there when it is wanted; others are dropped.
-  // Stops in silence at what fails: who shows it hears why.
+  // Fetches missing pictures one after another and drops all others. Stops silently at the first failure.
   async prefetch(addresses, signal) {
     this.#ahead = addresses;
     this.#drop();
@@ -31,11 +30,11 @@ export class Overlay {
         await this.#picture(address);
       }
     } catch {
-      // As above.
+      // show() reports the failure.
     }
   }
 
-  // Resolves once it is seen, or something else is wanted. Throws ApiError where it is still wanted.
+  // Resolves once the picture is visible or another one is wanted. Throws ApiError if it is still wanted.
   async show(address) {
     this.#wanted = address;
     const bitmap = await this.#picture(address).catch((error) => {
@@ -46,7 +45,7 @@ export class Overlay {
     Object.assign(next, { width: bitmap.width, height: bitmap.height });
     next.getContext("2d").drawImage(bitmap, 0, 0);
     next.className = "";
-    next.getBoundingClientRect(); // so that it begins unseen
+    next.getBoundingClientRect(); // starts the fade at opacity 0
     next.className = "seen";
     seen.className = "under";
     this.#canvases.reverse();
@@ -61,13 +60,13 @@ export class Overlay {
     this.#drop();
   }
 
-  // What was fetched is of no use any more.
+  // Hides the overlay and drops the prefetched pictures.
   clear() {
     this.#ahead = [];
     this.hide();
   }
 
-  // Bitmaps of a whole screen are large: only those are kept that are likely to be seen soon.
+  // Drops all bitmaps but the wanted and the prefetched ones: bitmaps of a whole screen are large.
   #drop() {
     for (const [address, picture] of this.#pictures) {
       if (address === this.#wanted || this.#ahead.includes(address)) continue;

@@ -1,29 +1,29 @@
-// How fast and how fine an orbit is asked for. Every frame is rendered, so slow frames make it turn too slowly. Then
-// the stream is asked for anew: coarser as long as it would stutter, else with fewer frames and a wider step; and finer
-// again as far as that would not stutter.
+// Frame rate and quality level of an orbit. Every frame is rendered, so slow frames slow the orbit down. The
+// stream is then requested again: at a coarser level if it stutters, else with fewer frames and a wider step.
+// A finer level is requested if it would not stutter.
 
 import { first_within } from "./cost.js";
 
 const kMostFps = 30;
-const kSmoothFps = 12; // below this it stutters
-const kFinerFps = 16; // what a finer orbit has to promise
-const kFinerAfterMs = 200; // and the rate that it is judged by is measured this long
-const kAgainMs = 5000; // what was too slow is not tried again before
-const kTolerance = 0.85; // of the planned rate
-const kWindowMs = 1000; // a judgement of the rate rests on this much, and on three frames or one long gap
+const kSmoothFps = 12; // an orbit stutters below this
+const kFinerFps = 16; // predicted rate that a finer level needs
+const kFinerAfterMs = 200; // shortest measurement before a finer level
+const kAgainMs = 5000; // delay before a level that was too slow is retried
+const kTolerance = 0.85; // smallest fraction of the planned rate
+const kWindowMs = 1000; // shortest measurement of the rate, with three frames or one gap of kLongGapMs
 const kLongGapMs = 1500;
-const kWidestStep = 10; // degrees; beyond this an orbit is a slide show
+const kWidestStep = 10; // degrees; an orbit with wider steps is a slide show
 
 export class Pace {
   fps = kMostFps;
-  level = 0; // 0: as asked; each level above is coarser
-  #kind = ""; // what was found out holds for
-  #slow = { level: -1, until: 0 }; // the last level that was too slow
+  level = 0; // 0: as requested; each level above is coarser
+  #kind = ""; // picture options that the level was found for
+  #slow = { level: -1, until: 0 }; // last level that was too slow
   #times = [];
-  #longest_ms = 0; // of the frames at #times
+  #longest_ms = 0; // longest work for a frame in #times
 
-  // An orbit of `picture` begins, at `level` unless one was found already. Another size of the window changes nothing,
-  // but what the user chooses does.
+  // Starts an orbit of `picture` at `level`, or at the level found before. A new window size keeps that
+  // level, a new choice of the user does not.
   play({ id, width, height, fills, technique, samples }, level = 0) {
     const kind = [id, fills || `${width}x${height}`, technique, samples].join();
     if (kind === this.#kind) return;
@@ -33,15 +33,14 @@ export class Pace {
     this.restart();
   }
 
-  // A new stream begins: what was measured does not count for it.
+  // Drops the measurements before a new stream.
   restart() {
     this.#times = [];
     this.#longest_ms = 0;
   }
 
-  // A frame was shown at `now` (ms); the service worked `work_ms` for it. `costs` are those of the levels, each in the
-  // same unit and less than the one before. Returns whether fps or level changed, so that the stream should be asked
-  // for anew.
+  // Records a frame shown at `now` (ms) that took the service `work_ms`. `costs`: relative costs of the
+  // levels, decreasing. Returns whether fps or level changed, and the stream should be requested again.
   note(now, work_ms, speed, costs) {
     const expected = (ms) => costs.map((cost) => (ms * cost) / costs[this.level]);
     if (work_ms > 1000 / kSmoothFps && this.level < costs.length - 1) {

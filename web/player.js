@@ -1,5 +1,5 @@
-// Decides what the canvas shows: the orbit's stream while playing, quick pictures while the view moves by hand, and
-// finer and finer full ones once it rests. A scene that is new here begins with the cheapest picture.
+// Chooses the picture on the canvas: the orbit stream while playing, previews while the view moves by hand,
+// refined stills at rest. A scene that is new to the canvas starts with the cheapest picture.
 
 import { get_frame, is_abort } from "./api.js";
 import { Backoff } from "./backoff.js";
@@ -10,16 +10,20 @@ import { decode_unless, Refiner } from "./refine.js";
 import { frame_url, orbit_url } from "./urls.js";
 import { decode } from "./view.js";
 
-const kRestMs = 100; // without input for this long, the view counts as at rest
-const kRestartMs = 150; // changes of size or speed are gathered this long
-const kPreviewMs = 75; // from asking to showing, of what follows the hand
-const kFrameMs = 60; // of an orbit's frames, before one was seen
-const kDraftMs = 100; // a first picture that takes longer follows a draft
+const kRestMs = 100; // time without input until the view is at rest
+const kRestartMs = 150; // debounce time of size and speed changes
+const kPreviewMs = 75; // target latency of previews, from request to display
+const kFrameMs = 60; // target render time of orbit frames before the first measurement
+const kDraftMs = 100; // a draft precedes a first picture that takes longer
 
-// `on` has: moving(purpose, view) -> pictures, each cheaper than the one before, none where there is no scene;
-// at_rest(view) -> {picture, asked} or null, missing() -> promise
-// (post the scene again), stats(kind, figures), waiting(error, seconds), problem(error), progress(figures or null),
-// stale() when another picture is due, settled() when the view no longer moves, rested() when the picture is final.
+// `on` has
+//   moving(purpose, view) -> pictures, each cheaper than the one before, [] without a scene
+//   at_rest(view) -> {picture, asked} or null
+//   missing() -> promise; posts the scene again
+//   stats(kind, figures), waiting(error, seconds), problem(error), progress(figures or null)
+//   stale() if another picture is due
+//   settled() if the view no longer moves
+//   rested() if the picture is final
 export class Player {
   speed = 20; // degrees per second
   stream_frames = 3600;
@@ -28,27 +32,27 @@ export class Player {
   #on;
   #playing = false;
   #visible = true;
-  #held = false; // a drag is under way: no stream until it ends
-  #moving = false; // the view moves by hand, or has done so less than kRestMs ago
+  #held = false; // true during a drag: no stream until it ends
+  #moving = false; // true while the view moves by hand, and kRestMs longer
   #last_input = 0;
   #last_tick = 0;
-  #work = null; // {kind, key, abort} of the stream or still being fetched
+  #work = null; // {kind, key, abort} of the current stream or still
   #shown = ""; // address of the still on the canvas
-  #shown_samples = 0; // likewise
-  #shown_location; // likewise: the address that gives it again, where a budget has made it
-  #shown_figures; // likewise
-  #shown_id = ""; // scene on the canvas
-  #cost = new Cost(); // of rendering
-  #delay = new Cost(); // of previews, from asking to showing
+  #shown_samples = 0; // samples of the picture on the canvas
+  #shown_location; // address that reproduces a picture made to a budget
+  #shown_figures; // figures of the picture on the canvas
+  #shown_id = ""; // id of the scene on the canvas
+  #cost = new Cost(); // render times
+  #delay = new Cost(); // latencies of previews, from request to display
   #refiner = new Refiner(this.#cost);
   #preview_busy = false;
-  #epoch = 0; // counts invalidations: a preview asked for before one is not drawn after it
-  // None is asked for before, where one failed.
+  #epoch = 0; // counts invalidations, to drop late previews
+  // Earliest time of the next preview after a failure.
   #preview_from = 0;
   #pace = new Pace();
   #backoff = new Backoff();
   #timer = 0;
-  #reposts = 0; // scenes posted again since the last picture
+  #reposts = 0; // reposts of the scene since the last picture
 
   constructor(camera, view, on) {
     this.#camera = camera;
@@ -66,7 +70,7 @@ export class Player {
     this.refresh();
   }
 
-  // The user moves the view: follow the camera until it rests.
+  // Shows previews of the moving view until it rests.
   input() {
     this.#last_input = performance.now();
     if (this.#moving) return;
@@ -82,7 +86,7 @@ export class Player {
     else this.refresh();
   }
 
-  // Scene, size or options changed: show what is right now.
+  // Shows the picture or stream for the current scene, size and options.
   refresh() {
     clearTimeout(this.#timer);
     if (this.#moving) return;
@@ -101,14 +105,14 @@ export class Player {
     this.refresh();
   }
 
-  // Lets the next refresh fetch even an equal picture.
+  // Makes the next refresh fetch even an equal picture.
   invalidate() {
     this.#stop();
     this.#shown = this.#shown_id = "";
     this.#epoch += 1;
   }
 
-  // What to take along: the picture that is seen where the view rests, else the one that it will come to rest with.
+  // Picture to share: the one on the canvas if the view is at rest, else the last one of its refinement.
   get picture() {
     const { picture, asked } = this.#on.at_rest(this.#camera.goal);
     const seen = this.#seen_of(picture);
@@ -116,7 +120,7 @@ export class Player {
     return keeps_budget(picture) ? picture : this.#refiner.last(picture, asked);
   }
 
-  // The picture on the canvas, if it is `picture` with however many samples.
+  // Returns the picture on the canvas if it is `picture` with any number of samples, else null.
   #seen_of(picture) {
     const seen = { ...picture, samples: this.#shown_samples };
     return frame_url(seen) === this.#shown ? seen : null;
@@ -141,7 +145,7 @@ export class Player {
     this.refresh();
   }
 
-  // One in flight; whatever the camera does meanwhile is caught up with by the next.
+  // Shows a preview. One is in flight at a time; the next one catches up with the camera.
   async #preview() {
     const start = performance.now();
     const waits = this.#preview_busy || start < this.#preview_from;
@@ -158,14 +162,14 @@ export class Player {
       else bitmap.close();
       this.#delay.note(picture, performance.now() - start);
     } catch (error) {
-      // The still that follows meets the same trouble and reports it.
+      // The following still fails in the same way and reports it.
       this.#preview_from = performance.now() + 1000 * (error.retry_after_seconds ?? 1);
     } finally {
       this.#preview_busy = false;
     }
   }
 
-  // As fine as it follows the hand.
+  // Returns the finest picture expected within kPreviewMs, or null without a scene.
   #preview_picture() {
     const pictures = this.#on.moving("preview", this.#camera.view);
     if (pictures.length === 0) return null;
@@ -173,7 +177,7 @@ export class Player {
     return pictures[cost.first_within(pictures, kPreviewMs)];
   }
 
-  // Shows something of a scene that is not on the canvas, unless the `first` picture of it comes as soon.
+  // Shows a draft of a scene that is new to the canvas, unless the `first` picture is fast enough.
   async #draft(first, signal) {
     if (this.#shown_id === first.id || this.#cost.expected_ms(first) <= kDraftMs) return;
     const pictures = this.#on.moving("preview", this.#camera.view);
@@ -186,14 +190,14 @@ export class Player {
   #start_still() {
     const rest = this.#on.at_rest(this.#camera.view);
     if (!rest) return;
-    // An orbit is held for a moment.
+    // A held orbit shows one sample without a budget.
     const picture = this.#playing ? { ...rest.picture, samples: 1, seconds: 0, error: 0 } : rest.picture;
     const key = frame_url(picture);
     if (this.#work?.kind === "still" && this.#work.key === key) return;
     this.#stop();
     const { width, height, samples } = this.#seen_of(picture) ?? {};
     if (width) this.#on.stats("still", { ...this.#shown_figures, width, height });
-    const shown = samples <= picture.samples ? samples : 0; // fewer may be wanted than there are
+    const shown = samples <= picture.samples ? samples : 0; // fewer samples may be wanted than are shown
     this.#run("still", key, async (signal) => {
       await this.#draft({ ...picture, samples: 1 }, signal);
       if (keeps_budget(picture)) await this.#keep_budget(picture, signal);
@@ -206,13 +210,13 @@ export class Player {
     });
   }
 
-  // One picture of as many samples as its budget takes.
+  // Shows the picture that the service renders to a budget.
   async #keep_budget(picture, signal) {
     if (this.#shown === frame_url(picture)) return;
     const { png, stats } = await get_frame(frame_url(picture), signal);
     const bitmap = await decode_unless(signal, png);
     const plan = new URLSearchParams(stats.location?.split("?")[1]);
-    const samples = Number(plan.get("samples") ?? picture.own); // which a plan may leave to the scene
+    const samples = Number(plan.get("samples") ?? picture.own); // a plan may leave them to the scene
     this.#draw(frame_url(picture), bitmap, picture, "still", { ...stats, samples });
     this.#shown_location = stats.location;
   }
@@ -228,7 +232,7 @@ export class Player {
     this.#run("stream", key, (signal) => this.#stream(signal));
   }
 
-  // One stream after the other: each ends after so many frames, and the pace may want another.
+  // Plays streams one after another. Each ends after `stream_frames` frames or if the pace changes.
   async #stream(signal) {
     const pace = this.#pace;
     for (;;) {
@@ -293,7 +297,7 @@ export class Player {
     if (error.status === 404 && this.#reposts < 2) {
       this.#reposts += 1;
       try {
-        return await this.#on.missing(); // refreshes by itself
+        return await this.#on.missing(); // missing() refreshes
       } catch (second) {
         error = second;
       }

@@ -1,5 +1,5 @@
-// Finds what a JSON Pointer (RFC 6901) names in a JSON text, in a broken one as far as it is whole. Never recurses:
-// no text is too deep for it.
+// JSON Pointers (RFC 6901) resolved in a JSON text, which may be broken after the value. Not recursive: no
+// nesting is too deep.
 
 const kSpace = /[\s,:]*/y;
 const kPlain = /[^\s,:{}[\]"]*/y;
@@ -13,7 +13,7 @@ function match_end(pattern, text, at) {
 
 const skip_space = (text, at) => match_end(kSpace, text, at);
 
-// End of the value that starts at `at`.
+// Returns the end of the value that starts at `at`.
 function value_end(text, at) {
   let depth = 0;
   while (at < text.length) {
@@ -36,7 +36,8 @@ function unquoted(text) {
   }
 }
 
-// The member `name` of the object or list at `at`: {key: [start, end] or null, value: start}, or null.
+// Returns the member `name` of the object or list at `at` as {key: [start, end] or null, value: start}, or
+// null.
 function find_child(text, at, name) {
   const is_list = text[at] === "[";
   if (!is_list && text[at] !== "{") return null;
@@ -53,8 +54,8 @@ function find_child(text, at, name) {
   return null;
 }
 
-// [start, end] in `text` of the value at `pointer`. A missing member is shown by its nearest ancestor's
-// opening bracket. A `key` is looked for in the value found; where it is there, it is the place returned.
+// Returns [start, end] in `text` of the value at `pointer`. For a missing member, returns the opening bracket
+// of its nearest ancestor. With `key`, returns the place of that key in the value, if it is present.
 export function locate(text, pointer, key = null) {
   const names = pointer
     .split("/")
@@ -72,14 +73,14 @@ export function locate(text, pointer, key = null) {
   return [at, opens ? at + 1 : value_end(text, at)];
 }
 
-// Offset of a line and column, both counted from 1.
+// Returns the offset of a line and column, both counted from 1.
 export function offset_of(text, line, column) {
   const lines = text.split("\n").slice(0, line);
   const last = lines.pop();
   return [...lines, ""].join("\n").length + Math.min(Math.max(0, column - 1), last.length);
 }
 
-// {line, column} of an offset.
+// Returns {line, column} of an offset.
 export function place_of(text, offset) {
   const lines = text.slice(0, offset).split("\n");
   return { line: lines.length, column: lines.at(-1).length + 1 };

@@ -1,4 +1,4 @@
-// What the page's budgets would give, as the service foretells it from parts of the picture.
+// Predicted outcome of the page's budgets, which the service estimates from parts of the picture.
 
 import { get_json } from "./api.js";
 import { unit } from "./bound.js";
@@ -6,19 +6,19 @@ import { duration } from "./front.js";
 import { rounded_up } from "./progress.js";
 import { frame_url, query_of } from "./urls.js";
 
-const kPatienceMs = 3000; // of a scene so heavy that this is too short nothing is said
+const kPatienceMs = 3000; // limit; a heavier scene gets no prediction
 
 export class Prediction {
   #tell;
   #last = { key: "", words: [] };
-  #work = null; // AbortController of what is asked
+  #work = null; // AbortController of the requests
 
-  // `tell(text)` hears what is to be said, "" of nothing.
+  // Calls `tell(text)` with the prediction, "" for none.
   constructor(tell) {
     this.#tell = tell;
   }
 
-  // `pictures` are what the page shows at rest, each within another budget: they are asked for once.
+  // Predicts `pictures`, the picture at rest with each budget. Requests equal pictures once.
   async of(pictures) {
     this.leave();
     const key = pictures.map(frame_url).join();
@@ -31,7 +31,7 @@ export class Prediction {
     if (this.#last.words.length > 0) this.#tell(`With a limit ${this.#last.words.join(" · ")}`);
   }
 
-  // Another picture is due.
+  // Cancels the requests and clears the text.
   leave() {
     this.#work?.abort();
     this.#work = null;
@@ -39,7 +39,7 @@ export class Prediction {
   }
 }
 
-// One after the other, as far as the service tells them in time.
+// Requests the predictions one after another. Returns those that arrive in time.
 async function words_of_all(pictures, signal) {
   const words = [];
   const all = AbortSignal.any([signal, AbortSignal.timeout(kPatienceMs)]);
@@ -51,12 +51,12 @@ async function words_of_all(pictures, signal) {
       words.push(prediction_words(picture, forecast));
     }
   } catch (error) {
-    // Nobody asked for it, and the picture meets the same trouble and reports it.
+    // The picture fails in the same way and reports it.
   }
   return words;
 }
 
-// "of 2 s: error ≤ 0.011", "of 2 % error: 0.7 s"; of a budget and what is foretold of it.
+// Returns a text such as "of 2 s: error ≤ 0.011" or "of 2 % error: 0.7 s" for a budget and its forecast.
 export function prediction_words({ seconds, error }, { budget, certificate: { total, space } }) {
   const takes = duration(budget.used_s);
   const reached = total.kind === "unknown" ? "error unknown" : `error ≤ ${rounded_up(total.rms)}${unit(space)}`;

@@ -1,4 +1,4 @@
-// An error card: what went wrong, where (one entry a place), what can be done, and the request id to quote in a report.
+// Error card: message, places (one entry each), actions, and the request id for a report.
 
 export function element(name, text, class_name) {
   const made = document.createElement(name);
@@ -7,7 +7,7 @@ export function element(name, text, class_name) {
   return made;
 }
 
-// The places an error names: {label, detail, pointer} or {label, line, column}.
+// Returns the places of an error, each {label, detail, pointer} or {label, line, column}.
 export function places_of(error) {
   const places = (error.errors ?? []).map(({ pointer, detail }) => ({
     label: pointer || "/",
@@ -24,8 +24,8 @@ export function places_of(error) {
   return places;
 }
 
-// Fills and shows `card`. `on_place` gets the place that the user picks; without it places are plain text. `actions`
-// are buttons, [label, function] each.
+// Fills and shows `card`. Calls `on_place` with the place that the user picks; without it places are plain
+// text. `actions` are buttons, each [label, function].
 export function show_problem(card, error, on_place, actions = []) {
   const title = element("h2", error.title ?? error.message);
   const close = element("button", "", "close");

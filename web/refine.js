@@ -1,4 +1,5 @@
-// The picture of a view at rest: one stream of pictures, each with about twice the samples of the one before.
+// Progressive refinement of a view at rest: one stream of pictures, each with about twice the samples of the
+// last.
 
 import { get_frame, request, warning_of } from "./api.js";
 import { render_job } from "./job.js";
@@ -7,30 +8,30 @@ import { kFrameType, read_frames } from "./stream.js";
 import { frame_url, refinement_url } from "./urls.js";
 import { decode } from "./view.js";
 
-const kJobMs = 1500; // what takes longer at one go is a job, whose progress is known
-const kLongestMs = 20_000; // finer pictures that nobody has asked for may take this long
+const kJobMs = 1500; // longer single renders become jobs, which report progress
+const kLongestMs = 20_000; // longest estimate for samples that the user did not ask for
 const kTickMs = 250;
-const kTooLong = new Set([422, 504]); // of what takes longer than a request may
+const kTooLong = new Set([422, 504]); // statuses of pictures that exceed the time limit of a request
 
 export class Refiner {
-  #jobs = true; // false: the service takes none
+  #jobs = true; // false: the service accepts no jobs
   #cost;
 
-  // `cost`: of rendering, a Cost that is asked and told.
+  // `cost`: the Cost of rendering, read and updated.
   constructor(cost) {
     this.#cost = cost;
   }
 
-  // The picture that climb() ends with.
+  // Returns the picture that climb() ends with.
   last(picture, asked) {
     const counts = passes(picture.samples);
     const end = counts.findIndex((samples, at) => at > 0 && !asked && this.#too_slow({ ...picture, samples }));
     return { ...picture, samples: counts.at(end < 0 ? -1 : end - 1) };
   }
 
-  // Renders `picture`, from few samples to all. `shown`: samples on the canvas, 0 where it shows another view; `asked`:
-  // all are wanted however long that takes. draw(picture, bitmap, stats) shows one on the way; progress({shown, end,
-  // rmse, part, seconds_left}) hears how far it is: without `part` the seconds are a guess.
+  // Renders `picture` from few samples to all. `shown`: samples on the canvas, 0 if it shows another view.
+  // `asked`: render all samples, however long they take. Calls draw(picture, bitmap, stats) for each picture
+  // and progress({shown, end, rmse, part, seconds_left}). Without `part`, `seconds_left` is an estimate.
   async climb(picture, { shown, asked }, signal, on) {
     const end = picture.samples;
     const at = { shown, end };
@@ -48,7 +49,7 @@ export class Refiner {
         if (!kTooLong.has(error.status) && !broke_off) throw error;
       }
     }
-    // What is too much for one request goes on as a job, if it is wanted so much.
+    // Falls back to single renders, with all samples only if asked.
     for (const samples of asked ? [1, end] : [1]) {
       if (samples <= at.shown) continue;
       const { bitmap, stats } = await this.#render({ ...picture, samples }, signal, tell);
@@ -84,7 +85,7 @@ export class Refiner {
     }
   }
 
-  // All samples of a picture at one go.
+  // Renders all samples of a picture at once.
   async #render(picture, signal, tell) {
     const expected = this.#cost.expected_ms(picture);
     const start = performance.now();
@@ -101,7 +102,7 @@ export class Refiner {
     const clock = ticking(() => expected, tell);
     try {
       const plain = await get_frame(frame_url(picture), signal);
-      if (slow) this.#jobs = false; // it knows the scene, so it was the job that it did not
+      if (slow) this.#jobs = false; // the scene exists, so the service accepts no jobs
       return plain;
     } finally {
       clock.stop();
@@ -109,7 +110,7 @@ export class Refiner {
   }
 }
 
-// Tells now and then how many seconds of `expected()` milliseconds are left since the last restart.
+// Calls `tell({seconds_left})` every kTickMs. `expected()`: milliseconds from the last restart to the end.
 function ticking(expected, tell) {
   let start = performance.now();
   const tick = () => tell({ seconds_left: (expected() - (performance.now() - start)) / 1000 });
@@ -122,7 +123,7 @@ function ticking(expected, tell) {
   return { restart, stop: () => clearInterval(timer) };
 }
 
-// Throws AbortError once `signal` fires.
+// Decodes a picture. Throws AbortError if `signal` has fired.
 export async function decode_unless(signal, png) {
   const bitmap = await decode(png);
   if (signal.aborted) bitmap.close();

@@ -1,4 +1,4 @@
-// A refusal may name a setting that came with the link.
+// Settings of a link that the service rejects.
 
 import { places_of } from "./problem.js";
 import { kDefaults } from "./state.js";
@@ -20,8 +20,8 @@ const kWaysOut = {
   error: "Remove the error limit",
 };
 
-// What of the state is refused: {settings, label}, the usual values to set instead and what that does in words; null
-// where it is something else.
+// Returns {settings, label} for the rejected settings: the defaults to set instead and that action in words.
+// Returns null if the error names none of them.
 export function refused_of(error, state) {
   const of_plan = new URLSearchParams(state.plan);
   const names = places_of(error)

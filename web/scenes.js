@@ -1,5 +1,5 @@
-// Scenes the page knows: the service's samples by name, pasted ones by id. The service may forget a scene; as long
-// as its text is here it is posted again.
+// Scenes known to the page: samples by name, pasted scenes by id. The service may evict a scene. The page
+// posts it again if it has the text.
 
 import { get_json, get_text, post_scene } from "./api.js";
 import { floor_height } from "./floor.js";
@@ -15,11 +15,11 @@ export function title_of(sample) {
   return sample.name.charAt(0).toUpperCase() + sample.name.slice(1);
 }
 
-// Address of its picture in the gallery.
+// Returns the address of a sample's thumbnail.
 export const thumbnail_of = ({ name }) => `scenes/thumbnails/${name}.webp`;
 
-// A scene is {ref, id, title, text, width, height, camera} and, if something moves in it, {motion}; `ref` is what
-// a link calls it.
+// Library of scenes {ref, id, title, text, width, height, camera}, with {motion} if anything moves. `ref` is
+// the name in links.
 export class SceneLibrary {
   samples = []; // {name, title, description, href}
   #texts = new Map(); // name or id -> JSON text
@@ -33,7 +33,7 @@ export class SceneLibrary {
     return this.samples.find((sample) => sample.name === ref);
   }
 
-  // The scene that `ref` names. Throws ApiError: 404 for an id that neither side knows any more.
+  // Opens the scene `ref`. Throws ApiError, with status 404 if neither page nor service has the id.
   async open(ref) {
     const sample = this.sample(ref);
     const text = this.#texts.get(ref) ?? (sample ? await get_text(sample.href) : undefined);
@@ -45,7 +45,7 @@ export class SceneLibrary {
     return { ...info, ref, title: title_of(sample), text };
   }
 
-  // Posts a text of the user's own. Throws ApiError with the places that are wrong in it.
+  // Posts a text of the user. Throws ApiError with the places of its errors.
   async post(text) {
     const info = await post_scene(text);
     const name = this.#ids.get(info.id);
@@ -69,19 +69,19 @@ export class SceneLibrary {
   }
 }
 
-// What the page reads in a scene's text itself: {samples, floor}, the samples that it asks for and its floor's height.
+// Returns {samples, floor} from a scene's text: its sample count and the height of its floor.
 export function facts_of({ text, camera }) {
   try {
     const scene = JSON.parse(text);
     return { samples: scene.render?.samples ?? 1, floor: floor_height(scene, camera) };
   } catch {
-    return { samples: 0, floor: -Infinity }; // the service may read what JSON.parse does not, such as a byte order mark
+    return { samples: 0, floor: -Infinity }; // the service accepts more than JSON.parse, such as a byte order mark
   }
 }
 
 const kept_texts = () => recall(kStorageKey) ?? [];
 
-// Indented JSON with lists of numbers on one line.
+// Returns indented JSON with lists of numbers on one line.
 export function pretty(value) {
   const list = /\[\s+((?:-?[\d.]+(?:e[+-]?\d+)?,?\s+)+)\]/gi;
   return JSON.stringify(value, null, 2).replace(

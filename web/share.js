@@ -1,4 +1,4 @@
-// Taking the picture along: the download link and the curl command.
+// Download link and curl command of the current picture.
 
 import { access_token } from "./access.js";
 import { get_frame } from "./api.js";
@@ -6,8 +6,9 @@ import { curl_command, file_name, frame_url } from "./urls.js";
 
 const kThanksMs = 2000;
 
-// `current()` is {picture, name} of what is seen, or null where nothing is. A link cannot carry a token: with one the
-// picture is fetched first; `failed(error)` hears if that fails.
+// Attaches the download link. `current()` returns {picture, name} of the stage, or null. With a token, which
+// a link cannot carry, fetches the picture first; `failed(error)` is called if that fails. Returns a function
+// that refreshes the link.
 export function attach_download(link, current, failed) {
   const refresh = () => {
     const now = current();
@@ -37,7 +38,7 @@ async function save(address, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), kThanksMs);
 }
 
-// Where the clipboard is out of reach (plain http from another host) a prompt shows the command instead.
+// Attaches the curl button. Shows a prompt if the clipboard is unavailable (plain http from another host).
 export function attach_curl(button, current, announcement) {
   const label = button.querySelector(".label");
   const usual = label.textContent;

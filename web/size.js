@@ -1,6 +1,6 @@
-// How many pixels a picture gets.
+// Picture sizes in pixels.
 
-const kStreamPixels = 1e6; // a larger stream spends its time in PNG, on both ends
+const kStreamPixels = 1e6; // larger streams are bound by PNG encoding and decoding
 
 export const kModes = ["fit", "half", "scene", "1280x720", "1920x1080", "3840x2160"];
 
@@ -9,7 +9,7 @@ export function fixed_size(mode) {
   return match ? { width: Number(match[1]), height: Number(match[2]) } : null;
 }
 
-// Shrinks a size until no side and no product is over the limits; the proportions stay.
+// Shrinks a size to at most `side` per side and `pixels` in total. Keeps the aspect ratio.
 export function within(size, side, pixels) {
   const factor = Math.min(
     1,
@@ -22,9 +22,9 @@ export function within(size, side, pixels) {
   };
 }
 
-// Size of the picture for `purpose` "still", "stream" or "preview": {width, height, fills, fov}. `part` is a
-// factor of each side. `fov` is set where the box is narrower than the scene's own picture: its vertical angle
-// grows so that the sides stay in view.
+// Returns {width, height, fov, fills} for `purpose` "still", "stream" or "preview". `part` is a factor of
+// each side. `fov` is set if the box is narrower than the scene's own picture: its vertical angle grows so
+// that the sides stay in view.
 export function picture_size({ mode, purpose, box, pixel_ratio, scene, limits, part = 1 }) {
   const own = { width: scene.width, height: scene.height };
   const fills = mode === "fit" || mode === "half";
@@ -47,7 +47,7 @@ const aspect = (size) => size.width / size.height;
 // Orthographic views and panoramas have no angle to widen.
 const has_angle = (camera) => !["orthographic", "panorama"].includes(camera?.type);
 
-// The box itself; but a view without an angle keeps its proportions.
+// Returns the box, or a part of it with the scene's aspect ratio if the view has no angle.
 function fit(own, box, camera) {
   if (has_angle(camera) || aspect(box) >= aspect(own)) return box;
   return { width: box.width, height: box.width / aspect(own) };

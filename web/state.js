@@ -1,4 +1,4 @@
-// What a link to the page says: the URL hash as an object and back.
+// Page state in the URL hash: parsing and formatting.
 
 import { kModes, fixed_size } from "./size.js";
 import { pan_text, round } from "./urls.js";
@@ -9,22 +9,22 @@ export const kDefaults = Object.freeze({
   el: 0,
   dist: 1,
   pan: [0, 0, 0], // metres
-  t: 0, // seconds, of what moves in the scene
+  t: 0, // seconds of the scene's motion
   speed: 20,
   playing: true,
   technique: "",
   samples: 0,
   size: "fit",
-  plan: "", // options of frame.png beside the view and the size, as a chart's point has them
+  plan: "", // query of frame.png without view and size, from a chart's point
   seconds: 0, // budgets; 0: none
   error: 0,
 });
 export const kFastest = 120; // degrees per second
-const kFarthestPan = 1e12; // what the service takes
+const kFarthestPan = 1e12; // metres, limit of the service
 const kLongestSeconds = 60;
 const kAlways = ["scene", "az", "el", "dist", "speed", "playing"];
 
-// Reads a hash such as "#scene=paper&az=30"; whatever is missing or makes no sense gets its default.
+// Parses a hash such as "#scene=paper&az=30". Missing and invalid values get their default.
 export function parse_hash(hash) {
   const query = new URLSearchParams(hash.replace(/^#/, ""));
   const number = (key, low, high) => {
@@ -76,7 +76,7 @@ export function format_hash(state) {
   return `#${query}`;
 }
 
-// What the hash says of the view, as the camera takes it.
+// Returns the view of the hash for the camera.
 export function view_of({ az, el, dist, pan, t }) {
   return { azimuth: az, elevation: el, distance: dist, pan, time: t };
 }

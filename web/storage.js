@@ -1,4 +1,4 @@
-// What lasts as long as the tab: JSON in the session storage, which may be full or forbidden.
+// JSON in the session storage, which lasts as long as the tab and may be full or forbidden.
 
 export function recall(key) {
   try {
@@ -12,6 +12,6 @@ export function remember(key, value) {
   try {
     sessionStorage.setItem(key, JSON.stringify(value));
   } catch {
-    // Then it lasts until the page is loaded again.
+    // The value then lasts until the page is reloaded.
   }
 }

@@ -11,14 +11,14 @@ function check(sound) {
   if (!sound) throw new Error("The stream is not made of frames");
 }
 
-// Collects bytes as they come and hands out whole frames.
+// Incremental parser that returns complete frames.
 export class FrameParser {
-  #chunks = []; // bytes not yet handed out, in order
-  #size = 0; // their total
-  #header = null; // header of the frame whose PNG is awaited
+  #chunks = []; // unparsed bytes, in order
+  #size = 0; // total length of #chunks
+  #header = null; // header of the frame whose PNG is incomplete
   #header_length = -1;
 
-  // Returns the frames {header, png} that `chunk` completes. Throws Error on bytes that are no frames.
+  // Returns the frames {header, png} that `chunk` completes. Throws Error if the bytes are malformed.
   push(chunk) {
     this.#chunks.push(chunk);
     this.#size += chunk.length;
@@ -53,7 +53,7 @@ export class FrameParser {
     return frame;
   }
 
-  // The next `count` bytes as one array, or null while fewer are here. Copies only across chunks.
+  // Returns the next `count` bytes as one array, or null if fewer have arrived. Copies only across chunks.
   #take(count) {
     if (this.#size < count) return null;
     this.#size -= count;
@@ -76,14 +76,14 @@ export class FrameParser {
   }
 }
 
-// Frames of a response body, as they arrive. Throws ApiError when it breaks off.
+// Yields the frames of a response body as they arrive. Throws ApiError if the body breaks off.
 export async function* read_frames(body) {
   const parser = new FrameParser();
   for await (const chunk of chunks(body)) yield* parser.push(chunk);
   if (parser.inside_frame) throw no_answer("The stream broke off inside a frame.");
 }
 
-// A response body as it comes.
+// Yields the chunks of a response body as they arrive.
 export async function* chunks(body) {
   const reader = body.getReader();
   try {
@@ -93,7 +93,7 @@ export async function* chunks(body) {
       yield value;
     }
   } finally {
-    reader.cancel().catch(() => {}); // the connection is gone already, or goes now
+    reader.cancel().catch(() => {}); // the connection is closed already, or closes now
   }
 }
 

@@ -1,4 +1,5 @@
-// A tab list: click or arrow keys choose which panel shows. Returns a function that chooses the tab with an id.
+// Attaches a tab list: clicks and arrow keys select the visible panel. Returns a function that selects a tab
+// by id.
 
 export function attach_tabs(list) {
   const tabs = [...list.querySelectorAll('[role="tab"]')];

@@ -1,5 +1,5 @@
-// Speed against accuracy of the scene at hand: a chart once it is asked for, then a slider from the fastest picture
-// to the nearest, with the pictures of its stops over the stage.
+// Chart of speed against accuracy for the current scene, made on demand. A slider selects its stops, from
+// fastest to most accurate, and shows their pictures over the stage.
 
 import { bound_words, fields_of } from "./bound.js";
 import { at_view, bound_of, plan_of, stop_at, stops_of } from "./front.js";
@@ -9,28 +9,30 @@ import { Prediction } from "./predicted.js";
 import { progress_text } from "./progress.js";
 import { frame_url, query_of } from "./urls.js";
 
-const kExtent = { samples: 16, rounds: 3, width: 200 }; // of a chart: some seconds, of paths a minute
+const kExtent = { samples: 16, rounds: 3, width: 200 }; // chart size; takes some seconds, with paths a minute
 const kOffer = "The chart renders this view in many ways and shows how long each takes and how large its error is.";
-const kSlider = 1000; // steps of the range, which is finer than its stops
+const kSlider = 1000; // steps of the range input, finer than the stops
 
 export class Tradeoff {
   #parts;
   #overlay;
   #on;
-  #kind = ""; // scene and options that the chart holds for
-  #view = ""; // that it was measured in
+  #kind = ""; // scene and technique of the chart
+  #view = ""; // view of the chart
   #chart = null;
   #stops = [];
-  #at = -1; // the stop that is chosen
-  #was = null; // address of what was over the stage before something else was held there
+  #at = -1; // index of the chosen stop, or -1
+  #was = null; // address of the picture that a held one replaced
   #work = null; // AbortController of the chart being made
   #prediction;
-  #predicted = ""; // what is said while there is no chart
+  #predicted = ""; // prediction shown while there is no chart
   #fetching = new AbortController();
 
-  // `parts`: elements by name, and the `budgets` to predict. `on` has: picture() -> the picture at rest or null, without
-  // plan and budget; within(budget) -> the same with a budget alone; seen() -> the address of the one on the stage, or
-  // null; pause(), use(plan), chart(drawing, points) and say(text).
+  // `parts`: elements by name, and the `budgets` to predict. `on` has
+  //   picture() -> the picture at rest without plan and budget, or null
+  //   within(budget) -> the same with that budget only
+  //   seen() -> address of the picture on the stage, or null
+  //   pause(), use(plan), chart(drawing, points), say(text)
   constructor(parts, overlay, on) {
     this.#parts = parts;
     this.#overlay = overlay;
@@ -49,7 +51,7 @@ export class Tradeoff {
     this.#show_parts();
   }
 
-  // Another scene, or other options: the chart is of no use any more.
+  // Drops the chart if `picture` has another scene or technique.
   show(picture) {
     const kind = picture ? `${picture.id} ${picture.technique}` : "";
     if (kind === this.#kind) return;
@@ -58,22 +60,22 @@ export class Tradeoff {
     this.#drop();
   }
 
-  // The picture is at rest.
+  // Predicts the budgets of the picture at rest while there is no chart.
   rest() {
     if (!this.#chart && !this.#work) this.#prediction.of(this.#parts.budgets.map(this.#on.within));
   }
 
-  // Another picture is due.
+  // Cancels the prediction.
   stale() {
     this.#prediction.leave();
   }
 
-  // The stage is to be seen.
+  // Hides the overlay.
   leave() {
     this.#overlay.hide();
   }
 
-  // Chooses the stop of the chart's point with this number.
+  // Chooses the stop of the chart's point `index`, if it is a stop.
   choose(index) {
     const at = this.#stops.findIndex(({ point }) => point === this.#chart.points[index]);
     if (at >= 0) this.#go(at);
@@ -121,7 +123,7 @@ export class Tradeoff {
     this.#on.chart(drawing, selectable);
     this.#show_parts();
     this.#go(this.#stops.length - 1);
-    // Who meanwhile writes elsewhere goes on there.
+    // Keeps the focus if the user has moved it elsewhere.
     if ([this.#parts.make, document.body].includes(document.activeElement)) this.#parts.slider.focus();
   }
 
@@ -149,7 +151,7 @@ export class Tradeoff {
     this.#go(at, place);
   }
 
-  // The thumb rests on its stop.
+  // Moves the thumb to its stop.
   #settle() {
     if (this.#at >= 0) this.#parts.slider.value = Math.round(this.#stops[this.#at].place * kSlider);
   }
@@ -189,7 +191,7 @@ export class Tradeoff {
     return this.#view !== view_of(this.#on.picture());
   }
 
-  // Of a point's picture in the view at hand.
+  // Returns the address of a point's picture in the current view.
   #in_view(address) {
     return this.#elsewhere ? at_view(address, query_of(this.#on.picture())) : address;
   }
@@ -202,7 +204,7 @@ export class Tradeoff {
     return this.#chart && this.#in_view(this.#chart.reference.picture);
   }
 
-  // Of the stop where that is seen, else of what the stage shows.
+  // Returns the error view of the visible stop, else of the picture on the stage.
   #bound() {
     const address = (this.#overlay.shown && this.#address()) || this.#on.seen();
     return address && bound_of(address);
@@ -225,7 +227,7 @@ export class Tradeoff {
     }
   }
 
-  // While it is held a picture lies over the stage; then what was there before.
+  // Shows the picture at `address` while held, then the former one.
   #hold(held, address) {
     if (!held) {
       if (this.#was) this.#see(this.#was);
@@ -252,7 +254,7 @@ export class Tradeoff {
   }
 }
 
-// The view of a picture, as an address says it.
+// Returns the view of a picture as an address, for comparison.
 function view_of(picture) {
   const { width, height, technique, samples, more, ...view } = picture;
   return frame_url(view);

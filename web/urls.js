@@ -1,9 +1,9 @@
-// Addresses of pictures. Relative, so that the page works below any path; rounded, so that equal views
-// have equal addresses and come from the browser's cache.
+// Addresses of pictures, relative so that the page works below any path. Numbers are rounded, so equal views
+// have equal addresses and hit the browser's cache.
 
-// A picture is {id, azimuth, elevation, distance, pan, width, height}, {moves, time} of a scene in which something
-// moves, and optionally {fov, technique, samples}, `more` options as a query, budgets {seconds, error}, and the
-// {location} that gives the picture again which a budget has made.
+// Returns the query of a picture {id, azimuth, elevation, distance, pan, width, height}, with {moves, time}
+// in a moving scene. Optional: {fov, technique, samples}, `more` options as a query, budgets {seconds,
+// error}. `location`: address that reproduces a picture made to a budget.
 export function query_of(picture) {
   const query = new URLSearchParams({
     azimuth: round(picture.azimuth, 2),
@@ -23,7 +23,7 @@ export function query_of(picture) {
   return query;
 }
 
-// To six digits, whatever the scene's scale; "" where nothing is panned.
+// Formats a pan with six significant digits, for scenes of any scale. Returns "" without a pan.
 export function pan_text(pan) {
   return pan?.some(Boolean) ? pan.map((metres) => Number(metres.toPrecision(6)) + 0).join() : "";
 }
@@ -36,12 +36,12 @@ export function frame_url(picture) {
   return picture.location ?? `v1/scenes/${picture.id}/frame.png?${query_of(picture)}`;
 }
 
-// The same in passes.
+// Returns the address of the picture's refinement in passes.
 export function refinement_url(picture) {
   return `v1/scenes/${picture.id}/refinement?${query_of(picture)}`;
 }
 
-// `time_step`: seconds of the scene's motion from frame to frame; 0 if nothing moves.
+// Returns the address of an orbit. `time_step`: seconds of the scene's motion per frame, 0 if nothing moves.
 export function orbit_url(picture, { frames, fps, step, time_step }) {
   const query = query_of(picture);
   query.set("frames", frames);
@@ -51,7 +51,7 @@ export function orbit_url(picture, { frames, fps, step, time_step }) {
   return `v1/scenes/${picture.id}/orbit?${query}`;
 }
 
-// What POST v1/jobs takes for the same picture.
+// Returns the body of POST v1/jobs for a picture.
 export function job_body(picture) {
   const { azimuth, elevation, distance, fov, width, height, samples, time } = numbers_of(query_of(picture));
   const { technique, pan } = Object.fromEntries(query_of(picture));
@@ -70,7 +70,7 @@ export function job_body(picture) {
   };
 }
 
-// What POST v1/scenes/{id}/charts takes for it; `extent`: {samples, rounds, width}.
+// Returns the body of POST v1/scenes/{id}/charts. `extent`: {samples, rounds, width}.
 export function chart_body(picture, extent) {
   const { camera, image, render } = job_body({ ...picture, samples: undefined, more: undefined });
   return { camera, image, render: { ...render, samples: undefined }, chart: extent };
@@ -83,7 +83,7 @@ export function file_name(name, view) {
   return `${plain}-${Math.round(view.azimuth)}-${Math.round(view.elevation)}.png`;
 }
 
-// With `token` the command takes one from the environment.
+// Returns a curl command. With `token`, the command reads the token from the environment.
 export function curl_command(picture, name, base, token = "") {
   const address = new URL(frame_url(picture), base).href.replaceAll("'", "%27");
   const access = token ? '-H "Authorization: Bearer $ORRERY_TOKEN" ' : "";

@@ -1,4 +1,4 @@
-// The stage: draws pictures on its canvas and knows its size. A scene that has none yet is announced by its thumbnail.
+// Stage: draws pictures on its canvas, and a thumbnail before the first picture of a scene.
 
 import { ApiError } from "./api.js";
 
@@ -9,7 +9,7 @@ export class View {
   #stage;
   #poster;
   #context;
-  #newest = null; // the bitmap drawn last, or being faded in
+  #newest = null; // bitmap drawn last or fading in
 
   // `poster`: the <img> of thumbnails.
   constructor(stage, canvas, poster) {
@@ -19,13 +19,13 @@ export class View {
     this.#context = canvas.getContext("2d", { alpha: false });
   }
 
-  // Room for the picture, in CSS pixels.
+  // Size of the stage in CSS pixels.
   get box() {
     return { width: Math.max(1, this.#stage.clientWidth), height: Math.max(1, this.#stage.clientHeight) };
   }
 
-  // `fills`: the picture has the box's proportions; the odd half pixel of rounding is cut, not framed.
-  // `fades`: it takes over little by little from what is shown. Closes the bitmap.
+  // Draws and closes a bitmap. `fills`: the picture has the stage's aspect ratio, and a half pixel of
+  // rounding is cropped. `fades`: the picture fades in.
   draw(bitmap, fills, fades = false) {
     const canvas = this.#canvas;
     const { width, height } = bitmap;
@@ -44,7 +44,7 @@ export class View {
     this.#blend(bitmap, 0, performance.now(), fades ? kFadeMs : 0);
   }
 
-  // Shows nothing but the `thumbnail` at this address, "" for none, until a picture is drawn.
+  // Shows only the thumbnail at this address ("": none) until a picture is drawn.
   announce(thumbnail) {
     this.#canvas.hidden = true;
     this.#newest = null;
@@ -52,7 +52,7 @@ export class View {
     if (thumbnail) this.#poster.src = thumbnail;
   }
 
-  // `shown`: the bitmap's part in what the canvas shows; the rest is what was there before.
+  // Fades in the bitmap. `shown`: its weight on the canvas so far.
   #blend(bitmap, shown, start, duration) {
     if (this.#newest !== bitmap) return bitmap.close();
     const part = duration > 0 ? Math.min(1, Math.max(shown, (performance.now() - start) / duration)) : 1;
@@ -65,7 +65,7 @@ export class View {
   }
 }
 
-// Throws ApiError for bytes that are no picture.
+// Decodes a picture. Throws ApiError if the bytes are malformed.
 export async function decode(png) {
   const blob = png instanceof Blob ? png : new Blob([png], { type: "image/png" });
   try {
