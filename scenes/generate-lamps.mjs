@@ -1,12 +1,12 @@
 #!/usr/bin/env node
 // Writes a scene with COUNT lamps to FILE, or to standard output:  node scenes/generate-lamps.mjs COUNT [FILE]
 //
-// Glowing balls over a dark floor, in the order of a sunflower's seeds (Vogel, "A Better Way to Construct the
-// Sunflower Head", 1979), the smaller the more there are, so that they send out as much together; columns, and
-// a light of every other kind: the moon, a tube, a lantern without extent and a spot.
+// The lamps are glowing balls over a dark floor, in the order of a sunflower's seeds (Vogel, "A Better Way to
+// Construct the Sunflower Head", 1979). They shrink as COUNT grows, so that their total emission stays the
+// same. There are columns, and a light of every other kind: the moon, a tube, a point light and a spot.
 import { writeFileSync } from "node:fs";
 
-const kRadius = 9;  // metres, of the field
+const kRadius = 9;  // radius of the field, metres
 const kHues = [[2.4, 0.7, 0.14], [2.4, 1.2, 0.3], [2, 1.7, 1.1], [0.5, 1.3, 2.3], [0.8, 0.45, 2.3], [2.1, 0.3, 1.1]];
 const round = (x) => Number(x.toFixed(4)) + 0;
 

@@ -2,17 +2,19 @@
 // Writes a sphereflake scene to FILE, or to standard output:  node scenes/generate-sphereflake.mjs LEVEL [FILE]
 //
 // The "balls" scene of Eric Haines' Standard Procedural Databases (A Proposal for Standard Graphics
-// Environments, IEEE Computer Graphics and Applications 7(11), 1987): a sphere of radius 0.5, and on each sphere,
-// LEVEL times over, nine touching ones of a third of its radius, six about its equator and three above. LEVEL is
-// that collection's size factor: 1 gives 10 spheres, 2 gives 91, 3 gives 820, 4 (its usual size) 7,381, 5 gives
-// 66,430. Its camera and its three lights; the spheres are of gold here, and the floor has no edge.
+// Environments, IEEE Computer Graphics and Applications 7(11), 1987). The first sphere has a radius of 0.5.
+// Each sphere carries nine touching ones of a third of its radius, six about its equator and three above,
+// down to LEVEL. LEVEL is that collection's size factor: 1 gives 10 spheres, 2 gives 91, 3 gives 820, 4 (its
+// usual size) 7,381, 5 gives 66,430. Camera and lights are those of the collection. Here the spheres are of
+// gold, and the floor is infinite.
 import { writeFileSync } from "node:fs";
 
 const kDigits = 9;
 const round = (x) => Number(x.toPrecision(kDigits)) + 0;
 const three = (v) => `[${v.map(round).join(", ")}]`;
 
-// Unit vectors to the nine children of a sphere whose pole is z: nine of the twelve corners of a cuboctahedron.
+// Returns unit vectors to the nine children of a sphere whose pole is z: nine of the twelve corners of a
+// cuboctahedron.
 function child_directions() {
   const ring = (count, azimuth_degrees, z) =>
     Array.from({ length: count }, (_, i) => {
@@ -25,7 +27,7 @@ function child_directions() {
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// `v` turned by the shortest rotation that takes z to the unit vector `pole` (Rodrigues' formula).
+// Returns `v` rotated by the shortest rotation from z to the unit vector `pole` (Rodrigues' formula).
 function turned(v, pole) {
   if (pole[2] < -0.999999999) return [v[0], -v[1], -v[2]];
   const axis = cross([0, 0, 1], pole); // its length is the sine of the angle

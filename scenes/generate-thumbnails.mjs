@@ -1,7 +1,7 @@
 #!/usr/bin/env node
-// Renders the pictures of the page's gallery, scenes/thumbnails/NAME.webp, once and for all:
-//   node scenes/generate-thumbnails.mjs [NAME...]     of these scenes, else of all that have none
-// Needs build/orrery and, to write WebP, Chromium with playwright-core.
+// Renders the thumbnails of the page's gallery, scenes/thumbnails/NAME.webp:
+//   node scenes/generate-thumbnails.mjs [NAME...]     default: all scenes without a thumbnail
+// Requires build/orrery and, to write WebP, Chromium with playwright-core.
 
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -10,9 +10,9 @@ import { join } from "node:path";
 import { kRoot, skip_without_browser, start_browser } from "../tests/browser/support.mjs";
 import { load } from "../tests/browser/web_modules.mjs";
 
-const kBox = { width: 384, height: 288 }; // four times the gallery's in each direction
+const kBox = { width: 384, height: 288 }; // four times the gallery's size in each direction
 const kSamples = 256;
-const kQuality = 0.8; // of WebP, of 1
+const kQuality = 0.8; // WebP quality from 0 to 1
 
 skip_without_browser();
 const { picture_size } = await load("size.js");
@@ -41,7 +41,7 @@ try {
   rmSync(folder, { recursive: true });
 }
 
-// A PNG as WebP, both in base64; runs in the browser.
+// Converts a PNG to WebP, both in base64. Runs in the browser.
 async function webp_of([png, quality]) {
   const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
   const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);

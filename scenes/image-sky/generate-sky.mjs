@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Writes two evening skies beside itself, each 128 x 64 texels (equirectangular, Radiance HDR, flat RGBE) with a band of
-// cloud and dark ground: sky.hdr with a sun, dusk.hdr without.
+// Writes two evening skies to its own folder: sky.hdr with a sun, and dusk.hdr without. Each has 128 x 64
+// texels (equirectangular, Radiance HDR, flat RGBE) with a band of cloud and dark ground.
 
 import {writeFileSync} from "node:fs";
 
@@ -28,7 +28,7 @@ function radiance(column, row, sun) {
   return sun && near > Math.cos(0.1) ? [150, 104, 56] : sky;
 }
 
-// Shared exponent: the largest channel has a mantissa of 128..255.
+// Returns RGBE with a shared exponent: the largest channel has a mantissa of 128..255.
 function rgbe(color) {
   const exponent = Math.floor(Math.log2(Math.max(...color))) + 1;
   return [...color.map((value) => Math.min(255, Math.floor(value * 2 ** (8 - exponent)))), exponent + 128];

@@ -1,5 +1,5 @@
-// What a budget of error costs beside the cheapest settings that keep it, of a full grid: in rays, which no clock
-// decides. Errors are those of what a display shows.
+// Cost of an error budget, compared with the cheapest settings of a full grid that meet the error. Costs are
+// in rays, which do not depend on the machine. Errors are in display values.
 
 import { spawnSync } from "node:child_process";
 import { kOrrery } from "./command.mjs";
@@ -9,7 +9,7 @@ const kScenes = ["paper", "glass", "mirrors", "orrery", "material-rough", "mater
                  "cornell-box", "technique-distributed"];
 const kErrors = [0.1, 0.07, 0.05, 0.035, 0.025, 0.018], kSize = 160;
 const kSamples = [2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128];
-const kContributions = [0.04, 0.01, 0.0025, 6e-4, 4e-5]; // rays that weigh less are not traced, of trees
+const kContributions = [0.04, 0.01, 0.0025, 6e-4, 4e-5]; // minimum contributions of rays, for ray trees
 
 function render(scene, size, options) {
   const words = Object.entries({ width: size, height: size, ...options }).flatMap(([name, value]) => [`--${name}`, String(value)]);
@@ -18,7 +18,7 @@ function render(scene, size, options) {
   return JSON.parse(done.stdout);
 }
 
-// {rays, bound} of all settings, up to those that keep the smallest error.
+// Returns {rays, bound} of all settings, up to the first sample count that meets the smallest error.
 function grid_of(scene, size) {
   const is_tree = render(scene, 32, {}).technique === "whitted", cells = [];
   for (const samples of kSamples) {

@@ -1,4 +1,4 @@
-// How soon each stage of the work ends once its stop is requested, as it is when a client leaves.
+// Time from a stop request, as after a client's disconnect, to the end of each stage of the work.
 
 import { spawnSync } from "node:child_process";
 

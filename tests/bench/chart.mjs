@@ -1,4 +1,4 @@
-// Charts as SVG: scatter and line plots with logarithmic axes, one panel beside the other.
+// SVG charts: panels with scatter and line plots.
 
 const kPanel = { width: 300, height: 250 }, kMargin = { left: 52, right: 14, top: 34, bottom: 42 };
 const kColors = ["#0b6e99", "#d9730d", "#0f7b6c", "#ad1a72", "#6940a5", "#8a6d1d"];
@@ -14,14 +14,14 @@ function text(x, y, words, { size = 11, anchor = "middle", color = "#333", weigh
   );
 }
 
-// The mark of series number i: a dot, or past the colours a square.
+// Returns the mark of series i: a dot, or a square once all colours are used.
 function mark(i, x, y, title) {
   const color = kColors[i % kColors.length], inside = title ? `<title>${escape(title)}</title>` : "";
   if (i < kColors.length) return `<circle cx="${x}" cy="${y}" r="4.5" fill="${color}">${inside}</circle>`;
   return `<rect x="${round(x - 4.5)}" y="${round(y - 4.5)}" width="9" height="9" fill="${color}">${inside}</rect>`;
 }
 
-// A logarithmic axis from the power of ten below to the one above.
+// Returns a logarithmic axis between the powers of ten around the values.
 function log_axis(values, from, to) {
   const lo = Math.floor(Math.log10(Math.min(...values)) - 1e-9), hi = Math.ceil(Math.log10(Math.max(...values)) + 1e-9);
   const at = (value) => from + ((Math.log10(value) - lo) / (hi - lo)) * (to - from);
@@ -41,7 +41,7 @@ const tick_name = (value) => {
   return String(Number(value.toPrecision(3)));
 };
 
-// One panel: {title, x, y (axis names), series: [{name, points: [{x, y, label?, ring?}], line?}],
+// Draws a panel: {title, x, y (axis names), series: [{name, points: [{x, y, label?, ring?}], line?}],
 // y_axis: "log" or "linear"}.
 function panel({ title, x, y, series, y_axis = "log" }, left, top) {
   const inner = {
@@ -83,7 +83,7 @@ function draw_series({ points, line }, i, across, up) {
   return parts;
 }
 
-// A whole chart: panels in rows of `columns`, and a legend of `names` in the colours of the series.
+// Returns a chart: panels in rows of `columns`, and a legend of `names` in the colours of the series.
 export function chart({ title, note, panels, columns, names }) {
   const rows = Math.ceil(panels.length / columns), wide = columns * kPanel.width;
   const legend_rows = Math.ceil(names.length / Math.max(1, Math.floor(wide / 140)));

@@ -1,4 +1,4 @@
-// Programs, and the processor time they take.
+// External programs and their processor time.
 
 import { spawnSync } from "node:child_process";
 
@@ -8,8 +8,8 @@ export function exists_program(name) {
   return spawnSync("bash", ["-c", 'command -v "$1"', "bash", name]).status === 0;
 }
 
-// Runs a command to its end, its output discarded. bash reports the child's user and system
-// seconds, of all its threads, to the millisecond, as the kernel counted them.
+// Runs a command and discards its output. bash reports the user and system seconds of all its threads, as
+// counted by the kernel, to the millisecond. Throws Error if the command fails.
 export function run_command(command) {
   const script = 'TIMEFORMAT="%3R %3U %3S"; time "$@" >/dev/null 2>&1';
   const done = spawnSync("bash", ["-c", script, "bash", ...command], { encoding: "utf8" });
@@ -18,13 +18,14 @@ export function run_command(command) {
   return { wall_s, cpu_s: user_s + system_s };
 }
 
-// One run whose cost is its processor time.
+// Runs a command. The cost of the run is its processor time.
 export function cpu_run(command) {
   const { cpu_s } = run_command(command);
   return { cost: cpu_s, cpu_s };
 }
 
-// Ours and POV-Ray's: one thread, one sample a pixel, no picture written. `width` and `height` in pixels.
+// Returns the command of ours or of POV-Ray: one thread, one sample per pixel, no picture written. `width`
+// and `height` in pixels.
 export function orrery_command(scene, width, height, depth) {
   const options = { width, height, depth, samples: 1, threads: 1 };
   const words = Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]);

@@ -1,6 +1,6 @@
-// Cycles beside ours: CPU time to the same error, by pictures that differ in the seed alone. Both are
-// unbiased, so that half the mean squared difference of two such pictures is the mean squared error of one; that they
-// are is printed too.
+// CPU time to the same error, compared with Cycles. Pictures differ only in the seed. Both renderers are
+// unbiased, so half the mean squared difference of two such pictures is the mean squared error of one. Their
+// agreement is printed too.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import { compare_path_lengths } from "./cycles_bounces.mjs";
@@ -17,16 +17,16 @@ const kScenes = [
 ];
 const kBounces = 8;
 const kSize = 512, kPairs = 2, kLeastSamples = 4, kMostSamples = 256;
-const kBlocks = [1, 4, 32]; // sides in pixels: what smoothing or spreading errors does shows beyond one pixel
+const kBlocks = [1, 4, 32]; // sides in pixels; blocks reveal smoothed or spread errors
 const kTargets = [0.02, 0.01, 0.005], kReach = 3, kAim = 6; // root mean squared errors of a pixel
 const kRenderers = ["ours", "theirs"], kNames = { ours: "orrery", theirs: "Cycles" };
-const kDefaultsSeeds = 1000; // past those of the fair pictures, so that their noise is independent
+const kDefaultsSeeds = 1000; // seed offset, so that the noise is independent of the fair pictures
 
 const mean = (values) => values.reduce((sum, v) => sum + v, 0) / values.length;
 const block_name = (side) => (side === 1 ? "pixel" : `${side}x${side}`);
 const squared_error = (a, b) => mean_product(a, b, a, b) / 2;
 
-// Two pictures by each renderer, in the order ABBA.
+// Renders two pictures with each renderer, in the order ABBA.
 async function two_of_each(renderers, order, seeds) {
   const runs = { ours: [], theirs: [] };
   for (const [side, i] of [["ours", 0], ["theirs", 0], ["theirs", 1], ["ours", 1]])
@@ -40,15 +40,16 @@ function summary(samples, runs) {
   return { samples, cpu_s: mean(runs.map(({ cpu_s }) => cpu_s)), squared_errors };
 }
 
-// Conversion, building and writing take the same for any number of samples: what the line through one sample and the
-// most says of none. Returns it, and the rows of more than one sample without it.
+// Estimates the set-up time (conversion, building, writing), which does not depend on the number of samples.
+// Extrapolates the CPU time from 1 sample and the largest count to 0 samples. Returns it, and the rows of
+// more than one sample without it.
 function without_setup([one, ...rows]) {
   const most = rows.at(-1), a_sample = (most.cpu_s - one.cpu_s) / (most.samples - one.samples);
   const setup_s = one.cpu_s - a_sample;
   return { setup_s, rows: rows.map((row) => ({ ...row, cpu_s: row.cpu_s - setup_s })) };
 }
 
-// Returns, of each renderer, {setup_s, rows, pictures}: the pictures are those of most samples.
+// Returns {setup_s, rows, pictures} for each renderer. The pictures are those of the largest sample count.
 async function measure_pair(renderers, counts, pair) {
   const seeds = [2 * pair + 1, 2 * pair + 2];
   const rows = { ours: [], theirs: [] }, pictures = {};
@@ -72,7 +73,7 @@ async function measure_defaults(renderers, samples, pair, setup_s) {
   return { cpu_s: cpu_s - setup_s, squared_errors, pictures: runs.map(({ picture }) => picture) };
 }
 
-// The line log error = log a + b log seconds by least squares: {slope: b, seconds(error)}.
+// Fits the line log error = log a + b log seconds by least squares. Returns {slope: b, seconds(error)}.
 function fit(rows, block) {
   const x = rows.map(({ cpu_s }) => Math.log(cpu_s)), y = rows.map((row) => Math.log(row.squared_errors[block]) / 2);
   const mean_x = mean(x), mean_y = mean(y);
@@ -80,7 +81,7 @@ function fit(rows, block) {
   return { slope, seconds: (error) => Math.exp(mean_x + (Math.log(error) - mean_y) / slope) };
 }
 
-// Of all pairs: the median seconds and the root of the mean squared error.
+// Returns the median seconds and the mean squared errors over all pairs.
 function pooled(pairs, side) {
   return pairs[0][side].rows.map(({ samples }, i) => ({
     samples,
@@ -111,7 +112,8 @@ function print_errors(rows, pairs) {
   }
 }
 
-// CPU seconds to the error `target / side` of blocks of that side, which independent pixels reach as soon as `target`.
+// Compares the CPU seconds to the error `target / side` in blocks of that side. Independent pixels reach it
+// at the same time as `target`.
 function ratio_row(scene, pairs, rows, block, target) {
   const side = kBlocks[block], error = target / side;
   const seconds = Object.fromEntries(
@@ -174,7 +176,7 @@ function draw(file, scene, rows, size) {
 async function measure(scene, pair_count, counts, size) {
   const renderers = start_renderers(scene.file, size), pairs = [], defaults = [];
   try {
-    await two_of_each(renderers, { samples: 1, bounces: kBounces }, [1, 2]); // the first runs do not count
+    await two_of_each(renderers, { samples: 1, bounces: kBounces }, [1, 2]); // warm-up
     for (let pair = 0; pair < pair_count; ++pair) {
       pairs.push(await measure_pair(renderers, counts, pair));
       defaults.push(await measure_defaults(renderers, counts.at(-1), pair, pairs[pair].theirs.setup_s));

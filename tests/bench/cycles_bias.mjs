@@ -1,4 +1,4 @@
-// Whether Cycles and ours come to the same picture, and how far Blender's defaults take Cycles from it.
+// Agreement between our pictures and those of Cycles, and the bias of Blender's defaults.
 
 import { block_means, channel_means, mean_picture, mean_product, product_statistics } from "./picture.mjs";
 
@@ -6,7 +6,7 @@ const kChannels = ["R", "G", "B"];
 const mean = (values) => values.reduce((sum, v) => sum + v, 0) / values.length;
 const signed_root = (x) => Math.sign(x) * Math.sqrt(Math.abs(x));
 
-// Mean of each channel over pictures of different seeds, and its standard error.
+// Returns the mean and its standard error for each channel, over pictures of different seeds.
 export function channel_statistics(pictures) {
   const found = pictures.map(channel_means);
   return kChannels.map((_, c) => {
@@ -16,7 +16,7 @@ export function channel_statistics(pictures) {
   });
 }
 
-// Of b less a, by channel: the difference, its standard error and their ratio.
+// Returns, for each channel of b - a, the difference, its standard error and their ratio.
 export function differences(a, b) {
   return a.map((one, c) => {
     const difference = b[c].mean - one.mean, error = Math.hypot(one.error, b[c].error);
@@ -24,8 +24,8 @@ export function differences(a, b) {
   });
 }
 
-// The pictures of most samples. `halves` are two independent references, each the mean of all pictures of one parity of
-// the seed, by one renderer.
+// Returns statistics of the pictures with the most samples. `halves` are two independent references: each is
+// the mean of one renderer's pictures of one seed parity.
 export function agreement(pairs, blocks) {
   const of = (side) => {
     const pictures = pairs.flatMap((pair) => pair[side].pictures);
@@ -35,11 +35,12 @@ export function agreement(pairs, blocks) {
   return { ours: of("ours"), theirs: of("theirs"), blocks };
 }
 
-// Mean squared error of pictures against a reference in two halves, whose own noise cancels as it is independent.
+// Returns the mean squared error of pictures against a reference in two halves. The noise of the halves
+// cancels, as they are independent.
 const squared_error = (pictures, [r, s]) => mean(pictures.map((one) => mean_product(one, r, one, s)));
 
-// Root mean squared difference of what two estimates in halves converge to, and the root of its square's standard error,
-// which is as much as noise alone would show. Below zero: noise made the square so.
+// Returns the root mean squared difference between the limits of two estimates in halves, as text. The noise
+// is the root of the square's standard error. A negative value is due to noise.
 function apart(halves, others, side) {
   const [a, b, c, d] = [...halves, ...others].map((half) => block_means(half, side));
   const square = product_statistics(a, c, b, d);
@@ -61,7 +62,7 @@ export function print_agreement({ ours, theirs, blocks }, names) {
   }
 }
 
-// Against the joint reference of both renderers.
+// Prints cost, error and bias of Blender's defaults. The reference is the mean of both renderers.
 export function print_defaults(defaults, samples, { ours, theirs, blocks }, fair) {
   const pictures = defaults.flatMap((pair) => pair.pictures);
   const halves = [0, 1].map((i) => mean_picture(defaults.map((pair) => pair.pictures[i])));

@@ -1,12 +1,12 @@
-// Path by path length: means of the Cornell box with 0 to 6 bounces, by Cycles and by ours. Faults that make up for one
-// another in the whole picture differ here.
+// Means of the Cornell box by path length, from 0 to 6 bounces, by Cycles and by ours. Reveals errors that
+// cancel in the whole picture.
 
 import { channel_statistics, differences } from "./cycles_bias.mjs";
 import { show_progress } from "./measure.mjs";
 import { start_renderers } from "./renderers.mjs";
 
 const kMostBounces = 6, kSize = 128, kSamples = 16, kPairs = 8; // pairs of pictures of each renderer
-const kMostErrors = 3; // standard errors apart that chance explains
+const kMostErrors = 3; // in standard errors, largest difference due to chance
 
 async function measure(renderers, bounces, count, samples) {
   const pictures = { ours: [], theirs: [] };

@@ -1,8 +1,8 @@
-# Renders one of our scenes with Blender's Cycles, run by `blender -b --factory-startup -P FILE -- SCENE`. It knows meshes,
-# parallelograms, an environment that is a picture, Lambert's surfaces, those that emit, smooth glass and metal that
-# reflects all light. Each line of input is an order in JSON:
-# samples, seed, bounces, size in pixels, threads, preset ("fair" or "defaults") and out, a file that ends with .exr. It
-# is answered by a line "rendered SECONDS": CPU time of all threads, scene conversion and writing included.
+# Renders one of our scenes with Blender's Cycles: `blender -b --factory-startup -P FILE -- SCENE`. Supports
+# meshes, parallelograms, environment pictures, Lambert surfaces, emitters, smooth glass, and metal that
+# reflects all light. Each input line is an order in JSON: samples, seed, bounces, size in pixels, threads,
+# preset ("fair" or "defaults") and out, a file that ends with .exr. The reply is a line "rendered SECONDS":
+# CPU time of all threads, scene conversion and writing included.
 
 import json
 import math
@@ -89,7 +89,8 @@ def convert(record, folder):
     return scene
 
 
-# Cycles has the middle of the picture toward +x and its top toward +z, we have them toward -z and +y.
+# Adds an environment. Cycles has the middle of the picture toward +x and its top toward +z, orrery toward -z
+# and +y.
 def surround(tree, record, folder):
     nodes, links = tree.nodes, tree.links
     picture = nodes.new("ShaderNodeTexEnvironment")
@@ -103,11 +104,12 @@ def surround(tree, record, folder):
     links.new(picture.outputs["Color"], nodes["Background"].inputs["Color"])
 
 
-# "fair" is unbiased: nothing clamped, no light left out, no pixel stopped for its own noise. And it begins with sample
-# number N of N: Cycles sends sample 0 of every pixel through the centre, not where the filter says, which would be an
-# error of 1/N of the edges in each picture, the same for every seed; samples N to 2N - 1 are as well stratified.
-# "defaults" has all five as Blender has them. A threshold stops pixels for their own noise, whatever the preset. Neither
-# denoises, both take our pixel filter and path length.
+# Sets the options of a preset. "fair" is unbiased: no clamping, no light threshold, no adaptive sampling. Its
+# first sample is number N of N: Cycles sends sample 0 of every pixel through the centre instead of sampling
+# the filter. Such a sample would be an error of 1/N of the edges in each picture, the same for every seed.
+# Samples N to 2N - 1 are as well stratified. Preset "defaults" has Blender's values of these five options. A
+# `threshold` turns on adaptive sampling in both presets. Neither preset denoises. Both use our pixel filter
+# and path length.
 def choose_preset(cycles, preset, samples, threshold):
     fair = preset == "fair"
     cycles.sample_offset = samples if fair else 0

@@ -1,5 +1,5 @@
-// An error that is asked, beside Cycles' noise threshold: what is asked, what is claimed, and what is there. Errors are
-// root mean squares of what a display shows, from 0 to 1; the threshold of Cycles has no unit.
+// Error budget compared with Cycles' noise threshold: requested, predicted and real errors. Errors are root
+// mean squares of display values, from 0 to 1. The threshold of Cycles has no unit.
 
 import { show_progress } from "./measure.mjs";
 import { kOrrery } from "./command.mjs";
@@ -21,7 +21,7 @@ function display_error(a, b) {
   return Math.sqrt(squares / a.values.length);
 }
 
-// Of each renderer against its own pictures of many samples, whose error counts little beside those that are asked.
+// Returns a renderer's own reference of many samples. Its error is small compared with the requested ones.
 async function reference_of(render) {
   const pictures = [];
   for (const seed of [101, 102]) pictures.push((await render({ samples: kReferenceSamples, bounces: kBounces, seed })).picture);

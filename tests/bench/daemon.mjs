@@ -1,4 +1,4 @@
-// A service of a benchmark's own, and what is asked of it one by one.
+// Service process of a benchmark, and single requests to it.
 
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
@@ -7,7 +7,7 @@ import { kOrrery } from "./command.mjs";
 
 const kStart_ms = 20_000;
 
-// The two ports that the service's first lines name.
+// Resolves to the two ports in the service's first lines.
 function read_ports(child) {
   return new Promise((resolve, reject) => {
     let output = "";
@@ -27,8 +27,8 @@ function read_ports(child) {
   });
 }
 
-// Starts a service on these ports, or on free ones. Resolves to {port, health_port, pid, gone, signal(), stop()}; gone resolves to
-// its exit status, null if a signal ended it.
+// Starts a service on these ports (0: free ones). Resolves to {port, health_port, pid, gone, signal(),
+// stop()}. `gone` resolves to the exit status, or null after a signal.
 export async function start_service(words = [], { port = 0, health_port = 0 } = {}) {
   const child = spawn(kOrrery, ["serve", "--port", `${port}`, "--health-port", `${health_port}`, ...words.map(String)], {
     stdio: ["ignore", "pipe", "ignore"],
@@ -50,13 +50,13 @@ export async function start_service(words = [], { port = 0, health_port = 0 } = 
   }
 }
 
-// Processor seconds of a running process (Linux: clock ticks of 10 ms).
+// Returns the processor seconds of a running process (Linux: clock ticks of 10 ms).
 export function cpu_seconds(pid) {
   const fields = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
   return (Number(fields[11]) + Number(fields[12])) / 100;
 }
 
-// Sends a request on a connection of its own; resolves to the answer, whose body is still to be read.
+// Sends a request on a new connection. Resolves to the response, whose body is not read yet.
 export function send(port, method, path, headers = {}, body = undefined) {
   return new Promise((resolve, reject) => {
     const request = http.request({ host: "127.0.0.1", port, method, path, headers, agent: false }, resolve);
@@ -70,7 +70,7 @@ export async function read_text(response) {
   return text;
 }
 
-// Resolves to the scene's id.
+// Posts a scene file. Resolves to the scene's id.
 export async function post_scene(port, path) {
   const json = { "Content-Type": "application/json" };
   const response = await send(port, "POST", "/v1/scenes", json, readFileSync(path));
@@ -79,12 +79,12 @@ export async function post_scene(port, path) {
   return JSON.parse(text).id;
 }
 
-// Reads a stream of [length of the header, 4 bytes][header][PNG]. Calls `on_frame` with each header once its
-// picture is there; keeps no picture.
+// Parser of a stream of [length of the header, 4 bytes][header][PNG]. Calls `on_frame` with each header once
+// its picture has arrived. Stores no picture.
 export class FrameReader {
-  #begun = Buffer.alloc(0); // of a header that has not arrived whole
+  #begun = Buffer.alloc(0); // start of an incomplete header
   #header = null;
-  #picture_bytes = 0; // of the current PNG, still to come
+  #picture_bytes = 0; // missing bytes of the current PNG
 
   constructor(on_frame) {
     this.on_frame = on_frame;

@@ -1,15 +1,15 @@
-// How soon a drag shows: from a movement of the pointer to the preview drawn for it, less the service's own work on
-// that picture, in Chromium without a display.
+// Latency of a drag in Chromium without a display: from a pointer movement to the preview drawn for it, less
+// the service's own work on that picture.
 
 import { package_file, start_browser, start_daemon } from "../browser/support.mjs";
 
 const kScene = "paper";
 const kSeconds = 8;
-const kMoveMs = 16; // between movements, as a pointer of 60 Hz
+const kMoveMs = 16; // between movements, as of a 60 Hz pointer
 const kTargets = { p50: 25, p95: 50 }; // ms
 
-// Runs in the page: notes for each preview {input, asked, drawn, server_ms}, times in ms; `input` is the newest
-// movement before the request, `inputs` are all movements.
+// Runs in the page. Records for each preview {input, asked, drawn, server_ms}, times in ms. `input` is the
+// newest movement before the request, `inputs` are all movements.
 function instrument() {
   const notes = (window.notes = { inputs: [], previews: [] });
   let pending = null;
@@ -69,7 +69,7 @@ async function run() {
     await page.locator('#stage[data-shows="still"]').waitFor();
     await drag_for(page, kSeconds);
     const { inputs, previews } = await page.evaluate(() => window.notes);
-    // While the view glides on after a movement, later previews show it, too: the first counts.
+    // Counts the first preview of each movement: while the view glides on, later previews show it too.
     const first = previews.filter(({ input }, at) => input && previews[at - 1]?.input !== input);
     console.log(`\n${inputs.length} movements, ${previews.length} previews of ${kScene}, ${previews[0]?.width} pixels wide`);
     print_row("newest movement to its preview, less the service's work", first.map((p) => p.drawn - p.input - p.server_ms), kTargets);

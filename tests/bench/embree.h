@@ -10,16 +10,16 @@ namespace orrery::bench {
 
 class Embree {
  public:
-  // Builds in high quality. `robust`: its watertight mode.
+  // Builds in high quality. `robust`: Embree's watertight mode.
   Embree(const Mesh& mesh, bool robust);
   ~Embree();
   Embree(const Embree&) = delete;
 
   double build_s() const;
-  std::size_t bytes() const;  // held after building
+  std::size_t bytes() const;  // memory after building
 
-  double closest_in_packets(const RaySet& set) const;  // of 16, coherent
-  // One by one. `found`: how many met something.
+  double closest_in_packets(const RaySet& set) const;  // packets of 16 coherent rays
+  // Traces single rays. `found`: number of hits.
   double closest(const RaySet& set, std::size_t& found) const;
   double occluded(const RaySet& set, std::size_t& found) const;
 

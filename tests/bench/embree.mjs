@@ -1,5 +1,4 @@
-// Rays and builds beside Embree's, over meshes of the natures that users have: a table, the geometric mean, the worst,
-// and a chart.
+// Ray and build times compared with Embree's, on typical meshes: table, geometric mean, worst case and chart.
 
 import { mkdirSync, readdirSync, writeFileSync } from "node:fs";
 import { spawnSync } from "node:child_process";
@@ -8,21 +7,21 @@ import { ratio_chart } from "./ratio_chart.mjs";
 import { start_two_sided } from "./two_sided.mjs";
 
 const kProgram = "build/bench";
-const kSizes = [1_000, 70_000, 1_000_000], kUsualSize = 70_000; // triangles, of the subjects that are made
+const kSizes = [1_000, 70_000, 1_000_000], kUsualSize = 70_000; // triangles of generated subjects
 const kKinds = ["primary", "bounce", "bounce-4", "point", "area", "short"], kReach = 1, kAim = 1.2;
-const kMostBuilds = 3; // pairs of builds, which take long
+const kMostBuilds = 3; // limit of pairs of builds, which take long
 const kWidths = [26, 10, 10, ...kKinds.map(() => 10), 10];
 
 const cells = (values) => values.map((v, i) => (i === 0 ? v.padEnd(kWidths[i]) : v.padStart(kWidths[i]))).join("");
 const fixed = (value) => (value === undefined ? "-" : value.toFixed(2));
 const geometric_mean = (values) => Math.exp(values.reduce((sum, v) => sum + Math.log(v), 0) / values.length);
 
-// Ratios of theirs to ours, by kind, medians of interleaved pairs.
+// Returns the ratios theirs / ours by kind, medians of interleaved pairs.
 async function measure_case({ mesh, triangles, place, mode }, pairs) {
   const sides = await start_two_sided(kProgram, [mesh, String(triangles), place, mode]);
   const ratios = {};
   try {
-    // In ROBUST mode, Embree builds without spatial splits, whatever the quality asked for: no comparison.
+    // Skips builds in ROBUST mode, in which Embree builds without spatial splits at any quality.
     for (const kind of [...(mode === "robust" ? [] : ["build"]), ...kKinds].filter((one) => sides.facts.kinds[one])) {
       const found = [];
       if (kind !== "build") await Promise.all([await sides.ours(kind), await sides.theirs(kind)]);

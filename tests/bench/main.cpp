@@ -12,15 +12,15 @@
 #include "tests/bench/rays.h"
 #include "tests/support/batches.h"
 
-// Our hierarchy beside Embree's: the same mesh, the same rays, one thread.
+// Compares our BVH with Embree's: the same mesh, the same rays, one thread.
 //   bench SUBJECT|FILE TRIANGLES open|room default|robust [STRUCTURE]
 //   bench list
-// First prints what there is, in JSON: both sides, and the kinds of rays, "build" among them. Then for each
-// line of input, "ours KIND" or "theirs KIND", runs that side once and prints its CPU seconds.
+// Prints facts of both sides in JSON, with the kinds of rays and "build". Then, for each input line "ours
+// KIND" or "theirs KIND", runs that side once and prints its CPU seconds.
 namespace orrery::bench {
 namespace {
 
-constexpr std::size_t kFewestRays = 10'000;  // of a kind that is measured
+constexpr std::size_t kFewestRays = 10'000;  // kinds with fewer rays are skipped
 
 constexpr const char* kScene =
     R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 5], "look_at": [0, 0, 0]},
@@ -57,7 +57,7 @@ class Ours {
     return thread_seconds() - start;
   }
 
-  // Seconds. `hits`, `counts`: what was found and done.
+  // Returns CPU seconds. Sets `found` and adds to `counts`.
   double closest(const RaySet& set, Hits& found, AcceleratorCounts& counts) const {
     const auto batches = batches_of(set);
     std::vector<HitBatch<float>> hits(batches.size());
@@ -106,7 +106,8 @@ class Ours {
   World<float> world_;
 };
 
-// Both found as much, but for rays that graze an edge.
+// Throws Error if the numbers of hits differ by more than 0.1 % of the rays. Rays that graze an edge may
+// differ.
 void require_same(const std::string& kind, std::size_t ours, std::size_t theirs, std::size_t rays) {
   const std::size_t differ = ours > theirs ? ours - theirs : theirs - ours;
   if (differ * 1000 > rays)

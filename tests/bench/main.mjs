@@ -20,15 +20,18 @@ import { kSlowClients } from "./slow_clients.mjs";
 import { kStages } from "./stages.mjs";
 import { kReports as kStructureReports } from "./structures.mjs";
 
-// Each has: name; what, in one line; cost ("CPU s": processor seconds of the whole process, or "wall s");
-// reach and aim, the ratios to get to (null: none); needs, programs that must be there; and start(), which
-// makes ready and returns {ours(), theirs(), stop(), remark}. One call of ours or theirs is one run: {cost, cpu_s}.
+// Benchmarks. Each has
+//   name; what: one line
+//   cost: "CPU s" (processor seconds of the whole process) or "wall s"
+//   reach, aim: required and desired ratio (null: none)
+//   needs: required programs
+//   start() -> {ours(), theirs(), stop(), remark}. One call of ours() or theirs() is one run: {cost, cpu_s}.
 const kBenchmarks = [kNoise, kPaperVsPovray, kFlakeVsPovray, kOrbitHttp, ...kStages, ...kMotion];
 
 const kReports = [kEmbree, kCycles, kCyclesThreshold, kBudgets, ...kStructureReports, kCancel, kDrag, kSlowClients];
 const kAll = [...kBenchmarks, ...kReports];
 
-const kQuietLoad = 0.3; // above it others work on this machine too
+const kQuietLoad = 0.3; // load average of a busy machine
 const kUsage =
   "usage: tests/bench/run [NAME...] [--pairs N] [--json FILE] [--charts FOLDER] [--list]\n" +
   "                       [--meshes FOLDER] [--triangles N]      of embree: mesh files beside those that are made, one size\n" +
@@ -46,10 +49,10 @@ function whole_number(option, word) {
   return Number.isInteger(value) && value > 0 ? value : fail(`${option} expects a whole number > 0`);
 }
 
-// By its name, or by how it begins: "embree" names all of them.
+// Returns whether `word` is the name or a prefix of it: "embree" selects all of them.
 const goes_by = ({ name }, word) => name === word || name.startsWith(`${word}-`);
 
-// Those that count something, for some benchmarks only; they have defaults of their own.
+// Count options of some benchmarks, which have their own defaults.
 const kCounts = { "--triangles": "triangles", "--seeds": "seeds", "--samples": "samples", "--size": "size" };
 
 function read_arguments(words) {

@@ -1,4 +1,4 @@
-// Interleaved runs: a machine's speed drifts, the ratio of two runs side by side does not.
+// Interleaved runs: the speed of a machine drifts, but not the ratio of two neighbouring runs.
 
 export function median(values) {
   const sorted = [...values].sort((a, b) => a - b);
@@ -6,13 +6,13 @@ export function median(values) {
   return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
 }
 
-// One line on a terminal, which the next call writes over; "" clears it.
+// Shows one line on a terminal, which the next call overwrites. "" clears it.
 export function show_progress(text) {
   if (process.stderr.isTTY) process.stderr.write(`\r\x1b[K${text}`);
 }
 
-// `pairs` runs of each side in the order ABBA, after one of each that does not count. The ratio is that of
-// theirs to ours, pair by pair; seconds are medians.
+// Runs each side `pairs` times in the order ABBA, after a warm-up of each. The ratio is the median of theirs
+// / ours by pair. Seconds are medians.
 export async function measure(benchmark, pairs) {
   const sides = await benchmark.start();
   const ratios = [], ours_cpu_s = [], theirs_cpu_s = [];

@@ -12,10 +12,10 @@
 #include "core/load/load.h"
 #include "server/commands/asset_files.h"
 
-// What the programs of the benchmarks share.
+// Shared helpers of the benchmark programs.
 namespace orrery::bench {
 
-// Processor time of the calling thread.
+// Returns the processor seconds of the calling thread.
 inline double thread_seconds() {
   timespec used{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
@@ -28,8 +28,8 @@ inline std::shared_ptr<const Scene> load_scene_at(const std::string& path) {
   return load_scene(text, AssetFiles(std::filesystem::path(path).parent_path()));
 }
 
-// For each line of input, "ours" or "theirs": prints the seconds that `repeats` calls of seconds_of(ours)
-// make up.
+// Reads lines "ours" or "theirs" from standard input. Prints for each the sum of `repeats` calls of
+// seconds_of(is_ours).
 template <class SecondsOf>
 void answer_sides(int repeats, const SecondsOf& seconds_of) {
   for (std::string side; std::getline(std::cin, side);) {

@@ -7,7 +7,7 @@
 
 namespace orrery::bench {
 
-// Puts meshes together. Every quad and fan has vertices of its own.
+// Builder of meshes without shared vertices.
 struct MeshBuilder {
   Mesh mesh;
 
@@ -21,7 +21,7 @@ struct MeshBuilder {
     add_vertex(c);
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
-  // Corners in turn.
+  // Adds a quad by its corners in order.
   void add_quad(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
     add_triangle(a, b, c);
     add_triangle(a, c, d);
@@ -34,7 +34,7 @@ struct MeshBuilder {
                                      std::array{2, 3, 7, 6}, std::array{0, 2, 6, 4}, std::array{1, 3, 7, 5}})
       add_quad(corner(a), corner(b), corner(c), corner(d));
   }
-  // A block on a floor, turned about its vertical axis. `half`: of its side. Angle in radians.
+  // Adds a block on a floor, rotated about its vertical axis. `half`: half its side. `angle` in radians.
   void add_block(const Vec3d& foot, double half, double height, double angle) {
     const auto at = [&](double x, double y, double z) {
       return foot + Vec3d(half * (x * std::cos(angle) - z * std::sin(angle)), y * height,
@@ -48,7 +48,7 @@ struct MeshBuilder {
     }
     add_quad(at(-1, 1, -1), at(1, 1, -1), at(1, 1, 1), at(-1, 1, 1));
   }
-  // A square part of a plate, 2 `size` wide and 2 `half` thick about `center`, with a hole of a radius.
+  // Adds a square cell of a plate, 2 `size` wide and 2 `half` thick about `center`, with a round hole.
   void add_drilled_cell(const Vec3d& center, double size, double half, double radius, int segments) {
     const auto on_hole = [&](int i, double y) { return on_circle(center, radius, y, i, segments); };
     for (int i = 0; i < segments; ++i) {
@@ -56,7 +56,7 @@ struct MeshBuilder {
       for (const double y : {-half, half})
         add_triangle(on_hole(i, y), on_hole(i + 1, y), center + Vec3d(0, y, 0) + corner(size, i, segments));
     }
-    for (const double y : {-half, half})  // between the corners, from where the fan of each begins
+    for (const double y : {-half, half})  // fills the gaps between the fans of the corners
       for (int quarter = 0; quarter < 4; ++quarter) {
         const int i = (quarter * segments + 3) / 4;
         add_triangle(on_hole(i, y), center + Vec3d(0, y, 0) + corner(size, i - 1, segments),
@@ -70,14 +70,14 @@ struct MeshBuilder {
       for (const double y : {from, to}) add_triangle(center + Vec3d(0, y, 0), at(i, y), at(i + 1, y));
     }
   }
-  // The four sides of a square plate, 2 `size` wide and 2 `half` thick.
+  // Adds the four sides of a square plate, 2 `size` wide and 2 `half` thick.
   void add_plate_rim(double size, double half) {
     for (const double s : {-size, size}) {
       add_quad({s, -half, -size}, {s, half, -size}, {s, half, size}, {s, -half, size});
       add_quad({-size, -half, s}, {-size, half, s}, {size, half, s}, {size, -half, s});
     }
   }
-  // A vase turned on a wheel, of 4 segments^2 triangles.
+  // Adds a vase, a surface of revolution of 4 segments^2 triangles.
   void add_pot(const Vec3d& foot, double radius, double height, int segments) {
     const auto at = [&](int row, int i) {
       const double s = static_cast<double>(row) / segments;
@@ -93,7 +93,7 @@ struct MeshBuilder {
     const double angle = 2 * std::numbers::pi * (i % segments) / segments;
     return center + Vec3d(radius * std::cos(angle), y, radius * std::sin(angle));
   }
-  // The corner of the square nearest to the middle of a segment.
+  // Returns the corner of the square nearest to the middle of segment i.
   static Vec3d corner(double size, int i, int segments) {
     const double angle = 2 * std::numbers::pi * (i + 0.5) / segments;
     return Vec3d(std::cos(angle) < 0 ? -size : size, 0, std::sin(angle) < 0 ? -size : size);

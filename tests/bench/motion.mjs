@@ -1,4 +1,4 @@
-// Hierarchies that follow what moves, against ones built anew.
+// BVHs that are refitted to moving objects, compared with rebuilt ones.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import { kFolder, random_numbers, scene_of } from "./subjects.mjs";
@@ -6,7 +6,7 @@ import { start_two_sided } from "./two_sided.mjs";
 
 const kProgram = "build/motion";
 
-// A sheet of 72,000 triangles on which a wave passes.
+// Returns a scene with a waving sheet of 72,000 triangles.
 function cloth() {
   const side = 190;
   const sheet = (phase) =>
@@ -32,7 +32,7 @@ function cloth() {
   return scene_of("A waving sheet of 72,000 triangles", [mesh], [0, 2.5, 4]);
 }
 
-// 4,000 balls, each of which flies somewhere else.
+// Returns a scene with 4,000 balls, each of which flies to a different place.
 function swarm() {
   const random = random_numbers(11), at = () => [0, 1, 2].map(() => 8 * random() - 4);
   const scene = scene_of(

@@ -17,7 +17,7 @@ function command_line_run() {
 
 // ---- with HTTP
 
-// A service of its own for each run: nothing is left over from the one before.
+// Starts a new service for each run, so that no state carries over.
 async function http_run() {
   const service = await start_service(["--threads", kThreads, "--quiet"]);
   try {

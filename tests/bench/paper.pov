@@ -1,10 +1,11 @@
-// scenes/paper.json for POV-Ray 3.7: the same rays to the same depth. tests/povray holds the pictures equal.
+// scenes/paper.json for POV-Ray 3.7: the same rays to the same depth. tests/povray checks that the pictures
+// agree.
 #version 3.7;
 global_settings {
   assumed_gamma 1
   ambient_light rgb 0.4
   max_trace_level 6  // our depth 5: a camera ray has depth 0 there and level 1 here
-  adc_bailout 0      // no ray is too weak
+  adc_bailout 0      // traces all rays, however weak
 }
 background { rgb 0.4 }
 camera {
@@ -16,7 +17,7 @@ camera {
 }
 light_source { <1, 1, 1> * 1e5 rgb 2 parallel point_at 0 }
 
-// A metal by Schlick's approximation, from its index of refraction and its extinction.
+// Metal by Schlick's approximation, from its index of refraction and its extinction.
 #declare N = <0.14, 0.16, 0.13>;
 #declare K = <4.1, 2.3, 3.1>;
 #declare F0 = ((N - 1) * (N - 1) + K * K) / ((N + 1) * (N + 1) + K * K);

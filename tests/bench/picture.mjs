@@ -1,12 +1,12 @@
-// Linear pictures, read from OpenEXR files, and how far they lie apart.
+// Linear pictures from OpenEXR files, and their differences.
 
 import { readFileSync } from "node:fs";
 import { inflateSync } from "node:zlib";
 
 const kMagic = 20000630, kVersion = 2, kLongNames = 0x400, kFloat = 2;
-const kLinesOf = { 0: 1, 2: 1, 3: 16 }; // scan lines a block, by compression: none, ZIPS, ZIP
+const kLinesOf = { 0: 1, 2: 1, 3: 16 }; // scan lines per block, by compression: none, ZIPS, ZIP
 
-// Attributes by name, as the bytes of their values, and where they end.
+// Returns the attributes by name, as the bytes of their values, and the offset of their end.
 function read_header(file) {
   const attributes = {};
   let at = 8;
@@ -17,7 +17,7 @@ function read_header(file) {
     return found;
   };
   for (let name = word(); name; name = word()) {
-    word(); // the type, which the name tells
+    word(); // the type, which the name implies
     const size = file.readInt32LE(at);
     attributes[name] = file.subarray(at + 4, at + 4 + size);
     at += 4 + size;
@@ -25,7 +25,7 @@ function read_header(file) {
   return { attributes, end: at };
 }
 
-// Names of the channels, in the order of the file.
+// Returns the names of the channels in the order of the file. Throws Error unless all are 32-bit floats.
 function channels_of(list) {
   const names = [];
   for (let at = 0; list[at] !== 0; ) {
@@ -37,7 +37,8 @@ function channels_of(list) {
   return names;
 }
 
-// Undoes what ZIP and ZIPS do before they deflate: even bytes first, then odd ones, each less the one before.
+// Inflates a ZIP or ZIPS block and undoes its filter: even bytes first, then odd ones, each less the one
+// before.
 function unpack(packed) {
   const bytes = inflateSync(packed), half = (bytes.length + 1) >> 1, unpacked = Buffer.alloc(bytes.length);
   for (let i = 1; i < bytes.length; ++i) bytes[i] += bytes[i - 1] - 128;
@@ -45,8 +46,8 @@ function unpack(packed) {
   return unpacked;
 }
 
-// {width, height, values}: R, G and B of each pixel, row by row from the top. Throws for all but single scan line
-// pictures of floats, uncompressed or by ZIP.
+// Returns {width, height, values}: R, G and B of each pixel, row by row from the top. Throws Error unless the
+// file is a single-part scan line picture of floats, uncompressed or compressed by ZIP or ZIPS.
 export function read_exr(path) {
   const file = readFileSync(path);
   const is_plain = file.readInt32LE(0) === kMagic && (file.readInt32LE(4) & ~kLongNames) === kVersion;
@@ -72,7 +73,8 @@ export function read_exr(path) {
   return { width, height, values };
 }
 
-// The picture of the means of blocks of side x side pixels. REQUIRES: width and height are multiples of side.
+// Returns the picture of the means of blocks of side x side pixels. REQUIRES: width and height are multiples
+// of side.
 export function block_means({ width, height, values }, side) {
   if (side === 1) return { width, height, values };
   const across = width / side, means = new Float64Array((3 * across * height) / side);
@@ -83,14 +85,15 @@ export function block_means({ width, height, values }, side) {
   return { width: across, height: height / side, values: means };
 }
 
-// Mean, over pixels and channels, of (a - b) (c - d). All are of one size.
+// Returns the mean of (a - b) (c - d) over pixels and channels. REQUIRES: all pictures have one size.
 export function mean_product(a, b, c, d) {
   let sum = 0;
   for (let i = 0; i < a.values.length; ++i) sum += (a.values[i] - b.values[i]) * (c.values[i] - d.values[i]);
   return sum / a.values.length;
 }
 
-// The same mean and its standard error by the spread over pixels; the channels of a pixel go together.
+// Returns the same mean and its standard error from the spread over pixels. The channels of a pixel are
+// averaged.
 export function product_statistics(a, b, c, d) {
   const pixels = a.values.length / 3;
   let sum = 0, squares = 0;
@@ -104,7 +107,7 @@ export function product_statistics(a, b, c, d) {
   return { mean, error: Math.sqrt((squares / pixels - mean ** 2) / pixels) };
 }
 
-// R, G and B, each a mean over the picture.
+// Returns the means of R, G and B over the picture.
 export function channel_means({ values }) {
   const sums = [0, 0, 0];
   values.forEach((value, i) => (sums[i % 3] += value));

@@ -1,4 +1,5 @@
-// Scenes of spheres and planes in POV-Ray's language, for benchmarks. (tests/povray knows all of our scenes.)
+// Converter of scenes with spheres and planes to POV-Ray's language. tests/povray converts all kinds of
+// scenes.
 
 const vector = (v) => `<${v.join(", ")}>`;
 const plus = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
@@ -7,7 +8,7 @@ const scaled = (v, s) => v.map((x) => x * s);
 const unit = (v) => scaled(v, 1 / Math.sqrt(dot(v, v)));
 const cross = ([ax, ay, az], [bx, by, bz]) => [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
 
-// Unknown members of the scene are refused: a benchmark must not compare different scenes.
+// Throws Error on unknown members: a benchmark must not compare different scenes.
 function only(object, kinds) {
   const known = kinds[object.type] ?? [];
   const unknown = Object.keys(object).filter((key) => key !== "type" && !known.includes(key));

@@ -1,4 +1,4 @@
-// A chart of ratios as SVG: a line a row, the worst first; a dot a kind, on a logarithmic axis about 1.
+// SVG chart of ratios: one row per line, worst first, and one dot per kind on a logarithmic axis around 1.
 
 const kColors = ["#0b6e99", "#d9730d", "#0f7b6c", "#ad1a72", "#6940a5", "#8a6d1d"];
 const kLine = 17, kLeft = 190, kWidth = 620, kTop = 66, kTicks = [0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4];
@@ -7,7 +7,7 @@ const text = (x, y, words, { anchor = "start", size = 11, weight = "normal", col
   `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" font-size="${size}" text-anchor="${anchor}" font-weight="${weight}" ` +
   `fill="${color}">${words}</text>`;
 
-// rows: {name, ratios: {kind: ratio}}.
+// Returns the chart of rows {name, ratios: {kind: ratio}}.
 export function ratio_chart(title, rows, kinds) {
   const worst = ({ ratios }) => Math.min(...kinds.filter((k) => ratios[k]).map((k) => ratios[k]));
   const sorted = [...rows].sort((a, b) => worst(a) - worst(b));

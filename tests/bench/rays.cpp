@@ -8,7 +8,7 @@ namespace orrery::bench {
 namespace {
 
 constexpr int kSide = 512;      // pixels
-constexpr float kReach = 0.5f;  // of short rays
+constexpr float kReach = 0.5f;  // length of short rays
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 RaySet primary_rays(const Vec3f& eye) {
@@ -26,7 +26,8 @@ RaySet primary_rays(const Vec3f& eye) {
   return set;
 }
 
-// One ray from each hit, made by make(point just off the surface, normal towards where the ray came from).
+// Calls make(next, point, normal) for each hit, to add a ray. The point is just off the surface. The normal
+// is on the side of the incoming ray.
 template <class Make>
 RaySet from_hits(const Mesh& mesh, const RaySet& rays, const Hits& hits, const Make& make) {
   RaySet next;

@@ -1,4 +1,4 @@
-// Ours and Blender's Cycles, asked for pictures of one scene in turn.
+// Renders of one scene by ours and by Blender's Cycles.
 
 import { spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -8,14 +8,14 @@ import { createInterface } from "node:readline";
 import { kOrrery } from "./command.mjs";
 import { read_exr } from "./picture.mjs";
 
-const kThreads = 2; // of each, so that neither gains by a machine's number of cores
+const kThreads = 2; // for both, so that the number of cores favours neither
 const kAnswer = /^rendered (\S+)$/;
 
-// Blender is started once: it takes a second. Beside its answers it prints what is not for us.
+// Starts Blender once, which takes a second. Its other output is skipped.
 function start_blender(scene) {
   const words = ["-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P", "tests/bench/cycles_scene.py"];
   const child = spawn("blender", [...words, "--", scene], { stdio: ["pipe", "pipe", "ignore"] });
-  child.stdin.on("error", () => {}); // it ended: told below
+  child.stdin.on("error", () => {}); // reported by render()
   const ended = new Promise((resolve) => child.once("close", resolve));
   const lines = createInterface({ input: child.stdout })[Symbol.asyncIterator]();
   const render = async (order) => {
@@ -44,10 +44,13 @@ function render_ours(scene, { samples, error, seed, bounces, size, out }) {
   return { cpu_s: told.render_cpu_s, told };
 }
 
-// Returns {ours(order), theirs(order), stop()}. An order is {samples, seed, bounces, preset}; bounces counts the
-// reflections before the last light, so that 0 is direct light; preset is "fair" or "defaults" and concerns Cycles, as a
-// noise threshold does; of ours an error on a display may be asked in place of samples. Its answer is {cpu_s, picture}:
-// processor seconds of all threads, building included, and the picture; ours has what was told of it besides.
+// Returns {ours(order), theirs(order), stop()}. An order is {samples, seed, bounces, preset, threshold,
+// error}:
+//   bounces: reflections before the last light; 0 is direct light
+//   preset ("fair" or "defaults") and threshold (noise): for Cycles only
+//   error, in display values: replaces samples, for ours only
+// The result is {cpu_s, picture}, where cpu_s counts all threads and includes building. Ours adds its
+// statistics.
 export function start_renderers(scene, size) {
   const folder = mkdtempSync(join(tmpdir(), "renderers-"));
   const out = join(folder, "picture.exr");

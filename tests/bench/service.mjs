@@ -1,5 +1,5 @@
-// The service under load: tests/bench/run service [PROPERTY...]. Prints a table of properties, targets and what was
-// measured, and whether each target was met. A target missed is no failure: only what cannot be measured is.
+// Service benchmarks under load: tests/bench/run service [PROPERTY...]. Prints a table of properties with
+// target, measurement and verdict. Only a failed measurement is an error, not a missed target.
 
 import { writeFileSync } from "node:fs";
 import { availableParallelism, loadavg } from "node:os";
@@ -16,8 +16,8 @@ import { kSoak } from "./service/soak.mjs";
 import { kStart } from "./service/start.mjs";
 import { kViewers } from "./service/viewers.mjs";
 
-// Each has: name; what, in one line; seconds or times, how long it takes or how often it is done; and
-// run({seconds, times}), which resolves to {rows, remark}. A row: {what, target, measured, met}.
+// Properties. Each has name; what: one line; seconds or times: default duration or repetitions; and
+// run({seconds, times}), which resolves to {rows, remark}. A row is {what, target, measured, met}.
 const kProperties = [kBlockade, kMemory, kHealth, kOverload, kLeaves, kSigterm, kRestarts, kViewers, kCached, kStart, kSoak];
 
 const kUsage =

@@ -1,5 +1,5 @@
-// What normal clients notice of a thousand slow ones: slowhttptest attacks a service while others ask for the
-// page every 50 ms, each on a connection of its own.
+// Latency of normal clients next to a thousand slow ones. slowhttptest attacks a service, while normal
+// clients request the page every 50 ms on new connections.
 
 import { spawn } from "node:child_process";
 import { readdirSync } from "node:fs";
@@ -7,12 +7,12 @@ import http from "node:http";
 import { setTimeout as sleep } from "node:timers/promises";
 import { start_service } from "./daemon.mjs";
 
-const kSeconds = Number(process.env.BENCH_ATTACK_S ?? 60); // of each attack
-const kConnections = 1000, kRate = 200; // a second
+const kSeconds = Number(process.env.BENCH_ATTACK_S ?? 60); // for each attack
+const kConnections = 1000, kRate = 200; // kRate: per second
 const kEvery_ms = 50;
-const kSpare = 4; // descriptors that come and go with the samples themselves
+const kSpare = 4; // descriptors of the normal clients
 
-// What the modes of slowhttptest do, and to which path.
+// Modes of slowhttptest, and the path that each attacks.
 const kAttacks = [
   { mode: "-H", name: "slow heads", path: "/", more: [] },
   { mode: "-B", name: "slow bodies", path: "/v1/scenes", more: [] },
@@ -22,7 +22,7 @@ const kAttacks = [
 
 const descriptors = (pid) => readdirSync(`/proc/${pid}/fd`).length;
 
-// One normal client: resolves to {ok, ms}.
+// Sends one normal request. Resolves to {ok, ms}.
 function ask(port) {
   const start = performance.now();
   return new Promise((resolve) => {
@@ -34,7 +34,7 @@ function ask(port) {
   });
 }
 
-// Runs the attack again and again, as it ends early when all its connections were closed.
+// Repeats the attack, which ends early once all its connections are closed. Resolves to the number of runs.
 async function attack_until(end, port, { mode, path, more }) {
   const words = [mode, "-c", kConnections, "-r", kRate, "-i", 5, "-u", `http://127.0.0.1:${port}${path}`, "-v", 0, ...more];
   let runs = 0;
@@ -58,7 +58,7 @@ async function sample_until(end, port, pid) {
   return { answers: await Promise.all(asked), most };
 }
 
-// Seconds until the descriptors are back, or Infinity.
+// Resolves to the seconds until the descriptors are back at `before`, or Infinity after 30 s.
 async function back_after(pid, before) {
   const start = performance.now();
   const seconds = () => (performance.now() - start) / 1000;

@@ -1,4 +1,4 @@
-// The stages that may stand in front of a structure, against the structure alone.
+// Stages in front of a structure, compared with the structure alone.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import { kFolder, random_numbers, scene_of, write_ball, write_subjects } from "./subjects.mjs";
@@ -6,7 +6,8 @@ import { start_two_sided } from "./two_sided.mjs";
 
 const kProgram = "build/stages";
 
-// A few large balls keep 16 lamps off a meadow of small ones: where prediction has most to win.
+// Writes a scene in which a few large balls shade a meadow of small ones from 16 lamps, the best case of
+// prediction.
 function write_shade() {
   mkdirSync(kFolder, { recursive: true });
   const random = random_numbers(7), at = () => 8 * random() - 4;
@@ -44,7 +45,7 @@ function remark_of({ rays, ray_s, occluded, proposals, proofs, build_ms }, stage
   );
 }
 
-// `asked`: the program's words about what stands in front of which structure on which rays.
+// `asked`: arguments of the program, such as structure, stage and predictor.
 function comparison(name, what, subject, asked) {
   return {
     name,

@@ -1,5 +1,5 @@
-// Tables and charts of the structures: all of them on scenes of different nature, and the one that auto takes
-// for many primitives on ever more triangles.
+// Tables and charts of the structures: all structures on different kinds of scenes, and bvh on growing
+// numbers of triangles.
 
 import { spawnSync } from "node:child_process";
 import { mkdirSync, writeFileSync } from "node:fs";
@@ -124,5 +124,5 @@ const kGrowth = {
   },
 };
 
-// Reports of one side alone: name, what, and run({pairs, charts}).
+// Reports without a peer: name, what, and run({pairs, charts}).
 export const kReports = [kStructures, kGrowth].map((report) => ({ ...report, needs: [kProgram] }));

@@ -19,8 +19,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kRoomReach = 3;  // half the side of the cube
 const Vec3f kUnderCeiling(0, 0.55f, 0);
 
-// A closed sphere with bumps of several sizes, its triangles alike. `jitter`: how far vertices stray along
-// the surface, beside the distance of neighbours.
+// Returns a closed sphere of similar triangles, with bumps of several sizes. `jitter`: maximum displacement
+// of vertices along the surface, relative to the distance of neighbours.
 Mesh bumpy_sphere(int triangles, double jitter) {
   const int side = std::max(3, static_cast<int>(std::sqrt(triangles / 2.0)));
   std::mt19937 random(2);
@@ -53,7 +53,7 @@ Mesh bumpy_sphere(int triangles, double jitter) {
 
 Subject ball(int triangles) { return {bumpy_sphere(triangles, 0)}; }
 
-// As laser scanners leave it: triangles of all shapes over folds.
+// Laser scan: triangles of all shapes over folds.
 Subject scan(int triangles) {
   Mesh mesh = bumpy_sphere(triangles, 0.45);
   for (Vec3f& p : mesh.positions) {
@@ -65,11 +65,11 @@ Subject scan(int triangles) {
   return {std::move(mesh)};
 }
 
-// A plate with holes and a shaft on it, as exported from a CAD program: large flat faces, and round ones of
-// triangles as long as they are and a hundredth as wide.
+// CAD export: a plate with holes and shafts. Large flat faces, and round ones of triangles a hundredth as
+// wide as long.
 Subject cad(int triangles) {
-  constexpr int kHoles = 5;  // a side
-  // Two fans and a wall a hole, walls and caps of the shafts: 8 triangles a segment and hole.
+  constexpr int kHoles = 5;  // per side
+  // 8 triangles per segment and hole: two fans and a wall per hole, walls and caps of the shafts.
   const int segments = std::max(8, static_cast<int>(triangles / (8.0 * kHoles * kHoles)));
   MeshBuilder out;
   for (int row = 0; row < kHoles; ++row)
@@ -83,7 +83,7 @@ Subject cad(int triangles) {
   return {std::move(out.mesh)};
 }
 
-// Leaves in crowns, much air between them.
+// Foliage: leaves in crowns, with much empty space.
 Subject foliage(int triangles) {
   constexpr int kCrowns = 14;
   std::mt19937 random(3);
@@ -102,7 +102,7 @@ Subject foliage(int triangles) {
   return {std::move(out.mesh)};
 }
 
-// Ribbons a thousandth as wide as they are long.
+// Hair: ribbons 1/400 as wide as long.
 Subject hair(int triangles) {
   constexpr int kPieces = 8;
   std::mt19937 random(4);
@@ -123,7 +123,7 @@ Subject hair(int triangles) {
   return {std::move(out.mesh)};
 }
 
-// The Cornell box: 5 walls and two blocks, whatever number is asked for.
+// Cornell box: 5 walls and two blocks, for any number of triangles.
 Subject cornell(int) {
   MeshBuilder out;
   const Vec3d a(-0.57, -0.57, -0.57), b(0.57, 0.57, 0.57);
@@ -137,7 +137,7 @@ Subject cornell(int) {
   return {std::move(out.mesh), Vec3f(0, 0, 1.9f), kUnderCeiling, 0.25f};
 }
 
-// A room seen from inside: large walls, a table with things on it, shelves of finely modelled pots.
+// Room seen from inside: large walls, a table with pots, and shelves of finely tessellated pots.
 Subject interior(int triangles) {
   MeshBuilder out;
   out.add_box({-0.57, -0.57, -0.57}, {0.57, 0.57, 0.57});

@@ -6,7 +6,7 @@
 
 #include "core/math/vec3.h"
 
-// Meshes of the natures that users have, for both sides of a comparison.
+// Typical meshes of users, for both sides of a comparison.
 namespace orrery::bench {
 
 struct Mesh {
@@ -14,7 +14,7 @@ struct Mesh {
   std::vector<std::array<unsigned, 3>> triangles;
 };
 
-// A mesh in the unit sphere, where to look at it from, and a light: its middle and the side of its square.
+// Mesh in the unit sphere, eye point, and a square light given by its centre and side.
 struct Subject {
   Mesh mesh;
   Vec3f eye{0.7f, 0.9f, 2.6f};
@@ -22,14 +22,14 @@ struct Subject {
   float light_size = 0.8f;
 };
 
-// The names that subject_of() knows beside mesh files.
+// Returns the names of the generated subjects.
 std::vector<std::string> subject_names();
 
-// A generated subject of about that many triangles, or a mesh file (OBJ, PLY, STL, GLB), scaled into the unit
-// sphere, whose triangles are as many as they are. Throws Error if it is neither.
+// Returns a generated subject of about `triangles` triangles, or a mesh file (OBJ, PLY, STL, GLB) scaled into
+// the unit sphere with all its triangles. Throws Error if `name` is neither.
 Subject subject_of(const std::string& name, int triangles);
 
-// Adds the 12 triangles of a cube around the subject and its eye, so that every ray meets something.
+// Adds the 12 triangles of a cube around the subject and its eye, so that every ray hits something.
 void put_in_room(Mesh& mesh);
 
 }  // namespace orrery::bench

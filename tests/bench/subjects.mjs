@@ -1,11 +1,11 @@
-// Scenes of different nature for measuring structures, written to a folder when they are asked for.
+// Generated scenes of different kinds for measuring structures.
 
 import { copyFileSync, existsSync, mkdirSync, writeFileSync } from "node:fs";
 import { run_command } from "./command.mjs";
 
 export const kFolder = "build/bench-scenes";
 
-// Numbers in [0, 1), the same every time (mulberry32).
+// Returns a generator of numbers in [0, 1), determined by `seed` (mulberry32).
 export function random_numbers(seed) {
   let state = seed;
   return () => {
@@ -16,7 +16,7 @@ export function random_numbers(seed) {
   };
 }
 
-// A scene of these objects, lit and seen from `eye`.
+// Returns a lit scene of `objects`, seen from `eye`.
 export function scene_of(title, objects, eye, look_at = [0, 0, 0]) {
   return {
     version: 1,
@@ -38,7 +38,7 @@ export function scene_of(title, objects, eye, look_at = [0, 0, 0]) {
   };
 }
 
-// A binary PLY file. `vertex(i)` and `triangle(i)` give threes.
+// Writes a binary PLY file. `vertex(i)` and `triangle(i)` return three numbers each.
 function write_ply(path, vertices, vertex, triangles, triangle) {
   const head =
     "ply\nformat binary_little_endian 1.0\n" +
@@ -54,7 +54,7 @@ function write_ply(path, vertices, vertex, triangles, triangle) {
   writeFileSync(path, bytes);
 }
 
-// A closed sphere of about that many triangles, with bumps of several sizes.
+// Writes a closed sphere of about `triangles` triangles, with bumps of several sizes.
 function write_bumpy_sphere(path, triangles, radius) {
   const side = Math.max(3, Math.round(Math.sqrt(triangles / 2)));
   const vertex = (i) => {
@@ -74,7 +74,8 @@ function write_bumpy_sphere(path, triangles, radius) {
   write_ply(path, side * (side + 1), vertex, 2 * side * side, triangle);
 }
 
-// What each writes: <name>.json in kFolder, and what that needs. Returns the scene, or a file to be copied.
+// Makers of the subjects. A maker may write files to kFolder. It returns the scene, the path of a scene to
+// copy, null if it has written <name>.json itself, or undefined if a file is missing.
 const kSubjects = {
   few: () => "scenes/glass.json",
   flake: () => {
@@ -138,7 +139,7 @@ const kSubjects = {
   },
 };
 
-// A bumpy ball of about that many triangles.
+// Writes a bumpy ball of about `triangles` triangles. Returns the path of the scene.
 export function write_ball(triangles) {
   mkdirSync(kFolder, { recursive: true });
   const name = `ball-${triangles}`, path = `${kFolder}/${name}.json`;
@@ -148,7 +149,7 @@ export function write_ball(triangles) {
   return path;
 }
 
-// Writes all subjects; returns [name, path] of those that could be.
+// Writes all subjects. Returns [name, path] of each written subject.
 export function write_subjects() {
   mkdirSync(kFolder, { recursive: true });
   const written = [];

@@ -1,11 +1,11 @@
-// A program that holds both sides of a comparison. Its first line of output tells facts, in JSON; then each
-// line of input, "ours" or "theirs" and the kind of run if there are several, asks it for one, which it answers with
-// the CPU seconds that took.
+// Driver of a program that runs both sides of a comparison. The program's first output line is facts in JSON.
+// Each input line requests a run: "ours" or "theirs", and the kind of run if there are several. The program
+// replies with the CPU seconds of the run.
 
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 
-// Returns {facts, ours(), theirs(), stop()}.
+// Starts the program. Resolves to {facts, ours(), theirs(), stop()}.
 export async function start_two_sided(program, words) {
   const child = spawn(program, words, { stdio: ["pipe", "pipe", "inherit"] });
   const ended = new Promise((resolve) => child.once("close", resolve));

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// A service that asks for a token. The test stands in front of the service and refuses what carries none.
+// Service with a token, simulated by rejecting requests without one.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -11,7 +11,7 @@ const { daemon, browser } = await start_both(after);
 const kToken = "correct-horse";
 const kHash = "#scene=paper&playing=0&samples=1&az=20";
 
-// Opens the page, whose requests to v1 are refused without the token; `refused` lists their paths.
+// Opens the page and rejects its requests to v1 without the token. `refused` and `passed` list their paths.
 async function guarded_page(options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Speed against accuracy in the page: the chart, its slider, the plan in the link, budgets and what is unknown.
+// Speed and accuracy in the page: chart, slider, plans in links, budgets and unknown errors.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -13,7 +13,7 @@ const text = (page, id) => page.locator(`#${id}`).textContent();
 const shown = (page) => page.locator("#overlay").getAttribute("data-shows");
 const query = (address) => new URLSearchParams(address.split("?")[1]);
 
-// Goes to the first stop; resolves to the address of its picture once it is shown.
+// Goes to the first stop. Resolves to the address of its picture once it is shown.
 async function first_stop(page, slider) {
   const last = await shown(page);
   await slider.press("Home");
@@ -369,7 +369,7 @@ page_test(
     await make.click();
     await eventually("the words", async () => /No chart: Too many jobs\. 2 jobs/.test(await text(page, "stop-note")));
     await page.unroute("**/charts");
-    await page.route("**/v1/jobs/*/events", () => {}); // never answers
+    await page.route("**/v1/jobs/*/events", () => {}); // never responds
     await make.click();
     await page.getByRole("button", { name: "Cancel the chart" }).click();
     await page.getByRole("button", { name: "Chart speed against accuracy" }).waitFor();

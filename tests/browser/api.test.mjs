@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// What the page makes of the service's answers.
+// Responses of the service as the page parses them.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

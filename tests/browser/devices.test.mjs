@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// The page on other devices than a desk's: phones, tablets, forced colours, the keyboard alone.
+// Page on phones and tablets, with forced colours, and by keyboard only.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -35,7 +35,7 @@ page_test(
   touch(360, 740),
 );
 
-// A finger's way over the stage, from its middle.
+// Swipes a finger by (dx, dy) pixels from the middle of the stage.
 async function swipe(page, dx, dy) {
   const device = await page.context().newCDPSession(page);
   const { x, y } = await middle(page);
@@ -53,7 +53,7 @@ page_test(
     await rest(page);
     await swipe(page, 0, -100);
     await eventually("the page scrolls", () => page.evaluate(() => scrollY > 50));
-    await page.waitForTimeout(500); // what was flung comes to rest
+    await page.waitForTimeout(500); // inertial scrolling ends
     await rest(page);
     const scrolled = await hash_of(page);
     assert.deepEqual([scrolled.az, scrolled.el], ["0", "0"]);
@@ -94,7 +94,7 @@ for (const [device, options, said, unsaid] of [
   );
 }
 
-// Controls that are smaller than a finger.
+// Returns the visible controls that are under 44 x 44 pixels.
 const small = (page) =>
   page.evaluate(() =>
     [...document.querySelectorAll("button, a.button, select, input")]

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Every sample scene, in a browser slowed down four times: what the stage shows from the click on.
+// Contents of the stage from the click on a sample scene, in a browser slowed down four times.
 
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
@@ -32,7 +32,7 @@ test("a scene that is chosen is seen at once: its thumbnail, then a draft, never
     const first = log.findIndex(({ width }) => width > 0);
     assert.ok(first > 0, `${name}: the picture before is gone in the frame after the click`);
     const thumbnails = new Set(log.slice(0, first).map(({ thumbnail }) => thumbnail));
-    thumbnails.delete(""); // it may be on its way
+    thumbnails.delete(""); // the thumbnail may still be loading
     assert.ok([...thumbnails].every((file) => file === `${name}.webp`), [...thumbnails].join());
   }
   assert.deepEqual(faults, []);

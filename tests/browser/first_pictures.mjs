@@ -1,7 +1,8 @@
 #!/usr/bin/env node
-// Prints, as Markdown, how soon the page shows each sample scene after a click on its card, and how many frames a second
-// a drag and an orbit have: first_pictures.mjs [--size 1440x900] [--slow TIMES] [NAME...]
-// --slow: the browser's processor is slowed down so many times, the service's is not.
+// Prints a Markdown table of the sample scenes: time from the click to the first picture, and frames per
+// second of a drag and of an orbit.
+// first_pictures.mjs [--size 1440x900] [--slow TIMES] [NAME...]
+// --slow: factor by which the browser's processor is slowed down, not the service's.
 
 import { parseArgs } from "node:util";
 import { eventually, open_page, skip_without_browser, start_browser, start_daemon } from "./support.mjs";
@@ -29,7 +30,7 @@ async function measure(page, name) {
   const log = await page.evaluate(() => window.stage_log);
   const first = log.find(({ width: pixels }) => pixels > 0);
   const thumbnail = log.find((entry) => entry.thumbnail === `${name}.webp`);
-  await page.waitForTimeout(1500); // the orbit finds its size
+  await page.waitForTimeout(1500); // the orbit settles on its size
   await page.evaluate(() => void (window.pictures = []));
   await page.waitForTimeout(kOrbit_ms);
   const orbit = motion(await page.evaluate(() => window.pictures));

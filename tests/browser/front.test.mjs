@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// What the page makes of a chart and of what a picture tells of its error: modules that need no browser.
+// Page modules for charts and error bounds that need no browser.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// What the page does with a link that cannot be shown as it is: it names what is wrong and offers a way out.
+// Links that cannot be shown: the page names the error and offers a way out.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -75,7 +75,7 @@ for (const playing of [0, 1]) {
     ["technique=xx", /technique.*got "xx"/, "Use the scene’s own technique"],
     ["samples=65000", /samples.*got 65000/, "Choose samples automatically"],
   ]) {
-    if (playing === 0 && setting.startsWith("samples")) continue; // a picture at rest keeps within the limit
+    if (playing === 0 && setting.startsWith("samples")) continue; // a picture at rest stays within the limit
     const [key] = setting.split("=");
     page_test(
       `a link that asks for ${setting}, playing=${playing}, offers the usual ${key}`,

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// The page's modules that need no browser, one by one.
+// Page modules that need no browser.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -64,7 +64,8 @@ test("a stream that breaks off inside a frame is a failure worth a new attempt",
 
 const kPixels = 600; // height of the picture in these tests
 
-// Lets `camera` glide, `rate` frames a second. Returns the frames until it rests, at most ten seconds of them.
+// Lets `camera` glide at `rate` frames per second. Returns the frames until it rests. Fails after ten
+// seconds.
 function glide(camera, rate = 60, each = () => {}) {
   for (let frames = 1; frames <= 10 * rate; frames += 1) {
     if (!camera.step(1 / rate, kPixels)) return frames;
@@ -77,7 +78,7 @@ test("the camera glides to its goal and stops there", () => {
   const camera = new OrbitCamera();
   camera.rotate(90, 0);
   assert.equal(camera.step(1 / 60, kPixels), true);
-  const pixel = (2 / kPixels) * (180 / Math.PI); // by which a turn moves the edge of the picture by a pixel
+  const pixel = (2 / kPixels) * (180 / Math.PI); // turn that moves the edge of the picture by a pixel
   near(camera.view.azimuth, 4.5 + pixel, 1e-9, "a twentieth of the way, and a pixel");
   camera.rotate(0, 30);
   camera.dolly(0.5);

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Pictures over the stage and budgets, and what comes between: an orbit, another scene, other keys, who writes.
+// Overlay pictures and budgets, interrupted by orbits, other scenes, other keys and typing.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -18,7 +18,7 @@ page_test(
     await charted(page);
     for (const id of ["notice", "stage-problem", "hint"]) {
       const on_top = await page.evaluate((name) => {
-        document.getElementById("overlay").style.pointerEvents = "auto"; // else it is never hit
+        document.getElementById("overlay").style.pointerEvents = "auto"; // lets elementFromPoint() hit it
         const part = document.getElementById(name);
         Object.assign(part.style, { pointerEvents: "auto", minHeight: "20px" });
         part.hidden = false;
@@ -45,7 +45,7 @@ page_test(
     await page.locator("#make-chart").waitFor({ state: "visible" });
     assert.equal(await page.locator("#overlay").isVisible(), false);
     await charted(page);
-    await page.route(/scenes\/0{64}/, () => {}); // never answers
+    await page.route(/scenes\/0{64}/, () => {}); // never responds
     await page.evaluate((id) => (location.hash = `scene=${id}`), "0".repeat(64));
     await page.locator("#overlay").waitFor({ state: "hidden" });
     assert.equal(await page.locator("#stop").isVisible(), false);
@@ -109,7 +109,7 @@ page_test(
   "playing=0",
   async (page) => {
     await rest(page);
-    await page.route("**/frame.png?*seconds=2*", () => {}); // never answers
+    await page.route("**/frame.png?*seconds=2*", () => {}); // never responds
     await page.getByRole("button", { name: "2 s" }).click();
     await page.keyboard.down("e");
     await page.locator('#overlay[data-shows$="view=bound"]').waitFor({ state: "visible" });

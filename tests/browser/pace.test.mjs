@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// How fast and how fine the page asks for pictures.
+// Frame rate and quality of the pictures that the page requests.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -10,8 +10,8 @@ const { Pace } = await load("pace.js");
 const { passes, rungs, samples_at_rest } = await load("quality.js");
 const { Refiner } = await load("refine.js");
 
-// Plays an orbit for `seconds` whose frames take `frame_ms(level, now)`, at levels of these `costs`. Returns its pace
-// and the `starts` of its streams, [time, level, fps] each.
+// Plays an orbit for `seconds` whose frames take `frame_ms(level, now)`. `costs`: relative costs of the
+// levels. Returns its pace and the `starts` of its streams, each [time, level, fps].
 function paced(frame_ms, costs, seconds, speed = 20) {
   const pace = new Pace();
   const starts = [[0, pace.level, pace.fps]];

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// The page in Chromium against a daemon of its own: looking, moving, taking pictures along.
+// Page in Chromium with its own daemon: viewing, moving, options, warnings.
 
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
@@ -113,7 +113,7 @@ page_test(
   async (page) => {
     await rest(page);
     const { width } = await page.locator("#stage").boundingBox();
-    // Requests are counted inside the page: the driver may report one before it reports the end of the last.
+    // Counts requests inside the page: the driver may report a request before the end of the last one.
     await page.evaluate(() => {
       const real_fetch = window.fetch;
       window.previews = [];
@@ -133,7 +133,7 @@ page_test(
     });
     await page.evaluate(() => {
       const button = document.querySelector('[data-do="right"]');
-      for (let n = 0; n < 4; n += 1) button.click(); // at once: a slow hand may let the view rest on the way
+      for (let n = 0; n < 4; n += 1) button.click(); // all at once, so that the view does not rest in between
     });
     const at_rest = await rest(page);
     const previews = await page.evaluate(() => window.previews);
@@ -358,11 +358,11 @@ for (const colorScheme of ["light", "dark"]) {
         await page.route("**/frame.png?*", (route) =>
           route.fulfill({ status: 500, json: { title: "Out of luck", detail: "No light.", request_id: "r1" } }),
         );
-        await page.locator("#size").selectOption("half"); // what may take long is asked for as a job
+        await page.locator("#size").selectOption("half"); // smaller, so that it does not become a job
         await page.locator("#stage-problem").waitFor({ state: "visible" });
         await check("the picture's error");
         await page.unroute("**/frame.png?*");
-        await page.route("**/frame.png?*", () => {}); // hangs
+        await page.route("**/frame.png?*", () => {}); // never responds
         await page.locator("#size").selectOption("fit");
         await page.locator("#size").selectOption("half");
         await page.getByRole("progressbar").waitFor();
@@ -376,7 +376,7 @@ for (const colorScheme of ["light", "dark"]) {
 
 const kWarning = "Nothing is hit; The camera is inside an object";
 
-// The service's word on the pictures that `ask` is true for.
+// Adds a warning to the pictures for whose URL `ask` returns true.
 async function warn(page, ask) {
   await page.route(/(frame\.png|orbit)\?/, async (route) => {
     if (!ask(new URL(route.request().url()))) return route.continue();
@@ -408,7 +408,7 @@ page_test("the warning of an orbit stands under the stage", "playing=0", async (
   await rest(page);
   await page.route(/orbit\?/, async (route) => {
     const url = new URL(route.request().url());
-    url.searchParams.set("frames", "2"); // the answer is passed on once it is whole
+    url.searchParams.set("frames", "2"); // the response is passed on once it is complete
     const response = await route.fetch({ url: url.href });
     return route.fulfill({ response, headers: { ...response.headers(), "orrery-warning": kWarning } });
   });

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Panning: what lies at the target's distance stays under the pointer, whatever the gesture.
+// Panning: points at the target's distance stay under the pointer in every gesture.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -17,7 +17,7 @@ import {
 const { daemon, browser } = await start_both(after);
 const page_test = page_tests(browser, daemon);
 
-// A small white ball at the point that is looked at, before black.
+// Scene with a small white ball at the look-at point, on black.
 const white = [1, 1, 1];
 const ball = (camera) =>
   JSON.stringify({
@@ -37,7 +37,7 @@ async function post_ball(camera) {
   return (await response.json()).id;
 }
 
-// Where the ball is on the canvas, in pixels of the stage from its middle.
+// Returns the position of the ball on the stage, in pixels from its middle.
 async function ball_at(page) {
   await rest(page);
   return page.evaluate(() => {

@@ -1,6 +1,5 @@
 #!/usr/bin/env node
-// The picture at rest: finer and finer, with its progress, stopped by the first touch. What a job would measure is
-// played by the test.
+// Refinement of the picture at rest: passes, progress and cancellation by input. Jobs are simulated.
 
 import assert from "node:assert/strict";
 import { after } from "node:test";
@@ -17,12 +16,12 @@ import {
 const { daemon, browser } = await start_both(after);
 const page_test = page_tests(browser, daemon);
 
-const kFull = 879; // pixels, the width of the stage in these tests' window
+const kFull = 879; // width of the stage in these tests, in pixels
 const is_frame = (url) => url.pathname.endsWith("/frame.png");
 const is_refinement = (url) => url.pathname.endsWith("/refinement");
 const samples_of = (url) => Number(url.searchParams.get("samples"));
 
-// Passes pictures on as if a full one of one sample had taken `ms`, and notes the samples that full ones are asked with.
+// Passes pictures on as if a full-size sample took `ms`. Returns the list of samples of full-size requests.
 async function watch(page, ms = 1) {
   const asked = [];
   await page.route(is_frame, async (route) => {
@@ -37,7 +36,7 @@ async function watch(page, ms = 1) {
   return asked;
 }
 
-// Takes the stream of a refinement apart: [{header, bytes}] with all bytes of a frame.
+// Splits a refinement stream into frames {header, png}.
 function frames_of(body) {
   const frames = [];
   for (let at = 0; at < body.length;) {
@@ -59,7 +58,7 @@ function body_of(frames) {
   );
 }
 
-// Notes the refinements asked for, {samples, passes}, and passes them on as `change(frames)` would have them.
+// Passes refinements on through `change(frames)`. Returns the list of requests as {samples, passes}.
 async function watch_refinements(page, change = (frames) => frames) {
   const asked = [];
   await page.route(is_refinement, async (route) => {
@@ -178,11 +177,11 @@ page_test("figures of the error move nothing", "playing=0&samples=1", async (pag
   }
 });
 
-// Refuses refinements, as if they took longer than a request may.
+// Rejects refinements as if they exceeded the limit of a request.
 const refuse_refinements = (page) =>
   page.route(is_refinement, (route) => route.fulfill({ status: 422, json: { title: "Too much", detail: "request_rays" } }));
 
-// Plays the service's jobs. Each runs until `finish()`; `told` sends an event to it.
+// Simulates the service's jobs: sends `events`, and records `posted` and `deleted` jobs.
 async function play_jobs(page) {
   const jobs = { posted: [], deleted: [], events: [] };
   const at = (state) => ({ id: "j1", frames: 1, frames_done: 0, tiles: 200, elapsed_s: 2, ...state });
@@ -195,7 +194,7 @@ async function play_jobs(page) {
     jobs.deleted.push(route.request().method());
     return route.fulfill({ status: 204 });
   });
-  // Events come as one body: the page is to read them in turn, and a body that ends without the last one as broken.
+  // All events come in one body. The page must read them in turn, and reject a body that lacks the last one.
   await page.route("**/v1/jobs/j1/events", (route) => {
     const lines = jobs.events.map(([name, state], id) => `id: ${id}\nevent: ${name}\ndata: ${JSON.stringify(at(state))}\n\n`);
     return route.fulfill({ contentType: "text/event-stream", body: `: hello\n\n${lines.join("")}` });
@@ -217,7 +216,7 @@ page_test(
       ["frame", { state: "running", tiles_done: 200, frames_done: 1 }],
       ["done", { state: "done", tiles_done: 200, frames_done: 1, remaining_s: 0 }],
     ];
-    // The picture comes late, so that the bar can be looked at.
+    // Records the values and texts of the progress bar.
     const told = await page.evaluateHandle(() => {
       const bar = document.getElementById("busy");
       const texts = [];
@@ -256,7 +255,7 @@ page_test(
     await watch(page, 1000);
     await refuse_refinements(page);
     const jobs = await play_jobs(page);
-    await page.route("**/v1/jobs/j1/events", () => {}); // never answers
+    await page.route("**/v1/jobs/j1/events", () => {}); // never responds
     await look_elsewhere(page);
     await rest(page);
     await page.locator("#samples").selectOption("4");

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Scenes of one's own in the page, and what it does when the service goes away, forgets, or is not looked at.
+// Pasted scenes, and the page after a lost connection, an eviction, or in a hidden tab.
 
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
@@ -18,14 +18,14 @@ skip_without_browser();
 const browser = await start_browser();
 after(() => browser.close());
 
-// Runs `body(page, daemon)` on a page of a daemon that no other test uses.
+// Declares a test that runs `body(page, daemon)` with its own daemon.
 function daemon_test(name, hash, body) {
   test(name, async () => {
     const daemon = await start_daemon();
     const { page, faults, close } = await open_page(browser, `${daemon.url}#${hash}`);
     try {
       await body(page, daemon);
-      // Refusals and lost connections are what these tests provoke.
+      // Error statuses and lost connections are expected.
       assert.deepEqual(
         faults.filter((fault) => !/Failed to load resource|net::ERR_/.test(fault)),
         [],
@@ -110,7 +110,7 @@ daemon_test("a late answer about an older text is dropped", "playing=0&samples=1
   const good = await page.locator("#text").inputValue();
   const held = [];
   await page.route("**/v1/scenes", (route) => {
-    const is_check = /"radius": (-77|0\.75)/.test(route.request().postData()); // else it is for the gallery
+    const is_check = /"radius": (-77|0\.75)/.test(route.request().postData()); // others: gallery
     return is_check ? void held.push(route) : route.continue();
   });
   await page.locator("#text").fill(good.replace(/"radius": 0\.5/, '"radius": -77'));
@@ -210,7 +210,7 @@ daemon_test(
   },
 );
 
-// Scenes posted with `words` in them get `answer(route)`.
+// Calls `answer(route)` for posted scenes that contain `words`.
 const on_post = (page, words, answer) =>
   page.route(/v1\/scenes$/, (route) =>
     route.request().postData()?.includes(words) ? answer(route) : route.continue(),
@@ -296,7 +296,7 @@ daemon_test("a hidden tab asks for nothing and goes on when it is seen again", "
   const first = await digest();
   await eventually("frames", async () => (await digest()) !== first);
   await show("hidden");
-  await page.waitForTimeout(500); // what was on its way is drawn
+  await page.waitForTimeout(500); // draws pending frames
   const frozen = await digest();
   await page.waitForTimeout(500);
   assert.equal(await digest(), frozen);

@@ -1,7 +1,7 @@
 #!/usr/bin/env node
-// Takes a picture of the page: screenshot.mjs OUT.png [--width 1280] [--height 800] [--scale 1] [--dark]
+// Takes a screenshot of the page: screenshot.mjs OUT.png [--width 1280] [--height 800] [--scale 1] [--dark]
 //   [--hash "scene=paper&playing=0"] [--tab json] [--full] [--wait MS] [--url http://host:port/]
-// Without --url it starts $TEST_ORRERY (build/orrery otherwise) for itself.
+// Without --url, starts $TEST_ORRERY, by default build/orrery.
 
 import { parseArgs } from "node:util";
 import { skip_without_browser, start_browser, start_daemon } from "./support.mjs";

@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-// Taking a picture along: what is downloaded, or fetched by the copied command, is what is seen.
+// Sharing: the download and the copied command yield the picture on the canvas.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -22,7 +22,7 @@ async function copied_url(page) {
   return url;
 }
 
-// Whether the canvas shows the pixels of a PNG.
+// Returns whether the canvas shows the pixels of a PNG.
 const shows = (page, png) =>
   page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -95,7 +95,7 @@ page_test("of a view that moves the picture is downloaded that it will rest with
 
 page_test("where nothing is shown there is nothing to download", "playing=0&samples=1", async (page) => {
   await rest(page);
-  await page.route(/v1\/scenes$/, () => {}); // never answers
+  await page.route(/v1\/scenes$/, () => {}); // never responds
   await page.locator('#gallery button[data-name="glass"]').click();
   assert.equal(await link_of(page), "");
 });

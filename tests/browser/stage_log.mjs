@@ -1,10 +1,10 @@
-// Records what the stage shows in each painted frame, for drafts.test.mjs and first_pictures.mjs.
+// Log of the stage in each painted frame, for drafts.test.mjs and first_pictures.mjs.
 
 import { middle } from "./support.mjs";
 
-// To be called before the page is opened. From then on window.stage_log has an entry for each painted frame,
-// {at, scene, thumbnail, width}: its time in ms, the scene that the stage names, the file of the thumbnail in sight or
-// "", and the width of the picture in sight or 0; window.pictures has [time, width] of each picture that was drawn.
+// Starts the log. Requires a page that is not open yet. Adds to window.stage_log, for each painted frame,
+// {at, scene, thumbnail, width}: time in ms, scene of the stage, file of the visible thumbnail or "", and
+// width of the visible picture or 0. Adds to window.pictures [time, width] of each drawn picture.
 export function log_stage(page) {
   return page.addInitScript(() => {
     window.stage_log = [];
@@ -26,7 +26,7 @@ export function log_stage(page) {
   });
 }
 
-// Clicks the card of a sample scene; resolves to the time of the click, in the page's milliseconds.
+// Clicks the card of a sample scene. Resolves to the time of the click in the page's milliseconds.
 export function pick(page, name) {
   return page.evaluate((wanted) => {
     const card = document.querySelector(`#gallery [data-name="${wanted}"]`);
@@ -39,7 +39,7 @@ export function pick(page, name) {
   }, name);
 }
 
-// Turns the view by the mouse for `ms`; resolves to [time, width] of the pictures that were drawn meanwhile.
+// Turns the view by the mouse for `ms`. Resolves to [time, width] of the pictures drawn meanwhile.
 export async function drag_for(page, ms) {
   const { x, y } = await middle(page);
   await page.mouse.move(x, y);
@@ -55,7 +55,7 @@ export async function drag_for(page, ms) {
 export const scene_names = (page) =>
   page.evaluate(() => [...document.querySelectorAll("#gallery [data-name]")].map((card) => card.dataset.name));
 
-// Slows the browser down, not the service.
+// Slows down the browser by the factor `times`, not the service.
 export async function slow_down(page, times) {
   const device = await page.context().newCDPSession(page);
   await device.send("Emulation.setCPUThrottlingRate", { rate: times });

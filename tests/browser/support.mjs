@@ -1,4 +1,4 @@
-// What the browser tests and screenshot.mjs share: a daemon of their own and a Chromium of their own.
+// Shared parts of the browser tests and screenshot.mjs: daemon, browser and page helpers.
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -14,7 +14,7 @@ const kChromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const kStartMs = 600_000;
 const require = createRequire(import.meta.url);
 
-// Path of a file in a package, found in node_modules or NODE_PATH; null where it is not installed.
+// Returns the path of a package's file in node_modules or NODE_PATH, or null if it is not installed.
 export function package_file(name) {
   try {
     return require.resolve(name);
@@ -23,7 +23,7 @@ export function package_file(name) {
   }
 }
 
-// Ends the process with the code for "skipped" when the browser or its driver is missing.
+// Exits with the code for "skipped" if the browser or its driver is missing.
 export function skip_without_browser() {
   for (const [what, present] of [
     [kChromium, existsSync(kChromium)],
@@ -35,7 +35,7 @@ export function skip_without_browser() {
   }
 }
 
-// Starts `orrery serve` on a free port, or on `port`. Returns {url, stop()}; stop() ends it by its own pid.
+// Starts `orrery serve` on `port` (0: a free one). Returns {url, stop()}.
 export async function start_daemon(port = 0) {
   const program = process.env.TEST_ORRERY ?? join(kRoot, "build/orrery");
   const child = spawn(program, ["serve", "--port", String(port), "--health-port", "0"], { stdio: ["ignore", "pipe", "pipe"] });
@@ -74,7 +74,7 @@ export async function start_daemon(port = 0) {
   return { url: url.replace(/\/?$/, "/"), stop };
 }
 
-// A Chromium with an empty profile of its own.
+// Starts a Chromium with an empty profile.
 export function start_browser() {
   return require("playwright-core").chromium.launch({
     executablePath: kChromium,
@@ -90,12 +90,12 @@ export function start_browser() {
   });
 }
 
-// A page at `url` that notes what should not happen: {page, faults, close()}. Faults are console errors,
-// uncaught exceptions and requests to another origin. `ready` is what the page shows once it is open.
-// `before(page)` runs before it is opened.
+// Opens a page and records its faults: console errors, uncaught exceptions and requests to another origin.
+// `ready`: selector that is visible once the page is open. `before(page)` runs before the page is opened.
+// Returns {page, faults, close()}.
 export async function open_page(browser, url, { ready = "#canvas", before = () => {}, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
-  context.setDefaultTimeout(600_000); // tests share the machine with others: only what hangs is to fail
+  context.setDefaultTimeout(600_000); // long enough for a busy machine: only hangs fail
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => message.type() === "error" && faults.push(message.text()));
@@ -114,7 +114,7 @@ export async function open_page(browser, url, { ready = "#canvas", before = () =
   return { page, faults, close };
 }
 
-// A short text that differs for different pictures on the canvas.
+// Returns size and digest of the picture on the canvas.
 export function canvas_digest(page) {
   return page.evaluate(async () => {
     const canvas = document.getElementById("canvas");
@@ -124,12 +124,12 @@ export function canvas_digest(page) {
   });
 }
 
-// The page's state as its address gives it: {scene, az, el, dist, ...} as texts.
+// Returns the page's state from its URL hash: {scene, az, el, dist, ...} as strings.
 export async function hash_of(page) {
   return Object.fromEntries(new URLSearchParams(await page.evaluate(() => location.hash.slice(1))));
 }
 
-// Waits until `probe()` returns something true, and returns that.
+// Waits until `probe()` returns a truthy value, and returns it. Throws after `timeout_ms`.
 export async function eventually(what, probe, timeout_ms = 600_000) {
   for (const start = Date.now(); Date.now() - start < timeout_ms;) {
     const result = await probe();
@@ -139,13 +139,14 @@ export async function eventually(what, probe, timeout_ms = 600_000) {
   throw new Error(`not within ${timeout_ms} ms: ${what}`);
 }
 
-// Waits until the view rests and its finest picture is drawn; returns its digest.
+// Waits until the view rests and its finest picture is drawn. Returns the picture's digest.
 export async function rest(page) {
   await page.locator('#stage[data-shows="still"]:not([data-fading])').waitFor();
   return canvas_digest(page);
 }
 
-// A daemon and a browser for the tests of a file, which end with them; `after` is that of node:test.
+// Starts a daemon and a browser for a test file, and stops them after its tests. `after` is that of
+// node:test.
 export async function start_both(after) {
   skip_without_browser();
   const daemon = await start_daemon();
@@ -157,9 +158,9 @@ export async function start_both(after) {
   return { daemon, browser };
 }
 
-// A function that declares a test: it opens the page with `hash`, runs `body(page, context)`, and holds that no
-// faults but `expected` ones arose. Stills have one sample where the hash asks for no number: what rests at once
-// is quicker to look at.
+// Returns a function that declares a test. The test opens the page with `hash` and runs `body(page,
+// context)`. It fails on faults that do not match `expected`. Stills have one sample unless the hash sets a
+// number, to be quick.
 export function page_tests(browser, daemon) {
   return (name, hash, body, { expected = /^$/, ...options } = {}) =>
     test(name, async () => {
@@ -177,7 +178,7 @@ export function page_tests(browser, daemon) {
     });
 }
 
-// What axe-core finds to fault, as texts; nothing where it is not installed.
+// Returns the violations found by axe-core as texts, [] if axe-core is not installed.
 export async function axe_violations(page) {
   const axe = package_file("axe-core/axe.min.js");
   if (!axe) return [];
@@ -186,7 +187,7 @@ export async function axe_violations(page) {
   return violations.map(({ id, nodes }) => `${id} at ${nodes.map(({ target }) => target)}`);
 }
 
-// From now on streams of passes hang after the one of so many samples; window.signals are theirs.
+// Makes refinement streams hang after the pass with `samples`. window.signals: their abort signals.
 export async function hold_refinement(page, samples) {
   await page.evaluate((last) => {
     const real_fetch = window.fetch;
@@ -209,7 +210,7 @@ export async function hold_refinement(page, samples) {
   }, samples);
 }
 
-// Has charts measured by few small pictures; `seen` are the bodies that were asked.
+// Makes charts render a few small pictures. Appends the request bodies to `seen`.
 export async function quick_charts(page, seen = []) {
   await page.route("**/charts", (route) => {
     const body = route.request().postDataJSON();
@@ -219,7 +220,7 @@ export async function quick_charts(page, seen = []) {
   return seen;
 }
 
-// Makes a chart; resolves to the slider once it stands at its last stop.
+// Makes a chart. Resolves to the slider, which is at its last stop.
 export async function charted(page) {
   await quick_charts(page);
   await rest(page);
@@ -230,13 +231,13 @@ export async function charted(page) {
   return slider;
 }
 
-// The middle of the stage, and its height.
+// Returns the middle of the stage and its height.
 export async function middle(page) {
   const box = await page.locator("#stage").boundingBox();
   return { x: box.x + box.width / 2, y: box.y + box.height / 2, height: box.height };
 }
 
-// Drags by (dx, dy) pixels; `held()` runs before the button is let go. Returns the stage's height.
+// Drags by (dx, dy) pixels and calls `held()` before the release. Returns the stage's height.
 export async function drag(page, dx, dy, held = () => {}, button = "left") {
   const { x, y, height } = await middle(page);
   await page.mouse.move(x, y);

@@ -1,4 +1,4 @@
-// The page's modules for tests that need no browser.
+// Loader of page modules for tests without a browser.
 
 import { cpSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { after } from "node:test";
 import { kRoot } from "./support.mjs";
 
-// A copy that says it is made of modules: Node asks for that, a browser does not.
+// Copy of web/ marked as modules, which Node requires and a browser does not.
 const copy = mkdtempSync(join(tmpdir(), "orrery-web-"));
 cpSync(join(kRoot, "web"), copy, { recursive: true });
 writeFileSync(join(copy, "package.json"), '{"type": "module"}');

@@ -17,14 +17,14 @@
 #include "tests/bench/measuring.h"
 #include "tests/meshes/writers.h"
 
-// How soon each stage of the work ends once its stop is requested.
-//   cancel TIMES    stops each stage so many times, at moments spread over its length; prints lines of JSON
+// Measures the time from a stop request to the end of each stage of the work.
+//   cancel TIMES    stops each stage TIMES times, at moments spread over its duration; prints lines of JSON
 namespace orrery::bench {
 namespace {
 
 using Stage = std::function<void(const std::stop_token&)>;
 
-// A wavy sheet of 2 * side^2 triangles.
+// Returns a wavy sheet of 2 * side^2 triangles.
 TriangleMesh sheet(std::uint32_t side) {
   TriangleMesh mesh;
   for (std::uint32_t y = 0; y <= side; ++y)
@@ -113,7 +113,8 @@ std::shared_ptr<MemoryAccount> open_account() {
   return MemoryAccount::open([] { return [](std::size_t bytes, bool) { return bytes; }; });
 }
 
-// Milliseconds from the request to stop until the stage threw Cancelled; none if it was done before.
+// Returns the milliseconds from the stop request until the stage threw Cancelled, or nullopt if it had ended
+// before.
 std::optional<double> stop_after(const Stage& stage, double ms) {
   std::stop_source source;
   const std::stop_token stop = source.get_token();
@@ -135,7 +136,7 @@ std::optional<double> stop_after(const Stage& stage, double ms) {
 
 void measure(const std::string& name, int times, const Stage& stage) {
   double whole_ms = 0;
-  for (int i = 0; i < 2; ++i) {  // the first takes longer
+  for (int i = 0; i < 2; ++i) {  // the first run is a warm-up
     const auto start = Clock::now();
     open_account()->run({}, [&] { stage({}); });
     whole_ms = milliseconds_since(start);

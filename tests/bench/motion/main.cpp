@@ -8,16 +8,17 @@
 #include "core/tuning/trial.h"
 #include "tests/bench/measuring.h"
 
-// A hierarchy that followed the motion of a scene, frame by frame, against one built anew for the moment.
-//   motion SCENE.json ready   having it ready for the last frame, once the one before is there
-//   motion SCENE.json rays    some tiles of that frame, traced with it
-// First prints a line about the frames, in JSON; then for each line of input, "ours" (followed) or "theirs"
-// (anew), does that and prints the CPU seconds that took.
+// Compares a BVH that was refitted to the motion of a scene, frame by frame, with one built for the last
+// frame.
+//   motion SCENE.json ready   preparing it for the last frame, given the one before
+//   motion SCENE.json rays    tracing some tiles of that frame
+// Prints facts of the frames in JSON. Then, for each input line "ours" (refitted) or "theirs" (built), runs
+// that side and prints its CPU seconds.
 namespace orrery::bench {
 namespace {
 
 constexpr int kFrames = 40, kTiles = 64;
-constexpr double kLeastSeconds = 0.1;  // of a run
+constexpr double kLeastSeconds = 0.1;  // minimum length of a run
 
 World<float> make(const std::shared_ptr<const Scene>& scene, const Plan& plan, double time,
                   const World<float>& before) {

@@ -1,5 +1,5 @@
-// Attacks of a service in a thread of their own, so that the answers they take keep nobody else's waiting: a
-// Worker with data {port, name, count, addresses}, until a message; then it posts what it was answered.
+// Attack worker, in its own thread so that its responses delay no other client's. Its data is {port, name,
+// count, addresses}. Attacks until a message arrives, then posts the outcomes of its requests.
 
 import { parentPort, workerData } from "node:worker_threads";
 import { Client } from "./client.mjs";
@@ -12,7 +12,7 @@ let going = true;
 
 const kJson = { "Content-Type": "application/json" };
 
-// One client's part: it asks for something new whenever it has an answer, but reads no stream.
+// Runs one client, which sends a new request after each response and reads no streams.
 async function attack_once(client, [, ask, scene], statuses) {
   let id = null;
   if (scene) {

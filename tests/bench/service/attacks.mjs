@@ -1,4 +1,4 @@
-// Requests of under 64 KiB that ask for as much work as they can.
+// Requests under 64 KiB that cause as much work as possible.
 
 import { readFileSync } from "node:fs";
 import { many_attributes_exr, put_asset, text_png, tiny_jpeg } from "./pictures.mjs";
@@ -8,7 +8,7 @@ const kGlass = { type: "refractive", ior: 1.5, fresnel: "exact" };
 const kMirror = { type: "reflective", n: [0.2, 0.9, 1.1], k: [3.9, 2.4, 2.2] };
 const kSun = { type: "directional", from: [0.4, 1, 0.6], intensity: [1, 1, 1] };
 
-// A scene of one material, seen from the front; `number` makes it one that nobody asked for before.
+// Returns a scene of one material, seen from the front. `number` makes the scene new to the service.
 function scene_of(number, material, objects, { depth = 5, side = 64, samples = 1, lights = [kSun], ...more }) {
   return {
     version: 1,
@@ -33,7 +33,7 @@ const render = (scene, options = {}) => ({
   body: JSON.stringify({ scene, render: options }),
 });
 
-// Two planes of mirrors that face each other, and a ball between them.
+// Two parallel mirror planes with a ball between them.
 const hall = [
   { type: "plane", point: [0, 0, -3], normal: [0, 0, 1], material: "m" },
   { type: "plane", point: [0, 0, 5], normal: [0, 0, -1], material: "m" },
@@ -59,7 +59,7 @@ const needles = Array.from({ length: 500 }, (_, i) => ({
   material: "m",
 }));
 
-// A square of n x n cells, two triangles each.
+// Returns a square mesh of n x n cells, two triangles each.
 function grid_mesh(n) {
   const positions = [];
   const indices = [];
@@ -99,14 +99,14 @@ const many_of = (name, material, objects, more = {}, options = {}) => [
 ];
 const structures = ["list", "boxes", "obb-tree", "octree", "kd-sah", "adaptive-grid"];
 
-// What is asked of a scene that was posted before: `id`.
+// Returns an attack on a scene that is posted first. `ask` gets its id.
 const of_scene = (name, scene, ask) => [name, ask, scene];
 
 const kNumbers = `[${Array(15_000).fill("[0]").join(",")}]`;
 const post = (path, body) => ({ method: "POST", path, body: typeof body === "string" ? body : JSON.stringify(body) });
 const sphere_of = (number, material) => scene_of(number, material, [sphere(1)], {});
 
-// Answers that take no turn, or files for decoders: 180 clients at once ask for these, too.
+// Requests that need no render slot, and files for decoders. These attacks also run with 180 clients at once.
 const kSmall = [
   ["the catalog", () => ({ path: "/v1/catalog" })],
   ["the description of the service", () => ({ path: "/openapi.json" })],
@@ -121,7 +121,7 @@ const kSmall = [
   ["EXRs of many attributes", (n) => put_asset(many_attributes_exr(n))],
 ].map(([name, ask, scene]) => [name, ask, scene, 180]);
 
-// [name, request(number, id), scene(number) whose id it takes, clients at once beyond the usual]
+// Attacks: [name, request(number, id), scene(number) that provides the id, clients of additional runs].
 export const kAttacks = [
   ...[4, 8, 12, 16, 24, 32].map((depth) => glass_of(depth, 2)),
   ...[16, 32].map((depth) => glass_of(depth, 12)),

@@ -1,4 +1,4 @@
-// Whatever one client sends, another client's small picture is answered soon.
+// Isolation of clients: small pictures stay fast while other clients attack.
 
 import { Client } from "./client.mjs";
 import { kAttacks } from "./attacks.mjs";
@@ -10,12 +10,12 @@ import { once } from "node:events";
 import http from "node:http";
 import { Worker } from "node:worker_threads";
 
-const kPeriod_ms = 100; // between two small pictures, and two frames of the orbit
+const kPeriod_ms = 100; // period of small pictures and of orbit frames
 const kPicture_ms = 1000;
 const kHealth_ms = 50;
 export const kVictim = "127.0.0.200";
 
-// How many attack, and from how many addresses.
+// Numbers of attackers and of their addresses.
 const kForces = [
   { count: 1, addresses: 1 },
   { count: 16, addresses: 1 },
@@ -26,7 +26,8 @@ function forces_of([, , , count]) {
   return count ? [...kForces, { count, addresses: 1 }, { count, addresses: 8 }] : kForces;
 }
 
-// Asks every kPeriod_ms, whatever the last answer does, until stop(), which resolves to all answers.
+// Sends a request every kPeriod_ms, whether or not the last response has arrived. Returns stop(), which
+// resolves to all responses.
 export function open_loop(port, path_of, address) {
   const answers = [];
   const timer = setInterval(async () => {
@@ -39,7 +40,7 @@ export function open_loop(port, path_of, address) {
   };
 }
 
-// Watches an orbit of ten frames a second until stop(), which tells how many came.
+// Watches an orbit of ten frames per second. Returns stop(), which returns the number of frames received.
 function watch(port, path) {
   let frames = 0;
   const reader = new FrameReader(() => ++frames);
@@ -55,7 +56,7 @@ function watch(port, path) {
 
 let number = 0;
 
-// Attacks until stop(), which resolves to what the attackers were answered.
+// Starts an attack. Returns stop(), which resolves to the outcomes of the attackers' requests.
 function attack({ port }, [name], { count, addresses }) {
   const workerData = { port, name, count, addresses };
   const worker = new Worker(new URL("attackers.mjs", import.meta.url), { workerData });
@@ -119,7 +120,7 @@ function tell(one) {
   );
 }
 
-// Each attack has a service of its own: jobs would outlive it.
+// Starts a new service for each attack, as jobs would outlive it.
 async function run({ seconds }) {
   const wanted = process.env.BENCH_ATTACK ?? "";
   const tries = [];

@@ -1,4 +1,4 @@
-// The same picture again and again: not modified, and in full; beside an answer that costs nothing.
+// Request rate for one cached picture, as 304 and in full, compared with a static file.
 
 import { spawnSync } from "node:child_process";
 import { Client, header_of } from "./client.mjs";
@@ -7,9 +7,9 @@ import { exists_program } from "../command.mjs";
 
 const kConnections = 8;
 const kNotModified = 5000;
-const kWhole = 1500; // requests a second
+const kWhole = 1500; // requests per second
 
-// Runs wrk, with one thread: the service shares the cores with it.
+// Runs wrk with one thread: the service shares the cores with it.
 function by_wrk(port, path, headers, seconds) {
   const words = ["-t1", `-c${kConnections}`, `-d${Math.ceil(seconds)}s`];
   for (const [name, value] of Object.entries(headers)) words.push("-H", `${name}: ${value}`);

@@ -1,8 +1,8 @@
-// A client that takes little processor time itself: one keep-alive connection, one request at a time.
+// HTTP client of low CPU use: one keep-alive connection, one request at a time.
 
 import net from "node:net";
 
-const kWait_ms = 70_000; // for an answer; a picture may take 60 s
+const kWait_ms = 70_000; // timeout of a response; a picture may take 60 s
 
 function read_head(buffer) {
   const end = buffer.indexOf("\r\n\r\n");
@@ -22,10 +22,13 @@ function read_head(buffer) {
 
 export const header_of = ({ head }, name) => new RegExp(`\\r\\n${name}: *([^\\r]*)`, "i").exec(head)?.[1];
 
-// Every answer has a Content-Length: no streams here. An answer is {status, head, text(), ms, sent, first}: ms
-// from the moment the request was written, sent on performance.now()'s clock, first if no request came before
-// it on its connection. Where there is no answer it is {failure, sent, first}: "refused" (no connection),
-// "unanswered" (the connection ended before the answer did), "silent" (nothing for long) or "left" (by leave()).
+// Client for responses with a Content-Length, not for streams. A response is {status, head, text(), ms, sent,
+// first}:
+//   ms: since the request was written
+//   sent: time of the request by performance.now()
+//   first: whether this is the first request on its connection
+// A failed request gives {failure, sent, first}. The failure is "refused" (no connection), "unanswered" (the
+// connection closed before the response was complete), "silent" (timeout) or "left" (leave() was called).
 export class Client {
   #port;
   #address;
@@ -34,13 +37,13 @@ export class Client {
   #size = 0;
   #waiting = null; // {resolve, sent, answer}
 
-  // `address`: of this end, none: any.
+  // `address`: local address, undefined for any.
   constructor(port, address = undefined) {
     this.#port = port;
     this.#address = address;
   }
 
-  // `body`: text or a Buffer.
+  // Sends a request. Resolves to the response or the failure. `body`: text or a Buffer.
   ask(path, { method = "GET", headers = {}, body = "" } = {}) {
     const lines = Object.entries(headers).map(([name, value]) => `${name}: ${value}\r\n`);
     const length = body.length > 0 ? `Content-Length: ${Buffer.byteLength(body)}\r\n` : "";
@@ -63,7 +66,7 @@ export class Client {
     return this.#socket !== null;
   }
 
-  // Breaks the connection off, whatever runs.
+  // Closes the connection, even during a request.
   leave() {
     this.#end("left");
   }
@@ -103,7 +106,7 @@ export class Client {
   #finish() {
     const { resolve, sent, answer, first } = this.#waiting;
     const ms = performance.now() - sent;
-    const parts = this.#parts; // put together if asked for: that takes a while for a large picture
+    const parts = this.#parts; // concatenated on demand, as a large picture takes a while
     this.#waiting = null;
     this.#forget();
     if (answer.closes) this.leave();

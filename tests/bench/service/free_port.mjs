@@ -1,4 +1,4 @@
-// A port of 127.0.0.1 that nobody listens on at the moment.
+// Resolves to a port of 127.0.0.1 that is free at the moment.
 
 import net from "node:net";
 

@@ -1,13 +1,13 @@
-// Supervisors are answered while the pool and the queue are full.
+// Health checks while the pool and the queue are full.
 
 import { Client } from "./client.mjs";
 import { closed_loop, most, ms, new_picture, none_row, p99, pause, percent, row, with_service } from "./support.mjs";
 
-const kClients = 100; // more than run and wait at once
+const kClients = 100; // more than the slots and the queue hold
 const kEvery_ms = 20;
 const kTarget_ms = 50;
 
-// Asks every `every_ms`, whether or not the answer before is there, each time on a new connection.
+// Sends a request every `every_ms` on a new connection, whether or not the last response has arrived.
 async function probe(port, path, seconds, every_ms = kEvery_ms) {
   const answers = [];
   const start = performance.now();
@@ -39,7 +39,7 @@ function report(what, answers) {
   ];
 }
 
-// One picture that waits fills the queue, however large it is.
+// Queue options: one waiting picture fills the queue, however large it is.
 const kShortQueue = ["--queue-rays", 1, "--interactive-rays", 1e12];
 
 async function run({ seconds }) {

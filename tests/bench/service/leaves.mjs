@@ -1,4 +1,4 @@
-// Clients that leave: how soon the work for them ends.
+// Time from a client's disconnect to the end of its work.
 
 import { Client, header_of } from "./client.mjs";
 import { put_asset, tiny_jpeg } from "./pictures.mjs";
@@ -25,8 +25,8 @@ function report(what, times, target_ms) {
   );
 }
 
-// Asks for the picture and leaves after `ready`. Resolves to the milliseconds until `done` holds of the gauges,
-// or to null if it was answered before.
+// Requests a picture and disconnects after `ready`. Resolves to the milliseconds until the gauges are `done`,
+// or to null if the response came first.
 async function leave_once(service, gauges, path, ready, done) {
   const client = new Client(service.port);
   const answer = client.ask(path);
@@ -39,7 +39,7 @@ async function leave_once(service, gauges, path, ready, done) {
 
 const is_time = (value) => value !== null;
 
-// Leaves while rays are traced: a picture of seconds, after some milliseconds.
+// Disconnects during tracing: some milliseconds into a picture that takes seconds.
 async function leave_tracing(service, gauges, scenes, times) {
   const took = [];
   for (let i = 0; i < times; ++i) {
@@ -53,7 +53,7 @@ async function leave_tracing(service, gauges, scenes, times) {
   return took.filter(is_time);
 }
 
-// Leaves at any moment of a picture of the largest size, encoding included.
+// Disconnects at moments spread over a picture of the largest size, encoding included.
 async function leave_large(service, gauges, scenes, times) {
   const client = new Client(service.port);
   const whole = await client.ask(new_picture(scenes.paper, 4000, 1));
@@ -72,8 +72,7 @@ async function leave_large(service, gauges, scenes, times) {
   };
 }
 
-// Leaves the queue. Whoever asks for so many long pictures has lost so many places that nothing more of theirs
-// begins.
+// Disconnects while queued. The long pictures have cost this client its slots, so none of its new ones starts.
 async function leave_waiting(service, gauges, scenes, times) {
   const count = 4 * kRendersAtOnce;
   const load = closed_loop(
@@ -106,7 +105,7 @@ async function leave_waiting(service, gauges, scenes, times) {
 
 const each_ms_until = (holds) => until(() => pause(1).then(holds));
 
-// Leaves while a picture file is decoded, which takes seconds.
+// Disconnects while a picture file is decoded, which takes seconds.
 async function leave_decoding(service, times) {
   const took = [];
   for (let i = 0; i < times; ++i) {
@@ -122,7 +121,7 @@ async function leave_decoding(service, times) {
   return took;
 }
 
-// All pictures in one lane, so that long ones keep short ones waiting, however many.
+// Options for one lane of unlimited length, in which long pictures keep short ones waiting.
 const kOneLane = ["--interactive-rays", 1e12, "--queue-rays", 1e12];
 
 async function run({ times }) {

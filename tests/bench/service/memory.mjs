@@ -1,4 +1,4 @@
-// Whatever is asked, memory stays under one figure, and others are served.
+// Memory limit under attack, and latency of other clients.
 
 import { createHash } from "node:crypto";
 import net from "node:net";
@@ -13,7 +13,7 @@ import {
 const kPicture_ms = 1000;
 const kAttackers = 16;
 const kAddresses = 8;
-const kSlow = 60; // connections that take or give a byte now and then
+const kSlow = 60; // connections that read or send slowly
 
 const address = (i) => `127.0.0.${2 + (i % kAddresses)}`;
 const pick = (list) => list[Math.floor(Math.random() * list.length)];
@@ -33,13 +33,13 @@ function scene_of(objects, side = 64) {
 }
 const ball = () => [{ type: "sphere", center: [0, 0, 0], radius: 0.5 + Math.random(), material: "m" }];
 
-// One polygon: a triangle for each two bytes.
+// Returns an OBJ file of one polygon: one triangle per two bytes.
 function polygon(corners) {
   const fan = " 3 2".repeat(500);
   return `v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2${fan.repeat(corners / 1000)}\n`;
 }
 
-// A sheet of which each vertex is another.
+// Returns an OBJ file of a sheet without duplicate vertices.
 function sheet(side) {
   const lines = [];
   for (let y = 0; y <= side; ++y) for (let x = 0; x <= side; ++x) lines.push(`v ${x} ${y} ${(x * y) % 7}`);
@@ -64,7 +64,7 @@ async function put(port, text) {
   return id;
 }
 
-// What an attacker asks for next.
+// Returns functions that make the next request of an attacker.
 function requests(assets) {
   const render = (scene, options = {}, headers = {}) => {
     const request = json({ scene, render: options });
@@ -103,7 +103,7 @@ async function attack(client, makers, statuses, goes_on) {
   }
 }
 
-// Connections that read an asset, or send a body, as slowly as they may.
+// Opens connections that read an asset or send a body, and then stall.
 function slow_connections(port, asset) {
   return Array.from({ length: kSlow }, (_, i) => {
     const socket = net.connect({ host: "127.0.0.1", port, localAddress: address(i) });

@@ -1,9 +1,10 @@
 import { Client, header_of } from "./client.mjs";
 import { pause } from "./support.mjs";
 
-const kMostWaiting = 4000; // requests of ours without an answer: more than a service may keep
+const kMostWaiting = 4000; // limit of open requests, more than a service queues
 
-// Sends `rate` requests a second, whether or not those before are answered. Resolves to all answers.
+// Sends `rate` requests per second, whether or not earlier ones have a response. Resolves to {answers,
+// good_rate, rate}.
 export async function open_loop(port, rate, seconds, path_of) {
   const idle = [];
   const all = [];

@@ -1,4 +1,4 @@
-// Ten times as many requests as can be answered: goodput stays, the rest is turned away at once.
+// Overload by a factor of ten: the goodput stays, other requests are rejected at once.
 
 import { monitorEventLoopDelay } from "node:perf_hooks";
 import { open_loop } from "./open_loop.mjs";
@@ -8,15 +8,16 @@ import {
 } from "./support.mjs";
 import { cpu_seconds } from "../daemon.mjs";
 
-const kTimes = 10; // the capacity
+const kTimes = 10; // multiple of the capacity
 const kTurns = 4;
 const kGoodput = 0.9;
 const kRefusal_ms = 20;
 const kMemory = 1.1;
 
-const picture = (scenes) => new_picture(scenes.paper, 200, 64); // some 30 ms of one core
+const picture = (scenes) => new_picture(scenes.paper, 200, 64); // about 30 ms of one core
 
-// Cores that the service and this process take while `work` runs, and how late this process's own timers are.
+// Runs `work`. Resolves to its result, the cores used by the service and by this process, and the p99 delay
+// of this process's timers in ms.
 async function watched(service, work) {
   const delay = monitorEventLoopDelay({ resolution: 1 });
   const start = performance.now();
@@ -35,7 +36,7 @@ async function watched(service, work) {
   };
 }
 
-// Pictures a second when as many clients ask as pictures are made at once.
+// Resolves to the pictures per second with one client per render slot.
 async function peak_rate(service, scenes, seconds) {
   let good = 0;
   const load = closed_loop(
@@ -52,7 +53,7 @@ async function peak_rate(service, scenes, seconds) {
   return { rate };
 }
 
-// Resident bytes less those that the stores hold, read again and again while `work` runs.
+// Runs `work` and samples the resident bytes less the stored bytes. Resolves to {result, memory}.
 async function with_memory(service, gauges, work) {
   const seen = [];
   let going = true;
@@ -126,7 +127,7 @@ function rows_of(peaks, loads) {
   ];
 }
 
-// The peak and the overload in turns: others on this machine take as much from the one as from the other.
+// Alternates peak and overload, so that other load on the machine affects both.
 async function run({ seconds }) {
   return with_service(async (service, scenes) => {
     const gauges = new Gauges(service);
@@ -137,7 +138,7 @@ async function run({ seconds }) {
       const { result, ...cores } = await watched(service, () => with_memory(service, gauges, work));
       return { ...result.result, memory: result.memory, ...cores };
     };
-    await peak_rate(service, scenes, 2); // warms up
+    await peak_rate(service, scenes, 2); // warm-up
     for (let i = 0; i < kTurns; ++i) {
       peaks.push(await observe(() => peak_rate(service, scenes, Math.max(2, turn_s / 2))));
       loads.push(

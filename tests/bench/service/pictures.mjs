@@ -1,4 +1,4 @@
-// Picture files of few bytes that cost a decoder much memory or time. `number` makes one that nobody sent before.
+// Small picture files that cost a decoder much memory or time. `number` makes a file new to the service.
 
 import { createHash } from "node:crypto";
 import { deflateSync } from "node:zlib";
@@ -12,10 +12,10 @@ function u32(value) {
   return bytes;
 }
 
-// A segment of a JPEG file.
+// Returns a segment of a JPEG file.
 const segment = (marker, bytes) => Buffer.from([0xff, marker, ...u16(bytes.length + 2), ...bytes]);
 
-// Codes of a progressive scan whose blocks all end at once: runs of up to 32,767 blocks.
+// Returns the codes of a progressive scan of empty blocks: end-of-band runs of up to 32,767 blocks.
 function end_of_band_runs(blocks) {
   let bits = "";
   let left = blocks;
@@ -31,8 +31,8 @@ function end_of_band_runs(blocks) {
   return bytes;
 }
 
-// A progressive JPEG of 33 million pixels and 4 components in 360 bytes: libjpeg keeps 268 MB of coefficients. Each
-// further round of scans costs time.
+// Returns a progressive JPEG of 33 million pixels and 4 components in 360 bytes: libjpeg allocates 268 MB of
+// coefficients. Each further round of scans costs time.
 export function tiny_jpeg(number, rounds = 1) {
   const [width, height] = kSide;
   const components = [1, 2, 3, 4];
@@ -64,7 +64,7 @@ const chunk = (type, bytes) => {
   return Buffer.concat([u32(bytes.length), named, u32(crc32(named))]);
 };
 
-// A PNG of 64 pixels with `count` compressed texts of 7.9 MB.
+// Returns a PNG of 64 pixels with `count` compressed texts of 7.9 MB.
 export function text_png(number, count = 5) {
   const text = deflateSync(`${String(number).padStart(8, "0")}${"a".repeat(7_900_000)}`);
   const texts = Array.from({ length: count }, (_, i) => chunk("zTXt", Buffer.concat([Buffer.from(`k${i}\0\0`), text])));
@@ -77,7 +77,7 @@ export function text_png(number, count = 5) {
   ]);
 }
 
-// The header of an OpenEXR file with `count` attributes, and no pixels.
+// Returns the header of an OpenEXR file with `count` attributes, and no pixels.
 export function many_attributes_exr(number, count = 2500) {
   const attribute = (name, type, bytes) => {
     const size = Buffer.alloc(4);

@@ -1,5 +1,5 @@
-// Rolling restarts behind a balancer (HAProxy) that sends nothing twice: two services, of which one after the other
-// is ended by SIGTERM and started again, while clients ask for pictures through the balancer.
+// Rolling restarts behind a balancer (HAProxy) without retries. Two services are stopped by SIGTERM and
+// started again in turn, while clients request pictures through the balancer.
 
 import { spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -13,8 +13,8 @@ import { kPaper, none_row, outcome, p99, pause, row, ms } from "./support.mjs";
 
 const kClients = 16;
 const kAnswers = 30_000;
-const kDrain_s = 1; // of the service; the balancer looks every 100 ms
-const kEvery = 20; // one picture of so many is new, and the others are in the service's cache
+const kDrain_s = 1; // drain delay of the service; the balancer checks every 100 ms
+const kEvery = 20; // one in kEvery pictures is new, the others are cached
 
 const backend = ({ port, health_port }, i) =>
   `  server s${i} 127.0.0.1:${port} check port ${health_port} inter 100 fall 1 rise 1`;
@@ -59,7 +59,8 @@ async function until_ready(health_port) {
   throw new Error("the service does not get ready");
 }
 
-// Asks again and again, until stop(): the scene is sent with each request, as no service keeps it for another.
+// Sends requests in a loop until stop(). Each request has the scene in its body, as the services share no
+// scenes.
 function load(port, answers) {
   const scene = JSON.parse(readFileSync(kPaper));
   const json = { "Content-Type": "application/json" };
@@ -100,7 +101,7 @@ async function run({ times }) {
       exits.push(await service.gone);
       services[i % 2] = await start_service(words, service);
       await until_ready(service.health_port);
-      await pause(300); // until the balancer has seen it: else both would be away
+      await pause(300); // time for the balancer to notice, else both would be down
     }
     while (answers.length < kAnswers) await pause(20);
     await clients.stop();

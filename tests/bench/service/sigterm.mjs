@@ -1,4 +1,5 @@
-// SIGTERM under load: what was asked before it is answered whole, /readyz says no, the process ends with 0.
+// SIGTERM under load: earlier requests get complete responses, /readyz reports draining, the exit status is
+// 0.
 
 import { Client, header_of } from "./client.mjs";
 import {
@@ -11,7 +12,7 @@ const kGrace_s = 30;
 const is_whole = (answer) =>
   answer.status === 200 || (answer.status === 503 && header_of(answer, "Retry-After") !== undefined);
 
-// What /readyz says from now on, until the service is gone.
+// Resolves to the responses of /readyz until the service is gone.
 async function watch_readiness(service) {
   const client = new Client(service.health_port);
   const said = [];
@@ -78,7 +79,7 @@ async function run({ times }) {
       row(`exit 0 within ${kGrace_s} s, ${times} times`, "all", exits, in_time),
       row("/readyz said 503 draining meanwhile", "all", ready, told === times && told_wrong.length === 0),
     ],
-    // A client has to expect that a connection is closed on which it was about to ask again (RFC 9112, 9.3.1).
+    // A client must expect that a keep-alive connection closes before its next request (RFC 9112, 9.3.1).
     remark: `asked after the signal on a connection from before: ${tally(kept.map(outcome))}`,
   };
 }

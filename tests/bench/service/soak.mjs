@@ -1,4 +1,4 @@
-// Mixed traffic for long: memory, threads and descriptors stay where they are.
+// Long mixed traffic: memory, threads and descriptors stay constant.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import { Client } from "./client.mjs";
@@ -9,14 +9,14 @@ import {
 } from "./support.mjs";
 
 const kSample_s = 10;
-const kSamples = 30; // every 10 s, oftener in a short run
+const kSamples = 30; // every 10 s, more often in a short run
 const kMemory = 1.05;
 const kFew = 3;
-// So little that they are full soon, and a scene or an asset is forgotten for each that comes.
+// Stores so small that each new scene or asset soon evicts another.
 const kStore = ["--store-bytes", 8 << 20, "--asset-bytes", 1 << 20, "--asset-store-bytes", 1 << 20];
-const kFile = "build/charts/soak.json"; // the figures behind the sparklines
+const kFile = "build/charts/soak.json"; // data of the sparklines
 
-// Does it again and again until the time is over, with rests: the machine is used, not overloaded.
+// Repeats `act` until the deadline, with pauses so that the machine is busy but not overloaded.
 async function keep_on(act, port, deadline, answers) {
   const client = new Client(port);
   while (performance.now() < deadline) {
@@ -44,7 +44,7 @@ async function sample(service, deadline, seconds) {
   return samples;
 }
 
-// The mean of the last third of the samples beside that of the middle one.
+// Compares the mean of the last third of the samples with that of the middle third.
 function trend_row(samples, key, tell, allowed, target) {
   const values = samples.map((one) => one[key]);
   const { middle, last } = thirds(values);

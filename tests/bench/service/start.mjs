@@ -1,4 +1,4 @@
-// From the start of the process to the first yes of /readyz.
+// Time from the start of the process to the first 200 of /readyz.
 
 import { Client } from "./client.mjs";
 import { most, ms, quantile, row } from "./support.mjs";

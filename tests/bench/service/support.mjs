@@ -1,4 +1,4 @@
-// What the service's measurements share.
+// Shared parts of the service benchmarks.
 
 import { readFileSync, readdirSync } from "node:fs";
 import { availableParallelism } from "node:os";
@@ -10,8 +10,8 @@ export const kFlake = "scenes/sphereflake-3.json"; // few objects; 820 spheres
 
 export const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-// Starts a service with two scenes, calls `work` with it and {paper, flake}, the paths of their pictures, and
-// ends it.
+// Starts a service with two scenes, calls `work(service, {paper, flake})` with the paths of the scenes, and
+// stops the service.
 export async function with_service(work, words = []) {
   const service = await start_service(words);
   try {
@@ -22,11 +22,11 @@ export async function with_service(work, words = []) {
   }
 }
 
-// Pictures at once, as the service's default is.
+// Default limit of concurrent renders in the service.
 export const kRendersAtOnce = 2 * availableParallelism();
 
 let seed = 0;
-// Address of a picture that nobody asked for before.
+// Returns the address of a picture with a new seed.
 export const new_picture = (scene, side, samples) =>
   `${scene}/frame.png?width=${side}&height=${side}&samples=${samples}&seed=${++seed}`;
 
@@ -44,7 +44,7 @@ export const ms = (value) => `${value.toFixed(value < 10 ? 2 : 1)} ms`;
 export const percent = (share) => `${(100 * share).toFixed(1)} %`;
 export const mib = (bytes) => `${(bytes / 2 ** 20).toFixed(1)} MiB`;
 
-// Up to 60 of the values as bars, from the least to the most.
+// Returns up to 60 of the values as bars, from the minimum to the maximum.
 export function sparkline(values) {
   const step = Math.max(1, Math.ceil(values.length / 60));
   const some = values.filter((_, i) => i % step === 0);
@@ -54,7 +54,7 @@ export function sparkline(values) {
   return some.map((v) => bars[high > low ? Math.round(((v - low) / (high - low)) * 7) : 0]).join("");
 }
 
-// How many of each: "200: 12, refused: 3".
+// Counts equal words: "200: 12, refused: 3".
 export function tally(words) {
   const counts = new Map();
   for (const word of words) counts.set(word, (counts.get(word) ?? 0) + 1);
@@ -62,19 +62,19 @@ export function tally(words) {
 }
 export const outcome = (answer) => answer.failure ?? answer.status;
 
-// One row of the table. `met` null: there is no target.
+// Returns a row of the table. `met` is null if there is no target.
 export const row = (what, target, measured, met) => ({ what, target, measured, met });
 
-// A row for answers of which there should be none.
+// Returns a row for unwanted responses, whose target is 0.
 export const none_row = (what, bad) =>
   row(what, "0", bad.length === 0 ? "0" : tally(bad.map(outcome)), bad.length === 0);
 
-// ---- the service as the kernel and its own metrics see it
+// ---- state of the service, from the kernel and its metrics
 
 const status_of = (pid) => readFileSync(`/proc/${pid}/status`, "utf8");
 const resident_of = (pid) => 1024 * Number(/VmRSS:\s*(\d+)/.exec(status_of(pid))?.[1] ?? 0);
 
-// Process ids of those that decode pictures for the service.
+// Returns the ids of the service's decoder processes.
 export function decoders_of(pid) {
   const children = (task) => {
     try {
@@ -86,14 +86,14 @@ export function decoders_of(pid) {
   return readdirSync(`/proc/${pid}/task`).flatMap(children);
 }
 
-// `resident` has the memory of the service's decoders too.
+// Returns {resident, threads, descriptors}. `resident`: bytes, with the service's decoders.
 export function process_state(pid) {
   let resident = resident_of(pid);
   for (const decoder of decoders_of(pid)) {
     try {
       resident += resident_of(decoder);
     } catch {
-      // it has ended
+      // The decoder has ended.
     }
   }
   return {
@@ -103,7 +103,7 @@ export function process_state(pid) {
   };
 }
 
-// Milliseconds until `holds()` resolves to true; NaN if that takes longer than `limit_ms`.
+// Resolves to the milliseconds until `holds()` resolves to true, or to NaN after `limit_ms`.
 export async function until(holds, limit_ms = 30_000) {
   for (const start = performance.now(); ;) {
     const held = await holds();
@@ -113,7 +113,7 @@ export async function until(holds, limit_ms = 30_000) {
   }
 }
 
-// Reads the service's metrics on a connection of its own, which the service closes after 15 s of rest.
+// Reader of the service's metrics on one connection, which the service closes after 15 s without requests.
 export class Gauges {
   constructor(service) {
     this.client = new Client(service.health_port);
@@ -133,7 +133,7 @@ export class Gauges {
     };
   }
 
-  // Milliseconds until `holds` is true of the gauges; NaN if that takes longer than `limit_ms`.
+  // Resolves to the milliseconds until `holds(gauges)` is true, or to NaN after `limit_ms`.
   until(holds, limit_ms) {
     return until(async () => holds(await this.read()), limit_ms);
   }
@@ -143,20 +143,20 @@ export class Gauges {
   }
 }
 
-// Bytes that the service is said to take at most (memory_bytes), and what is granted beyond them.
+// Resolves to the service's memory limit (memory_bytes) plus a tolerance of 10 %, in bytes.
 export async function memory_bound(port) {
   const limits = JSON.parse((await new Client(port).ask("/v1/limits")).text());
   return 1.1 * limits.memory_bytes;
 }
 
-// Options of a picture with all layers, which films of sums hold.
+// Options of a picture with all layers, which needs a film of sums.
 export const kLayers = { layers: ["depth", "normal", "position", "uv", "object", "footprint"] };
 
 // ---- load
 
-// `count` clients that ask again as soon as they have an answer, until stop(). `path_of` gives the next address,
-// `on_answer` gets each answer and says by false that this client is done. After an answer other than 200 a
-// client rests for `rest_ms`. `request`: headers and the like of all.
+// Runs `count` clients that send a request after each response, until stop(). `path_of()` returns the next
+// path. `on_answer` gets each response and returns false to stop the client. After a status other than 200, a
+// client pauses for `rest_ms`. `request`: options such as headers of all requests.
 export function closed_loop(port, count, path_of, on_answer, rest_ms = 0, request = {}) {
   let going = true;
   const clients = Array.from({ length: count }, () => new Client(port));

@@ -1,4 +1,4 @@
-// What clients of all kinds do. Each act resolves to the answers it got.
+// Acts of clients for mixed traffic. Each act resolves to its responses.
 
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
@@ -9,7 +9,7 @@ import { FrameReader, send } from "../daemon.mjs";
 const number = (below) => Math.floor(below * Math.random());
 const json = { "Content-Type": "application/json" };
 
-// A scene that nobody posted before is kept, drawn, and removed, or left to be forgotten.
+// Returns an act that posts a new scene, renders it, and deletes it or leaves it to be evicted.
 function scenes_come_and_go() {
   const scene = JSON.parse(readFileSync(number(2) ? kPaper : kFlake, "utf8"));
   return async (client) => {
@@ -58,7 +58,7 @@ function orbits(scenes, port) {
     const until = performance.now() + number(2000);
     for await (const chunk of response) {
       if (binary) reader.add(chunk);
-      if (performance.now() > until) break; // which leaves
+      if (performance.now() > until) break; // disconnects
     }
     return [{ status: response.statusCode }];
   };
@@ -111,7 +111,7 @@ function leaving(scenes) {
   };
 }
 
-// The clients of a service with these scenes, as functions of the connection they use.
+// Returns the acts of all clients. An act takes the Client that it uses.
 export function acts_on(scenes, port) {
   const watching = Array.from({ length: 3 }, () => orbits(scenes, port));
   const drawing = [pictures(scenes), pictures(scenes), leaving(scenes)];

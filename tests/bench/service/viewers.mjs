@@ -1,4 +1,4 @@
-// Ten watch one orbit; a slow one among them slows none, and each frame is rendered once for all.
+// Ten viewers of one orbit: a slow one delays no other, and each frame is rendered once.
 
 import net from "node:net";
 import { most, ms, pause, percent, quantile, row, with_service } from "./support.mjs";
@@ -13,11 +13,11 @@ const kOnce = 1.05;
 
 const kAccept = "application/x-orrery-frames";
 
-// Reads all frames; resolves to [{at, key, frame, skipped}].
+// Reads all frames. Resolves to [{at, key, frame, skipped}].
 async function watch(port, path) {
   const frames = [];
   const reader = new FrameReader(({ frame, render_ms, encode_ms, skipped }) =>
-    // Two renders of one frame take different times.
+    // The key identifies a render: two renders of one frame take different times.
     frames.push({ at: performance.now(), key: `${frame} ${render_ms} ${encode_ms}`, frame, skipped }),
   );
   const response = await send(port, "GET", path, { Accept: kAccept });
@@ -26,8 +26,8 @@ async function watch(port, path) {
   return frames;
 }
 
-// Reads a little each tenth of a second until stop(), which tells how much it got, and after which time it was
-// cut off, if it was.
+// Reads a little every 0.1 s. Returns stop(), which returns the bytes received and cut_s, the seconds until
+// the service closed the connection, or null.
 function watch_slowly(port, path) {
   const start = performance.now();
   let bytes = 0,
@@ -35,7 +35,7 @@ function watch_slowly(port, path) {
   const socket = net.connect(port, "127.0.0.1", () =>
     socket.write(`GET ${path} HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: ${kAccept}\r\n\r\n`),
   );
-  socket.on("readable", () => {}); // it is read below, not as it comes
+  socket.on("readable", () => {}); // read by the timer below
   socket.on("error", () => {});
   socket.on("close", () => (cut_s ??= (performance.now() - start) / 1000));
   const timer = setInterval(() => {

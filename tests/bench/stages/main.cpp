@@ -10,21 +10,22 @@
 #include "tests/bench/measuring.h"
 #include "tests/support/random.h"
 
-// Stages in front of an accelerator, beside that accelerator alone, on the rays of some tiles of a picture.
+// Compares stages in front of an accelerator with the accelerator alone, on the rays of some tiles of a
+// picture.
 //   stages SCENE.json STRUCTURE predict none|network|last|random   shadow rays
-//   stages SCENE.json STRUCTURE known nearest                      camera rays that bring the hit they will
-//   have stages SCENE.json STRUCTURE reorder camera|bounced|scattered   nearest hits
-// First prints a line about the rays, in JSON; then for each line of input, "ours" (with the stage) or
-// "theirs", asks for all of them and prints the CPU seconds that took.
+//   stages SCENE.json STRUCTURE known nearest                      camera rays that carry their hit already
+//   stages SCENE.json STRUCTURE reorder camera|bounced|scattered   closest hits
+// Prints facts of the rays in JSON. Then, for each input line "ours" (with the stage) or "theirs", traces all
+// rays and prints the CPU seconds.
 namespace orrery::bench {
 namespace {
 
 using nlohmann::ordered_json;
 
 constexpr int kTiles = 64;
-constexpr double kLeastSeconds = 0.1;  // of a run
+constexpr double kLeastSeconds = 0.1;  // minimum length of a run
 
-// What was asked in one call, and hits known beforehand.
+// Rays of one recorded call, and hits known beforehand.
 struct Call {
   RayBatch<float> rays;
   Groups groups;
@@ -65,7 +66,8 @@ std::uint64_t rays_of(const Calls& calls) {
   return rays;
 }
 
-// Whole batches that leave what the camera's rays met in any direction; scattered: in any order, too.
+// Returns full batches of rays in random directions from the hits of the camera rays. `scattered`: in random
+// order.
 Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool scattered) {
   test::Random random(1);
   std::vector<Ray<float>> rays;
@@ -93,7 +95,7 @@ Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool s
   return calls;
 }
 
-// Seconds that asking for all of them takes; what they hold stays.
+// Returns the CPU seconds of tracing copies of all calls. Adds to `counts` and `occluded`.
 double ask(const Accelerator<float>& accelerator, const Calls& calls, bool shadows, AcceleratorCounts& counts,
            std::uint64_t& occluded) {
   const auto rays = std::make_unique<RayBatch<float>>();
@@ -113,13 +115,13 @@ double ask(const Accelerator<float>& accelerator, const Calls& calls, bool shado
   return seconds;
 }
 
-// What is to be measured.
+// Arguments of the program.
 struct Task {
   std::string scene, structure, stage, what;
 };
 
 struct Sides {
-  Calls ours, theirs;  // what each is asked; empty `ours`: the same
+  Calls ours, theirs;  // rays of each side; empty `ours`: same as `theirs`
   std::shared_ptr<const Accelerator<float>> with, without;
   bool shadows = false;
   double build_ms = 0;

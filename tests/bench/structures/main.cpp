@@ -12,25 +12,25 @@
 #include "tests/support/batches.h"
 #include "tests/support/random.h"
 
-// Every structure on one scene: what building it takes, and what rays cost in it, on one thread: those of
-// some tiles of its picture, or closest hits of rays at random through its bounded primitives.
+// Measures build time and ray cost of every structure on one scene, on one thread. Rays are those of some
+// tiles of its picture, or random rays through its bounded primitives.
 //   structures SCENE.json ROUNDS picture|random [NAME...]
-// Prints JSON. Times are CPU time; each round asks every structure once, so that their ratios hold while the
-// machine's speed drifts.
+// Prints JSON. Times are CPU time. Each round measures every structure once, so that their ratios hold while
+// the machine's speed drifts.
 namespace orrery::bench {
 namespace {
 
 using nlohmann::ordered_json;
 
 constexpr int kTiles = 12;
-constexpr double kPatience = 2;  // CPU seconds that building again may take
+constexpr double kPatience = 2;  // limit of CPU seconds for repeated builds
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
 }
 
-// Times what it passes on.
+// Accelerator decorator that measures the CPU time of queries.
 template <class T>
 class Stopwatch final : public Accelerator<T> {
  public:
@@ -60,10 +60,10 @@ struct Candidate {
   World<T> world;
   std::shared_ptr<const Stopwatch<T>> stopwatch;
   std::vector<double> build_s, trace_s;
-  TraceCounts counts;  // of one round
+  TraceCounts counts;  // from the last round
 };
 
-// Structures without a hierarchy would take minutes.
+// Returns true for structures without a hierarchy on many primitives, which would take minutes.
 bool too_slow(const AcceleratorType& type, int primitives) {
   const std::string_view name = type.name;
   return primitives > 20'000 && (name == "list" || name == "boxes" || name == "oriented-boxes");
@@ -88,7 +88,7 @@ Candidate<T> candidate_of(const AcceleratorType& type, const std::shared_ptr<con
   return candidate;
 }
 
-// Batches of rays between points on the sphere around the bounded primitives.
+// Returns batches of rays between random points on the sphere around the bounded primitives.
 template <class T>
 std::vector<RayBatch<T>> random_rays(const PrimitiveList<T>& primitives) {
   Boundsd box;
