@@ -7,12 +7,12 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Scenes that break careless structures, and the sample scenes: all find what the list finds, to the bit.
+// Compares every structure with the list, bit for bit, on adversarial scenes and the sample scenes.
 namespace orrery::test {
 namespace {
 
-// Sixteen rays at a time run alike, as those of neighbouring pixels or towards one lamp: they may walk
-// together. The rays of every other sixteen start at one point, those of the rest end at one.
+// Returns groups of 16 coherent rays, like those of neighbouring pixels or of one light. A group shares
+// either its origin or its target, chosen at random.
 template <class T>
 Rays<T> alike_rays(const Vec3d& middle, double half, int count, double spread, std::uint64_t seed) {
   Random random(seed);
@@ -38,7 +38,7 @@ Rays<T> any_rays(const Vec3d& middle, double half, int count, std::uint64_t seed
   return rays;
 }
 
-// Sixteen rays at a time from one point to some of these targets.
+// Returns groups of 16 rays, each from one point to random targets.
 template <class T>
 Rays<T> aimed_rays(const std::vector<Vec3d>& targets, double from, int count) {
   Random random(2);
@@ -60,7 +60,7 @@ class Adversaries : public StructureTest {
   AcceleratorFacts agree(const Json& scene, const Rays<T>& rays) {
     return StructureTest::agree<T>(scene, rays, {T(0.7), std::numeric_limits<T>::infinity()});
   }
-  // `count` rays of each kind in a cube of that half width.
+  // Compares `count` rays of each kind in a cube of half width `half`.
   AcceleratorFacts agree(const Json& scene, const Vec3d& middle, double half, int count) {
     const auto facts = agree<float>(scene, any_rays<float>(middle, half, count, 1));
     agree<double>(scene, any_rays<double>(middle, half, count, 1));
@@ -76,7 +76,7 @@ Json sphere(const Vec3d& center, double radius) {
   return {{"type", "sphere"}, {"center", {center.x, center.y, center.z}}, {"radius", radius}};
 }
 
-// A sheet of 2 * side * side triangles over [-1, 1]^2; `height` gives z.
+// Returns a mesh of 2 * side * side triangles over [-1, 1]^2; `height` gives z.
 template <class Height>
 Json sheet(int side, const Height& height) {
   Json positions = Json::array(), indices = Json::array();
@@ -140,7 +140,7 @@ TEST_P(Adversaries, SpheresThatHalveAndHalve) {
   for (const double half : {1e6, 1.0, 1e-6}) agree(scene_with(objects), {}, half, 10'000);
 }
 
-// Where gaps grow from each to the next, grouping near ones finds a single nearest pair at a time.
+// Growing gaps leave bottom-up grouping a single nearest pair at a time.
 TEST_P(Adversaries, GapsThatGrow) {
   covers("F3");
   Json objects = Json::array();
@@ -170,7 +170,7 @@ TEST_P(Adversaries, SampleScenes) {
     if (entry.path().extension() != ".json") continue;
     SCOPED_TRACE(entry.path());
     const Json scene = Json::parse(std::ifstream(entry.path()));
-    const bool many = load(scene)->primitive_count() > 500;  // the list takes its time
+    const bool many = load(scene)->primitive_count() > 500;  // the list is slow
     const int rays = !kSanitized ? 100'000 : many ? 100 : 10'000;
     agree<float>(scene, any_rays<float>({0, 1, 0}, 4, rays, 7));
     agree(scene, {0, 1, 0}, 4, !many ? 5'000 : kSanitized ? 100 : 1'000);

@@ -3,12 +3,13 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Every registered structure finds what testing every primitive finds: the same primitive at the same
-// distance, to the bit, and the same shadows.
+// Compares every registered structure with testing every primitive: the same primitive at the same distance,
+// bit for bit, and the same shadows.
 namespace orrery::test {
 namespace {
 
-// All registered shapes, many times, in a cube of half width 8; `kinds` names the types left in.
+// Returns `count` copies of every registered shape in a cube of half width 8. `bounded_only` leaves out
+// planes and infinite cylinders.
 Json cloud(int count, std::uint64_t seed, bool bounded_only = false) {
   Random random(seed);
   Json objects = Json::array();
@@ -21,7 +22,7 @@ Json cloud(int count, std::uint64_t seed, bool bounded_only = false) {
   return scene_with(objects);
 }
 
-// Coplanar, touching and coincident: every tie and near tie there is.
+// Returns coplanar, touching and coincident shapes, with ties and near ties.
 Json stack() {
   Json objects = Json::array();
   for (int i = 0; i < 6; ++i) {
@@ -51,8 +52,8 @@ Rays<T> rays_through(double half, double from, int count, std::uint64_t seed) {
   return rays;
 }
 
-// Rays from far away that touch the shape to within a few ulp of the distance, where kernels decide by
-// rounding. Every fourth goes through where it would touch: flat shapes are met by no others.
+// Returns distant rays that touch the shape to within a few ulp of the distance, where rounding decides.
+// Every fourth ray goes through the touched point, since flat shapes are hit by no others.
 template <class T>
 Rays<T> touching_rays(const Json& object, double distance, int count) {
   const Target<double> shape(scene_with(object));
@@ -99,8 +100,8 @@ TEST_P(Accelerators, AgreeWithTheListWhereSurfacesCoincide) {
   }
 }
 
-// Silhouettes seen from afar: the kernels themselves decide by a few ulp of the distance, and no box may be
-// more certain than they are.
+// At distant silhouettes the kernels decide within a few ulp of the distance. A box test must not reject a
+// ray that the kernel accepts.
 TEST_P(Accelerators, AgreeWithTheListFromAfar) {
   covers("F1");
   for (const std::string& type : shape_names())
@@ -124,7 +125,7 @@ TEST_P(Accelerators, AgreeWithTheListOnGrazingRays) {
     }
 }
 
-// Rays exactly along an axis may cost at most three times what jittered ones do.
+// Rays exactly along an axis may cost at most three times as much as jittered rays.
 TEST_P(Accelerators, AxisAlignedRaysCostNoMore) {
   covers("A29");
   const auto work = [&](double jitter) {

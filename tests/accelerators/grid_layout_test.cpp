@@ -21,7 +21,8 @@ Cells visited(const GridLayout<T>& layout, const Ray<T>& ray) {
   return cells;
 }
 
-// The cells whose closed boxes, grown by `pad` on each side, the ray touches, in long double.
+// Returns the cells whose closed boxes, grown by `pad` on each side, the ray touches, computed in long
+// double.
 template <class T>
 Cells touched(const GridLayout<T>& layout, const Ray<T>& ray, long double pad) {
   Cells cells;
@@ -47,7 +48,7 @@ Cells touched(const GridLayout<T>& layout, const Ray<T>& ray, long double pad) {
   return cells;
 }
 
-// No cell that the ray touches is left out, and none that it misses by more than rounding is visited.
+// Expects a visit to each cell that the ray touches, and to none that it misses by more than rounding.
 template <class T>
 void expect_visits(const GridLayout<T>& layout, const Ray<T>& ray) {
   const Cells found = visited(layout, ray);
@@ -92,7 +93,7 @@ TYPED_TEST(GridLayouts, VisitBothSidesOfAPlaneThatARayRunsIn) {
     const T d = way / std::sqrt(T(3));
     expect_visits<T>(layout, {{T(4) - 10 * d, T(4) - 10 * d, T(4) - 10 * d}, {d, d, d}});
   }
-  expect_visits<T>(layout, {{T(9), T(4), T(-3)}, {T(0), T(0), T(1)}});  // beside it all
+  expect_visits<T>(layout, {{T(9), T(4), T(-3)}, {T(0), T(0), T(1)}});  // outside of the grid
 }
 
 TYPED_TEST(GridLayouts, VisitKnownPaths) {

@@ -9,7 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
-// Pictures in which a structure or a shape once lost hits.
+// Tests scenes in which a structure or a shape once lost hits.
 namespace orrery::test {
 namespace {
 
@@ -27,7 +27,7 @@ TEST_P(HardScenes, AreTheSameByAllStructures) {
   for (const std::string& path : hard_scenes()) {
     std::ifstream file(path);
     const auto scene = load(Json::parse(file));
-    const bool underflows = scene->facts.smallest_feature.value < 1e-10;  // in float, where no list is right
+    const bool underflows = scene->facts.smallest_feature.value < 1e-10;  // float has no valid reference
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       if (underflows && precision == Precision::single_precision) continue;
       const auto by = [&](const std::string& accelerator) {
@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, HardScenes, testing::ValuesIn(accelerator_n
                            return name;
                          });
 
-// Slivers about one point, seen through a telescope that shows many of them.
+// Returns slivers around one point, magnified by a telescope.
 Json slivers(double aspect, Random& random) {
   constexpr int kCount = 60;
   const double width = 2 / aspect;
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, Slivers, testing::ValuesIn(accelerator_name
   return name;
 });
 
-// Of disks and cylinders whose tilt is below the root of the rounding error.
+// The tilts of these disks and cylinders are below the square root of the rounding error.
 TEST(NearlyAxisAligned, DisksAndCylindersReachBeyondTheirPlane) {
   for (const double tilt : {1e-8, 1e-12, 1e-100}) {
     const auto bounds = [](const Json& object) {

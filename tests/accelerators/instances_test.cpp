@@ -9,11 +9,11 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Models that stand in a scene many times.
+// Tests instanced models.
 namespace orrery::test {
 namespace {
 
-// A closed ball of triangles around the origin, radius 1.
+// Returns a closed ball of triangles around the origin, radius 1.
 Json ball_mesh(int rows, int columns) {
   Json positions = Json::array(), indices = Json::array();
   for (int row = 0; row <= rows; ++row)
@@ -53,7 +53,7 @@ const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 1, 0}, {0, 0, 0}, 0},
                                  {{0.01, 0.02, 0.01}, {0, 0, 1}, {1.5, 0, 0}, 33},
                                  {{2, 2, 0.004}, {1, 1, 0}, {0, -4, 0}, 30}};
 
-// Far from all else; a scene has at least one object.
+// Object far from all others, as a scene needs at least one.
 const Json kSpeck = {{"type", "sphere"}, {"center", {0, -500, 0}}, {"radius", 0.001}};
 
 Json scene_of_places(const Json& model, const Json& objects = kSpeck) {
@@ -63,7 +63,7 @@ Json scene_of_places(const Json& model, const Json& objects = kSpeck) {
   return scene;
 }
 
-// The same, with every instance written out as a mesh of its own.
+// Returns the same scene with every instance baked into a mesh of its own.
 Json baked_scene(const Json& model) {
   Json objects = Json::array({kSpeck});
   for (const Place& place : kPlaces) {
@@ -79,7 +79,7 @@ template <class T>
 Rays<T> rays_around(int count, std::uint64_t seed) {
   Random random(seed);
   Rays<T> rays;
-  while (static_cast<int>(rays.size()) < count) {  // some alike, some not
+  while (static_cast<int>(rays.size()) < count) {  // some coherent, some not
     const Vec3d from = random.in_cube(7), to = random.in_cube(3);
     for (int i = 0; i < (random.below(2) ? 16 : 1); ++i)
       rays.push_back({Vec3<T>(from), Vec3<T>(safe_normalize(to + random.in_cube(0.05) - from))});
@@ -103,7 +103,7 @@ TEST_P(Instances, AgreeWithTheListOfThem) {
   agree<double>(mixed, rays_around<double>(50'000, 2), {0.7, 5.0, 1e30});
 }
 
-// In the model's coordinates such rays start millions of metres away from a ball of one.
+// In model coordinates, these rays start millions of metres away from a ball of radius 1.
 TEST_P(Instances, AreFlattenedToAMillionth) {
   covers("A27 A38");
   Json scene = scene_of_places(ball_mesh(8, 12));
@@ -172,7 +172,7 @@ TEST(Instance, IsMetWhereItsMeshWouldBe) {
   EXPECT_LE(other, 5);
 }
 
-// The normal of a triangle of a placed ball, outward.
+// Returns the outward normal of a triangle of a placed ball.
 Vec3d world_normal(const Json& model, std::size_t triangle, const Place& place) {
   const Affined world_from_model = place.world_from_model();
   std::array<Vec3d, 3> corner;
@@ -183,8 +183,8 @@ Vec3d world_normal(const Json& model, std::size_t triangle, const Place& place) 
   return dot(normal, corner[0] - place.move) < 0 ? -normal : normal;
 }
 
-// Hits on every instance, from outside: the normal is that of its surface, and a ray that leaves meets
-// nothing of it.
+// Checks exterior hits on every instance. The normal is that of the surface, and a ray leaving along it does
+// not hit the same instance.
 template <class T>
 void expect_outward_and_clear() {
   const Json model = ball_mesh(24, 48), json = scene_of_places(model);

@@ -5,12 +5,12 @@
 #include "tests/support/covers.h"
 #include "tests/support/mixtures.h"
 
-// A ray may come with a hit that is known already: it stays unless there is a nearer one, or one as near of a
-// lower number.
+// Tests rays that arrive with a known hit. A structure replaces the hit only by a nearer one, or by an
+// equally near one with a lower primitive number.
 namespace orrery::test {
 namespace {
 
-// What each ray meets of one primitive alone, by its own kernel.
+// Returns the hit of each ray with one primitive, found by the primitive's own kernel.
 template <class T>
 std::vector<Hit<T>> hits_of(const Primitive<T>& primitive, const Rays<T>& rays) {
   std::vector<Hit<T>> found;
@@ -28,7 +28,8 @@ std::vector<Hit<T>> hits_of(const Primitive<T>& primitive, const Rays<T>& rays) 
   return found;
 }
 
-// Hits that a ray may come with: of any primitive, and of the last of those that are as near as the nearest.
+// Known hits to start from: of a random primitive, and of the last primitive among those at the nearest
+// distance.
 template <class T>
 struct Known {
   std::vector<Hit<T>> any, last;
@@ -49,7 +50,7 @@ struct Known {
   }
 };
 
-// Everything several times, so that every hit is a tie.
+// Returns the scene with every object three times, so that every hit is a tie.
 Json doubled(Json scene) {
   const Json objects = scene["objects"];
   for (int i = 0; i < 2; ++i)
@@ -76,7 +77,7 @@ class KnownHits : public testing::TestWithParam<std::string> {
                               planes(5, 2), doubled(planes(5, 2))})
       for (const double half : {3.0, 1000.0}) {
         Rays<T> rays = any_rays<T>(half, 3000, 3);
-        for (Ray<T>& ray : rays)  // most of those from afar would miss
+        for (Ray<T>& ray : rays)  // most distant rays would miss
           if (half > 3) ray.direction = Vec3<T>(safe_normalize(Vec3d(-ray.origin)));
         agree<T>(scene, enough_of(rays));
       }

@@ -4,11 +4,11 @@
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
-// Structures over what moves: they follow from the moment before, or are built anew.
+// Tests structures over moving geometry, which are refitted from the previous moment or rebuilt.
 namespace orrery::test {
 namespace {
 
-// A square that things stand on, side * side of them.
+// Square with side * side places for objects.
 struct Square {
   int side, step;  // step * step = 1 modulo side * side: each is the partner of its partner
 
@@ -20,7 +20,7 @@ struct Square {
 };
 constexpr Square kSquare{6, 17}, kLarge{20, 49};
 
-// Instances that change places two by two within 1 s, while they turn.
+// Returns instances that turn while they swap places in pairs within 1 s.
 Json swapping_instances() {
   Json scene = scene_of(R"({"type": "sphere", "center": [0, -20, 0], "radius": 0.5})");
   const Json ball = {{"type", "sphere"}, {"center", {0.1, 0, 0}}, {"radius", 0.4}, {"material", "white"}};
@@ -41,7 +41,7 @@ Json swapping_instances() {
   return scene;
 }
 
-// One mesh whose triangles change places two by two.
+// Returns one mesh whose triangles swap places in pairs.
 Json swapping_triangles(const Square& square = kSquare) {
   Json scene = scene_of(R"({"type": "sphere", "center": [0, -20, 0], "radius": 0.5})");
   Json mesh = {{"type", "mesh"}, {"material", "white"}};
@@ -76,7 +76,7 @@ struct Followed {
   double worst = 1;
 };
 
-// Frame by frame each structure agrees with the list of that moment, and with one built for it alone.
+// Compares each structure, frame by frame, with the list of that moment and with a freshly built structure.
 template <class T>
 Followed follow(const Json& json, const std::string& accelerator, int frames, int rays_a_frame,
                 double half = 7) {
@@ -100,8 +100,8 @@ Followed follow(const Json& json, const std::string& accelerator, int frames, in
 
 class Motion : public StructureTest {
  protected:
-  // Hierarchies follow for a while and are built anew when their boxes stretch over half the square; all
-  // others are built anew each time.
+  // Expects hierarchies to be refitted at first, and rebuilt when their boxes stretch over half the square.
+  // All other structures are rebuilt for each frame.
   static void expect_both(const Followed& followed) {
     const bool hierarchy = GetParam() == "bottom-up" || GetParam() == "bvh";
     EXPECT_EQ(followed.refitted > 1, hierarchy);
@@ -125,7 +125,7 @@ TEST_P(Motion, PairsOfTrianglesSwapPlaces) {
   expect_both(followed);
 }
 
-// Of so many that inner nodes have inner nodes.
+// This mesh has enough triangles for inner nodes with inner children.
 TEST_P(Motion, PairsOfManyTrianglesBeginToSwapPlaces) {
   covers("F19 F1");
   Json scene = swapping_triangles(kLarge);
@@ -143,7 +143,7 @@ TEST_P(Motion, OneFliesAwayAndComesBack) {
   follow<float>(scene, GetParam(), 4, 2000);
 }
 
-// A triangle that collapses to a line and to a point, and a mesh that does as a whole.
+// A triangle collapses to a line and to a point, and so does a whole mesh.
 TEST_P(Motion, WhatLosesItsAreaIsNotMet) {
   covers("F19");
   Json scene = swapping_triangles();
@@ -164,7 +164,7 @@ TEST_P(Motion, WhatLosesItsAreaIsNotMet) {
   for (const auto& hit : collapsed.closest(rays)) EXPECT_LE(hit.primitive, 0);  // the sphere is number 0
 }
 
-// Triangles on a line: rounding gives them an area in float, a ray meets them all the same never.
+// Float rounding gives some of these collinear triangles an area, but no ray may hit them.
 TEST_P(Motion, WhatIsFlattenedToLinesIsNotMet) {
   covers("F19");
   Random random(17);
@@ -213,7 +213,7 @@ TEST(MovingGeometry, SharesWhatRests) {
   EXPECT_NE(first.geometry().models[1], second.geometry().models[1]);
 }
 
-// A tree that is built while all stands in one place is worth nothing once it does not.
+// A tree built over coincident triangles must be rebuilt once they spread out.
 TEST(MovingGeometry, ForgetsATreeThatWasBuiltInOnePlace) {
   covers("F19");
   Random random(4);

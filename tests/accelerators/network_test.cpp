@@ -9,7 +9,7 @@
 #include "core/stages/network_predictor.h"
 #include "tests/support/random.h"
 
-// The network itself: what it computes, and that it learns.
+// Tests inference and training of the network.
 namespace orrery::test {
 namespace {
 
@@ -21,7 +21,7 @@ Network::Inputs<float> random_inputs(Random& random) {
   return in;
 }
 
-// One layer as it is written in books: weights row by row, each row followed by what is added.
+// Evaluates one dense layer as in textbooks: weights row by row, each row followed by its bias.
 std::vector<double> layer(const float*& weight, const std::vector<double>& in, std::size_t outputs) {
   std::vector<double> out;
   for (std::size_t j = 0; j < outputs; ++j) {
@@ -46,7 +46,7 @@ std::vector<double> plain_scores(const Network& network, const Network::Inputs<f
   return scores;
 }
 
-// Some weights have other signs and sizes than those that a network starts with.
+// Returns a network with random weights, whose signs and magnitudes differ from the initial ones.
 Network some_network(std::uint64_t seed) {
   Random random(seed);
   Network network;
@@ -88,7 +88,7 @@ TYPED_TEST(Scores, AreThoseOfAPlainEvaluation) {
   }
 }
 
-// Boxes in the space of the inputs: something that straight lines cannot tell apart.
+// Returns examples labelled by boxes in input space, which are not linearly separable.
 std::vector<NetworkExample> examples(int count, std::uint64_t seed) {
   Random random(seed);
   std::vector<NetworkExample> examples;
@@ -100,7 +100,7 @@ std::vector<NetworkExample> examples(int count, std::uint64_t seed) {
   return examples;
 }
 
-// Cross entropy of the scores, mean over the examples, in nats.
+// Returns the mean cross entropy of the scores over the examples, in nats.
 double loss_of(const Network& network, const std::vector<NetworkExample>& of) {
   double loss = 0;
   for (const NetworkExample& example : of) {
@@ -141,7 +141,7 @@ TEST(Training, IsTheSameTwice) {
   EXPECT_NE(once.weights, train_network(seen, options).weights);
 }
 
-// Shadow rays of a floor under two balls and a lamp: it learns which ball stands where.
+// Shadow rays from a floor under two balls towards a light: the predictor learns the place of each ball.
 TEST(NetworkPredictor, ProposesWhatStoodInTheWay) {
   Random random(4);
   std::vector<OcclusionSample> samples;

@@ -16,7 +16,7 @@ OrientedBox<double> box_of(const Hull& hull) {
   return OrientedBox<double>::around(principal_axes(moments), hull);
 }
 
-// The smallest of boxes along axes at random.
+// Returns the smallest measure of 1,000 boxes with random axes.
 template <class Measure>
 double best_of_random(const Hull& hull, const Measure& measure) {
   Random random(11);
@@ -50,7 +50,7 @@ void expect_inside(const OrientedBox<double>& box, const Hull& hull) {
       }
 }
 
-Vec3d turned(const Vec3d& p) {  // about z, then about x
+Vec3d turned(const Vec3d& p) {  // rotated about z, then about x
   const double a = 0.5, b = 0.8;
   const Vec3d q(std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y, p.z);
   return {q.x, std::cos(b) * q.y - std::sin(b) * q.z, std::sin(b) * q.y + std::cos(b) * q.z};
@@ -92,7 +92,7 @@ TEST(OrientedBox, FitsATurnedSlab) {
   EXPECT_NEAR(box_of(slab).volume(), 8, 1e-9);
 }
 
-// Points heaped in two corners turn axes that go by points, not those that go by area.
+// Points heaped in two corners rotate axes fitted to points, but not axes fitted to area.
 TEST(OrientedBox, IgnoresHowFinelyCornersAreCut) {
   covers("F8");
   Hull rectangle{{Vec3d(0, 0, 0), Vec3d(4, 0, 0), Vec3d(4, 1, 0)},

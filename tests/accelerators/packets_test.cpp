@@ -3,11 +3,11 @@
 #include "tests/support/agreement.h"
 #include "tests/support/random.h"
 
-// Rays that run alike walk a tree together while that pays.
+// Tests packet traversal of coherent rays.
 namespace orrery::test {
 namespace {
 
-// Straws in a bundle, each two triangles 2 m long and 1 mm wide.
+// Returns straws in a bundle, each two triangles 2 m long and 1 mm wide.
 Json straws(int count) {
   Random random(3);
   Json positions = Json::array(), indices = Json::array();
@@ -24,7 +24,7 @@ Json straws(int count) {
   return scene_with(Json{{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
 }
 
-// From a camera, in blocks of 16 that are next to each other.
+// Returns camera rays in blocks of 16 neighbours.
 template <class T>
 Rays<T> camera_rays() {
   constexpr int kSide = 64;
@@ -51,7 +51,7 @@ void expect_agreement() {
   EXPECT_EQ(tree.occluded(rays, T(2.9)), list.occluded(rays, T(2.9)));
 }
 
-// A tree that no cache holds is walked in another way.
+// Returns a mesh whose tree exceeds the caches, which selects another traversal.
 Json rough_sea() {
   constexpr int kSide = 440;
   Random random(4);
@@ -95,8 +95,8 @@ TEST(Packets, FindWhatTheListFindsAlsoWhereTheirBudgetEnds) {
   expect_agreement<double>();
 }
 
-// A register of rays may meet a thousand times what each of them meets: from the surface of a bundle to a
-// lamp, rays that begin beside each other pass many straws together, and few each.
+// A packet may visit a thousand times as many primitives as each of its rays. Neighbouring shadow rays from a
+// bundle to a light pass many straws together, but few each.
 TEST(Packets, EndWhereRaysAloneAreCheaper) {
   const Json scene = straws(4000);
   Structure<float> tree(scene, "bvh");
@@ -109,7 +109,7 @@ TEST(Packets, EndWhereRaysAloneAreCheaper) {
       shadows.push_back({at, normalize(Vec3f(0.3f, 2, 0.5f) - at)});
     }
   ASSERT_GT(shadows.size(), 500u);
-  Rays<float> mixed;  // the same, no two alike beside each other
+  Rays<float> mixed;  // the same rays, incoherent neighbours
   for (std::size_t i = 0; i < shadows.size(); ++i) mixed.push_back(shadows[i * 389 % shadows.size()]);
   const auto tests_of = [&](const Rays<float>& rays) {
     Structure<float> fresh(scene, "bvh");

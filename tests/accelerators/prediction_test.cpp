@@ -5,11 +5,12 @@
 #include "tests/support/covers.h"
 #include "tests/support/mixtures.h"
 
-// Whatever is proposed, right, wrong or no primitive at all: the shadows are those of the list.
+// Predictions, whether right, wrong or not a primitive at all, must not change shadows from those of the
+// list.
 namespace orrery::test {
 namespace {
 
-// What no predictor should be.
+// Kinds of invalid predictions.
 enum class Evil { out_of_range, always_wrong, any_number };
 
 template <class T>
@@ -34,7 +35,7 @@ class Adversary final : public Predictor<T> {
   }
 
  private:
-  // A primitive that no ray of the register meets, or kNoPrimitive.
+  // Returns a primitive that no ray of the register hits, or kNoPrimitive.
   IndexOf<T> missed(const RayBatch<T>& rays, int group) const {
     const Groups one = Groups::single(group);
     const auto tried = std::make_unique<RayBatch<T>>(rays);
@@ -59,7 +60,7 @@ Stage<T> adversary(Evil kind) {
   };
 }
 
-// A predictor that has seen what the rays to come meet.
+// Returns a predictor trained on the hits of the rays that are tested later.
 template <class T>
 PredictorPtr<T> trained_on(const Json& scene, const Rays<T>& rays) {
   Structure<T> list(scene, "list");
@@ -92,7 +93,7 @@ std::vector<Front<T>> fronts(const Json& scene, const Rays<T>& rays) {
            scene, Rays<T>(rays.begin(), rays.begin() + std::min<std::ptrdiff_t>(2000, std::ssize(rays)))))}};
 }
 
-// Rays from a cluster of places, so that neighbours are alike and the last occluder is often the next one.
+// Returns coherent rays from clusters of origins, for which the last occluder is often the next one.
 template <class T>
 Rays<T> neighbouring_rays(int count, std::uint64_t seed) {
   Random random(seed);
@@ -115,7 +116,7 @@ std::vector<Subject> subjects() {
       {"balls", balls(150, 1)}, {"mesh", wavy_sheet(12)}, {"mixture", mixture(2)}, {"planes", planes(5, 3)}};
 }
 
-// How many shadows of `count` rays differ from the list's, with each of the predictors in front of a
+// Expects the shadows of `count` rays to equal those of the list, with each predictor in front of the
 // structure.
 template <class T>
 void expect_no_change(const Subject& subject, const std::string& accelerator, int count) {
@@ -157,7 +158,7 @@ TEST(PredictionOfShadows, ChangesNoneOfMany) {  // a million in an exhaustive ru
   }
 }
 
-// Numbers that are none, and rays that are not asked for.
+// Components of these rays are NaN, infinite, zero, denormal or the largest numbers.
 TEST(PredictionOfShadows, ChangesNoneOfBrokenRays) {
   covers("F18");
   const Subject subject{"balls", balls(50, 1)};

@@ -8,7 +8,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/mixtures.h"
 
-// The order in which rays are asked for changes no answer.
+// The order of the rays in a batch must not change any result.
 namespace orrery::test {
 namespace {
 
@@ -89,7 +89,7 @@ TYPED_TEST(RayOrders, KeepTheOrderOfEqualKeys) {
   using T = TypeParam;
   const Rays<T> same(900, {{T(1), T(2), T(3)}, {T(0), T(1), T(0)}});
   EXPECT_EQ(order_in<T>(same), ascending(900));
-  std::vector<int> expected;  // of two kinds that take turns
+  std::vector<int> expected;  // two alternating kinds
   for (const int kind : {0, 1})
     for (int i = kind; i < 600; i += 2) expected.push_back(i);
   Rays<T> places, directions;
@@ -120,7 +120,7 @@ TYPED_TEST(RayOrders, BringOriginsOfOnePlaceTogether) {
   EXPECT_EQ(changes, 7);
 }
 
-// All origins at one place: the directions decide, octant by octant.
+// Origins in one point leave the order to the directions, octant by octant.
 TYPED_TEST(RayOrders, SortADotOfOriginsByOctant) {
   covers("F17");
   using T = TypeParam;
@@ -145,7 +145,7 @@ TYPED_TEST(RayOrders, PutNaNInTheLowestCell) {
   EXPECT_EQ(order_in<T>(rays), (std::vector<int>{1, 2, 3, 0}));
 }
 
-// What is not asked for is not touched.
+// Inactive rays are not touched.
 TYPED_TEST(RayOrders, LeaveOtherRaysAlone) {
   using T = TypeParam;
   Structure<T> sorted(balls(20, 1), "bvh", reorder<T>);

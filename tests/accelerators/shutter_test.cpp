@@ -9,15 +9,15 @@
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
 
-// What moves while the shutter is open is met where it is at each ray's time.
+// Tests that geometry moving during the exposure is hit at its position at each ray's time.
 namespace orrery::test {
 namespace {
 
 const Exposure kExposure{0.1, 1.3};
 
-// Instances that turn, grow and fly, some of a model that changes its form, some at rest; meshes that move,
-// before, between and after some at rest; and planes that an instance tilts. Keys are within the exposure and
-// beyond it.
+// Returns a scene with moving and resting instances, meshes before, between and after resting ones, and
+// planes tilted by an instance. Some instances have a deforming model. Keyframes are within and outside of
+// the exposure.
 Json busy_scene() {
   Random random(8);
   Json scene = scene_of(R"([
@@ -153,7 +153,7 @@ TEST_P(Shutter, MovingThingsAreFoundAsByTestingEverything) {
 
 INSTANTIATE_TEST_SUITE_P(All, Shutter, testing::ValuesIn(accelerator_names()), by_name);
 
-// Hits and surfaces of rays at one time are those of the scene that stands as it does then.
+// Hits and surfaces of rays at one time equal those of the scene at that instant.
 TEST(MovingDuringAnExposure, StandsWhereItIsAtTheRaysTime) {
   covers("F19");
   const auto scene = load(busy_scene());
@@ -197,7 +197,8 @@ TEST(MovingDuringAnExposure, StandsWhereItIsAtTheRaysTime) {
   EXPECT_GT(moved, 1000);
 }
 
-// Corners of what turns, grows and moves stay in the box, and the box is not much larger than it must be.
+// Corners of rotating, growing and moving geometry stay in the box, and the box is not much larger than
+// needed.
 TEST(MovingDuringAnExposure, BoxesHoldArcs) {
   Random random(3);
   const Boundsd model = Boundsd::of({{-1, 0.5, -0.2}, {2, 0.7, 0.4}});
@@ -226,7 +227,7 @@ TEST(MovingDuringAnExposure, BoxesHoldArcs) {
   }
 }
 
-// Structures of what rests stay when another exposure follows.
+// Structures over resting geometry are reused for the next exposure.
 TEST(MovingDuringAnExposure, FollowsFromTheExposureBefore) {
   const auto scene = load(busy_scene());
   const auto& type = type_named("bvh");

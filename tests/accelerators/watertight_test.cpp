@@ -5,7 +5,7 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Rays from within a closed mesh, aimed at its vertices and at the middles of its edges: none gets out.
+// Rays from within a closed mesh, aimed at its vertices and edge midpoints, must not escape.
 namespace orrery::test {
 namespace {
 
@@ -14,7 +14,7 @@ struct Ball {
   std::vector<std::array<int, 3>> triangles;
 };
 
-// Radius 2, 24 rows of 48: 2,208 triangles.
+// Returns a ball of radius 2 with 24 rows of 48, 2,208 triangles.
 Ball ball_around(const Vec3d& middle) {
   constexpr int kRows = 24, kColumns = 48;
   Ball ball;
@@ -42,7 +42,8 @@ Json scene_of_ball(const Ball& ball) {
   return scene_with({{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
 }
 
-// Every other one alone, the rest sixteen at a time from one point, so that they may walk together.
+// Returns aimed rays. Every other group of 16 has separate origins. The rest share one, so that packets may
+// traverse together.
 template <class T>
 Rays<T> aimed(const Ball& ball, const Vec3d& middle, int count) {
   Random random(12);
@@ -76,7 +77,7 @@ class Watertight : public testing::TestWithParam<std::string> {
     for (const char occluded : structure.occluded(rays, std::numeric_limits<T>::infinity())) out += !occluded;
     EXPECT_EQ(out, 0) << "of " << rays.size() << " shadow rays";
   }
-  // The production structure gets a million.
+  // Returns the ray count: a million for the production structure.
   static int rays() { return GetParam() == "bvh" ? 1'000'000 : 50'000; }
 };
 
@@ -86,7 +87,7 @@ TEST_P(Watertight, AroundTheOrigin) {
   expect_no_leak<double>({}, rays());
 }
 
-// Where Embree tests itself.
+// Uses the position of Embree's own test.
 TEST_P(Watertight, FarFromTheOrigin) {
   covers("A12 A27 A28");
   expect_no_leak<float>({148376, 1234, -223423}, rays());

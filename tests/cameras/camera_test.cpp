@@ -40,7 +40,7 @@ CameraFrame frame_at(const Standing& standing, const Orbit& orbit) {
   return orrery::frame_at(standing.placement, *standing.camera, orbit);
 }
 
-// The ray through a place of the picture; (0.5, 0.5) is the middle of the first pixel.
+// Returns the ray through the centre of pixel (x, y).
 Ray<double> ray_through(const Standing& standing, int width, int height, int x, int y) {
   const auto rays = std::make_unique<RayBatch<double>>();
   const int x0 = x / kTileSide * kTileSide, y0 = y / kTileSide * kTileSide;
@@ -147,7 +147,7 @@ TEST(CameraRays, OnePixelLooksAlongTheAxis) {
   expect_near(ray_through(slanted, 1, 1, 0, 0).direction, safe_normalize(Vec3d(-1, -2, -3)), 1e-15);
 }
 
-// The height decides the scale of both axes, whatever the aspect.
+// The image height determines the scale of both axes, whatever the aspect ratio.
 TEST(CameraRays, HeightScalesBothAxes) {
   covers("E9");
   const Standing camera = looking_at_origin();
@@ -183,7 +183,7 @@ TEST(CameraRays, OrthographicRaysAreParallelAndSpacedByTheHeight) {
   EXPECT_NEAR(frame_at(camera, {0, 0, 2}).half_extent, 3, 1e-15) << "farther away more is seen";
 }
 
-// Longitude grows evenly to the right and latitude upward; the middle is the view.
+// Longitude grows evenly to the right and latitude upward. The centre is the view direction.
 TEST(CameraRays, OfAPanoramaHaveEvenAngles) {
   const Standing camera{{}, camera_of({{"type", "panorama"}})};
   const int width = 128, height = 64;

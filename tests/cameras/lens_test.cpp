@@ -6,11 +6,12 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// A thin lens against the optics of one.
+// Compares the thin lens with the lens equation.
 namespace orrery::test {
 namespace {
 
-// A small lamp on the axis, 4 m from a lens of this radius that is focused at `focus`, under 40 degrees.
+// Returns a small lamp on the axis, 4 m from a lens of radius `aperture_radius` that is focused at `focus`.
+// The field of view is 40 degrees.
 Json lamp_before_lens(double aperture_radius, double focus) {
   return scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.02}]",
                   "{'camera': {'fov_degrees': 40, 'aperture_radius': " + std::to_string(aperture_radius) +
@@ -25,8 +26,8 @@ Picture picture_of(const Json& scene) {
 }
 constexpr double kPixelAngle = 2 * 0.363970234266202 / 128;  // tangent of a pixel
 
-// A point at distance z shows as a disk of radius r |z - f| / z in the plane that is sharp, and sends as much
-// light through the lens as it would be seen with.
+// A point at distance z shows as a disk of radius r |z - f| / z in the plane of focus. The total light equals
+// that of a pinhole camera.
 TEST(ThinLens, BlursAPointToADisk) {
   covers("R26 light-41");
   const double sharp = picture_of(lamp_before_lens(0, 4)).sum();
@@ -34,7 +35,8 @@ TEST(ThinLens, BlursAPointToADisk) {
     const double radius = 0.1, pixel = kPixelAngle * focus;
     const Picture blurred = picture_of(lamp_before_lens(radius, focus));
     EXPECT_NEAR(blurred.sum() / sharp, 1, 0.02) << focus;
-    // Twice the second moment of an even disk is its radius squared; the lamp's own adds, and the pixels'.
+    // Twice the second moment of an even disk is its radius squared. The disks of the lamp and of the pixels
+    // add to the blur.
     double moment = 0;
     for (int y = 0; y < 128; ++y)
       for (int x = 0; x < 128; ++x)

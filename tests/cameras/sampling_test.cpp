@@ -9,12 +9,12 @@
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
-// Points of lenses and places in pixels against the densities that they claim.
+// Compares samples on lenses and in pixel filters with their densities.
 namespace orrery::test {
 namespace {
 
-// Whether counts are those expected, neither farther off nor nearer than chance has them: within 5 standard
-// deviations of chi-square's mean. Cells of few are left out.
+// Expects chi-square within 5 standard deviations of its mean, from both sides. Cells with an expected count
+// below 5 are skipped.
 void expect_chi_square(const std::vector<double>& counts, const std::vector<double>& expected) {
   double sum = 0;
   int cells = 0;
@@ -31,8 +31,8 @@ using N = Lanes<double>;
 
 class Lens : public testing::TestWithParam<int> {};
 
-// Cells of a grid that lie wholly within the aperture are as full as their area says, which is of all that
-// the density integrates over.
+// Grid cells wholly within the aperture receive samples in proportion to their area. The area of the whole
+// aperture normalizes the density.
 TEST_P(Lens, PointsAreEvenOverItsAperture) {
   covers("light-24 light-25");
   const int blades = GetParam();
@@ -78,7 +78,8 @@ TEST_P(Lens, PointsAreEvenOverItsAperture) {
 
 INSTANTIATE_TEST_SUITE_P(Blades, Lens, testing::Values(0, 3, 4, 5, 6, 7, 16));
 
-// f(x), x pixels from the middle, for the usual width and of any size, by the formulas of their papers.
+// Returns f(x), x pixels from the centre, of the default width, without normalization, by the formulas of the
+// papers.
 double height(Filter filter, double x) {
   constexpr double pi = std::numbers::pi;
   x = std::abs(x);
@@ -103,14 +104,14 @@ double height(Filter filter, double x) {
 
 class PixelFilters : public testing::TestWithParam<Filter> {};
 
-// Places of each part have its density over both axes, and what the parts count is what they hold.
+// Samples of each part have its density over both axes, and the weights of the parts are their integrals.
 TEST_P(PixelFilters, PlaceSamplesAsDenseAsTheyAreHigh) {
   covers("light-24 light-25");
   const Filter filter = GetParam();
   const PixelFilter own(filter, 0);
   constexpr int kBins = 101;
   constexpr double kHalf = 3;
-  std::vector<double> above(kBins, 0), below(kBins, 0);  // of f on each bin
+  std::vector<double> above(kBins, 0), below(kBins, 0);  // integral of f over each bin
   double sum_above = 0, sum_below = 0;
   for (int bin = 0; bin < kBins; ++bin)
     for (int step = 0; step < 1000; ++step) {

@@ -5,7 +5,7 @@
 #include "core/channels/registry.h"
 #include "tests/support/pictures.h"
 
-// Channels of a film: what the camera rays of a picture meet first.
+// Tests film channels, which store properties of the first hits of camera rays.
 namespace orrery::test {
 namespace {
 
@@ -52,7 +52,7 @@ TEST(Channels, NormalAndPositionAreThoseOfTheSurface) {
   EXPECT_EQ(layers.at(0, 2, 0, 0), 0.0f);
 }
 
-// Shapes are kept type by type: numbers follow the file all the same.
+// Shapes are stored by type, but object numbers follow the order of the file.
 TEST(Channels, ObjectIsItsPlaceInTheScene) {
   const Json scene = scene_of(R"([
       {'type': 'box', 'min': [-3, -1, -1], 'max': [-1.5, 1, 1]},
@@ -94,7 +94,7 @@ TEST(Channels, FootprintGrowsWithTheDistance) {
   EXPECT_NEAR(layers.at(0, 0, 16, 16), 10 * 2 * std::tan(std::numbers::pi / 8) / 33, 1e-6);
 }
 
-// The mean of a pixel's samples counts those alone that met something.
+// The mean of a pixel counts only the samples that hit an object.
 TEST(Channels, EdgesTakeTheMeanOfWhatWasMet) {
   RenderRequest request = odd_size();
   request.samples = 16;
@@ -124,7 +124,7 @@ TEST(Channels, LeaveThePictureAsItIs) {
     for (int x = 0; x < 64; ++x) ASSERT_EQ(with.linear(x, y), without.at(x, y)) << x << ", " << y;
 }
 
-// A render that is stopped after a pass is the render with so many samples, and it can go on.
+// A render stopped after a pass equals the render with that sample count, and can be resumed.
 TEST(Film, PassesAddUpToTheWholeRender) {
   const PreparedScene scene(load(sample("glass")));
   RenderRequest request = size(70, 45);
@@ -153,7 +153,7 @@ TEST(Film, PassesAddUpToTheWholeRender) {
   EXPECT_EQ(whole.values(1, 0), passes.values(1, 0));
 }
 
-// One film, three views: each equals the picture rendered for it alone.
+// The views of one film equal the images rendered for each storage alone.
 TEST(Film, StoragesShowTheSamePicture) {
   const PreparedScene scene(load(sample("paper")));
   RenderRequest request = size(50, 40);

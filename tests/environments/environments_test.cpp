@@ -17,7 +17,7 @@ constexpr double kPi = std::numbers::pi;
 
 Vec3d tilted(double angle) { return {std::sin(angle), std::cos(angle), 0}; }
 
-// Mean of a picture of floor alone, a quarter of a million samples in which paths end at the sky.
+// Returns the mean of an image of the floor, from a quarter of a million samples. Paths end at the sky.
 double floor_mean(const std::shared_ptr<const Scene>& scene) {
   RenderRequest request = size(64, 64);
   request.technique = "path";
@@ -91,7 +91,7 @@ TEST(Image, HalfWhiteSkyLightsATiltedFloor) {
   }
 }
 
-// A spotted sky that is turned, against the sum over a fine grid of directions.
+// Compares a rotated sky with random bright spots with the sum over a fine grid of directions.
 TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
   covers("light-22");
   Random random(3);
@@ -109,7 +109,7 @@ TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
                             std::sin(angle) * std::cos(turn));
       const double cosine = dot(direction, normal);
       if (cosine <= 0) continue;
-      const double back = turn - kDegrees * kPi / 180;  // where the sky was before it was turned
+      const double back = turn - kDegrees * kPi / 180;  // the sky's azimuth before its rotation
       const auto place = map.place_of(
           Vec3d(std::sin(angle) * std::sin(back), std::cos(angle), std::sin(angle) * std::cos(back)));
       sum += map.at(place.x, place.y).radiance.x * cosine * std::sin(angle);
@@ -118,14 +118,14 @@ TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
   Json scene = floor_under(
       {{"type", "image"}, {"file", "f"}, {"rotation_degrees", kDegrees}, {"scale", kScale}}, normal);
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(picture))) / expected, 1, 3e-3);
-  // Beside another light each is drawn from half of the time.
+  // With another light, each is sampled half of the time.
   scene["lights"] =
       Json::array({{{"type", "directional"}, {"from", numbers(normal)}, {"intensity", {3, 3, 3}}}});
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(picture))), expected + 3,
               5e-3 * (expected + 3));
 }
 
-// What is drawn is what rays see, in both number types.
+// Compares sampled radiance and density with those seen by rays, in both number types.
 template <class T>
 void expect_draws_as_seen(const Scene& scene, T tolerance) {
   const LightKernelPtr<T> kernel = scene.environment->kernel(T());
@@ -190,7 +190,7 @@ TEST(Image, EveryThreadCountAndScaleGivesTheSameBits) {
        {{"type", "directional"}, {"from", {1, 1, 1}}, {"angle_degrees", 8}}});
   scene.erase("background");
   EXPECT_TRUE(identical(picture_of(scene, 1), picture_of(scene, 3)));
-  scene["lights"].erase(1);  // how often each is drawn depends on what it sends into a scene of this size
+  scene["lights"].erase(1);  // selection depends on the light's power in a scene of this size
   const Picture one = picture_of(scene, 1);
   EXPECT_TRUE(identical(one, picture_of(scaled(scene, 0x1p-17), 0)));
   EXPECT_TRUE(identical(one, picture_of(scaled(scene, 0x1p17), 0)));

@@ -7,7 +7,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
-// Directions drawn from pictures, against their densities.
+// Compares directions sampled from images with their densities.
 namespace orrery::test {
 namespace {
 
@@ -21,7 +21,7 @@ Texels spotted(int width, int height) {
   });
 }
 
-// A pale sky that is brightest at the horizon, with a sun of `sun` that is 5 degrees wide.
+// Returns a pale sky that is brightest at the horizon, with a sun of radiance `sun`, 5 degrees wide.
 Texels sky_with_sun(double sun) {
   return painted(128, 64, [=](int x, int y) {
     const double height = std::cos(kPi * (y + 0.5) / 64);
@@ -90,7 +90,7 @@ TEST(LightMap, PlacesAreDrawnWithTheirDensity) {
   }
 }
 
-// Over the sphere, by directions rather than places.
+// Integrates over directions of the sphere instead of places in the map.
 TEST(LightMap, DensityIntegratesToOne) {
   covers("light-25");
   const LightMap map(spotted(16, 8));
@@ -125,7 +125,8 @@ TEST(LightMap, DirectionsAndPlacesAreEachOthersInverse) {
   EXPECT_NEAR(map.place_of(Vec3d(0, 1, 0)).y, 0, 1e-12);
 }
 
-// All draws find it; what is left of the noise is how solid angles vary over the texel and its neighbours.
+// All samples hit the sun. The remaining noise comes from solid angles that vary over the texel and its
+// neighbours.
 TEST(LightMap, ASunOfOneTexelIsFoundByEveryDraw) {
   covers("light-34");
   const LightMap map(painted(512, 256, [](int x, int y) { return Vec3d(x == 100 && y == 127 ? 1000 : 0); }));
@@ -154,7 +155,8 @@ TEST(LightMap, NothingIsDrawnFromTheSameLightEverywhere) {
 struct Moments {
   double mean, variance;
 };
-// Of what a white floor receives by one light sample and one direction by the cosine, over pi.
+// Returns the moments of the irradiance of a white floor over pi. Each estimate combines one light sample and
+// one cosine-distributed direction.
 Moments floor_under(const LightMap& map, int draws) {
   Random random(7);
   double sum = 0, squares = 0;

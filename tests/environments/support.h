@@ -8,7 +8,8 @@
 
 namespace orrery::test {
 
-// A picture whose texel in column x and row y, both in texels, is red, green and blue of `paint`.
+// Returns an image whose texel in column x and row y, both in texels, is `paint(x, y)` as red, green and
+// blue.
 inline Texels painted(int width, int height, const std::function<Vec3d(int x, int y)>& paint) {
   Texels picture{width, height, {}};
   for (int y = 0; y < height; ++y)
@@ -20,7 +21,7 @@ inline Texels painted(int width, int height, const std::function<Vec3d(int x, in
   return picture;
 }
 
-// Gives it for every file.
+// Source that returns one image for every file.
 class OnePicture final : public AssetSource {
  public:
   explicit OnePicture(Texels picture) : picture_(std::move(picture)) {}
@@ -32,7 +33,7 @@ class OnePicture final : public AssetSource {
   const Texels picture_;
 };
 
-// A white floor that such a picture surrounds.
+// Returns a white floor in an environment with this image.
 inline std::shared_ptr<const Scene> surrounded(const Texels& picture, const Vec3d& normal,
                                                const Json& more = Json::object()) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",

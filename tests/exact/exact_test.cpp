@@ -8,8 +8,8 @@
 #include "tests/support/pictures.h"
 #include "tests/support/structures.h"
 
-// The renderer's visibility against exact arithmetic, pixel by pixel. EXACT_PIXELS is how many pixels of all
-// classes together are compared in each number type.
+// Compares the renderer's visibility with exact arithmetic, pixel by pixel. EXACT_PIXELS is the number of
+// pixels over all classes, compared in each number type.
 namespace orrery::test {
 namespace {
 
@@ -35,7 +35,8 @@ std::vector<float> objects_seen(const Json& scene, Precision precision, const st
   return render_frame(prepared, settle(prepared, plan), FilmStorage::sums, shared_pool()).film.values(0, 0);
 }
 
-// How many roundings explain `object` at a pixel; more than kMostRoundings: unexplained.
+// Returns the number of roundings that explains `object` at a pixel. More than kMostRoundings means
+// unexplained.
 double roundings(const exact::Oracle& oracle, int x, int y, int object, double epsilon) {
   double count = 1;
   while (count <= kMostRoundings && !oracle.explains(x, y, object, count, epsilon)) count *= 2;

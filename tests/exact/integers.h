@@ -9,11 +9,13 @@ namespace orrery::exact {
 
 using Integer = mpz_class;
 
-// Irrational factors (unit directions, sines) are given as integers in units of 2^-kFractionBits.
+// Binary digits of irrational factors (unit directions, sines): these are integers in units of
+// 2^-kFractionBits.
 inline constexpr unsigned kFractionBits = 256;
 inline const Integer kOne = Integer(1) << kFractionBits;
 
-// `x` in units of 2^-shift. REQUIRES: that is a whole number (every double is, with a large enough shift).
+// Returns `x` in units of 2^-shift. Requires a whole number of units, as every double has with a large enough
+// shift.
 inline Integer in_units(double x, int shift) {
   int exponent = 0;
   const double mantissa = std::frexp(x, &exponent);
@@ -23,7 +25,7 @@ inline Integer in_units(double x, int shift) {
   return result >> static_cast<unsigned>(-left);
 }
 
-// Least shift with which in_units() is exact.
+// Returns the smallest shift with which in_units() is exact.
 inline int bits_below_one(double x) {
   if (x == 0) return 0;
   int exponent = 0;
@@ -43,10 +45,10 @@ inline Integer dot(const IVec& a, const IVec& b) { return a.x * b.x + a.y * b.y 
 inline IVec cross(const IVec& a, const IVec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-// Length in units of 2^-kFractionBits of those of `v`, rounded down.
+// Returns the length of `v`, in units of 2^-kFractionBits of those of `v`, rounded down.
 inline Integer length(const IVec& v) { return sqrt(Integer(dot(v, v) << (2 * kFractionBits))); }
 
-// Sign of a + b sqrt(d). REQUIRES: d >= 0.
+// Returns the sign of a + b sqrt(d). Requires d >= 0.
 inline int sign_of(const Integer& a, const Integer& b, const Integer& d) {
   const int of_a = sgn(a), of_b = sgn(d) == 0 ? 0 : sgn(b);
   if (of_a * of_b >= 0) return of_a != 0 ? of_a : of_b;
@@ -63,12 +65,12 @@ struct Root {
   static Root ratio(const Integer& p, const Integer& q) {
     return sgn(q) < 0 ? Root{-p, 0, 0, -q} : Root{p, 0, 0, q};
   }
-  // Sign of u + v times this.
+  // Returns the sign of u + v times this root.
   int sign_of_line(const Integer& u, const Integer& v) const { return sign_of(u * q + v * p, v * s, d); }
   int sign() const { return sign_of(p, s, d); }
 };
 
-// Sign of a - b.
+// Returns the sign of a - b.
 inline int compare(const Root& a, const Root& b) {
   // x + y with x = i + j sqrt(a.d) and y = k sqrt(b.d)
   const Integer i = a.p * b.q - b.p * a.q, j = a.s * b.q, k = -b.s * a.q;

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFloatBits = 2048;  // of approximations that tell how far apart hits are
+constexpr int kFloatBits = 2048;  // for approximate distances between hits
 
 int finest_bit(const json& value) {
   if (value.is_number()) return bits_below_one(value.get<double>());
@@ -230,7 +230,7 @@ bool Oracle::explains(int x, int y, int object, double roundings, double epsilon
   const std::vector<Ray> moved = moved_rays(ray, in_play.t, distance);
   const mpf_class slack = distance / in_play.speed;
 
-  // Rounding moves each object for itself: whether it can bring `object` nearest.
+  // Rounding moves each object independently. Tests whether it can make `object` the nearest.
   std::optional<mpf_class> soonest;
   for (const Item& item : items_)
     if (item.object == object)

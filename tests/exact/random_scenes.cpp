@@ -35,7 +35,7 @@ json tetrahedron(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d)
           {"indices", {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}}};
 }
 
-// Any shape about `at`, of about `size`.
+// Returns a random shape near `at`, of about `size`.
 json any_shape(Random& random, const Vec3d& at, double size) {
   const Vec3d a = at + random.in_cube(size), b = at + random.in_cube(size), c = at + random.in_cube(size);
   switch (random.below(8)) {
@@ -82,7 +82,7 @@ json mixed(Random& random) {
   return scene(cloud(random, Vec3d(0), 1, 12), random.direction() * random.between(0.2, 4), Vec3d(0), 45);
 }
 
-// Shapes within shapes, seen from outside or inside.
+// Returns nested shapes, seen from outside or inside.
 json nested(Random& random) {
   json objects = json::array();
   double size = 1;
@@ -96,7 +96,7 @@ json nested(Random& random) {
   return scene(objects, random.direction() * random.between(0.1, 4), random.in_cube(0.1), 50);
 }
 
-// Faces, rims and surfaces that touch.
+// Returns touching faces, rims and surfaces.
 json touching(Random& random) {
   json objects = json::array();
   const double side = random.between(0.3, 0.6);
@@ -119,7 +119,8 @@ json touching(Random& random) {
   return scene(objects, random.direction_above(Vec3d(0, 1, 0)) * 3 + Vec3d(0, 0.01, 0), Vec3d(0), 45);
 }
 
-// Whole numbers, seen along an axis so that pixel centres fall on edges, vertices and rims.
+// Returns shapes with integer coordinates, seen along an axis so that pixel centres fall on edges, vertices
+// and rims.
 json lattice(Random& random) {
   json objects = json::array();
   const auto node = [&] { return Vec3d(random.below(9) - 4, random.below(9) - 4, random.below(5) - 2); };
@@ -134,11 +135,11 @@ json lattice(Random& random) {
     if (kind == 5 && length(cross(b - a, c - a)) > 0)
       objects.push_back(tetrahedron(a, b, c, a + cross(b - a, c - a)));
   }
-  // Half a pixel beside the middle: centres of a picture of 24 rows at half metres.
+  // Eye offset of half a pixel: the centres of an image of 24 rows lie at half metres.
   return parallel(scene(objects, Vec3d(0.25, 0.25, 8), Vec3d(0.25, 0.25, 0), 45), 12);
 }
 
-// Surfaces nearly along the view.
+// Returns surfaces nearly parallel to the view direction.
 json grazing(Random& random) {
   json objects = json::array();
   const Vec3d eye(0, 0, 4);
@@ -175,7 +176,7 @@ json far_away(Random& random) {
 json tiny(Random& random) { return placed_cloud(random, Vec3d(0), random.magnitude(1e-10, 1e-3)); }
 json huge(Random& random) { return placed_cloud(random, Vec3d(0), random.magnitude(1e3, 1e9)); }
 
-// A narrow view of a corner or a rim.
+// Returns a narrow view of a corner or a rim.
 json telescopic(Random& random) {
   const Vec3d corner = random.in_cube(1), up = random.direction(), right = perpendicular(up);
   const double size = random.between(0.2, 1);

@@ -8,7 +8,7 @@
 
 namespace orrery::test {
 
-// A kind of random scenes in which rounding matters.
+// Class of random scenes in which rounding matters.
 struct SceneClass {
   std::string name;
   nlohmann::json (*make)(Random&);

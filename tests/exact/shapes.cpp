@@ -13,19 +13,19 @@ void keep_nearer(OptionalRoot& nearest, Root t) {
 
 IVec from(const Ray& ray, const IVec& point) { return ray.origin - point * ray.w; }
 
-// Where the ray crosses the plane of a point and a normal.
+// Returns the crossing of the ray with the plane through `point`, or nullopt if they are parallel.
 OptionalRoot crossing(const Ray& ray, const IVec& point, const IVec& normal) {
   const Integer along = dot(ray.direction, normal);
   if (along == 0) return {};
   return Root::ratio(-dot(from(ray, point), normal), along);
 }
 
-// The crossing point less `point`, times w q. REQUIRES: t.s is 0.
+// Returns the crossing point minus `point`, times w q. Requires t.s to be 0.
 IVec offset(const Ray& ray, const Root& t, const IVec& point) {
   return from(ray, point) * t.q + ray.direction * t.p;
 }
 
-// The two roots of a t^2 + 2 b t + c, if there are any.
+// Returns both roots of a t^2 + 2 b t + c. Returns nullopt if a is 0 or no root is real.
 std::optional<std::pair<Root, Root>> quadratic(const Integer& a, const Integer& b, const Integer& c) {
   const Integer discriminant = b * b - a * c;
   if (a == 0 || discriminant < 0) return {};
@@ -88,12 +88,12 @@ OptionalRoot disk(const Shape& s, const Ray& ray) {
   return nearest;
 }
 
-// Both kinds: of the infinite one b is the axis, else the top.
+// Intersects finite and infinite cylinders. `s.b` is the top of a finite one and the axis of an infinite one.
 OptionalRoot cylinder(const Shape& s, const Ray& ray) {
   const bool capped = s.kind == Shape::Kind::cylinder;
   const IVec axis = capped ? s.b - s.a : s.b;
   const IVec f = from(ray, s.a);
-  // What is at right angles to the axis, times its length.
+  // Components perpendicular to the axis, times its length.
   const IVec d_across = cross(ray.direction, axis), f_across = cross(f, axis);
   const Integer r = s.radius * ray.w;
   const auto roots = quadratic(dot(d_across, d_across), dot(f_across, d_across),

@@ -21,7 +21,7 @@ Image noise(int width, int height) {
   for (std::byte& b : image.bytes()) b = static_cast<std::byte>(random.bits());
   return image;
 }
-// A smooth picture, which JPEG may keep well.
+// Returns a smooth picture, which JPEG encodes with small errors.
 Image smooth(int width, int height) {
   Image image(width, height, PixelFormat::srgb8);
   std::size_t i = 0;
@@ -117,7 +117,7 @@ TEST(Hostile, FilesCutAnywhereAreRefused) {
           << file.substr(1, 3) << " cut to " << kept << " of " << file.size();
 }
 
-// One byte changed anywhere: refused or decoded to a picture of some kind, never a crash.
+// Changes up to 3 of the first 600 bytes: the file is rejected or decoded to some picture, without a crash.
 TEST(Hostile, DamagedFilesDoNoHarm) {
   test::Random random(3);
   for (const std::string& file :
@@ -139,7 +139,7 @@ void put_big_endian(std::string& file, std::size_t at, std::uint32_t value) {
   for (std::size_t i = 0; i < 4; ++i) file[at + i] = static_cast<char>(value >> (24 - 8 * i));
 }
 
-// A header that promises what no memory holds is refused before any of it is asked for.
+// Headers with huge sizes are rejected before any memory is allocated for them.
 TEST(Hostile, HugeHeadersAreRefusedAtOnce) {
   std::string png = encode_png(noise(8, 8));
   put_big_endian(png, 16, 0x7fffffff);

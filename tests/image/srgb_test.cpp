@@ -12,7 +12,7 @@
 namespace orrery {
 namespace {
 
-// The codes that a row of linear values becomes.
+// Returns the codes of linear values.
 std::vector<int> codes_of(const std::vector<float>& values) {
   constexpr int kRow = 4096;
   struct alignas(64) Row {
@@ -35,7 +35,7 @@ std::vector<int> codes_of(const std::vector<float>& values) {
   return codes;
 }
 
-// IEC 61966-2-1.
+// Returns the sRGB encoding of a linear value (IEC 61966-2-1).
 long double encoded(long double x) {
   return x <= 0.0031308L ? 12.92L * x : 1.055L * std::pow(x, 1 / 2.4L) - 0.055L;
 }
@@ -45,8 +45,7 @@ TEST(Srgb, CodesAreTheNearestToTheStandardCurve) {
   for (int i = 0; i <= 1'000'000; ++i) values.push_back(static_cast<float>(i) * 1e-6f);
   test::Random random(1);
   for (int i = 0; i < 500'000; ++i) values.push_back(static_cast<float>(random.magnitude(1e-6, 1)));
-  for (float x = 0.003f; x < 0.0033f; x = std::nextafter(x, 1.0f))
-    values.push_back(x);  // where the curve begins
+  for (float x = 0.003f; x < 0.0033f; x = std::nextafter(x, 1.0f)) values.push_back(x);  // start of the curve
   const std::vector<int> codes = codes_of(values);
   int wrong = 0, doubtful = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -83,7 +82,7 @@ TEST(Srgb, DecodingIsTheInverse) {
   for (int code = 0; code < 256; ++code) EXPECT_EQ(codes[static_cast<std::size_t>(code)], code);
 }
 
-// Rows of any length, at any place, in both formats: no pixel beside them changes.
+// Writes rows of any length, at any place, in both formats. No other pixel may change.
 TEST(Image, RowsTouchNoOtherPixel) {
   struct alignas(64) Row {
     std::array<float, 64> values;

@@ -7,13 +7,13 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Lights with an extent, as paths see them.
+// Tests area, directional and line lights with paths.
 namespace orrery::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// What one light's kernel draws for a surface point at the origin.
+// Samples of one light's kernel for a surface point at the origin.
 struct Kernel {
   std::shared_ptr<const Scene> scene;
   LightKernelPtr<double> kernel;
@@ -41,7 +41,7 @@ struct Kernel {
     const Draws draws(7, TileView{0, 0, kTileSide, kTileSide}, number);
     kernel->sample_each(surface, choices, PathDraws<double>{draws, slot, 0}, all, out);
   }
-  // Density and radiance that rays along the directions of rays.direction see.
+  // Computes density and radiance along the directions of `rays`.
   void look() { kernel->beyond(rays, {static_cast<int>(choices.index[0]), 0.25}, all, radiance, pdf); }
 };
 
@@ -49,7 +49,7 @@ Json sun(double degrees, const Vec3d& from = Vec3d(1, 2, -0.5)) {
   return {{"type", "directional"}, {"from", numbers(from)}, {"angle_degrees", degrees}};
 }
 
-// In equal parts of the disc's solid angle: rings of equal height and sectors.
+// Counts samples in parts of equal solid angle of the sun's disc: rings of equal height, and sectors.
 TEST(Sun, IsDrawnFromEvenly) {
   covers("light-24");
   constexpr int kRings = 8, kSectors = 16, kSamples = 64;
@@ -102,7 +102,7 @@ TEST(Sun, TellsTheDensityAndRadianceThatItDraws) {
   }
 }
 
-// White floor under it, whose normal is turned away: the cosine of the turn, as of parallel light.
+// A white floor tilted under the sun reads the cosine of the tilt, as under parallel light.
 TEST(Sun, LightsAsParallelLightOfItsIntensityDoes) {
   covers("light-17");
   for (const double degrees : {0.0, 0.53, 10.0, 60.0})
@@ -128,7 +128,7 @@ TEST(Sun, IsSeenByTheCameraAndInMirrors) {
   EXPECT_LT(mirrored, radiance);
 }
 
-// Other techniques take it for parallel light.
+// Other techniques replace the sun by parallel light.
 TEST(Sun, IsParallelToTrees) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]");
   scene["lights"] = Json::array({sun(60, Vec3d(0.6, 0.8, 0))});
@@ -149,7 +149,7 @@ Json over_floor(const Vec3d& from, const Vec3d& to) {
   return scene;
 }
 
-// Of a point of the floor that a line lights, with N dots in its place.
+// Returns the radiance of a floor point lit by a line, with 200,000 points in place of the line.
 double by_dots(const Vec3d& from, const Vec3d& to, const Vec3d& at) {
   constexpr int kDots = 200'000;
   double sum = 0;
@@ -178,8 +178,7 @@ TEST(Line, IrradianceIsThatOfItsPoints) {
   }
 }
 
-// Straight above and pointing down, so that the floor is on the line's axis or next to it: 1 / near - 1 / far
-// in the limit.
+// The floor lies on the axis of a vertical line above it, or next to it: 1 / near - 1 / far in the limit.
 TEST(Line, EndsTowardWhatItLights) {
   for (const double aside : {1e-3, 1e-6, 1e-9}) {
     const Estimate found =

@@ -10,7 +10,7 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Which light is drawn at a point.
+// Tests light selection at surface points.
 namespace orrery::test {
 namespace {
 
@@ -18,7 +18,7 @@ LightBounds small_light(Random& random) {
   return {.centre = random.in_cube(1), .strength = random.between(1, 3), .attenuation = {0, 0, 1}};
 }
 
-// Of every kind: lamps, flat and round, points that weaken or do not, and suns.
+// Returns a light of any kind: flat or round lamp, point with or without attenuation, or sun.
 LightBounds any_light(Random& random) {
   LightBounds light = small_light(random);
   switch (random.below(5)) {
@@ -57,7 +57,7 @@ Chosen choose(const LightTree<T>& tree, const Vec3<T>& at, double u) {
 
 constexpr int kCounts[] = {1, 2, 5, 16, 17, 33, 300, 5000};
 
-// Draws weighed by their probability find every light as often.
+// Samples weighted by their inverse probability count every light equally.
 TEST(LightTree, WeighsEveryLightAlike) {
   covers("light-23");
   constexpr int kDraws = 10000;
@@ -149,7 +149,7 @@ TEST(LightTree, DrawsInProportion) {
   }
 }
 
-// A light that is met by chance is weighed by the probability with which it would have been drawn.
+// A light hit by a BSDF sample is weighted by the probability of its selection by the tree.
 TEST(LightTree, WeightsOfBothStrategiesSumToOne) {
   covers("light-21");
   const LightTree<double> tree(lights_of(33, any_light));
@@ -164,7 +164,7 @@ TEST(LightTree, WeightsOfBothStrategiesSumToOne) {
   }
 }
 
-// A narrow sun has a density whose square no float holds.
+// A narrow sun has a density whose square overflows a float.
 TEST(PowerHeuristic, HoldsWhereSquaresAreOutOfRange) {
   EXPECT_EQ(power_heuristic(1e30f, 1.0f), 1.0f);
   EXPECT_EQ(power_heuristic(1.0f, 1e30f), 0.0f);
@@ -172,7 +172,7 @@ TEST(PowerHeuristic, HoldsWhereSquaresAreOutOfRange) {
   EXPECT_EQ(power_heuristic(1e-30f, 1e-30f), 0.5f);
 }
 
-// Nothing has a length of its own.
+// Selection does not depend on the unit of length.
 TEST(LightTree, ChoosesTheSameAtAnyScale) {
   const auto lights = lights_of(300, any_light);
   const LightTree<float> tree(lights);
@@ -196,7 +196,8 @@ TEST(LightTree, ChoosesTheSameAtAnyScale) {
   }
 }
 
-// Lights in one place, and lights of no strength: evenly. A point at a light's centre: a number all the same.
+// Coincident lights and lights of no strength are selected evenly. A point at a light's centre gives finite
+// probabilities.
 TEST(LightTree, ChoosesAnyWhereLightsDoNotDiffer) {
   for (const double strength : {0.0, 1.0}) {
     const LightTree<double> tree(std::vector<LightBounds>(
@@ -210,9 +211,9 @@ TEST(LightTree, ChoosesAnyWhereLightsDoNotDiffer) {
   }
 }
 
-// Balls of light about a floor that reflects all, some of them 30 times as far as others: the floor reads
-// the sum of (radius / distance)^2 times the cosine. A sample of 40 has a relative standard deviation of 2.67
-// where they are drawn evenly, and of 0.41 where they are drawn by distance, one by one.
+// The floor reads the sum of (radius / distance)^2 times the cosine over emissive balls, some 30 times as far
+// as others. One sample of 40 balls has a relative standard deviation of 2.67 with uniform selection, and of
+// 0.41 if selected one by one by distance.
 TEST(LightTree, IrradianceOfBallsNearAndFar) {
   covers("light-17");
   for (const int count : {5, 40}) {

@@ -26,7 +26,7 @@ std::string problem(const Json& light) {
                                   Json{{"lights", Json::array({light})}}));
 }
 
-// The direction (1, 1, 1) taken as it stands would light a surface with a cosine of up to 1.732.
+// An unnormalized direction (1, 1, 1) would light a surface with a cosine of up to 1.732.
 TEST(Directional, DirectionIsOfUnitLengthHoweverItWasWritten) {
   covers("B2");
   for (const double length : {1e-150, 1e-3, 1.0, 5.0, 1e12}) {
@@ -151,7 +151,8 @@ TEST(Directional, IsParallelIfNarrowerThanDirectionsAreRounded) {
   EXPECT_TRUE(sun(1e-5f).extended());
 }
 
-// Every registered light: unit directions, no light below 0 or above its intensity, float like double.
+// Checks every registered light: unit directions, no light below 0 or above its intensity, and float close to
+// double.
 TEST(AllLights, SendUnitDirectionsAndNoMoreThanTheirIntensity) {
   const std::vector<Json> lights = {
       json("{'type': 'directional', 'from': [1, 2, 3], 'intensity': [1, 2, 3]}"),

@@ -7,7 +7,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
-// Angles under which emitters are seen, against closed forms.
+// Compares solid angles of emitters with closed forms.
 namespace orrery::test {
 namespace {
 
@@ -23,7 +23,7 @@ double angle_of(const Square& s) {
                                       Vec3<T>(s.b), static_cast<T>(s.length_b), Vec3<T>(cross(s.a, s.b)))
                     .angle()};
 }
-// Those that look smaller than 0.02 sr are drawn from by area: no float need know their angle.
+// Floats are checked above 0.02 sr only, since smaller emitters are sampled by area.
 void expect_angle(const Square& square, double expected) {
   EXPECT_NEAR(angle_of<double>(square), expected, 1e-12);
   if (expected > 0.02) {
@@ -31,7 +31,7 @@ void expect_angle(const Square& square, double expected) {
   }
 }
 
-// Square of side 1 above its middle, and a quarter of a plane, which fills an octant.
+// Unit squares above their centre, and a quarter plane, which fills an octant.
 TEST(SolidAngle, OfRectanglesHasTheClosedForm) {
   covers("light-18");
   const Vec3d x(1, 0, 0), z(0, 0, 1);
@@ -42,8 +42,8 @@ TEST(SolidAngle, OfRectanglesHasTheClosedForm) {
   expect_angle({Vec3d(0, 1, 0), x, z, 1e14, 1e14}, kPi / 2);
 }
 
-// Of a triangle with these corners (Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983),
-// in higher precision.
+// Returns the solid angle of a triangle, in higher precision (Van Oosterom and Strackee, "The Solid Angle of
+// a Plane Triangle", 1983).
 long double triangle_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const auto dot3 = [](const Vec3d& p, const Vec3d& q) {
     return static_cast<long double>(p.x) * q.x + static_cast<long double>(p.y) * q.y +
@@ -70,7 +70,7 @@ TEST(SolidAngle, OfAnyRectangleIsThatOfItsTwoTriangles) {
   }
 }
 
-// A sphere is drawn from evenly: its density is one over the angle of its cone.
+// A sphere is sampled evenly over its cone, so its density is one over the cone's solid angle.
 TEST(SolidAngle, OfASphereIsThatOfItsCone) {
   covers("light-18");
   for (const auto& [radius, distance] : {std::pair{0.5, 2.0}, {0.9, 1.0}, {1.0, 10.0}, {0.001, 3.0}}) {

@@ -16,8 +16,8 @@ Probe<double> clay(double reflectance, double roughness) {
   return Probe<double>(Json{{"type", "oren-nayar"}, {"reflectance", reflectance}, {"roughness", roughness}});
 }
 
-// Share of light from a viewer's direction that leaves to anywhere, by the midpoint rule over r of the cosine
-// 1 - r^2 and half the azimuths.
+// Returns the directional albedo, by the midpoint rule over half the azimuths and over r, with cosine 1 -
+// r^2.
 double albedo(const Probe<double>& material, double cosine) {
   constexpr int kSteps = 256;
   std::vector<Case> cases;
@@ -60,8 +60,8 @@ TEST(OrenNayarMaterial, WhiteReflectsAllLight) {
       EXPECT_NEAR(albedo(clay(1, roughness), cosine), 1, 2e-4) << roughness << " " << cosine;
 }
 
-// Single scattering of reflectance rho has the albedo rho E, E = A (1 + roughness G / pi), and what is
-// passed on adds rho_ms (1 - E). G here as its authors write it.
+// Single scattering of reflectance rho has the albedo rho E, E = A (1 + roughness G / pi). Multiple
+// scattering adds rho_ms (1 - E). G is in the form of the paper.
 TEST(OrenNayarMaterial, AlbedoIsThatOfItsFormulas) {
   constexpr double kPi = std::numbers::pi;
   const double a = 1 / (1 + (0.5 - 2 / (3 * kPi)) * 0.8);
@@ -74,7 +74,7 @@ TEST(OrenNayarMaterial, AlbedoIsThatOfItsFormulas) {
   }
 }
 
-// A moon seen from the sun's side is flatter than Lambert's: the limb is nearly as bright as the centre.
+// Toward the light the surface is flatter than Lambert's: the limb is nearly as bright as the centre.
 TEST(OrenNayarMaterial, ShinesBackTowardTheLight) {
   const auto back = [](double cosine) {
     Case c;

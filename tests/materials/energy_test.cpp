@@ -5,7 +5,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/materials.h"
 
-// What materials leave of even light from everywhere.
+// Tests the albedo of materials under uniform illumination.
 namespace orrery::test {
 namespace {
 
@@ -71,7 +71,7 @@ TEST(Glass, SmoothIsTheRefractiveOfItsIndex) {
   }
 }
 
-// After two metres in the body a channel is down to the square of what one metre leaves.
+// After two metres in the medium, a channel is down to the square of its one-metre transmittance.
 TEST(Glass, RoughFiltersWhatCrossedTheBody) {
   const Probe<double> glass("{'type': 'glass', 'roughness': 0.5, 'filter': [0.9, 0.5, 0.1]}");
   const Probe<double> clear("{'type': 'glass', 'roughness': 0.5}");
@@ -101,8 +101,8 @@ TEST(Plastic, OfAWhiteBaseReflectsAllLight) {
     }
 }
 
-// Where the interpolated normal faces away, the coat mirrors by the one that faces the viewer, as it is
-// drawn.
+// If the interpolated normal faces away from the viewer, the coat reflects by the flipped normal, in
+// evaluation as in sampling.
 TEST(Plastic, CoatMirrorsByTheNormalThatFacesTheViewer) {
   const Probe<double> plastic("{'type': 'plastic', 'roughness': 0}");
   Case away = seen_at(0.9);
@@ -143,8 +143,8 @@ TEST(Ambient, IsNoMoreThanItsLimit) {
   }
 }
 
-// Of a smooth coat all is known: it mirrors F, and lets 1 - F go on to the base and 1 - F of even light out
-// again, of which the base got rho (1 - F_in) in all bounces.
+// A smooth coat has a closed form: F + (1 - F) rho (1 - F_in) / (1 - rho F_in), with F_in the mean internal
+// reflectance.
 TEST(Plastic, UnderASmoothCoatIsAsDarkAsLightBetweenCoatAndBaseMakesIt) {
   const Probe<double> plastic("{'type': 'plastic', 'reflectance': [0.2, 0.5, 0.9], 'roughness': 0}");
   constexpr double kOutside = 0.0917786, kInside = 1 - (1 - kOutside) / 2.25, kHead = 0.04;
@@ -178,13 +178,13 @@ TEST(MetallicRoughness, CreatesNoEnergy) {
       for (const double cosine : kCosines) {
         const double found = mean_weight(white, seen_at(cosine)).x;
         EXPECT_LT(found, 1 + 2e-3) << roughness << " " << metallic << " " << cosine;
-        if (metallic == 0.5) continue;  // the metal's share absorbs
+        if (metallic == 0.5) continue;  // the metal absorbs its share
         EXPECT_GT(found, 1 - 4e-3) << roughness << " " << metallic << " " << cosine;
       }
     }
 }
 
-// Against sums over the hemisphere of what evaluate() says.
+// Compares sampling with sums of evaluate() over the hemisphere.
 TEST(CookTorrance, ReflectsWhatItsFormulaSays) {
   const Probe<double> gold(
       "{'type': 'cook-torrance', 'n': [0.156, 0.424, 1.383], 'k': [3.602, 2.472, 1.915], 'slope': 0.3}");

@@ -33,7 +33,8 @@ double reflectance(const Probe<double>& material, long double degrees, double si
   return material.specular(arriving(degrees, side)).reflectance.x;
 }
 
-// Fresnel's equations as textbooks print them, with complex numbers: from index n1 into n2, unpolarised.
+// Returns the unpolarised Fresnel reflectance from index n1 into n2, by the textbook equations with complex
+// numbers.
 long double textbook(Complex n1, Complex n2, long double degrees) {
   const long double a = degrees * std::numbers::pi_v<long double> / 180;
   const Complex c1 = std::cos(a), s2 = n1 / n2 * std::sin(a), c2 = std::sqrt(Complex(1) - s2 * s2);
@@ -67,8 +68,8 @@ TEST(Fresnel, NumbersOfTheCatalogue) {
     EXPECT_NEAR(reflectance(glass(1, "exact"), degrees), 0, 1e-15);
 }
 
-// Schlick's approximation is good to the stated error, no better and no worse: both ways through the surface,
-// for its cosine is that of the thinner side.
+// Schlick's approximation has the stated error, no more and no less, from both sides of the surface. Its
+// cosine is that of the optically thinner side.
 TEST(Fresnel, SchlickIsOffByWhatTheCatalogueSays) {
   covers("D6 D7");
   const auto worst = [](const Probe<double>& schlick, const Probe<double>& exact, double side) {
@@ -128,8 +129,8 @@ TEST(Fresnel, GrazingMirrorsAllAndNothingLeavesTheUnitInterval) {
   EXPECT_NEAR(reflectance(metal(0.14, 4.1, "exact"), 90), 1, 1e-15);
 }
 
-// An interpolated normal may face away from the ray that meets the surface. (1 - cosine) is then above 1, and
-// its fifth power would make a mirror that shines: up to 32 times what it receives.
+// An interpolated normal may face away from the incident ray. (1 - cosine) is then above 1, and its fifth
+// power would amplify light up to 32 times.
 TEST(Fresnel, NormalsThatFaceAwayCreateNoLight) {
   for (const Probe<double>& material :
        {metal(0.14, 4.1, "schlick"), metal(0.14, 4.1, "exact"), glass(1.5, "schlick"), glass(1.5, "exact")})

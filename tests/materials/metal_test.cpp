@@ -19,14 +19,14 @@ Case seen_at(double cosine) {
   c.direction = -tilted(cosine);
   return c;
 }
-// Mirrors all light: with n = 0 Fresnel's equations give 1.
+// Returns a perfect mirror: with n = 0 Fresnel's equations give 1.
 Probe<double> silverest(double alpha) {
   return Probe<double>(
       Json{{"type", "metal"}, {"n", {0, 0, 0}}, {"k", {1, 1, 1}}, {"roughness", std::sqrt(alpha)}});
 }
 
-// By quadrature over half vectors whose density is D cos: the tangent of their angle squared is
-// alpha^2 u / (1 - u).
+// Returns the single-scattering albedo, by quadrature over half vectors of density D cos. The squared tangent
+// of their angle is alpha^2 u / (1 - u).
 double single_albedo(double alpha, double cosine) {
   constexpr int kSteps = 1000;
   const Ggx<double> facets{alpha};
@@ -110,8 +110,8 @@ TEST(Metal, GivesBackWhatFacetsPassOn) {
   EXPECT_NEAR(0.9 * single_albedo(1, 1) + passed_on, .7668, 2e-3);
 }
 
-// Of gold at the roughest: one bounce reflects F of what it reflects, the rest adds the lobe of Kulla and
-// Conty with the mean of F, both by sums of their own.
+// Gold of roughness 1. Single scattering reflects F, and the rest adds the lobe of Kulla and Conty with the
+// mean of F. Both are summed here independently.
 TEST(Metal, ColoursWhatFacetsPassOn) {
   const Probe<double> gold(
       "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], "
@@ -125,7 +125,7 @@ TEST(Metal, ColoursWhatFacetsPassOn) {
     for (int i = 0; i < kSteps; ++i) {
       const double u = (i + 0.5) / kSteps;
       mean_f += fresnel_conductor(n, k, std::sqrt(u)) / kSteps;
-      // alpha 1, normal view: half vectors evenly in cos^2, G2 / G1 = 2 z / (z + 1) with z the light's
+      // alpha 1, normal view: half vectors uniform in cos^2, G2 / G1 = 2 z / (z + 1) with z the light's
       // cosine.
       const double c2 = 1 - u, z = 2 * c2 - 1;
       if (z > 0) once += fresnel_conductor(n, k, std::sqrt(c2)) * 2 * z / (z + 1) / kSteps;

@@ -36,7 +36,7 @@ TEST(Refraction, LeavesGlassAtTheAngleOfSnell) {
   }
 }
 
-// The refracted ray goes on through the surface, in the plane of the ray and the normal, whatever the side.
+// The refracted ray continues through the surface, in the plane of the ray and the normal, from either side.
 TEST(Refraction, GoesOnThroughTheSurface) {
   covers("D5");
   const Probe<double> glass(kGlass);
@@ -67,7 +67,7 @@ TEST(Refraction, BeyondTheCriticalAngleAllIsMirrored) {
   const auto s = glass.specular(arriving(60, -1));
   EXPECT_EQ(s.reflectance, Vec3d(1));
   EXPECT_EQ(s.transmittance, Vec3d(0));
-  double lowest = 30, highest = 60;  // the angle where transmission ends, by bisection
+  double lowest = 30, highest = 60;  // critical angle, by bisection
   for (int i = 0; i < 60; ++i) {
     const double middle = (lowest + highest) / 2;
     (glass.specular(arriving(middle, -1)).transmittance.x > 0 ? lowest : highest) = middle;
@@ -89,7 +89,7 @@ TEST(Refraction, NoEnergyIsLostOrMade) {
   }
 }
 
-// Seen from inside by light from everywhere: R = .59635, of which total reflection is 1 - 1/n^2.
+// Reflectance from inside under uniform light: R = .59635, of which total reflection is 1 - 1/n^2.
 TEST(Refraction, DiffuseInternalReflectanceIsThatOfTheCatalogue) {
   covers("D3");
   const Probe<double> glass(kGlass);

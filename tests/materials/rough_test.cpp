@@ -12,7 +12,7 @@ namespace {
 
 using Case = Probe<double>::Case;
 
-// A unit vector in the plane of x and z, so many degrees from the normal +z.
+// Returns a unit vector in the plane of x and z, `degrees` from the normal +z.
 Vec3d tilted(double degrees) {
   const double a = degrees * std::numbers::pi / 180;
   return {std::sin(a), 0, std::cos(a)};
@@ -41,7 +41,7 @@ TEST(Rough, ColoursAreCoefficientTimesColour) {
   const Probe<double> paint(
       "{'type': 'rough', 'ka': 0.5, 'kd': [0.1, 0.2, 0.3], 'cd': [1, 0.5, 2], 'ks': 0.4, 'cs': [0, 1, 0.5], "
       "'shininess': 1}");
-  const Vec3d got = paint.reflected(Case{});  // light, viewer and normal are one: every cosine is 1
+  const Vec3d got = paint.reflected(Case{});  // light, viewer and normal coincide: every cosine is 1
   EXPECT_NEAR(got.x, 0.1, 1e-15);
   EXPECT_NEAR(got.y, 0.1 + 0.4, 1e-15);
   EXPECT_NEAR(got.z, 0.6 + 0.2, 1e-15);
@@ -68,7 +68,7 @@ TEST(Highlight, HasNoNumberlessCorner) {
         Json{{"type", "rough"}, {"kd", 0}, {"ks", 1}, {"shininess", shininess}, {"shading", shading}});
   };
   for (const char* shading : {"phong", "blinn-phong"}) {
-    // A negative cosine to a broken power; an exponent of 0 behind the surface and in front of it.
+    // A negative cosine to a fractional power; an exponent of 0 behind the surface and in front of it.
     EXPECT_EQ(of("phong", 2.5).reflected(lit_from(50, 45)).x, 0);
     EXPECT_EQ(of(shading, 0).reflected(lit_from(120, 0)).x, 0);
     EXPECT_EQ(of(shading, 0).reflected(lit_from(30, 60)).x, 1);
@@ -78,7 +78,7 @@ TEST(Highlight, HasNoNumberlessCorner) {
     under.light = safe_normalize(Vec3d(.8, -.01, 0));
     under.direction = -safe_normalize(Vec3d(-1, .1, 0));
     EXPECT_EQ(of(shading, 50).reflected(under).x, 0);
-    // Seen from below an interpolated normal, lit from above it: no highlight either.
+    // Seen from below an interpolated normal and lit from above: no highlight either.
     EXPECT_EQ(of(shading, 2).reflected(lit_from(10, 95)).x, 0) << shading;
     // Light exactly opposite to the viewer: the half vector has no direction.
     for (const double degrees : {-90.0, 0.0, 90.0}) {
@@ -93,7 +93,7 @@ TEST(Highlight, HasNoNumberlessCorner) {
   }
 }
 
-// Half the height is reached 9.52 degrees from the mirrored direction by Phong and 19.04 by Blinn-Phong; with
+// Half the height is reached 9.52 degrees from the mirrored direction by Phong and 19.04 by Blinn-Phong. With
 // the exponent 4.02 n the two agree to 0.002.
 TEST(Highlight, BlinnNeedsFourTimesTheExponentOfPhong) {
   covers("B7");
@@ -109,7 +109,7 @@ TEST(Highlight, BlinnNeedsFourTimesTheExponentOfPhong) {
   EXPECT_GE(largest, 0.001) << "4.02 is an approximation";
 }
 
-// Normalised vectors have products above 1 in float: no power and no root of them may notice.
+// Dot products of normalized float vectors may exceed 1. No power and no root may become NaN.
 template <class T>
 void million_directions(const char* material) {
   using Cases = std::vector<typename Probe<T>::Case>;
@@ -152,7 +152,7 @@ TEST(Rough, FloatAndDoubleAgree) {
   }
 }
 
-// What an interpolated normal sees and the true surface does not stays dark: light shines through no surface.
+// Light behind the geometric surface stays dark, even if it is in front of the interpolated normal.
 TEST(Rough, LightBehindTheTrueSurfaceStaysOut) {
   Case c;
   c.normal = tilted(60);

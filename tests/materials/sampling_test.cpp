@@ -6,11 +6,11 @@
 #include "tests/support/batches.h"
 #include "tests/support/scenes.h"
 
-// Directions that materials draw, held against what they evaluate.
+// Compares sampled directions of materials with their evaluation.
 namespace orrery::test {
 namespace {
 
-// One surface point, seen along one ray, drawn from by every slot of a batch.
+// Batch of samples at one surface point, seen along one ray.
 struct Drawn {
   RayBatch<double> rays;
   HitBatch<double> hits;
@@ -50,7 +50,7 @@ MaterialKernelPtr<double> kernel_of(const char* material) {
 const Vec3d kSlanted = safe_normalize(Vec3d(0.6, 0.1, -0.7));
 
 // The mean of the weights is the albedo, here by quadrature over the hemisphere (f_cos is pi times the
-// share): 1.5 % is four standard deviations of the highlight.
+// share). A tolerance of 1.5 % is four standard deviations of the highlight.
 TEST(RoughSampling, MeanWeightIsTheAlbedo) {
   const auto kernel = kernel_of("{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.4, 'shininess': 8}");
   const auto drawn = std::make_unique<Drawn>(kSlanted, 1.0);
@@ -100,8 +100,7 @@ TEST(RoughSampling, TellsTheDensityThatEvaluateTells) {
   EXPECT_NEAR(mean_cosine, 2.0 / 3, 0.01) << "in proportion to the cosine";
 }
 
-// Glass sends on all light: each draw weighs 1 where nothing is filtered, and the mirrored share is
-// Fresnel's.
+// Glass without a filter loses no light: each sample has weight 1, and the mirrored share is Fresnel's.
 TEST(RefractiveSampling, MirrorsInProportionToTheReflectance) {
   const auto kernel = kernel_of("{'type': 'refractive', 'ior': 1.5, 'fresnel': 'exact'}");
   const auto drawn = std::make_unique<Drawn>(safe_normalize(Vec3d(1, 0, -1)), 1.0);

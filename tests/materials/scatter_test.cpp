@@ -9,7 +9,7 @@
 #include "tests/support/materials.h"
 #include "tests/support/random.h"
 
-// What every material that scatters light owes the techniques that draw directions.
+// Tests the sampling contract of every scattering material.
 namespace orrery::test {
 namespace {
 
@@ -17,8 +17,8 @@ using Case = Probe<double>::Case;
 
 struct Material {
   const char *name, *text;
-  double side = 1;  // of the viewer: -1 is inside
-  double ior = 0;   // of what lets light through, inside over outside; 0: nothing does
+  double side = 1;  // side of the viewer: -1 is inside
+  double ior = 0;   // index of transmitting materials, inside over outside, or 0
 };
 const Material kMaterials[] = {
     {"Lambert", "{'type': 'lambert', 'reflectance': [0.9, 0.5, 0.1]}"},
@@ -58,7 +58,8 @@ Case seen_from(const Vec3d& viewer, double side = 1) {
   return c;
 }
 
-// Both hemispheres in cells: the cosine is 1 - r^2, the azimuth in turns, a grid of points in each.
+// Both hemispheres in cells. The cosine is 1 - r^2, the azimuth is in turns, and each cell has a grid of
+// points.
 constexpr int kRings = 48, kSectors = 64, kPointsAcross = 8, kPointsAround = 20;
 struct Cells {
   std::vector<double> mass = std::vector<double>(2 * kRings * kSectors);
@@ -73,8 +74,8 @@ struct Cells {
   double sum() const { return std::accumulate(mass.begin(), mass.end(), 0.0); }
 };
 
-// Integral over each cell of the density that the material tells. Facets of glass rougher than these have a
-// density that ends abruptly where they stand upright, which the grid of points does not resolve.
+// Returns the integral of the material's density over each cell. Rougher glass has a density with a sharp
+// edge at upright facets, which the grid of points does not resolve.
 Cells cells_of(const Probe<double>& material, const Case& point, Lobes lobes = Lobes::all) {
   constexpr int kRows = kRings * kPointsAcross, kColumns = kSectors * kPointsAround;
   std::vector<Case> cases;
@@ -96,8 +97,8 @@ Cells cells_of(const Probe<double>& material, const Case& point, Lobes lobes = L
   return cells;
 }
 
-// Standard deviations that chi-square lies above its mean (Wilson and Hilferty). Cells that expect less than
-// 5 are one cell, together with draws that nothing goes on from.
+// Returns the standard deviations of chi-square above its mean (Wilson and Hilferty). Cells with an expected
+// count below 5 are merged into one cell, together with absorbed samples.
 double chi_square_deviations(const Cells& expected, const std::vector<Probe<double>::Sampled>& drawn) {
   std::vector<double> count(expected.mass.size());
   double lost = 0;
@@ -126,7 +127,7 @@ double chi_square_deviations(const Cells& expected, const std::vector<Probe<doub
 class Scattering : public testing::TestWithParam<Material> {};
 
 // Sidak: with 85 tests, one in a hundred runs would have a deviation above 3.68. The density integrates to
-// the share of draws that leave.
+// the share of samples that leave.
 TEST_P(Scattering, DrawsInProportionToItsDensity) {
   covers("light-24 light-25");
   const Probe<double> material(GetParam().text);
@@ -142,7 +143,7 @@ TEST_P(Scattering, DrawsInProportionToItsDensity) {
   }
 }
 
-// Radiance is held over the square of the index: f / n^2 of the light's side is the same both ways.
+// Radiance is divided by the squared index: f / n^2 of the light's side is the same in both directions.
 TEST_P(Scattering, IsTheSameFromLightToViewerAndBack) {
   covers("light-26");
   const Probe<double> material(GetParam().text);
@@ -221,7 +222,7 @@ TEST_P(Scattering, FloatAndDoubleAgree) {
   }
 }
 
-// Interpolated normals may face away from the viewer, and the light may stand behind either surface.
+// Interpolated normals may face away from the viewer, and the light may be behind either surface.
 template <class T>
 void million_points(const Material& tested) {
   const Probe<T> material(tested.text);
@@ -262,7 +263,7 @@ TEST_P(Scattering, AMillionPointsGiveNumbers) {
 INSTANTIATE_TEST_SUITE_P(Materials, Scattering, testing::ValuesIn(kMaterials),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// Paint, whose highlight no law of nature bounds.
+// Paints, whose highlight has no physical bound.
 const Material kPaints[] = {
     {"Paint", "{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.5, 'shininess': 30}"},
     {"PhongPaint",
@@ -276,10 +277,10 @@ std::vector<Material> materials_and_paints() {
   return all;
 }
 
-// Diffuse lobes and all others, each asked alone.
+// Tests diffuse and non-diffuse lobes separately.
 class LobesOf : public testing::TestWithParam<Material> {
  protected:
-  // Those that the material has.
+  // Returns the lobe classes of the material.
   std::vector<Lobes> parts() const {
     std::vector<Lobes> found;
     for (const Lobes lobes : {Lobes::diffuse, Lobes::non_diffuse})
@@ -311,7 +312,7 @@ TEST_P(LobesOf, AddUpToTheMaterial) {
   EXPECT_NEAR(length(ambient - material_.ambient()), 0, 1e-14);
 }
 
-// As Scattering has it for all lobes together; of paint these too. 48 tests.
+// Repeats the test of Scattering for single lobe classes, and for all lobes of paints. 48 tests.
 TEST_P(LobesOf, AreDrawnInProportionToTheirDensities) {
   covers("light-24");
   constexpr int kDraws = 200'000;
@@ -349,7 +350,7 @@ TEST_P(LobesOf, WeighDrawsByWhatTheyEvaluate) {
 INSTANTIATE_TEST_SUITE_P(Materials, LobesOf, testing::ValuesIn(materials_and_paints()),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// Paths may share what they find where a surface looks the same from everywhere.
+// Path reuse requires surfaces that look the same from every direction.
 TEST(Scatter, WhatLooksOtherwiseFromAnotherSideIsGlossy) {
   std::vector<Material> all(std::begin(kMaterials), std::end(kMaterials));
   all.push_back({"Matt", "{'type': 'rough', 'kd': 0.5}"});

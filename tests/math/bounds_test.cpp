@@ -8,7 +8,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
-// The box test loses no ray that touches the box.
+// Tests that the box test misses no ray that touches the box.
 namespace orrery {
 namespace {
 
@@ -42,8 +42,8 @@ TYPED_TEST(Slabs, KeepTheRayThatTheTextbookLoses) {
   EXPECT_TRUE(b.enters_it());
 }
 
-// A ray in the plane of a face gives 0 * infinity there. Four places touch the unit cube, two do not, for
-// each axis of the direction, both of its signs and both signs of its zeros.
+// A ray in the plane of a face gives 0 * infinity. Four places touch the unit cube, two do not, for each axis
+// of the direction, both of its signs and both signs of its zeros.
 TYPED_TEST(Slabs, KeepRaysInTheFacesAndRefuseTheOthers) {
   using T = TypeParam;
   test::covers("A28");
@@ -125,7 +125,7 @@ TEST(Bounds, PaddingCoversTheRoundingToFloat) {
   }
 }
 
-// An empty box has its sides at infinity, the wrong way round.
+// An empty box has inverted sides at infinity.
 TEST(Bounds, AnEmptyBoxAddsNothing) {
   Boundsd b = Boundsd::of({{-1, 2, 3}, {4, 5, 6}});
   b.include(Boundsd());

@@ -9,7 +9,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/random.h"
 
-// Powers and exponentials against long double, and lanes against scalars.
+// Compares powers and exponentials with long double, and lanes with scalars.
 namespace orrery {
 namespace {
 
@@ -60,8 +60,8 @@ TYPED_TEST(Elementary, Exp2IsGoodToTwoUlp) {
   EXPECT_EQ(exp2_flushed(T(-1e30)), T(0));
 }
 
-// The bound that the header states: 2 y |log2 x| ulp, and 2.5e-5 or 4e-13 wherever the result is normal. The
-// 3 ulp are for the exponential itself where the power is close to 1.
+// The bound stated in the header: 2 y |log2 x| ulp, and 2.5e-5 or 4e-13 wherever the result is normal.
+// Another 3 ulp are for the exponential itself where the power is close to 1.
 TYPED_TEST(Elementary, PowersOfTheUnitIntervalKeepTheStatedError) {
   using T = TypeParam;
   const long double most = std::is_same_v<T, float> ? 2.5e-5L : 4e-13L;

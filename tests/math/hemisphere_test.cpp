@@ -10,23 +10,24 @@
 #include "core/math/sampling.h"
 #include "tests/support/covers.h"
 
-// Directions about a normal, against form factors.
+// Compares sampled directions around a normal with form factors.
 namespace orrery {
 namespace {
 
-// The share of even points of the cube's face z = 0 from which a ray along `d` leaves by the face above it.
+// Returns the share of evenly spread points of the cube's face z = 0 from which a ray along `d` leaves by the
+// opposite face.
 double share_opposite(const Vec3d& d) {
   return std::max(0.0, 1 - std::abs(d.x / d.z)) * std::max(0.0, 1 - std::abs(d.y / d.z));
 }
-// Likewise by the side to which d.x leads: those whose way to it is at most `reach`, the way along x to the
-// top, and shorter than the way along y.
+// Returns the same share for the side face towards which d.x points. A ray reaches the side if its way there
+// is at most `reach`, the way along x to the top, and shorter than along y.
 double share_beside(double dx, double dy, double dz) {
   const double reach = std::min(1.0, std::abs(dx / dz)), turn = std::abs(dx / dy);
   return reach < turn ? reach - reach * reach / (2 * turn) : turn / 2;
 }
 
-// Shares of directions drawn by the cosine about an axis, at even points of a face, that reach each face:
-// 2 axis + (1 upward).
+// Returns the shares of cosine-distributed directions, from evenly spread points of a face, that reach each
+// face. A face's index is 2 axis + (1 upward).
 std::array<double, 6> form_factors(std::size_t from) {
   constexpr std::uint32_t kStreams = 16, kSamples = 1 << 16;
   const std::size_t z = from / 2, x = (z + 1) % 3, y = (z + 2) % 3;
@@ -45,8 +46,8 @@ std::array<double, 6> form_factors(std::size_t from) {
   return shares;
 }
 
-// Opposite faces of a cube (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11), and
-// what they leave for the four others.
+// Form factor of opposite faces of a cube (Howell, "A Catalog of Radiation Heat Transfer Configuration
+// Factors", C-11), and the remainder for the four others.
 TEST(Hemisphere, CosineDirectionsHaveTheFormFactorsOfACube) {
   test::covers("light-16");
   const double root2 = std::numbers::sqrt2, pi = std::numbers::pi;

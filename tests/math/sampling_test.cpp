@@ -28,7 +28,7 @@ struct Sequence {
 
 class Stratification : public testing::TestWithParam<Sequence> {};
 
-// Every way of cutting the pixel into n equal boxes, n = 2^k: 1 x n, 2 x n/2, ... n x 1.
+// Cuts the pixel into n equal boxes in every way, n = 2^k: 1 x n, 2 x n/2, ... n x 1.
 TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
   const int count = GetParam().count;
   for (std::uint32_t stream = 0; stream < (count > 64 ? 4u : 200u); ++stream) {
@@ -46,7 +46,7 @@ TEST_P(Stratification, PutsOneSampleIntoEachElementaryInterval) {
   }
 }
 
-// Aligned blocks of the sequence are stratified as well: a picture of 4 samples continued to 16 stays so.
+// Aligned blocks of the sequence are also stratified: an image of 4 samples continued to 16 stays stratified.
 TEST_P(Stratification, HoldsForEveryAlignedBlock) {
   const int count = GetParam().count;
   const int side = static_cast<int>(std::lround(std::sqrt(count)));
@@ -67,8 +67,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Stratification,
                                          Sequence{16, shuffled}, Sequence{64, shuffled},
                                          Sequence{4096, shuffled}));
 
-// Three dimensions of one stream: in every aligned block of 2^m samples the third alone has one number in
-// each interval, and together two points are in each box of volume 2^(1-m).
+// Three dimensions of one stream. In every aligned block of 2^m samples the third alone has one number in
+// each interval. Together, two points are in each box of volume 2^(1-m).
 TEST(Sampling, AThirdDimensionIsStratifiedWithTheOthers) {
   test::covers("light-1");
   constexpr std::uint32_t kCount = 64;
@@ -117,7 +117,7 @@ TEST(Sampling, MixingAndScramblingLoseNothing) {
   EXPECT_EQ(reversed.size(), 65536u);
 }
 
-// Each lane gets what a number alone gets.
+// Each lane equals the scalar result.
 TEST(Sampling, LanesAreNumbers) {
   for (std::uint32_t sample = 0; sample < 300; ++sample) {
     const stdx::native_simd<std::uint32_t> streams(
@@ -133,7 +133,8 @@ TEST(Sampling, LanesAreNumbers) {
   }
 }
 
-// Root-mean-square error over 64 streams of an integral's estimate from the first `count` samples.
+// Returns the root-mean-square error over 64 streams of an integral's estimate from the first `count`
+// samples.
 template <class F>
 double rms_error(const F& f, double exact, int count) {
   double squares = 0;
@@ -170,7 +171,7 @@ TEST(Sampling, ErrorAtAnEdgeFallsWithThePower0_75) {
   EXPECT_GE(slope, -0.80);
 }
 
-// Correlation between the samples of neighbouring streams stays below 4 standard deviations.
+// The correlation between samples of neighbouring streams stays below 4 standard deviations.
 TEST(Sampling, StreamsAreIndependent) {
   constexpr int kPairs = 100'000;
   double sum = 0;

@@ -53,12 +53,12 @@ TEST(MeshFile, LimitsHoldInEveryFormat) {
   }
 }
 
-// Cut anywhere, a file is refused, or the faces before the cut are read.
+// A truncated file is rejected, or read up to the cut.
 TEST(MeshFile, ACutFileIsRefusedOrReadUpToTheCut) {
   const std::vector<Corners> whole = corners_of(cube());
   for (const File& file : cubes())
     for (std::size_t size = 0; size < file.bytes.size(); ++size) {
-      const std::string bytes = file.bytes.substr(0, size);  // its own memory: reads past it are caught
+      const std::string bytes = file.bytes.substr(0, size);  // exact allocation, so that overreads are caught
       if (problem(bytes) != "accepted") continue;
       const std::vector<Corners> read = corners_of(read_mesh(bytes));
       EXPECT_TRUE(file.format == MeshFormat::obj || read.size() == whole.size()) << file.name << size;

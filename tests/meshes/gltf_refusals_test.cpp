@@ -23,7 +23,7 @@ std::string with_primitive(const std::string& primitive) {
   return with("\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[" + primitive + "]}]");
 }
 
-// One triangle whose JSON is the caller's from buffers on.
+// Reads one triangle with these members of the document, and returns the problem.
 std::string with_data(const std::string& buffers, const std::string& views, const std::string& accessor) {
   return problem(R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],)" + kMesh + "\"buffers\":[" + buffers +
                  "],\"bufferViews\":[" + views + "],\"accessors\":[" + accessor + "]}");

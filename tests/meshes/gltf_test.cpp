@@ -14,7 +14,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 const std::vector<Vec3d> kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-// kTriangle under nodes of the caller's.
+// Returns kTriangle under `nodes`.
 TriangleMesh placed(const std::string& nodes) {
   Gltf gltf;
   gltf.positions(kTriangle);
@@ -60,7 +60,7 @@ TEST(Gltf, AMatrixIsReadColumnByColumn) {
   EXPECT_EQ(mesh.normals[0], Vec3d(0, 0, 1));
 }
 
-// 90 degrees about y after scaling, then moved; inside a parent that is turned about z.
+// The mesh is scaled, turned by 90 degrees about y and moved. Its parent is turned by 90 degrees about z.
 TEST(Gltf, TranslationRotationAndScaleNest) {
   const std::string half = number(std::sqrt(0.5));
   const TriangleMesh mesh = placed(
@@ -129,7 +129,7 @@ TEST(Gltf, AttributesMayBeInterleavedAndNormalized) {
       R"("nodes":[{"mesh":0,"extras":{"a":[[[]]]}}]})";
   const TriangleMesh mesh = read_mesh(text);
   EXPECT_EQ(mesh.positions, kTriangle);
-  EXPECT_EQ(mesh.uvs[2], (std::array<double, 2>{0.2, 0}));  // v from the top, turned
+  EXPECT_EQ(mesh.uvs[2], (std::array<double, 2>{0.2, 0}));  // v from the top, flipped
 }
 
 TEST(Gltf, WhatNotEveryPrimitiveHasIsLeftOut) {

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <fstream>  // tiny_gltf.h forgets it
+#include <fstream>  // missing in tiny_gltf.h
 
 #include "tests/meshes/writers.h"
 #include "tests/support/random.h"
 
-// The same files read by other programs' readers.
+// Compares mesh readers with those of other programs.
 
 #if __has_include(<tiny_obj_loader.h>)
 #define TINYOBJLOADER_IMPLEMENTATION

@@ -18,7 +18,7 @@ const std::string kVertex = "element vertex 4\nproperty float x\nproperty float 
 const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
 const std::string kFour = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
-// Every scalar type for coordinates, list lengths and indices, in both byte orders.
+// Reads a mesh with coordinates, list lengths and indices of the scalar type `type`, in both byte orders.
 template <class T>
 void reads_as(const std::string& type) {
   for (const std::endian order : {std::endian::little, std::endian::big}) {
@@ -95,7 +95,7 @@ TEST(Ply, FacesMayComeBeforeVertices) {
             (std::vector<Triangle>{{0, 1, 3}}));
 }
 
-// A body of bytes begins right after the line, whatever its first byte.
+// A binary body begins right after the last line of the header, whatever its first byte.
 TEST(Ply, LineEndsOfTheHeaderDoNotTouchTheBody) {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     std::string bytes;
@@ -136,7 +136,7 @@ TEST(Ply, RefusalsOfTheHeaderNameTheLine) {
   EXPECT_THAT(ascii(many), HasSubstr("at most 1000 elements and properties"));
 }
 
-// A count that the bytes cannot hold is refused before memory is taken for it.
+// A count that exceeds the file is rejected before memory is allocated for it.
 TEST(Ply, CountsAreCheckedAgainstTheBytes) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     EXPECT_THAT(problem(ply_header(format, 9'999'999, 1)),

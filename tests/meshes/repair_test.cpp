@@ -23,12 +23,12 @@ TEST(SmoothNormals, ACubeIsCreasedAt30DegreesAndRoundAt100) {
   TriangleMesh round = cube();
   smooth_normals(round, 100);
   EXPECT_EQ(round.positions.size(), 8u);
-  // Faces count by their angle at the corner, however they are cut into triangles.
+  // Faces are weighted by their angle at the corner, however they are triangulated.
   for (std::size_t i = 0; i < 8; ++i)
     EXPECT_LE(length(round.normals[i] - round.positions[i] / std::sqrt(3.0)), 1e-15);
 }
 
-// The crease is sharp at its angle: the cube's faces differ by 90 degrees.
+// The cube's faces differ by 90 degrees. A crease angle of exactly 90 degrees keeps them apart.
 TEST(SmoothNormals, FacesThatDifferByTheCreaseAngleStayApart) {
   for (const auto& [degrees, vertices] : {std::pair(89.9, 24u), std::pair(90.0, 24u), std::pair(90.1, 8u)}) {
     TriangleMesh mesh = cube();
@@ -50,8 +50,8 @@ TEST(SmoothNormals, EqualPositionsAreSmoothedAcrossASeamOfUvs) {
     EXPECT_LE(length(mesh.normals[i] - mesh.positions[i] / std::sqrt(3.0)), 1e-15);
 }
 
-// A sphere of rings and segments; the normal is the direction from the centre. The bound is that of the
-// discretisation, which falls with the square of the step.
+// The normal of a sphere of rings and segments is the direction from the centre. The discretization error
+// falls with the square of the step.
 TEST(SmoothNormals, ASphereHasTheNormalsOfASphere) {
   double last = 1;
   for (const int n : {8, 16, 32, 64}) {

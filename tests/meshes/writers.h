@@ -22,7 +22,7 @@ inline std::vector<Corners> corners_of(const TriangleMesh& mesh) {
   return corners;
 }
 
-// What read_mesh says against it, or "accepted".
+// Returns the error of read_mesh, or "accepted".
 inline std::string problem(std::string_view bytes, const MeshLimits& limits = {}) {
   try {
     read_mesh(bytes, limits);
@@ -32,7 +32,8 @@ inline std::string problem(std::string_view bytes, const MeshLimits& limits = {}
   return "accepted";
 }
 
-// The cube [-1, 1]^3: 8 vertices, 12 triangles, the front outside. Vertex i has the bits of i as signs.
+// Returns the cube [-1, 1]^3: 8 vertices, 12 triangles, the front outside. Vertex i has the bits of i as
+// signs.
 inline TriangleMesh cube() {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -130,10 +131,10 @@ inline std::string base64_of(std::string_view bytes) {
   return out;
 }
 
-// Builds a glTF: accessors in the order of the calls, then the rest of the document as text.
+// Builder of a glTF document: accessors in the order of the calls, then other members as text.
 class Gltf {
  public:
-  // Returns the number of the accessor.
+  // Adds an accessor and returns its number.
   template <class T>
   int add(const std::vector<T>& values, const std::string& type, int component,
           const std::string& more = "") {
@@ -156,7 +157,7 @@ class Gltf {
     return add(floats, "VEC3", 5126);
   }
 
-  // rest: the members "nodes", "meshes" and so on.
+  // Returns the document. `rest` has the members "nodes", "meshes" and so on.
   std::string gltf(const std::string& rest) const {
     return json(rest, ",\"uri\":\"data:application/octet-stream;base64," + base64_of(binary_) + '"');
   }
@@ -186,7 +187,7 @@ class Gltf {
   int count_ = 0;
 };
 
-// A mesh as accessors 0 (positions) and 1 (indices), shown by node 0.
+// Returns a mesh as accessors 0 (positions) and 1 (indices), shown by node 0.
 inline Gltf gltf_of(const TriangleMesh& mesh) {
   Gltf gltf;
   gltf.positions(mesh.positions);

@@ -16,7 +16,7 @@ SamplePoint<double> draw(const Draws& draws, SampleSet set, int depth, int slot)
   return {static_cast<double>(point.u[0]), static_cast<double>(point.v[0])};
 }
 
-// A random number belongs to a pixel, not to the tile that it is rendered in.
+// A random number depends on its pixel, not on the tile of the render.
 TEST(Draws, BelongToThePixel) {
   const Draws whole(7, TileView{0, 0, kTileSide, kTileSide}, 3);
   const Draws beside(7, TileView{16, 8, kTileSide, kTileSide}, 3);
@@ -43,8 +43,8 @@ TEST(Draws, AreTheSameInFloatAndDouble) {
   }
 }
 
-// Numbers are the same whatever was drawn before: here all of some tiles and samples, and again from the last
-// to the first, by other objects.
+// Numbers do not depend on earlier draws: here all of some tiles and samples, and again in reverse order,
+// from other objects.
 TEST(Draws, DoNotDependOnWhatWasDrawnBefore) {
   covers("light-3");
   constexpr int kTiles = 3, kSamples = 5, kDepths = 3;
@@ -67,7 +67,7 @@ TEST(Draws, DoNotDependOnWhatWasDrawnBefore) {
           ASSERT_EQ(numbers_of(tile, sample, depth, slot), forward[--left]);
 }
 
-// Sets, depths and frames have sequences of their own: no two agree, and their correlation over the pixels of
+// Sets, depths and frames have separate sequences. No two are equal, and their correlation over the pixels of
 // a tile stays below 4 standard deviations.
 TEST(Draws, OfOtherSetsDepthsAndFramesAreOthers) {
   const TileView tile{0, 0, kTileSide, kTileSide};
@@ -88,8 +88,8 @@ TEST(Draws, OfOtherSetsDepthsAndFramesAreOthers) {
     }
 }
 
-// Of 256 samples a quarter lies in the lower half of both sets, as if samples were independent: where two
-// sequences have one order, the deviation over pixels is .25 for ever.
+// A quarter of the 256 samples is in the lower half of both sets, as with independent samples. Two sequences
+// in the same order would have a deviation of .25 over pixels at any sample count.
 TEST(Draws, OfTwoSetsOfAPixelFillTheirProduct) {
   covers("light-2");
   constexpr int kSamples = 256, kPixels = 64;

@@ -31,7 +31,7 @@ TYPED_TEST(Records, EachLaneGetsItsOwn) {
     typename N::mask_type mask(false);
     for (std::size_t lane = 0; lane < N::size(); ++lane) {
       mask[lane] = trial % 5 == 0 || random.below(3) > 0;
-      // Lanes that are left out may hold anything at all.
+      // Inactive lanes may hold any value.
       index[lane] =
           mask[lane] ? static_cast<IndexOf<T>>(trial % 2 ? 7 : random.below(50)) : IndexOf<T>(-1000);
     }

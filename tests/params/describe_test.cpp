@@ -125,7 +125,7 @@ TEST(EditDistance, CountsSlipsIncludingSwaps) {
   EXPECT_EQ(edit_distance("kitten", "sitting", 2), 3);
 }
 
-// The whole table, row by row.
+// Returns the edit distance, computed with the whole table row by row.
 int slow_edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
@@ -174,7 +174,7 @@ TEST(Suggestion, FindsSlipsCaseAndAbbreviations) {
   EXPECT_EQ(nearest("to", keys), std::nullopt);
   EXPECT_EQ(nearest("colour", keys), std::nullopt);
   EXPECT_EQ(nearest(std::string(1 << 20, 'x'), keys), std::nullopt);
-  std::vector<std::string> names;  // a bad document must not be able to ask for an endless search
+  std::vector<std::string> names;  // a bad document must not cause an endless search
   for (int i = 0; i < 200'000; ++i) names.push_back(std::string(60, 'a') + std::to_string(i % 10));
   EXPECT_EQ(nearest(std::string(62, 'b'), std::vector<std::string_view>(names.begin(), names.end())),
             std::nullopt);

@@ -193,7 +193,7 @@ TEST(Limits, DepthHoldsAtTheLimitAndNotPastIt) {
   EXPECT_NO_THROW(parse_document(nested(32)));
   const InputError error = input_error(nested(33));
   EXPECT_NE(error.problems().front().detail.find("32"), std::string::npos);
-  input_error(nested(1'000'000));  // neither recursion nor time grows with it
+  input_error(nested(1'000'000));  // neither recursion nor time grows with the depth
   EXPECT_NO_THROW(parse_document(nested(5), {.depth = 5}));
   input_error(nested(6), {.depth = 5});
 }

@@ -11,7 +11,7 @@ namespace {
 
 void read_text(std::string_view text, const Params::Read& read) { read_document(parse_document(text), read); }
 
-// The problems as lines "pointer: detail"; empty if there are none.
+// Returns the problems as lines "pointer: detail".
 std::vector<std::string> problems(std::string_view text, const Params::Read& read) {
   std::vector<std::string> lines;
   try {

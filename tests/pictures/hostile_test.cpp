@@ -11,7 +11,7 @@
 #include "core/pictures/picture_file.h"
 #include "tests/support/sanitized.h"
 
-// Files that make decoders spend memory or time on what is no texel.
+// Files that make decoders spend memory or time on data other than texels.
 namespace orrery::test {
 namespace {
 
@@ -50,15 +50,15 @@ std::string exr_attribute(const std::string& name, const std::string& type, cons
   return name + '\0' + type + '\0' + little_endian(static_cast<std::uint32_t>(value.size())) + value;
 }
 
-// A progressive file of one component and so many scans that hold nothing but the ends of bands: a few bytes
-// for each 32,767 blocks of 64 texels.
+// Returns a progressive file whose `scans` contain only ends of bands: a few bytes for each 32,767 blocks of
+// 64 texels.
 std::string progressive_jpeg(int width, int height, int components, int scans) {
   std::string file = "\xff\xd8" + jpeg_segment('\xdb', '\0' + std::string(64, '\1'));
   std::string frame = "\x08"s + big_endian(static_cast<std::uint32_t>(height)).substr(2) +
                       big_endian(static_cast<std::uint32_t>(width)).substr(2) + static_cast<char>(components);
   for (int i = 1; i <= components; ++i) frame += std::string{static_cast<char>(i), '\x11', '\0'};
   file += jpeg_segment('\xc2', frame);
-  // Codes: 0 for a run of 2^14 blocks and more, 10 for the end of one.
+  // Codes: 0 for a run of 2^14 blocks and more, 10 for the end of one block.
   file += jpeg_segment('\xc4', "\x10\1\1"s + std::string(14, '\0') + "\xe0\0"s);
   std::string bits;
   int left = (width + 7) / 8 * ((height + 7) / 8);
@@ -98,7 +98,7 @@ TEST(HostilePictures, PngDecoderGetsNoTexts) {
   const std::string plain = encode_png(grey_image(8, 8));
   std::string with_texts = plain;
   for (int i = 0; i < 100; ++i)
-    with_texts.insert(33, png_chunk("zTXt", "key"s + '\0' + '\0' + std::string(1000, 'x')));  // behind IHDR
+    with_texts.insert(33, png_chunk("zTXt", "key"s + '\0' + '\0' + std::string(1000, 'x')));  // after IHDR
   EXPECT_EQ(joined(inspect(with_texts)).find("zTXt"), std::string::npos);
   EXPECT_EQ(read_picture(with_texts).rgb, read_picture(plain).rgb);
 }
@@ -113,7 +113,7 @@ TEST(HostilePictures, JpegDecoderGetsNoCommentsAndProfiles) {
   EXPECT_EQ(read_picture(described).rgb, read_picture(plain).rgb);
 }
 
-// Without it the decoder would take red, green and blue for luminance and colour differences.
+// A decoder without the Adobe segment would read red, green and blue as luminance and colour differences.
 TEST(HostilePictures, JpegKeepsItsColourTransform) {
   std::string described = encode_jpeg(grey_image(16, 8));
   described.insert(2, jpeg_segment('\xee', "Adobe\0\x64\0\0\0\0\0"s));
@@ -172,7 +172,7 @@ TEST(HostilePictures, DecoderHasNoMoreMemoryThanTheFileExplains) {
   EXPECT_THROW(decode_in_process(file), InputError);
 }
 
-// It would take seconds: each scan visits all blocks.
+// Decoding would take seconds: each scan visits all blocks.
 TEST(HostilePictures, CancelledWorkEndsTheDecoder) {
   const std::string bytes = progressive_jpeg(16384, 2048, 1, 250);
   std::stop_source stop;

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/image/files.h"
 
-// Pictures that are read, against those that were written; and files that are none.
+// Pictures read back after writing, and files that are not pictures.
 namespace orrery::test {
 namespace {
 
@@ -32,7 +32,7 @@ std::vector<float> ramp(std::size_t count) {
   return values;
 }
 
-// Flat RGBE of 0.5, 1 and 4 in every texel.
+// Returns an HDR file of flat RGBE with 0.5, 1 and 4 in every texel. The header has `stated_height`.
 std::string hdr(int width, int height, int stated_height) {
   std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(stated_height) + " +X " +
                       std::to_string(width) + "\n";
@@ -65,7 +65,7 @@ TEST(Pictures, HdrIsLinear) {
   EXPECT_NEAR(read.rgb[2], 4, 0.02);
 }
 
-// IEC 61966-2-1: code 128 is 0.2158605, code 10 is on the straight part.
+// IEC 61966-2-1: code 128 is 0.2158605, code 10 is on the linear segment.
 TEST(Pictures, PngAndJpegAreDecodedFromSrgb) {
   for (const auto& [code, linear] :
        {std::pair<int, double>{128, 0.21586050}, {10, 10.0 / 255 / 12.92}, {255, 1}}) {
@@ -89,7 +89,7 @@ TEST(Pictures, TruncatedFilesAreRefused) {
     ASSERT_EQ(refusal(png.substr(0, kept)), "PNG: the picture is damaged: it has no end") << kept;
 }
 
-// Sizes that a header states are held against the limits before anything is decoded.
+// Sizes in a header are compared with the limits before anything is decoded.
 TEST(Pictures, StatedSizesAreCheckedFirst) {
   EXPECT_EQ(
       refusal(hdr(4, 2, 2'000'000'000)),
@@ -116,7 +116,7 @@ TEST(Pictures, StatedSizesAreCheckedFirst) {
   EXPECT_EQ(refusal(hdr(4, 2, 2), {.channels = 2}), "HDR: expected a picture of 1 to 2 channels, got 3");
 }
 
-// libjpeg decodes a progressive file as a whole as soon as it opens it.
+// libjpeg decodes a progressive file completely when it opens the file.
 TEST(Pictures, JpegIsRefusedBeforeItTakesMemoryOrTime) {
   const std::string frame = "\xff\xc2\x00\x0b\x08\x2e\xe0\x5d\xc0\x01\x01\x11\x00"s,
                     scan = "\xff\xda\x00\x08\x01\x01\x00\x00\x00\x00"s;

@@ -6,8 +6,7 @@
 #include "tests/support/exhaustive.h"
 #include "tests/support/pictures.h"
 
-// What pictures are expected to cost, against the sums of the branching process by hand and against what is
-// traced.
+// Compares ray estimates with hand-computed sums of the branching process, and with traced rays.
 namespace orrery::test {
 namespace {
 
@@ -15,7 +14,7 @@ constexpr const char* kMaterials = R"('materials': {
   'mirror': {'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 3, 2]},
   'glass': {'type': 'refractive', 'ior': 1.5}, 'plaster': {'type': 'rough', 'kd': [0.5, 0.5, 0.5]}})";
 
-// Two balls of the material before `lights` lights.
+// Returns two balls of the material and `lights` lights.
 std::shared_ptr<const Scene> balls(const std::string& material, int lights) {
   const std::string of = ", 'material': '" + material + "'}";
   Json scene = scene_of("[{'type': 'sphere', 'center': [1, 0, 0], 'radius': 0.5" + of +
@@ -33,7 +32,7 @@ RenderRequest deep(int max_depth) {
   return request;
 }
 
-// For each camera ray.
+// Returns the expected rays per camera ray.
 double expected(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
   return expected_rays(*scene, make_plan(*scene, request)) / (8 * 4 * 2);
 }
@@ -82,11 +81,11 @@ TEST(Cost, OfGlassGrowsByTwoRaysALevel) {
 
 TEST(Cost, OfGlassIsCutByTheLeastContribution) {
   RenderRequest request = deep(4);
-  request.min_contribution = 0.25;  // four rays of a generation may weigh that much
+  request.min_contribution = 0.25;  // four rays of a generation may have that weight
   EXPECT_EQ(expected(balls("glass", 0), request), 1 + 2 * 0.5 + 4 * 0.25 + 4 * 0.125 + 4 * 0.0625);
 }
 
-// Time may end a picture before the samples that are named, an error does not.
+// A time budget may end an image before its sample count, an error budget does not.
 TEST(Cost, OfATimeBudgetIsNotThatOfAllItsSamples) {
   RenderRequest request = deep(0);
   request.samples = 4096;

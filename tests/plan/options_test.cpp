@@ -11,13 +11,14 @@
 #include "core/techniques/registry.h"
 #include "tests/support/pictures.h"
 
-// The table of render options, row by row.
+// Tests the table of render options, row by row.
 namespace orrery::test {
 namespace {
 
 RenderSettings read(const Json& request) { return read_request(document_of(request)); }
 
-// What is wrong with the value, with the pointer: "/render/samples: expected ..."; empty if nothing is.
+// Returns the problem of the value with its pointer, as "/render/samples: expected ...", or "" if the value
+// is valid.
 std::string problem(const RenderOption& option, const Json& value) {
   try {
     read({{name_of(option.section), {{option.key, value}}}});
@@ -49,7 +50,7 @@ struct Ends {
   }
   std::vector<Json> operator()(const auto&) const { return {}; }
 };
-// Values at both ends of what an option may be, or all its choices.
+// Returns the minimum and maximum of an option, or all its choices.
 std::vector<Json> values_at_the_ends(const RenderOption& option) {
   std::vector<Json> values = std::visit(Ends(), option.kind);
   if (option.form() == RenderOption::Form::string)
@@ -73,7 +74,7 @@ struct Beyond {
   std::vector<Json> operator()(const RenderOption::Flag&) const { return {0, "true"}; }
   std::vector<Json> operator()(const auto&) const { return {"nosuch", "", 0, true}; }
 };
-// Values that an option must refuse.
+// Returns values that the option must reject.
 std::vector<Json> values_beyond(const RenderOption& option) { return std::visit(Beyond(), option.kind); }
 
 TEST(RenderOptions, HaveDifferentNamesAndAWord) {
@@ -99,7 +100,8 @@ TEST(RenderOptions, DefaultsAreAllowedAndAreWhatAnEmptySceneGets) {
   }
 }
 
-// A request may change the technique of its scene: the depth that neither names is the technique's.
+// A request may change the technique of its scene. Without an explicit depth, the technique's default
+// applies.
 TEST(RenderOptions, DepthIsThatOfTheTechniqueUnlessNamed) {
   Json named = sample("paper"), unnamed = named;
   named["render"]["max_depth"] = 4;
@@ -123,7 +125,7 @@ TEST(RenderOptions, DepthIsThatOfTheTechniqueUnlessNamed) {
   }
 }
 
-// What the request names is kept.
+// Settings named in the request are kept.
 TEST(RenderOptions, BudgetsFreeWhatIsNotAskedWhateverTheSceneSays) {
   Json json = sample("paper");
   json["render"].update(
@@ -175,7 +177,7 @@ TEST(RenderOptions, ThatSceneAndRequestShareHaveOneRange) {
   for (const RenderOption& option : render_options()) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
     const std::string section(name_of(option.section));
-    const std::string unknown = option.section == Section::budget ? "" : "/" + section;  // to scenes
+    const std::string unknown = option.section == Section::budget ? "" : "/" + section;  // unknown to scenes
     for (const Json& value : values_at_the_ends(option)) {
       scene[section][option.key] = value;
       EXPECT_EQ(first_problem(scene), option.in_scene ? "accepted" : unknown) << option.key;
@@ -193,7 +195,7 @@ TEST(RenderOptions, OfARequestComeBeforeThoseOfItsScene) {
   for (const RenderOption& option : render_options()) {
     if (!option.in_scene) continue;
     const std::vector<Json> values = values_at_the_ends(option);
-    Json json = sample("orrery");  // moves
+    Json json = sample("orrery");  // has motion
     json[std::string(name_of(option.section))][option.key] = values[0];
     const auto scene = load(json);
     const RenderSettings asked = read({{name_of(option.section), {{option.key, values[1]}}}});
@@ -218,7 +220,7 @@ TEST(RenderOptions, WithoutAValueAreNotWritten) {
   EXPECT_EQ(read(Json::parse(to_json(default_settings()))), default_settings());
 }
 
-// No row is a list of names yet; one that is works as the others do.
+// No option is a list of names yet. Such an option works like the others.
 TEST(RenderOptions, MayBeListsOfNames) {
   struct MoreSettings : RenderSettings {
     std::optional<std::vector<std::string>> layers;

@@ -13,7 +13,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// What the plan leaves out, why, and what the counters say about it.
+// Tests the parts of a render that the plan skips, its reasons, and the counters that confirm them.
 namespace orrery::test {
 namespace {
 
@@ -233,7 +233,7 @@ TEST(Plan, TakesFromTheSceneWhatTheRequestLeavesOut) {
   EXPECT_EQ(plan.samples, 3);
 }
 
-// What decides the picture, beside the scene.
+// Compares the settings that determine the image, besides the scene.
 void expect_same_picture(const Plan& a, const Plan& b) {
   EXPECT_EQ(std::pair(a.width, a.height), std::pair(b.width, b.height));
   EXPECT_EQ(a.samples, b.samples);

@@ -12,13 +12,13 @@
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
 
-// The number type that the plan chooses, against double precision: what float would get visibly wrong is
-// rendered in double, and the plan says what needs it.
+// Compares the planned number type with double precision. Scenes with visible float errors are rendered in
+// double, and the plan names the reason.
 namespace orrery::test {
 namespace {
 
-constexpr double kMostError = 5e-4;  // root of the mean square, off edges
-constexpr float kEdge = 0.1f;        // a step of radiance between neighbours that makes an edge
+constexpr double kMostError = 5e-4;  // root mean square, off edges
+constexpr float kEdge = 0.1f;        // radiance step between neighbours at an edge
 
 struct View {
   Plan plan;
@@ -41,7 +41,7 @@ View view(const std::shared_ptr<const Scene>& scene, Precision precision) {
   return seen;
 }
 
-// Whether the picture has another object, or a step of radiance, among the 3 x 3 pixels around.
+// Returns true if the 3 x 3 neighbourhood has another object or a step of radiance.
 bool is_edge(const View& seen, int x, int y) {
   const auto object = [&](int i, int k) {
     return seen.objects[static_cast<std::size_t>(k * seen.picture.width + i)];
@@ -54,7 +54,7 @@ bool is_edge(const View& seen, int x, int y) {
   return false;
 }
 
-// Root of the mean square of the differences from `right`, off its edges.
+// Returns the root mean square difference from `right`, off its edges.
 double error_off_edges(const View& seen, const View& right) {
   double sum = 0;
   int count = 0;
@@ -109,13 +109,13 @@ TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
   }
 }
 
-// Also where layers come together only later.
+// Includes layers that approach each other only later.
 TEST(Precision, OfMotionIsThatOfItsNarrowestMoment) {
   const auto scene = load(from_file("tests/scenes/closing_gap.json"));
   EXPECT_TRUE(make_plan(*scene, {}).double_precision);
 }
 
-// The reason names what needs double precision.
+// The reason names the element that needs double precision.
 TEST(Precision, SaysWhatNeedsDouble) {
   const auto reason = [](const std::string& name) {
     const Plan plan = make_plan(*load(from_file("tests/scenes/precision/" + name + ".json")), {});
@@ -136,7 +136,6 @@ TEST(Precision, SaysWhatNeedsDouble) {
   EXPECT_THAT(reason("tele_1e-4_look_at_10000_away"), testing::HasSubstr("a pixel is 1.27"));
 }
 
-// What is too small for float is right in double, down to the least size of the format.
 TEST(Precision, OfAPlaneInAModelIsThatOfWhereItStands) {
   const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
                                    "{'models': {'floor': {'objects': [{'type': 'plane', 'point': [0, 0, 0],"
@@ -147,6 +146,7 @@ TEST(Precision, OfAPlaneInAModelIsThatOfWhereItStands) {
   EXPECT_EQ(scene->facts.magnitude.where, "/instances/0");
 }
 
+// Scenes too small for float are right in double, down to the smallest size of the format.
 TEST(Precision, OfTinyScenesIsRightToTheLeastSize) {
   const Json tiny = from_file("tests/scenes/precision/mesh_of_size_1e-14.json");
   const Picture large = render(scaled(tiny, 0x1p47), in_double());
@@ -157,7 +157,7 @@ TEST(Precision, OfTinyScenesIsRightToTheLeastSize) {
   EXPECT_EQ(first_problem(scaled(tiny, 1e-80)), "/objects/0");
 }
 
-// ---- scenes at random, each with some of what is hard for float
+// ---- random scenes, each with some features that are hard for float
 
 class RandomScene {
  public:
@@ -242,7 +242,7 @@ class RandomScene {
     scene_["objects"].push_back(
         {{"type", "plane"}, {"point", {away, -2, 0}}, {"normal", {0, 1, 0}}, {"material", "matt"}});
   }
-  // Two surfaces that run beside each other.
+  // Adds two nearly coincident surfaces.
   void add_layer() {
     const double gap = random_.magnitude(1e-8, 1e-2);
     const Vec3d normal = random_.direction(), at = random_.in_cube(1);

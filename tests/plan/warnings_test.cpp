@@ -7,7 +7,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Pictures that show nothing useful are told; those of people who know what they do are not.
+// Tests warnings for images that show nothing useful, and their absence for deliberate choices.
 namespace orrery::test {
 namespace {
 
@@ -61,7 +61,7 @@ TEST(Warnings, TellWhoSendsOnMoreLightThanItGets) {
   EXPECT_EQ(warned(scene), "");
 }
 
-// Light that has no extent reaches a floor by way of a smooth ball with probability 0.
+// Light without extent reaches a floor by way of a smooth ball with probability 0.
 TEST(Warnings, NameLightsAndSmoothSurfacesThatPathsCannotConnect) {
   covers("light-53");
   const auto with = [](const char* light, const char* ball) {
@@ -144,7 +144,7 @@ TEST(Warnings, KnowThatAmbientLightShowsWhatIsInARoom) {
             "/camera/eye ");
 }
 
-// Each of many shapes around the camera might have to be held against each of many lights.
+// The check compares each shape around the camera with each light, and so has a limit on shapes.
 TEST(Warnings, GiveUpAfterEightShapesAroundTheCamera) {
   const auto warned_after = [](int lit_shapes) {
     Json scene = lit("", {0, 0, 4}, "[{'type': 'point', 'position': [0, 0, 5]}]");

@@ -7,15 +7,16 @@
 namespace orrery::povray {
 namespace {
 
-constexpr double kFarAway = 1e5;  // a directional light's place, beyond every shadow that a picture shows
+constexpr double kFarAway = 1e5;  // distance of a directional light, beyond every visible shadow
 
 struct Fading {
-  double factor;  // of the light's colour
+  double factor;  // factor on the light's colour
   std::string keywords;
 };
 
-// POV-Ray's light fades as 2 / (1 + (d / distance)^power): our 1 / (c0 + c1 d + c2 d^2) where c1 or c2 is 0.
-// Ours never exceeds 1 and POV-Ray's does, so that the two agree only where c0 + c1 d + c2 d^2 >= 1.
+// POV-Ray's light fades as 2 / (1 + (d / distance)^power), ours as 1 / (c0 + c1 d + c2 d^2). The forms match
+// if c1 or c2 is 0. Ours never exceeds 1 and POV-Ray's does, so the two agree only where c0 + c1 d + c2 d^2
+// >= 1.
 Fading fading_of(const Json& light) {
   const Vec3d c = vector_of(light, "attenuation", {1, 0, 0});
   if (c.y == 0 && c.z == 0) return {std::min(1.0, 1 / c.x), ""};
@@ -25,7 +26,8 @@ Fading fading_of(const Json& light) {
   return {0.5 / c.x, " fade_power " + text(power) + " fade_distance " + text(distance)};
 }
 
-// Between the two angles POV-Ray's beam falls as a smooth step in the cosine, too; tightness would narrow it.
+// Between the two angles POV-Ray's beam also falls as a smooth step in the cosine. A tightness above 0 would
+// narrow it.
 std::string cone_of(const Json& light) {
   const Vec3d aim = vector_of(light, "position") + normalize(vector_of(light, "direction"));
   return " spotlight point_at " + text(aim) + " radius " + text(light.value("inner_degrees", 15.0)) +

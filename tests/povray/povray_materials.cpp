@@ -7,7 +7,8 @@
 namespace orrery::povray {
 namespace {
 
-// a / b for each channel, where POV-Ray knows only multiples of the pigment `b`.
+// Returns a / b per channel, since POV-Ray supports only multiples of the pigment `b`. Throws Inexpressible
+// if `b` is 0 and `a` is not.
 Vec3d ratio(const Vec3d& a, const Vec3d& b) {
   const auto one = [](double x, double of) {
     if (of == 0 && x != 0) throw Inexpressible("ambient light from a channel that is not in the pigment");
@@ -16,8 +17,8 @@ Vec3d ratio(const Vec3d& a, const Vec3d& b) {
   return {one(a.x, b.x), one(a.y, b.y), one(a.z, b.z)};
 }
 
-// The pigment is our diffuse colour. POV-Ray's highlights have the light's colour: `phong` is a power of the
-// mirrored direction's cosine as ours is, `specular` a power 1 / roughness of the half vector's.
+// The pigment is our diffuse colour. POV-Ray's highlights have the light's colour. `phong` is a power of the
+// mirrored direction's cosine as in ours, `specular` a power 1 / roughness of the half vector's.
 Material rough(const Json& m) {
   const Vec3d cd = vector_of(m, "cd", Vec3d(1));
   const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8));
@@ -45,7 +46,8 @@ Material reflective(const Json& m) {
           false};
 }
 
-// Filtering is a medium that only absorbs. (An interior's fade_color spares the light mirrored inside.)
+// The filter becomes a purely absorbing medium. (An interior's fade_color does not apply to internally
+// reflected light.)
 Material refractive(const Json& m) {
   if (m.value("fresnel", "schlick") != "exact")
     throw Inexpressible("Schlick's approximation by the outer cosine");

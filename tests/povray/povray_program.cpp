@@ -9,14 +9,15 @@
 namespace orrery {
 namespace {
 
-// The next word of a PPM header; # starts a comment.
+// Returns the next word of a PPM header. A word with # starts a comment.
 std::string header_word(std::istream& in) {
   std::string word;
   while (in >> word && word[0] == '#') in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   return word;
 }
 
-// A binary PPM of 16 bits a channel, most significant byte first.
+// Reads a binary PPM of 16 bits a channel, most significant byte first. Throws std::runtime_error for other
+// files.
 Picture read_ppm(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   const std::string magic = header_word(in);

@@ -12,8 +12,8 @@ using povray::Json;
 using povray::text;
 using povray::vector_of;
 
-// All directions are written out, so POV-Ray's left-handed defaults have no say: `right` is the picture's
-// right, its length and that of `up` are what the picture shows at the end of `direction`.
+// All vectors are explicit, so that POV-Ray's left-handed defaults do not apply. `right` points to the right
+// of the image. The lengths of `right` and `up` are the extent of the image at the end of `direction`.
 std::string camera_of(const Json& camera, double aspect) {
   const Vec3d eye = vector_of(camera, "eye");
   const Vec3d forward = normalize(vector_of(camera, "look_at") - eye);
@@ -36,8 +36,8 @@ std::string settings_of(const Json& scene, const PovrayOptions& options) {
          "\n}\nbackground { rgb " + text(background) + " }\n";
 }
 
-// Our bodies of glass cast the shadow of an opaque body; in POV-Ray light passes straight through them. So
-// glass casts none there, and an invisible black body in its place does.
+// Our glass bodies cast the shadow of an opaque body, but in POV-Ray light passes straight through them.
+// Glass therefore casts no shadow there, and an invisible black body in its place does.
 std::string object_of(const Json& object, const povray::Material& material) {
   const std::string shape = povray::shape_of(object);
   if (!material.transparent) return shape + material.modifiers + "}\n";

@@ -12,22 +12,22 @@
 #include "tests/povray/povray_program.h"
 #include "tests/povray/povray_scene.h"
 
-// POV-Ray 3.7 as an oracle: the same scenes, rendered by both, one sample a pixel, as linear light. Each run
-// leaves ours.png, povray.png and difference.png (8 times; blue: left out) in build/povray/<scene>/.
+// Compares with POV-Ray 3.7: the same scenes, rendered by both, one sample per pixel, in linear light. Each
+// run leaves ours.png, povray.png and difference.png (8 times; blue: left out) in build/povray/<scene>/.
 namespace orrery {
 namespace {
 
-constexpr double kLargestRms = 0.0002;  // 10 times what POV-Ray's 16 bits alone make of a range of 0 to 4
+constexpr double kLargestRms = 0.0002;  // 10 times the error of POV-Ray's 16 bits for a range of 0 to 4
 constexpr double kMostLeftOut = 0.02;
 
-// One scene, in our format and as POV-Ray sees it.
+// Scene in our format and, optionally, in POV-Ray's.
 struct Case {
   const char* name;
   const char* file;
   RenderRequest request = {};
-  const char* povray_file = nullptr;  // written by hand, its picture ends at 1; nullptr: we write it
+  const char* povray_file = nullptr;  // written by hand, its image ends at 1; nullptr: exported
 
-  float brightest() const { return povray_file ? 1 : 4; }  // what both pictures are cut at
+  float brightest() const { return povray_file ? 1 : 4; }  // clamp of both images
 };
 
 RenderRequest side_request(int side) {
@@ -42,8 +42,8 @@ RenderRequest depth_request(int max_depth) {
   return request;
 }
 
-// What is known to differ: POV-Ray sees nothing nearer than 0.001 along a ray, so no two bodies touch and a
-// few rays through the edges of a glass box go elsewhere (glass, filter).
+// Known difference: POV-Ray ignores hits nearer than 0.001 along a ray. Bodies therefore do not touch, and a
+// few rays through the edges of a glass box differ (glass, filter).
 const Case kCases[] = {
     {"paper", "scenes/paper.json", side_request(300)},
     {"paper_of_the_benchmark", "scenes/paper.json", side_request(300), "tests/bench/paper.pov"},
@@ -60,17 +60,17 @@ const Case kCases[] = {
     {"orthographic", "tests/povray/scenes/orthographic.json"},
 };
 
-// A pixel is an edge if our picture jumps within it: where one of four samples around its centre differs from
-// that at the centre. There a difference in the last digits moves an outline, or its mirror image, or a
-// shadow, over the centre. A smooth surface changes far less over so small a distance.
+// A pixel is an edge if one of four samples around its centre differs from the sample at the centre. A
+// difference in the last digits there moves an outline, its mirror image or a shadow over the centre. A
+// smooth surface changes far less over that distance.
 constexpr float kEdgeDistance = 0.03f;  // pixels
 constexpr float kEdgeContrast = 0.02f;
 
-// The pixels that are not compared: edges, and those where the two programs mean different things.
+// Returns the pixels that are not compared: edges, and pixels that the two programs define differently.
 std::vector<bool> pixels_left_out(const PreparedScene& scene, const Plan& plan, float brightest) {
   const Samples centre = render_shifted(scene, plan, 0, 0);
-  // A mesh's interpolated normal that faces away from the viewer, as it may at an outline: POV-Ray turns it
-  // round, we keep it on the side of the triangle that is seen.
+  // At an outline, a mesh's interpolated normal may face away from the viewer. POV-Ray flips the normal, we
+  // keep it on the visible side of the triangle.
   std::vector<bool> out = normals_facing_away(scene, plan);
   for (const float dx : {-kEdgeDistance, kEdgeDistance})
     for (const float dy : {-kEdgeDistance, kEdgeDistance}) {
@@ -78,7 +78,7 @@ std::vector<bool> pixels_left_out(const PreparedScene& scene, const Plan& plan, 
       for (std::size_t i = 0; i < out.size(); ++i)
         if (difference(shifted.pixels[i], centre.picture.pixels[i], brightest) > kEdgeContrast) out[i] = true;
     }
-  // A ray that is too deep: ambient light to us, black to POV-Ray.
+  // A ray beyond max_depth returns ambient light in our renderer, and black in POV-Ray.
   if (scene.scene().ambient != Vec3d(0))
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = out[i] || centre.cut[i];
   return out;

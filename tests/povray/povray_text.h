@@ -6,7 +6,7 @@
 
 #include "core/math/vec3.h"
 
-// How numbers, points and members of a JSON object are read and written by the parts of povray_scene().
+// Input and output of numbers, points and JSON members for the parts of povray_scene().
 namespace orrery::povray {
 
 using Json = nlohmann::json;
@@ -25,21 +25,21 @@ inline Vec3d vector_of(const Json& object, const char* key) { return vector_of(o
 inline Vec3d vector_of(const Json& object, const char* key, const Vec3d& otherwise) {
   return object.contains(key) ? vector_of(object.at(key)) : otherwise;
 }
-// A coefficient: one number for all channels, or a colour.
+// Returns a coefficient: one number for all channels, or a colour.
 inline Vec3d coefficient_of(const Json& object, const char* key, const Vec3d& otherwise) {
   if (!object.contains(key)) return otherwise;
   const Json& value = object.at(key);
   return value.is_number() ? Vec3d(value.get<double>()) : vector_of(value);
 }
 
-// What stands inside the braces of an object that has this material, and whether light passes through it.
+// POV-Ray modifiers for an object with this material, and true if light passes through.
 struct Material {
   std::string modifiers;
   bool transparent;
 };
 Material material_of(const Json& material);
 
-// The object without its closing brace, so that modifiers can follow.
+// Returns the object without its closing brace, so that modifiers can follow.
 std::string shape_of(const Json& object);
 
 std::string light_of(const Json& light, double exposure);

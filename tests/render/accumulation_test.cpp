@@ -5,7 +5,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Sums over samples, and how their error falls with the number of samples where pixels are stratified.
+// Tests sums over samples, and the convergence rate of stratified pixels.
 namespace orrery::test {
 namespace {
 
@@ -45,7 +45,7 @@ struct Accumulator {
     const TileView one = tile(first_sample, samples);
     ready->render(std::span(&one, 1), film, stats, {});
   }
-  // Mean of the first pixel.
+  // Returns the mean of the first pixel.
   double mean() const {
     const auto sums = std::make_unique<TileSums>();
     film.take(tile(0, 1), *sums);
@@ -53,8 +53,8 @@ struct Accumulator {
   }
 };
 
-// As many samples as a request may have, of a number that has no binary fraction: each addition errs by half
-// of a last place at most, all together by 4096 * 2^-53.
+// Renders the maximum sample count of a request, of a value without a finite binary fraction. Each addition
+// errs by at most half a unit in the last place, all together by 4096 * 2^-53.
 TEST(Accumulation, OfTheMostSamplesKeepsAConstant) {
   covers("light-10");
   Accumulator accumulator(0.1);
@@ -64,7 +64,7 @@ TEST(Accumulation, OfTheMostSamplesKeepsAConstant) {
   EXPECT_EQ(accumulator.film.image(PixelFormat::linear32).linear(0, 0).x, 0.1f);
 }
 
-// What single precision no longer adds: one half to half of 10^8.
+// Adds values that single precision would lose: one half to half of 10^8.
 TEST(Accumulation, GoesOnAtAHundredMillionSamples) {
   covers("light-10");
   constexpr int kAll = 100'000'000, kLast = 64;
@@ -79,7 +79,7 @@ TEST(Accumulation, GoesOnAtAHundredMillionSamples) {
   EXPECT_EQ(accumulator.film.image(PixelFormat::linear32).linear(0, 0).x, 0.5f);
 }
 
-// Variance of a pixel's mean at `samples`, over pixels of pictures of several seeds.
+// Returns the variance of a pixel's mean at `samples`, over the pixels of images of several seeds.
 template <class Exact>
 double variance(const Json& scene, int width, int height, int samples, const Exact& exact) {
   constexpr int kSeeds = 8;
@@ -111,13 +111,13 @@ Json seen_from_above(Json scene, double height) {
   return scene;
 }
 
-// Mitchell, "Consequences of Stratified Sampling in Graphics" (SIGGRAPH 1996): where an edge crosses a pixel
-// the variance falls with the power 3/2 of the number of samples.
+// At an edge, variance falls with the power 3/2 of the sample count (Mitchell, "Consequences of Stratified
+// Sampling in Graphics", SIGGRAPH 1996).
 TEST(Stratification, VarianceAtAnEdgeFallsWithThePower3Halves) {
   covers("light-6");
   constexpr int kWidth = 64, kHeight = 16;
   constexpr double kSlope = 0.1871, kAt = 0.037;
-  // Of a picture of 64 by 16 pixels of 1 m: white below the line y = slope x + at.
+  // An image of 64 by 16 pixels of 1 m: white below the line y = slope x + at.
   Json scene =
       seen_from_above(scene_of("[]", "{'ambient': [1, 1, 1], 'materials': {'white': {'ka': 1}}}"), kHeight);
   scene["objects"] = Json::array(
@@ -134,8 +134,8 @@ TEST(Stratification, VarianceAtAnEdgeFallsWithThePower3Halves) {
   EXPECT_NEAR(std::log(many / few) / std::log(256), -1.5, 0.1);
 }
 
-// Radiance that is smooth over a pixel: with the power 2 by one random point in each cell, with nearly 3 by
-// scrambled nets (Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997: n^-3 log n).
+// For smooth radiance, variance falls with the power 2 for one random point per cell. For scrambled nets the
+// power is nearly 3 (Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997: n^-3 log n).
 TEST(Stratification, VarianceOfASmoothPixelFallsFasterThanThePower2) {
   covers("light-6");
   constexpr int kSide = 8;
@@ -143,7 +143,7 @@ TEST(Stratification, VarianceOfASmoothPixelFallsFasterThanThePower2) {
       scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
                "{'lights': [{'type': 'point', 'position': [0.3, 1.5, 0.4], 'attenuation': [0, 0, 1]}]}"),
       4);
-  // By Gauss and Legendre's rule with five points in each direction.
+  // Gauss-Legendre quadrature with five points in each direction.
   const std::array<double, 5> at{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
                                  0.9061798459386640},
       weight{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,

@@ -1,4 +1,4 @@
-// Pixels that are drawn at random against the whole model, as the picture itself has them.
+// Compares randomly chosen pixels with the full model, as in the image itself.
 #include "core/study/audit.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Audit audited(const Json& scene, const RenderRequest& request, int pixels, std::
   return audit(prepared, request, pixels, draw, shared_pool());
 }
 
-// RMS of what depth and weights leave out of a whole picture.
+// Returns the RMS error of a whole image due to limits on depth and weight.
 double truth(const Json& scene, const RenderRequest& request) {
   RenderRequest whole = request;
   whole.precision = Precision::double_precision;
@@ -46,7 +46,8 @@ TEST(Audit, BoundsWhatIsCutOfRandomScenes) {
   EXPECT_GE(held, 19) << "95 % of 20";
 }
 
-// From so far that a float's spacing is half a metre, the edge of a ball is ragged; from near it hardly is.
+// From far away, where a float's spacing is half a metre, the edge of a ball is ragged. From nearby it hardly
+// is.
 TEST(Audit, SeesWhatFloatsLose) {
   covers("certificate-11");
   const auto seen_from = [](double distance) {
@@ -67,7 +68,7 @@ TEST(Audit, SeesWhatFloatsLose) {
   EXPECT_GT(far.differing, 10 * std::max(1, near.differing));
 }
 
-// A board of squares as large as pixels: its only sample tells nothing, 64 in place of it do.
+// The objects are about as large as pixels: one sample per pixel reveals no error, but 64 do.
 TEST(Audit, SeesWhatOneSampleMisses) {
   covers("certificate-23");
   Json dots = json("[]");
@@ -88,7 +89,8 @@ TEST(Audit, SeesWhatOneSampleMisses) {
   EXPECT_GE(*found.bound.rms, error);
 }
 
-// One pixel of all is wrong: its share is told to be small, and the most it may be off stays the whole range.
+// A single pixel is wrong. The share of wrong pixels is reported as small, but their maximum error remains
+// the whole range.
 TEST(Audit, BoundsTheShareOfWrongPixels) {
   covers("certificate-24");
   const Json scene =

@@ -1,4 +1,4 @@
-// The picture of where a picture may be off.
+// Tests the view of error bounds per pixel.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 using test::Json;
 using test::json;
 
-// Nothing is reflected.
+// Disables reflections.
 RenderRequest flat() {
   RenderRequest r;
   r.technique = "whitted";
@@ -20,8 +20,8 @@ RenderRequest flat() {
   return r;
 }
 
-// Of a mirror whose reflections are left out, every pixel has the colour of what they may bring; beside it
-// nothing is left out.
+// The pixels of a mirror have the colour of the bound on its omitted reflections. Nothing is omitted
+// elsewhere.
 TEST(BoundView, HasTheColourOfWhatIsLeftOut) {
   const auto loaded = test::load(test::scene_with(
       json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}]"),
@@ -50,7 +50,7 @@ TEST(BoundView, HasTheColourOfWhatIsLeftOut) {
   EXPECT_EQ(picture.stats.omitted.rms(), shown.stats.omitted.rms()) << "what is told is that of the picture";
 }
 
-// Where halves differ, and nowhere else.
+// Only pixels whose halves differ show noise.
 TEST(BoundView, HasTheColourOfNoise) {
   const auto loaded = test::load(
       test::scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]", "{'ambient': [1, 1, 1]}"));

@@ -4,7 +4,7 @@
 #include "core/render/budget.h"
 #include "tests/support/pictures.h"
 
-// What ends a budget beside its error and its time.
+// Tests the ends of a budget other than its error and its time.
 namespace orrery {
 namespace {
 
@@ -17,7 +17,7 @@ RenderRequest square(int side, double error = 0) {
   return r;
 }
 
-// No smaller contribution would have rays followed that none of a technique's are.
+// A smaller min_contribution adds no rays to a technique without secondary rays.
 TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
   const auto scene = test::load(test::sample("glass"));
   RenderRequest r = square(64, 0.1);
@@ -26,7 +26,7 @@ TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
             64u * 64 * *rendered(scene, r).budget->settings.samples);
 }
 
-// The error of fewer samples than are named is not that of the picture that was asked for.
+// The error of fewer samples than requested is not that of the requested image.
 TEST(ErrorBudget, IsMissedByFewerSamplesThanAreNamed) {
   RenderRequest r = square(64, 0.9);
   r.samples = 1024;
@@ -36,7 +36,7 @@ TEST(ErrorBudget, IsMissedByFewerSamplesThanAreNamed) {
   EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;
 }
 
-// Where a copy of the film would be too much, what there is is the picture.
+// If a copy of the film exceeds the memory limit, the current film is the image.
 TEST(TimeBudget, KeepsThePictureWhereMemoryEnds) {
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = square(1200);  // 35 MB of sums

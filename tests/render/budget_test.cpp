@@ -1,5 +1,4 @@
-// Budgets of error and of time: what is promised is kept, by the reference and by a clock that the test
-// moves.
+// Compares the results of error and time budgets with references, and with a clock that the test advances.
 #include "core/render/budget.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +33,7 @@ RenderRequest with_error(int side, double error, Space space) {
   return r;
 }
 
-// Of a picture as its file has them: in display space those of a PNG.
+// Returns the values of an image as stored in its file, in display space those of a PNG.
 std::vector<double> values_of(const Film& film, Space space) {
   if (space != Space::display) return test::linear_values(film);
   std::vector<double> values;
@@ -57,7 +56,7 @@ std::vector<double> in_space(const std::vector<double>& linear, Space space) {
   return space == Space::display ? test::shown(linear) : linear;
 }
 
-// Lamps that a pixel in a hundred sees, and light from a lamp that paths find by chance.
+// Returns small lamps, which one pixel in a hundred sees.
 Json dots() {
   Json dots = test::scene_with(test::json("[]"));
   dots["materials"]["lamp"] = test::json("{'type': 'lambert', 'reflectance': 0, 'emission': [1, 1, 1]}");
@@ -69,7 +68,7 @@ Json dots() {
   return dots;
 }
 
-// A smaller error never costs less, what is told to be met is met, and what is not has a reason.
+// A smaller error never costs less. A budget reported as met is met, and any other has a reason.
 TEST(ErrorBudget, IsMetWhereItIsSaidToBe) {
   covers("certificate-29 certificate-38");
   for (const Json& json : {test::sample("paper"), test::sample("glass"), test::sample("material-metal"),
@@ -89,7 +88,7 @@ TEST(ErrorBudget, IsMetWhereItIsSaidToBe) {
         if (result.budget->met()) {
           EXPECT_LE(realised, error) << json["title"] << " " << name_of(space);
           EXPECT_LE(*result.certificate.total().rms, error);
-        } else {  // what cannot be proved is made by the estimate
+        } else {  // unprovable budgets are met by the estimate
           EXPECT_LE(realised, 1.1 * error) << json["title"] << " " << result.budget->reason;
         }
       }
@@ -97,7 +96,8 @@ TEST(ErrorBudget, IsMetWhereItIsSaidToBe) {
   }
 }
 
-// Nearly all that is traced is in the picture: pilots, not passes, find out which rays may be left out.
+// Pilot renders, not passes, find the rays that may be omitted. Nearly all rays therefore contribute to the
+// image.
 TEST(ErrorBudget, TracesLittleMoreThanThePicture) {
   for (const char* name : {"paper", "glass", "mirrors"}) {
     const auto scene = test::load(test::sample(name));
@@ -109,8 +109,8 @@ TEST(ErrorBudget, TracesLittleMoreThanThePicture) {
   }
 }
 
-// The decision looks at all pixels at once, so features that few samples meet are not darkened (deciding by
-// the pixel loses 84 % of them), and the promise is kept over seeds.
+// The decision considers all pixels at once, so features hit by few samples are not darkened. (Deciding per
+// pixel loses 84 % of them.) The bound holds over seeds.
 TEST(ErrorBudget, HoldsOverSeeds) {
   covers("light-48 certificate-25");
   Json path = dots();
@@ -149,13 +149,13 @@ Json stars(double radius, double emission) {
   return scene;
 }
 
-// Light that is far brighter than a display shows: where one sample meets it and others do not, the mean of
-// few is cut or dark, and halves agree about that.
+// Light far brighter than the display's range. If only some samples hit it, a mean of few samples is clipped
+// or dark, and halves agree on that.
 TEST(ErrorBudget, IsNotDeceivedByWhatADisplayCuts) {
   covers("certificate-19");
   Json sky = test::sample("shape-sphere");
   sky["background"] = {30, 30, 30};
-  // Of tiny stars the truth is that of larger ones that send as much.
+  // The reference of tiny stars are larger ones of equal power.
   const std::pair<Json, Json> scenes_and_truths[] = {
       {sky, sky}, {stars(0.006, 60), stars(0.006, 60)}, {stars(0.0003, 24'000), stars(0.006, 60)}};
   for (const auto& [json, true_json] : scenes_and_truths) {
@@ -180,7 +180,7 @@ TEST(ErrorBudget, IsNotDeceivedByWhatADisplayCuts) {
   }
 }
 
-// What cuts take is made less before an error is given up, and all that was traced is told.
+// Omitted contributions are reduced before a budget is given up, and all traced rays are reported.
 TEST(ErrorBudget, TracesWeakerRaysRatherThanMiss) {
   const auto scene = test::load(test::sample("glass"));
   for (const double error : {0.057, 0.05, 0.045, 0.042}) {
@@ -194,8 +194,8 @@ TEST(ErrorBudget, TracesWeakerRaysRatherThanMiss) {
   EXPECT_THROW(rendered(test::load(test::sample("material-glass")), r), BudgetMissed);
 }
 
-// Between two walls of glass that is not entered rays have weights of 0.02, 0.0004 and 0.000008: there are
-// least contributions that leave out as much as one four times as large.
+// Between two walls of glass, reflected rays have weights of 0.02, 0.0004 and 0.000008. Some values of
+// min_contribution therefore omit as much as one four times as large.
 TEST(ErrorBudget, GoesOnWhereALevelOfWeightsEnds) {
   const auto scene = test::load(test::scene_of(
       "[{'type': 'plane', 'point': [0, 0, -1], 'normal': [0, 0, 1], 'material': 'wall'},"
@@ -207,8 +207,8 @@ TEST(ErrorBudget, GoesOnWhereALevelOfWeightsEnds) {
   EXPECT_LE(*result.certificate.terms.front().bound.rms, 0.001 / 8);
 }
 
-// Two small mirrors that see each other, in a corner: what they leave out is found wherever it is, and
-// traced, or told as missed where that may not be.
+// Two small mirrors face each other in a corner. Their omitted light is found and traced, or reported as
+// missed if it may not be traced.
 TEST(ErrorBudget, FindsWhatOneCornerLeavesOut) {
   covers("certificate-34");
   const auto scene = test::load(
@@ -230,8 +230,8 @@ TEST(ErrorBudget, FindsWhatOneCornerLeavesOut) {
   EXPECT_LT(whole.certificate.terms.front().bound.rms.value_or(0), left_out.bound.rms.value() / 4);
 }
 
-// Half of the light is mirrored and half is refracted at each of eight sheets: each of the rays has 1/256,
-// and where none of them may be traced, all of the light is missing.
+// Each of eight sheets reflects and refracts half of the light. Each of the rays has weight 1/256, and
+// without any of them all of the light is missing.
 TEST(ErrorBudget, CountsManyWeakRays) {
   covers("certificate-5");
   Json sheets = Json::array();
@@ -286,7 +286,7 @@ TEST(ErrorBudget, NamesWhatCannotBeProved) {
   RenderRequest r = with_error(64, 0.0005, Space::display);
   EXPECT_NE(rendered(scene, r).budget->reason.find("all but the samples may be 0.001"), std::string::npos)
       << rendered(scene, r).budget->reason;
-  r.error = 0.004;  // less than samples of 64 x 64 pixels can prove
+  r.error = 0.004;  // below the provable error of 64 x 64 pixels
   EXPECT_NE(rendered(scene, r).budget->reason.find("prove no less than"), std::string::npos)
       << rendered(scene, r).budget->reason;
   r.on_miss = OnMiss::fail;
@@ -303,7 +303,7 @@ TEST(ErrorBudget, StopsAtTheRaysThatThereMayBe) {
   EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;
 }
 
-// Settings as a plan's give the same picture.
+// Expects the resulting settings to give the same image.
 void expect_repeated(const std::shared_ptr<const Scene>& scene, const RenderResult& result) {
   RenderRequest plain;
   static_cast<RenderSettings&>(plain) = result.budget->settings;
@@ -318,8 +318,8 @@ TEST(ErrorBudget, IsRepeatedByItsSettings) {
   }
 }
 
-// A clock that tiles move: each takes its cost, more or less, that of the last pass or twice as much, and
-// some stall.
+// Clock that tiles advance. The first two passes cost the same, and each later one twice the previous. Costs
+// vary by 30 %, and some tiles stall.
 struct FakeClock {
   double now_s = 0, tile_s = 0.001;
   double share_of_stalls = 0;
@@ -359,12 +359,13 @@ TEST(TimeBudget, EndsInTimeWithWholePasses) {
     EXPECT_LE(clock.now_s, *r.seconds + 2 * 5 * tile_s) << "two tiles at once, of which one stalls";
     EXPECT_EQ(result.budget->seconds_met, result.budget->used_s <= *r.seconds);
     in_time += result.budget->seconds_met;
-    if (run % 3 == 0) expect_repeated(scene, result);  // where tiles stall
+    if (run % 3 == 0) expect_repeated(scene, result);  // with stalls
   }
   EXPECT_GE(in_time, 80) << "the others stall in their last tile";
 }
 
-// Of samples that are given, and no power of two: the last pass has at least doubled them, whenever it ends.
+// The requested sample count is not a power of two. The last pass at least doubles the samples, whenever it
+// ends.
 TEST(TimeBudget, TellsTheErrorOfSamplesGiven) {
   const auto scene = test::load(test::sample("cornell-box"));
   RenderRequest r = square(40);  // 4 tiles
@@ -396,7 +397,7 @@ TEST(TimeBudget, SaysThatTheFirstPassTookLonger) {
   EXPECT_EQ(result.stats.counts.rays.camera, 2u * 96 * 96) << "and is whole";
 }
 
-// Before it is rendered where that would take much too long, as its first tiles tell.
+// Fails before rendering if the first tiles show that the budget is far out of reach.
 TEST(TimeBudget, FailsAsSoonAsItIsSurelyMissed) {
   covers("certificate-35");
   FakeClock clock;
@@ -427,8 +428,8 @@ TEST(TimeBudget, FailsAsSoonAsItIsSurelyMissed) {
   EXPECT_TRUE(rendered(test::load(test::sample("paper")), r, in_time.control()).budget->met());
 }
 
-// Weaker rays, which a pilot did not see, begin anew: where that does not end in time, what was made without
-// them is the picture.
+// Weaker rays, which a pilot did not see, restart the render. If that does not end in time, the previous
+// result is the image.
 TEST(TimeBudget, GoesBackToWhatWasMade) {
   const auto scene = test::load(
       test::scene_of("[{'type': 'sphere', 'center': [0.32, 0.42, 0], 'radius': 0.02, 'material': 'mirror'},"
@@ -449,7 +450,7 @@ TEST(TimeBudget, GoesBackToWhatWasMade) {
   EXPECT_LT(*whole.budget->settings.min_contribution, *late.budget->settings.min_contribution);
 }
 
-// Of both budgets the first that is reached ends it.
+// With both budgets, the first one reached ends the render.
 TEST(TimeBudget, EndsAnErrorBudgetToo) {
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = with_error(96, 0.5, Space::display);

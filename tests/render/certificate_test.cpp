@@ -12,7 +12,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// What was left out of a picture, and the range within which all radiance lies.
+// Tests the ledger of omitted contributions, and the range of all radiance.
 namespace orrery {
 namespace {
 
@@ -20,7 +20,7 @@ using test::covers;
 using test::Json;
 using test::json;
 
-// SCENES_SEED chooses other scenes than the usual.
+// Returns the seed of the random scenes. SCENES_SEED overrides the default.
 test::Random scenes_seed() {
   const char* const asked = std::getenv("SCENES_SEED");
   return test::Random(asked ? std::strtoull(asked, nullptr, 10) : 1);
@@ -47,7 +47,7 @@ std::vector<Ray<double>> camera_rays(const Plan& plan) {
 
 Vec3d product(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-// Of one picture: how much larger the bound is than the error, or none where nothing was left out.
+// Ratios of bound to error, one per image. Images without omissions have none.
 struct Tightness {
   std::vector<double> of_max, of_rms;
 };
@@ -56,7 +56,7 @@ double median(std::vector<double> values) {
   return values.at(values.size() / 2);
 }
 
-// The picture's values beside those of the full tree, whose own ledger counts as well.
+// Compares with the values of the full tree, whose own ledger is added to the bound.
 void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness& tightness) {
   const auto loaded = test::load(scene);
   const Plan plan = make_plan(*loaded, cut);
@@ -110,7 +110,7 @@ TEST(RadianceRange, HoldsAllRadianceOfRandomScenes) {
     for (const auto& [radiance, weights, cut] :
          test::Tracing(scene, r).trace(camera_rays(make_plan(*scene, r))))
       for (const auto channel : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-        // What is replaced by ambient light is no radiance of the scene.
+        // Ambient light that replaces omitted rays is not part of the scene's radiance.
         ASSERT_LE(radiance.*channel, range.most.*channel + weights.*channel * scene->ambient.*channel + 1e-12)
             << scene->canonical.substr(0, 2000);
         ASSERT_GE(radiance.*channel, range.least.*channel) << scene->canonical.substr(0, 2000);
@@ -118,7 +118,7 @@ TEST(RadianceRange, HoldsAllRadianceOfRandomScenes) {
   }
 }
 
-// Of plum: .3 of the ambient .4, and .3 and a highlight of 2 of the light's 2.
+// Plum reflects .3 of the ambient .4, and .3 and a highlight of 2 of the light's 2.
 TEST(RadianceRange, OfThePapersSceneIsThatByHand) {
   covers("certificate-6");
   const auto scene = test::load(test::sample("paper"));
@@ -137,7 +137,7 @@ TEST(RadianceRange, OfLightsFallsWithTheirDistance) {
   EXPECT_NEAR(most("{'type': 'directional', 'from': [1, 0, 0], 'intensity': [3, 3, 3]}"), 3, 1e-12);
 }
 
-// A mirror that shines, or whose ambient light it does not weaken, adds to itself from side to side.
+// An emissive mirror, or one that does not attenuate its ambient light, adds up over repeated reflections.
 TEST(RadianceRange, IsUnknownWhereSpecularSurfacesShine) {
   const auto finite = [](const char* material, const char* ambient) {
     return test::load(test::scene_of(
@@ -168,8 +168,7 @@ TEST(RadianceRange, OfPathsIsTheSeries) {
   EXPECT_FALSE(test::load(mirror)->facts.path_radiance.finite()) << "light may be mirrored for ever";
 }
 
-// Two mirrors of .95 that face each other, with a lit end far away that depth 5 does not reach: what is left
-// out is .95^6 of the range.
+// Two facing mirrors of .95 with a lit end beyond depth 5: the omitted part is .95^6 of the range.
 TEST(Ledger, OfACorridorIsThatOfTheClosedForm) {
   covers("certificate-3");
   const double n = (1 + std::sqrt(.95)) / (1 - std::sqrt(.95));
@@ -187,7 +186,8 @@ TEST(Ledger, OfACorridorIsThatOfTheClosedForm) {
   EXPECT_LE(picture.stats.omitted.max(), 1.2 * left);
 }
 
-// A ray in a slab of glass beyond the critical angle never leaves: all of it is left out, and that is finite.
+// A ray in a slab of glass beyond the critical angle never leaves. The whole ray is omitted, but the bound is
+// finite.
 TEST(Ledger, OfALightGuideIsTheWholeRange) {
   covers("certificate-4");
   const Json scene = test::scene_with(
@@ -203,7 +203,7 @@ TEST(Ledger, OfALightGuideIsTheWholeRange) {
   EXPECT_NEAR(max_component(answer.weights), 1, 1e-12);
 }
 
-// Ambient light stands in for what would have been dark.
+// Ambient light replaces a ray that would have been dark.
 TEST(Ledger, CountsASubstituteThatIsTooBright) {
   const auto loaded = test::load(
       test::scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'glass'}]"),
@@ -213,8 +213,8 @@ TEST(Ledger, CountsASubstituteThatIsTooBright) {
   EXPECT_EQ(make_plan(*loaded, request(1)).cut_range, Vec3d(0.9, 0.9, 0.9));
 }
 
-// Pictures of 4 samples whose bound is at least their error, of 60 seeds, against one of many samples. Of
-// each check(certificate, error) is called.
+// Returns the number of images, of 60 seeds with 4 samples, whose bound is at least their error. The
+// reference has `samples_of_truth` samples. Calls check(certificate, error) for each image.
 template <class Check>
 int held_over_seeds(const Json& scene, RenderRequest r, int samples_of_truth, const Check& check) {
   const auto loaded = test::load(scene);
@@ -237,7 +237,7 @@ int held_over_seeds(const Json& scene, RenderRequest r, int samples_of_truth, co
   return held;
 }
 
-// Edges, highlights in glass, and dots that shine in one pixel of a hundred: over seeds the bound holds.
+// Edges, highlights in glass, and dots seen by one pixel in a hundred: the bound holds over seeds.
 TEST(Certificate, OfSamplesHoldsOverSeeds) {
   covers("certificate-17");
   Json dots = test::scene_with(json("[]"));
@@ -253,7 +253,7 @@ TEST(Certificate, OfSamplesHoldsOverSeeds) {
   }
 }
 
-// On a display paths have a range, too. Those that share what they find err together within a tile.
+// On a display the range of paths is bounded, too. With path reuse, errors are correlated within a tile.
 TEST(Certificate, OfPathsHoldsOnADisplay) {
   covers("certificate-17 certificate-18");
   for (const char* name : {"cornell-box", "outdoors"}) {
@@ -310,7 +310,7 @@ TEST(Certificate, KnowsThatPixelsErrAlike) {
   erring_tiles = 16;
   EXPECT_EQ(kind_of(1), Bound::Kind::unknown);
   EXPECT_EQ(kind_of(0.3), Bound::Kind::unknown);
-  plan.reuse = 16;  // where that is expected
+  plan.reuse = 16;  // expects correlation
   EXPECT_EQ(kind_of(0.3), Bound::Kind::estimated);
   plan.reuse = 1;
   kind_of(0);
@@ -320,7 +320,7 @@ TEST(Certificate, KnowsThatPixelsErrAlike) {
   EXPECT_GT(*certify(plan, stats).total().rms, 1.05 * of_pixels) << "16 tiles tell less than their pixels";
 }
 
-// No root of a mean square is larger than the largest, and no two values of a display differ by more than 1.
+// A root mean square is at most the maximum, and two display values differ by at most 1.
 TEST(Certificate, OfADisplayIsNoMoreThanItsLargestDifference) {
   RenderRequest r = request(32, 0.5);
   r.space = Space::display;
@@ -342,7 +342,7 @@ TEST(Certificate, OfADisplayIsNoMoreThanItsLargestDifference) {
   EXPECT_EQ(both.total().max, 1.3);
 }
 
-// All pixels of a tile err by the same.
+// All pixels of a tile have the same error.
 TEST(Halves, HoldWhereTilesAloneAreIndependent) {
   test::Random random(1);
   int held = 0, held_by_pixels = 0;
@@ -360,7 +360,7 @@ TEST(Halves, HoldWhereTilesAloneAreIndependent) {
   EXPECT_LT(held_by_pixels, 800);
 }
 
-// Tables of Student's distribution.
+// Compares with tables of Student's t distribution.
 TEST(StudentQuantile, IsAsInTables) {
   for (const auto& [degrees, t] : {std::pair{1, 12.7062},
                                    {2, 4.30265},
@@ -385,7 +385,7 @@ TEST(Certificate, OfSamplesIsNotFarAboveWhatTheyTell) {
   EXPECT_LT(*certificate.total().rms, 1.5 * *certificate.estimate);
 }
 
-// Of an even picture no sample tells any error, and the certificate does not say that there is none.
+// Samples of a constant image show no error, but the certificate does not claim zero error.
 TEST(Certificate, NeverTellsAnErrorOfNothingFromSamples) {
   covers("certificate-20");
   const auto empty = test::load(
@@ -398,7 +398,7 @@ TEST(Certificate, NeverTellsAnErrorOfNothingFromSamples) {
   EXPECT_EQ(certificate.total().kind, Bound::Kind::estimated);
   EXPECT_GE(*certificate.total().rms, 2 * std::sqrt(std::log(20) / (64 * 64)) / 2);
   EXPECT_EQ(certificate.total().rms, certificate.least_provable) << "and none can tell less";
-  r.technique = "path";  // a lamp that is drawn by its area may bring anything
+  r.technique = "path";  // a lamp sampled by area has no bound
   EXPECT_EQ(test::rendered(empty, r).certificate.total().kind, Bound::Kind::unknown);
 }
 
@@ -423,7 +423,7 @@ TEST(Certificate, IsAsWeakAsItsWeakestTermAndStillTellsTheRest) {
   EXPECT_EQ(certificate_of(glass, r).total().kind, Bound::Kind::unknown) << "nothing is known of float";
 }
 
-// The same samples with and without: what is taken away is the difference, in each channel.
+// Renders the same samples with and without clamp. The ledger equals the difference in each channel.
 TEST(Clamp, LedgerIsWhatIsTakenAway) {
   covers("light-50");
   for (const char* name : {"cornell-box", "material-glass", "outdoors"})
@@ -445,13 +445,12 @@ TEST(Clamp, LedgerIsWhatIsTakenAway) {
         EXPECT_NEAR(whole - some.sum(channel) / pixels, away.mean(c), 1e-6 * whole) << name << reuse;
         ++c;
       }
-      r.clamp_indirect = 1e6;  // which nothing reaches
+      r.clamp_indirect = 1e6;  // never reached
       EXPECT_LE(largest_difference(all, test::render(loaded, r)), 1e-5 * 30) << name;
     }
 }
 
-// A lamp, what it lights, and what a mirror shows of it are direct: only light of more reflections is
-// clamped.
+// A lamp, its direct light and its mirror image are direct. Only light of more reflections is clamped.
 TEST(Clamp, KeepsDirectLight) {
   const auto lit = test::load(test::scene_of(
       "[{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'floor'},"
@@ -472,7 +471,7 @@ TEST(Clamp, KeepsDirectLight) {
   }
 }
 
-// Passes of one picture: their ledgers are of one, at most.
+// The ledger of passes is at least that of the whole render.
 TEST(Certificate, OfPassesBoundsThatOfTheWhole) {
   const auto loaded = test::load(test::sample("material-refractive"));
   RenderRequest r = request(2);

@@ -10,7 +10,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/stopped.h"
 
-// What a caller may do to a render while it runs, and several renders at once.
+// Tests progress, cancellation and concurrency of renders.
 namespace orrery::test {
 namespace {
 
@@ -50,7 +50,7 @@ TEST(Control, StopEndsTheRenderAtOnce) {
   EXPECT_LT(tiles, 5 + shared_pool().threads()) << "tiles were begun after the stop";
 }
 
-// Passes on what it is asked, and requests a stop with the third batch.
+// Forwards to another accelerator, and requests a stop at the third batch.
 class StopsAtThirdBatch final : public Accelerator<float> {
  public:
   explicit StopsAtThirdBatch(std::shared_ptr<const Accelerator<float>> behind) : behind_(std::move(behind)) {}
@@ -72,7 +72,7 @@ class StopsAtThirdBatch final : public Accelerator<float> {
   const std::shared_ptr<const Accelerator<float>> behind_;
 };
 
-// Glass among glass: the tree of one camera ray can grow to billions, so a stop must not wait for its end.
+// Nested glass: the tree of one camera ray can grow to billions of rays, so a stop must not wait for its end.
 TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
   std::string spheres;
   for (int i = 0; i < 27; ++i)
@@ -103,7 +103,7 @@ TEST(Control, AStoppedRenderLeavesTheNextOneWhole) {
             4096u);
 }
 
-// One thread builds what another waits for: who is told to stop waits no longer.
+// A stop request ends the wait for a structure that another thread builds.
 TEST(Control, StopEndsTheWaitForWhatAnotherBuilds) {
   StoppableMutex mutex;
   mutex.lock();
@@ -144,7 +144,7 @@ TEST(Control, PreparationIsPaidOnce) {
             0);
 }
 
-// An orbit frame is the frame of a scene whose camera stands there.
+// An orbit frame equals the image of a scene with its camera there.
 TEST(Orbit, FramesAreThoseOfAMovedCamera) {
   Json scene = sample("paper");
   RenderRequest orbit = in_double(size(96, 64));

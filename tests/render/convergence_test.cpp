@@ -1,4 +1,4 @@
-// The mean square error of a picture of n samples is a / n + b^2, where b is its bias.
+// The mean square error of an image of n samples is a / n + b^2, where b is its bias.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@ namespace {
 using test::covers;
 using test::Json;
 
-// Mean square errors after 8, 16, ... 512 samples: six doublings, against two references that are independent
-// of each other, whose own errors so cancel on average.
+// Returns mean square errors after 8, 16, ... 512 samples: six doublings. The two references are independent
+// of each other, so that their own errors cancel on average.
 std::vector<double> errors_of(const std::shared_ptr<const Scene>& scene, RenderRequest r,
                               const std::array<std::vector<double>, 2>& truth) {
   r.samples = 512;
@@ -31,7 +31,7 @@ std::vector<double> errors_of(const std::shared_ptr<const Scene>& scene, RenderR
   return errors;
 }
 
-// b^2 of the fit in which errors of all n weigh alike, relatively: the slope of n times the error over n.
+// Returns b^2 of a fit with equal relative weights for all n: the slope of n times the error over n.
 double squared_bias(const std::vector<double>& errors) {
   double sum_n = 0, sum_y = 0, sum_nn = 0, sum_ny = 0, n = 8;
   for (const double error : errors) {
@@ -46,8 +46,8 @@ double squared_bias(const std::vector<double>& errors) {
   return (count * sum_ny - sum_n * sum_y) / (count * sum_nn - sum_n * sum_n);
 }
 
-// How many standard errors of itself b^2 is above 0, over seeds. Samples that are nets make errors fall
-// faster than 1 / n, and it is then below.
+// Returns b^2 in its own standard errors, over seeds. Errors of stratified samples fall faster than 1 / n,
+// which makes b^2 negative.
 double standard_errors_above_nothing(const Json& json, const RenderRequest& r,
                                      const RenderRequest& unbiased) {
   constexpr int kSeeds = 8;

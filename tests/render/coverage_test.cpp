@@ -6,11 +6,11 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// How much of a picture a shape covers.
+// Tests the image area covered by a shape.
 namespace orrery::test {
 namespace {
 
-// A ball that shines by ambient light alone.
+// Returns a ball lit by ambient light alone.
 Json ball(double radius, const Json& camera) {
   return scene_with(Json{{"type", "sphere"}, {"center", {0, 0, 0}}, {"radius", radius}},
                     Json{{"camera", camera}, {"ambient", {1, 1, 1}}});
@@ -28,14 +28,14 @@ TEST(Coverage, TinyBallsAreSeenLikeLargeOnes) {
     }
 }
 
-// From 10,000 radii away none of the rim is lost. 16 samples a pixel, 512 pixels across: 3.3 million rays.
+// The rim is complete from 10,000 radii away. 16 samples a pixel, 512 pixels across: 3.3 million rays.
 TEST(Coverage, FarBallsKeepTheirRim) {
   covers("A20");
   const double distance = 1e4, angle = 2 * std::atan(1.25 / distance) * 180 / std::numbers::pi;
   RenderRequest request = in_double(size(512, 512));
   request.samples = 16;
   const double covered = render(ball(1, {{"eye", {0, 0, distance}}, {"fov_degrees", angle}}), request).sum();
-  const double radius = 256 / 1.25 / std::sqrt(1 - 1 / (distance * distance));  // of the silhouette, pixels
+  const double radius = 256 / 1.25 / std::sqrt(1 - 1 / (distance * distance));  // silhouette, pixels
   EXPECT_NEAR(covered / (std::numbers::pi * radius * radius), 1, 1e-4);
 }
 
@@ -48,7 +48,7 @@ TEST(Coverage, DiscsHaveTheirArea) {
   EXPECT_NEAR(render(ball(20, orthographic(64)), request).sum(), expected, 0.5);
 }
 
-// A ball of a fifth of a pixel on the corner of four pixels: one ray a pixel does not see it, many do.
+// A ball of a fifth of a pixel on the corner of four pixels: one ray per pixel misses it, many do not.
 TEST(Coverage, BallsBelowAPixelNeedSamples) {
   covers("E7");
   RenderRequest request = size(16, 16);
@@ -59,7 +59,7 @@ TEST(Coverage, BallsBelowAPixelNeedSamples) {
       << "stratified samples do better";
 }
 
-// The height of the picture decides the scale of both axes: a ball is round in any aspect.
+// The image height determines the scale of both axes: a ball is round in any aspect ratio.
 TEST(Coverage, BallsAreRoundInAnyAspect) {
   covers("E9");
   for (const auto& [width, height] : {std::pair{640, 360}, {360, 640}, {1920, 1080}, {100, 400}})
@@ -72,7 +72,7 @@ TEST(Coverage, BallsAreRoundInAnyAspect) {
             left = std::min(left, x), right = std::max(right, x);
             top = std::min(top, y), bottom = std::max(bottom, y);
           }
-      const int shown = std::min(height, width);  // a tall picture cuts the ball at its sides
+      const int shown = std::min(height, width);  // a tall image cuts the ball at its sides
       if (bottom - top < shown) {
         EXPECT_NEAR(right - left, bottom - top, 1) << width << " x " << height;
       }
@@ -83,7 +83,7 @@ TEST(Coverage, BallsAreRoundInAnyAspect) {
 
 TEST(Coverage, MeansOfManySamplesDoNotDrift) {
   covers("A34");
-  Json scene = ball(20, orthographic(4));  // fills the picture
+  Json scene = ball(20, orthographic(4));  // fills the image
   scene["ambient"] = {.1, .1, .1};
   RenderRequest request = size(8, 8);
   request.samples = 4096;

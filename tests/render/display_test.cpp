@@ -7,7 +7,7 @@
 #include "core/params/params.h"
 #include "tests/support/pictures.h"
 
-// What certificates tell of pictures on a display.
+// Tests certificates of images in display space.
 namespace orrery::test {
 namespace {
 
@@ -27,7 +27,7 @@ Bound bound_of(const char* subject, const Certificate& certificate) {
 
 constexpr const char *kCodes = "codes of 8 bits", *kClamp = "clamp of indirect light";
 
-// In an even picture all codes are off by the same, up to half of one.
+// In a constant image all codes have the same error, at most half of one.
 TEST(DisplayCertificate, CodesOfAnEvenPictureAreAllOffByTheSame) {
   for (const float code : {127.5f, 127.25f, 127.0f, 0.0f, 255.0f}) {
     const std::string value = number_text(double{decode_srgb(code / 255)});
@@ -51,7 +51,7 @@ TEST(DisplayCertificate, CodesAreOffAsThoseOfTheFile) {
   EXPECT_EQ(bound.kind, Bound::Kind::proved);
 }
 
-// What a filter with negative lobes takes from some pixels makes up for nothing at others.
+// A filter with negative lobes subtracts in some pixels, which offsets nothing in others.
 TEST(DisplayCertificate, ClampIsBoundedUnderFiltersThatTakeAway) {
   const auto scene = load(sample("cornell-box"));
   for (const Filter filter : {Filter::box, Filter::lanczos}) {

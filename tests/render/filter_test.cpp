@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Pictures through pixel filters.
+// Tests images through pixel filters.
 namespace orrery::test {
 namespace {
 
@@ -19,7 +19,7 @@ RenderRequest filtered(Filter filter, int samples, RenderRequest request, const 
 constexpr std::array kAll{Filter::box, Filter::gaussian, Filter::blackman_harris, Filter::mitchell,
                           Filter::lanczos};
 
-// Of a background that is the same everywhere.
+// The background is constant.
 TEST(Filters, AConstantPictureStaysConstant) {
   covers("light-46");
   const Json scene =
@@ -57,7 +57,7 @@ double height(Filter filter, double x) {
   return 0;
 }
 
-// The edge of a half plane shows as the integral of the filter, which rings where it has negative lobes.
+// The edge of a half plane shows as the integral of the filter, which rings for negative lobes.
 TEST(Filters, AnEdgeIsTheFiltersIntegral) {
   covers("light-46");
   Json scene = scene_of(
@@ -80,7 +80,8 @@ TEST(Filters, AnEdgeIsTheFiltersIntegral) {
   }
 }
 
-// Passes of samples, threads and scale change nothing; a single sample of Whitted's lies in the middle.
+// Passes, threads and scale do not change the image. A single sample of Whitted's technique lies at the pixel
+// centre.
 TEST(Filters, KeepTheirBytes) {
   const Json own = sample("cornell-box");
   for (const Filter filter : {Filter::blackman_harris, Filter::lanczos}) {

@@ -1,4 +1,4 @@
-// What is foretold of a picture, beside what it takes.
+// Compares forecasts of images with their renders.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ Forecast foretold(const std::shared_ptr<const Scene>& scene, const RenderRequest
   return forecast(prepared, settle(prepared, make_plan(*scene, request)), pool, control);
 }
 
-// Passes double the samples, so a forecast may be one beside the last; of each sample rays are counted.
+// Passes double the samples, so a forecast may miss by one pass. Rays are compared per sample.
 TEST(Forecast, ComesToTheSamplesAndRaysOfABudget) {
   for (const char* name : {"paper", "glass", "cornell-box", "sphereflake-2"})
     for (const double error : {0.05, 0.02}) {
@@ -66,7 +66,7 @@ TEST(Forecast, OfGivenSamplesTellsTheirRaysAndError) {
   }
 }
 
-// A picture for twice as long may have about twice the samples; the clock of the client stands.
+// A budget of twice the time may have about twice the samples. The client's clock stands still.
 TEST(Forecast, OfABudgetOfTimeFillsIt) {
   const auto scene = load(sample("cornell-box"));
   RenderRequest r = square();
@@ -90,7 +90,7 @@ TEST(Forecast, DependsOnThePlanAlone) {
   }
 }
 
-// Which a budget may be ended by, and the daemon refuses.
+// The budget's limits on rays and time do not apply. (The service rejects such requests.)
 TEST(Forecast, OfGivenSamplesIsNotEndedByLimits) {
   RenderRequest r = square();
   r.samples = 4096;
@@ -99,7 +99,7 @@ TEST(Forecast, OfGivenSamplesIsNotEndedByLimits) {
   EXPECT_EQ(told.outcome.settings.samples, 4096);
 }
 
-// At this size the tiles are all there is, and blocks see none of the three rays.
+// At this size only tiles are traced, and blocks miss all three omitted rays.
 TEST(Forecast, TellsWhatOnlyTilesLeaveOut) {
   const auto scene = load(sample("orrery"));
   RenderRequest r = test::size(128, 128);
@@ -121,7 +121,7 @@ TEST(Forecast, SaysWhatWouldBeMissed) {
   EXPECT_GT(*told.least_error, 1e-6);
 }
 
-// Pictures of which a pilot is all, and those smaller than a block.
+// The pilot is the whole image, or the image is smaller than a block.
 TEST(Forecast, IsThereForTheSmallestPictures) {
   for (const int side : {1, 3, 33}) {
     RenderRequest r = square();

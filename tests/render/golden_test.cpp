@@ -9,9 +9,9 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Pictures as they were: tests/golden/<scene>.png, compared byte by byte. When a change is meant,
+// Compares images with tests/golden/<scene>.png, byte by byte. After an intended change,
 //   ORRERY_UPDATE_GOLDEN=1 script/test render
-// writes them anew; look at every one that changed before it is kept.
+// rewrites the files. Look at each changed image before you commit it.
 namespace orrery::test {
 namespace {
 
@@ -22,7 +22,7 @@ Image picture_of(const std::string& name) {
   const PreparedScene prepared(scene);
   RenderRequest request = size(128, 96);
   request.samples = 4;
-  request.time = 0.6;  // what moves is on its way
+  request.time = 0.6;  // objects are in motion
   return render_frame(prepared, settle(prepared, make_plan(*scene, request)), FilmStorage::srgb8,
                       shared_pool())
       .film.image(PixelFormat::srgb8);

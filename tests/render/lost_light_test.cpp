@@ -1,4 +1,4 @@
-// Light that a technique does not follow, or that paths cannot find.
+// Tests reports of light that a technique does not follow, or that paths cannot find.
 #include <gtest/gtest.h>
 
 #include "tests/support/covers.h"
@@ -7,7 +7,7 @@
 namespace orrery::test {
 namespace {
 
-// A glass ball over a floor, below a lamp: these objects and these lights.
+// Returns the light not followed by `technique` from a glass ball over a floor with these objects and lights.
 std::vector<const char*> not_followed(const char* technique, const std::string& objects,
                                       const std::string& lights) {
   const auto scene = load(

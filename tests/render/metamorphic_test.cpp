@@ -8,11 +8,11 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Changes that must not change a picture, over every scene of scenes/ and over random ones.
+// Tests changes that must not affect an image, for every scene of scenes/ and for random ones.
 namespace orrery::test {
 namespace {
 
-// What sanitizers look for shows in fewer pixels.
+// Sanitizers need fewer pixels.
 RenderRequest small(int samples = 1) {
   RenderRequest request = reduced() ? size(64, 48) : size(160, 120);
   request.samples = samples;
@@ -91,8 +91,7 @@ TEST_P(EveryScene, LooksTheSameWithShadowsPredicted) {
   }
 }
 
-// Lengths times 2^17 and 2^-17, and the light as bright where it arrives: no constant of the program has a
-// length.
+// Lengths are scaled by 2^17 and 2^-17, with equal irradiance: no constant of the program is a length.
 TEST_P(EveryScene, LooksTheSameAtAnyScale) {
   covers("A19");
   const Json scene = without_filters(sample(GetParam()));
@@ -108,8 +107,8 @@ TEST_P(EveryScene, LooksTheSameAtAnyScale) {
       << "the plan itself depends on the scale";
 }
 
-// Float may decide an edge otherwise than double, and curved mirrors show edges of edges: on 820 mirrored
-// balls 40 pixels of 19,200 differ by more than 1/512, in most scenes none does.
+// Float may decide an edge differently from double, and curved mirrors multiply edges. On 820 mirrored balls,
+// 40 pixels of 19,200 differ by more than 1/512, in most scenes none.
 TEST_P(EveryScene, LooksAlmostTheSameInFloatAndDouble) {
   const Picture single = render(scene_, in_float(small())), exact = render(scene_, in_double(small()));
   EXPECT_LE(differing_pixels(single, exact, 1.0 / 512), 160 * 120 / 200);
@@ -119,7 +118,7 @@ TEST_P(EveryScene, LooksAlmostTheSameInFloatAndDouble) {
   EXPECT_LE(off / (160 * 120), 1.0 / 512) << "mean of the picture";
 }
 
-// Rays cast at most once: what Whitted shows at depth 0.
+// Ray casting equals Whitted's technique at depth 0.
 TEST_P(EveryScene, LooksTheSameCastAndTracedToDepthZero) {
   RenderRequest cast = small(), traced = small();
   cast.technique = "raycast";
@@ -132,7 +131,7 @@ TEST_P(EveryScene, CountsCameraRaysAndNoImpossibleOnes) {
   const RenderRequest request = small(3);
   const Picture picture = render(scene_, request);
   const RayCounts& rays = picture.stats.counts.rays;
-  if (make_plan(*scene_, request).technique->draws_light) return;  // those look and connect as well
+  if (make_plan(*scene_, request).technique->draws_light) return;  // more rays per sample
   EXPECT_EQ(rays.camera, static_cast<std::uint64_t>(*request.width * *request.height * 3));
   EXPECT_EQ(rays.reflected[0] + rays.refracted[0], 0u);
   const auto lights = scene_->lights.size();
@@ -146,7 +145,7 @@ TEST_P(EveryScene, CountsCameraRaysAndNoImpossibleOnes) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(sample_names()), by_name);
 
-// Random scenes: any shapes, materials and lights, the eye anywhere, inside of things too.
+// Returns a scene of random shapes, materials and lights. The eye may be anywhere, also inside of a shape.
 Json random_scene(std::uint64_t seed) {
   Random random(seed);
   const auto color = [&] { return numbers(Vec3d(random.unit(), random.unit(), random.unit())); };
@@ -162,7 +161,7 @@ Json random_scene(std::uint64_t seed) {
                     {"ior", random.between(0.6, 2.5)},
                     {"fresnel", random.below(2) ? "exact" : "schlick"}};
   if (random.below(2)) materials["d"]["filter"] = color();
-  const int kinds = random.below(15) + 1;  // which of the four are used
+  const int kinds = random.below(15) + 1;  // bit set of the four in use
   std::vector<std::string> used;
   for (int i = 0; i < 4; ++i)
     if (kinds >> i & 1) used.push_back(std::string(1, static_cast<char>('a' + i)));

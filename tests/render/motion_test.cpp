@@ -8,7 +8,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Pictures of scenes that move.
+// Tests images of moving scenes.
 namespace orrery::test {
 namespace {
 
@@ -17,7 +17,7 @@ RenderRequest at_time(double time, RenderRequest request = size(96, 72)) {
   return request;
 }
 
-// A plate whose middle rises, and a peg that turns, moves and grows.
+// Returns a plate whose middle rises, and a peg that turns, moves and grows.
 Json moving_scene() {
   return scene_of(
       R"([{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]},
@@ -33,7 +33,7 @@ Json moving_scene() {
                                     {'time': 4, 'scale': [2, 1, 1], 'degrees': 700}]}]})");
 }
 
-// The same at 2.5 s, standing still.
+// Returns the same scene at 2.5 s, at rest.
 Json standing_scene() {
   Json scene = moving_scene();
   Json& mesh = scene["objects"][1];
@@ -112,8 +112,8 @@ TEST(Motion, PlanCountsOnEveryMoment) {
   EXPECT_TRUE(make_plan(*load(stretched), at_time(0)).double_precision);
 }
 
-// A dome in the shadow of a ball, smooth all over or flat, of which one petal grows from nothing, and a
-// vertex far away that no triangle uses.
+// Returns a smooth or flat dome in the shadow of a ball. One petal grows from zero area, and a distant vertex
+// is unused.
 Json dome(double petal, bool moving, bool smooth) {
   Json mesh = {{"type", "mesh"}};
   if (smooth) mesh["crease_degrees"] = 180;
@@ -148,7 +148,7 @@ TEST(Motion, NothingIsLeftOfWhatHasNoSizeAndOfWhatNobodyUses) {
   EXPECT_FALSE(make_plan(*load(dome(0, true, false)), at_time(0)).double_precision);
 }
 
-// Two halves of a roof that close like a book, and open again along the ridge.
+// Two halves of a roof close like a book, and open again along the ridge.
 TEST(Motion, WhatStandsTogetherIsSmoothedTogether) {
   covers("F19");
   const auto roof = [](double lift, double gap) {
@@ -172,7 +172,7 @@ TEST(Motion, WhatStandsTogetherIsSmoothedTogether) {
     EXPECT_TRUE(identical(render(moving, at_time(time)), render(scene(positions), size(96, 72)))) << time;
 }
 
-// All vertices meet half-way: what is smoothed together does not depend on that.
+// All vertices coincide half-way, which must not affect the smoothing groups.
 TEST(Motion, AMeshMayTurnInsideOutThroughAPoint) {
   covers("F19");
   Json mesh = {{"type", "mesh"}, {"crease_degrees", 60}}, mirrored = Json::array();

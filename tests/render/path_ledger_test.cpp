@@ -5,7 +5,7 @@
 
 #include "tests/support/pictures.h"
 
-// What paths leave out and cut, and the range of radiance along them.
+// Tests the ledger of paths, and their range of radiance.
 namespace orrery::test {
 namespace {
 
@@ -17,7 +17,7 @@ RenderRequest of_paths(int side, int samples) {
   return r;
 }
 
-// Suns stand before the sky, and two of them may overlap.
+// Suns are in front of the sky, and two of them may overlap.
 TEST(RadianceRange, OfPathsHoldsTheSkyWithAllItsSuns) {
   const auto scene = load(scene_of(
       "[{'type': 'sphere', 'center': [0, 0, 50], 'radius': 1, 'material': 'black'}]",
@@ -33,7 +33,7 @@ TEST(RadianceRange, OfPathsHoldsTheSkyWithAllItsSuns) {
   EXPECT_LE(scene->facts.path_radiance.most.x, 1.01 * brightest);
 }
 
-// Whether paths share what they find or not, as much is left out of the picture.
+// Path reuse does not change the omitted part of the image.
 TEST(PathLedger, IsThatOfThePictureWherePathsAreReused) {
   const auto box = load(sample("cornell-box"));
   RenderRequest r = of_paths(64, 16);
@@ -44,7 +44,7 @@ TEST(PathLedger, IsThatOfThePictureWherePathsAreReused) {
   EXPECT_NEAR(rendered(box, r).stats.omitted.mean(), alone, 0.03 * alone);
 }
 
-// A background is light of one reflection, however it is given.
+// A background is light of one reflection, in either form.
 TEST(Clamp, KeepsTheLightOfTheBackground) {
   const std::string even =
       "'zenith': [0.8, 0.8, 0.8], 'horizon': [0.8, 0.8, 0.8], 'ground': [0.8, 0.8, 0.8]}";

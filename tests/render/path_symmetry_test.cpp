@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Equalities that hold of path tracing without any number to compare with.
+// Tests symmetries of path tracing, without reference values.
 namespace orrery::test {
 namespace {
 
@@ -41,9 +41,9 @@ TEST(PathSymmetry, TwiceTheLightIsTwiceThePicture) {
 
 constexpr int kSeeds = 8, kBlock = 16, kAcross = 5, kDown = 3;
 
-// Means of blocks of pixels, from pictures of several seeds.
+// Means of pixel blocks, from images of several seeds.
 struct Blocks {
-  std::array<double, kAcross * kDown> mean{}, variance{};  // of the mean
+  std::array<double, kAcross * kDown> mean{}, variance{};  // variance of the mean
 };
 Blocks blocks_of(const Json& scene, std::uint64_t first_seed, bool from_the_right = false) {
   const auto loaded = load(scene);
@@ -68,12 +68,12 @@ Blocks blocks_of(const Json& scene, std::uint64_t first_seed, bool from_the_righ
   return blocks;
 }
 
-// Differences in standard errors (Welch), of which chance brings none beyond 6 and a mean square near
-// (n - 1) / (n - 3) at 2 (n - 1) degrees of freedom.
+// Expects differences below 6 standard errors (Welch), with a mean square near (n - 1) / (n - 3) at 2 (n - 1)
+// degrees of freedom.
 void expect_equal(const Blocks& a, const Blocks& b) {
   double squares = 0;
   for (std::size_t i = 0; i < a.mean.size(); ++i) {
-    if (a.variance[i] + b.variance[i] == 0) {  // nothing is seen there
+    if (a.variance[i] + b.variance[i] == 0) {  // black block
       EXPECT_EQ(a.mean[i], b.mean[i]);
       continue;
     }
@@ -84,7 +84,7 @@ void expect_equal(const Blocks& a, const Blocks& b) {
   EXPECT_LT(squares, 3.5);
 }
 
-// Another order draws other lights with the same numbers: the noise differs, the mean does not.
+// The order of lights maps the same random numbers to other lights: the noise differs, but not the mean.
 TEST(PathSymmetry, OrderOfLightsChangesTheNoiseAlone) {
   covers("R31 light-52");
   const Json scene = sample("lamps");

@@ -30,7 +30,7 @@ Traced traced(const Json& json, int side) {
   return {trace_pilot(prepared, plan, 2, shared_pool(), {}).stats, rendered(scene, request(side)).stats};
 }
 
-// Three tiles of a picture foretell .64 to 1.21 of its rays.
+// Three tiles of an image predict .64 to 1.21 of its rays.
 TEST(Pilot, ForetellsTheRaysOfAPicture) {
   covers("certificate-33");
   constexpr int kSide = 512;
@@ -45,7 +45,7 @@ TEST(Pilot, ForetellsTheRaysOfAPicture) {
   EXPECT_GE(near, 95);
 }
 
-// Of a picture whose sides are no multiples of its tiles', or smaller than a block, too.
+// Includes images whose size is not a multiple of the tile size, or smaller than a block.
 TEST(Pilot, LiesWithinThePicture) {
   Random random(2);
   const Json scene = random_optics(random);

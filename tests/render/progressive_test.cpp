@@ -5,19 +5,19 @@
 #include "core/model/technique.h"
 #include "tests/support/pictures.h"
 
-// Pictures whose samples are traced in passes.
+// Tests images whose samples are traced in passes.
 namespace orrery::test {
 namespace {
 
 RenderRequest of(int samples, const char* technique) {
-  RenderRequest request = size(70, 45);  // tiles that lie partly in the picture
+  RenderRequest request = size(70, 45);  // includes partial tiles
   request.samples = samples;
   request.technique = technique;
   return request;
 }
 
-// To the bit, with the error that they tell and the rays that they take. Where rays only look, each pass
-// looks through two corners of each pixel first.
+// Images, errors and ray counts are equal bit for bit. With an emission pass, each pass first
+// traces two rays through corners of each pixel.
 TEST(ProgressiveRender, GivesThePicturesOfItsSamplesAtOnce) {
   for (const char* name : {"paper", "cornell-box", "open-shutter", "depth-of-field", "light-many"}) {
     for (const char* technique : {"whitted", "path", "distributed"}) {
@@ -47,7 +47,7 @@ TEST(ProgressiveRender, GivesThePicturesOfItsSamplesAtOnce) {
   }
 }
 
-// Whatever the order of the tiles, and whichever threads render them.
+// The error does not depend on the order of tiles, nor on threads.
 TEST(ProgressiveRender, TellsOfItsErrorToTheBit) {
   for (const char* name : {"cornell-box", "material-refractive", "outdoors"})
     for (const Space space : {Space::linear, Space::display}) {

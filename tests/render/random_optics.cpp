@@ -23,7 +23,8 @@ Json matt(Random& random) {
   }
 }
 
-// What a coat of plastic mirrors does not weaken its ambient light: nothing limits both.
+// Returns a specular material. With ambient light, plastic is excluded: its coat does not attenuate ambient
+// light, so the radiance would have no bound.
 Json specular(Random& random, bool ambient) {
   switch (random.below(ambient ? 3 : 4)) {
     case 0:
@@ -54,7 +55,8 @@ Json shape(Random& random) {
   }
 }
 
-// `share` of what exposes the picture well: a white surface that faces all lights reads 1 or so.
+// Returns a light with the share `share` of a good exposure: a white surface that faces all lights reads
+// about 1.
 Json light(Random& random, double share) {
   const Json intensity = color(random, 2 * share);
   if (random.below(3) == 0)

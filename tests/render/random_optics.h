@@ -5,9 +5,9 @@
 
 namespace orrery::test {
 
-// A scene of what trees of rays are cut in: balls, boxes and tubes of mirrors, glass, filters and matt
-// materials with highlights, over a floor or not, in the light of one to four lights, in ambient light or
-// none, before a background or a sky.
+// Returns a random scene for tests of truncated ray trees. Balls, boxes and tubes are mirrors, glass, filters
+// or matt with highlights, over a plane or a box. It has one to four lights, optional ambient light, and a
+// constant background or a sky.
 Json random_optics(Random& random);
 
 }  // namespace orrery::test

@@ -7,7 +7,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/random.h"
 
-// The error that a picture tells of itself.
+// Tests the error that a render estimates from its samples.
 namespace orrery::test {
 namespace {
 
@@ -19,8 +19,8 @@ RenderRequest of(int side, int samples, int reuse, std::uint64_t seed) {
   return request;
 }
 
-// Against the true one, from pictures of other seeds: the mean of half of their squared differences. Where
-// edges have much of it, the halves are not independent, and tell up to a third too much.
+// Compares with the true error, the mean of half the squared differences between images of other seeds. At
+// edges the halves are not independent, and overestimate by up to a third.
 TEST(SampledError, IsTheErrorOfThePicture) {
   covers("light-47 D17");
   constexpr int kSeeds = 12;
@@ -49,8 +49,8 @@ TEST(SampledError, IsTheErrorOfThePicture) {
   }
 }
 
-// What pictures of one scene differ by tells the same, of any scene: or less, where halves tell too much, as
-// of edges, up to 1.6 times, and of what is smooth, up to 4 times.
+// In random scenes, images of other seeds confirm the estimate. Halves may overestimate, up to 1.6 times at
+// edges and up to 4 times for smooth images.
 TEST(SampledError, AgreesWithOtherSeeds) {
   covers("certificate-27");
   Random random(27);
@@ -67,7 +67,7 @@ TEST(SampledError, AgreesWithOtherSeeds) {
       }
       for (const Picture* p : {&a, &b}) halves += std::pow(p->stats.error.pixel.rmse(), 2) / 4;
     }
-    if (squares == 0) continue;  // black pictures
+    if (squares == 0) continue;  // black images
     ++told;
     EXPECT_GT(std::sqrt(halves / squares), 0.97) << k;
     EXPECT_LT(std::sqrt(halves / squares), 4) << k;
@@ -77,7 +77,7 @@ TEST(SampledError, AgreesWithOtherSeeds) {
   EXPECT_GE(near, told - 2);
 }
 
-// It is told besides that there are some.
+// Non-finite pixels are reported separately.
 TEST(SampledError, LeavesOutWhatIsNotFinite) {
   covers("certificate-28");
   const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"));

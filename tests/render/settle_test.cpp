@@ -11,7 +11,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/stopped.h"
 
-// Which structure a render takes that may choose.
+// Tests the automatic choice of a structure.
 namespace orrery::test {
 namespace {
 
@@ -22,14 +22,14 @@ Json triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return {{"type", "triangle"}, {"vertices", {numbers(a), numbers(b), numbers(c)}}};
 }
 
-// `count` balls all over a cube.
+// Adds `count` balls throughout a cube.
 void add_cloud(Json& objects, int count, const Vec3d& middle, double half) {
   Random random(1);
   for (int i = 0; i < count; ++i)
     objects.push_back(ball(middle + random.in_cube(half), random.between(0.01, 0.04) * half));
 }
 
-// Something small and detailed in a wide ring of large triangles.
+// Adds a small and detailed cloud in a wide ring of large triangles.
 void add_stadium(Json& objects, int count, const Vec3d& middle) {
   add_cloud(objects, count / 2, middle, 0.2);
   for (int i = 0; i < count / 2; ++i) {

@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// Pictures with an open shutter against closed forms.
+// Compares images with an open shutter with closed forms.
 namespace orrery::test {
 namespace {
 
@@ -17,7 +17,7 @@ RenderRequest open_for(double seconds, int samples, RenderRequest request) {
   return request;
 }
 
-// Pixels are 1 m: an orthographic camera above a shining object; (0, 0) is the middle of the picture.
+// Returns an emissive object under an orthographic camera. Pixels are 1 m, and (0, 0) is the image centre.
 Json seen_from_above(const Json& object, double pixels) {
   return scene_of(
       "[{'type': 'sphere', 'center': [0, 0, -500], 'radius': 1, 'material': 'white'}]",
@@ -43,7 +43,8 @@ Json square(double side) {
           {"b", {0, side, 0}}};
 }
 
-// A square of side w that moves by v shows as a trapezoid: the share of the time that it covers a point.
+// A square of side w that moves by v shows as a trapezoid, the share of the time that the square covers a
+// point.
 TEST(Shutter, AMovingSquareIsATrapezoid) {
   covers("light-43");
   constexpr int kSide = 64;
@@ -68,7 +69,7 @@ TEST(Shutter, AMovingSquareIsATrapezoid) {
   }
 }
 
-// The same through a lens: a square that is out of focus and moves has the same sum, and its blur adds.
+// A moving square that is out of focus has the same sum, and the lens adds its blur.
 TEST(Shutter, MotionAndLensBlurTogether) {
   covers("light-43");
   Json scene = moving_by(seen_from_above(square(8), 64), {20, 0, 0});
@@ -83,7 +84,7 @@ TEST(Shutter, MotionAndLensBlurTogether) {
       moment_x += value * (x - 31.5) * (x - 31.5);
       moment_y += value * (y - 31.5) * (y - 31.5);
     }
-  EXPECT_NEAR(sum, 64, 0.2);  // the blur of radius 6 * |50 - 25| / 25 stays within the picture
+  EXPECT_NEAR(sum, 64, 0.2);  // the blur of radius 6 * |50 - 25| / 25 stays within the image
   const double square_and_pixel = (64.0 + 1) / 12, lens = 6.0 * 6 / 4, motion = 20.0 * 20 / 12;
   EXPECT_NEAR(moment_x / sum, square_and_pixel + lens + motion, 0.3);
   EXPECT_NEAR(moment_y / sum, square_and_pixel + lens, 0.15);
@@ -103,7 +104,7 @@ TEST(Shutter, AMovingDiskCoversItsCentreLineEvenly) {
   EXPECT_NEAR(mean / pixels, 128.0 / 400, 2e-4);
 }
 
-// Vertices likewise: a mesh whose triangles move shows as the instance does.
+// A mesh with moving vertices gives the same image as the moving instance.
 TEST(Shutter, AMeshThatMovesIsATrapezoidToo) {
   covers("light-43");
   constexpr int kSide = 64;
@@ -111,7 +112,7 @@ TEST(Shutter, AMeshThatMovesIsATrapezoidToo) {
   const auto corners = [](double x) {
     return Json{{x - 4, -4, 0}, {x + 4, -4, 0}, {x + 4, 4, 0}, {x - 4, 4, 0}};
   };
-  // A key within the exposure, on the straight way.
+  // A keyframe within the exposure, on the straight path.
   scene["objects"].push_back({{"type", "mesh"},
                               {"material", "lamp"},
                               {"positions", corners(-10)},
@@ -126,8 +127,8 @@ TEST(Shutter, AMeshThatMovesIsATrapezoidToo) {
   EXPECT_LT(largest_difference(mesh, instance), 1e-5);
 }
 
-// The light of a lamp that passes over a floor is the mean over time of what it gives from each place: by a
-// sphere of radius r, whose radiance is 1, a floor h below gets pi r^2 h / d^3.
+// A moving lamp gives the mean over time of its light from each position. A sphere of radius r and radiance 1
+// gives a floor h below pi r^2 h / d^3.
 TEST(Shutter, AMovingLampLightsAsTheMeanOverItsWay) {
   covers("light-45");
   const double r = 0.5, h = 2, way = 6;
@@ -150,7 +151,7 @@ TEST(Shutter, AMovingLampLightsAsTheMeanOverItsWay) {
   EXPECT_NEAR(mean / expected, 1, 0.01);
 }
 
-// A directional light has a ball in its way that moves: the floor's shadow is that of a moving disk.
+// A ball moves between a directional light and the floor. The shadow is that of a moving disk.
 TEST(Shutter, ShadowsAreOfTheRaysTime) {
   covers("light-45");
   const Json ball = {{"type", "sphere"}, {"material", "white"}, {"center", {0, 0, 5}}, {"radius", 4}};
@@ -185,7 +186,7 @@ Json spinning() {
                          'motion': [{'time': 0, 'degrees': -20}, {'time': 4, 'scale': [2, 1, 1], 'degrees': 700}]}]})");
 }
 
-// The mean of many instants, each of its own time, is what one picture with an open shutter shows.
+// The mean of many instants, each with its own time, equals one image with an open shutter.
 TEST(Shutter, IsTheMeanOfInstants) {
   const auto scene = load(spinning());
   constexpr int kInstants = 64;
@@ -238,7 +239,7 @@ TEST(Shutter, ThatMeetsNoMotionChangesNothing) {
   }
 }
 
-// Threads, slices and structures change no byte; scaled scenes show the same.
+// Threads, slices and structures do not change the image, nor does scaling the scene.
 TEST(Shutter, ShowsTheSameBytesHoweverItIsRendered) {
   const Json own = spinning();
   const auto scene = load(own);
@@ -266,7 +267,7 @@ TEST(Shutter, ShowsTheSameBytesHoweverItIsRendered) {
   }
 }
 
-// Nothing that turns shades itself: a ball under an even sky is as bright all over as one that rests.
+// A turning object does not shade itself: under a uniform sky it is as bright as at rest.
 TEST(Shutter, WhatTurnsDoesNotShadeItself) {
   Json scene = scene_of("[{'type': 'sphere', 'center': [0, -300, 0], 'radius': 1}]",
                         R"({'background': [1, 1, 1], 'camera': {'eye': [7, 5, 9], 'look_at': [7, 5, 5]},
@@ -281,8 +282,8 @@ TEST(Shutter, WhatTurnsDoesNotShadeItself) {
     request.max_depth = 6;
     return request;
   }());
-  // Convex bodies far enough apart that little light goes from one to the other: pixels that hold one alone
-  // have half the sky's radiance at least, but for what the other takes.
+  // These convex bodies exchange little light. A pixel of one body has at least half the sky's radiance,
+  // except for occlusion by the other.
   float darkest = 1;
   for (const Vec3f& pixel : picture.pixels) darkest = std::min(darkest, pixel.x);
   EXPECT_GT(darkest, 0.4f);

@@ -11,11 +11,11 @@
 #include "tests/support/scenes.h"
 #include "tests/support/stopped.h"
 
-// What stands in front of a render's accelerator, and what the network is trained on.
+// Tests occluder prediction in renders, and the training samples of the network.
 namespace orrery::test {
 namespace {
 
-// Two balls between the sun and a floor that reaches to the horizon.
+// Returns two balls between the sun and a floor that extends to the horizon.
 Json balls_over_a_floor() {
   return scene_of(
       R"([{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]},
@@ -62,8 +62,8 @@ TEST(OcclusionSamples, AreNeverTooMany) {
   EXPECT_GE(samples.size(), 8'192u);
 }
 
-// A floor from above: as many from its upper half as from its lower one, though half of what came first was
-// dropped again.
+// A floor seen from above has equal numbers of samples in its upper and lower half, although half of the
+// early ones were dropped.
 TEST(OcclusionSamples, AreSpreadEvenly) {
   const Json floor = scene_of(
       R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},
@@ -104,7 +104,7 @@ TEST(Stages, NetworkProvesMoreThanChance) {
   EXPECT_GT(share(Prediction::network), 1.5 * share(Prediction::random));
 }
 
-// The same samples, the same network, the same counts, for any number of threads.
+// Samples, network and counts are the same for any number of threads.
 TEST(Stages, CountTheSameTwice) {
   for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
     const auto counts = [&](int threads) {

@@ -7,7 +7,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Equalities that hold without any number to compare with: linearity, mirrors, turns, and things nobody sees.
+// Tests symmetries without reference values: linearity, mirroring, rotation, and invisible objects.
 namespace orrery::test {
 namespace {
 
@@ -75,7 +75,7 @@ TEST(Symmetry, MirroredSceneIsTheMirroredPicture) {
   }
 }
 
-// The camera turned by a quarter about its own axis: the picture turned by a quarter, to the bit.
+// A camera rolled by 90 degrees gives the rotated image, bit for bit.
 TEST(Symmetry, TurnedCameraIsTheTurnedPicture) {
   covers("R31");
   for (const char* name : {"paper", "glass", "light-many"}) {
@@ -105,7 +105,8 @@ TEST(Symmetry, SplittingTrianglesChangesNothing) {
   EXPECT_LE(largest_difference(trace_picture(whole, small()), trace_picture(split, small())), 1e-12);
 }
 
-// A ball inside the first opaque body of a scene, where no light gets; null if it has no such body.
+// Returns a ball inside the first opaque body of a scene, which light cannot reach. Returns null if the scene
+// has no such body.
 Json hidden_ball(const Json& scene) {
   const auto ball = [&scene](const Vec3d& center, double radius) {
     return Json{{"type", "sphere"},
@@ -146,7 +147,7 @@ TEST(Symmetry, MovingEverythingFarAwayChangesNothingToSee) {
   }
 }
 
-// Straight above, and a billionth of a degree beside it.
+// Compares the pole with a view a billionth of a degree away.
 TEST(Symmetry, PolesOfTheOrbitAreNoSpecialPlaces) {
   covers("E8");
   const Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",

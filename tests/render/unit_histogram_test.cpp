@@ -21,7 +21,7 @@ UnitHistogram draw(int count, const Draw& value) {
   return all;
 }
 
-// Nothing was seen: the mean is at most the rule of three has it, 1 - delta^(1/n), and a bit.
+// Without any event, the bound on the mean is at most 2.5 times the rule of three, 1 - delta^(1/n).
 TEST(UpperMean, OfNothingSeenIsTheRuleOfThree) {
   for (const int count : {100, 1000, 60000}) {
     const double bound = draw(count, [] { return 0.0; }).upper_mean(0.05);
@@ -41,7 +41,7 @@ TEST(UpperMean, OfEqualValuesIsCloseToThem) {
   EXPECT_EQ(draw(50, [] { return 1.0; }).upper_mean(0.05), 1);
 }
 
-// A bin keeps its sum, so its values are taken to be alike.
+// A bin stores only its sum, so its values count as equal.
 TEST(UnitHistogram, ScalesCountsAndValues) {
   Random random(3);
   const UnitHistogram all = draw(500, [&] { return random.unit(); }), more = all.scaled(64, 0.25);
@@ -51,7 +51,7 @@ TEST(UnitHistogram, ScalesCountsAndValues) {
   EXPECT_NEAR(more.upper_mean(0.05) / drawn.upper_mean(0.05), 1, 0.05);
 }
 
-// Most runs have seen none of the few large values.
+// Most runs see none of the few large values.
 TEST(UpperMean, HoldsWhereErrorIsRare) {
   covers("certificate-26");
   EXPECT_LE(stability_row("certificate-26").measure().ours, 5);

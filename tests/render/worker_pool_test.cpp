@@ -18,7 +18,7 @@ namespace {
 
 constexpr bool kForeground = false;
 
-// Asks the turn to give way until `done`, but not for ever. Returns whether it was.
+// Yields until `done`, for at most a minute. Returns `done`.
 bool give_way_until(const std::atomic<bool>& done, Turn& turn) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!done && std::chrono::steady_clock::now() < end) turn.give_way();
@@ -58,7 +58,7 @@ TEST(WorkerPool, ALongStepLetsOthersGoFirst) {
         return true;
       });
     });
-    while (begun < threads) std::this_thread::yield();  // all threads are taken
+    while (begun < threads) std::this_thread::yield();  // all threads are busy
     pool.for_each(4, kForeground, [](int, int, Turn&) { return true; });
     small_done = true;
     large.join();
@@ -66,7 +66,7 @@ TEST(WorkerPool, ALongStepLetsOthersGoFirst) {
   }
 }
 
-// Though it does not ask.
+// The step never yields.
 TEST(WorkerPool, AStepThatNeverGivesWayStopsNobody) {
   for (const int threads : {1, 2}) {
     WorkerPool pool(threads);
@@ -76,11 +76,11 @@ TEST(WorkerPool, AStepThatNeverGivesWayStopsNobody) {
       pool.for_each(2 * threads, kForeground, [&](int, int, Turn& turn) {
         ++begun;
         EXPECT_TRUE(test::eventually([&] { return done.load(); }));
-        turn.give_way();  // which goes on, though it lost its place
+        turn.give_way();  // continues, although it lost its slot
         return true;
       });
     });
-    while (begun < threads) std::this_thread::yield();  // all threads are taken
+    while (begun < threads) std::this_thread::yield();  // all threads are busy
     std::atomic<bool> task_done = false;
     pool.enqueue(kForeground, [&] { task_done = true; });
     pool.for_each(4, kForeground, [](int, int, Turn&) { return true; });
@@ -116,7 +116,7 @@ TEST(WorkerPool, StepsThatGaveWayGoOnInTurn) {
       pool.for_each(2, kForeground, [&](int, int, Turn& turn) {
         if (++present == 2 * kLoops) all_present = true;
         if (!give_way_until(all_present, turn)) seen = false;
-        EXPECT_LE(++running, 2);  // as many as there are threads, however many gave way
+        EXPECT_LE(++running, 2);  // as many as there are threads, however many yielded
         --running;
         return true;
       });
@@ -125,7 +125,7 @@ TEST(WorkerPool, StepsThatGaveWayGoOnInTurn) {
   EXPECT_TRUE(seen) << present;
 }
 
-// Expires once, and is renewed when told so.
+// Pass that expires once, and is renewed on request.
 struct OnePass final : Pass {
   bool expired() const override { return !asked.exchange(true); }
   void renew() override {
@@ -154,7 +154,8 @@ TEST(WorkerPool, NoStepRunsWhileAPassIsRenewed) {
         &pass);
   });
   EXPECT_TRUE(test::eventually([&] { return pass.paused.load(); }));
-  // Steps that run give way at the end of their slices; then nothing goes on, though the pool is free.
+  // Running steps yield at the end of their time slices. After that nothing continues, though the pool is
+  // free.
   EXPECT_TRUE(test::eventually([&] {
     const std::uint64_t before = progress;
     pool.for_each(20, kForeground, [](int, int, Turn&) { return true; });

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds another revision beside this tree and renders the same pictures with both: every sample scene, in
-# float and double, with every accelerator, as PNG and EXR, and some orbit frames. Says which differ in a byte.
+# Builds another revision in build-revision/ and renders every sample scene with both: in float and double,
+# with every accelerator, as PNG and EXR, and some orbit frames. Reports which differ in a byte.
 #   tests/revisions/compare.sh REVISION [--width PIXELS]       status 0: all are equal
-# The revision's checkout and build stay in build-revision/ for the next run.
+# The checkout and the build of the revision remain for the next run.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -31,7 +31,7 @@ accelerators=$(build/orrery catalog | node -e '
   console.log(["auto", ...catalog.accelerators.map(({type}) => type)].join(" "));')
 
 pictures=0 different=0
-# Renders with both and compares; the arguments are those of `orrery render` after the scene.
+# Renders the scene with both builds and compares the files. Further arguments go to `orrery render`.
 compare() {
   local scene=$1 ending=$2
   shift 2

@@ -1,6 +1,6 @@
 #!/usr/bin/env node
-// Times this tree's build against another revision's, which compare.sh has built: the two take turns, and the
-// ratio of the medians counts.
+// Compares the speed of this tree's build with another revision's, built by compare.sh. Runs alternate, and
+// the result is the ratio of the medians.
 //   node tests/revisions/speed.mjs REVISION [--rounds N] [--only WORD]
 
 import { execFileSync } from "node:child_process";
@@ -9,7 +9,7 @@ import { spawn } from "node:child_process";
 import { FrameReader, cpu_seconds, post_scene, send } from "../bench/daemon.mjs";
 import { start_two_sided } from "../bench/two_sided.mjs";
 
-const kFlake = "build/bench-scenes/sphereflake.json"; // 7,381 spheres
+const kFlake = "build/bench-scenes/sphereflake.json";  // 7,381 spheres
 
 function arguments_of(words) {
   const [name, ...rest] = words;
@@ -20,13 +20,13 @@ function arguments_of(words) {
   return { theirs: `build-revision/${revision}/build`, rounds: Number(options.rounds), only: options.only };
 }
 
-// CPU seconds of rendering alone, on one thread.
+// Returns CPU seconds of rendering alone, on one thread.
 const render = (scene, side, more) => (build) => {
   const words = ["render", scene, "--width", side, "--height", side, "--threads", 1, "--stats=json", ...more];
   return JSON.parse(execFileSync(`${build}/orrery`, words.map(String), { encoding: "utf8" })).render_cpu_s;
 };
 
-// CPU seconds of a service that streams an orbit.
+// Returns CPU seconds of a service that streams an orbit.
 const orbit_http = (frames) => async (build) => {
   const child = spawn(`${build}/orrery`, ["serve", "--port", "0", "--health-port", "0", "--threads", "2", "--quiet"], {
     stdio: ["ignore", "pipe", "ignore"],
@@ -56,7 +56,8 @@ const orbit_http = (frames) => async (build) => {
   }
 };
 
-// A process a side holds the mesh; each run is asked of it. REQUIRES: both revisions' build/bench know the subject.
+// Times one Embree comparison. A process per side holds the mesh. Requires both revisions' build/bench to
+// have the subject.
 function embree_row(subject, place, triangles, kind) {
   const sides = new Map();
   return {
@@ -100,7 +101,7 @@ console.log("CPU seconds of theirs over ours, medians of interleaved runs: above
 for (const row of rows().filter(({ name }) => name.includes(only))) {
   const times = { build: [], [theirs]: [] };
   try {
-    for (const build of ["build", theirs]) await row.run(build); // warm
+    for (const build of ["build", theirs]) await row.run(build);  // warm up
     for (let round = 0; round < rounds; ++round)
       for (const build of round % 2 ? ["build", theirs] : [theirs, "build"]) times[build].push(await row.run(build));
   } finally {

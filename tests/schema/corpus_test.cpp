@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/load/load.h"
 
-// The loader against the corpus: expectations.json names the place of the first problem of every bad scene.
-// schema.test.mjs holds the schema against the same files, so the two agree with each other.
+// Compares the loader with the corpus: expectations.json names the place of the first problem of every bad
+// scene. schema.test.mjs compares the schema with the same files, so schema and loader agree.
 
 namespace orrery {
 namespace {

@@ -1,5 +1,6 @@
-// The schema file against the loader: what one accepts, the other accepts. The corpus and the sample scenes
-// go through both, then some thousand small mutations of them. The loader is `orrery check --json FILE...`.
+// Compares the schema file with the loader: both must accept the same scenes. Inputs are the corpus, the
+// sample scenes, and up to 1,500 small mutations of some of them. The loader is `orrery check --json
+// FILE...`.
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -19,11 +20,11 @@ try {
 
 const here = "tests/schema";
 const schema = JSON.parse(readFileSync("scenes/schema/scene.json", "utf8"));
-// strict: a keyword that ajv does not know or that cannot apply is an error of ours.
+// strict: a schema keyword that is unknown to ajv or cannot apply is an error.
 const accepts = new Ajv({ strict: true, strictTypes: false, allErrors: false }).compile(schema);
 const names_in = (folder) => readdirSync(folder).filter((name) => name.endsWith(".json")).sort();
 
-// The problems that the loader finds, by file; files without any are not in it.
+// Returns the problems that the loader finds, by file, without warnings. Files without problems are absent.
 function check(files) {
   const { status, stdout, stderr } = spawnSync(orrery, ["check", "--json", ...files], {
     encoding: "utf8",
@@ -63,13 +64,13 @@ for (const file of bad) {
   const { pointer, by } = expectations[basename(file, ".json")];
   const first = problems.get(file)?.[0];
   expect(first?.pointer === pointer, `${file}: expected ${pointer}, the loader says ${JSON.stringify(first)}`);
-  if (by === "json") continue; // no JSON, or JSON with what a parsed value no longer shows
+  if (by === "json") continue; // not JSON, or a fault that the parsed value does not show
   const accepted = accepts(JSON.parse(readFileSync(file, "utf8")));
   expect(accepted === (by === "meaning"), `${file}: the schema ${accepted ? "accepts" : "refuses"} it`);
 }
 
-// ---- mutations: one change of form at a random place, none that only changes the meaning
-let state = 20240229; // xorshift32, so that a failure can be repeated
+// ---- mutations: one change of form at a random place, no change of the meaning only
+let state = 20240229; // xorshift32, so that failures are reproducible
 function random(count) {
   state ^= state << 13;
   state ^= state >>> 17;
@@ -78,7 +79,7 @@ function random(count) {
 }
 const pick = (list) => list[random(list.length)];
 
-// Every place in the document: [holder, key, value, path].
+// Yields every place in the document as [holder, key, value, path].
 function* places(value, path = []) {
   if (value === null || typeof value !== "object") return;
   for (const key of Array.isArray(value) ? value.keys() : Object.keys(value)) {
@@ -87,7 +88,7 @@ function* places(value, path = []) {
   }
 }
 
-// The new value of a place, or undefined to remove it.
+// Returns the new value of a place, or undefined to remove it.
 function mutated(value) {
   const others = [null, true, "text", 0.5, -1, 1e13, 5000000, [], {}, [0, 0, 0], [1], { type: "sphere" }];
   if (typeof value === "number") return pick([...others, value + 0.25, value * 2, -value, [value]]);
@@ -98,7 +99,8 @@ function mutated(value) {
   return pick([...others, value + "x", value.toUpperCase(), undefined]);
 }
 
-// Changes that touch what only the loader knows: names that must exist, and numbers that must fit one another.
+// Changes of meaning, which only the loader checks: names that must exist, and numbers that must be
+// consistent.
 const fit_one_another = [
   ...["eye", "look_at", "up", "min", "max", "vertices", "base", "top", "positions", "indices", "normals"],
   ...["attenuation", "inner_degrees", "outer_degrees"],
@@ -107,7 +109,7 @@ const is_of_wrong_form = (change) => change === null || typeof change === "strin
 function about_meaning(path, change) {
   if (path.at(-1) === "material") return typeof change === "string";
   const none_left = change === undefined || (Array.isArray(change) && change.length === 0);
-  if (path[0] === "objects" && path.length <= 2 && none_left) return true; // instances would do
+  if (path[0] === "objects" && path.length <= 2 && none_left) return true; // instances would suffice
   if (path[0] === "materials" && path.length <= 2 && (path.length === 1 || change === undefined)) return true;
   return fit_one_another.some((key) => path.includes(key)) && !is_of_wrong_form(change);
 }

@@ -1,4 +1,5 @@
-// The sphereflakes among the samples are what their generator writes, and are built as its comment says.
+// Checks that the sample sphereflakes equal the output of their generator and have the structure that it
+// describes.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
@@ -12,7 +13,7 @@ for (const level of [1, 2, 3])
 for (const [level, count] of [[0, 1], [1, 10], [2, 91], [3, 820], [4, 7381]]) {
   const spheres = JSON.parse(generate(level)).objects.filter((object) => object.type === "sphere");
   assert.equal(spheres.length, count);
-  if (level > 3) continue; // every pair is looked at below
+  if (level > 3) continue; // the loop below visits every pair
   let touching = 0;
   for (const [i, a] of spheres.entries())
     for (const b of spheres.slice(0, i)) {

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kEndless = "[{'type': 'cylinder', 'point': [0, 0, 0], 'axis': [0, 0, 1], 'radius': 1}]";
 constexpr const char* kCapped = "[{'type': 'cylinder', 'base': [0, 0, 0], 'top': [0, 0, 1], 'radius': 1}]";
 
-// Where the ray enters and where it leaves, in units of its own direction.
+// Ray parameters of entry and exit, or -1 for a miss.
 struct Crossing {
   double enter, leave;
 };
@@ -26,7 +26,7 @@ Crossing crossing(const Target<T>& shape, const Ray<double>& ray) {
   return {static_cast<double>(first.t), middle + static_cast<double>(second.t)};
 }
 
-// The roots are (-B -+ sqrt D) / (2 A): with A != 1 a missing pair of brackets shows.
+// The roots are (-B -+ sqrt D) / (2 A). With A != 1, a missing pair of brackets shows.
 TEST(Cylinder, RootsAreDividedByTwiceA) {
   covers("A7");
   const auto check = [](const Ray<double>& ray, double enter, double leave) {
@@ -59,7 +59,7 @@ TEST(Cylinder, RaysAlongTheAxisMeetTheCaps) {
   EXPECT_FALSE(endless.closest(Ray<double>{{1.5, 0, -5}, {0, 0, 1}}).met());
 }
 
-// Along an axis that no double holds exactly the rest across it is rounding noise.
+// Along an axis that doubles cannot represent exactly, the perpendicular component is rounding noise.
 TEST(Cylinder, RaysAlongASlantedAxisMeetTheCapsToo) {
   covers("A8");
   Random random(1);
@@ -73,7 +73,7 @@ TEST(Cylinder, RaysAlongASlantedAxisMeetTheCapsToo) {
   }
 }
 
-// A cap centre at the origin is a place like any other: being endless is a form of its own.
+// A cap centre at the origin does not mean an infinite cylinder, which is a separate form.
 TEST(Cylinder, OriginIsNoSentinel) {
   covers("A9");
   const Ray<double> above{{-5, 0, 100}, {1, 0, 0}};
@@ -84,8 +84,7 @@ TEST(Cylinder, OriginIsNoSentinel) {
   EXPECT_NEAR(met(kEndless).t, 4, 1e-12);
 }
 
-// Rays that enter through the rim itself cross the surface twice: neither cap nor wall may leave it to the
-// other.
+// Rays through the rim cross the surface twice. Cap and wall must not each leave the crossing to the other.
 TEST(Cylinder, RimDoesNotLeak) {
   covers("A10");
   const auto capped = Target<double>::of_objects(kCapped);
@@ -98,7 +97,7 @@ TEST(Cylinder, RimDoesNotLeak) {
     const Vec3d direction =
         safe_normalize(outward * -random.magnitude(1e-3, 1) + Vec3d(0, 0, -random.magnitude(1e-3, 1)) +
                        aside * random.between(-0.2, 0.2) * random.unit());
-    // It runs into the body if it is inside both the wall and the cap a little later.
+    // The ray enters the body if it is inside both the wall and the cap a little later.
     const Vec3d later = rim + direction * 1e-4;
     if (later.x * later.x + later.y * later.y > 1 - 1e-9) continue;
     const Ray<double> ray{rim - direction * random.between(0.5, 5), direction};
@@ -112,7 +111,7 @@ TEST(Cylinder, RimDoesNotLeak) {
   EXPECT_EQ(odd, 0);
 }
 
-// In the plane of a cap the distance to that cap is 0 / 0: it has no say.
+// In the plane of a cap, the distance to that cap is 0 / 0, which must not affect the result.
 TEST(Cylinder, RaysInThePlaneOfACapMeetTheWall) {
   const auto check = [](const auto& capped, auto number) {
     using T = decltype(number);

@@ -7,7 +7,7 @@
 #include "tests/support/random.h"
 #include "tests/support/rays.h"
 
-// Planes, disks and boxes: rays in their faces, along their edges, and to the horizon.
+// Tests planes, disks and boxes: rays in their faces, along their edges, and to the horizon.
 namespace orrery::test {
 namespace {
 
@@ -43,7 +43,7 @@ TYPED_TEST(Flat, PlanesAreMetAtTheRightDistanceHoweverSlanted) {
   }
 }
 
-// The distance overflows, or all but does: then there is no hit, or one whose surface holds only numbers.
+// The distance overflows, or nearly does. The ray then misses, or its surface has only finite numbers.
 TEST(Plane, HasNoHorizonOfNotANumbers) {
   covers("A37");
   const auto plane = Target<double>::of_objects(kFloor);
@@ -72,7 +72,7 @@ TYPED_TEST(Flat, DisksEndAtTheirRadius) {
   }
 }
 
-// Rays in the plane of a face give 0 * infinity. The six places of the catalogue for each axis, sign and
+// Rays in the plane of a face give 0 * infinity. Tests the catalogue's six places for each axis, sign and
 // zero.
 TYPED_TEST(Flat, BoxesAreMetByRaysWithinTheirFaces) {
   using T = TypeParam;

@@ -6,22 +6,22 @@
 #include "tests/support/exhaustive.h"
 #include "tests/support/shapes.h"
 
-// Every registered shape, in float and in double, against its own formula in long double. The measure is
-// backward stability: what a kernel answers must be the exact answer for some ray that differs from the one
-// asked by a few ulp. So nothing is excused near a silhouette but what rounding of the input alone would
-// change.
+// Compares every registered shape, in float and in double, with its own formula in long double. The criterion
+// is backward stability: a result must be exact for some ray within a few ulp of the input. Near a
+// silhouette, only differences that rounding of the input explains are accepted.
 namespace orrery::test {
 namespace {
 
 using Vec = Vec3<long double>;
 
-// Rays differ by kShift ulp of the largest number in play, and hits lie that near to the surface.
+// Distance of the shifted rays, and tolerance for hits, in ulp of the largest number in play.
 constexpr int kShift = 8;
 
 template <class T>
 constexpr long double kUlp = std::numeric_limits<T>::epsilon();
 
-// The ray itself and twelve copies: the origin shifted along each axis, the direction turned toward each.
+// Adds the ray itself and twelve copies: the origin shifted along each axis, the direction turned toward
+// each.
 constexpr std::size_t kCopies = 13;
 void add_copies(const Ray<long double>& ray, long double shift, long double turn, Rays<long double>& rays) {
   rays.push_back(ray);
@@ -32,7 +32,7 @@ void add_copies(const Ray<long double>& ray, long double shift, long double turn
     }
 }
 
-// What the copies find.
+// Hits of the copies.
 struct Range {
   long double low = std::numeric_limits<long double>::infinity(), high = -low;
   std::size_t hits = 0;
@@ -46,8 +46,8 @@ struct Range {
   bool unanimous() const { return hits == 0 || hits == kCopies; }
 };
 
-// Whether the shape is met within `reach` of the point: along the normal there, or from one of the points
-// that lie about it (a hit may be just past an edge).
+// Returns true if the shape has a surface within `reach` of the point. Probes run along the normal there, and
+// from nearby points, since a hit may be just past an edge.
 bool lies_on(const Target<long double>& shape, const Vec& point, const Vec& normal, long double reach) {
   Rays<long double> probes;
   for (const Vec& shift :

@@ -3,7 +3,7 @@
 #include "tests/support/batches.h"
 #include "tests/support/shapes.h"
 
-// Parameters and tangents that every registered shape tells of a hit.
+// Tests parameters and tangents of every registered shape.
 namespace orrery::test {
 namespace {
 
@@ -53,7 +53,7 @@ TEST_P(ShapeParameters, TangentsAreUnitAndLieInTheSurface) {
   }
 }
 
-// Of two hits near each other, the one farther along the tangent has the larger u.
+// Between two nearby hits, the one farther along the tangent has the larger u.
 TEST_P(ShapeParameters, TextureCoordinateGrowsAlongTheTangent) {
   for (const Json& object : shape_samples(GetParam())) {
     Rays<double> rays;

@@ -6,7 +6,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/shapes.h"
 
-// What every registered shape promises beside the formula: ranges, ties, lanes, and rays that are no rays.
+// Tests the contract of every registered shape besides its formula: ranges, ties, lanes, and invalid rays.
 namespace orrery::test {
 namespace {
 
@@ -41,7 +41,7 @@ class RayContract : public testing::TestWithParam<std::string> {
     });
   }
 
-  // closest() and occlude() agree about every ray, and about its end.
+  // Expects closest() and occlude() to agree about every ray, and about its end.
   template <class T>
   void check_occlusion() {
     for_each_sample<T>([&](const Json& scene, const Rays<T>& rays) {
@@ -58,7 +58,7 @@ class RayContract : public testing::TestWithParam<std::string> {
     });
   }
 
-  // A ray finds the same whichever lane it sits in and whatever its neighbours are.
+  // Expects the same result for a ray in any lane and with any neighbours.
   template <class T>
   void check_lanes() {
     for_each_sample<T>([&](const Json& scene, const Rays<T>& rays) {
@@ -90,7 +90,7 @@ TEST_P(RayContract, LanesDoNotMatter) {
   check_lanes<double>();
 }
 
-// The same object three times: the lowest number wins, wherever it stands in the order of the tests.
+// For three copies of an object, the lowest number wins in any order of the tests.
 TEST_P(RayContract, EqualHitsGoToTheLowestNumber) {
   for (const Json& object : shape_samples(GetParam())) {
     const Target<double> one(scene_with(object));

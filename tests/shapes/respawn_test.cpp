@@ -4,7 +4,7 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// Rays that leave a surface, as shadow rays, mirrored and refracted rays do, never meet the place they left.
+// Shadow, reflected and refracted rays that leave a surface must not hit their starting point.
 namespace orrery::test {
 namespace {
 
@@ -33,7 +33,7 @@ class Leaver {
     spots_ = shape_.surfaces(rays_, hits_);
   }
 
-  // Every ray sends one up from its spot and one down into the shape: half of them nearly along the surface.
+  // Sends a ray up from each hit and one down into the shape, half of them nearly along the surface.
   void leave(Random& random, Tally& tally) const {
     Rays<T> up, down;
     for (std::size_t i = 0; i < rays_.size(); ++i) {
@@ -50,7 +50,7 @@ class Leaver {
       const int primitive = hits_[i].primitive;
       const bool closed = shape_.traits(primitive).closed;
       ++tally.rays;
-      if (closed && spots_[i].side < 0) continue;  // within it, other places may be met or not
+      if (closed && spots_[i].side < 0) continue;  // from within, other places may be hit
       tally.self_hits += above[i].primitive == primitive;
       if (closed)
         tally.leaks += !below[i].met() && runs_inside(down[i], spots_[i].step);
@@ -62,7 +62,7 @@ class Leaver {
  private:
   static constexpr double kLeastTilt = 256 * static_cast<double>(std::numeric_limits<T>::epsilon());
 
-  // Not so where a ray goes down at an edge and comes out of the next face at once.
+  // Returns false if a downward ray at an edge leaves through the next face at once.
   bool runs_inside(const Ray<T>& ray, T step) const {
     const auto way = exact_.closest(convert_ray<long double>(ray));
     return way.met() && way.t > static_cast<long double>(step);
@@ -99,7 +99,7 @@ class Respawn : public testing::TestWithParam<std::string> {
   }
 };
 
-// Together with the other types more than a million rays in each precision.
+// All shape types together trace more than a million rays in each precision.
 TEST_P(Respawn, NoDoubleRayMeetsThePlaceItLeft) {
   covers("A16 A17 A11");
   check<double>(150'000);

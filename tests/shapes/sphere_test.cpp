@@ -17,7 +17,7 @@ Target<T> sphere(const Vec3d& center, double radius) {
   return Target<T>::of_objects(sphere_text(center, radius));
 }
 
-// Rays along -z from (h, 0, D) at the unit sphere: the closed form is t = D - sqrt(1 - h^2).
+// For rays along -z from (h, 0, D) at the unit sphere, the closed form is t = D - sqrt(1 - h^2).
 TEST(Sphere, IsRightFromAMillionRadiiAway) {
   covers("A1");
   const auto shape = sphere<double>(Vec3d(), 1);
@@ -31,14 +31,14 @@ TEST(Sphere, IsRightFromAMillionRadiiAway) {
       ASSERT_EQ(hits[i].met(), h <= 1) << "h " << rays[i].origin.x << " at " << distance;
       if (h > 1) continue;
       const long double exact = static_cast<long double>(rays[i].origin.z) - std::sqrt((1 - h) * (1 + h));
-      // 1e-12 radii, or 2 ulp of t where they are more.
+      // 1e-12 radii, or 2 ulp of t if those are larger.
       ASSERT_LE(std::abs(static_cast<long double>(hits[i].t) - exact), std::max(1e-12, distance * 4.5e-16))
           << h;
     }
   }
 }
 
-// The same with the rays turned any way: no test may profit from an axis.
+// Random directions, so that no test profits from an axis.
 TEST(Sphere, IsRightFromAfarInAnyDirection) {
   covers("A1");
   const auto shape = sphere<double>(Vec3d(), 1);
@@ -53,8 +53,8 @@ TEST(Sphere, IsRightFromAfarInAnyDirection) {
   EXPECT_EQ(wrong, 0);
 }
 
-// In float the residue is known to a few ulp of the distance: with h away from 1 by more than that, nothing
-// is wrong. The textbook discriminant decides 29 % of these wrongly at a distance of 10,000.
+// In float the residue is known to a few ulp of the distance. If h differs from 1 by more, no ray is wrong.
+// The textbook discriminant is wrong for 29 % of these rays at a distance of 10,000.
 TEST(Sphere, IsRightInFloatToAFewUlpOfTheDistance) {
   covers("A1");
   const auto shape = sphere<float>(Vec3d(), 1);

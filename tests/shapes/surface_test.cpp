@@ -4,7 +4,7 @@
 #include "tests/support/random.h"
 #include "tests/support/shapes.h"
 
-// The surface that every registered shape reports at a hit: where it is, and which way it faces.
+// Tests position and orientation of the surface that every registered shape reports at a hit.
 namespace orrery::test {
 namespace {
 
@@ -14,7 +14,7 @@ using Exact = Target<long double>;
 template <class T>
 constexpr long double kUlp = std::numeric_limits<T>::epsilon();
 
-// One shape at one place, with rays that hit it and what it says there.
+// One shape at one placement, with rays that hit it and their surface points.
 template <class T>
 struct Sitting {
   Json scene;
@@ -39,7 +39,7 @@ struct Sitting {
 
 class ShapeSurface : public testing::TestWithParam<std::string> {
  protected:
-  // Calls check(sitting, placement) for every sample of the type in every place.
+  // Calls check(sitting, placement) for every sample of the type at every placement.
   template <class T, class Check>
   void for_each_sitting(int rays, const Check& check) {
     for (const Json& object : shape_samples(GetParam()))
@@ -52,7 +52,7 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
       }
   }
 
-  // Within 8 ulp of the largest coordinate; facing the ray; unit to 4 ulp.
+  // Positions are within 8 ulp of the largest coordinate. Normals face the ray, with unit length to 4 ulp.
   template <class T>
   void check_positions() {
     for_each_sitting<T>(1000, [](const Sitting<T>& s, const Placement& placement) {
@@ -102,8 +102,8 @@ TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
         same_face = same_face && hits[k].met() && dot(spots[k].geometric, normal) > 0.999L;
       if (!same_face) continue;
       ++judged;
-      // For a curved surface the secant leaves the tangent by h / (2 radius of curvature), 1/16 of the size
-      // or more.
+      // For a curved surface the secant leaves the tangent by h / (2 radius of curvature), with a radius of
+      // at least 1/16 of the size.
       for (std::size_t k = 1; k < 3; ++k) {
         const Vec secant = near[k].at(hits[k].t) - near[0].at(hits[0].t);
         slanted += std::abs(dot(secant, normal)) > 1e-4L * length(secant);
@@ -114,8 +114,7 @@ TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
   });
 }
 
-// Of a closed convex shape nothing lies on the outer side of the surface, and all ways inward end at it
-// again.
+// A ray from a closed convex shape outward misses, and a ray from just inside hits the surface again.
 TEST_P(ShapeSurface, NormalsOfClosedShapesPointOutward) {
   covers("A38");
   for_each_sitting<double>(1000, [](const Sitting<double>& s, const Placement& placement) {
@@ -142,7 +141,7 @@ TEST_P(ShapeSurface, BoundsHoldEveryPosition) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, ShapeSurface, testing::ValuesIn(shape_names()), by_name);
 
-// Open shapes face where their input says.
+// Open shapes face as specified in their input.
 TEST(OpenShapes, FaceAsTheyWereGiven) {
   const auto outward = [](std::string_view object, const Vec3d& from, const Vec3d& direction) {
     const auto shape = Target<double>::of_objects(object);

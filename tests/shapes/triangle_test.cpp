@@ -19,8 +19,8 @@ Json scene_of(const BallMesh& ball) {
   return scene_with(mesh);
 }
 
-// How many of the rays from within the ball, aimed at vertices and at the middles of edges, meet none of the
-// triangles there: each triangle around either end of the edge is tried, so a hit of any neighbour counts.
+// Returns the number of rays from within the ball that miss all nearby triangles. Rays aim at vertices and
+// edge midpoints. Each triangle around either end of the edge is tried, so a hit of any neighbour counts.
 template <class T>
 int leaks_of(const Vec3d& center, int rays_at_each) {
   const BallMesh mesh(2, center);
@@ -72,7 +72,7 @@ TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
                     " [-1113.45459, -79.2090149, -56.2431908]]"),
             "/objects/0/vertices");
 
-  // A mesh may hold such triangles; this one also holds a triangle far away, for it must not be empty.
+  // A mesh may contain degenerate triangles. A distant valid one keeps this mesh from being empty.
   const auto mesh = Target<double>::of_objects(
       R"([{'type': 'mesh', 'indices': [[0, 1, 2], [0, 0, 1], [3, 4, 5]],
            'positions': [[-1113.45459, -79.049614, -56.2431908], [-1113.45459, -87.0922699, -56.2431908],
@@ -82,7 +82,7 @@ TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
                                         {-32.1072998, -183.355865, -144.607635}})
                    .met());
 
-  // Nearly on a line, in double and float: whatever is answered, it is a number.
+  // For nearly collinear vertices, in double and float, the result must not be NaN.
   const char* thin = R"([{'type': 'mesh', 'indices': [[0, 1, 2]],
                           'positions': [[0.1, 0.2, 0.3], [0.2, 0.4, 0.6], [0.3, 0.6, 0.9000000000000001]]}])";
   const auto slim = Target<double>::of_objects(thin);
@@ -100,8 +100,8 @@ TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
   }
 }
 
-// A strip a thousand times as long as it is wide, in two triangles: rays that leave it toward its front meet
-// nothing, although the distances along it are ill-conditioned.
+// Returns the hits of rays that leave a strip of two triangles toward its front. The strip is far longer than
+// wide, so that distances along it are ill-conditioned.
 template <class T>
 int hits_of_leaving_a_strip(double length, double width) {
   const double l = length / 2, w = width / 2;
@@ -134,8 +134,8 @@ TEST(Triangle, LongAndThinDoesNotShadeItself) {
     EXPECT_EQ(hits_of_leaving_a_strip<double>(600, width), 0) << width;
 }
 
-// Of a triangle whose tip stands `height` above the middle part of a side of 2 m: how many shadow rays from
-// it meet it, of those that leave points near the tip.
+// Returns the number of shadow rays that hit the triangle they left, from points near its tip. The tip is
+// `height` above the middle part of a side of 2 m.
 template <class T>
 int hits_of_leaving_an_obtuse_sliver(double height, Random& random) {
   const Vec3d along = random.direction(), normal = safe_normalize(cross(along, random.direction())),
@@ -163,7 +163,7 @@ int hits_of_leaving_an_obtuse_sliver(double height, Random& random) {
   return met;
 }
 
-// The product of its shorter sides, which run almost against each other, has few digits left.
+// The cross product of the two shorter sides, which are nearly antiparallel, has few significant digits.
 TEST(Triangle, ObtuseSliversDoNotShadeThemselves) {
   covers("A16");
   Random random(31);
@@ -175,7 +175,7 @@ TEST(Triangle, ObtuseSliversDoNotShadeThemselves) {
   }
 }
 
-// Rays that start exactly on a triangle leave it, whichever way round its vertices are listed.
+// Rays that start exactly on a triangle miss it, in either order of its vertices.
 TEST(Triangle, IsNotMetByRaysThatStartOnIt) {
   for (const char* vertices :
        {"[[2, -4, -4], [2, 5, -4], [2, 0, 6]]", "[[2, -4, -4], [2, 0, 6], [2, 5, -4]]"}) {
@@ -191,7 +191,8 @@ TEST(Triangle, IsNotMetByRaysThatStartOnIt) {
   }
 }
 
-// Where a ray from above meets a strip in the plane y = 0 that is `aspect` times as long as wide.
+// Returns the largest position error of rays that hit a strip from above. The strip lies in the plane y = 0
+// and is `aspect` times as long as wide.
 template <class T>
 double slip_on_strip(double size, double aspect) {
   const double w = size / aspect / 2, l = size / 2;
@@ -217,15 +218,15 @@ double slip_on_strip(double size, double aspect) {
   return worst;
 }
 
-// Weights from rounded products are uncertain by eps times the aspect ratio, and what they mix slides along
-// the strip.
+// Barycentric weights from rounded products are uncertain by eps times the aspect ratio, which would shift
+// positions along the strip.
 TEST(Triangle, HitsDoNotSlideAlongSlivers) {
   EXPECT_LE(slip_on_strip<float>(100, 1e5), 1e-5);
   EXPECT_LE(slip_on_strip<double>(100, 1e7), 1e-13);
   EXPECT_LE(slip_on_strip<double>(100, 1e9), 1e-13);
 }
 
-// The product of two long sides loses the aspect ratio's digits where it is rounded.
+// A rounded cross product of two long sides loses the digits of the aspect ratio.
 TEST(Triangle, NormalsOfSliversAreExact) {
   Random random(9);
   const auto whole = [](const Vec3d& v) { return Vec3d(std::round(v.x), std::round(v.y), std::round(v.z)); };
@@ -241,7 +242,7 @@ TEST(Triangle, NormalsOfSliversAreExact) {
   }
 }
 
-// A sliver with sides 11.2, 9.8 and 1.4, grazed at half a degree and less: the point at t is near the
+// Rays graze a sliver with sides 11.2, 9.8 and 1.4, at half a degree or less. The point at t must be near the
 // triangle.
 TEST(Triangle, SliversAreMetWhereTheyAre) {
   covers("A15");

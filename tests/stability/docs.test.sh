@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# docs/stability.md and its pictures are what this build measures.
+# Checks that docs/stability.md and its pictures equal the measurements of this build.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 program=${TEST_ORRERY:-build/orrery}

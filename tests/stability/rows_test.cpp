@@ -15,7 +15,7 @@ namespace {
 
 class Stability : public testing::TestWithParam<std::string> {};
 
-// The known method fails by as much as is said of it, and this program's keeps its bound.
+// The known method has at least the documented error, and ours keeps its bound.
 TEST_P(Stability, KnownMethodFailsAndOursKeepsItsBound) {
   const StabilityRow& row = stability_row(GetParam().c_str());
   covers(row.id);
@@ -73,7 +73,7 @@ TEST(StabilityReport, FiguresHaveTwoDigitsAndAUnit) {
   EXPECT_EQ(figure_text(2.34e-7, "1"), "2.3e-07");
 }
 
-// The two lines of a logarithmic chart of which one is 0 everywhere: it runs in the lane below the axis.
+// In a logarithmic chart, a line that is 0 everywhere runs in the lane below the axis.
 TEST(StabilityChart, ShowsZerosBelowALogarithmicAxis) {
   LineChart chart{"example", "a < b", "x", "y", true, true, {{"known", {}}, {"ours", {}}}};
   for (const double x : {1.0, 10.0, 100.0}) {
@@ -96,7 +96,7 @@ TEST(StabilityChart, HasRoomForAllThatIsWritten) {
   }
 }
 
-// Bars are as long as what a method takes, of 350 for the slowest of all groups.
+// Bar lengths are proportional to time, 350 for the slowest method of all groups.
 TEST(SpeedChart, HasABarForEachMethod) {
   const std::vector<SpeedGroup> groups{
       {"Number type", {{"double", 1, "reference"}, {"float", 0.5, "RMS 1e-4"}}},

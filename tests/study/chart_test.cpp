@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-// What is made of measurements: front, table, drawing.
+// Tests the evaluation of measurements: front, table and chart.
 namespace orrery::test {
 namespace {
 
@@ -62,21 +62,21 @@ TEST(Front, TakesErrorsBelowTheFloorForTheFloor) {
 TEST(Front, LeavesUndecidedWhatRoundsCannotTell) {
   const Point quick = point({{1, 0.1}, {1.01, 0.1}, {0.99, 0.1}});
   EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.13}, {1.9, 0.12}})}), ElementsAre(front, beaten));
-  // Perhaps nearer, perhaps not.
+  // Possibly more accurate, possibly not.
   EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.07}, {1.9, 0.15}})}), ElementsAre(front, undecided));
-  // Farther off, perhaps faster.
+  // Less accurate, possibly faster.
   EXPECT_THAT(front_of({quick, point({{0.5, 0.2}, {2.9, 0.2}, {1.1, 0.2}})}), ElementsAre(front, undecided));
   EXPECT_THAT(front_of({point(1, 0.1), point(1, 0.1)}), ElementsAre(undecided, undecided));
 }
 
 TEST(Front, ComparesPointsRoundByRound) {
-  // The rounds differ much more than the points, which the same seeds and the same load shift alike.
+  // The rounds differ much more than the points, since the same seeds and load shift both alike.
   EXPECT_THAT(
       front_of({point({{1, 0.10}, {2, 0.20}, {3, 0.15}}), point({{1.5, 0.10}, {2.5, 0.20}, {3.5, 0.15}})}),
       ElementsAre(front, beaten));
 }
 
-// The two rounds that both have tell nothing; all rounds of each do.
+// The two common rounds are too few to decide, but all rounds of each are not.
 TEST(Front, HoldsNothingThatIsBeatenBeyondTheIntervals) {
   const Point slow =
       point({{20, 0.2}, {4, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}});
@@ -89,7 +89,7 @@ TEST(Point, SumsUpItsRounds) {
   p.rounds.push_back(point(6, 0).rounds[0]);
   EXPECT_DOUBLE_EQ(p.cpu_ms(), 37);
   EXPECT_DOUBLE_EQ(p.rmse(), std::sqrt((0.09 + 0.16) / 3));
-  EXPECT_NEAR(p.rmse_sd(), 0.20816659994661327, 1e-12);  // of 0.3, 0.4, 0
+  EXPECT_NEAR(p.rmse_sd(), 0.20816659994661327, 1e-12);  // for 0.3, 0.4, 0
   EXPECT_EQ(point(5, 0.3).rmse_sd(), 0);
   EXPECT_EQ(p.psnr_db(), std::numeric_limits<double>::infinity());
   p.rounds[1].difference.cut_mse = 0.03;
@@ -112,7 +112,7 @@ TEST(Point, HasIntervalsOfItsMeans) {
   EXPECT_NEAR(same.rmse_interval()->high - same.rmse_interval()->low, 0, 1e-12);
 }
 
-// Normal values: their mean is inside as often as is said, whatever their number.
+// The interval contains the mean of normal values at the stated rate, for any number of values.
 TEST(Point, IntervalsHoldTheMeanThatTheyPromise) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal(0.3, 0.05);
@@ -163,11 +163,11 @@ TEST(Chart, RecommendsTheCheapestPointBelowEachError) {
   std::vector<std::pair<double, std::size_t>> pairs;
   for (const Recommendation& r : found) pairs.emplace_back(r.error, r.point);
   EXPECT_THAT(pairs, ElementsAre(std::pair(0.05, 1), std::pair(0.01, 2), std::pair(0.0001, 3)));
-  all.points[1] = point({{8, 0.02}, {8, 0.2}, {8, 0.02}}, 4);  // its interval reaches far beyond 0.05
+  all.points[1] = point({{8, 0.02}, {8, 0.2}, {8, 0.02}}, 4);  // its interval extends far beyond 0.05
   EXPECT_EQ(recommendations(all).front().point, 2U);
 }
 
-// Element names in the order in which they open; fails where they do not close in turn.
+// Returns element names in the order of their start tags. Fails the test if end tags do not match.
 std::vector<std::string> elements(const std::string& xml) {
   std::vector<std::string> all, open;
   for (std::size_t from = xml.find('<'); from != std::string::npos; from = xml.find('<', from + 1)) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-// The distances between pictures, against closed forms.
+// Compares image differences with closed forms.
 namespace orrery::test {
 namespace {
 

@@ -8,13 +8,13 @@
 
 #include "core/image/srgb.h"
 
-// Structural similarity, against closed forms.
+// Compares structural similarity with closed forms.
 namespace orrery::test {
 namespace {
 
 constexpr double kC1 = 1e-4, kC2 = 9e-4;
 
-// Grey pixels, by what a screen shows.
+// Returns grey pixels from display values.
 std::vector<float> grey(const std::vector<double>& shown) {
   std::vector<float> values;
   for (const double code : shown)
@@ -34,8 +34,8 @@ TEST(Ssim, OfFlatPicturesComparesTheirLuma) {
   EXPECT_NEAR(ssim(grey(dark), grey(bright), 20), (2 * 0.16 + kC1) / (0.04 + 0.64 + kC1), 1e-5);
 }
 
-// Columns that alternate, upside down: equal means, and a covariance of -variance. Far from the edges the
-// weights of even and odd columns are alike to 1e-5.
+// A pattern of alternating columns and its negative have equal means, and a covariance of -variance. Far from
+// the edges the weights of even and odd columns agree to 1e-5.
 TEST(Ssim, OfAPatternAndItsNegativeIsNegative) {
   constexpr int kWidth = 200;
   std::vector<double> pattern, negative;

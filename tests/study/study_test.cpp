@@ -15,7 +15,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/pictures.h"
 
-// The ladder of ways to make a picture, and what is measured on it.
+// Tests the configurations of a study and their measurement.
 namespace orrery::test {
 namespace {
 
@@ -35,7 +35,7 @@ Chart chart_of(const Json& scene, const RenderRequest& view, const Study::Extent
   return study.chart();
 }
 
-// As chart_of(), by a clock that tests set.
+// Returns the chart as chart_of() does, with times from `cpu_ms`.
 Chart chart_of_times(Study& study, const PreparedScene& scene,
                      const std::function<double(const RenderRequest&, const RenderStats&)>& cpu_ms) {
   for (int number = 0; number < study.pictures(); ++number) {
@@ -47,7 +47,7 @@ Chart chart_of_times(Study& study, const PreparedScene& scene,
   return study.chart();
 }
 
-// Rays take as long as any other of their precision.
+// Returns a time proportional to the ray count, doubled in double precision.
 double ms_by_rays(const RenderRequest& request, const RenderStats& stats) {
   return 1e-4 * double(stats.counts.rays.total()) *
          (*request.precision == Precision::double_precision ? 2 : 1);
@@ -151,7 +151,7 @@ TEST(Study, SpendsRoundsWhereTheyDecide) {
   constexpr int kMost = 6;
   Study study(scene.scene(), view, {.samples = 4, .rounds = kMost});
   const int planned = study.pictures();
-  // Double takes twice as long, so that it is beaten by float.
+  // Double takes twice as long, so that float dominates it.
   const Chart chart = chart_of_times(study, scene, [](const RenderRequest& request, const RenderStats&) {
     return *request.samples * (*request.precision == Precision::double_precision ? 2.0 : 1.0) *
            (*request.max_depth + 1.0);
@@ -172,7 +172,7 @@ TEST(Study, GoesOnWithWhatIsUndecided) {
   RenderRequest view = size(24, 24);
   view.max_depth = 1;
   Study study(scene.scene(), view, {.samples = 1, .rounds = 4});
-  // Nobody can tell which takes longer.
+  // The order of speed alternates with the seed.
   const Chart chart = chart_of_times(study, scene, [](const RenderRequest& request, const RenderStats&) {
     const double order = *request.max_depth + 2.0 * (*request.precision == Precision::double_precision);
     return *request.seed % 2 == 0 ? 5 + order : 5 - order;
@@ -262,8 +262,8 @@ TEST(Study, MeasuresSmallerPicturesOfTheOneThatIsAsked) {
   EXPECT_EQ(Study(*scene, size(80, 60), {.width = 900}).chart().measured.width, 80);
 }
 
-// Points of several charts, rendered anew from their plans with seeds that the charts did not use: the mean
-// of their errors is inside the interval that the chart's few rounds promise.
+// Renders points of several charts again from their plans, with new seeds. The mean of the errors is inside
+// the interval from the chart's few rounds.
 TEST(Study, IntervalsHoldTheErrorsOfOtherSeeds) {
   test::covers("certificate-39");
   constexpr int kSeeds = 24;
@@ -280,8 +280,7 @@ TEST(Study, IntervalsHoldTheErrorsOfOtherSeeds) {
         sum += rmse_of(render(made.scene, request), made.reference);
       }
       ++points;
-      constexpr double kRounding =
-          1e-7;  // of a reference in float; a sample in the middle has no other error
+      constexpr double kRounding = 1e-7;  // float error of the reference
       inside += interval.low - kRounding <= sum / kSeeds && sum / kSeeds <= interval.high + kRounding;
     }
   }

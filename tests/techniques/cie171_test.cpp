@@ -7,30 +7,31 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// The analytic cases of CIE 171:2006 (test cases to assess the accuracy of lighting computer programs) that
-// diffuse light has, by the formulas of configuration factors (Howell, "A Catalog of Radiation Heat Transfer
-// Configuration Factors"): the report's own tables have misprints. Lengths in metres.
+// Tests the analytic cases with diffuse light of CIE 171:2006 (test cases to assess the accuracy of lighting
+// computer programs). Expected values use formulas of configuration factors (Howell, "A Catalog of Radiation
+// Heat Transfer Configuration Factors"), since the report's tables have misprints. Lengths in metres.
 namespace orrery::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// From a point below the corner of a parallel rectangle a x b at height h (B-3).
+// Returns the factor from a point below the corner of a parallel rectangle a x b at height h (B-3).
 double parallel(double a, double b, double h) {
   const double x = a / h, y = b / h, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * kPi);
 }
-// From a point whose plane is perpendicular to a rectangle that reaches `a` away from it: the plane touches
-// it along b, whose end is `c` from the point (B-4).
+// Returns the factor from a point to a perpendicular rectangle that extends by `a` from the point's plane.
+// Its side b lies in the plane, with an end at distance `c` from the point (B-4).
 double perpendicular(double a, double b, double c) {
   const double x = a / b, y = c / b, r = std::sqrt(x * x + y * y);
   return (std::atan(1 / y) - y / r * std::atan(1 / r)) / (2 * kPi);
 }
 
-// What a white Lambert surface at `point` reads of lamps of radiance 1: their configuration factor.
+// Returns the radiance of a white Lambert surface at `point` under lamps of radiance 1, which is their
+// configuration factor.
 double measured(Json scene, const Vec3d& point, const Vec3d& normal, int samples = 64) {
   const Vec3d side = test::perpendicular(normal);
-  constexpr double kHalf = 1e-3;  // of the receiver, which blocks nothing else
+  constexpr double kHalf = 1e-3;  // half size of the receiver, which occludes nothing
   scene["objects"].push_back({{"type", "rectangle"},
                               {"corner", numbers(point - (side + cross(normal, side)) * kHalf)},
                               {"a", numbers(side * (2 * kHalf))},
@@ -77,7 +78,7 @@ TEST(Cie171, AreaLampOntoAWallAndAFloor) {
   }
 }
 
-// 5.6: a floor of 4 m x 4 m that is evenly bright, onto the wall at its edge and the ceiling 3 m above.
+// 5.6: a uniformly bright floor of 4 m x 4 m, onto the wall at its edge and the ceiling 3 m above.
 TEST(Cie171, BrightFloorOntoAWallAndACeiling) {
   covers("R8 R9 light-40");
   const Json scene = scene_of_lamp(Vec3d(0, -2, 0), Vec3d(4, 0, 0), Vec3d(0, 4, 0));
@@ -95,14 +96,14 @@ TEST(Cie171, BrightFloorOntoAWallAndACeiling) {
   }
 }
 
-// 5.7: as before, with an upright screen beside the point that hides what is beyond it, or one that hangs in
-// the room and hides a part.
+// 5.7: as 5.6, with an upright screen next to the point, or with one that hangs in the room and occludes a
+// part.
 TEST(Cie171, ScreensHideTheirPartOfABrightFloor) {
   covers("R8 light-40");
   Json scene = scene_of_lamp(Vec3d(0, -2, 0), Vec3d(4, 0, 0), Vec3d(0, 4, 0));
   Json upright = scene, hanging = scene;
   upright["objects"].push_back(rectangle(Vec3d(1.5, -5, 0.5), Vec3d(0, 10, 0), Vec3d(0, 0, 4), "black"));
-  // Half as high as the point: it hides twice its size.
+  // Half as high as the point, so that it occludes twice its size.
   hanging["objects"].push_back(rectangle(Vec3d(1, -0.5, 1.5), Vec3d(0.75, 0, 0), Vec3d(0, 1, 0), "black"));
   const double x = 1.5 - 1e-6;
   expect_factor(upright, Vec3d(x, 0, 3), Vec3d(0, 0, -1), 2 * parallel(x, 2, 3), 256);
@@ -111,8 +112,8 @@ TEST(Cie171, ScreensHideTheirPartOfABrightFloor) {
                 2 * (parallel(1.5, 2, 3) + parallel(2.5, 2, 3)) - hidden, 256);
 }
 
-// 5.8: in a closed room whose walls all reflect rho, light that arrives after k reflections sums to rho^k of
-// the lamp's, whatever the room's shape.
+// 5.8: in a closed room of reflectance rho, light after k reflections sums to rho^k of the lamp's, for any
+// shape of the room.
 TEST(Cie171, AClosedRoomKeepsTheLampsLight) {
   covers("light-40");
   constexpr double kReflectance = 0.7, kSide = 4;
@@ -130,7 +131,7 @@ TEST(Cie171, AClosedRoomKeepsTheLampsLight) {
   constexpr int kBatches = 200;
   const auto loaded = load(room);
   for (int batch = 0; batch < kBatches; ++batch) {
-    std::vector<Ray<double>> rays;  // toward even points of the walls
+    std::vector<Ray<double>> rays;  // toward evenly spread points of the walls
     for (int i = 0; i < kBatch; ++i) {
       const auto axis = static_cast<std::size_t>(i % 3);
       const double wall = i / 3 % 2 == 0 ? 0 : kSide;
@@ -156,7 +157,7 @@ TEST(Cie171, AClosedRoomKeepsTheLampsLight) {
   EXPECT_LT(error, 2e-3 * expected);
 }
 
-// 5.9: an even sky through an open roof of 4 m x 4 m, 3 m above the floor: a ceiling that is evenly bright.
+// 5.9: a uniform sky through an open roof of 4 m x 4 m, 3 m above the floor, is a uniformly bright ceiling.
 TEST(Cie171, EvenSkyThroughAnOpenRoof) {
   covers("R8 R9 light-40");
   Json room = scene_with(Json::array(), json("{'background': [1, 1, 1], 'materials': {'white': {'type': "

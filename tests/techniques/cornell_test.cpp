@@ -9,13 +9,13 @@
 #include "tests/support/pictures.h"
 #include "tests/support/sanitized.h"
 
-// The Cornell box: its data, and what paths of each length bring.
+// Tests the Cornell box: its data, and the contribution of each path length.
 namespace orrery::test {
 namespace {
 
 using Quad = std::array<Vec3d, 4>;
 
-// Corners in an order that does not depend on where the list begins.
+// Returns the corners in canonical order.
 Quad in_order(Quad quad) {
   std::sort(quad.begin(), quad.end(), [](const Vec3d& a, const Vec3d& b) {
     return std::tuple(std::llround(a.x * 1e7), std::llround(a.y * 1e7), std::llround(a.z * 1e7)) <
@@ -24,7 +24,7 @@ Quad in_order(Quad quad) {
   return quad;
 }
 
-// Four corners each, from lists of two triangles each.
+// Returns four corners per quad, from lists of two triangles each.
 std::vector<Quad> quads_of(const Json& mesh) {
   std::vector<Quad> quads;
   const Json &positions = mesh["positions"], &indices = mesh["indices"];
@@ -37,7 +37,7 @@ std::vector<Quad> quads_of(const Json& mesh) {
   return quads;
 }
 
-// Takes the quad with these corners, in millimetres, out of the list.
+// Removes the quad with these corners, in millimetres, from the list.
 void expect_one(std::vector<Quad>& quads, Quad corners) {
   for (Vec3d& corner : corners) corner = corner / 1000;
   corners = in_order(corners);
@@ -50,7 +50,7 @@ void expect_one(std::vector<Quad>& quads, Quad corners) {
   quads.erase(found);
 }
 
-// A block by the corners of its top: that, and a wall below each side.
+// Removes a block with this top: the top, and a wall below each side.
 void expect_block(std::vector<Quad>& quads, const Quad& top) {
   expect_one(quads, top);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -60,8 +60,8 @@ void expect_block(std::vector<Quad>& quads, const Quad& top) {
 }
 
 // Cornell University Program of Computer Graphics, "Cornell Box Data": positions in millimetres, a camera of
-// focal length 0.035 over a film of 0.025 x 0.025. Its spectra do not say which linear RGB to take: the
-// scene's are those of the Tungsten renderer's scene, as its description states.
+// focal length 0.035 over a film of 0.025 x 0.025. Linear RGB colours do not follow from its spectra. The
+// scene uses those of the Tungsten renderer's scene, as its description states.
 TEST(CornellBox, HasThePublishedData) {
   covers("light-39");
   const Json scene = sample("cornell-box");
@@ -77,7 +77,7 @@ TEST(CornellBox, HasThePublishedData) {
   expect_one(red,
              {Vec3d(552.8, 0, 0), Vec3d(549.6, 0, 559.2), Vec3d(556, 548.8, 559.2), Vec3d(556, 548.8, 0)});
   EXPECT_TRUE(green.empty() && red.empty());
-  // The ceiling, 556 by 559.2, is in parts about the lamp, from [213, 227] to [343, 332].
+  // The ceiling, 556 by 559.2, surrounds the lamp, from [213, 227] to [343, 332].
   const Json& lamp = scene["objects"][3];
   EXPECT_EQ(lamp["corner"], Json({0.213, 0.5488, 0.227}));
   EXPECT_EQ(lamp["a"], Json({0.13, 0, 0}));
@@ -110,8 +110,8 @@ RenderRequest alone(int side, int samples, int max_depth, std::uint64_t seed) {
   return request;
 }
 
-// Of single samples of each pixel, by the number of bounces: of what paths of that length bring, the variance
-// and, over the channels, the mean.
+// Contribution of paths with one number of bounces, from single samples: variance, and mean over the
+// channels.
 struct Bounce {
   double variance = 0, mean = 0;
 };
@@ -143,9 +143,9 @@ std::vector<Bounce> by_bounce(int most, int side, int seeds) {
   return bounces;
 }
 
-// Shares of the variance of single samples, as an independent path tracer without roulette has them: 8 % of
-// direct light, 49 to 58 % of one bounce, 21 to 26 % of two and 9 to 13 % of three. Roulette moves a few
-// points to longer paths, and edges in pixels this large a few to direct light.
+// Variance shares of single samples, by an independent path tracer without roulette. Direct light has 8 %,
+// one bounce 49 to 58 %, two bounces 21 to 26 % and three 9 to 13 %. Roulette moves a few points to longer
+// paths, and edges in these large pixels move a few to direct light.
 TEST(CornellBox, VarianceByBounce) {
   covers("light-37");
   const std::vector<Bounce> bounces = by_bounce(8, 128, 6);
@@ -158,9 +158,9 @@ TEST(CornellBox, VarianceByBounce) {
   EXPECT_NEAR(share(3), 0.11, 0.08);
 }
 
-// Against paths of 17 bounces, of the light that is reflected (the lamp is in the picture): 0.37 % of red is
-// lost after eight, 0.172 % of the whole picture, as Cycles (Blender 3.4.1) loses too: 0.1722 % +- 0.0011 %.
-// The ledger takes what is cut for as bright as anything could be.
+// Compares with paths of 17 bounces. After eight bounces, 0.37 % of the reflected red light is lost (the lamp
+// is visible), and 0.172 % of the whole image. Cycles (Blender 3.4.1) loses 0.1722 % +- 0.0011 %. The ledger
+// assumes the maximum radiance for omitted rays.
 TEST(CornellBox, LosesOfLightWhatItsLedgerCovers) {
   covers("light-38");
   const auto box = load(sample("cornell-box"));
@@ -173,9 +173,9 @@ TEST(CornellBox, LosesOfLightWhatItsLedgerCovers) {
   EXPECT_LT(whole.stats.omitted.mean(), 0.02 * cut.stats.omitted.mean());
 }
 
-// Means over the picture and their standard errors by Cycles, an independent renderer, with 0 to 6 bounces:
-// `tests/bench/run cycles --bounces --samples 64 --seeds 8`, Blender 3.4.1 of Debian 12 with nothing that is
-// biased switched on, 128 x 128 pixels, 16 seeds.
+// Means over the image and their standard errors by Cycles, an independent renderer, with 0 to 6 bounces.
+// From `tests/bench/run cycles --bounces --samples 64 --seeds 8` with 128 x 128 pixels and 16 seeds. Blender
+// 3.4.1 of Debian 12, all biased options off.
 struct Measured {
   Vec3d mean, error;
 };
@@ -189,7 +189,7 @@ const std::array<Measured, 7> kCycles{{
     {{0.195424, 0.127114, 0.036403}, {0.000026, 0.000018, 0.000005}},
 }};
 
-// Faults that make up for each other in the whole picture differ by path length.
+// Errors that cancel over the whole image differ by path length.
 TEST(CornellBox, EachPathLengthBringsWhatCyclesFinds) {
   covers("light-36");
   constexpr int kSide = 128, kSeeds = 6;
@@ -217,7 +217,7 @@ TEST(CornellBox, EachPathLengthBringsWhatCyclesFinds) {
   }
 }
 
-// Mean squared error of a channel, from pairs of pictures whose seeds differ.
+// Returns the mean squared error of a channel, from pairs of images with different seeds.
 double mean_squared_error(const std::shared_ptr<const Scene>& box, int side, int samples, int max_depth,
                           int pairs) {
   double squares = 0;
@@ -232,8 +232,8 @@ double mean_squared_error(const std::shared_ptr<const Scene>& box, int side, int
   return squares / (3.0 * side * side * pairs);
 }
 
-// Of the root mean squared error as it changes from `fewest` samples to `most` by fours: by least squares in
-// logarithms.
+// Returns the exponent of the root mean squared error from `fewest` samples to `most` by fours, by least
+// squares in logarithms.
 double slope(const std::shared_ptr<const Scene>& box, int side, int max_depth, int fewest, int most) {
   double x_sum = 0, y_sum = 0, xx = 0, xy = 0, n = 0;
   for (int samples = fewest; samples <= most; samples *= 4, ++n) {
@@ -248,8 +248,8 @@ double slope(const std::shared_ptr<const Scene>& box, int side, int max_depth, i
   return (n * xy - x_sum * y_sum) / (n * xx - x_sum * x_sum);
 }
 
-// Direct light has few dimensions, and edges only here and there; many bounces have more than are stratified
-// together. (In very small pictures most pixels have edges, and few pixels most of the error.)
+// Direct light has few dimensions and few edges, but many bounces have more dimensions than are stratified
+// together. (In very small images most pixels have edges, and few pixels most of the error.)
 TEST(CornellBox, ErrorFallsFasterThanThatOfIndependentSamples) {
   covers("light-51");
   if (kSanitized) GTEST_SKIP() << "twenty million paths";
@@ -258,7 +258,7 @@ TEST(CornellBox, ErrorFallsFasterThanThatOfIndependentSamples) {
   const double all = slope(box, 16, 9, 16, 4096);
   EXPECT_LE(all, -0.48);
   EXPECT_GE(all, -0.60);
-  // Single samples of several seeds are independent: their error is that of 64 at 1/64 of the variance.
+  // Single samples of several seeds are independent, so 64 of them have 1/64 of the variance.
   const double independent = mean_squared_error(box, 128, 1, 9, 8) / 64,
                stratified = mean_squared_error(box, 128, 64, 9, 1);
   EXPECT_NEAR(independent / stratified, 1.7, 0.4);

@@ -9,7 +9,7 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Light that comes straight from its source: closed forms, sums over lights, and shadows.
+// Tests direct light: closed forms, sums over lights, and shadows.
 namespace orrery::test {
 namespace {
 
@@ -30,7 +30,7 @@ TEST(Ambient, EvenSkyShowsTheAlbedo) {
   }
 }
 
-// A closed room whose walls send out Le and mirror nothing shows Le everywhere.
+// A closed room with walls of emitted radiance Le and no reflections shows Le everywhere.
 TEST(Ambient, FillsAClosedRoom) {
   const Json room = scene_of("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
                              "{'ambient': [2, 2, 2], 'materials': {'white': {'ka': 0.5, 'kd': 0}}}");
@@ -52,7 +52,7 @@ TEST(Point, LightFallsByTheCubeOfTheCosine) {
   }
 }
 
-// Mean over the disc of a Lambert ball lit from `phase` degrees beside the eye.
+// Mean over the disc of a Lambert ball, with the light `phase` degrees from the eye.
 TEST(Directional, PhasesOfABallAreThoseOfTheMoon) {
   covers("R5");
   RenderRequest request = in_double(size(256, 256));
@@ -126,8 +126,8 @@ TEST(Lights, ValuesAboveOneStayWhatTheyAre) {
   EXPECT_EQ(picture.at(4, 4), Vec3f(2, 1, 1));
 }
 
-// A plane of 2 x 2 seen from 1 above its centre by a distant light above: with one half vector for all of it
-// the corners would shine like the centre.
+// A plane of 2 x 2 seen from 1 above its centre, under a distant light from above. With one half vector for
+// the whole plane, the corners would be as bright as the centre.
 TEST(Highlight, HalfVectorIsThatOfEachPoint) {
   covers("B6");
   const Json scene = scene_of("[{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 0]}]",
@@ -154,8 +154,7 @@ TEST(Lights, NoneMakesAnythingNegative) {
   }
 }
 
-// Whitted's model has no caustics: glass throws a black shadow. That is a known error of the model, pinned
-// here.
+// Whitted's model has no caustics: glass casts a black shadow. This test pins that known error of the model.
 TEST(Glass, ThrowsABlackShadow) {
   covers("E6");
   const Json scene =

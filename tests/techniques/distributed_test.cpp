@@ -9,7 +9,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Distributed ray tracing, against closed forms and against path tracing where both find the same light.
+// Compares distributed ray tracing with closed forms, and with path tracing if both find the same light.
 namespace orrery::test {
 namespace {
 
@@ -35,8 +35,8 @@ RenderRequest following(const char* technique, int side, int samples, int max_de
   return request;
 }
 
-// Balls in three rows over a metal floor, one of each material that has no diffuse lobe, among lamps, under a
-// sky and through a lens.
+// Returns balls in three rows over a metal floor, one of each material without a diffuse lobe. The scene has
+// lamps, a sky and a lens.
 Json without_diffuse_lobes() {
   const char* kMaterials[] = {"{'type': 'metal', 'name': 'gold', 'roughness': 0.4}",
                               "{'type': 'metal', 'name': 'silver', 'roughness': 0}",
@@ -83,7 +83,7 @@ TEST(Distributed, IsPathTracingWhereNothingIsDiffuse) {
   }
 }
 
-// Threads, slices and structures change no byte, nor does the power of two by which a scene is scaled.
+// Threads, slices and structures do not change the image, nor does scaling the scene by a power of two.
 TEST(Distributed, ShowsTheSameBytesHoweverItIsRendered) {
   covers("light-7");
   Json own = without_filters(without_diffuse_lobes());
@@ -99,8 +99,8 @@ TEST(Distributed, ShowsTheSameBytesHoweverItIsRendered) {
   EXPECT_TRUE(identical(render(scene, request, 1), expected));
 }
 
-// Share of the radiance of a ceiling 1 m above that reaches a floor from the rectangle between the point
-// above it and (a, b): the form factor of a corner (Howell, C-3).
+// Returns the share of the radiance of a ceiling 1 m above a floor point, from the rectangle between the
+// point above it and (a, b). Form factor of a corner (Howell, C-3).
 double corner_share(double a, double b) {
   const double ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
   return (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * kPi);
@@ -108,7 +108,8 @@ double corner_share(double a, double b) {
 
 class SoftShadow : public testing::TestWithParam<const char*> {};
 
-// A square lamp over a white floor, a screen between: a point sees what lies beyond the screen's edge.
+// A square lamp over a white floor, with a screen between them. A point sees the part of the lamp beyond the
+// screen's edge.
 TEST_P(SoftShadow, IsTheShareOfTheLampThatIsSeen) {
   covers("light-17 light-22");
   Json scene = scene_of_materials(
@@ -135,8 +136,8 @@ INSTANTIATE_TEST_SUITE_P(Floors, SoftShadow,
 
 class DiffuseRoom : public testing::TestWithParam<const char*> {};
 
-// Walls send out 1, reflect a share, and get ambient light: direct light and ambient light is all there is at
-// any depth. At depth 0 ambient light alone lights what emits.
+// Walls emit 1, reflect a share, and receive ambient light. Only direct and ambient light counts at any
+// depth. At depth 0, ambient light alone is added to the emission.
 TEST_P(DiffuseRoom, ShowsDirectAndAmbientLightAlone) {
   covers("light-11");
   Json room = scene_of_materials(GetParam(), {}, "{'ambient': [0.3, 0.3, 0.3]}");
@@ -147,13 +148,12 @@ TEST_P(DiffuseRoom, ShowsDirectAndAmbientLightAlone) {
     EXPECT_NEAR(found.mean, 1 + 0.5 * 0.3 + direct, 4 * found.error() + 1e-12) << depth;
   }
 }
-// Of a box nobody can draw: diffuse lobes find it by rays of their own. A sphere is drawn from.
+// Boxes cannot be sampled, so their light is found by rays of diffuse lobes. Spheres are sampled.
 INSTANTIATE_TEST_SUITE_P(Rooms, DiffuseRoom,
                          testing::Values("[{'type': 'box', 'min': [-1, -2, -3], 'max': [3, 2, 1]}]",
                                          "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
-// A floor that reflects 0.6 under skies that are drawn from or not: seen in itself by paths alone, the floor
-// is flat.
+// A flat floor that reflects 0.6, under skies that are sampled or not.
 TEST(Distributed, SkiesLightDiffuseSurfaces) {
   covers("light-33");
   for (const char* sky :
@@ -168,8 +168,8 @@ TEST(Distributed, SkiesLightDiffuseSurfaces) {
   }
 }
 
-// A lamp that none can draw from beside one that all can, over a matt and a coated floor: direct light of a
-// path.
+// A lamp that cannot be sampled and one that can, over matt and coated floors. Compares with the direct light
+// of paths.
 TEST(Distributed, LampsThatAreMetByChanceCountOnceBesideThoseThatAreDrawn) {
   covers("light-22");
   Json scene = scene_of_materials(
@@ -195,7 +195,7 @@ TEST(Distributed, LampsThatAreMetByChanceCountOnceBesideThoseThatAreDrawn) {
     const Picture distributed = render(loaded, following("distributed", 32, 256, 1, 2));
     EXPECT_NEAR(distributed.sum() / path.sum(), 1, 4e-3) << material;
   }
-  // Without a background that rays look for anyway.
+  // Without a background that rays would look for anyway.
   scene.erase("background");
   scene["materials"]["it"] = json("{'type': 'lambert', 'reflectance': 0.7}");
   const auto loaded = load(scene);
@@ -203,8 +203,8 @@ TEST(Distributed, LampsThatAreMetByChanceCountOnceBesideThoseThatAreDrawn) {
   EXPECT_NEAR(render(loaded, following("distributed", 32, 256, 1, 2)).sum() / by_path, 1, 4e-3);
 }
 
-// A convex ball under a sky sees nothing of itself, and so has no light from other surfaces: all that paths
-// find, direct light and what its coat mirrors, distributed rays find too.
+// A convex ball under a sky sees nothing of itself, and so receives no light from other surfaces. Distributed
+// rays find all that paths find: direct light and the reflections of the coat.
 TEST(Distributed, CoatsAreFollowedAndBasesEnd) {
   Json scene =
       scene_of_materials("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]", {},
@@ -222,7 +222,7 @@ TEST(Distributed, CoatsAreFollowedAndBasesEnd) {
   }
 }
 
-// Before a background as bright as ambient light, what reflects all light is not seen, coat or no coat.
+// In front of a background as bright as ambient light, a white object is invisible, with or without a coat.
 TEST(Ambient, LeavesNothingToSeeOfWhite) {
   for (const char* white :
        {"{'type': 'plastic', 'roughness': 0, 'reflectance': 1}",
@@ -236,18 +236,17 @@ TEST(Ambient, LeavesNothingToSeeOfWhite) {
       RenderRequest request = in_double(size(32, 32));
       request.technique = technique;
       request.samples = 4;
-      request.max_depth = technique == std::string("distributed") ? 0 : 5;  // as far as there is no noise
+      request.max_depth = technique == std::string("distributed") ? 0 : 5;  // the largest depth without noise
       const Picture picture = render(scene, request);
-      const int border =
-          *request.max_depth == 0 ? 12 : 0;  // the background is looked at more often than the ball
+      const int border = *request.max_depth == 0 ? 12 : 0;  // the background has more samples than the ball
       for (int y = border; y < 32 - border; ++y)
         for (int x = border; x < 32 - border; ++x)
           ASSERT_NEAR(picture.at(x, y).x, 0.4, 2e-3) << white << technique << " " << x << " " << y;
     }
 }
 
-// In a white room without lamps but ambient light, a polished floor mirrors walls that show ambient light:
-// the coat mirrors by Fresnel's equations, the base shows what ambient light leaves.
+// With ambient light alone, a polished floor mirrors a diffuse ceiling. The coat reflects by Fresnel's
+// equations, and the base shows the rest of the ambient light.
 TEST(Distributed, ACoatMirrorsDiffuseWalls) {
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'},"
@@ -267,8 +266,8 @@ TEST(Distributed, ACoatMirrorsDiffuseWalls) {
   }
 }
 
-// A sheet above the eye lets light of a lamp through and shows the floor that it lights, once: rho of the
-// lamp's square on the floor, seen through a wide sheet that lets tau pass.
+// A sheet between the eye and a diffuse ceiling, in ambient light. The sheet reflects ambient light and
+// transmits the ceiling's radiance.
 TEST(Distributed, SheetsLetLightThrough) {
   Json scene = scene_of_materials(
       "[{'type': 'rectangle', 'corner': [-500, 1, -500], 'a': [1000, 0, 0], 'b': [0, 0, 1000], 'material': "
@@ -279,14 +278,14 @@ TEST(Distributed, SheetsLetLightThrough) {
       "{'ambient': [1, 1, 1]}");
   const Estimate found = estimate(scene, Vec3d(0, 0, 0), Vec3d(0.1, 1, 0), 3, "distributed");
   EXPECT_NEAR(found.mean, 0.3 + 0.6 * 0.5, 4 * found.error() + 1e-9);
-  // The ceiling shines: the sheet shows it at once, and nothing else counts.
+  // An emissive ceiling is seen through the sheet directly, and adds nothing else.
   scene["materials"]["ceiling"]["emission"] = {2, 2, 2};
   scene["ambient"] = {0, 0, 0};
   const Estimate lit = estimate(scene, Vec3d(0, 0, 0), Vec3d(0.1, 1, 0), 1, "distributed");
   EXPECT_NEAR(lit.mean, 0.6 * 2, 4 * lit.error() + 1e-9);
 }
 
-// Light between two diffuse walls is all that paths find and distributed rays do not.
+// Only light between two diffuse walls is found by paths and not by distributed rays.
 TEST(Distributed, LeavesOutLightBetweenDiffuseSurfaces) {
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},"

@@ -7,7 +7,7 @@
 #include "tests/support/covers.h"
 #include "tests/support/tracing.h"
 
-// Closed rooms whose radiance has a closed form, by path length, and what Russian roulette does to paths.
+// Tests closed rooms with closed forms of their radiance, by path length, and the effect of Russian roulette.
 namespace orrery::test {
 namespace {
 
@@ -23,7 +23,7 @@ Ray<double> from_to(const Vec3d& from, const Vec3d& to) { return {from, safe_nor
 
 // Sums over independent paths of one ray.
 struct Moments {
-  double sum = 0, squares = 0, fourth = 0, centre;  // of differences from `centre`
+  double sum = 0, squares = 0, fourth = 0, centre;  // sums of powers of differences from `centre`
   int count = 0;
   explicit Moments(double expected) : centre(expected) {}
   void add(double value) {
@@ -39,7 +39,7 @@ struct Moments {
   double error_of_variance() const { return std::sqrt((fourth / count - variance() * variance()) / count); }
 };
 
-// Traces `batches` batches of one ray. Returns the rays of depth 1 and more, a path.
+// Traces `batches` batches of one ray. Returns the mean number of rays of depth 1 and more per path.
 template <class Visit>
 double trace_paths(const Json& scene, const Ray<double>& ray, int max_depth, int batches,
                    const Visit& visit) {
@@ -54,8 +54,8 @@ double trace_paths(const Json& scene, const Ray<double>& ray, int max_depth, int
   return reflected / (batches * double{kBatch});
 }
 
-// Number of rays after the camera's, of a path of which the first is always traced and each that follows with
-// probability rho, at most `most`: mean and variance from P(N >= k) = rho^(k-1).
+// Number of rays after the camera ray. The first is always traced, and each later one with probability rho,
+// at most `most`. Mean and variance follow from P(N >= k) = rho^(k-1).
 struct Survivors {
   double mean = 0, variance = 0;
   Survivors(double rho, int most) {
@@ -68,10 +68,10 @@ struct Survivors {
   }
 };
 
-// Walls that send out 1 and reflect rho, found by chance alone. From the second vertex on a path of
-// throughput beta = rho^2 survives with probability sqrt(beta) = rho, and then has throughput rho again:
-// every later ray brings rho, and the sum is 1 + rho N. Without the limit of depth its mean is 1 / (1 - rho),
-// its variance rho^3 / (1 - rho)^2.
+// Walls emit 1 and reflect rho, and are found by BSDF sampling alone. From the second vertex on, a path of
+// throughput beta = rho^2 survives with probability sqrt(beta) = rho, and then has throughput rho again. Each
+// later ray adds rho, and the sum is 1 + rho N. Without a depth limit its mean is 1 / (1 - rho), its variance
+// rho^3 / (1 - rho)^2.
 TEST(ClosedRoom, RouletteHasTheMeanVarianceAndRaysOfItsRule) {
   covers("R2 light-12");
   constexpr int kBatches = 98, kDepth = 32;
@@ -93,8 +93,8 @@ TEST(ClosedRoom, RouletteHasTheMeanVarianceAndRaysOfItsRule) {
   }
 }
 
-// Of paths that still go on at the limit of depth the ledger has what they carry: rho each, and rho^D on
-// average. What they would have found is rho / (1 - rho) for each of it.
+// For paths that reach the depth limit the ledger has their throughput: rho each, and rho^D on average.
+// Continued, each would have found rho / (1 - rho) per unit of throughput.
 TEST(ClosedRoom, LedgerHasTheWeightOfWhatIsCut) {
   covers("light-38");
   for (const double rho : {0.5, 0.8})
@@ -115,8 +115,8 @@ TEST(ClosedRoom, LedgerHasTheWeightOfWhatIsCut) {
     }
 }
 
-// A dome of radius 1 over a floor: from the dome, floor and dome each fill half of what is seen, whatever the
-// point, from the floor the dome all. Dome and floor send out 1 and reflect others' shares.
+// A dome of radius 1 over a floor. Any point of the dome sees half floor and half dome, and the floor sees
+// only the dome. Both emit 1 and reflect different shares.
 TEST(ClosedRoom, ReflectsWhatTheRoomsPartsReflect) {
   covers("light-13");
   const Json room = scene_of(
@@ -143,9 +143,9 @@ TEST(ClosedRoom, ReflectsWhatTheRoomsPartsReflect) {
   EXPECT_NEAR(floor, 1 + 0.2 * dome, 1e-7);
 }
 
-// Part of a sphere closed by a lamp, a disk that cuts off a tenth of its area: it fills a tenth of what every
-// wall point sees by the cosine, the wall the rest; the lamp sees the wall alone. Radiance by the number of
-// reflections since the lamp: wall' = rho (0.9 wall + 0.1 lamp), lamp' = rho wall.
+// A disk lamp closes a sphere and replaces a tenth of its area. Every wall point sees a tenth lamp by the
+// cosine, the rest wall, and the lamp sees only wall. Radiance by the number of reflections since the lamp:
+// wall' = rho (0.9 wall + 0.1 lamp), lamp' = rho wall.
 TEST(ClosedRoom, EachReflectionOfALampInASphereIsTheSameEverywhere) {
   covers("light-14");
   const Json room = scene_of(
@@ -173,7 +173,8 @@ TEST(ClosedRoom, EachReflectionOfALampInASphereIsTheSameEverywhere) {
   }
 }
 
-// A sphere of radius 1 about a point light that makes its wall read rho: each reflection is rho of the last.
+// A sphere of radius 1 around a point light that makes its wall read rho: each reflection is rho times the
+// last.
 TEST(ClosedRoom, AnIntegratingSphereReadsTheSumOfItsReflections) {
   covers("R4 light-15");
   constexpr int kDepth = 9;
@@ -189,7 +190,7 @@ TEST(ClosedRoom, AnIntegratingSphereReadsTheSumOfItsReflections) {
                                     [&](double radiance) { found.add(radiance); });
     EXPECT_NEAR(found.mean(), expected, 4 * found.error()) << rho;
     EXPECT_LT(found.error(), 0.01) << rho;
-    // Rays of the last depth bring nothing: there are no surfaces that emit.
+    // Rays of the last depth add nothing, since no surface is emissive.
     EXPECT_NEAR(found.variance() / (std::pow(rho, 4) * survivors.variance), 1, 0.05) << rho;
     EXPECT_NEAR(rays, Survivors(rho, kDepth).mean, 4 * found.error() / (rho * rho) * 1.3) << rho;
   }

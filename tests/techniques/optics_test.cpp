@@ -7,8 +7,7 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Where mirrored and refracted rays go, by the laws of optics: closed forms against the rays that were
-// traced.
+// Compares directions of reflected and refracted rays with the laws of optics.
 namespace orrery::test {
 namespace {
 
@@ -35,7 +34,7 @@ double angle_between(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b)) / kRadians;
 }
 
-// The rays of one depth that leave the body about the origin.
+// Returns the rays of one depth that leave the body around the origin.
 std::vector<Ray<double>> leaving(const Tracing& tracing, std::size_t depth) {
   std::vector<Ray<double>> found;
   for (const auto& ray : tracing.rays().at(depth))
@@ -67,7 +66,7 @@ TEST(Slab, LightLeavesParallelAndShifted) {
 
 TEST(Prism, DeviatesLeastWhereTheWayIsSymmetric) {
   covers("R19");
-  // An equilateral prism along y; its edge is up at z = sqrt 3, its base lies in z = 0.
+  // An equilateral prism along y. Its upper edge is at z = sqrt 3, its base at z = 0.
   const double edge = std::sqrt(3.0);
   Json mesh = json(
       "{'type': 'mesh', 'indices': [[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4], [2, 0, 5], [0, 3, 5], [0, 2, "
@@ -77,8 +76,8 @@ TEST(Prism, DeviatesLeastWhereTheWayIsSymmetric) {
       mesh["positions"].push_back(numbers(corner));
   Tracing tracing(one_body(Json::array({mesh}).dump().c_str(), 1.5), depth(2));
   const auto deviation = [&](double incidence_degrees) {
-    // Enters the left face, whose inward normal is 30 degrees below +x, in its middle, and runs along the
-    // base.
+    // The ray enters the left face, whose inward normal is 30 degrees below +x, in its middle, and runs along
+    // the base.
     const double a = (incidence_degrees - 30) * kRadians;
     const Vec3d direction(std::cos(a), 0, std::sin(a)), middle(-0.5, 0.1, edge / 2);
     const Ray<double> in{middle - direction * 2, direction};
@@ -155,7 +154,7 @@ TEST(CornerReflector, ReturnsEveryRayTheWayItCame) {
   }
 }
 
-// From under water all of the sky lies in a window of 48.6 degrees.
+// From under water the whole sky is in a window of 48.6 degrees.
 TEST(WaterSurface, ShowsTheSkyInAWindow) {
   covers("R25");
   Json scene = one_body("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", 1.333);

@@ -8,7 +8,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Materials of path tracing in scenes, against closed forms and sums over lamps.
+// Compares materials in path-traced scenes with closed forms and sums over lamps.
 namespace orrery::test {
 namespace {
 
@@ -21,8 +21,8 @@ double mean_of(const Json& scene, int side, int samples, int max_depth, int reus
   return render(scene, request).sum() / (side * side);
 }
 
-// A sky of 1 through glass over a floor that reflects rho: the glass lets t pass, the floor shows
-// rho t / (1 - rho (1 - t)).
+// A sky of 1 through glass over a floor that reflects rho. The glass transmits t, and the floor shows rho t /
+// (1 - rho (1 - t)).
 TEST(PathMaterials, FloorUnderASlabOfGlass) {
   covers("light-32");
   Json scene = scene_of(
@@ -36,7 +36,7 @@ TEST(PathMaterials, FloorUnderASlabOfGlass) {
   EXPECT_NEAR(mean_of(scene, 64, 128, 64), 0.5 * kPasses / (1 - 0.5 * (1 - kPasses)), 1e-3);
 }
 
-// A ball that keeps all light cannot be told from the sky: each meeting is a thousandth off at most.
+// A lossless ball is invisible against a uniform sky. Each scattering event is off by at most a thousandth.
 TEST(PathMaterials, GlassAmongEvenLightIsNotSeen) {
   covers("light-30");
   for (const double roughness : {0.0, 0.4, 1.0}) {
@@ -49,7 +49,8 @@ TEST(PathMaterials, GlassAmongEvenLightIsNotSeen) {
   }
 }
 
-// A disk in the shadow of a ball of glass gets nothing from a point, and a caustic from a lamp in its place.
+// A disk in the shadow of a glass ball receives no light from a point, but a caustic from a lamp in its
+// place.
 TEST(PathMaterials, GlassFocusesLampsAndNotPoints) {
   covers("light-53");
   Json scene = scene_of(
@@ -72,19 +73,19 @@ TEST(PathMaterials, GlassFocusesLampsAndNotPoints) {
 struct Lit {
   const char* name;
   const char* text;
-  double lamp_height;  // below 0: light comes through
+  double lamp_height;  // below 0: light is transmitted
 };
 class UnderALamp : public testing::TestWithParam<Lit> {};
 
-// One point of a wide surface under a square lamp: light sources and directions weighted together give the
-// sum over the lamp of what the material evaluates, and directions alone give it too.
+// One point of a wide surface under a square lamp. Light and BSDF sampling with MIS give the sum over the
+// lamp of the evaluated material, and so does BSDF sampling alone.
 TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
   covers("light-22");
   const auto& [name, text, height] = GetParam();
   const Vec3d eye = safe_normalize(Vec3d(0.8, 0.9, 0.1));
   const Probe<double> material(text);
   constexpr int kSteps = 300;
-  constexpr double kSide = 2, kAside = -0.8;  // the lamp stands where a mirror would show it
+  constexpr double kSide = 2, kAside = -0.8;  // the lamp is in the mirror direction
   std::vector<Probe<double>::Case> cases;
   std::vector<double> angle;
   for (int i = 0; i < kSteps; ++i)
@@ -117,13 +118,13 @@ TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
                      {"look_at", {0, 0, 0}},
                      {"fov_degrees", 1e-4}};
   EXPECT_NEAR(mean_of(scene, 32, 256, 1) / sum, 1, 0.01) << name;
-  // A model's, wherever its instance takes it.
+  // The lamp is in a model with an instance.
   Json model = scene;
   model["models"]["lamp"]["objects"] = Json::array({scene["objects"].back()});
   model["objects"].erase(model["objects"].size() - 1);
   model["instances"] = json("[{'model': 'lamp'}]");
   EXPECT_NEAR(mean_of(model, 32, 256, 1) / sum, 1, 0.01) << name;
-  // Light is not drawn from what moves within its model, as far as keys say: directions alone find it.
+  // Lights with keyframes within their model are not sampled, so BSDF sampling alone finds them.
   const double x0 = kAside - kSide / 2, x1 = kAside + kSide / 2, z = kSide / 2;
   model["models"]["lamp"]["objects"] =
       Json::array({{{"type", "mesh"},
@@ -145,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Lit{"TranslucentAbove", "{'type': 'translucent'}", 1}),
     [](const auto& parameter) { return std::string(parameter.param.name); });
 
-// What the origin of a floor gets from where `sees` a lamp of radiance 1.
+// Returns the radiance of a floor at the origin in directions where `sees` a lamp of radiance 1.
 template <class Sees>
 double lit_by(const Sees& sees) {
   constexpr int kSteps = 1000;  // in height and around: each cell has the same share of the cosine
@@ -159,7 +160,7 @@ double lit_by(const Sees& sees) {
   return found / kSteps / kSteps;
 }
 
-// A ball that becomes an ellipsoid, and a square that becomes skew, send what they send there.
+// Instances turn a ball into an ellipsoid and a square into a skewed one, with the light of those shapes.
 TEST(PathMaterials, InstancesDistortLamps) {
   const Vec3d centre(0.3, 1, 0), radii(0.8, 0.2, 0.4);
   const double ellipsoid = lit_by([&](const Vec3d& d) {
@@ -192,9 +193,9 @@ TEST(PathMaterials, InstancesDistortLamps) {
       1, 0.01);
 }
 
-// Stripes of chalk and of dark polished plastic under a ceiling that a spot light shines on. Draws of the
-// coat go through a mirror, those of chalk never do: paths that share what they find count how likely each
-// could have drawn it, not who did. The plastic is too dark to make up for what chalk would get too much.
+// Stripes of chalk and of dark polished plastic, under a ceiling lit by a spot light. Samples of the coat go
+// through a mirror, those of chalk never do. Path reuse must weight a shared sample by the densities of all
+// lobes, not by the one that drew it. The plastic is too dark to offset an excess at the chalk.
 TEST(PathMaterials, SharingCountsDrawsThatWentThroughAMirror) {
   covers("light-9");
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'chalk'}]",

@@ -7,11 +7,12 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// Light that surfaces send out and send on to each other, against closed forms.
+// Compares emitted and interreflected light with closed forms.
 namespace orrery::test {
 namespace {
 
-// A lamp over a white floor that reflects all, seen beside the lamp at the point straight below.
+// Returns a lamp over a floor of reflectance 1. Views from the side see the floor below the lamp, but not the
+// lamp.
 Json over_floor(const Json& lamp) {
   Json scene = scene_of(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
@@ -27,8 +28,8 @@ const Vec3d kBelow(0, 0, 0), kBeside(30, 0.05, 0);
 
 class PathFurnace : public testing::TestWithParam<const char*> {};
 
-// In a closed room whose walls send out 1 and reflect a share, every point shows the sum of the powers of
-// that.
+// In a closed room whose walls emit 1 and reflect a share, every point shows the sum of the powers of that
+// share.
 TEST_P(PathFurnace, ShowsTheSumOfAllBounces) {
   covers("R2 light-11");
   const Json room = scene_of(GetParam(), "{'materials': {'white': {'kd': 0.5, 'emission': [1, 1, 1]}}}");
@@ -44,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "[{'type': 'cylinder', 'base': [0.3, -2, 1], 'top': [-0.2, 1, -2], 'radius': 3}]",
                     "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
-// Unit square over a point, by height; sd: of a sample by solid angle, relative to the mean.
+// Unit square over a point, by height. `sd` is the relative standard deviation of a sample by solid angle.
 TEST(Path, IrradianceOfASquare) {
   covers("R9 light-17 light-19");
   struct Case {
@@ -68,7 +69,7 @@ TEST(Path, IrradianceOfASphereAndADisk) {
   EXPECT_NEAR(disk.mean, 0.25 / (4 + 0.25), 4 * disk.error() + 1e-9);
 }
 
-// Balls that send out 1: the floor reads the sum of (radius / distance)^2 times the cosine.
+// Adds balls of radiance 1. The floor reads the sum of (radius / distance)^2 times the cosine.
 Json with_balls(Json scene, const std::vector<Vec3d>& from_point, const Vec3d& point,
                 double share_of_distance, double& irradiance) {
   for (const Vec3d& centre : from_point) {
@@ -84,7 +85,7 @@ const Json kWhiteFloor = scene_of(
     "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
     "{'materials': {'white': {'kd': 1}, 'lamp': {'type': 'rough', 'kd': 0, 'emission': [1, 1, 1]}}}");
 
-// Large ones, which are met by chance as often as they are drawn, with small ones about another place.
+// Large balls, which BSDF samples hit as often as light samples do, with small ones around another place.
 TEST(Path, LampsNearAndFarAreWeighedWhereTheyAreSeenFrom) {
   covers("light-17");
   const Vec3d point(3, 0, 2);
@@ -114,8 +115,7 @@ TEST(Path, ASunBesideALampIsAsBrightAsAlone) {
   EXPECT_NEAR(found.mean / expected, 1, 4 * found.error() / expected);
 }
 
-// A lamp that reflects, alone in the dark: nothing but itself could light it, and it is flat or seen from
-// outside.
+// A reflective lamp alone in the dark is flat or seen from outside, so that nothing can light it.
 TEST(Path, ConvexLampsDoNotLightThemselves) {
   struct Lamp {
     const char* text;
@@ -139,7 +139,8 @@ TEST(Path, ConvexLampsDoNotLightThemselves) {
   }
 }
 
-// What holds all else is seen from inside, where nothing would be drawn: then no other lamp waits for it.
+// An emitter that encloses all else is not sampled, since every point sees it from inside. The samples go to
+// other lamps.
 TEST(Path, LampsAroundAllElseAreLeftToChance) {
   const auto is_drawn_from = [](std::string_view objects) {
     const Json scene =
@@ -158,7 +159,7 @@ TEST(Path, LampsAroundAllElseAreLeftToChance) {
   }
 }
 
-// A square of 100,352 triangles, of which each vertex of a path draws one.
+// A square of 100,352 triangles. Each vertex of a path samples one of them.
 TEST(Path, ManyEmittersAreAsBrightAsOne) {
   constexpr int kSide = 224;
   Json positions = Json::array(), indices = Json::array();
@@ -182,8 +183,7 @@ TEST(Path, ManyEmittersAreAsBrightAsOne) {
   }
 }
 
-// Groups of paths that share what they find change neither the mean nor which light arrives where, and lower
-// the error of a pixel.
+// Path reuse changes neither the mean nor the distribution of light, and lowers the error of a pixel.
 TEST(Path, SharingPathsChangesTheNoiseAlone) {
   covers("light-8 light-9");
   const auto box = load(sample("cornell-box"));
@@ -211,7 +211,7 @@ TEST(Path, SharingPathsChangesTheNoiseAlone) {
   }
 }
 
-// What some paths find through a mirror is not what others could have drawn.
+// Light found through a mirror by some paths could not have been sampled by others.
 TEST(Path, SharingLeavesOutWhatMirrorsFind) {
   const auto room = load(scene_of(
       "[{'type': 'box', 'min': [-2, -1, -2], 'max': [2, 2, 5]}, {'type': 'sphere', 'center': [0.9, -0.4, 0],"
@@ -230,7 +230,7 @@ TEST(Path, SharingLeavesOutWhatMirrorsFind) {
   EXPECT_NEAR(mean(16) / mean(1), 1, 0.006);
 }
 
-// Samples in two parts, in parts of a batch, on one thread and several: the same sums.
+// Slices and the number of threads do not change the image.
 TEST(Path, DependsOnNothingButTheSample) {
   covers("light-7");
   const auto box = load(sample("cornell-box"));

@@ -7,7 +7,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/tracing.h"
 
-// How the tree of rays grows and ends: by depth, by weight, and by the law of its counters.
+// Tests the growth and the end of ray trees: by depth, by weight, and in the counters.
 namespace orrery::test {
 namespace {
 
@@ -18,23 +18,24 @@ RenderRequest limits(int max_depth, double min_contribution = 0) {
   return request;
 }
 
-// The index of a dielectric that mirrors this share of light that meets it upright.
+// Returns the index of a dielectric with this reflectance at normal incidence.
 double index_of(double reflectance) { return (1 + std::sqrt(reflectance)) / (1 - std::sqrt(reflectance)); }
 
-// Two mirrors that face each other.
+// Returns two facing mirrors.
 Json mirrors(double reflectance, double ambient) {
   const double n = reflectance == 1 ? 0 : index_of(reflectance);
   return scene_with(
       json("[{'type': 'plane', 'point': [0, 0, -5], 'normal': [0, 0, 1]}, {'type': 'plane', 'point': [0, 0, "
            "5], 'normal': [0, 0, -1]}]"),
       Json{{"ambient", {ambient, ambient, ambient}},
-           {"background", {1, 1, 1}},  // which nobody sees
+           {"background", {1, 1, 1}},  // never visible
            {"materials",
             {{"white", {{"type", "reflective"}, {"kd", nullptr}, {"n", {n, n, n}}, {"k", {0, 0, 0}}}}}}});
 }
 constexpr auto kUpright = [] { return Ray<double>{{0, 0, 0}, {0, 0, -1}}; };
 
-// `count` slabs of glass, each surface mirrors `reflectance`. The sky is 1 below; above hangs a black plane.
+// Returns `count` slabs of glass whose surfaces have reflectance `reflectance`. The sky is 1 below, and a
+// black plane is above.
 Json slabs(int count, double reflectance) {
   Json objects = json("[{'type': 'plane', 'point': [0, 0, 9], 'normal': [0, 0, -1], 'material': 'black'}]");
   for (int i = 0; i < count; ++i)
@@ -49,8 +50,8 @@ Json slabs(int count, double reflectance) {
 }
 const Ray<double> kDown{{0, 0, 5}, {0, 0, -1}};
 
-// Between mirrors of .9 at depth 5, .53 of the light is left out; of .99 at depth 10, .90. The ledger says
-// so, and ambient light stands in for it.
+// At depth 5, mirrors of .9 omit .53 of the light. At depth 10, mirrors of .99 omit .90. The ledger has that
+// share, and ambient light replaces it.
 TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
   covers("E1");
   for (const auto& [reflectance, depth] : {std::pair{.5, 5}, {.9, 5}, {.99, 10}, {.9, 32}}) {
@@ -63,10 +64,9 @@ TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
   EXPECT_NEAR(Tracing(mirrors(.99, 0), limits(10)).trace(kUpright()).cut, .90, .005);
 }
 
-// A room with walls of glass that mirror `albedo` of the light meeting them upright, under a sky of
-// 1 / (1 - albedo): each wall sends 1 into the room and mirrors `albedo` of what meets it inside. After n
-// walls a ray has gathered (1 - albedo^n) / (1 - albedo), and 1 / (1 - albedo) in the end, which the ledger
-// completes.
+// A room with glass walls that reflect `albedo` at normal incidence, under a sky of 1 / (1 - albedo). Each
+// wall transmits 1 into the room and reflects `albedo` of the light inside. After n walls a ray has gathered
+// (1 - albedo^n) / (1 - albedo), and with the ledger 1 / (1 - albedo).
 TEST(ClosedRoom, WallsThatShineAndMirrorSumTheGeometricSeries) {
   covers("R2");
   const auto seen = [](double albedo, int walls) {
@@ -104,9 +104,9 @@ TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
   EXPECT_EQ(picture.stats.non_finite_pixels, 0u);
 }
 
-// At a threshold of 1/255 a tree that splits evenly ends everywhere at depth 8, where every branch carries
-// 1/256. The ledger knows: the picture is off by no more than the sum of the branches. With all of its four
-// surfaces mirroring half, two slabs let 1/5 through.
+// At a threshold of 1/255, an evenly splitting tree ends at depth 8, where every branch carries 1/256. The
+// ledger bounds the error by the sum of the branches. With four surfaces of reflectance 1/2, two slabs
+// transmit 1/5.
 TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
   covers("E2");
   const Answer coarse = Tracing(slabs(2, .5), limits(32, 1.0 / 255)).trace(kDown);
@@ -117,8 +117,8 @@ TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
   EXPECT_LT(fine.cut, coarse.cut / 5);
 }
 
-// One strong branch: .9 mirrored at each surface of a slab. Without a threshold the error is that of the
-// depth alone.
+// One strong branch: each surface of a slab reflects .9. Without a threshold, the error is that of the depth
+// limit alone.
 TEST(Threshold, NoneIsTheDefaultAndCostsNothingOfASingleBranch) {
   covers("E3");
   EXPECT_EQ(load(slabs(1, .9))->render.min_contribution, 0);
@@ -128,12 +128,12 @@ TEST(Threshold, NoneIsTheDefaultAndCostsNothingOfASingleBranch) {
   const Answer without = Tracing(slabs(1, .9), limits(32)).trace(kDown);
   EXPECT_LE(std::abs(without.radiance.x - exact), without.cut);
   EXPECT_LE(without.cut, .1 * std::pow(.9, 30)) << "what is still between the surfaces after 30 of them";
-  // A corridor that does end: six mirrors of .9 and then the sky is .9^6, to the last bit or so.
+  // A corridor that ends: six mirrors of .9 and then the sky give .9^6, nearly to the last bit.
   EXPECT_NEAR(Tracing(mirrors(.9, 1), limits(5)).trace(kUpright()).radiance.x, std::pow(.9, 6), 1e-4);
 }
 
-// Rays are traced while they carry the threshold or more in some channel, and no longer: of a slab's series
-// (1 - R) R^j as many as the formula says.
+// Rays are traced while they carry at least the threshold in some channel. The count for a slab's series (1 -
+// R) R^j follows from the formula.
 TEST(Threshold, IsMetRayByRay) {
   constexpr double kR = .5;
   for (const double threshold : {0.4, 0.2, 0.1, 0.01, 0.0011}) {
@@ -150,8 +150,8 @@ TEST(Threshold, IsMetRayByRay) {
   }
 }
 
-// The tree of rays at most doubles from one depth to the next where each surface sends two on; it does not
-// grow with the number of objects.
+// If each surface sends two rays on, the tree at most doubles from one depth to the next. The number of
+// objects does not matter.
 TEST(Growth, IsByBranchesAndNotByObjects) {
   Tracing tracing(slabs(3, .3), limits(10));
   tracing.trace(kDown);
@@ -164,7 +164,7 @@ TEST(Growth, IsByBranchesAndNotByObjects) {
     last = now;
   }
   Json crowded = slabs(3, .3);
-  for (int i = 0; i < 100; ++i)  // out of everybody's way
+  for (int i = 0; i < 100; ++i)  // not hit by any ray
     crowded["objects"].push_back(
         {{"type", "sphere"}, {"center", {200 + 3 * i, 0, 0}}, {"radius", 1}, {"material", "black"}});
   Tracing among(crowded, limits(10));
@@ -172,7 +172,7 @@ TEST(Growth, IsByBranchesAndNotByObjects) {
   EXPECT_EQ(among.counts().rays.total(), rays.total());
 }
 
-// From the middle of so many slabs no ray gets out in time, and every surface sends two on: 2^d rays.
+// From the middle of the slabs no ray leaves in time, and every surface sends two rays on: 2^d rays.
 TEST(Growth, DoublesWhereEverySurfaceSendsTwo) {
   constexpr int kDepth = 10;
   Tracing tracing(slabs(24, .3), limits(kDepth));
@@ -184,11 +184,11 @@ TEST(Growth, DoublesWhereEverySurfaceSendsTwo) {
   }
 }
 
-// Without a structure every ray is tested against every object once: neither more nor less than linear.
+// Without a structure every ray is tested against every object exactly once.
 TEST(Growth, IsLinearInObjectsForTheList) {
   for (const int balls : {0, 1, 10, 100}) {
     Json scene = mirrors(.5, 1);
-    for (int i = 0; i < balls; ++i)  // out of everybody's way
+    for (int i = 0; i < balls; ++i)  // not hit by any ray
       scene["objects"].push_back(
           {{"type", "sphere"}, {"center", {200 + 3 * i, 0, 0}}, {"radius", 1}, {"material", "white"}});
     RenderRequest request = limits(5);
@@ -200,9 +200,9 @@ TEST(Growth, IsLinearInObjectsForTheList) {
   }
 }
 
-// (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays where it hits a surface that light
-// sources light. Rough surfaces end the path here and mirrors are lit by nothing but what they mirror, so d
-// is 1 without mirrors; behind k mirrors the pixel costs k + 1 rays and m shadow rays.
+// (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays from a surface with direct light.
+// Rough surfaces end the path here and mirrors have no direct light, so d is 1 without mirrors. Behind k
+// mirrors the pixel costs k + 1 rays and m shadow rays.
 TEST(Growth, CountersObeyTheLawOfTheSlides) {
   const auto counts = [](int mirrors_on_the_way, int lights) {
     Json scene = json(
@@ -211,7 +211,7 @@ TEST(Growth, CountersObeyTheLawOfTheSlides) {
     scene["materials"] = json(
         "{'silver': {'type': 'reflective', 'n': [0.1, 0.1, 0.1], 'k': [4, 4, 4]}, 'paint': {'type': "
         "'rough'}}");
-    // A periscope: each mirror turns the view upright or level again, and a wall of paint stands at its end.
+    // A periscope: each mirror turns the view upright or level again, and a painted wall stands at its end.
     Vec3d at(0, 0, 0), direction(0, 0, -1);
     for (int i = 0; i < mirrors_on_the_way; ++i) {
       const Vec3d turned = direction.z != 0 ? Vec3d(0, 1, 0) : Vec3d(0, 0, -1);
@@ -234,7 +234,7 @@ TEST(Growth, CountersObeyTheLawOfTheSlides) {
     RenderRequest request = limits(8);
     request.width = 80;
     request.height = 60;
-    request.full_model = true;  // the plan would see that a wall alone needs no shadow rays
+    request.full_model = true;  // the plan would skip shadow rays of a single wall
     return render(scene, request).stats.counts.rays;
   };
   constexpr std::uint64_t kPixels = 80 * 60;
@@ -251,7 +251,7 @@ TEST(Growth, CountersObeyTheLawOfTheSlides) {
   }
 }
 
-// However faint light becomes, every bounce costs one ray and one test of each primitive.
+// Every bounce costs one ray and one test of each primitive, however faint the light.
 TEST(Growth, FaintRaysCostWhatBrightOnesDo) {
   covers("A35");
   for (const double reflectance : {.5, 1e-4}) {  // 1e-4 ^ 33 is below the smallest float

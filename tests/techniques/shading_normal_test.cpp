@@ -6,11 +6,11 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// Meshes with interpolated normals: light follows the true surface.
+// Tests meshes with interpolated normals: light follows the geometric surface.
 namespace orrery::test {
 namespace {
 
-// One triangle in z = 0 whose normals lean outward by 60 degrees.
+// Returns a triangle in z = 0 whose normals lean outward by 60 degrees.
 Json leaning(const Json& material) {
   Json mesh =
       json(R"({'type': 'mesh', 'positions': [[-1, -1, 0], [1, -1, 0], [0, 1, 0]], 'indices': [[0, 1, 2]],
@@ -18,8 +18,8 @@ Json leaning(const Json& material) {
   return scene_with(mesh, Json{{"materials", {{"it", material}}}, {"background", {1, 1, 1}}});
 }
 
-// At a slant the mirrored direction about a leaning normal points below the surface: then the true normal
-// decides.
+// At a slant, the direction mirrored about a leaning normal points below the surface. The geometric normal is
+// used instead.
 TEST(ShadingNormal, SendsNoMirroredRayIntoTheSurface) {
   covers("C12");
   Tracing tracing(leaning(json("{'type': 'reflective', 'n': [0, 0, 0], 'k': [0, 0, 0]}")));
@@ -40,7 +40,7 @@ TEST(ShadingNormal, SendsNoMirroredRayIntoTheSurface) {
   EXPECT_EQ(sunk, 0);
 }
 
-// A mirror never shines by itself, whichever way its normals lean.
+// A mirror never adds light, however its normals lean.
 TEST(ShadingNormal, MakesNoLight) {
   Tracing tracing(leaning(json("{'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]}")));
   Random random(2);

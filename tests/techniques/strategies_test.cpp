@@ -10,7 +10,7 @@
 #include "tests/support/materials.h"
 #include "tests/support/tracing.h"
 
-// Light sources drawn, directions drawn, and both weighted together: three estimates of one number.
+// Compares light sampling, BSDF sampling, and both with MIS: three estimates of one number.
 namespace orrery::test {
 namespace {
 
@@ -21,7 +21,7 @@ struct Named {
   const char* name;
   const char* text;
 };
-// About where a mirror would show them to the viewer, partly.
+// Lamps partly in the mirror direction of the viewer.
 const std::vector<Named> kLamps = {
     {"Rectangle", "{'type': 'rectangle', 'corner': [-2, 1.5, -0.8], 'a': [1.5, 0, 0], 'b': [0, 0.3, 1.6]}"},
     {"Ball", "{'type': 'sphere', 'center': [-1.2, 1.6, 0.3], 'radius': 0.7}"},
@@ -36,7 +36,7 @@ const std::vector<Named> kLamps = {
     {"Column", "{'type': 'cylinder', 'base': [-1, 0.9, -0.8], 'top': [-1.4, 1.6, 0.9], 'radius': 0.3}"},
     {"Tube", "{'type': 'cylinder', 'base': [-1, 1, -3], 'top': [-1.4, 1.6, 3], 'radius': 0.1}"},
     {"Drum", "{'type': 'cylinder', 'base': [-1.2, 1.2, 0.1], 'top': [-1.2, 1.5, 0.3], 'radius': 0.8}"},
-    // Of models.
+    // Instanced lamps.
     {"PlacedBox",
      "{'type': 'box', 'min': [-0.5, -0.5, -0.5], 'max': [0.5, 0.5, 0.5], 'instance': "
      "{'scale': [2, 0.5, 1], 'rotate': {'axis': [0.2, 0, 1], 'degrees': 25}, 'translate': [-1.2, 1.6, "
@@ -69,7 +69,7 @@ const std::vector<Named> kMaterials = {
 
 bool is_light(const Json& lamp) { return lamp["type"] == "directional"; }
 
-// The lamp alone, or over a small surface at the origin. (No scene is without objects.)
+// Returns the lamp alone, or over a small surface at the origin. (Every scene needs an object.)
 Json scene_of_lamp(const Json& lamp, const Json* material) {
   Json scene = scene_of("[{'type': 'sphere', 'center': [0, -90, 0], 'radius': 1, 'material': 'black'}]",
                         "{'materials': {'white': {}, 'black': {'type': 'lambert', 'reflectance': 0},"
@@ -95,7 +95,7 @@ Json scene_of_lamp(const Json& lamp, const Json* material) {
   return scene;
 }
 
-// Mean over slots, whose samples are averaged.
+// Returns mean and standard deviation over slots, whose samples are averaged.
 Estimate of_slots(const std::vector<double>& slots) {
   double sum = 0, squares = 0;
   for (const double slot : slots) {
@@ -113,7 +113,7 @@ Probe<double>::Case view(const Vec3d& light) {
   return one;
 }
 
-// By light sources alone: each part of the lamp is as likely.
+// Estimates by light sampling alone. Each part of the lamp is equally likely.
 Estimate by_light(const Json& lamp, const Probe<double>& material, int samples) {
   const Tracing lit(scene_of_lamp(lamp, nullptr));
   const Geometry<double>& geometry = *lit.world().geometry;
@@ -148,7 +148,7 @@ Estimate by_light(const Json& lamp, const Probe<double>& material, int samples) 
   return of_slots(slots);
 }
 
-// By directions alone, that the material draws.
+// Estimates by BSDF sampling alone.
 Estimate by_lobe(const Json& lamp, const Probe<double>& material, int samples) {
   RenderRequest request;
   request.technique = "path";
@@ -172,8 +172,8 @@ Estimate by_both(const Json& lamp, const Json& material, int samples) {
 
 class Strategies : public testing::TestWithParam<Named> {};
 
-// Both together are as good as the better one, but where light sources alone leave almost no noise: there
-// what directions find, though it weighs little, adds up to a quarter.
+// MIS is as good as the better strategy, unless light sampling alone has almost no noise. In that case the
+// BSDF samples, despite their small weight, raise the deviation by up to a quarter.
 TEST_P(Strategies, OfDrawingAgreeForEveryMaterial) {
   covers("light-22");
   const Json lamp = json(GetParam().text);

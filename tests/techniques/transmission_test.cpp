@@ -7,7 +7,7 @@
 #include "tests/support/random.h"
 #include "tests/support/tracing.h"
 
-// How much light comes through glass: closed forms, furnaces, and what a limited depth leaves out.
+// Tests the transmittance of glass: closed forms, furnaces, and the omissions of a limited depth.
 namespace orrery::test {
 namespace {
 
@@ -19,7 +19,7 @@ RenderRequest depth(int max_depth) {
   return request;
 }
 
-// A slab of glass between z = -1/2 and 1/2. The sky is 1 below it and 0 above (a black plane hangs there).
+// Returns a slab of glass between z = -1/2 and 1/2. The sky is 1 below and 0 above, due to a black plane.
 Json slab(double filter = 1) {
   return scene_with(
       json(R"([{'type': 'box', 'min': [-90, -90, -0.5], 'max': [90, 90, 0.5], 'material': 'glass'},
@@ -37,7 +37,7 @@ Ray<double> slanted(double degrees) {
   const Vec3d direction(std::sin(degrees * kRadians), 0, -std::cos(degrees * kRadians));
   return {Vec3d(0, 0, 0.5) - direction, direction};
 }
-// The same with dark below and light above: what is mirrored.
+// Returns the same slab with dark below and light above, to show reflected light.
 Json slab_from_below(double filter = 1) {
   Json scene = slab(filter);
   scene["objects"][1]["point"] = {0, 0, -9};
@@ -65,7 +65,7 @@ TEST(Slab, AbsorbsOnEveryPass) {
   EXPECT_NEAR(Tracing(slab_from_below(half), depth(32)).trace(slanted(0)).radiance.x, .05356949, 5e-9);
 }
 
-// 0, 1 and 2 round trips inside, and the ledger of what is left out.
+// 0, 1 and 2 round trips inside, and the ledger of the omitted rest.
 TEST(Slab, TruncatedSeriesIsOffByNoMoreThanTheLedger) {
   covers("D9");
   const double expected[] = {.9216, .92307456, .9230769193};
@@ -97,7 +97,7 @@ TEST(Ball, WeakensByTheChord) {
               1e-12);
 }
 
-// Lossless glass of any closed shape under a sky of 1 is invisible, however light finds its way.
+// Lossless glass of any closed shape is invisible under a sky of 1, for any light path.
 TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
   covers("R3 D11");
   for (const char* object : {"{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}",
@@ -110,7 +110,7 @@ TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
         const Json scene =
             scene_with(json(object), Json{{"materials", materials}, {"background", {1, 1, 1}}});
         Json lit = scene;
-        lit["ambient"] = {1, 1, 1};  // stands in for the rays that are cut
+        lit["ambient"] = {1, 1, 1};  // replaces omitted rays
         RenderRequest request = depth(12);
         request.min_contribution = 1e-4;
         Tracing dark(scene, request), even(lit, request);
@@ -127,8 +127,8 @@ TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
       }
 }
 
-// The mean over the disc of a ball falls short by 7.3 % without internal reflections, by 1.15 % with one and
-// by .081 % with four; the ledger says so exactly.
+// The mean over the disc of a ball is 7.3 % low without internal reflections, 1.15 % with one and .081 % with
+// four. The ledger has exactly these values.
 TEST(Furnace, BallFallsShortByWhatItsDepthLeavesOut) {
   covers("D11");
   const Json scene = scene_of(
