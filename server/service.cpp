@@ -11,7 +11,7 @@
 #include "server/http/cors.h"
 #include "server/http/process_limits.h"
 #include "server/http/target.h"
-#include "server/readings.h"
+#include "server/metrics_snapshot.h"
 #include "server/routes/access.h"
 #include "server/routes/problem.h"
 #include "server/routes/routes.h"
@@ -53,12 +53,12 @@ void add_common_headers(const Request& request, Response& response) {
 
 // Makes public responses private unless anyone may see them. Responses to signed links must also be
 // revalidated, so that no cache outlives the link.
-void keep_private(Audience audience, Response& response) {
+void keep_private(AccessLevel audience, Response& response) {
   const std::string kept = find_field(response.headers, "Cache-Control").value_or("");
   constexpr std::string_view kPublic = "public, ";
-  if (audience == Audience::link && !kept.empty() && kept != "no-store")
+  if (audience == AccessLevel::link && !kept.empty() && kept != "no-store")
     response.set("Cache-Control", "private, no-cache");
-  else if (audience != Audience::all && kept.starts_with(kPublic))
+  else if (audience != AccessLevel::all && kept.starts_with(kPublic))
     response.set("Cache-Control", "private, " + kept.substr(kPublic.size()));
 }
 
@@ -150,7 +150,7 @@ void Service::stop() {
 
 Response Service::metrics() {
   return text_response(200, "text/plain; version=0.0.4; charset=utf-8",
-                       metrics_.text(read_metrics(app_, server_, log_)))
+                       metrics_.text(collect_metrics(app_, server_, log_)))
       .set("Cache-Control", "no-store");
 }
 
@@ -164,13 +164,13 @@ HttpServer::Admitted Service::admit(const Router& router, Request& request) {
         {.status = 308,
          .headers = {{"Location", "/" + query_text(request.query)}, {"Cache-Control", "no-store"}}});
   if (const auto answer = preflight(request, origins)) return answered(*answer);
-  refuse_foreign(request, origins, !settings_.tokens_file.empty());
+  reject_cross_origin(request, origins, !settings_.tokens_file.empty());
   if (request.method == "OPTIONS")
     return answered({.status = 204, .headers = {{"Allow", router.allowed_methods(request)}}});
   const Route& route = router.find(request);
   if (route.scope != Scope::none && settings_.tokens_file.empty() && !settings_.insecure)
-    refuse_foreign_host(request, origins);
-  const Audience audience = require_access(app_.access(), route.scope, request);
+    reject_unknown_host(request, origins);
+  const AccessLevel audience = require_access(app_.access(), route.scope, request);
   HttpServer::Admitted admitted{.body = {}, .answer = [this, &route, audience](Request& r) {
                                   Response response = route.handler(r);
                                   keep_private(audience, response);

@@ -11,7 +11,7 @@ class BatchTraversal {
  public:
   // `t` holds the ends of the active rays and receives hit distances, or -1 for occluded rays. `primitive`
   // receives the primitives that were hit, or is null. REQUIRES: all arguments outlive this object.
-  BatchTraversal(const WideTree<T>& tree, const RayBatch<T>& rays, const Groups& groups, Array<T>& t,
+  BatchTraversal(const WideTree<T>& tree, const RayBatch<T>& rays, const LaneGroups& groups, Array<T>& t,
                  Array<IndexOf<T>>* primitive)
       : tree_(tree), rays_(rays), groups_(groups), t_(t), primitive_(primitive) {}
 
@@ -105,7 +105,7 @@ class BatchTraversal {
     const unsigned any_x = x & bits, any_y = y & bits;
     const bool shared = (any_x == 0 || any_x == bits) && (any_y == 0 || any_y == bits);
     if (shared && packets_pay_) {
-      const PacketProbe<T> probe(ray, active);
+      const PacketBoxTester<T> probe(ray, active);
       const auto& axis = kCyclicAxes[any_x ? 0 : any_y ? 1 : 2];
       if (probe.narrow() && probe.width_at(tree_.box()) < kMaxPacketExtent * tree_.mean_leaf_extent())
         return add_packet(packet_of(ray, shear, axis, probe, active), probe, group);
@@ -113,7 +113,7 @@ class BatchTraversal {
     add_singles(ray, shear, x, y, bits, group);
   }
 
-  void add_packet(const Packet<T>& packet, const PacketProbe<T>& probe, int group) {
+  void add_packet(const Packet<T>& packet, const PacketBoxTester<T>& probe, int group) {
     const N t = t_.at(group);
     const auto primitive =
         primitive_ ? load_index<T>(*primitive_, group) : IndexLanes<T>(IndexOf<T>(kNoPrimitive));
@@ -124,7 +124,7 @@ class BatchTraversal {
   // y.
   void add_singles(const Ray<N>& ray, const Shear<N>& shear, unsigned x, unsigned y, unsigned chosen,
                    int group) {
-    const typename SingleProbe<T>::Register probes(ray);
+    const typename RayBoxTester<T>::Register probes(ray);
     alignas(64) std::array<std::array<T, static_cast<std::size_t>(kWidth<T>)>, 9> row;
     const std::array<const N*, 9> from{&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
                                        &ray.direction.x, &ray.direction.y, &ray.direction.z,
@@ -138,12 +138,12 @@ class BatchTraversal {
       singles_.add({{{row[0][lane], row[1][lane], row[2][lane]}, {row[3][lane], row[4][lane], row[5][lane]}},
                     axis,
                     {row[6][lane], row[7][lane], row[8][lane]}},
-                   SingleProbe<T>(probes, lane), {t_[place], primitive}, place);
+                   RayBoxTester<T>(probes, lane), {t_[place], primitive}, place);
     }
   }
 
   static Packet<T> packet_of(const Ray<N>& ray, const Shear<N>& shear, const std::array<int, 3>& axis,
-                             const PacketProbe<T>& probe, const MaskOf<N>& active) {
+                             const PacketBoxTester<T>& probe, const MaskOf<N>& active) {
     if (!probe.one_origin()) return {ray, axis, shear, false, {}, {}, {}};
     return {ray,
             axis,
@@ -173,11 +173,11 @@ class BatchTraversal {
 
   const WideTree<T>& tree_;
   const RayBatch<T>& rays_;
-  const Groups& groups_;
+  const LaneGroups& groups_;
   Array<T>& t_;
   Array<IndexOf<T>>* const primitive_;
-  TraversalGroup<Packet<T>, PacketProbe<T>, PacketHit<T>, kBatch / kWidth<T>> packets_;
-  TraversalGroup<SingleRay<T>, SingleProbe<T>, SingleHit<T>, kBatch> singles_;
+  TraversalGroup<Packet<T>, PacketBoxTester<T>, PacketHit<T>, kBatch / kWidth<T>> packets_;
+  TraversalGroup<SingleRay<T>, RayBoxTester<T>, SingleHit<T>, kBatch> singles_;
   Trial trial_ = Trial::packets;
   bool packets_pay_ = true;
   double packet_cost_ = 0;  // per ray

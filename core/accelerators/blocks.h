@@ -27,10 +27,10 @@ class Blocks {
   BlockName add(const PrimitiveList<T>& primitives, std::span<const std::uint32_t> places) {
     const auto* kernel = primitives[places.front()].kernel;
     references_ += places.size();
-    auto making = std::find_if(makings_.begin(), makings_.end(),
-                               [kernel](const Making& m) { return m.kernel == kernel; });
-    if (making == makings_.end()) making = makings_.insert(making, {kernel, places.front(), {}});
-    assert(makings_.size() <= kMaxPacks);
+    auto making = std::find_if(partial_packs_.begin(), partial_packs_.end(),
+                               [kernel](const PartialPack& m) { return m.kernel == kernel; });
+    if (making == partial_packs_.end()) making = partial_packs_.insert(making, {kernel, places.front(), {}});
+    assert(partial_packs_.size() <= kMaxPacks);
     std::vector<int>& indices = making->indices;
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
     if (block > kBlockMask)
@@ -38,7 +38,7 @@ class Blocks {
                        "expected a structure of at most 67108864 blocks of primitives");
     for (const std::uint32_t place : places) indices.push_back(primitives[place].index);
     indices.resize((block + 1) * kSize, kNothing);
-    return static_cast<BlockName>(making - makings_.begin()) << kBlockBits | block;
+    return static_cast<BlockName>(making - partial_packs_.begin()) << kBlockBits | block;
   }
   // Adds as many blocks as these primitives need and appends their names to `names`. REQUIRES: `places`
   // ascend, so that primitives of one kernel are adjacent.
@@ -54,9 +54,9 @@ class Blocks {
   }
   // Packs the blocks. Must be called after the last block is added and before any block is read.
   void pack() {
-    for (const Making& making : makings_)
+    for (const PartialPack& making : partial_packs_)
       packs_.push_back({making.kernel, making.place, making.kernel->pack(making.indices)});
-    makings_ = {};
+    partial_packs_ = {};
   }
 
   // Repacks the primitives as they are in `moved`, in the same order. Returns the boxes of all blocks by
@@ -106,7 +106,7 @@ class Blocks {
   }
 
   // Pack under construction.
-  struct Making {
+  struct PartialPack {
     const ShapeKernel<T>* kernel;
     std::size_t place;  // index of one of its primitives in the list
     std::vector<int> indices;
@@ -116,7 +116,7 @@ class Blocks {
     std::size_t place;
     PackedPrimitivesPtr<T> primitives;
   };
-  std::vector<Making> makings_;
+  std::vector<PartialPack> partial_packs_;
   std::vector<Pack> packs_;
   std::size_t references_ = 0;
 };

@@ -11,11 +11,11 @@ namespace {
 // Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", TVCG 2018). Few primitives of one
 // kernel become a leaf.
 template <class T>
-class Grouping {
+class BottomUpBuilder {
  public:
   static BoxTree<T> build(std::vector<TreeItem<T>> items) {
     if (items.empty()) return {};
-    Grouping grouping(std::move(items));
+    BottomUpBuilder grouping(std::move(items));
     while (grouping.line_.size() > 1) grouping.merge_neighbours();
     grouping.tree_.nodes.emplace_back();
     grouping.fill(0, grouping.line_[0], 0);
@@ -33,11 +33,11 @@ class Grouping {
     std::uint32_t count, kernel;
   };
 
-  explicit Grouping(std::vector<TreeItem<T>> items) : items_(std::move(items)) {
+  explicit BottomUpBuilder(std::vector<TreeItem<T>> items) : items_(std::move(items)) {
     Boundsd all;
     for (const auto& item : items_) all.include(center(item));
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(items_.size());
-    in_parallel(order.size(), kGrain, [&](std::size_t i) {
+    parallel_for_each(order.size(), kGrain, [&](std::size_t i) {
       order[i] = {curve_place(all, center(items_[i])), static_cast<std::uint32_t>(i)};
     });
     sort_in_parallel(order.begin(), order.end());
@@ -72,7 +72,8 @@ class Grouping {
   void merge_neighbours() {
     const int count = static_cast<int>(line_.size());
     std::vector<int> nearest(line_.size());
-    in_parallel(nearest.size(), kGrain, [&](std::size_t i) { nearest[i] = nearest_of(static_cast<int>(i)); });
+    parallel_for_each(nearest.size(), kGrain,
+                      [&](std::size_t i) { nearest[i] = nearest_of(static_cast<int>(i)); });
     std::vector<std::uint32_t> next;
     next.reserve(line_.size());
     for (int i = 0; i < count; ++i) {
@@ -190,7 +191,7 @@ class Grouping {
 };
 
 template <class T>
-using BottomUp = Hierarchy<T, Grouping<T>>;
+using BottomUp = Hierarchy<T, BottomUpBuilder<T>>;
 
 }  // namespace
 

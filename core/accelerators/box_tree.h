@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/model/accelerator.h"
 
 namespace orrery {

@@ -13,12 +13,12 @@ class Boxes final : public Accelerator<T> {
         boxed_.push_back({padded<T>(primitive.bounds), primitive.kernel, primitive.index});
   }
 
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     unbounded_.closest(rays, groups, hits, counts);
     for (const int i : groups) {
       const BoxRay<N> ray(rays.origin.at(i), rays.direction.at(i));
-      const Groups one = Groups::single(i);
+      const LaneGroups one = LaneGroups::single(i);
       counts.box_tests += boxed_.size() * active_rays(rays, one);
       for (const Boxed& b : boxed_) {
         const auto entered = enters(ray, Vec3<N>(b.box.lo), Vec3<N>(b.box.hi), hits.t.at(i));
@@ -29,8 +29,8 @@ class Boxes final : public Accelerator<T> {
     }
   }
 
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
-    const Groups open = unbounded_.occlude(rays, groups, counts);
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
+    const LaneGroups open = unbounded_.occlude(rays, groups, counts);
     for (const int i : open) occlude_register(rays, i, counts);
   }
 
@@ -50,7 +50,7 @@ class Boxes final : public Accelerator<T> {
 
   void occlude_register(RayBatch<T>& rays, int i, AcceleratorCounts& counts) const {
     const BoxRay<N> ray(rays.origin.at(i), rays.direction.at(i));
-    const Groups one = Groups::single(i);
+    const LaneGroups one = LaneGroups::single(i);
     for (const Boxed& b : boxed_) {
       const N t_max = rays.t_max.at(i);
       const auto active = t_max > N(T(0));

@@ -10,7 +10,7 @@ enum class Query { closest, occlude };
 // Tests every ray against every primitive of a list.
 
 template <class T>
-void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const Groups& groups,
+void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& rays, const LaneGroups& groups,
                         HitBatch<T>& hits, AcceleratorCounts& counts) {
   if (primitives.empty()) return;
   for (const auto& primitive : primitives)
@@ -20,9 +20,9 @@ void closest_exhaustive(const PrimitiveList<T>& primitives, const RayBatch<T>& r
 
 // Returns the registers with rays that hit no primitive.
 template <class T>
-Groups occlude_exhaustive(const PrimitiveList<T>& primitives, RayBatch<T>& rays, const Groups& groups,
-                          AcceleratorCounts& counts) {
-  Groups open = groups;
+LaneGroups occlude_exhaustive(const PrimitiveList<T>& primitives, RayBatch<T>& rays, const LaneGroups& groups,
+                              AcceleratorCounts& counts) {
+  LaneGroups open = groups;
   for (const auto& primitive : primitives) {
     counts.primitive_tests += active_rays(rays, open);
     primitive.kernel->occlude(primitive.index, rays, open, counts);

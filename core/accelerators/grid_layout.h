@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/accelerators/probes.h"
+#include "core/accelerators/box_testers.h"
 
 namespace orrery {
 
@@ -57,7 +57,7 @@ class GridLayout {
   // (after Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987). Close to a plane,
   // visits both sides of it.
   template <class Open, class Visit>
-  void for_each_along(const SingleRay<T>& ray, const SingleProbe<T>& probe, T from, T to, const Open& open,
+  void for_each_along(const SingleRay<T>& ray, const RayBoxTester<T>& probe, T from, T to, const Open& open,
                       const Visit& visit) const {
     if (!probe.clip(box_, from, to)) return;
     const int x = ray.axis[0], y = ray.axis[1], z = ray.axis[2];
@@ -81,7 +81,7 @@ class GridLayout {
 
  private:
   static CellIndex sides_for(const Vec3<T>& extent, double cells) {
-    constexpr double kMostASide = 1024;
+    constexpr double kMaxPerSide = 1024;
     CellIndex count{1, 1, 1};
     std::array<bool, 3> thin{};
     for (int pass = 0; pass < 3; ++pass) {
@@ -92,7 +92,7 @@ class GridLayout {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double fit = side > 0 ? double{extent[axis]} / side : 0;
         thin[axis] = thin[axis] || !(fit >= 1);
-        count[axis] = thin[axis] ? 1 : static_cast<int>(std::min(std::round(fit), kMostASide));
+        count[axis] = thin[axis] ? 1 : static_cast<int>(std::min(std::round(fit), kMaxPerSide));
       }
     }
     return count;
@@ -116,7 +116,7 @@ class GridLayout {
   }
 
   template <class Open, class Visit>
-  void along(const Ray<T>& ray, const SingleProbe<T>& probe, std::size_t axis, T rounding, T from, T to,
+  void along(const Ray<T>& ray, const RayBoxTester<T>& probe, std::size_t axis, T rounding, T from, T to,
              const Open& open, const Visit& visit) const {
     const bool down = probe.descending(axis);
     const T per = per_size_[axis], slack = T(0.001) + rounding * per;

@@ -12,15 +12,15 @@ class Hierarchy final : public Accelerator<T> {
   explicit Hierarchy(const PrimitiveList<T>& primitives)
       : unbounded_(primitives), tree_(Builder::build(items_of(primitives)), primitives) {}
 
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     unbounded_.closest(rays, groups, hits, counts);
     if (tree_.empty()) return;
     BatchTraversal<T>(tree_, rays, groups, hits.t, &hits.primitive).template run<Query::closest>(counts);
   }
 
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
-    const Groups open = unbounded_.occlude(rays, groups, counts);
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
+    const LaneGroups open = unbounded_.occlude(rays, groups, counts);
     if (tree_.empty()) return;
     BatchTraversal<T>(tree_, rays, open, rays.t_max, nullptr).template run<Query::occlude>(counts);
   }

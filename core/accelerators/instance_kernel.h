@@ -43,7 +43,7 @@ struct TakenHits {
     const IndexLanes<T> in_model = load_index<T>(visit.hits.primitive, i);
     id = in_model + IndexOf<T>(first);
     const auto met = mask_cast<N>(in_model != IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
-    nearer = met && takes_over(t, id, best, best_id);
+    nearer = met && is_nearer_hit(t, id, best, best_id);
   }
 };
 
@@ -59,7 +59,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
   bool timed() const override { return Instance::kTimed; }
   std::vector<HullTriangle> hull(int) const override { return {}; }
 
-  void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(int index, const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     const Instance& placed = (*placed_)[static_cast<std::size_t>(index)];
     const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
@@ -73,7 +73,8 @@ class InstanceKernelOf : public ShapeKernel<T> {
     }
   }
 
-  void occlude(int index, RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(int index, RayBatch<T>& rays, const LaneGroups& groups,
+               AcceleratorCounts& counts) const override {
     const Instance& placed = (*placed_)[static_cast<std::size_t>(index)];
     const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     visit->rays.count = rays.count;
@@ -82,7 +83,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
     for (const int i : groups) rays.t_max.put(i, visit->rays.t_max.at(i));
   }
 
-  void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+  void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
                SurfaceBatch<T>& out) const override {
     const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
@@ -91,7 +92,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
       const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
       visit->hits.primitive.put(i, in_model);
       for (const auto& shapes : placed.model->shapes)
-        shapes->surface(visit->rays, visit->hits, Groups::single(i), *found);
+        shapes->surface(visit->rays, visit->hits, LaneGroups::single(i), *found);
       out.position.put(i, mask, pose.point(found->position.at(i)));
       out.geometric.put(i, mask, normalize(pose.normal(found->geometric.at(i))));
       out.normal.put(i, mask, normalize(pose.normal(found->normal.at(i))));
@@ -100,7 +101,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
     });
   }
 
-  void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                   SurfaceBatch<T>& out) const override {
     const std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     const std::unique_ptr<SurfaceBatch<T>> found(new SurfaceBatch<T>);
@@ -109,8 +110,8 @@ class InstanceKernelOf : public ShapeKernel<T> {
       const auto pose = enter(placed, rays, i, hits.t.at(i), *visit);
       visit->hits.primitive.put(i, in_model);
       for (const auto& shapes : placed.model->shapes) {
-        shapes->surface(visit->rays, visit->hits, Groups::single(i), *found);
-        shapes->parameters(visit->rays, Groups::single(i), visit->hits, *found);
+        shapes->surface(visit->rays, visit->hits, LaneGroups::single(i), *found);
+        shapes->parameters(visit->rays, LaneGroups::single(i), visit->hits, *found);
       }
       hits.u.put(i, mask, visit->hits.u.at(i));
       hits.v.put(i, mask, visit->hits.v.at(i));
@@ -136,7 +137,7 @@ class InstanceKernelOf : public ShapeKernel<T> {
   // Calls visit(i, mask, instance, ids in its model) for each register of `groups` and each instance hit in
   // it. Lanes of one register may hit different instances.
   template <class Visit>
-  void for_each_hit(const HitBatch<T>& hits, const Groups& groups, const Visit& visit) const {
+  void for_each_hit(const HitBatch<T>& hits, const LaneGroups& groups, const Visit& visit) const {
     const auto owner = [this](IndexOf<T> id) {
       return std::upper_bound(placed_->begin(), placed_->end(), id,
                               [](IndexOf<T> number, const Instance& p) { return number < p.last; });

@@ -14,7 +14,7 @@ class PackedInstances final : public PackedPrimitives<T> {
 
   void closest(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(pairs, kBatch, [&](const Placed<T>& placed, RayBlockPairs some) {
+    each_instance(pairs, kBatch, [&](const PlacedInstance<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, rays, hits);
       counts.primitive_tests += active_rays(visit->rays, visit_groups(some));
       placed.model->accelerator->closest(visit->rays, visit_groups(some), visit->hits, counts);
@@ -31,7 +31,7 @@ class PackedInstances final : public PackedPrimitives<T> {
 
   void occlude(RayBlockPairs pairs, const SingleRay<T>* rays, SingleHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(pairs, kBatch, [&](const Placed<T>& placed, RayBlockPairs some) {
+    each_instance(pairs, kBatch, [&](const PlacedInstance<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, rays, hits);
       counts.primitive_tests += active_rays(visit->rays, visit_groups(some));
       placed.model->accelerator->occlude(visit->rays, visit_groups(some), counts);
@@ -42,7 +42,7 @@ class PackedInstances final : public PackedPrimitives<T> {
 
   void closest(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(pairs, kBatch / kWidth<T>, [&](const Placed<T>& placed, RayBlockPairs some) {
+    each_instance(pairs, kBatch / kWidth<T>, [&](const PlacedInstance<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, packets, hits);
       counts.primitive_tests += active_rays(visit->rays, packet_groups(some));
       placed.model->accelerator->closest(visit->rays, packet_groups(some), visit->hits, counts);
@@ -59,7 +59,7 @@ class PackedInstances final : public PackedPrimitives<T> {
 
   void occlude(RayBlockPairs pairs, const Packet<T>* packets, PacketHit<T>* hits,
                AcceleratorCounts& counts) const override {
-    each_instance(pairs, kBatch / kWidth<T>, [&](const Placed<T>& placed, RayBlockPairs some) {
+    each_instance(pairs, kBatch / kWidth<T>, [&](const PlacedInstance<T>& placed, RayBlockPairs some) {
       const auto visit = gather(placed, some, packets, hits);
       counts.primitive_tests += active_rays(visit->rays, packet_groups(some));
       placed.model->accelerator->occlude(visit->rays, packet_groups(some), counts);
@@ -92,14 +92,14 @@ class PackedInstances final : public PackedPrimitives<T> {
     }
   }
 
-  static Groups visit_groups(RayBlockPairs some) {
-    return Groups::covering(0, static_cast<int>(some.size()), kWidth<T>);
+  static LaneGroups visit_groups(RayBlockPairs some) {
+    return LaneGroups::covering(0, static_cast<int>(some.size()), kWidth<T>);
   }
-  static Groups packet_groups(RayBlockPairs some) {
-    return Groups::covering(0, static_cast<int>(some.size()) * kWidth<T>, kWidth<T>);
+  static LaneGroups packet_groups(RayBlockPairs some) {
+    return LaneGroups::covering(0, static_cast<int>(some.size()) * kWidth<T>, kWidth<T>);
   }
 
-  static std::unique_ptr<ModelVisit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
+  static std::unique_ptr<ModelVisit<T>> gather(const PlacedInstance<T>& placed, RayBlockPairs some,
                                                const SingleRay<T>* rays, const SingleHit<T>* hits) {
     std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     RayBatch<T>& batch = visit->rays;
@@ -114,7 +114,7 @@ class PackedInstances final : public PackedPrimitives<T> {
     return visit;
   }
 
-  static std::unique_ptr<ModelVisit<T>> gather(const Placed<T>& placed, RayBlockPairs some,
+  static std::unique_ptr<ModelVisit<T>> gather(const PlacedInstance<T>& placed, RayBlockPairs some,
                                                const Packet<T>* packets, const PacketHit<T>* hits) {
     std::unique_ptr<ModelVisit<T>> visit(new ModelVisit<T>);
     visit->rays.count = static_cast<int>(some.size()) * kWidth<T>;

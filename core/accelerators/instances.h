@@ -21,7 +21,7 @@ struct ModelGeometry {
 
 // Model placed in the world, at rest.
 template <class T>
-struct Placed {
+struct PlacedInstance {
   std::shared_ptr<const ModelGeometry<T>> model;
   int first, last;  // numbers of its primitives in the scene: first..last-1
   Affine<T> world_from_model, model_from_world;
@@ -45,7 +45,7 @@ struct Placed {
   [[gnu::always_inline]] Pose pose(const RayBatch<T>&, int) const { return pose(); }
 };
 template <class T>
-using PlacedList = std::vector<Placed<T>>;
+using PlacedList = std::vector<PlacedInstance<T>>;
 
 // Returns the box around a transformed box. REQUIRES: `model` is bounded.
 Boundsd box_around(const Boundsd& model, const Affined& world_from_model);
@@ -55,9 +55,9 @@ Boundsd bounds_of(const Boundsd& model, const Affined& world_from_model);
 
 // Instances of a scene as primitives. Hits carry the scene's numbers of the models' primitives.
 template <class T>
-class InstanceKernel final : public InstanceKernelOf<T, Placed<T>> {
+class InstanceKernel final : public InstanceKernelOf<T, PlacedInstance<T>> {
  public:
-  using InstanceKernelOf<T, Placed<T>>::InstanceKernelOf;
+  using InstanceKernelOf<T, PlacedInstance<T>>::InstanceKernelOf;
   PackedPrimitivesPtr<T> pack(std::span<const int> indices) const override;
 };
 

@@ -8,12 +8,12 @@ class List final : public Accelerator<T> {
  public:
   explicit List(const PrimitiveList<T>& primitives) : primitives_(primitives) {}
 
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     closest_exhaustive(primitives_, rays, groups, hits, counts);
   }
 
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
     occlude_exhaustive(primitives_, rays, groups, counts);
   }
 

@@ -6,8 +6,8 @@
 namespace orrery {
 namespace {
 
-constexpr int kMostPieces = 64;      // maximum pieces per motion segment
-constexpr double kPieceDegrees = 4;  // maximum turn per piece, within kMostPieces
+constexpr int kMaxPieces = 64;       // maximum pieces per motion segment
+constexpr double kPieceDegrees = 4;  // maximum turn per piece, within kMaxPieces
 
 // Includes the path between two placements of a point that is scaled, rotated and translated. The point
 // rotates about a unit axis while its scaled position v moves linearly. Its second derivative is then at most
@@ -45,7 +45,7 @@ Boundsd bounds_during(const Boundsd& model, const Instance& instance, const Expo
     const Placement from = instance.motion.at(moments[k]), to = instance.motion.at(moments[k + 1]);
     const double turned = std::abs(to.degrees - from.degrees);
     const int pieces =
-        static_cast<int>(std::clamp(std::ceil(turned / kPieceDegrees), 1.0, double{kMostPieces}));
+        static_cast<int>(std::clamp(std::ceil(turned / kPieceDegrees), 1.0, double{kMaxPieces}));
     for (int piece = 0; piece < pieces; ++piece) {
       const Placement start = mix(from, to, static_cast<double>(piece) / pieces),
                       end = mix(from, to, static_cast<double>(piece + 1) / pieces);
@@ -60,14 +60,14 @@ Boundsd bounds_during(const Boundsd& model, const Instance& instance, const Expo
 }
 
 template <class T>
-MovingPlaced<T>::MovingPlaced(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of,
-                              int number, const Exposure& exposure)
+MovingInstance<T>::MovingInstance(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of,
+                                  int number, const Exposure& exposure)
     : model(std::move(of)),
       first(number),
       last(number + static_cast<int>(model->primitives.size())),
-      stretches(instance.motion.moments(exposure)) {
+      segments(instance.motion.moments(exposure)) {
   const std::vector<double> times = instance.motion.moments(exposure);
-  double most_scale = 0, most_translate = 0;
+  double max_scale = 0, max_translate = 0;
   for (std::size_t k = 0; k + 1 < times.size(); ++k) {
     const Placement from = instance.motion.at(times[k]), to = instance.motion.at(times[k + 1]);
     const Affined turn = rotation(instance.axis, from.degrees);
@@ -85,17 +85,17 @@ MovingPlaced<T>::MovingPlaced(const Instance& instance, std::shared_ptr<const Mo
     moment.translate = Vec3<T>(from.translate);
     moment.more_translate = Vec3<T>(to.translate - from.translate);
     for (const Placement& placement : {from, to}) {
-      most_scale = std::max(most_scale, max_component(abs(placement.scale)));
-      most_translate = std::max(most_translate, max_component(abs(placement.translate)));
+      max_scale = std::max(max_scale, max_component(abs(placement.scale)));
+      max_translate = std::max(max_translate, max_component(abs(placement.translate)));
     }
   }
   // Twice the step of resting instances, because the rotation is rounded once more. sqrt(3) < 2 bounds how
   // much a rotation enlarges the largest coordinate.
-  step_scale = static_cast<T>(8 * most_scale);
-  step_base = static_cast<T>(32 * double{std::numeric_limits<T>::epsilon()} * most_translate);
+  step_scale = static_cast<T>(8 * max_scale);
+  step_base = static_cast<T>(32 * double{std::numeric_limits<T>::epsilon()} * max_translate);
 }
 
-template struct MovingPlaced<float>;
-template struct MovingPlaced<double>;
+template struct MovingInstance<float>;
+template struct MovingInstance<double>;
 
 }  // namespace orrery

@@ -2,7 +2,7 @@
 
 #include "core/accelerators/instances.h"
 #include "core/math/elementary.h"
-#include "core/math/stretches.h"
+#include "core/math/motion_segments.h"
 
 // Instances that move while the shutter is open, or whose models do. Each ray is transformed into the model
 // at the ray's time.
@@ -10,7 +10,7 @@ namespace orrery {
 
 // Model in motion. Between two moments its scale, translation and angle about its axis change linearly.
 template <class T>
-struct MovingPlaced {
+struct MovingInstance {
   using N = Lanes<T>;
 
   // Placement at one moment, and the change until the next.
@@ -24,12 +24,12 @@ struct MovingPlaced {
 
   std::shared_ptr<const ModelGeometry<T>> model;
   int first, last;  // numbers of its primitives in the scene: first..last-1
-  Stretches<T> stretches;
+  MotionSegments<T> segments;
   std::vector<Moment> moments;  // all but the last
   T step_scale, step_base;      // see Placed
 
-  MovingPlaced(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of, int number,
-               const Exposure& exposure);
+  MovingInstance(const Instance& instance, std::shared_ptr<const ModelGeometry<T>> of, int number,
+                 const Exposure& exposure);
 
   static constexpr bool kTimed = true;
   struct Pose {
@@ -48,7 +48,7 @@ struct MovingPlaced {
   Pose pose(const RayBatch<T>& rays, int i) const {
     Pose now;
     now.scale = Vec3<N>(N(T(1)));
-    stretches.for_each(rays.time.at(i), [&](const auto& lanes, std::size_t moment, const N& share) {
+    segments.for_each(rays.time.at(i), [&](const auto& lanes, std::size_t moment, const N& share) {
       const Moment& from = moments[moment];
       const auto [sine, cosine] = sine_cosine_turns(N(share * from.turns));
       for (std::size_t k = 0; k < 3; ++k)
@@ -70,13 +70,13 @@ struct MovingPlaced {
 Boundsd bounds_during(const Boundsd& model, const Instance& instance, const Exposure& exposure);
 
 template <class T>
-class MovingInstanceKernel final : public InstanceKernelOf<T, MovingPlaced<T>> {
+class MovingInstanceKernel final : public InstanceKernelOf<T, MovingInstance<T>> {
  public:
-  using InstanceKernelOf<T, MovingPlaced<T>>::InstanceKernelOf;
+  using InstanceKernelOf<T, MovingInstance<T>>::InstanceKernelOf;
   PackedPrimitivesPtr<T> pack(std::span<const int>) const override { return nullptr; }
 };
 
-extern template struct MovingPlaced<float>;
-extern template struct MovingPlaced<double>;
+extern template struct MovingInstance<float>;
+extern template struct MovingInstance<double>;
 
 }  // namespace orrery

@@ -41,7 +41,7 @@ struct OrientedBox {
 
   // Clips [from, to] to the box. Returns false if nothing remains.
   bool clip(const Ray<T>& ray, T& from, T& to) const {
-    return SingleProbe<T>({along(ray.origin - center), along(ray.direction)}).clip(box, from, to);
+    return RayBoxTester<T>({along(ray.origin - center), along(ray.direction)}).clip(box, from, to);
   }
 
  private:

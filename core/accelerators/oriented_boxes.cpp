@@ -1,14 +1,14 @@
 #include "core/accelerators/oriented_box.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 namespace orrery {
 namespace {
 
 // One box per primitive, with an additional oriented box where it is much smaller.
 template <class T>
-class OneEach {
+class PerPrimitiveObb {
  public:
-  explicit OneEach(const PrimitiveList<T>& primitives) {
+  explicit PerPrimitiveObb(const PrimitiveList<T>& primitives) {
     for (std::uint32_t i = 0; i < primitives.size(); ++i)
       if (primitives[i].bounds.bounded()) add(primitives, i);
     blocks_.pack();
@@ -65,7 +65,7 @@ class OneEach {
 };
 
 template <class T>
-using OrientedBoxes = SingleRayAccelerator<T, OneEach<T>>;
+using OrientedBoxes = SingleRayAccelerator<T, PerPrimitiveObb<T>>;
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/accelerators/blocks.h"
-#include "core/accelerators/probes.h"
+#include "core/accelerators/box_testers.h"
 #include "core/accelerators/unbounded.h"
 
 namespace orrery {
@@ -10,7 +10,7 @@ namespace orrery {
 template <class T>
 struct TraversalState {
   SingleRay<T> ray;
-  SingleProbe<T> probe;
+  RayBoxTester<T> probe;
   SingleHit<T> hit;
   AcceleratorCounts& counts;
 
@@ -40,7 +40,7 @@ class SingleRayAccelerator final : public Accelerator<T> {
   explicit SingleRayAccelerator(const PrimitiveList<T>& primitives)
       : unbounded_(primitives), tree_(primitives) {}
 
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     unbounded_.closest(rays, groups, hits, counts);
     for_each_active(groups, hits.t, [&](int i) {
@@ -51,8 +51,8 @@ class SingleRayAccelerator final : public Accelerator<T> {
     });
   }
 
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
-    const Groups open = unbounded_.occlude(rays, groups, counts);
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
+    const LaneGroups open = unbounded_.occlude(rays, groups, counts);
     for_each_active(open, rays.t_max, [&](int i) {
       TraversalState<T> state = begin(rays, i, {rays.t_max[i], kNoPrimitive}, counts);
       tree_.template traverse<Query::occlude>(state);
@@ -69,7 +69,7 @@ class SingleRayAccelerator final : public Accelerator<T> {
 
  private:
   template <class Visit>
-  void for_each_active(const Groups& groups, const Array<T>& t, const Visit& visit) const {
+  void for_each_active(const LaneGroups& groups, const Array<T>& t, const Visit& visit) const {
     if (tree_.empty()) return;
     for (const int group : groups)
       for (int i = group; i < group + kWidth<T>; ++i)
@@ -79,7 +79,7 @@ class SingleRayAccelerator final : public Accelerator<T> {
   static TraversalState<T> begin(const RayBatch<T>& rays, int i, const SingleHit<T>& hit,
                                  AcceleratorCounts& counts) {
     const Ray<T> ray = rays[i];
-    return {SingleRay<T>::of(ray), SingleProbe<T>(ray), hit, counts};
+    return {SingleRay<T>::of(ray), RayBoxTester<T>(ray), hit, counts};
   }
 
   Unbounded<T> unbounded_;

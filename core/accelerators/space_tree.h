@@ -6,7 +6,7 @@
 
 #include "core/accelerators/box_tree.h"
 #include "core/accelerators/single_ray.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 namespace orrery {
 

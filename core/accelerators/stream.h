@@ -76,10 +76,10 @@ class Stream {
   static constexpr int kFew = 2;
   // Trees of more than kNear bytes miss the cache. Nodes and blocks are prefetched, and rays that continue
   // alone take turns to hide the latency. This pays for up to kFewFar traversals in a node. For
-  // Query::closest it pays for up to kParting if at most one in kPartingShare of the parent's traversals
-  // enters the node.
+  // Query::closest it pays for up to kMaxDiverging if at most one in kDivergingShare of the parent's
+  // traversals enters the node.
   static constexpr std::size_t kNear = std::size_t{16} << 20;
-  static constexpr int kFewFar = 8, kParting = 64, kPartingShare = 4, kInTurn = 16;
+  static constexpr int kFewFar = 8, kMaxDiverging = 64, kDivergingShare = 4, kInterleaved = 16;
 
   // Whole registers read and write the lists, so each has kPad more elements than it needs.
   static constexpr int room_for(int count) { return (kWidth<T> + 1) * (count + kPad); }
@@ -88,7 +88,8 @@ class Stream {
 
   bool go_alone(int count, int of) const {
     if (!far_) return count <= kFew;
-    return count <= kFewFar || (kQuery == Query::closest && count <= kParting && count * kPartingShare <= of);
+    return count <= kFewFar ||
+           (kQuery == Query::closest && count <= kMaxDiverging && count * kDivergingShare <= of);
   }
 
   // `of` is the number of traversals in the parent. `room` is the start of the free elements.
@@ -120,40 +121,40 @@ class Stream {
   }
 
   // Child that a traversal enters, and its distance.
-  struct Waiting {
+  struct StackEntry {
     T near;
     Child child;
   };
   // Traversal that continues alone. For Query::closest its stack is ordered by distance.
-  struct Walker {
+  struct SingleTraversal {
     std::int32_t id;
     Child at;
     std::size_t waiting;
-    std::array<Waiting, (kDeepestTree + 1) * kLists> stack;
+    std::array<StackEntry, (kDeepestTree + 1) * kLists> stack;
   };
 
   // Takes each traversal through a subtree alone.
   void walk(Child root, const std::int32_t* ids, int count) {
-    const auto begin = [&](Walker& walker, std::int32_t id) {
+    const auto begin = [&](SingleTraversal& walker, std::int32_t id) {
       walker.id = id;
       walker.at = root;
       walker.waiting = 0;
     };
     if (!far_) {
       for (int i = 0; i < count; ++i) {
-        begin(walkers_[0], ids[i]);
-        while (step<false>(walkers_[0])) {
+        begin(single_traversals_[0], ids[i]);
+        while (step<false>(single_traversals_[0])) {
         }
       }
       return;
     }
-    int walking = std::min(count, kInTurn), next = walking;
-    std::array<Walker*, static_cast<std::size_t>(kInTurn)> in_turn;
+    int walking = std::min(count, kInterleaved), next = walking;
+    std::array<SingleTraversal*, static_cast<std::size_t>(kInterleaved)> in_turn;
     for (std::size_t i = 0; i < static_cast<std::size_t>(walking); ++i)
-      begin(*(in_turn[i] = &walkers_[i]), ids[i]);
+      begin(*(in_turn[i] = &single_traversals_[i]), ids[i]);
     while (walking > 0) {
       for (int i = 0; i < walking;) {
-        Walker*& walker = in_turn[static_cast<std::size_t>(i)];
+        SingleTraversal*& walker = in_turn[static_cast<std::size_t>(i)];
         if (step<true>(*walker)) {
           ++i;
         } else if (next < count) {
@@ -168,7 +169,7 @@ class Stream {
 
   // Advances to the next node or block. Returns false if there is none.
   template <bool kFar>
-  [[gnu::always_inline]] bool step(Walker& walker) {
+  [[gnu::always_inline]] bool step(SingleTraversal& walker) {
     auto& hit = traversals_.hits[walker.id];
     if (WideTree<T>::is_leaf(walker.at)) {
       const RayBlockPair pair{Blocks<T>::block_of(walker.at), walker.id};
@@ -185,7 +186,7 @@ class Stream {
     return true;
   }
 
-  [[gnu::always_inline]] void open_node(Walker& walker, T limit) {
+  [[gnu::always_inline]] void open_node(SingleTraversal& walker, T limit) {
     const auto& node = tree_.node(walker.at);
     Lanes<T> near;
     unsigned entered = traversals_.probes[walker.id].enter(node.planes, limit, near);
@@ -282,7 +283,7 @@ class Stream {
   Traversals& traversals_;
   AcceleratorCounts& counts_;
   const bool far_;
-  std::array<Walker, static_cast<std::size_t>(kInTurn)> walkers_;
+  std::array<SingleTraversal, static_cast<std::size_t>(kInterleaved)> single_traversals_;
   Child leaf_ = 0;  // a block of the pack that pairs_ refer to
   std::size_t met_ = 0;
   std::array<RayBlockPair, 1024> pairs_;

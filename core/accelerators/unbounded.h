@@ -13,13 +13,13 @@ class Unbounded {
       if (!primitive.bounds.bounded()) primitives_.push_back(primitive);
   }
 
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const {
     closest_exhaustive(primitives_, rays, groups, hits, counts);
   }
 
   // Returns the registers with rays that hit no primitive.
-  Groups occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const {
+  LaneGroups occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const {
     return occlude_exhaustive(primitives_, rays, groups, counts);
   }
 

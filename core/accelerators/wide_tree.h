@@ -4,10 +4,10 @@
 #include <array>
 
 #include "core/accelerators/blocks.h"
+#include "core/accelerators/box_testers.h"
 #include "core/accelerators/box_tree.h"
-#include "core/accelerators/probes.h"
 #include "core/base/prefetch.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 namespace orrery {
 

@@ -6,14 +6,14 @@
 namespace orrery {
 
 // Time slice on a thread that other work may be waiting for.
-class Turn {
+class TimeSlice {
  public:
   // Blocks until this work may run again. Returns at once if the slice has been short so far or no other work
   // waits.
-  virtual void give_way() = 0;
+  virtual void yield() = 0;
 
  protected:
-  ~Turn() = default;
+  ~TimeSlice() = default;
 };
 
 // Cancellation and scheduling check that long work calls every few milliseconds.
@@ -21,17 +21,17 @@ class Checkpoint {
  public:
   Checkpoint() = default;
   // `turn` may be null; otherwise it must outlive the checkpoint.
-  Checkpoint(std::stop_token stop, Turn* turn = nullptr) : stop_(std::move(stop)), turn_(turn) {}
+  Checkpoint(std::stop_token stop, TimeSlice* turn = nullptr) : stop_(std::move(stop)), turn_(turn) {}
 
   // Yields to waiting work if the time slice is used up. Returns false if a stop was requested.
-  bool go_on() const {
-    if (turn_) turn_->give_way();
+  bool may_continue() const {
+    if (turn_) turn_->yield();
     return !stop_.stop_requested();
   }
 
  private:
   std::stop_token stop_;
-  Turn* turn_ = nullptr;
+  TimeSlice* turn_ = nullptr;
 };
 
 }  // namespace orrery

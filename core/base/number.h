@@ -11,7 +11,7 @@ namespace orrery {
 // Parses the whole text as a number. Returns nullopt if any character is left over or T cannot hold the
 // value.
 template <class T>
-std::optional<T> number_in(std::string_view text) {
+std::optional<T> parse_number(std::string_view text) {
   T number{};
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;

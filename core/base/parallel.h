@@ -4,13 +4,13 @@
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/parallel_sort.h>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 
 #include <algorithm>
-#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // hides a worker's code before Handover::take()
+#define ORRERY_UNSEEN __attribute__((no_sanitize_thread))  // hides a worker's code before Handover::acquire()
 #else
 #define ORRERY_UNSEEN
 #endif
@@ -20,52 +20,52 @@ namespace orrery {
 
 // Reports a hand-over between the caller and the workers to ThreadSanitizer, which cannot see into oneTBB.
 // Does nothing in other builds, since oneTBB already orders both sides.
-class Handover {
+class TsanFence {
  public:
 #ifdef __SANITIZE_THREAD__
-  void give() { __tsan_release(this); }
-  void take() { __tsan_acquire(this); }
+  void release() { __tsan_release(this); }
+  void acquire() { __tsan_acquire(this); }
 #else
-  void give() {}
-  void take() {}
+  void release() {}
+  void acquire() {}
 #endif
 };
 
 // Calls act(0), ..., act(count - 1) in any order, in chunks of at least half of `grain` calls. Each chunk
 // starts with an interruption point.
 template <class Act>
-void in_parallel(std::size_t count, std::size_t grain, const Act& act) {
+void parallel_for_each(std::size_t count, std::size_t grain, const Act& act) {
   using Range = tbb::blocked_range<std::size_t>;
-  Handover to_workers, from_workers;
-  const Work work = WorkScope::current();
+  TsanFence to_workers, from_workers;
+  const TaskContext work = TaskScope::current();
   const auto some_of = [&](const Range& some) {
-    const WorkScope scope(work);
+    const TaskScope scope(work);
     interruption_point();
     for (std::size_t i = some.begin(); i != some.end(); ++i) act(i);
   };
-  to_workers.give();
+  to_workers.release();
   tbb::parallel_for(Range(0, count, grain), [&](const Range& some) ORRERY_UNSEEN {
-    to_workers.take();
+    to_workers.acquire();
     some_of(some);
-    from_workers.give();
+    from_workers.release();
   });
-  from_workers.take();
+  from_workers.acquire();
 }
 
 // Calls both functions, on two threads if available.
 template <class First, class Second>
 void both_in_parallel(const First& first, const Second& second) {
-  Handover to_workers, from_workers;
-  const Work work = WorkScope::current();
+  TsanFence to_workers, from_workers;
+  const TaskContext work = TaskScope::current();
   const auto done = [&](const auto& act) ORRERY_UNSEEN {
-    to_workers.take();
-    const WorkScope scope(work);
+    to_workers.acquire();
+    const TaskScope scope(work);
     act();
-    from_workers.give();
+    from_workers.release();
   };
-  to_workers.give();
+  to_workers.release();
   tbb::parallel_invoke([&]() ORRERY_UNSEEN { done(first); }, [&]() ORRERY_UNSEEN { done(second); });
-  from_workers.take();
+  from_workers.acquire();
 }
 
 template <class Iterator>

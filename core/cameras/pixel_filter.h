@@ -50,7 +50,7 @@ inline bool has_negative_lobes(Filter filter) {
 }
 
 // Returns whether samples need warping. A box of one pixel keeps uniform samples.
-inline bool moves_samples(Filter filter, double width) {
+inline bool warps_samples(Filter filter, double width) {
   return filter != Filter::box || (width != 0 && width != 1);
 }
 

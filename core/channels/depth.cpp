@@ -6,7 +6,7 @@ namespace orrery {
 namespace {
 
 template <class T>
-void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) {
+void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& value) {
   for (const int i : groups) value.x.put(i, first.hits.t.at(i));
 }
 

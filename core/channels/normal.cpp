@@ -4,7 +4,7 @@ namespace orrery {
 namespace {
 
 template <class T>
-void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) {
+void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& value) {
   for (const int i : groups) value.put(i, first.surface.normal.at(i));
 }
 

@@ -4,7 +4,7 @@ namespace orrery {
 namespace {
 
 template <class T>
-void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) {
+void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& value) {
   for (const int i : groups) {
     const IndexLanes<T> object = load_index<T>(first.surface.object, i);
     value.x.put(i, stdx::static_simd_cast<Lanes<T>>(object + 1));

@@ -16,16 +16,16 @@ class FormulaKernel final : public LightKernel<T> {
  public:
   explicit FormulaKernel(const Record<double>& record) : record_(convert_record<Record, T, double>(record)) {}
 
-  void sample(const SurfaceBatch<T>&, const LightChoice<T>&, const PathDraws<T>&, const Groups& groups,
+  void sample(const SurfaceBatch<T>&, const LightChoice<T>&, const PathDraws<T>&, const LaneGroups& groups,
               LightBatch<T>& out) const override {
     for (const int i : groups) out.shadow.t_max.put(i, Lanes<T>(T(-1)));
   }
-  void sample_each(const SurfaceBatch<T>&, const LightChoices<T>&, const PathDraws<T>&, const Groups& groups,
-                   LightBatch<T>& out) const override {
+  void sample_each(const SurfaceBatch<T>&, const LightChoices<T>&, const PathDraws<T>&,
+                   const LaneGroups& groups, LightBatch<T>& out) const override {
     for (const int i : groups) out.shadow.t_max.put(i, Lanes<T>(T(-1)));
   }
-  void beyond(const RayBatch<T>& rays, const LightChoice<T>&, const Groups& groups, Vec3Array<T>& radiance,
-              Array<T>& pdf) const override {
+  void beyond(const RayBatch<T>& rays, const LightChoice<T>&, const LaneGroups& groups,
+              Vec3Array<T>& radiance, Array<T>& pdf) const override {
     const auto formula = broadcast_record<Record, T>(record_);
     for (const int i : groups) {
       radiance.put(i, formula.radiance(rays.direction.at(i)));

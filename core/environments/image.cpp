@@ -25,13 +25,13 @@ class ImageKernel final : public LightKernel<T> {
         scale_(static_cast<T>(image_->scale)),
         factor_(static_cast<T>(image_->map.density_factor())) {}
 
-  void sample(const SurfaceBatch<T>&, const LightChoice<T>&, const PathDraws<T>&, const Groups& groups,
+  void sample(const SurfaceBatch<T>&, const LightChoice<T>&, const PathDraws<T>&, const LaneGroups& groups,
               LightBatch<T>& out) const override {
     for (const int i : groups) out.shadow.t_max.put(i, N(T(-1)));
   }
 
   void sample_each(const SurfaceBatch<T>&, const LightChoices<T>& choices, const PathDraws<T>& draws,
-                   const Groups& groups, LightBatch<T>& out) const override {
+                   const LaneGroups& groups, LightBatch<T>& out) const override {
     constexpr T kPi = std::numbers::pi_v<T>, kFar = std::numeric_limits<T>::infinity();
     for (const int i : groups) {
       const auto mine = mask_cast<N>(load_index<T>(choices.index, i) >= 0);
@@ -49,7 +49,7 @@ class ImageKernel final : public LightKernel<T> {
     }
   }
 
-  void beyond(const RayBatch<T>& rays, const LightChoice<T>& choice, const Groups& groups,
+  void beyond(const RayBatch<T>& rays, const LightChoice<T>& choice, const LaneGroups& groups,
               Vec3Array<T>& radiance, Array<T>& pdf) const override {
     for (const int i : groups) {
       const Vec3<N> toward = into_map(rays.direction.at(i));

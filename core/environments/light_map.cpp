@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 namespace orrery {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/error.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/image/files.h"
 
 // Shared helpers of the image codecs. Decoders check the header's size before they decode.

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/math/vec3.h"
 
 namespace orrery {

@@ -14,14 +14,14 @@ struct Arrival {
 
 // Light that arrives from a sampled point of a light: see LightBatch.
 template <class N>
-struct Drawn {
+struct LightSample {
   Arrival<N> arrival;
   N pdf;  // per solid angle; 0 if no ray can hit the light
 };
 
 // Radiance of an infinitely distant light in one direction.
 template <class N>
-struct Seen {
+struct DistantRadiance {
   Vec3<N> radiance;
   N pdf;  // density of draw() in that direction
 };

@@ -21,9 +21,11 @@ struct Directional {
 
   LightBounds bounds() const { return {.strength = max_component(intensity), .parallel = true}; }
 
-  Vec3d most_at(double) const { return intensity * (2 / (2 - height)); }  // surface facing the disc
+  Vec3d max_incident(double) const { return intensity * (2 / (2 - height)); }  // surface facing the disc
 
-  Vec3d most_seen() const { return height > 0 ? intensity * (1 / (height * (2 - height))) : Vec3d(0); }
+  Vec3d max_radiance_at_infinity() const {
+    return height > 0 ? intensity * (1 / (height * (2 - height))) : Vec3d(0);
+  }
 
   Arrival<N> arrive(const Vec3<N>&) const { return {from, N(std::numeric_limits<T>::infinity()), intensity}; }
 
@@ -33,7 +35,7 @@ struct Directional {
     return height > N(kRounded * kRounded);
   }
   // Samples the disc uniformly by solid angle.
-  Drawn<N> draw(const Vec3<N>&, const N& u, const N& v) const {
+  LightSample<N> draw(const Vec3<N>&, const N& u, const N& v) const {
     using std::sqrt;
     const N h = u * height, across = sqrt(h * (T(2) - h));
     const auto [sine, cosine] = sine_cosine_turns(v);
@@ -44,7 +46,7 @@ struct Directional {
             density()};
   }
   // Returns the disc's radiance and the density of draw(), both 0 outside the disc.
-  Seen<N> beyond(const Vec3<N>& direction) const {
+  DistantRadiance<N> beyond(const Vec3<N>& direction) const {
     const Vec3<N> chord = direction - from;
     const auto inside = dot(chord, chord) <= T(2) * height && extended();
     const N sine2 = height * (T(2) - height);

@@ -80,15 +80,15 @@ struct Emitter {
   N length_a, length_b, length_c;  // lengths of the vectors in Patch
   N kind, area, magnitude;
 
-  struct Drawn {
+  struct LightSample {
     Vec3<N> point, normal;  // on the emitter; the normal may face either side
     N pdf;                  // per solid angle; 0 if no light arrives
   };
-  Drawn draw(const Vec3<N>& from, const N& u, const N& v) const {
+  LightSample draw(const Vec3<N>& from, const N& u, const N& v) const {
     const auto round = is(Patch::Kind::sphere);
-    const Drawn flat = draw_flat(from, u, v);
+    const LightSample flat = draw_flat(from, u, v);
     if (!any(round)) return flat;
-    const Drawn ball = draw_sphere(from, u, v);
+    const LightSample ball = draw_sphere(from, u, v);
     return {select(round, ball.point, flat.point), select(round, ball.normal, flat.normal),
             select(round, ball.pdf, flat.pdf)};
   }
@@ -116,7 +116,7 @@ struct Emitter {
 
  private:
   using T = ScalarOf<N>;
-  static constexpr T kLeastAngle = T(0.02);  // steradians; smaller rectangles are sampled by area
+  static constexpr T kMinAngle = T(0.02);  // steradians; smaller rectangles are sampled by area
 
   N density(const N& distance2, const N& cosine) const {
     return select(cosine > N(T(0)), N(distance2 / (cosine * area)), N(T(0)));
@@ -126,14 +126,14 @@ struct Emitter {
     return {at - from, a, length_a, b, length_b, normal};
   }
   static N large_angle(const SphericalRectangle<N>& seen) {
-    return select(seen.angle() > N(kLeastAngle), seen.angle(), N(T(0)));
+    return select(seen.angle() > N(kMinAngle), seen.angle(), N(T(0)));
   }
   static N rectangle_density(const SphericalRectangle<N>& seen) {
     const N angle = large_angle(seen);
     return select(angle > N(T(0)), N(T(1) / angle), N(T(0)));
   }
 
-  Drawn draw_flat(const Vec3<N>& from, const N& u, const N& v) const {
+  LightSample draw_flat(const Vec3<N>& from, const N& u, const N& v) const {
     using std::abs;
     using std::sqrt;
     const N root = sqrt(u);
@@ -184,7 +184,7 @@ struct Emitter {
     return {select(outside, height, zero), select(outside, N(T(0.5 / std::numbers::pi) / height), zero)};
   }
 
-  Drawn draw_sphere(const Vec3<N>& from, const N& u, const N& v) const {
+  LightSample draw_sphere(const Vec3<N>& from, const N& u, const N& v) const {
     using std::abs;
     using std::sqrt;
     const N zero(T(0)), one(T(1));

@@ -21,20 +21,20 @@ class EmitterKernel final : public LightKernel<T> {
   }
 
   void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
-              const Groups& groups, LightBatch<T>& out) const override {
+              const LaneGroups& groups, LightBatch<T>& out) const override {
     const auto emitter = broadcast_record<Emitter, T>(records_[static_cast<std::size_t>(choice.index)]);
     for (const int i : groups) put(emitter, surface, draws, i, MaskOf<N>(true), N(choice.probability), out);
   }
 
   void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices, const PathDraws<T>& draws,
-                   const Groups& groups, LightBatch<T>& out) const override {
+                   const LaneGroups& groups, LightBatch<T>& out) const override {
     for_each_register(choices, groups, [&](int i, const auto& mine, const Emitter<N>& emitter) {
       put(emitter, surface, draws, i, mine, choices.probability.at(i), out);
     });
   }
 
   void pdf(const RayBatch<T>& rays, const HitBatch<T>& hits, const LightChoices<T>& choices,
-           const Groups& groups, Array<T>& out) const override {
+           const LaneGroups& groups, Array<T>& out) const override {
     for_each_register(choices, groups, [&](int i, const auto& mine, const Emitter<N>& emitter) {
       out.put(i, mine, pdf_of(emitter, rays.at(i), hits.t.at(i)) * choices.probability.at(i));
     });
@@ -42,7 +42,7 @@ class EmitterKernel final : public LightKernel<T> {
 
  private:
   template <class Visit>
-  void for_each_register(const LightChoices<T>& choices, const Groups& groups, const Visit& visit) const {
+  void for_each_register(const LightChoices<T>& choices, const LaneGroups& groups, const Visit& visit) const {
     for (const int i : groups) {
       const IndexLanes<T> index = load_index<T>(choices.index, i);
       const auto mine = mask_cast<N>(index >= 0);
@@ -50,12 +50,12 @@ class EmitterKernel final : public LightKernel<T> {
     }
   }
 
-  using Drawn = typename Emitter<N>::Drawn;
-  static Drawn draw(const Emitter<N>& emitter, const Vec3<N>& from, const N& u, const N& v) {
+  using LightSample = typename Emitter<N>::LightSample;
+  static LightSample draw(const Emitter<N>& emitter, const Vec3<N>& from, const N& u, const N& v) {
     const auto mine = emitter.is_solid();
-    const Drawn other = emitter.draw(from, u, v);
+    const LightSample other = emitter.draw(from, u, v);
     if (!any(mine)) return other;
-    const Drawn drawn = SolidEmitter<N>(emitter, from).draw(u, v);
+    const LightSample drawn = SolidEmitter<N>(emitter, from).draw(u, v);
     return {select(mine, drawn.point, other.point), select(mine, drawn.normal, other.normal),
             select(mine, drawn.pdf, other.pdf)};
   }
@@ -72,7 +72,7 @@ class EmitterKernel final : public LightKernel<T> {
     const N zero(T(0));
     const auto [u, v] = draws.two(SampleSet::light, i);
     const Vec3<N> from = surface.position.at(i);
-    const Drawn drawn = draw(emitter, from, u, v);
+    const LightSample drawn = draw(emitter, from, u, v);
     const N step = T(2) * (emitter.magnitude * (8 * std::numeric_limits<T>::epsilon()) + surface.step.at(i));
     const Vec3<N> line = drawn.point - from;
     const N distance = length(line), pdf = drawn.pdf * probability;

@@ -13,13 +13,13 @@
 //   Vec3<N> intensity;                                 at the source; or whole_intensity()
 //   RoundingLimit rounding() const;                    optional, of Point<double>
 //   LightBounds bounds() const;                        of Point<double>
-//   Vec3d most_at(double distance) const;              of Point<double>; see LightSet
+//   Vec3d max_incident(double distance) const;              of Point<double>; see LightSet
 //   Arrival<N> arrive(const Vec3<N>& position) const;  light that arrives at a surface point
 // and, if path tracing samples its extent,
 //   MaskOf<N> extended() const;                        whether it has an extent
 //   Drawn<N> draw(const Vec3<N>& position, const N& u, const N& v) const;  samples a point by u and v
 //   Seen<N> beyond(const Vec3<N>& direction) const;    only for infinitely distant lights, with
-//   Vec3d most_seen() const;                           of Point<double>; see LightSet
+//   Vec3d max_radiance_at_infinity() const;                           of Point<double>; see LightSet
 // `make_light_set<Point>` is its factory.
 namespace orrery {
 
@@ -31,7 +31,7 @@ class RecordLightKernel final : public LightKernel<T> {
   }
 
   void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>&,
-              const Groups& groups, LightBatch<T>& out) const override {
+              const LaneGroups& groups, LightBatch<T>& out) const override {
     const auto light = broadcast_record<Record, T>(records_[static_cast<std::size_t>(choice.index)]);
     const Lanes<T> share(T(1) / choice.probability);
     for (const int i : groups) {
@@ -43,7 +43,7 @@ class RecordLightKernel final : public LightKernel<T> {
   }
 
   void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices, const PathDraws<T>& draws,
-                   const Groups& groups, LightBatch<T>& out) const override {
+                   const LaneGroups& groups, LightBatch<T>& out) const override {
     for (const int i : groups) {
       const IndexLanes<T> index = load_index<T>(choices.index, i);
       const auto mine = mask_cast<N>(index >= 0);
@@ -58,14 +58,14 @@ class RecordLightKernel final : public LightKernel<T> {
     }
   }
 
-  void beyond(const RayBatch<T>& rays, const LightChoice<T>& choice, const Groups& groups,
+  void beyond(const RayBatch<T>& rays, const LightChoice<T>& choice, const LaneGroups& groups,
               Vec3Array<T>& radiance, Array<T>& pdf) const override {
     const auto light = broadcast_record<Record, T>(records_[static_cast<std::size_t>(choice.index)]);
     if constexpr (!requires(Vec3<N> direction) { light.beyond(direction); })
       return LightKernel<T>::beyond(rays, choice, groups, radiance, pdf);
     else
       for (const int i : groups) {
-        const Seen<N> seen = light.beyond(rays.direction.at(i));
+        const DistantRadiance<N> seen = light.beyond(rays.direction.at(i));
         radiance.put(i, seen.radiance);
         pdf.put(i, seen.pdf * choice.probability);
       }
@@ -74,7 +74,8 @@ class RecordLightKernel final : public LightKernel<T> {
  private:
   using N = Lanes<T>;
 
-  static Drawn<N> drawn(const Record<N>& light, const Vec3<N>& position, const PathDraws<T>& draws, int i) {
+  static LightSample<N> drawn(const Record<N>& light, const Vec3<N>& position, const PathDraws<T>& draws,
+                              int i) {
     const N zero(T(0));
     if constexpr (requires { light.extended(); }) {
       const auto extended = light.extended();
@@ -109,12 +110,12 @@ class RecordLightSet final : public LightSet {
       return record.intensity;
   }
   LightBounds bounds(int index) const override { return records_[static_cast<std::size_t>(index)].bounds(); }
-  Vec3d most_at(int index, double distance) const override {
-    return records_[static_cast<std::size_t>(index)].most_at(distance);
+  Vec3d max_incident(int index, double distance) const override {
+    return records_[static_cast<std::size_t>(index)].max_incident(distance);
   }
-  Vec3d most_seen(int index) const override {
-    if constexpr (requires(const Record<double>& record) { record.most_seen(); })
-      return records_[static_cast<std::size_t>(index)].most_seen();
+  Vec3d max_radiance_at_infinity(int index) const override {
+    if constexpr (requires(const Record<double>& record) { record.max_radiance_at_infinity(); })
+      return records_[static_cast<std::size_t>(index)].max_radiance_at_infinity();
     return Vec3d(0);
   }
   RoundingLimit rounding(int index) const override {

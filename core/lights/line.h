@@ -28,7 +28,7 @@ struct Line {
             .attenuation = {1, 0, 4 / (extent * extent)}};
   }
 
-  Vec3d most_at(double distance) const {
+  Vec3d max_incident(double distance) const {
     const auto of = [&](double watts) {
       return watts > 0 ? watts * extent / (kPi * distance * distance) : 0;
     };
@@ -49,7 +49,7 @@ struct Line {
   // Samples the line uniformly by the angle it subtends, which cancels the squared distance. h is the
   // distance from the line. s and t are positions along the line, from the nearest point to its start and to
   // the sample. After an angle d from the start, t = h (s cos d + h sin d) / (h cos d - s sin d).
-  Drawn<N> draw(const Vec3<N>& position, const N& u, const N&) const {
+  LightSample<N> draw(const Vec3<N>& position, const N& u, const N&) const {
     const Vec3<N> toward_start = start - position;
     const N s = dot(toward_start, along), end = s + extent;
     const N h = length(toward_start - along * s);

@@ -21,7 +21,7 @@ struct PointLight {
             .attenuation = {attenuation.c0, attenuation.c1, attenuation.c2}};
   }
 
-  Vec3d most_at(double distance) const { return intensity * attenuation.at(distance); }
+  Vec3d max_incident(double distance) const { return intensity * attenuation.at(distance); }
 
   Arrival<N> arrive(const Vec3<N>& at) const {
     using T = ScalarOf<N>;

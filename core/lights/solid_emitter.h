@@ -7,12 +7,12 @@ namespace orrery {
 // Cylinder wall visible from an outside point. Samples are uniform across its visible width and uniform in
 // the sine of the elevation along its length.
 template <class N>
-class SeenWall {
+class VisibleCylinderWall {
   using T = ScalarOf<N>;
 
  public:
   // `from` points from the cylinder's centre to the shading point. `axis` is a unit vector.
-  SeenWall(const Vec3<N>& from, const Vec3<N>& axis, const N& radius, const N& half_length)
+  VisibleCylinderWall(const Vec3<N>& from, const Vec3<N>& axis, const N& radius, const N& half_length)
       : axis_(axis), radius_(radius), along_(dot(from, axis)) {
     using std::sqrt;
     const N zero(T(0)), one(T(1));
@@ -21,10 +21,10 @@ class SeenWall {
     outside_ = distance > radius;
     reach_ = max_first(radius, distance);
     toward_ = select(distance > zero, across * (one / distance), tangents_of(axis).first);
-    least_ = -half_length - along_;
-    most_ = half_length - along_;
-    low_ = sine(least_);
-    range_ = sine(most_) - low_;
+    min_ = -half_length - along_;
+    max_ = half_length - along_;
+    low_ = sine(min_);
+    range_ = sine(max_) - low_;
     const N share = radius / reach_;
     half_width_ = sqrt(max_first(zero, N((one - share) * (one + share))));
   }
@@ -40,7 +40,7 @@ class SeenWall {
     using std::sqrt;
     const N one(T(1)), s = low_ + u * range_;
     const N rest = sqrt(max_first(N(std::numeric_limits<T>::min()), N((one - s) * (one + s))));
-    const N z = max_first(least_, min_first(most_, N(reach_ * s / rest)));
+    const N z = max_first(min_, min_first(max_, N(reach_ * s / rest)));
     const N y = half_width_ * (v + v - one);
     const N facing = sqrt(max_first(N(T(0)), N(one - y * y)));
     const Vec3<N> normal = toward_ * facing + cross(axis_, toward_) * y;
@@ -63,7 +63,7 @@ class SeenWall {
   }
 
   Vec3<N> axis_, toward_;
-  N radius_, along_, reach_, least_, most_, low_, range_, half_width_;
+  N radius_, along_, reach_, min_, max_, low_, range_, half_width_;
   MaskOf<N> outside_;
 };
 
@@ -75,7 +75,7 @@ class SolidEmitter {
   using T = ScalarOf<N>;
 
  public:
-  using Drawn = typename Emitter<N>::Drawn;
+  using LightSample = typename Emitter<N>::LightSample;
 
   SolidEmitter(const Emitter<N>& solid, const Vec3<N>& from)
       : solid_(solid),
@@ -88,7 +88,7 @@ class SolidEmitter {
     }
   }
 
-  Drawn draw(const N& u, const N& v) const {
+  LightSample draw(const N& u, const N& v) const {
     const N target = u * sum_, zero(T(0));
     N end = zero, begin = zero, share = zero;
     Emitter<N> part = solid_;
@@ -102,7 +102,7 @@ class SolidEmitter {
     }
     constexpr T kBelowOne = 1 - std::numeric_limits<T>::epsilon() / 2;
     const N within = min_first(N(kBelowOne), N((target - begin) / share));
-    const Drawn flat = part.draw(from_, within, v), round = draw_wall(within, v);
+    const LightSample flat = part.draw(from_, within, v), round = draw_wall(within, v);
     const auto on_wall = part.is(Patch::Kind::cylinder);
     return {select(on_wall, round.point, flat.point), select(on_wall, round.normal, flat.normal),
             select(share > zero, N(select(on_wall, round.pdf, flat.pdf) * share / sum_), zero)};
@@ -122,7 +122,7 @@ class SolidEmitter {
       part = select_part(nearer, one, part);
     }
     const Vec3<N> from_centre = hit - solid_.at;
-    const typename SeenWall<N>::Point on_wall{from_centre, normalize(across(from_centre))};
+    const typename VisibleCylinderWall<N>::Point on_wall{from_centre, normalize(across(from_centre))};
     const N round = per_angle(wall_.density(on_wall), t * t, dot(on_wall.normal, ray.direction));
     const N density = select(part.is(Patch::Kind::cylinder), round, part.pdf(ray, t));
     return select(share > N(T(0)), N(density * share / sum_), N(T(0)));
@@ -170,7 +170,7 @@ class SolidEmitter {
     return any(box_) ? select(box_, face.angle(from_), N(T(0))) : N(T(0));
   }
 
-  Drawn draw_wall(const N& u, const N& v) const {
+  LightSample draw_wall(const N& u, const N& v) const {
     const auto point = wall_.draw(u, v);
     const Vec3<N> at = solid_.at + point.from_centre, line = at - from_;
     const N distance2 = dot(line, line);
@@ -213,7 +213,7 @@ class SolidEmitter {
   const Emitter<N>& solid_;
   const Vec3<N> from_;
   const MaskOf<N> box_;
-  const SeenWall<N> wall_;
+  const VisibleCylinderWall<N> wall_;
   std::array<N, kParts> weight_;
   N sum_ = N(T(0));
 };

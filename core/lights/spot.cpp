@@ -23,9 +23,9 @@ Spot<double> Spot<N>::read(Params& p) {
 // Cosines of directions are off by about an epsilon; the smooth step multiplies this by 1.5 over its width.
 template <class N>
 RoundingLimit Spot<N>::rounding() const {
-  constexpr double kMostError = 2e-4;
+  constexpr double kMaxError = 2e-4;
   const double width = cos_range > 0 ? cos_range : 1 - cos_outer;
-  return {kMostError * width, "its beam ends within a difference of cosines of " + number_text(width)};
+  return {kMaxError * width, "its beam ends within a difference of cosines of " + number_text(width)};
 }
 
 LightType spot_type() { return {"spot", "Light from one point in a cone.", make_light_set<Spot>}; }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/load/radiance_range.h"
 #include "core/load/spacing.h"
 #include "core/model/object_pointer.h"
@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-void take_larger(Extreme& extreme, double value, const std::string& where) {
+void take_larger(LocatedValue& extreme, double value, const std::string& where) {
   if (value > extreme.value) extreme = {value, where};
 }
-void take_smaller(Extreme& extreme, double value, const std::string& where) {
+void take_smaller(LocatedValue& extreme, double value, const std::string& where) {
   if (value < extreme.value) extreme = {value, where};
 }
 
@@ -41,14 +41,14 @@ struct Extents {
  private:
   void add(const ShapeSet& shapes, int index, int number) {
     interruption_point(static_cast<std::size_t>(index));
-    const ShapeSet::Reach reach = shapes.reach(index);
+    const ShapeSet::SweptBounds reach = shapes.reach(index);
     const bool is_bounded = reach.box.bounded();
     const double coordinate = is_bounded ? reach.box.magnitude() : shapes.anchor_magnitude(index);
     if (coordinate > magnitude.value) magnitude = {coordinate, number};
     has_unbounded = has_unbounded || !is_bounded;
     if (!is_bounded) return;
     bounded.include(reach.box);
-    if (reach.least_diagonal < smallest.value) smallest = {reach.least_diagonal, number};
+    if (reach.min_diagonal < smallest.value) smallest = {reach.min_diagonal, number};
   }
 };
 
@@ -117,9 +117,9 @@ void add_materials(const Scene& scene, std::span<const std::int32_t> first_user,
       if (first + i >= first_user.size() || first_user[first + i] < 0) continue;
       used = true;
       facts.materials.emits |= scene.emission[first + i] != Vec3d(0);
-      const double most = set->most_reflected(static_cast<int>(i));
-      if (most > facts.most_reflected.value)
-        facts.most_reflected = {most, pointer_to_object(scene, first_user[first + i])};
+      const double most = set->max_albedo(static_cast<int>(i));
+      if (most > facts.max_albedo.value)
+        facts.max_albedo = {most, pointer_to_object(scene, first_user[first + i])};
       const RoundingLimit limit = set->rounding(static_cast<int>(i));
       if (limit.epsilon < facts.rounding.epsilon)
         facts.rounding = {
@@ -150,7 +150,7 @@ SceneFacts gather_facts(const Scene& scene) {
   std::vector<bool> used;
   for (const std::int32_t primitive : first_user) used.push_back(primitive >= 0);
   find_radiance_ranges(scene, used, facts);
-  const Spacing spacing = measure_spacing(scene, facts);
+  const SurfaceGaps spacing = measure_surface_gaps(scene, facts);
   facts.layer_distance = spacing.layer_distance;
   facts.mirrors = spacing.mirrors;
   return facts;

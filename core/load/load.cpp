@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/base/hash.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/cameras/registry.h"
 #include "core/environments/registry.h"
 #include "core/lights/registry.h"
@@ -61,9 +61,9 @@ void read_camera(Params& p, Scene& scene) {
 
 // Asset source that loads each mesh once, however often the scene names it. Images are not cached, because a
 // scene names only one.
-class ReadOnce final : public AssetSource {
+class CachedMeshSource final : public AssetSource {
  public:
-  explicit ReadOnce(const AssetSource& from) : from_(from) {}
+  explicit CachedMeshSource(const AssetSource& from) : from_(from) {}
   TriangleMesh mesh_file(const std::string& name) const override {
     return once(files_, name, [&] { return from_.mesh_file(name); });
   }
@@ -123,11 +123,11 @@ class ObjectReader {
 constexpr Range kTurns{.min = -1e6, .max = 1e6};
 
 Vec3d read_scale(Params& p, const Fallback<Vec3d>& fallback) {
-  constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
+  constexpr double kMinScale = 1e-6, kMaxScale = 1e6;
   const auto scale = p.numbers3("scale", "Factors along x, y and z; negative ones mirror.",
-                                {.min = -kMostScale, .max = kMostScale}, fallback);
+                                {.min = -kMaxScale, .max = kMaxScale}, fallback);
   for (const double factor : scale)
-    if (std::abs(factor) < kLeastScale)
+    if (std::abs(factor) < kMinScale)
       p.fail("scale", "expected factors of at least 1e-6 in size, got " + number_text(factor));
   return {scale[0], scale[1], scale[2]};
 }
@@ -215,7 +215,7 @@ class SceneReader {
     number_objects();
     gather_motion();
     scene_->facts = gather_facts(*scene_);
-    const Extreme& smallest = scene_->facts.smallest_feature;
+    const LocatedValue& smallest = scene_->facts.smallest_feature;
     if (smallest.value > 0 && smallest.value < kMinSize)  // moving triangles may have size 0 at times
       throw InputError(smallest.where, "expected shapes and triangles of at least " + number_text(kMinSize) +
                                            " m in size, got " + number_text(smallest.value));
@@ -328,7 +328,7 @@ class SceneReader {
     scene_->motion = {*first, *last};
   }
 
-  const ReadOnce assets_;
+  const CachedMeshSource assets_;
   MeshSource meshes_{assets_};  // shared by the scene and its models
   std::shared_ptr<Scene> scene_;
   Names names_{"material"};

@@ -29,14 +29,15 @@ DirectLight find_direct_light(const Scene& scene, const SceneFacts& facts) {
     const LightSet& set = *scene.light_sets[light.set];
     const LightBounds bounds = set.bounds(light.index);
     const double distance = anywhere || bounds.parallel ? 0 : distance_to(facts.bounds, bounds.centre);
-    found.of_points = found.of_points + set.most_at(light.index, distance);
-    found.of_extents = found.of_extents + set.most_at(light.index, std::max(0.0, distance - bounds.radius));
+    found.of_points = found.of_points + set.max_incident(light.index, distance);
+    found.of_extents =
+        found.of_extents + set.max_incident(light.index, std::max(0.0, distance - bounds.radius));
   }
   return found;
 }
 
 // Returns the maximum radiance of rays that miss all surfaces.
-Vec3d most_beyond(const Scene& scene) {
+Vec3d max_sky_radiance(const Scene& scene) {
   return scene.environment ? scene.environment->most() : scene.background;
 }
 
@@ -57,9 +58,9 @@ Vec3d interreflected(const Vec3d& own, const Vec3d& albedo) {
 // for emission.
 void find_radiance_ranges(const Scene& scene, const std::vector<bool>& used, SceneFacts& facts) {
   const DirectLight light = find_direct_light(scene, facts);
-  Vec3d tree = most_beyond(scene), paths = tree;
+  Vec3d tree = max_sky_radiance(scene), paths = tree;
   for (const LightPlace& place : scene.lights)  // sun discs are in front of the sky and may overlap
-    paths = paths + scene.light_sets[place.set]->most_seen(place.index);
+    paths = paths + scene.light_sets[place.set]->max_radiance_at_infinity(place.index);
   Vec3d distributed = paths;
   std::size_t number = 0;
   for (const auto& set : scene.materials)

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/math/face_normal.h"
 #include "core/math/hemisphere.h"
 #include "core/model/batch.h"
@@ -15,21 +15,21 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kMostPrimitives = 256;
+constexpr std::size_t kMaxPrimitives = 256;
 // Sample times of a motion: evenly spaced ones, both ends included, and key times.
 constexpr int kEvenMoments = 9;
-constexpr std::size_t kMostKeyTimes = 16;
-// Rays toward all primitives in total and the minimum per primitive, within kMostTests.
+constexpr std::size_t kMaxKeyTimes = 16;
+// Rays toward all primitives in total and the minimum per primitive, within kMaxTests.
 constexpr std::size_t kManyRays = 1024, kFewestRays = 6;
-constexpr std::size_t kMostTests = 1u << 19;  // ray-primitive tests, over all sample times
-constexpr double kCoincident = 1e-13;         // times the largest coordinate; nearer surfaces count as one
-constexpr double kBeside = 0.05;              // shift to a neighbouring ray, times the primitive's size
-constexpr double kSame = 1e-6;                // relative tolerance of equal distances
+constexpr std::size_t kMaxTests = 1u << 19;  // ray-primitive tests, over all sample times
+constexpr double kCoincident = 1e-13;        // times the largest coordinate; nearer surfaces count as one
+constexpr double kBeside = 0.05;             // shift to a neighbouring ray, times the primitive's size
+constexpr double kSame = 1e-6;               // relative tolerance of equal distances
 constexpr double kLayerGap = 1e-3;  // times the primitive's size; surfaces farther apart are not layers
 constexpr double kParallel = 0.99;  // minimum cosine between the normals of parallel surfaces
 
 // Primitive in the world at one time.
-struct Placed {
+struct PlacedPrimitive {
   bool moves;
   std::size_t object;  // index into Scene::object_runs
   const ShapeSet* shapes;
@@ -47,9 +47,9 @@ struct SurfaceAt {
 };
 
 // Intersects single rays with primitives and counts the tests.
-class Probe {
+class PrimitiveTester {
  public:
-  std::optional<SurfaceAt> meet(const Placed& placed, const Ray<double>& ray) {
+  std::optional<SurfaceAt> meet(const PlacedPrimitive& placed, const Ray<double>& ray) {
     ++tests_;
     const Affined& into = placed.model_from_world;
     rays_.count = 1;
@@ -70,7 +70,7 @@ class Probe {
   std::size_t tests() const { return tests_; }
 
  private:
-  static inline const Groups kOne = Groups::single(0);
+  static inline const LaneGroups kOne = LaneGroups::single(0);
   RayBatch<double> rays_{};
   HitBatch<double> hits_{};
   SurfaceBatch<double> met_{};
@@ -85,24 +85,24 @@ bool may_meet(const Boundsd& box, const Ray<double>& ray) {
 
 // Curved mirrors visible from one curved mirror, the distance to the nearest, and the radius of curvature of
 // the viewing mirror there.
-struct MirrorsSeen {
+struct VisibleMirrors {
   std::set<std::size_t> others;
   double distance = std::numeric_limits<double>::infinity(), radius = 0;
 };
 
-class Gauge {
+class LayerGapSearch {
  public:
-  Gauge(const Scene& scene, const SceneFacts& facts)
+  LayerGapSearch(const Scene& scene, const SceneFacts& facts)
       : scene_(scene), magnitude_(std::max(facts.magnitude.value, max_component(abs(scene.placement.eye)))) {
     for (const auto& set : scene.materials)
       for (int i = 0; i < set->size(); ++i) shares_.push_back(set->mirrored_share(i));
   }
 
-  Spacing measure() {
+  SurfaceGaps measure() {
     const std::vector<double> times = moments();
     for (std::size_t i = 0; i < times.size(); ++i) {
       place_all(times[i]);
-      measure_placed(i > 0, kMostTests / times.size() * i, kMostTests / times.size());
+      measure_placed(i > 0, kMaxTests / times.size() * i, kMaxTests / times.size());
     }
     return spacing_;
   }
@@ -122,7 +122,7 @@ class Gauge {
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     std::vector<double> times;
-    const std::size_t step = (keys.size() + kMostKeyTimes - 1) / kMostKeyTimes;
+    const std::size_t step = (keys.size() + kMaxKeyTimes - 1) / kMaxKeyTimes;
     for (std::size_t i = 0; i < keys.size(); i += step) times.push_back(keys[i]);
     for (int i = 0; i < kEvenMoments; ++i) times.push_back(first + (last - first) * i / (kEvenMoments - 1));
     std::sort(times.begin(), times.end());
@@ -133,22 +133,22 @@ class Gauge {
   // Measures all primitives, or only moving ones. Each round traces one ray toward each primitive;
   // overlapping pairs follow.
   void measure_placed(bool moving_alone, std::size_t before, std::size_t tests) {
-    most_tests_ = before + tests / 2;
+    max_tests_ = before + tests / 2;
     std::vector<std::vector<Ray<double>>> rays;
-    for (const Placed& placed : placed_)
+    for (const PlacedPrimitive& placed : placed_)
       rays.push_back(moving_alone && !placed.moves ? std::vector<Ray<double>>() : rays_at(placed));
     mirrors_.assign(scene_.object_runs.size(), {});
     const std::size_t most = std::max(kFewestRays, kManyRays / std::max<std::size_t>(1, placed_.size()));
     for (std::size_t round = 0; round < most; ++round) {
       for (std::size_t i = 0; i < placed_.size(); ++i) {
         interruption_point();
-        if (rays[i].empty() || probe_.tests() > most_tests_) continue;
+        if (rays[i].empty() || probe_.tests() > max_tests_) continue;
         const std::size_t chosen = round * ((rays[i].size() + most - 1) / most);
         if (chosen < rays[i].size()) look_around(placed_[i], rays[i][chosen], mirrors_[placed_[i].object]);
       }
     }
-    for (const Placed& placed : placed_) take_mirror(placed, mirrors_[placed.object]);
-    most_tests_ = before + tests;
+    for (const PlacedPrimitive& placed : placed_) take_mirror(placed, mirrors_[placed.object]);
+    max_tests_ = before + tests;
     measure_pairs(moving_alone);
   }
 
@@ -157,11 +157,11 @@ class Gauge {
   void measure_pairs(bool moving_alone) {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
       interruption_point();
-      for (std::size_t k = i + 1; k < placed_.size() && probe_.tests() < most_tests_; ++k)
+      for (std::size_t k = i + 1; k < placed_.size() && probe_.tests() < max_tests_; ++k)
         if (!moving_alone || placed_[i].moves || placed_[k].moves) measure_pair(placed_[i], placed_[k]);
     }
   }
-  void measure_pair(const Placed& one, const Placed& other) {
+  void measure_pair(const PlacedPrimitive& one, const PlacedPrimitive& other) {
     if (!one.box.bounded() || !other.box.bounded()) return;
     const double size = std::min(one.box.diagonal(), other.box.diagonal());
     const Vec3d gap = Vec3d(1, 1, 1) * (kLayerGap * size);
@@ -189,7 +189,7 @@ class Gauge {
     if (distance > kCoincident * magnitude_) take_distance(one, distance);
   }
   // Keeps the smaller layer distance. If distances are equal up to rounding, reports the first object.
-  void take_distance(const Placed& from, double distance) {
+  void take_distance(const PlacedPrimitive& from, double distance) {
     const double ratio = distance / spacing_.layer_distance.value;
     const int object = scene_.object_runs[from.object].object;
     if (!(ratio < 1 + kSame) || (ratio > 1 - kSame && object >= layer_object_)) return;
@@ -214,7 +214,7 @@ class Gauge {
     for (const auto& shapes : sets) {
       const int first = std::exchange(number, number + shapes->size());
       const auto count = static_cast<int>(
-          std::min(static_cast<std::size_t>(shapes->size()), kMostPrimitives - placed_.size()));
+          std::min(static_cast<std::size_t>(shapes->size()), kMaxPrimitives - placed_.size()));
       const bool whole = count == shapes->size();
       complete_ = complete_ && whole;
       if (count == 0 || (!whole && time > scene_.motion.first)) continue;
@@ -241,7 +241,7 @@ class Gauge {
   // Returns rays that may hit the primitive. For a triangle: along its normal, at its middle and near its
   // corners. For an unbounded primitive: from look_at and from a point near it. For others: toward the middle
   // of the box.
-  std::vector<Ray<double>> rays_at(const Placed& placed) const {
+  std::vector<Ray<double>> rays_at(const PlacedPrimitive& placed) const {
     std::vector<Ray<double>> rays;
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
     if (hull.size() == 1) {
@@ -277,7 +277,7 @@ class Gauge {
   static Vec3d mix(const Vec3d& corner, const Vec3d& middle) { return corner * 0.8 + middle * 0.2; }
 
   // Measures at three neighbouring points, because two touching spheres are close at a single point only.
-  void look_around(const Placed& from, const Ray<double>& ray, MirrorsSeen& seen) {
+  void look_around(const PlacedPrimitive& from, const Ray<double>& ray, VisibleMirrors& seen) {
     const auto first = probe_.meet(from, ray);
     if (!first) return;
     const double size = from.box.bounded() ? from.box.diagonal() : length(first->position - ray.origin);
@@ -296,7 +296,7 @@ class Gauge {
 
   // Returns the shifts to two neighbouring points. On a triangle they follow its sides, so that the points
   // stay on it however thin it is.
-  static std::pair<Vec3d, Vec3d> beside(const Placed& placed, const SurfaceAt& at, double size) {
+  static std::pair<Vec3d, Vec3d> beside(const PlacedPrimitive& placed, const SurfaceAt& at, double size) {
     const std::vector<HullTriangle> hull = placed.kernel->hull(placed.index);
     if (hull.size() == 1) {
       const auto& [a, b, c] = hull[0];
@@ -307,27 +307,29 @@ class Gauge {
     return {aside.first * (kBeside * size), aside.second * (kBeside * size)};
   }
 
-  void take_layer(const Placed& from, const std::array<SurfaceAt, 3>& at, double side) {
+  void take_layer(const PlacedPrimitive& from, const std::array<SurfaceAt, 3>& at, double side) {
     double distance = 0;
     for (const SurfaceAt& one : at) distance = std::max(distance, to_next_layer(one, one.outward * side));
     take_distance(from, distance);
   }
   double to_next_layer(const SurfaceAt& at, const Vec3d& along) {
-    return nearest(at, along, [&](const Placed&, const SurfaceAt& met) {
+    return nearest(at, along, [&](const PlacedPrimitive&, const SurfaceAt& met) {
       return std::abs(dot(met.outward, at.outward)) >= kParallel;
     });
   }
 
-  void look_for_mirrors(const Placed& from, const std::array<SurfaceAt, 3>& at, MirrorsSeen& seen) {
+  void look_for_mirrors(const PlacedPrimitive& from, const std::array<SurfaceAt, 3>& at,
+                        VisibleMirrors& seen) {
     const double radius = radius_at(at);
     if (mirrored_share(from) == 0 || !(radius < std::numeric_limits<double>::infinity())) return;
     std::optional<std::size_t> other;
-    const double distance = nearest(at[0], at[0].outward, [&](const Placed& placed, const SurfaceAt& met) {
-      if (placed.object == from.object || mirrored_share(placed) == 0 || !is_curved(placed, met))
-        return false;
-      other = placed.object;
-      return true;
-    });
+    const double distance =
+        nearest(at[0], at[0].outward, [&](const PlacedPrimitive& placed, const SurfaceAt& met) {
+          if (placed.object == from.object || mirrored_share(placed) == 0 || !is_curved(placed, met))
+            return false;
+          other = placed.object;
+          return true;
+        });
     if (!other) return;
     seen.others.insert(*other);
     if (distance < seen.distance) seen.distance = distance, seen.radius = radius;
@@ -335,7 +337,7 @@ class Gauge {
   // Ray errors grow by 1 + 2 d / r on the way to a mirror at distance d. About (r / (d + r))^2 of the rays
   // that leave a mirror hit any one of the others. The growth is weighted by the root of the share that hits
   // any, because errors count by their mean square.
-  void take_mirror(const Placed& from, const MirrorsSeen& seen) {
+  void take_mirror(const PlacedPrimitive& from, const VisibleMirrors& seen) {
     const auto& [others, d, r] = seen;
     if (others.empty()) return;
     const double growth = 1 + 2 * d / r, met = std::sqrt(static_cast<double>(others.size())) * r / (d + r);
@@ -351,7 +353,7 @@ class Gauge {
     };
     return 1 / std::hypot(curvature(at[1]), curvature(at[2]));
   }
-  bool is_curved(const Placed& placed, const SurfaceAt& at) {
+  bool is_curved(const PlacedPrimitive& placed, const SurfaceAt& at) {
     if (at.shading != at.outward) return true;
     const Tangents<double> aside = tangents_of(at.outward);
     for (const Vec3d& shift : {aside.first, aside.second}) {
@@ -361,7 +363,7 @@ class Gauge {
     }
     return false;
   }
-  double mirrored_share(const Placed& placed) const {
+  double mirrored_share(const PlacedPrimitive& placed) const {
     return shares_[static_cast<std::size_t>(scene_.material_of[static_cast<std::size_t>(placed.number)])];
   }
 
@@ -372,7 +374,7 @@ class Gauge {
     const double least = kCoincident * magnitude_;
     const Ray<double> ray{from.position + along * least, along};
     double distance = std::numeric_limits<double>::infinity();
-    for (const Placed& other : placed_) {
+    for (const PlacedPrimitive& other : placed_) {
       if (!may_meet(other.box, ray)) continue;
       const auto met = probe_.meet(other, ray);
       if (met && met->distance > least && met->distance < distance && is_such(other, *met))
@@ -386,18 +388,20 @@ class Gauge {
   std::vector<std::unique_ptr<ShapeSet>> moved_;
   std::deque<ShapeKernelPtr<double>> kernels_;                 // kernels of moving shapes
   std::map<const ShapeSet*, ShapeKernelPtr<double>> resting_;  // kernels of resting shapes
-  std::vector<Placed> placed_;
+  std::vector<PlacedPrimitive> placed_;
   bool complete_ = true;        // false if primitives were skipped; mirrors are then not measured
   std::vector<double> shares_;  // mirrored share of each material
-  Probe probe_;
-  std::vector<MirrorsSeen> mirrors_;  // by object
-  int layer_object_ = 0;              // object of spacing_.layer_distance
-  std::size_t most_tests_ = 0;        // up to and including this sample time
-  Spacing spacing_;
+  PrimitiveTester probe_;
+  std::vector<VisibleMirrors> mirrors_;  // by object
+  int layer_object_ = 0;                 // object of spacing_.layer_distance
+  std::size_t max_tests_ = 0;            // up to and including this sample time
+  SurfaceGaps spacing_;
 };
 
 }  // namespace
 
-Spacing measure_spacing(const Scene& scene, const SceneFacts& facts) { return Gauge(scene, facts).measure(); }
+SurfaceGaps measure_surface_gaps(const Scene& scene, const SceneFacts& facts) {
+  return LayerGapSearch(scene, facts).measure();
+}
 
 }  // namespace orrery

@@ -23,7 +23,7 @@ struct CookTorrance {
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  Vec3<N> from_everywhere(const N&, Lobes lobes) const {
+  Vec3<N> ambient_reflectance(const N&, Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     return diffuse * (with_diffuse(lobes) ? one : zero) +
            specular * reflectance(one) * (with_non_diffuse(lobes) ? one : zero);
@@ -32,7 +32,7 @@ struct CookTorrance {
   N facet_chance(Lobes lobes) const {
     return lobes == Lobes::all ? chance : N(ScalarOf<N>(with_non_diffuse(lobes) ? 1 : 0));
   }
-  Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
+  Vec3<N> body_transmittance(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
   [[gnu::always_inline]] Vec3<N> reflectance(const N& cosine) const {
     return {fresnel_conductor(n.x, k.x, cosine), fresnel_conductor(n.y, k.y, cosine),
@@ -46,7 +46,7 @@ struct CookTorrance {
     using T = ScalarOf<N>;
     using std::sqrt;
     constexpr T kPi = std::numbers::pi_v<T>, kLog2E = std::numbers::log2e_v<T>;
-    constexpr T kVanished = -60;  // exponent of 2 below which the density is 0
+    constexpr T kMinExponent = -60;  // exponent of 2 below which the density is 0
     const N zero(T(0)), one(T(1));
     const auto lit = light.z > zero;
     const N cosine = select(lit, light.z, one);
@@ -56,7 +56,7 @@ struct CookTorrance {
     const Vec3<N> h(viewer.x + light.x, viewer.y + light.y, viewer.z + cosine);
     const N across = h.x * h.x + h.y * h.y, up2 = h.z * h.z, length2 = across + up2;
     const N exponent = across / (up2 * slope * slope) * (-kLog2E);
-    const auto stands = exponent > N(kVanished);
+    const auto stands = exponent > N(kMinExponent);
     const N ratio = select(stands, N(length2 / up2), one);
     const N density = select(stands, N(exp2_flushed(select(stands, exponent, zero)) * ratio * ratio), zero) *
                       (one / (kPi * slope * slope));

@@ -16,7 +16,7 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
   using N = Lanes<T>;
   using MaterialRecords<Record, T>::MaterialRecords;
 
-  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes,
                const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
@@ -24,8 +24,8 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
     });
   }
 
-  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
-                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const LaneGroups& groups,
+                Lobes, Vec3Array<T>& pi_bsdf_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const Vec3<N> normal = surface.normal.at(i), light = directions.light.at(i);
@@ -34,13 +34,14 @@ class DiffuseKernel final : public MaterialRecords<Record, T> {
                        dot(surface.geometric.at(i), light) > zero;
       pdf.put(i, mine, select(lit, cosine_pdf(cosine), zero));
       if (any(lit))
-        f_cos.put(i, mine, pi_brdf(record, normal, light, -directions.ray.at(i), cosine) * cosine);
+        pi_bsdf_cos.put(i, mine, pi_brdf(record, normal, light, -directions.ray.at(i), cosine) * cosine);
     });
   }
 
   // Samples in proportion to the cosine; the weight f cos / pdf is pi f.
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
+              ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const auto [u, v] = draws.two(SampleSet::lobe, i);

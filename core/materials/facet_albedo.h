@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/materials/albedo_series.h"
 #include "core/materials/microfacet.h"
 
 // Albedos of GGX microfacets with Fresnel reflection, computed by quadrature when a material is read.
 namespace orrery {
 
-inline constexpr double kLeastAlpha = 1e-3;  // GGX parameter; smaller values count as smooth
+inline constexpr double kMinAlpha = 1e-3;  // GGX parameter; smaller values count as smooth
 
 template <class N>
 using FacetAlbedo = AlbedoSeries<N, 20>;
@@ -47,8 +47,8 @@ FacetAlbedo<double> mirrored_albedo(double alpha, const Fresnel& fresnel) {
     const double light = mirrored_about(viewer, normal).z;
     return light > 0 ? fresnel(dot(viewer, normal)) * seen(light) : 0.0;
   };
-  constexpr double kLeastScale = 0.1;  // Fresnel terms vary with mu itself
-  return facet_albedo(alpha, std::max(alpha, kLeastScale), share);
+  constexpr double kMinScale = 0.1;  // Fresnel terms vary with mu itself
+  return facet_albedo(alpha, std::max(alpha, kMinScale), share);
 }
 
 }  // namespace orrery

@@ -31,10 +31,10 @@ double albedo(double alpha, double mu) {
 
 // Returns the albedos at the nodes of the series, for each alpha.
 std::array<Row, kRows> make_table() {
-  constexpr double kLeastAlpha = 1e-4;  // as alpha goes to 0, E depends only on mu / alpha
+  constexpr double kMinAlpha = 1e-4;  // as alpha goes to 0, E depends only on mu / alpha
   std::array<Row, kRows> table;
   for (std::size_t row = 0; row < kRows; ++row) {
-    const double alpha = std::max(kLeastAlpha, static_cast<double>(row) / (kRows - 1));
+    const double alpha = std::max(kMinAlpha, static_cast<double>(row) / (kRows - 1));
     for (std::size_t k = 0; k < kTerms; ++k) table[row][k] = albedo(alpha, series_node<kTerms>(alpha, k));
   }
   return table;

@@ -7,9 +7,9 @@ namespace orrery {
 namespace {
 
 // Returns the approximate spread of refracted directions, divided by alpha. Glass with a spread below
-// kLeastSpread counts as smooth.
+// kMinSpread counts as smooth.
 double spread_by_index(double ior) { return std::abs(std::log2(ior)); }
-constexpr double kLeastSpread = 1e-4;
+constexpr double kMinSpread = 1e-4;
 
 // Returns the single-scattering albedo: all light leaves at once, except light that hits another facet.
 FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
@@ -40,7 +40,7 @@ Glass<double> Glass<N>::read(Params& p) {
   Glass<double> glass{};
   glass.body = {ior, normal_reflectance(ior, 0.0), 1.0, log2_filter_of(filter)};
   const double alpha = roughness * roughness;
-  if (alpha < kLeastAlpha || alpha * spread_by_index(ior) < kLeastSpread) return glass;
+  if (alpha < kMinAlpha || alpha * spread_by_index(ior) < kMinSpread) return glass;
   glass.alpha = alpha;
   glass.outside = lossless_albedo(alpha, ior);
   glass.inside = lossless_albedo(alpha, 1 / ior);
@@ -61,7 +61,7 @@ class GlassKernel final : public LobeKernel<Glass, T> {
   using LobeKernel<Glass, T>::LobeKernel;
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes lobes,
               ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& glass) {
@@ -83,7 +83,7 @@ class GlassKernel final : public LobeKernel<Glass, T> {
   }
 
   void specular(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-                const Groups& groups, SpecularBatch<T>& out) const override {
+                const LaneGroups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Glass<N>& glass) {
       const auto inside = surface.side.at(i) < zero;

@@ -40,13 +40,13 @@ struct Glass {
   }
 
   N rough() const { return alpha; }
-  Vec3<N> from_everywhere(const N&, Lobes) const {
+  Vec3<N> ambient_reflectance(const N&, Lobes) const {
     const N one(ScalarOf<N>(1)), zero(ScalarOf<N>(0));
     return Vec3<N>(select(alpha > zero, one, zero));
   }
 
   // Returns the transmittance of the body. `travelled` may be uninitialised if no material filters.
-  Vec3<N> passed(const MaskOf<N>& is_inside, const N& travelled) const {
+  Vec3<N> body_transmittance(const MaskOf<N>& is_inside, const N& travelled) const {
     const N zero(ScalarOf<N>(0));
     const auto filters = is_inside && max_component(-body.log2_filter) > zero;
     if (!any(filters)) return Vec3<N>(N(ScalarOf<N>(1)));
@@ -79,7 +79,8 @@ struct Glass {
     const auto possible = half.length > zero && to_viewer > zero && (!through || to_light < zero);
     const N share = select(possible, select(through, N((one - mirrored) * change), mirrored), zero);
 
-    const auto [passed_viewer, passed_light, spread] = passed_on(viewer.z, cosine, is_inside, through);
+    const auto [passed_viewer, passed_light, spread] =
+        multiple_scattering(viewer.z, cosine, is_inside, through);
     const Vec3<N> above(light.x, light.y, cosine);
     const N single = share * facets.brdf(viewer, above, half.density) * kPi;
     const N pdf = (one - passed_viewer) * share * facets.pdf(viewer, half.density) +
@@ -109,16 +110,17 @@ struct Glass {
 
  private:
   // Lobe of multiple scattering on the light's side.
-  struct Spread {
+  struct MultipleLobe {
     N chance;  // probability of the light's side
     N scale;   // one over the mean multiple-scattering share of that side
   };
-  struct PassedOn {
+  struct MultipleScattering {
     N viewer, light;
-    Spread spread;
+    MultipleLobe spread;
   };
-  [[gnu::always_inline]] PassedOn passed_on(const N& viewer, const N& light, const MaskOf<N>& is_inside,
-                                            const MaskOf<N>& through) const {
+  [[gnu::always_inline]] MultipleScattering multiple_scattering(const N& viewer, const N& light,
+                                                                const MaskOf<N>& is_inside,
+                                                                const MaskOf<N>& through) const {
     using T = ScalarOf<N>;
     const N zero(T(0)), one(T(1));
     const FacetAlbedo<N> near = choose(is_inside, inside, outside);

@@ -10,7 +10,7 @@ namespace orrery {
 // Scattering from one direction of light: see MaterialKernel::evaluate().
 template <class N>
 struct Scattered {
-  Vec3<N> f_cos;
+  Vec3<N> pi_bsdf_cos;
   N pdf;
 };
 
@@ -54,28 +54,29 @@ template <class N>
 // MaterialRecords, a record has the following members. Directions are in ShadingFrame coordinates, with the
 // viewer above the surface.
 //   N rough() const                                           0: only the derived kernel samples
-//   Vec3<N> from_everywhere(cosine, lobes) const              reflected ambient light toward a viewer
+//   Vec3<N> ambient_reflectance(cosine, lobes) const              reflected ambient light toward a viewer
 //   Scattered<N> scattered(viewer, light, inside, lobes)      light on either side of the surface
 //   DrawnDirection<N> drawn(viewer, inside, lobes, LobeDraw)  in proportion to the density of scattered()
-//   Vec3<N> passed(inside, travelled)                         transmittance of the body
+//   Vec3<N> body_transmittance(inside, travelled)                         transmittance of the body
 template <template <class> class Record, class T>
 class LobeKernel : public MaterialRecords<Record, T> {
  public:
   using N = Lanes<T>;
   using MaterialRecords<Record, T>::MaterialRecords;
 
-  void ambient(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
+  void ambient(const RayBatch<T>& rays, const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes lobes,
                const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
-    const Vec3<N> from_everywhere(ambient);
+    const Vec3<N> ambient_reflectance(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const Vec3<N> viewer = -rays.direction.at(i);
       const ShadingFrame<N> frame(surface.normal.at(i), surface.geometric.at(i), viewer);
-      radiance.put(i, mine, record.from_everywhere(dot(frame.normal, viewer), lobes) * from_everywhere);
+      radiance.put(i, mine,
+                   record.ambient_reflectance(dot(frame.normal, viewer), lobes) * ambient_reflectance);
     });
   }
 
-  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
-                Lobes lobes, Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const LaneGroups& groups,
+                Lobes lobes, Vec3Array<T>& pi_bsdf_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
       const Vec3<N> geometric = surface.geometric.at(i), light = directions.light.at(i);
@@ -88,13 +89,14 @@ class LobeKernel : public MaterialRecords<Record, T> {
       if (!any(lit)) return;
       const auto inside = surface.side.at(i) < zero;
       const auto scattered = record.scattered(local_viewer, local_light, inside, lobes);
-      f_cos.put(i, lit, scattered.f_cos * record.passed(inside, surface.travelled.at(i)));
+      pi_bsdf_cos.put(i, lit,
+                      scattered.pi_bsdf_cos * record.body_transmittance(inside, surface.travelled.at(i)));
       pdf.put(i, lit, scattered.pdf);
     });
   }
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes lobes,
               ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Record<N>& record) {
@@ -120,8 +122,8 @@ class LobeKernel : public MaterialRecords<Record, T> {
     const auto scattered = record.scattered(local_viewer, local_light, inside, lobes);
     const auto leaves = mine && on_one_side(local_viewer, local_light, dot(geometric, light)) &&
                         (local_light.z < zero) == drawn.through && scattered.pdf > zero;
-    constexpr T kPi = std::numbers::pi_v<T>;  // f_cos contains a factor pi: see MaterialKernel
-    const Vec3<N> share = scattered.f_cos * record.passed(inside, surface.travelled.at(i));
+    constexpr T kPi = std::numbers::pi_v<T>;  // pi_bsdf_cos contains a factor pi: see MaterialKernel
+    const Vec3<N> share = scattered.pi_bsdf_cos * record.body_transmittance(inside, surface.travelled.at(i));
     out.direction.put(i, mine, select(leaves, light, geometric));
     out.weight.put(i, mine, Vec3<N>(zero));
     out.weight.put(i, leaves, share * (N(T(1)) / (kPi * scattered.pdf)));

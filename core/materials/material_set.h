@@ -10,7 +10,7 @@
 //   MaterialTraits traits() const;              of a Rough<double>
 //   RoundingLimit rounding() const;             of a Rough<double>; optional
 //   double mirrored_share() const;              of a Rough<double>, if it mirrors: see MaterialSet
-//   double most_reflected() const;              of a Rough<double>, if it may create energy
+//   double max_albedo() const;              of a Rough<double>, if it may create energy
 //   ReflectionLimits limits() const;            of a Rough<double>, if they are known
 // and its formulas, plus a kernel class `Kernel<T>` that derives from MaterialRecords<Rough, T>.
 namespace orrery {
@@ -28,7 +28,7 @@ class MaterialRecords : public MaterialKernel<T> {
  protected:
   // Calls visit(i, mine, record) for each register with lanes of these materials.
   template <class Visit>
-  void for_each_register(const SurfaceBatch<T>& surface, const Groups& groups, const Visit& visit) const {
+  void for_each_register(const SurfaceBatch<T>& surface, const LaneGroups& groups, const Visit& visit) const {
     const int last = first_ + static_cast<int>(records_.size());
     for (const int i : groups) {
       const IndexLanes<T> material = load_index<T>(surface.material, i);
@@ -66,10 +66,10 @@ class MaterialSetOf final : public MaterialSet {
     else
       return 0;
   }
-  double most_reflected(int index) const override {
+  double max_albedo(int index) const override {
     const Record<double>& record = records_[static_cast<std::size_t>(index)];
-    if constexpr (requires { record.most_reflected(); })
-      return record.most_reflected();
+    if constexpr (requires { record.max_albedo(); })
+      return record.max_albedo();
     else
       return 1;
   }

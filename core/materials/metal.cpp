@@ -49,7 +49,7 @@ Metal<double> Metal<N>::read(Params& p) {
                {.min = 0, .max = 1}, 0.3);
   Metal<double> metal{n, k, {}, roughness * roughness, {}, {}};
   metal.f0 = metal.reflectance(1);
-  if (metal.alpha < kLeastAlpha) {
+  if (metal.alpha < kMinAlpha) {
     metal.alpha = 0;
     return metal;
   }
@@ -72,7 +72,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
   using N = Lanes<T>;
   using MaterialRecords<Metal, T>::MaterialRecords;
 
-  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes,
                const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const N zero(T(0)), one(T(1));
     const Vec3<N> from_everywhere(ambient);
@@ -81,8 +81,8 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
     });
   }
 
-  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups, Lobes,
-                Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const LaneGroups& groups,
+                Lobes, Vec3Array<T>& pi_bsdf_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
       const Vec3<N> geometric = surface.geometric.at(i), light = directions.light.at(i);
@@ -94,7 +94,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
       pdf.put(i, mine, zero);
       if (!any(lit)) return;
       const auto scattered = metal.scattered(local_viewer, local_light);
-      f_cos.put(i, lit, scattered.f_cos);
+      pi_bsdf_cos.put(i, lit, scattered.pi_bsdf_cos);
       pdf.put(i, lit, scattered.pdf);
     });
   }
@@ -102,7 +102,8 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
   // Samples a visible microfacet that mirrors, or a direction in proportion to the cosine: see
   // Metal::multiple_share().
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
+              ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
       const Vec3<N> direction = rays.direction.at(i), viewer = -direction;
@@ -122,15 +123,15 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
       const Vec3<N> local_light = frame.local(light);
       const auto leaves = rough && reflects(metal, local_viewer, local_light, dot(geometric, light));
       const auto scattered = metal.scattered(local_viewer, local_light);
-      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos contains a factor pi: see MaterialKernel
+      constexpr T kPi = std::numbers::pi_v<T>;  // pi_bsdf_cos contains a factor pi: see MaterialKernel
       out.direction.put(i, rough, select(leaves, light, geometric));
-      out.weight.put(i, leaves, scattered.f_cos * (N(T(1)) / (kPi * scattered.pdf)));
+      out.weight.put(i, leaves, scattered.pi_bsdf_cos * (N(T(1)) / (kPi * scattered.pdf)));
       out.pdf.put(i, leaves, scattered.pdf);
     });
   }
 
   void specular(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-                const Groups& groups, SpecularBatch<T>& out) const override {
+                const LaneGroups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Metal<N>& metal) {
       const Vec3<N> mirrored_share =

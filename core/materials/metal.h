@@ -39,7 +39,7 @@ struct Metal {
   // Result of scattered(): see MaterialKernel::evaluate(). REQUIRES: alpha, N.V and N.L above 0; directions
   // as for Ggx.
   struct Scattered {
-    Vec3<N> f_cos;
+    Vec3<N> pi_bsdf_cos;
     N pdf;
   };
   [[gnu::always_inline]] Scattered scattered(const Vec3<N>& viewer, const Vec3<N>& light) const {

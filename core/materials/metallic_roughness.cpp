@@ -26,7 +26,7 @@ MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
   found.f0 = Vec3d(kDielectric) * (1 - metallic) + color * metallic;
   found.base = color * (1 - metallic);
   found.strict = is_strict ? 1 : 0;
-  found.alpha = std::max(kLeastAlpha, roughness * roughness);
+  found.alpha = std::max(kMinAlpha, roughness * roughness);
   found.albedo = ggx_albedo(found.alpha);
   found.grazing = mirrored_albedo(found.alpha, [](double cosine) { return fresnel_schlick(0.0, cosine); });
   if (is_strict) return found;
@@ -45,7 +45,7 @@ MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
 // Takes the maximum over five views, which is mostly at grazing angles. The albedo is the facets' single
 // scattering, plus the base times the mean of 1 - F over light directions.
 template <class N>
-double MetallicRoughness<N>::most_reflected() const {
+double MetallicRoughness<N>::max_albedo() const {
   if (!(strict > 0)) return 1;
   constexpr int kSteps = 64;
   double most = 0;

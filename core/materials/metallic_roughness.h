@@ -26,9 +26,9 @@ struct MetallicRoughness {
   MaterialTraits traits() const {
     return {.lit = true, .glossy = true, .diffuse = true, .non_diffuse = true};
   }
-  double most_reflected() const;
+  double max_albedo() const;
   ReflectionLimits limits() const {
-    const double most = most_reflected();
+    const double most = max_albedo();
     return {Vec3d(1) + base * strict,
             base + multiple / std::max(1 - albedo.mean, std::numeric_limits<double>::min()) +
                 Vec3d(Ggx<double>{alpha}.most()),
@@ -36,7 +36,7 @@ struct MetallicRoughness {
   }
 
   N rough() const { return N(ScalarOf<N>(1)); }
-  Vec3<N> from_everywhere(const N& cosine, Lobes lobes) const {
+  Vec3<N> ambient_reflectance(const N& cosine, Lobes lobes) const {
     const N one(ScalarOf<N>(1));
     const Vec3<N> zero(N(ScalarOf<N>(0))), white(one);
     const Vec3<N> even = left({albedo.mean, f0 * (albedo.mean - grazing.mean) + Vec3<N>(grazing.mean)});
@@ -45,7 +45,7 @@ struct MetallicRoughness {
     return (with_non_diffuse(lobes) ? seen.once + multiple * (one - seen.all) : zero) +
            (with_diffuse(lobes) ? matt : zero);
   }
-  Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
+  Vec3<N> body_transmittance(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
   // Albedos at a cosine: of facets that mirror all light, and single scattering of the actual facets.
   struct Albedos {

@@ -17,7 +17,7 @@ Plastic<double> Plastic<N>::read(Params& p) {
       "roughness", "Of the coat. 0: smooth, 1: the roughest. Its square is alpha of the distribution GGX.",
       {.min = 0, .max = 1}, 0.3);
   Plastic<double> plastic{{}, ior, roughness * roughness, {}, 0};
-  if (plastic.alpha < kLeastAlpha) {
+  if (plastic.alpha < kMinAlpha) {
     plastic.alpha = 0;
     plastic.mean = mean_dielectric(1 / ior);
   } else {
@@ -40,7 +40,7 @@ class PlasticKernel final : public LobeKernel<Plastic, T> {
   using LobeKernel<Plastic, T>::LobeKernel;
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes lobes,
               ScatterBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Plastic<N>& plastic) {
@@ -61,7 +61,7 @@ class PlasticKernel final : public LobeKernel<Plastic, T> {
   }
 
   void specular(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-                const Groups& groups, SpecularBatch<T>& out) const override {
+                const LaneGroups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Plastic<N>& plastic) {
       const Vec3<N> viewer = -rays.direction.at(i);

@@ -30,12 +30,12 @@ struct Plastic {
 
   N rough() const { return N(ScalarOf<N>(1)); }
   // Excludes the mirror reflection of a smooth coat.
-  Vec3<N> from_everywhere(const N& cosine, Lobes lobes) const {
+  Vec3<N> ambient_reflectance(const N& cosine, Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1)), mirrors = mirrored(cosine);
     return (with_diffuse(lobes) ? base * ((one - mirrors) * (one - mean)) : Vec3<N>(zero)) +
            Vec3<N>(with_non_diffuse(lobes) ? select(alpha > zero, mirrors, zero) : zero);
   }
-  Vec3<N> passed(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
+  Vec3<N> body_transmittance(const MaskOf<N>&, const N&) const { return Vec3<N>(N(ScalarOf<N>(1))); }
 
   [[gnu::always_inline]] N fresnel(const N& cosine) const {
     const N one(ScalarOf<N>(1));
@@ -64,13 +64,13 @@ struct Plastic {
     const auto lit = light.z > zero;
     const N cosine = select(lit, light.z, one);
     Scattered<N> found{Vec3<N>(zero), (one - chance) * cosine * (one / kPi)};
-    if (with_diffuse(lobes)) found.f_cos = base * ((one - mirrors) * (one - mirrored(cosine)) * cosine);
+    if (with_diffuse(lobes)) found.pi_bsdf_cos = base * ((one - mirrors) * (one - mirrored(cosine)) * cosine);
     const auto facets = alpha > zero;
     if (with_non_diffuse(lobes) && any(facets)) {
       const Ggx<N> coat{select(facets, alpha, one)};
       const auto half = coat.half(viewer, light);
       const N single = fresnel(half.length * T(0.5)) * coat.brdf(viewer, light, half.density) * cosine * kPi;
-      found.f_cos = found.f_cos + Vec3<N>(select(facets && lit, single, zero));
+      found.pi_bsdf_cos = found.pi_bsdf_cos + Vec3<N>(select(facets && lit, single, zero));
       found.pdf = found.pdf + select(facets && lit, N(chance * coat.pdf(viewer, half.density)), zero);
     }
     found.pdf = select(lit, found.pdf, zero);

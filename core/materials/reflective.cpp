@@ -25,7 +25,7 @@ class ReflectiveKernel final : public MaterialRecords<Reflective, T> {
   using MaterialRecords<Reflective, T>::MaterialRecords;
 
   void specular(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-                const Groups& groups, SpecularBatch<T>& out) const override {
+                const LaneGroups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Reflective<N>& metal) {
       const N cosine = -dot(rays.direction.at(i), surface.normal.at(i));
@@ -36,7 +36,7 @@ class ReflectiveKernel final : public MaterialRecords<Reflective, T> {
   }
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>&, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
+              const PathDraws<T>&, const LaneGroups& groups, Lobes, ScatterBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Reflective<N>& metal) {
       const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);

@@ -24,7 +24,7 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
   using MaterialRecords<Refractive, T>::MaterialRecords;
 
   void specular(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-                const Groups& groups, SpecularBatch<T>& out) const override {
+                const LaneGroups& groups, SpecularBatch<T>& out) const override {
     const N zero(T(0)), one(T(1));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Refractive<N>& glass) {
       const auto inside = surface.side.at(i) < zero;
@@ -38,7 +38,8 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
 
   // Samples mirror reflection with the reflectance as probability, otherwise refraction.
   void sample(const RayBatch<T>& rays, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes, ScatterBatch<T>& out) const override {
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes,
+              ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Refractive<N>& glass) {
       const Vec3<N> direction = rays.direction.at(i), normal = surface.normal.at(i);

@@ -20,16 +20,16 @@ Rough<double> Rough<N>::read(Params& p) {
       p.choice("shading", "Model of the highlight.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
   Rough<double> rough{ka * cd, kd * cd, ks * cs, shininess, phong ? 1.0 : 0.0, 0};
   const bool alone = rough.diffuse == Vec3d(0) && rough.specular != Vec3d(0);
-  if (alone && shininess >= kLeastShininess) rough.chance = 1;
+  if (alone && shininess >= kMinShininess) rough.chance = 1;
   return rough;
 }
 
 // An error of epsilon in the cosine causes an error of shininess times epsilon in its power.
 template <class N>
 RoundingLimit Rough<N>::rounding() const {
-  constexpr double kMostError = 2e-3;
+  constexpr double kMaxError = 2e-3;
   if (specular == Vec3d(0) || shininess == 0) return {};
-  return {kMostError / shininess, "its highlight has an exponent of " + number_text(shininess)};
+  return {kMaxError / shininess, "its highlight has an exponent of " + number_text(shininess)};
 }
 
 // Returns the highlight's albedo along the normal, for exponent s and coefficient 1: 2 / (s + 1) for Phong, 8
@@ -53,7 +53,7 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
   using N = Lanes<T>;
   using MaterialRecords<Rough, T>::MaterialRecords;
 
-  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes lobes,
                const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(with_diffuse(lobes) ? ambient : Vec3<T>());
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
@@ -62,8 +62,8 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
   }
 
   // Light from behind contributes neither diffuse light nor a highlight.
-  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
-                Lobes lobes, Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const LaneGroups& groups,
+                Lobes lobes, Vec3Array<T>& pi_bsdf_cos, Array<T>& pdf) const override {
     const N zero(T(0));
     const auto half_at = [&](int i) { return half_vector(directions.light.at(i), -directions.ray.at(i)); };
     const Vec3<N> first_half = half_at(*groups.begin());
@@ -77,18 +77,18 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
       if (!any(lit)) return pdf.put(i, mine, N(zero));
       if (!with_non_diffuse(lobes) || !any(lit && shines)) {
         pdf.put(i, mine, select(lit, cosine_pdf(cosine), zero));
-        return f_cos.put(i, mine, rough.diffuse * cosine);
+        return pi_bsdf_cos.put(i, mine, rough.diffuse * cosine);
       }
       const Vec3<N> viewer = -directions.ray.at(i);
       const Vec3<N> half = directions.constant_half ? first_half : half_at(i);
       const auto scattered = rough.scattered(normal, toward, viewer, half, cosine, lobes);
-      f_cos.put(i, mine, scattered.f_cos);
+      pi_bsdf_cos.put(i, mine, scattered.pi_bsdf_cos);
       pdf.put(i, mine, select(lit, scattered.pdf, zero));
     });
   }
 
   void sample(const RayBatch<T>& rays, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes lobes,
               ScatterBatch<T>& out) const override {
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Rough<N>& rough) {
@@ -104,8 +104,8 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
                           (!shines || dot(normal, viewer) > zero) && scattered.pdf > zero;
       const N pdf = select(leaves, scattered.pdf, zero);
       out.direction.put(i, mine, direction);
-      constexpr T kPi = std::numbers::pi_v<T>;  // f_cos contains a factor pi: see MaterialKernel
-      out.weight.put(i, mine, scattered.f_cos * select(leaves, N(T(1) / (kPi * pdf)), zero));
+      constexpr T kPi = std::numbers::pi_v<T>;  // pi_bsdf_cos contains a factor pi: see MaterialKernel
+      out.weight.put(i, mine, scattered.pi_bsdf_cos * select(leaves, N(T(1) / (kPi * pdf)), zero));
       out.pdf.put(i, mine, pdf);
     });
   }

@@ -26,7 +26,7 @@ struct Rough {
             .non_diffuse = specular != none};
   }
   RoundingLimit rounding() const;
-  double most_reflected() const { return max_component(limits().albedo); }
+  double max_albedo() const { return max_component(limits().albedo); }
   ReflectionLimits limits() const;
   double highlight_albedo() const;  // along the normal, where no part is cut off
 
@@ -42,16 +42,16 @@ struct Rough {
   }
 
   // Minimum exponent for sampling the highlight. Weaker highlights are sampled in proportion to the cosine.
-  static constexpr double kLeastShininess = 1;
+  static constexpr double kMinShininess = 1;
   [[gnu::always_inline]] N highlight_chance(Lobes lobes) const {
     const N zero(ScalarOf<N>(0)), one(ScalarOf<N>(1));
     if (lobes == Lobes::all) return chance;
-    return with_non_diffuse(lobes) ? select(shininess >= N(ScalarOf<N>(kLeastShininess)), one, zero) : zero;
+    return with_non_diffuse(lobes) ? select(shininess >= N(ScalarOf<N>(kMinShininess)), one, zero) : zero;
   }
 
-  // Result of scattered(): f_cos for light from `light` toward `viewer`, and the sampling density.
+  // Result of scattered(): pi_bsdf_cos for light from `light` toward `viewer`, and the sampling density.
   struct Scattered {
-    Vec3<N> f_cos;
+    Vec3<N> pi_bsdf_cos;
     N pdf;
   };
   // Evaluates the lobes. REQUIRES: cosine = N.L > 0. The sampling density is the power of the cosine to the

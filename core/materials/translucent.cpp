@@ -32,7 +32,7 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
   using N = Lanes<T>;
   using MaterialRecords<Translucent, T>::MaterialRecords;
 
-  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
+  void ambient(const RayBatch<T>&, const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes lobes,
                const Vec3<T>& ambient, Vec3Array<T>& radiance) const override {
     const Vec3<N> from_everywhere(ambient);
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
@@ -44,8 +44,8 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
     });
   }
 
-  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const Groups& groups,
-                Lobes lobes, Vec3Array<T>& f_cos, Array<T>& pdf) const override {
+  void evaluate(const Directions<T>& directions, const SurfaceBatch<T>& surface, const LaneGroups& groups,
+                Lobes lobes, Vec3Array<T>& pi_bsdf_cos, Array<T>& pdf) const override {
     using std::abs;
     const N zero(T(0));
     this->for_each_register(surface, groups, [&](int i, const auto& mine, const Translucent<N>& sheet) {
@@ -55,12 +55,12 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
           mine && directions.reach.at(i) > zero && cosine * dot(surface.geometric.at(i), light) > zero;
       const auto through = cosine < zero;
       pdf.put(i, mine, select(lit, density(through, through_chance(sheet, lobes), abs(cosine)), zero));
-      if (any(lit)) f_cos.put(i, mine, share(sheet, through) * abs(cosine));
+      if (any(lit)) pi_bsdf_cos.put(i, mine, share(sheet, through) * abs(cosine));
     });
   }
 
   void sample(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>& surface,
-              const PathDraws<T>& draws, const Groups& groups, Lobes lobes,
+              const PathDraws<T>& draws, const LaneGroups& groups, Lobes lobes,
               ScatterBatch<T>& out) const override {
     using std::abs;
     const N zero(T(0)), one(T(1));

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/gltf_file.h"
 #include "core/meshes/gltf_transform.h"

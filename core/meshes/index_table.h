@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 namespace orrery {
 

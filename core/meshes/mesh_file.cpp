@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/text.h"
 

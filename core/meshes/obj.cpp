@@ -44,12 +44,12 @@ class ObjReader {
     const double x = read_number(what), y = read_number(what);
     return {x, y, read_number(what)};
   }
-  double read_number(const char* what) { return text_.number_in(text_.word_of_line(), what); }
+  double read_number(const char* what) { return text_.parse_number(text_.word_of_line(), what); }
 
   std::array<double, 2> read_uv() {
     const double u = read_number("vt");
     const std::string_view v = text_.word_of_line();
-    return {u, v.empty() ? 0.0 : text_.number_in(v, "vt")};
+    return {u, v.empty() ? 0.0 : text_.parse_number(v, "vt")};
   }
 
   // Reads "7", "7/2", "7//3" or "7/2/3". Corners with the same indices are one vertex.

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/meshes/ply_body.h"
 
 namespace orrery {
@@ -60,8 +60,8 @@ class PlyReader {
   void check_bytes(const PlyElement& element) const {
     std::size_t fewest = 0;
     for (const PlyProperty& property : element.properties) {
-      fewest += Body::fewest_bytes(property.count_type.value_or(property.type));
-      if (element.name == "face" && is_polygon(property)) fewest += 3 * Body::fewest_bytes(property.type);
+      fewest += Body::min_bytes(property.count_type.value_or(property.type));
+      if (element.name == "face" && is_polygon(property)) fewest += 3 * Body::min_bytes(property.type);
     }
     if (fewest > 0 && element.count > body_.bytes_left() / fewest)
       body_.fail("expected " + std::to_string(element.count) + " of element " + excerpt(element.name) +

@@ -42,7 +42,7 @@ class AsciiPly {
   explicit AsciiPly(const PlyHeader& header) : text_(header.body) {}
   Value describe(PlyType) const { return {}; }
   // Returns the minimum size of a value: a digit and a blank, which only the last value may lack.
-  static std::size_t fewest_bytes(PlyType) { return 2; }
+  static std::size_t min_bytes(PlyType) { return 2; }
   std::size_t bytes_left() const { return text_.rest().size() + 1; }
 
   double read(Value) { return text_.number("a value"); }
@@ -66,7 +66,7 @@ class BinaryPly {
   explicit BinaryPly(const PlyHeader& header)
       : encoding_(header.encoding), rest_(header.body.rest()), total_(rest_.size()) {}
   Value describe(PlyType type) const { return {ply_load(type, encoding_), size_of(type)}; }
-  static std::size_t fewest_bytes(PlyType type) { return size_of(type); }
+  static std::size_t min_bytes(PlyType type) { return size_of(type); }
   std::size_t bytes_left() const { return rest_.size(); }
 
   double read(const Value& value) {

@@ -1,6 +1,6 @@
 #include "core/meshes/repair.h"
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/math/face_normal.h"
 
 namespace orrery {

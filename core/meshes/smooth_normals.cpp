@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/math/angles.h"
 #include "core/math/face_normal.h"
 #include "core/meshes/repair.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 
 namespace orrery {
@@ -99,7 +99,7 @@ void TextReader::end_text(bool lone_returns) {
     pass_line_end();
 }
 
-double TextReader::number_in(std::string_view word, std::string_view what) const {
+double TextReader::parse_number(std::string_view word, std::string_view what) const {
   const std::string_view digits = unsigned_plus(word);
   const char* end = digits.data() + digits.size();
   double value = 0;

@@ -24,12 +24,12 @@ class TextReader {
   // alone, and a \n after it is data.
   void end_text(bool lone_returns);
 
-  // Returns the next word on this line or a later one as a number: see number_in().
-  double number(std::string_view what) { return number_in(word(), what); }
+  // Returns the next word on this line or a later one as a number: see parse_number().
+  double number(std::string_view what) { return parse_number(word(), what); }
 
   // Returns the number that `word` spells: the nearest double, or an integer. Throws InputError with the
   // line, `what` and the word if it is invalid or out of range.
-  double number_in(std::string_view word, std::string_view what) const;
+  double parse_number(std::string_view word, std::string_view what) const;
   std::int64_t integer_in(std::string_view word, std::string_view what) const;
 
   [[noreturn]] void fail(const std::string& detail) const;  // throws InputError with the line

@@ -49,11 +49,11 @@ class Accelerator {
   // Finds the nearest hit of every active ray of `groups`. REQUIRES: hits.t and hits.primitive hold t_max and
   // kNoPrimitive, or an earlier hit of the ray. An earlier hit is replaced only by a nearer one, or by one at
   // the same distance with a lower primitive number.
-  virtual void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  virtual void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 
   // Sets t_max to -1 for every ray of `groups` that hits a primitive in (0, t_max).
-  virtual void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const = 0;
+  virtual void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const = 0;
 };
 
 template <class T>

@@ -66,23 +66,23 @@ template <class T>
 }
 
 // Registers of a batch that a stage works on: the index of the first ray of each register, ascending.
-class Groups {
+class LaneGroups {
  public:
-  Groups() {}  // leaves first_ uninitialised
+  LaneGroups() {}  // leaves first_ uninitialised
 
   // Returns every register that holds one of the rays from..to-1. REQUIRES: `from` is a multiple of `width`.
-  static Groups covering(int from, int to, int width) {
-    Groups all;
+  static LaneGroups covering(int from, int to, int width) {
+    LaneGroups all;
     for (int i = from; i < to; i += width) all.add(i);
     return all;
   }
-  static Groups single(int first) {
-    Groups one;
+  static LaneGroups single(int first) {
+    LaneGroups one;
     one.add(first);
     return one;
   }
-  Groups(const Groups& other) { *this = other; }
-  Groups& operator=(const Groups& other) {
+  LaneGroups(const LaneGroups& other) { *this = other; }
+  LaneGroups& operator=(const LaneGroups& other) {
     count_ = other.count_;
     std::copy(other.begin(), other.end(), first_.begin());
     return *this;
@@ -127,15 +127,15 @@ struct RayBatch {
 
 // Returns the number of active rays of `groups`.
 template <class T>
-std::uint64_t active_rays(const RayBatch<T>& rays, const Groups& groups) {
+std::uint64_t active_rays(const RayBatch<T>& rays, const LaneGroups& groups) {
   std::uint64_t count = 0;
   for (const int i : groups)
     count += static_cast<std::uint64_t>(stdx::popcount(rays.t_max.at(i) > Lanes<T>(T(0))));
   return count;
 }
 template <class T>
-Groups with_active_rays(const RayBatch<T>& rays, const Groups& groups) {
-  Groups active;
+LaneGroups with_active_rays(const RayBatch<T>& rays, const LaneGroups& groups) {
+  LaneGroups active;
   for (const int i : groups)
     if (any(rays.t_max.at(i) > Lanes<T>(T(0)))) active.add(i);
   return active;
@@ -175,7 +175,8 @@ inline constexpr int kNoInstance = -1;
 // Returns the lanes whose hit at t on primitive `id` replaces (best, best_id): the hit is nearer, or equally
 // near with a lower primitive number. NaN and infinity are not hits.
 template <class N, class I>
-[[gnu::always_inline]] inline MaskOf<N> takes_over(const N& t, const I& id, const N& best, const I& best_id) {
+[[gnu::always_inline]] inline MaskOf<N> is_nearer_hit(const N& t, const I& id, const N& best,
+                                                      const I& best_id) {
   constexpr auto kFarthest = std::numeric_limits<ScalarOf<N>>::max();
   const auto lower = mask_cast<N>(id < best_id || best_id == I(kNoPrimitive));
   return t < best || (t == best && lower && t <= N(kFarthest));

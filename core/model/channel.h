@@ -36,11 +36,11 @@ struct ChannelType {
   float nothing;         // value of a pixel in which every ray missed
   SurfaceFields fields;  // surface fields that `record` reads
   // Sets the components of the value for the registers of `groups`.
-  void (*record_float)(const FirstHits<float>&, const Groups&, Vec3Array<float>&);
-  void (*record_double)(const FirstHits<double>&, const Groups&, Vec3Array<double>&);
+  void (*record_float)(const FirstHits<float>&, const LaneGroups&, Vec3Array<float>&);
+  void (*record_double)(const FirstHits<double>&, const LaneGroups&, Vec3Array<double>&);
 
   template <class T>
-  void record(const FirstHits<T>& first, const Groups& groups, Vec3Array<T>& value) const {
+  void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& value) const {
     if constexpr (std::is_same_v<T, float>)
       record_float(first, groups, value);
     else

@@ -7,11 +7,11 @@
 
 namespace orrery {
 
-inline constexpr int kDeepestRay = 32;  // largest depth that a request may ask for
+inline constexpr int kMaxRayDepth = 32;  // largest depth that a request may ask for
 
 // Ray counts by kind and depth. A shadow ray has the depth of the ray whose hit spawned it.
 struct RayCounts {
-  using ByDepth = std::array<std::uint64_t, kDeepestRay + 1>;
+  using ByDepth = std::array<std::uint64_t, kMaxRayDepth + 1>;
   std::uint64_t camera = 0;
   ByDepth reflected{}, refracted{}, shadow{};
 

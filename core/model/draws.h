@@ -14,9 +14,9 @@ enum class SampleSet : std::uint32_t {
   lobe,
   light_choice,
   survival,
-  look,
+  emission_ray,
   lens,
-  look_lens,
+  emission_ray_lens,
   environment = 1u << 16  // above the numbers of all depths
 };
 inline constexpr std::uint32_t kSampleSets = 8;  // sets before `environment`

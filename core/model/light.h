@@ -22,7 +22,7 @@ struct LightBatch {
   RayBatch<T> shadow;
   // Radiance times the cosine at the light, divided by the sampling density and the selection probability.
   // Point lights: intensity after attenuation and cone. Area lights also divide by pi, which cancels the
-  // factor pi of f_cos.
+  // factor pi of pi_bsdf_cos.
   Vec3Array<T> incident;
   // Sampling density per solid angle times the selection probability; 0 for lights that no ray can hit.
   Array<T> pdf;
@@ -51,24 +51,24 @@ class LightKernel {
   // Samples a point of one light for every surface point of `groups`: fills direction, t_max and incident.
   // sample_each() could replace it, but makes a picture 2.5 % slower if every light is evaluated.
   virtual void sample(const SurfaceBatch<T>& surface, const LightChoice<T>& choice, const PathDraws<T>& draws,
-                      const Groups& groups, LightBatch<T>& out) const = 0;
+                      const LaneGroups& groups, LightBatch<T>& out) const = 0;
 
   // Samples a separate light for each surface point. Fills pdf as well, and only the lanes that have a light.
   virtual void sample_each(const SurfaceBatch<T>& surface, const LightChoices<T>& choices,
-                           const PathDraws<T>& draws, const Groups& groups, LightBatch<T>& out) const = 0;
+                           const PathDraws<T>& draws, const LaneGroups& groups, LightBatch<T>& out) const = 0;
 
   // Computes the density per solid angle, times the selection probability, with which sample_each() draws the
   // directions of `rays`, which hit the lights at `hits`. Fills the lanes that have a light; 0 for lights
   // that no ray can hit.
   virtual void pdf(const RayBatch<T>& /*rays*/, const HitBatch<T>& /*hits*/,
-                   const LightChoices<T>& /*choices*/, const Groups& groups, Array<T>& out) const {
+                   const LightChoices<T>& /*choices*/, const LaneGroups& groups, Array<T>& out) const {
     for (const int i : groups) out.put(i, Lanes<T>(T(0)));
   }
 
   // Computes, for an extended light at infinity, the radiance along `rays` that miss everything. `pdf` is the
   // density per solid angle, times the selection probability, with which sample_each() draws their
   // directions.
-  virtual void beyond(const RayBatch<T>& /*rays*/, const LightChoice<T>& /*choice*/, const Groups& groups,
+  virtual void beyond(const RayBatch<T>& /*rays*/, const LightChoice<T>& /*choice*/, const LaneGroups& groups,
                       Vec3Array<T>& radiance, Array<T>& pdf) const {
     for (const int i : groups) {
       radiance.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
@@ -109,9 +109,9 @@ class LightSet {
   virtual LightBounds bounds(int index) const = 0;
   // Returns an upper bound of LightBatch::incident at `distance` metres or more from the centre of the
   // bounds, per channel. Treats the light as one point or direction. Infinite if unbounded.
-  virtual Vec3d most_at(int index, double distance) const = 0;
+  virtual Vec3d max_incident(int index, double distance) const = 0;
   // Returns the largest radiance that rays which miss everything can receive from the light.
-  virtual Vec3d most_seen(int /*index*/) const { return Vec3d(0); }
+  virtual Vec3d max_radiance_at_infinity(int /*index*/) const { return Vec3d(0); }
   virtual RoundingLimit rounding(int /*index*/) const { return {}; }
   // Returns true if sample_each() samples the extent of the light. sample() treats the light as one point or
   // direction.

@@ -51,22 +51,22 @@ class MaterialKernel {
 
   // Sets `radiance` to the light that leaves the surface under `ambient` light alone, for the lanes with this
   // material.
-  virtual void ambient(const RayBatch<T>&, const SurfaceBatch<T>&, const Groups&, Lobes,
+  virtual void ambient(const RayBatch<T>&, const SurfaceBatch<T>&, const LaneGroups&, Lobes,
                        const Vec3<T>& /*ambient*/, Vec3Array<T>& /*radiance*/) const {}
 
-  // Evaluates scattering from `directions.light` toward the ray's origin. `f_cos` is the BSDF times cosine
-  // times pi, per channel (a white Lambert surface: the cosine). `pdf` is the density per solid angle with
-  // which sample() draws the direction. Sets only the lanes with this material. If nothing is reflected, pdf
-  // is 0 and f_cos is undefined.
-  virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const Groups&, Lobes,
-                        Vec3Array<T>& /*f_cos*/, Array<T>& /*pdf*/) const {}
+  // Evaluates scattering from `directions.light` toward the ray's origin. `pi_bsdf_cos` is the BSDF times
+  // cosine times pi, per channel (a white Lambert surface: the cosine). `pdf` is the density per solid angle
+  // with which sample() draws the direction. Sets only the lanes with this material. If nothing is reflected,
+  // pdf is 0 and pi_bsdf_cos is undefined.
+  virtual void evaluate(const Directions<T>&, const SurfaceBatch<T>&, const LaneGroups&, Lobes,
+                        Vec3Array<T>& /*pi_bsdf_cos*/, Array<T>& /*pdf*/) const {}
 
   // Samples one direction of incident light, for the lanes with this material.
   virtual void sample(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const PathDraws<T>&,
-                      const Groups&, Lobes, ScatterBatch<T>&) const {}
+                      const LaneGroups&, Lobes, ScatterBatch<T>&) const {}
 
   // Computes both directions of a perfectly specular material, for the lanes with this material.
-  virtual void specular(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const Groups&,
+  virtual void specular(const RayBatch<T>&, const HitBatch<T>&, const SurfaceBatch<T>&, const LaneGroups&,
                         SpecularBatch<T>&) const {}
 };
 
@@ -107,7 +107,7 @@ struct MaterialTraits {
 // mirrors a share R, `ambient` and `light` are the bounds at R = 0. At most 1 - R of them then applies.
 struct ReflectionLimits {
   Vec3d ambient{1.0};                                    // for ambient light
-  Vec3d light{std::numeric_limits<double>::infinity()};  // f_cos of MaterialKernel::evaluate()
+  Vec3d light{std::numeric_limits<double>::infinity()};  // pi_bsdf_cos of MaterialKernel::evaluate()
   Vec3d albedo{1.0};                                     // for light from all directions
   bool specular = false;                                 // may mirror and refract all light
 };
@@ -123,7 +123,7 @@ class MaterialSet {
   virtual double mirrored_share(int /*index*/) const { return 0; }
   // Returns the largest albedo over views and channels, to within 0.01. Above 1 the material creates energy.
   // 1 if its formula cannot create energy.
-  virtual double most_reflected(int /*index*/) const { return 1; }
+  virtual double max_albedo(int /*index*/) const { return 1; }
   virtual ReflectionLimits limits(int /*index*/) const { return {}; }
   // Returns a kernel whose materials are numbered from `first`.
   virtual MaterialKernelPtr<float> kernel(float, int first) const = 0;

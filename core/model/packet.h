@@ -14,15 +14,15 @@ struct AcceleratorCounts {
   std::uint64_t node_visits = 0;  // by a ray or by a packet
   std::uint64_t box_tests = 0;
   std::uint64_t primitive_tests = 0;
-  std::uint64_t proposals = 0;  // predicted occluders tested before traversal
-  std::uint64_t proofs = 0;     // predicted occluders that the shadow ray hit
+  std::uint64_t predicted_occluders = 0;  // predicted occluders tested before traversal
+  std::uint64_t verified_occluders = 0;   // predicted occluders that the shadow ray hit
 
   void add(const AcceleratorCounts& other) {
     node_visits += other.node_visits;
     box_tests += other.box_tests;
     primitive_tests += other.primitive_tests;
-    proposals += other.proposals;
-    proofs += other.proofs;
+    predicted_occluders += other.predicted_occluders;
+    verified_occluders += other.verified_occluders;
   }
 };
 

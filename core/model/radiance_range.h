@@ -12,7 +12,9 @@ struct RadianceRange {
 
   bool finite() const { return max_component(most) < std::numeric_limits<double>::infinity(); }
   // Returns the largest difference between `substitute` and a radiance in the range.
-  Vec3d most_off(const Vec3d& substitute) const { return largest(most - substitute, substitute - least); }
+  Vec3d max_deviation(const Vec3d& substitute) const {
+    return largest(most - substitute, substitute - least);
+  }
 };
 
 }  // namespace orrery

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/math/affine.h"
-#include "core/math/keys.h"
+#include "core/math/keyframes.h"
 #include "core/model/camera.h"
 #include "core/model/environment.h"
 #include "core/model/light.h"
@@ -22,7 +22,7 @@
 namespace orrery {
 
 // Extreme value of a scene, in metres for lengths, and the JSON Pointer of its object.
-struct Extreme {
+struct LocatedValue {
   double value;
   std::string where;
 };
@@ -44,14 +44,14 @@ struct SceneFacts {
   Vec3d albedo;                                                      // largest albedo of a material in use
   // Inputs to the choice of the number type:
   // Largest absolute coordinate, including the anchors of unbounded primitives.
-  Extreme magnitude{0, ""};
+  LocatedValue magnitude{0, ""};
   // Smallest diagonal of a bounded primitive's box, and smallest distance between two layers: the sides of
   // one body or the surfaces of two. Infinite if there are none.
-  Extreme smallest_feature{std::numeric_limits<double>::infinity(), ""},
+  LocatedValue smallest_feature{std::numeric_limits<double>::infinity(), ""},
       layer_distance{std::numeric_limits<double>::infinity(), ""};
   MirrorChain mirrors;
-  Extreme most_reflected{1, ""};  // largest albedo of a material in use, and its object
-  RoundingLimit rounding;         // strictest limit of lights and materials; `reason` names it
+  LocatedValue max_albedo{1, ""};  // largest albedo of a material in use, and its object
+  RoundingLimit rounding;          // strictest limit of lights and materials; `reason` names it
 };
 
 // Returns the number of primitives of all sets.
@@ -81,8 +81,8 @@ inline Placement mix(const Placement& before, const Placement& after, double sha
 
 struct Instance {
   std::size_t model;
-  Vec3d axis;              // rotation axis
-  Keys<Placement> motion;  // one key if static
+  Vec3d axis;                   // rotation axis
+  Keyframes<Placement> motion;  // one key if static
 
   Affined world_from_model(double time) const {
     const Placement placement = motion.at(time);

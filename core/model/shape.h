@@ -78,12 +78,12 @@ class ShapeKernel {
   // Tests primitive `index` of this set against the rays of `groups`. A hit in (0, hits.t) replaces the
   // previous one; equal t keeps the lower primitive number. Counts tests within the primitive, not the
   // primitive itself.
-  virtual void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  virtual void closest(int index, const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                        AcceleratorCounts& counts) const = 0;
 
   // Sets t_max to -1 for the rays of `groups` that hit primitive `index` in (0, t_max). Counts like
   // closest().
-  virtual void occlude(int index, RayBatch<T>& rays, const Groups& groups,
+  virtual void occlude(int index, RayBatch<T>& rays, const LaneGroups& groups,
                        AcceleratorCounts& counts) const = 0;
 
   // Returns a surface whose convex hull contains a bounded primitive, except for rounding. Returns an empty
@@ -98,12 +98,12 @@ class ShapeKernel {
   virtual PackedPrimitivesPtr<T> pack(std::span<const int> indices) const = 0;
 
   // Fills the surface of every hit in `groups` on this set. Other lanes are unchanged.
-  virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+  virtual void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
                        SurfaceBatch<T>& out) const = 0;
 
   // Fills u and v of hits and surfaces, and the tangent; other lanes are unchanged. REQUIRES: surface() was
   // called before.
-  virtual void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  virtual void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                           SurfaceBatch<T>& out) const = 0;
 };
 
@@ -159,11 +159,11 @@ class ShapeSet {
   // Returns bounds with infinite sides for unbounded primitives.
   virtual Boundsd bounds(int index) const = 0;
   // Bounds of the primitive over its whole motion, and the smallest diagonal of its box at any key.
-  struct Reach {
+  struct SweptBounds {
     Boundsd box;
-    double least_diagonal = std::numeric_limits<double>::infinity();
+    double min_diagonal = std::numeric_limits<double>::infinity();
   };
-  virtual Reach reach(int index) const {
+  virtual SweptBounds reach(int index) const {
     const Boundsd box = bounds(index);
     return {box, box.diagonal()};
   }

@@ -21,7 +21,8 @@ struct TraceResult {
   std::vector<ChannelBatch<T>> channels;  // in the order of Plan::channels
 };
 
-inline constexpr int kMostLooks = 16;  // maximum emission-only rays per sample: see Tracer::looks()
+inline constexpr int kMaxEmissionSamples =
+    16;  // maximum emission-only rays per sample: see Tracer::has_emission_pass()
 
 // Light transport algorithm. A tracer belongs to one thread and is reused, together with its batches.
 template <class T>
@@ -34,12 +35,12 @@ class Tracer {
   virtual bool trace(const RayBatch<T>& camera_rays, const Draws& draws, TraceResult<T>& out,
                      TraceCounts& counts, const Checkpoint& checkpoint = {}) = 0;
 
-  // Returns true if only look() finds directly visible emission, with separate camera rays. Emitters have the
-  // sharpest edges of a picture, and emission-only rays are cheap.
-  virtual bool looks() const { return false; }
+  // Returns true if only trace_emission_only() finds directly visible emission, with separate camera rays.
+  // Emitters have the sharpest edges of a picture, and emission-only rays are cheap.
+  virtual bool has_emission_pass() const { return false; }
   // Adds `share` of the emission and background that the camera rays hit first.
-  virtual void look(const RayBatch<T>& /*camera_rays*/, T /*share*/, TraceResult<T>& /*out*/,
-                    TraceCounts& /*counts*/) {}
+  virtual void trace_emission_only(const RayBatch<T>& /*camera_rays*/, T /*share*/, TraceResult<T>& /*out*/,
+                                   TraceCounts& /*counts*/) {}
 };
 
 template <class T>

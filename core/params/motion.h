@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/math/keys.h"
+#include "core/math/keyframes.h"
 #include "core/params/params.h"
 
 namespace orrery {
@@ -14,7 +14,7 @@ inline constexpr std::size_t kMaxKeys = 10'000;  // keyframes of one "motion" li
 // keyframes if the list is missing.
 template <class Read>
 auto read_motion(Params& p, const Read& read) {
-  Keys<decltype(read(p))> keys;
+  Keyframes<decltype(read(p))> keys;
   p.each(
       "motion",
       "Where it is at which time, in between on the way: no key or two at least. What a key leaves out is as "

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/shorten.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/params/document.h"
 #include "core/params/json.h"
 #include "core/params/words.h"

@@ -16,7 +16,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/pictures/decoder/protocol.h"
 
 namespace orrery {

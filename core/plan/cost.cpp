@@ -21,14 +21,15 @@ double camera_rays_of(const Plan& plan) {
 
 // Estimates that seven of ten paths survive Russian roulette. Each vertex sends one shadow ray, and the first
 // vertex is connected to those of the other paths in its group. About two rays per sample search for
-// emitters, or kMostLooks with lens or motion blur. If diffuse surfaces end paths, fewer paths continue.
+// emitters, or kMaxEmissionSamples with lens or motion blur. If diffuse surfaces end paths, fewer paths
+// continue.
 double expected_path_rays(const Scene& scene, const Plan& plan) {
   const MaterialTraits& materials = scene.facts.materials;
   const double surviving = plan.technique->interreflects || !materials.diffuse ? 0.7
                            : materials.non_diffuse                             ? 0.7 * kSpecularShare
                                                                                : 0;
-  const double looks = plan.lens || plan.shutter > 0 ? kMostLooks : 2;
-  double rays = 1 + looks + (plan.reuse - 1), share = 1;
+  const double has_emission_pass = plan.lens || plan.shutter > 0 ? kMaxEmissionSamples : 2;
+  double rays = 1 + has_emission_pass + (plan.reuse - 1), share = 1;
   for (int depth = 1; depth <= plan.max_depth; ++depth) {
     rays += share * (1 + surviving);
     share *= surviving;

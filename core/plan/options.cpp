@@ -410,7 +410,7 @@ namespace {
 
 // Initial min_contribution with an error budget. It is the same for all errors, so that a smaller error never
 // yields a larger contribution.
-constexpr double kMostContribution = 1.0 / 16;
+constexpr double kMaxContribution = 1.0 / 16;
 // min_contribution with a time budget only: a quarter of one 8-bit code. It limits ray trees instead of their
 // depth, which costs hardly more for mirrors and less for branching glass.
 constexpr double kTimedContribution = 0.001;
@@ -420,7 +420,7 @@ void free_for_budget(RenderSettings& settings) {
   if (!settings.samples) settings.samples = kMaxSamples;
   if (!settings.max_depth) settings.max_depth = kMaxDepth;
   if (!settings.min_contribution)
-    settings.min_contribution = settings.error.value_or(0) > 0 ? kMostContribution : kTimedContribution;
+    settings.min_contribution = settings.error.value_or(0) > 0 ? kMaxContribution : kTimedContribution;
   if (!settings.precision) settings.precision = Precision::double_precision;
 }
 

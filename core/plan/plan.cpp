@@ -26,7 +26,7 @@ auto find_type(const Types& types, const std::string& name) {
   return &*found;
 }
 
-constexpr int kFewPrimitives = 8, kMostToTry = 1024;
+constexpr int kFewPrimitives = 8, kMaxTries = 1024;
 
 class Planner {
  public:
@@ -50,11 +50,11 @@ class Planner {
     const SceneFacts& facts = scene_.facts;
     if (plan_.technique->draws_light) {
       plan_.cut_range = plan_.technique->interreflects
-                            ? facts.path_radiance.most_off(Vec3d(0))
-                            : largest(facts.distributed_radiance.most_off(Vec3d(0)), scene_.ambient);
+                            ? facts.path_radiance.max_deviation(Vec3d(0))
+                            : largest(facts.distributed_radiance.max_deviation(Vec3d(0)), scene_.ambient);
       choose_paths();
     } else {
-      plan_.cut_range = facts.tree_radiance.most_off(scene_.ambient);
+      plan_.cut_range = facts.tree_radiance.max_deviation(scene_.ambient);
       const bool negative = plan_.filtered && has_negative_lobes(*plan_.asked.filter);
       if (!negative)  // rays that are cut return ambient light
         plan_.sample_range = max_component(largest(facts.tree_radiance.most, scene_.ambient));
@@ -132,7 +132,7 @@ class Planner {
 
   void choose_filter() {
     const Filter filter = *plan_.asked.filter;
-    if (!moves_samples(filter, *plan_.asked.filter_width)) return;
+    if (!warps_samples(filter, *plan_.asked.filter_width)) return;
     plan_.filtered = plan_.samples > 1 || plan_.technique->draws_light;
     if (plan_.filtered)
       decide("filter", std::string(name_of(filter)),
@@ -190,12 +190,12 @@ class Planner {
     }
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
-    plan_.try_accelerators = !few && count <= kMostToTry && !plan_.technique->draws_light;
+    plan_.try_accelerators = !few && count <= kMaxTries && !plan_.technique->draws_light;
     plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bvh");
     decide("accelerator", plan_.accelerator->name,
            few ? "so few primitives that testing each costs less than any structure"
                : "of all structures it took the least time on every scene measured with more than " +
-                     std::to_string(kMostToTry) + " primitives, and on paths");
+                     std::to_string(kMaxTries) + " primitives, and on paths");
   }
 
   void choose_order() {

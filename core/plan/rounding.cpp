@@ -8,11 +8,11 @@
 namespace orrery {
 namespace {
 
-constexpr double kRoundings = 8;       // hit error, in epsilons of the largest coordinate
-constexpr double kMostOfLength = 0.1;  // allowed hit error, as a share of a visible length
-constexpr double kMostTurn = 0.02;     // radians, allowed error of a mirrored ray
+constexpr double kRoundings = 8;      // hit error, in epsilons of the largest coordinate
+constexpr double kMaxOfLength = 0.1;  // allowed hit error, as a share of a visible length
+constexpr double kMaxTurn = 0.02;     // radians, allowed error of a mirrored ray
 // Smallest length, in metres, whose third power is a normal float, even for parts a hundred times smaller.
-constexpr double kLeastLengthInFloat = 1e-10;
+constexpr double kMinLengthInFloat = 1e-10;
 
 std::string metres(double x) { return number_text(x) + " m"; }
 
@@ -33,7 +33,7 @@ class Limits {
     const double pixel = footprint();
     take_length(pixel, "a pixel is " + metres(pixel) + " wide where things are");
     take_mirrors();
-    if (facts_.smallest_feature.value < kLeastLengthInFloat)
+    if (facts_.smallest_feature.value < kMinLengthInFloat)
       take({0, facts_.smallest_feature.where + " has parts that may be " +
                    metres(facts_.smallest_feature.value) +
                    " large: products of such lengths are too small for float"});
@@ -46,7 +46,7 @@ class Limits {
   }
   void take_length(double length, const std::string& what) {
     take(
-        {kMostOfLength * length / (kRoundings * magnitude_.value),
+        {kMaxOfLength * length / (kRoundings * magnitude_.value),
          what + ", beside coordinates of up to " + metres(magnitude_.value) + " (" + magnitude_.where + ")"});
   }
 
@@ -71,14 +71,14 @@ class Limits {
     const MirrorChain& chain = facts_.mirrors;
     if (chain.where.empty() || plan_.asked.max_depth.value_or(0) < 1) return;
     const double growth = std::pow(chain.growth, *plan_.asked.max_depth);
-    take({kMostTurn * chain.radius / (kRoundings * magnitude_.value * growth),
+    take({kMaxTurn * chain.radius / (kRoundings * magnitude_.value * growth),
           "each of " + std::to_string(*plan_.asked.max_depth) + " reflections from " + chain.where +
               " may multiply rounding by " + number_text(chain.growth)});
   }
 
   const SceneFacts& facts_;
   const Plan& plan_;
-  Extreme magnitude_;
+  LocatedValue magnitude_;
   RoundingLimit strictest_;
 };
 

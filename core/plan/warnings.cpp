@@ -14,9 +14,9 @@ namespace orrery {
 namespace {
 
 // Maximum numbers of primitives examined, so that warnings take milliseconds for any scene.
-constexpr int kMostPrimitives = 20'000, kMostAround = 8;
+constexpr int kMaxPrimitives = 20'000, kMaxAround = 8;
 
-constexpr double kMostReflected =
+constexpr double kMaxReflected =
     1.005;  // reflected share of light that is accepted, with a margin for rounding
 
 std::string percents(double share) {
@@ -101,14 +101,14 @@ bool any_shapes(const Scene& scene, double time, const Visit& visit) {
   return false;
 }
 
-// Returns false if more than kMostPrimitives would have to be examined.
+// Returns false if more than kMaxPrimitives would have to be examined.
 bool nothing_in_view(const Scene& scene, const Plan& plan) {
   if (plan.shutter > 0) return false;  // motion into the view is not examined
   const View view(plan);
   int seen = 0;
   return !any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
     for (int i = 0; i < shapes->size(); ++i)
-      if (++seen > kMostPrimitives || !view.misses(world, shapes->bounds(i))) return true;
+      if (++seen > kMaxPrimitives || !view.misses(world, shapes->bounds(i))) return true;
     return false;
   });
 }
@@ -177,7 +177,7 @@ class Surroundings {
     rays_.set(0, {model_from_world.point(point_), model_from_world.vector(ray.direction)}, ray.distance);
   }
 
-  static inline const Groups kOne = Groups::single(0);
+  static inline const LaneGroups kOne = LaneGroups::single(0);
   const Vec3d point_;
   std::vector<ToLight> lights_;
   RayBatch<double> rays_{};
@@ -191,21 +191,21 @@ bool overlap(const Boundsd& a, const Boundsd& b) {
 }
 
 // Returns whether another primitive than the one with these bounds overlaps them. Returns true after
-// kMostPrimitives.
+// kMaxPrimitives.
 bool holds_others(const Scene& scene, const Plan& plan, const Boundsd& bounds) {
   int overlapping = 0, seen = 0;
   return any_shapes(scene, plan.time, [&](const ShapesAt& shapes, const Affined& world, const auto*) {
     for (int i = 0; i < shapes->size(); ++i) {
       const Boundsd box = shapes->bounds(i);
       overlapping += !box.bounded() || overlap(box_around(box, world), bounds);
-      if (overlapping > 1 || ++seen > kMostPrimitives) return true;
+      if (overlapping > 1 || ++seen > kMaxPrimitives) return true;
     }
     return false;
   });
 }
 
 // Returns whether the eye is inside a closed opaque shape that hides all lights and contains nothing visible.
-// Gives up after kMostPrimitives primitives, and after kMostAround whose bounds contain the eye.
+// Gives up after kMaxPrimitives primitives, and after kMaxAround whose bounds contain the eye.
 bool is_enclosed(const Scene& scene, const Plan& plan) {
   const bool glows = scene.ambient != Vec3d(0) || scene.facts.materials.emits;
   int seen = 0, around = 0;
@@ -218,10 +218,10 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
                const Vec3d eye = model_from_world.point(plan.frame.eye);
                ShapeKernelPtr<double> kernel;
                for (int i = 0; i < shapes->size(); ++i) {
-                 if (++seen > kMostPrimitives) return true;
+                 if (++seen > kMaxPrimitives) return true;
                  if (!shapes->bounds(i).contains(eye) || is_transparent(scene, materials[i])) continue;
                  if (scene.emission[static_cast<std::size_t>(materials[i])] != Vec3d(0)) continue;
-                 if (++around > kMostAround) return true;
+                 if (++around > kMaxAround) return true;
                  if (!kernel) kernel = shapes->kernel(double(), 0);
                  if (!surroundings) surroundings = std::make_unique<Surroundings>(scene, plan.frame.eye);
                  if (!surroundings->inside(*kernel, i, model_from_world) ||
@@ -235,7 +235,7 @@ bool is_enclosed(const Scene& scene, const Plan& plan) {
   return enclosed;
 }
 
-// Returns the first smooth primitive, i.e. one with a specular lobe, or -1. Examines kMostPrimitives.
+// Returns the first smooth primitive, i.e. one with a specular lobe, or -1. Examines kMaxPrimitives.
 int smooth_primitive(const Scene& scene) {
   std::vector<char> smooth;  // indexed by material
   for (const auto& set : scene.materials) {
@@ -243,7 +243,7 @@ int smooth_primitive(const Scene& scene) {
     for (int i = 0; i < set->size(); ++i)
       smooth.push_back(traits.mirrors && (!traits.lit || set->mirrored_share(i) > 0));
   }
-  const int last = std::min(scene.primitive_count(), kMostPrimitives);
+  const int last = std::min(scene.primitive_count(), kMaxPrimitives);
   for (int p = 0; p < last; ++p)
     if (smooth[static_cast<std::size_t>(scene.material_of[static_cast<std::size_t>(p)])]) return p;
   return -1;
@@ -280,8 +280,8 @@ std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) 
     found.push_back({"/lights", "no light source and no ambient light: every surface is black"});
   if (!plan.camera->parallel() && is_enclosed(scene, plan))
     found.push_back({"/camera/eye", "the camera is inside an opaque shape that holds no light"});
-  const Extreme& most = scene.facts.most_reflected;
-  if (plan.technique->draws_light && most.value > kMostReflected)
+  const LocatedValue& most = scene.facts.max_albedo;
+  if (plan.technique->draws_light && most.value > kMaxReflected)
     found.push_back(
         {most.where + "/material",
          "it sends on up to " + percents(most.value) +

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/lights/emitters.h"
 
 namespace orrery {
@@ -20,19 +20,19 @@ class EmitterList {
   std::vector<LightBounds> find() {
     for (const auto& shapes : scene_.shapes) {
       const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
-      if (skip_dark(last)) {  // skips posing of sets without emitters
+      if (skip_to_emitter(last)) {  // skips posing of sets without emitters
         const auto posed = shapes->at(exposure_.opens);
         add(*shapes, posed ? *posed : *shapes, last, nullptr);
       }
     }
-    const bool few = emits_at_most(kMostInstancedEmitters);
+    const bool few = emits_at_most(kMaxInstancedEmitters);
     for (const Instance& instance : scene_.instances) {
       const Model& model = scene_.models[instance.model];
       const bool moves = !exposure_.instant() && instance.motion.times.size() > 1;
       const Affined world_from_model = instance.world_from_model(exposure_.opens);
       for (const auto& shapes : model.shapes) {
         const auto last = primitive_ + static_cast<std::size_t>(shapes->size());
-        if (!skip_dark(last)) continue;
+        if (!skip_to_emitter(last)) continue;
         if (few && !moves && shapes->key_times().empty()) {
           add(*shapes, *shapes, last, &world_from_model);
         } else {
@@ -51,7 +51,7 @@ class EmitterList {
   }
 
   // Advances to the next primitive that emits. Returns false if there is none before `last`.
-  bool skip_dark(std::size_t last) {
+  bool skip_to_emitter(std::size_t last) {
     while (primitive_ < last && radiance_of(primitive_) == Vec3d(0)) interruption_point(++primitive_);
     return primitive_ < last;
   }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "core/accelerators/beside_moving.h"
 #include "core/accelerators/moving_instances.h"
-#include "core/base/work_scope.h"
+#include "core/accelerators/static_and_moving_bvh.h"
+#include "core/base/task_scope.h"
 #include "core/prepare/emitting_surfaces.h"
 #include "core/stages/light_tree.h"
 
@@ -26,12 +26,12 @@ void add_shapes(const ShapeSets& sets, const Exposure& exposure, const std::vect
     const ShapeSet& now = posed ? *posed : *shapes;
     const bool known = before && !posed;
     kernels.push_back(known ? (*before)[kernels.size()] : now.kernel(T(), number));
-    const auto on_their_way = exposure.instant() ? nullptr : shapes->during(exposure);
-    if (on_their_way) moving.push_back(on_their_way->kernel(T(), number));
+    const auto moving_parts = exposure.instant() ? nullptr : shapes->during(exposure);
+    if (moving_parts) moving.push_back(moving_parts->kernel(T(), number));
     for (int i = 0; i < now.size(); ++i) {
       interruption_point(static_cast<std::size_t>(i));
-      if (on_their_way && shapes->moves(i))
-        primitives.push_back({moving.back().get(), i, on_their_way->bounds(i)});
+      if (moving_parts && shapes->moves(i))
+        primitives.push_back({moving.back().get(), i, moving_parts->bounds(i)});
       else
         primitives.push_back({kernels.back().get(), i, now.bounds(i)});
     }
@@ -62,8 +62,8 @@ std::shared_ptr<const ModelGeometry<T>> make_model(const Model& model, const Acc
 }
 
 template <class T>
-Placed<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, const Affined& world_from_model,
-                int first) {
+PlacedInstance<T> place(const std::shared_ptr<const ModelGeometry<T>>& model, const Affined& world_from_model,
+                        int first) {
   const Affined model_from_world = inverse(world_from_model);
   // Rows of the inverse are perpendicular, because instances are scaled before they are rotated. Rounding
   // therefore moves a point across its surface in proportion to its coordinates, however uneven the scale.
@@ -89,7 +89,7 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
     geometry.models.push_back(
         make_model<T>(scene.models[m], inner, exposure, before ? before->models[m] : nullptr));
   PlacedList<T> resting;
-  std::vector<MovingPlaced<T>> on_their_way;
+  std::vector<MovingInstance<T>> moving_parts;
   struct Member {
     bool moves;
     Boundsd box;
@@ -102,7 +102,7 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
     const bool moves =
         !exposure.instant() && (instance.motion.times.size() > 1 || any_timed(model->primitives));
     if (moves)
-      on_their_way.emplace_back(instance, model, number, exposure);
+      moving_parts.emplace_back(instance, model, number, exposure);
     else
       resting.push_back(place<T>(model, world_from_model, number));
     members.push_back({moves, moves ? bounds_during(model->bounds, instance, exposure)
@@ -110,8 +110,8 @@ void add_instances(const Scene& scene, const AcceleratorType& inner, const Expos
     number += static_cast<int>(model->primitives.size());
   }
   if (!resting.empty()) geometry.shapes.push_back(std::make_shared<InstanceKernel<T>>(std::move(resting)));
-  if (!on_their_way.empty())
-    moving.push_back(std::make_shared<MovingInstanceKernel<T>>(std::move(on_their_way)));
+  if (!moving_parts.empty())
+    moving.push_back(std::make_shared<MovingInstanceKernel<T>>(std::move(moving_parts)));
   int resting_index = 0, moving_index = 0;
   for (const auto& [moves, box] : members) {
     const auto* kernel = (moves ? moving : geometry.shapes).back().get();
@@ -133,7 +133,7 @@ void add_light_tree(const Scene& scene, const std::vector<LightBounds>& emitters
 template <class T>
 AcceleratorPtr<T> build_or_refit(const AcceleratorType& type, const PrimitiveList<T>& primitives,
                                  const Accelerator<T>* before) {
-  if (any_timed(primitives)) return build_beside_moving(type, primitives, before);
+  if (any_timed(primitives)) return build_static_and_moving(type, primitives, before);
   AcceleratorPtr<T> accelerator = before ? before->refitted(primitives) : nullptr;
   return accelerator ? std::move(accelerator) : build(type, primitives);
 }

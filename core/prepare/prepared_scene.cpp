@@ -16,7 +16,7 @@ using Moments = std::list<PreparedScene::Parts::Moment<T>>;
 // Moves the moment of `exposure` to the front. Adds it if necessary, and then evicts the last of too many
 // moments.
 template <class T>
-void bring_forward(Moments<T>& moments, const Exposure& exposure) {
+void move_to_front(Moments<T>& moments, const Exposure& exposure) {
   const auto known =
       std::find_if(moments.begin(), moments.end(), [&](const auto& m) { return m.exposure == exposure; });
   if (known != moments.end()) return moments.splice(moments.begin(), moments, known);
@@ -36,10 +36,10 @@ World<T> world_before(const Moments<T>& moments, const AcceleratorType& type) {
 // Opens a memory account for a build, from the source of the current client's account. Returns null if memory
 // is not counted.
 std::shared_ptr<MemoryAccount> open_account(PreparedScene::Parts& parts) {
-  const MemoryAccount* const client = WorkScope::current().memory;
+  const MemoryAccount* const client = TaskScope::current().memory;
   if (!client) return nullptr;
   const auto account = client->open_another();
-  const WorkScope nobody({});
+  const TaskScope nobody({});
   const std::lock_guard lock(parts.accounts_mutex);
   std::erase_if(parts.built, [](const auto& some) { return some->bytes() == 0; });
   return parts.built.emplace_back(account);
@@ -52,7 +52,7 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, con
                    double& build_ms, std::stop_token stop) {
   const auto lock = lock_unless(parts.mutex, stop);
   auto& moments = made_of<T>(parts).moments;
-  bring_forward(moments, exposure);
+  move_to_front(moments, exposure);
   auto& moment = moments.front();
   World<T>& world = moment.worlds[&type];
   if (world.accelerator) return world;
@@ -64,7 +64,7 @@ World<T> world_for(PreparedScene::Parts& parts, const AcceleratorType& type, con
     world = {geometry, build_or_refit(type, geometry->primitives, before.accelerator.get())};
   };
   const auto memory = open_account(parts);
-  const WorkScope scope({nullptr, &stop});  // no turn: the owner of the mutex must not yield
+  const TaskScope scope({nullptr, &stop});  // no turn: the owner of the mutex must not yield
   if (memory)
     memory->run(stop, make);
   else
@@ -85,7 +85,7 @@ std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::s
 
 PreparedScene::PreparedScene(std::shared_ptr<const Scene> scene) : parts_(std::make_unique<Parts>()) {
   parts_->scene = std::move(scene);
-  if (MemoryAccount* const memory = WorkScope::current().memory) {
+  if (MemoryAccount* const memory = TaskScope::current().memory) {
     parts_->loaded = memory->shared_from_this();
     parts_->loaded_bytes = memory->bytes();
   }

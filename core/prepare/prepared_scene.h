@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/stoppable_mutex.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/model/plan.h"
 #include "core/model/world.h"
 #include "core/stages/prediction.h"
@@ -18,7 +18,7 @@ namespace orrery {
 
 // Scene with the data built for rendering it (kernels and acceleration structures), cached for the next
 // frame. Thread-safe; each part is built once. Memory of the loaded scene is charged to the account of the
-// WorkScope that constructs it, if any. Memory of built data is charged to another account of the client that
+// TaskScope that constructs it, if any. Memory of built data is charged to another account of the client that
 // builds it.
 class PreparedScene {
  public:
@@ -58,7 +58,7 @@ struct PreparedScene::Parts {
     std::map<const AcceleratorType*, World<T>> worlds;
   };
   template <class T>
-  struct Made {
+  struct BuiltData {
     std::list<Moment<T>> moments;    // at most kMoments, most recently used first
     std::optional<Decision> chosen;  // by measuring
     PredictorPtr<T> network;         // trained on the first plan that needs it
@@ -70,8 +70,8 @@ struct PreparedScene::Parts {
   std::vector<std::shared_ptr<MemoryAccount>> built;  // guarded by accounts_mutex
   StoppableMutex trying;  // held while structures are measured or a network is trained, so only once
   StoppableMutex mutex;   // guards the rest; held during builds, so that each part is built once
-  Made<float> made_float;
-  Made<double> made_double;
+  BuiltData<float> made_float;
+  BuiltData<double> made_double;
 };
 
 // Returns the scene in number type T with an accelerator for an exposure. Adds the milliseconds spent
@@ -85,7 +85,7 @@ std::unique_lock<StoppableMutex> lock_unless(StoppableMutex& mutex, const std::s
 
 // Returns the data built in number type T.
 template <class T>
-PreparedScene::Parts::Made<T>& made_of(PreparedScene::Parts& parts) {
+PreparedScene::Parts::BuiltData<T>& made_of(PreparedScene::Parts& parts) {
   if constexpr (std::is_same_v<T, float>)
     return parts.made_float;
   else

@@ -19,13 +19,13 @@ struct RenderControl {
   std::stop_token stop = {};                               // a stop request ends the render with Cancelled
   std::function<void(int done, int total)> progress = {};  // counts tiles; called concurrently
   bool background = false;                                 // other renders have priority
-  bool spread = false;   // tiles are ordered so that any prefix covers the picture
-  Pass* pass = nullptr;  // as for WorkerPool::for_each()
+  bool spread = false;        // tiles are ordered so that any prefix covers the picture
+  SlotLease* pass = nullptr;  // as for WorkerPool::for_each()
   // Returns the seconds that the client has waited. Thread-safe. If empty, budgets measure from the call.
   std::function<double()> used_s = {};
   // Hard limits of a budget, regardless of the request.
-  double most_rays = std::numeric_limits<double>::infinity();
-  double most_s = std::numeric_limits<double>::infinity();
+  double max_rays = std::numeric_limits<double>::infinity();
+  double max_s = std::numeric_limits<double>::infinity();
 };
 
 // Cost of a render and error statistics of its film.

@@ -27,7 +27,7 @@ constexpr double kNearLeast = 1.25;  // factor on the smallest provable error
 constexpr double kShareOfCuts = 0.125, kShareOfPilot = kShareOfCuts / 2;
 // Divisors of min_contribution after a pilot and after a pass, and how often each is applied at most.
 constexpr double kStep = 4, kStepOfPass = 16;
-constexpr int kMostPilots = 10, kMostDeepenings = 3;
+constexpr int kMaxPilots = 10, kMaxRefinements = 3;
 constexpr double kHeavy = 10;            // mean weight of rays cut by depth, in min_contribution
 constexpr double kShareOfPilots = 0.25;  // maximum share of the time limit
 constexpr double kSlower = 1.1;          // factor on the time of the last pass
@@ -47,28 +47,28 @@ class BudgetedRender {
         control_(control),
         error_(*plan->asked.error),
         seconds_(*plan->asked.seconds),
-        limit_s_(seconds_ > 0 ? std::min(seconds_, control.most_s) : control.most_s),
+        limit_s_(seconds_ > 0 ? std::min(seconds_, control.max_s) : control.max_s),
         begin_(Clock::now()),
         made_{.plan = plan} {}
 
   RenderResult render() {
-    made_.certificate = certify(*made_.plan, made_.stats, doubt_of_look(1));  // no samples yet
+    made_.certificate = certify(*made_.plan, made_.stats, alpha_of_look(1));  // no samples yet
     if (fails_on_miss() && error_ > 0 && !is_provable()) throw BudgetMissed(outcome(), made_.certificate);
     choose_contribution();
     while (!render_passes()) {  // a pass found light that the pilots missed
       made_.plan = made_.plan.with_min_contribution(made_.plan->min_contribution / kStepOfPass);
-      ++deepenings_;
+      ++refinements_;
     }
-    made_.stats.counts.add(lost_.counts);  // discarded rays were traced, too
-    made_.stats.build_ms += lost_.build_ms;
-    made_.stats.trace_ms += lost_.trace_ms;
-    made_.stats.cpu_ms += lost_.cpu_ms;
+    made_.stats.counts.add(discarded_.counts);  // discarded rays were traced, too
+    made_.stats.build_ms += discarded_.build_ms;
+    made_.stats.trace_ms += discarded_.trace_ms;
+    made_.stats.cpu_ms += discarded_.cpu_ms;
     BudgetOutcome told = outcome();
     require_met(told, made_.certificate);
     return {std::move(*made_.film), made_.stats, made_.certificate, std::move(told)};
   }
 
-  Forecast foretell() {
+  Forecast predict() {
     choose_contribution();
     const double begin_s = used_s();
     const ForecastPilots pilots(scene_, made_.plan, pool_, control_);
@@ -79,15 +79,15 @@ class BudgetedRender {
     for (; next > 0; next = next_samples()) {
       ahead_s_ += (next - made_.samples) * pass_s_per_sample_;
       made_.samples = next;
-      look(pilots.foretold(made_.samples));
+      look(pilots.extrapolated(made_.samples));
       for (Certificate::Term& term : made_.certificate.terms)  // a subset of pixels proves nothing
         if (term.bound.kind == Bound::Kind::proved) term.bound = Bound::estimated(*term.bound.rms);
       if (made_.samples % 2 == 0 && is_enough()) break;
     }
     const double ready_s =
-        (pilots.build_ms() + lost_.build_ms + lost_.trace_ms + made_.plan.settle_ms()) / 1000;
+        (pilots.build_ms() + discarded_.build_ms + discarded_.trace_ms + made_.plan.settle_ms()) / 1000;
     return {outcome(), made_.certificate,
-            static_cast<double>(lost_.counts.rays.total()) + rays_per_sample_ * made_.samples,
+            static_cast<double>(discarded_.counts.rays.total()) + rays_per_sample_ * made_.samples,
             ready_s + pass_s_per_sample_ * made_.samples};
   }
 
@@ -101,8 +101,8 @@ class BudgetedRender {
 
   // Returns the error probability of the `look`-th certificate, counted from 1, which may end the render. If
   // the samples are given, only the last certificate counts.
-  double doubt_of_look(int look) const {
-    return Certificate::kDoubt * (made_.plan->free_samples ? std::exp2(-look) : 1);
+  double alpha_of_look(int look) const {
+    return Certificate::kAlpha * (made_.plan->free_samples ? std::exp2(-look) : 1);
   }
 
   // Returns whether a time limit may end the render.
@@ -122,10 +122,10 @@ class BudgetedRender {
     if (!made_.plan->free_contribution) return;
     for (int pilots = 1;; ++pilots) {
       const RenderStats pilot = trace_pilot(scene_, made_.plan, 1, pool_, control_).stats;
-      lose(pilot);
-      lost_.build_ms += pilot.build_ms;  // the passes reuse this work
+      discard(pilot);
+      discarded_.build_ms += pilot.build_ms;  // the passes reuse this work
       const bool late = seconds_ > 0 && used_s() > kShareOfPilots * seconds_;
-      if (pilots == kMostPilots || late || are_too_deep(pilot) ||
+      if (pilots == kMaxPilots || late || are_too_deep(pilot) ||
           share_of_cuts(certify(*made_.plan, pilot)) <= kShareOfPilot * error_)
         return;
       made_.plan = made_.plan.with_min_contribution(made_.plan->min_contribution / kStep);
@@ -141,10 +141,10 @@ class BudgetedRender {
   }
 
   // Adds the cost of rays that are not in the picture.
-  void lose(const RenderStats& traced) {
-    lost_.counts.add(traced.counts);
-    lost_.trace_ms += traced.trace_ms;
-    lost_.cpu_ms += traced.cpu_ms;
+  void discard(const RenderStats& traced) {
+    discarded_.counts.add(traced.counts);
+    discarded_.trace_ms += traced.trace_ms;
+    discarded_.cpu_ms += traced.cpu_ms;
   }
 
   static double share_of_cuts(const Certificate& certificate) {
@@ -173,7 +173,7 @@ class BudgetedRender {
       if (is_enough()) break;
     }
     if (before_) {  // no time or memory for a better picture
-      if (made_.samples > 0) lose(made_.stats);
+      if (made_.samples > 0) discard(made_.stats);
       made_ = std::move(*before_);
     } else if (!made_.film) {
       made_.film = passes->take_film();
@@ -191,7 +191,7 @@ class BudgetedRender {
   }
 
   void forget_before() {
-    if (before_) lose(before_->stats);
+    if (before_) discard(before_->stats);
     before_.reset();
   }
 
@@ -243,27 +243,25 @@ class BudgetedRender {
     const double now_s = used_s();
     if (done == total) return false;
     const double end_s = begin_s + (now_s - begin_s) * total / done;
-    const bool foretold = done >= kSeenTiles && end_s > kSurelyLate * seconds_;
-    if (now_s <= seconds_ && !foretold) return false;
+    const bool extrapolated = done >= kSeenTiles && end_s > kSurelyLate * seconds_;
+    if (now_s <= seconds_ && !extrapolated) return false;
     is_late_ = true;
-    if (done >= kSeenTiles) least_s_ = end_s;
+    if (done >= kSeenTiles) min_s_ = end_s;
     return true;
   }
 
   void look(const RenderStats& stats) {
     made_.stats = stats;
-    made_.certificate = certify(*made_.plan, made_.stats, doubt_of_look(++looks_));
+    made_.certificate = certify(*made_.plan, made_.stats, alpha_of_look(++looks_));
   }
 
-  static bool is_beside_samples(const Certificate::Term& term) {
-    return term.subject != Certificate::kSamples;
-  }
+  static bool is_not_sampling(const Certificate::Term& term) { return term.subject != Certificate::kSamples; }
   // Returns the RMS of all terms but the samples, or nullopt if it is unknown.
-  std::optional<double> rest() const { return made_.certificate.total_of(is_beside_samples).rms; }
+  std::optional<double> rest() const { return made_.certificate.total_of(is_not_sampling).rms; }
   double rest_known() const {
     return *made_.certificate
                 .total_of([](const Certificate::Term& term) {
-                  return is_beside_samples(term) && term.bound.kind != Bound::Kind::unknown;
+                  return is_not_sampling(term) && term.bound.kind != Bound::Kind::unknown;
                 })
                 .rms;
   }
@@ -282,9 +280,9 @@ class BudgetedRender {
   bool is_near_enough() const {
     const SampledError& error = made_.stats.error;
     if (!error.known()) return false;
-    const double estimate = made_.certificate.least_provable ? *made_.certificate.estimate
-                            : error.tiles < 2                ? error.pixel.rmse()
-                                                             : error.interval().high;
+    const double estimate = made_.certificate.min_provable ? *made_.certificate.estimate
+                            : error.tiles < 2              ? error.pixel.rmse()
+                                                           : error.interval().high;
     if (estimate > std::max(error_ - rest_known(), error_ / 2)) return false;
     const auto& bound = made_.certificate.total().rms;
     return !bound || *bound <= std::max(error_, kNearLeast * *least());
@@ -299,7 +297,7 @@ class BudgetedRender {
   bool is_hopeless() const { return fails_on_miss() && !is_provable(); }
 
   bool is_too_coarse() const {
-    if (error_ == 0 || !made_.plan->free_contribution || deepenings_ == kMostDeepenings) return false;
+    if (error_ == 0 || !made_.plan->free_contribution || refinements_ == kMaxRefinements) return false;
     const double first_pass_s = pass_s_per_sample_ * progressive_samples(*made_.plan).front();
     if (seconds_ > 0 && used_s() + kSlower * first_pass_s > deadline_s()) return false;
     return !is_proved() && share_of_cuts(made_.certificate) > kShareOfCuts * error_ &&
@@ -331,9 +329,9 @@ class BudgetedRender {
         next = static_cast<int>(fit / 2) * 2;
     }
     const double rays = rays_per_sample_ * next;
-    if (rays <= control_.most_rays) return next;
+    if (rays <= control_.max_rays) return next;
     reason_ = "twice as many samples would take " + rounded(rays) + " rays, more than the " +
-              rounded(control_.most_rays) + " that there may be";
+              rounded(control_.max_rays) + " that there may be";
     return 0;
   }
 
@@ -342,7 +340,7 @@ class BudgetedRender {
     outcome.error = error_;
     outcome.seconds = seconds_;
     outcome.on_miss = *made_.plan->asked.on_miss;
-    outcome.least_error = least();
+    outcome.min_error = least();
     Plan used = *made_.plan;
     used.asked.samples = made_.samples;
     used.asked.error = used.asked.seconds = 0;
@@ -350,7 +348,7 @@ class BudgetedRender {
     used.asked.space = Space::automatic;
     outcome.settings = settings_of(used);
     outcome.used_s = used_s();
-    if (least_s_ > 0) outcome.least_s = least_s_;
+    if (min_s_ > 0) outcome.min_s = min_s_;
     outcome.seconds_met = seconds_ == 0 || (outcome.used_s <= seconds_ && !is_late_);
     outcome.error_met = error_ == 0 || (is_proved() && has_samples_asked());
     if (!outcome.met()) outcome.reason = reason();
@@ -361,9 +359,9 @@ class BudgetedRender {
     if (is_proved() && !has_samples_asked()) return reason_;
     if (is_late_ || error_ == 0 || is_proved()) return late_reason();
     for (const Certificate::Term& term : made_.certificate.terms)
-      if (term.bound.kind == Bound::Kind::unknown && (made_.samples > 0 || is_beside_samples(term)))
+      if (term.bound.kind == Bound::Kind::unknown && (made_.samples > 0 || is_not_sampling(term)))
         return term.subject + ": " + term.reason;
-    if (!made_.certificate.least_provable) return "samples: nothing limits what one may bring";
+    if (!made_.certificate.min_provable) return "samples: nothing limits what one may bring";
     if (*rest() > error_) return "all but the samples may be " + rounded(*rest());
     if (!is_provable()) return "samples of that many pixels prove no less than " + rounded(*least());
     if (!reason_.empty()) return reason_;
@@ -373,7 +371,7 @@ class BudgetedRender {
   }
 
   std::string late_reason() const {
-    if (least_s_ > 0) return "the first pass would take about " + rounded(least_s_) + " s";
+    if (min_s_ > 0) return "the first pass would take about " + rounded(min_s_) + " s";
     if (is_late_) return "time was up in the first pass";
     if (gave_up_) return "a pass took longer than the one before, and ending it took too long";
     const bool first = made_.samples == progressive_samples(*made_.plan).front();
@@ -382,8 +380,8 @@ class BudgetedRender {
 
   // Returns the smallest provable error, or nullopt if no error can be proved.
   std::optional<double> least() const {
-    if (!rest() || !made_.certificate.least_provable) return {};
-    return *rest() + *made_.certificate.least_provable;
+    if (!rest() || !made_.certificate.min_provable) return {};
+    return *rest() + *made_.certificate.min_provable;
   }
 
   const PreparedScene& scene_;
@@ -393,12 +391,12 @@ class BudgetedRender {
   const double limit_s_;          // time limit; may be infinite
   const Clock::time_point begin_;
   double ahead_s_ = 0;  // added to the clock by a forecast
-  int deepenings_ = 0, looks_ = 0;
+  int refinements_ = 0, looks_ = 0;
   bool gave_up_ = false;                                // a pass other than the first was given up
   std::atomic<bool> is_late_ = false;                   // the first pass was late and was given up
-  std::atomic<double> least_s_ = 0.0;                   // predicted end of a first pass that was given up
+  std::atomic<double> min_s_ = 0.0;                     // predicted end of a first pass that was given up
   double pass_s_per_sample_ = 0, rays_per_sample_ = 0;  // last complete pass
-  RenderStats lost_;                                    // pilots, and pictures that cut too much
+  RenderStats discarded_;                               // pilots, and pictures that cut too much
   // Picture after `samples` samples per pixel.
   struct Made {
     SettledPlan plan;
@@ -437,7 +435,7 @@ RenderResult render_within_budget(const PreparedScene& scene, const SettledPlan&
 
 Forecast forecast(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                   const RenderControl& control) {
-  return BudgetedRender(scene, plan, pool, control).foretell();
+  return BudgetedRender(scene, plan, pool, control).predict();
 }
 
 }  // namespace orrery

@@ -18,7 +18,7 @@ double display_rms(double mean) {
 }
 
 // Returns the bound of light that was taken away. An estimated bound has no maximum.
-Bound bound_of(const Plan& plan, const Omitted& away, bool proved) {
+Bound bound_of(const Plan& plan, const OmissionLedger& away, bool proved) {
   const bool display = plan.space == Space::display;
   const double max = display ? display_max(away.max()) : away.max();
   const double rms = display ? std::min(max, display_rms(away.mean())) : away.rms();
@@ -30,7 +30,7 @@ Bound bound_of(const Plan& plan, const Omitted& away, bool proved) {
 Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   const char* const subject = "rays not traced";
   if (stats.counts.cut_rays == 0) return {subject, {}};
-  const Omitted& omitted = stats.omitted;
+  const OmissionLedger& omitted = stats.omitted;
   if (!std::isfinite(omitted.max() + omitted.rms()))
     return {subject, Bound::unknown(), "nothing limits what they would find"};
   return {subject, bound_of(plan, omitted, !plan.technique->draws_light)};
@@ -39,7 +39,7 @@ Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
 // Bounds the light that the clamp removed.
 Certificate::Term clamp_term(const Plan& plan, const RenderStats& stats) {
   const char* const subject = "clamp of indirect light";
-  const Omitted& away = stats.clamped.pixels;
+  const OmissionLedger& away = stats.clamped.pixels;
   if (away.sum == 0) return {subject, {}};
   if (!std::isfinite(away.max() + away.rms()))
     return {subject, Bound::unknown(), "what it cuts has no limit"};
@@ -56,11 +56,11 @@ Certificate::Term precision_term(const Plan& plan) {
 // per tile if all tiles err alike. The limit is the quantile of z (Wilson, Hilferty 1931), exceeded by a
 // chance of 1e-7.
 bool pixels_are_alike(const SampledError& error) {
-  constexpr double kLeastTiles = 16, kZ = 5.2;
+  constexpr double kMinTiles = 16, kZ = 5.2;
   const double pixel = error.pixel.rmse(), tile = error.block32.rmse();
   const double spread = 2 / (9 * error.tiles_that_err()),
                most = std::pow(1 - spread + kZ * std::sqrt(spread), 3);
-  return error.block32.values >= 3 * kLeastTiles && tile * tile > most * pixel * pixel / kBatch;
+  return error.block32.values >= 3 * kMinTiles && tile * tile > most * pixel * pixel / kBatch;
 }
 
 // Bounds the sampling error. For means a and b of the halves, (a - b)^2 / 4 is on average at least the
@@ -90,10 +90,10 @@ Certificate::Term encoding_term(const RenderStats& stats) {
 
 }  // namespace
 
-std::optional<double> least_provable(const Plan& plan, double doubt) {
+std::optional<double> min_provable(const Plan& plan, double doubt) {
   if (!std::isfinite(plan.halves_range())) return {};
   const double pixels = double(plan.width) * plan.height;
-  return plan.halves_range() * std::sqrt(UnitHistogram::least_upper_mean(pixels, doubt)) / 2;
+  return plan.halves_range() * std::sqrt(UnitHistogram::min_upper_mean(pixels, doubt)) / 2;
 }
 
 Bound Certificate::total() const {
@@ -108,7 +108,7 @@ Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {
   Certificate found{{omitted_term(plan, stats), precision_term(plan), sampling_term(plan, stats, doubt)}};
   found.space = plan.space;
   found.not_followed = plan.not_followed;
-  found.least_provable = least_provable(plan, doubt);
+  found.min_provable = min_provable(plan, doubt);
   const bool display = plan.space == Space::display;
   if (display) found.terms.push_back(encoding_term(stats));
   if (stats.error.known())

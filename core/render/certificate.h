@@ -15,7 +15,7 @@ namespace orrery {
 // technique does not follow is missing in the reference, too.
 struct Certificate {
   static constexpr double kConfidence = 0.95,
-                          kDoubt = 1 - kConfidence;  // confidence of estimates, over seeds
+                          kAlpha = 1 - kConfidence;  // confidence of estimates, over seeds
 
   static constexpr const char* kSamples = "samples";  // subject of the sampling error
 
@@ -27,7 +27,7 @@ struct Certificate {
   std::vector<Term> terms;
   Space space = Space::linear;
   // Smallest RMS that the samples of a picture of this size can prove, or nullopt if they can prove none.
-  std::optional<double> least_provable = {};
+  std::optional<double> min_provable = {};
   // RMSE estimated from the halves of the samples. It is noisy and not part of a sum.
   std::optional<double> estimate = {};
 
@@ -60,10 +60,10 @@ struct Certificate {
 
 // Returns the RMS that the halves of a picture of this size prove if they are equal. This is the smallest
 // error that samples can prove for the plan's technique. Returns nullopt if samples have no range.
-std::optional<double> least_provable(const Plan& plan, double doubt = Certificate::kDoubt);
+std::optional<double> min_provable(const Plan& plan, double doubt = Certificate::kAlpha);
 
 // Returns the certificate of a picture. `doubt` is the probability that an estimate is wrong. It must be less
-// than kDoubt if several certificates of one render are examined.
-Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = Certificate::kDoubt);
+// than kAlpha if several certificates of one render are examined.
+Certificate certify(const Plan& plan, const RenderStats& stats, double doubt = Certificate::kAlpha);
 
 }  // namespace orrery

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/render/clamped.h"
+#include "core/render/clamp_ledger.h"
 #include "core/render/halves.h"
 #include "core/render/sampled_error.h"
 
@@ -11,8 +11,8 @@ namespace orrery {
 // Error statistics of a film.
 struct FilmError {
   std::uint64_t non_finite_pixels = 0;
-  Omitted omitted;
-  Clamped clamped;
+  OmissionLedger omitted;
+  ClampLedger clamped;
   Halves halves;       // relative to Plan::halves_range(); empty if samples have no range
   SampledError error;  // even sample counts whose second half is one pass
 

@@ -58,7 +58,7 @@ void ForecastPilots::go_on(const Pilot& next) {
   if (before.omitted.rms() > last_.stats.omitted.rms()) last_.stats.omitted = before.omitted;
 }
 
-RenderStats ForecastPilots::foretold(int samples) const {
+RenderStats ForecastPilots::extrapolated(int samples) const {
   RenderStats stats = last_.stats;
   if (!stats.error.known() || samples % 2 != 0) {
     stats.error = {};

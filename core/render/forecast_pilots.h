@@ -20,7 +20,7 @@ class ForecastPilots {
   double build_ms() const { return build_ms_; }  // time to prepare the scene, if needed
 
   // Predicts the statistics of a picture with `samples` samples. For rays not traced, the worst pilot counts.
-  RenderStats foretold(int samples) const;
+  RenderStats extrapolated(int samples) const;
 
  private:
   void go_on(const Pilot& next);

@@ -2,7 +2,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/model/technique.h"
 #include "core/plan/options.h"
 #include "core/render/budget.h"

@@ -10,7 +10,7 @@ namespace orrery {
 namespace {
 
 constexpr int kSide = 4;
-constexpr int kLeastBlocks = 64;  // fewer if the picture has fewer
+constexpr int kMinBlocks = 64;  // fewer if the picture has fewer
 
 Pilot trace(std::span<const TileView> views, const PreparedScene& scene, const SettledPlan& plan,
             WorkerPool& pool, const RenderControl& control) {
@@ -53,7 +53,7 @@ void add_blocks(const TileView& tile, int number, int wanted, std::vector<TileVi
 Pilot trace_pilot(const PreparedScene& scene, const SettledPlan& plan, int samples, WorkerPool& pool,
                   const RenderControl& control) {
   const TileGrid grid(plan->width, plan->height);
-  const int of_each = (kLeastBlocks + grid.size() - 1) / grid.size();
+  const int of_each = (kMinBlocks + grid.size() - 1) / grid.size();
   std::vector<TileView> blocks;
   for (int i = 0; i < grid.size(); ++i) add_blocks(grid.at(i, samples), i, of_each, blocks);
   return trace(blocks, scene, plan, pool, control);

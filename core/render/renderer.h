@@ -14,10 +14,10 @@ struct BudgetOutcome {
   OnMiss on_miss = OnMiss::best;
   RenderSettings settings;  // reproduce the picture without a budget
   bool error_met = true, seconds_met = true;
-  double used_s = 0;                       // at the end, by the client's clock
-  std::optional<double> least_error = {};  // smallest provable at this picture size
-  std::optional<double> least_s = {};      // predicted time of a first pass given up
-  std::string reason;                      // why it is missed, or empty
+  double used_s = 0;                     // at the end, by the client's clock
+  std::optional<double> min_error = {};  // smallest provable at this picture size
+  std::optional<double> min_s = {};      // predicted time of a first pass given up
+  std::string reason;                    // why it is missed, or empty
 
   bool met() const { return error_met && seconds_met; }
   // Sets the time used when all work is done. The budget may then be missed by work after rendering.

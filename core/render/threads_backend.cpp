@@ -27,7 +27,7 @@ class OnThreads final : public Prepared {
     const auto start = Clock::now();
     pool_.for_each(
         total, control.background,
-        [&](int step, int worker, Turn& turn) {
+        [&](int step, int worker, TimeSlice& turn) {
           if (control.stop.stop_requested()) return false;
           const double cpu_before = thread_cpu_ms();
           auto& renderer = renderers[static_cast<std::size_t>(worker)];

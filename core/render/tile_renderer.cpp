@@ -37,7 +37,7 @@ void add_weighted(bool first, const Array<T>& value, const Array<T>& weight, Til
 
 // Returns the ledger of sums by channel and slot; all 0 without channels. Filters with negative lobes may
 // give negative sums.
-Omitted ledger_of(const TileView& tile, std::span<const TileSums::Plane> channels) {
+OmissionLedger ledger_of(const TileView& tile, std::span<const TileSums::Plane> channels) {
   double sum = 0, squares = 0, largest = 0;
   for (const TileSums::Plane& channel : channels)
     for_each_slot(tile, [&](std::size_t i) {
@@ -59,13 +59,13 @@ TileRenderer<T>::TileRenderer(const World<T>& world, const Plan& plan)
   sums_.channels.resize(plan.channels.size());
   if (!plan.filtered) return;
   filter_.emplace(*plan.asked.filter, *plan.asked.filter_width);
-  if (filter_->negative() > 0) taken_away_ = std::make_unique<TraceResult<T>>();
+  if (filter_->negative() > 0) negative_lobe_ = std::make_unique<TraceResult<T>>();
 }
 
 template <class T>
 bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint, Film& film) {
   omitted_.clear();
-  begin_looks(tile);
+  begin_emission_rays(tile);
   if (places_samples_) find_streams(tile, SampleSet::pixel, pixel_streams_);
   if (plan_.samples == 1 && film.storage() != FilmStorage::sums && plan_.view == View::picture) {
     if (!trace(tile, 0, checkpoint)) return false;
@@ -76,7 +76,7 @@ bool TileRenderer<T>::render(const TileView& tile, const Checkpoint& checkpoint,
     const int end = tile.first_sample + tile.samples;
     for (int sample = tile.first_sample; sample < end; ++sample) {
       if (2 * sample == end) first_half_ = sums_.radiance;
-      if (!checkpoint.go_on() || !trace(tile, sample, checkpoint)) return false;
+      if (!checkpoint.may_continue() || !trace(tile, sample, checkpoint)) return false;
       add_sample();
     }
     if (end % 2 == 0 && 2 * tile.first_sample <= end) add_error({tile, first_half_, sums_.radiance, end});
@@ -93,9 +93,9 @@ bool TileRenderer<T>::trace(const TileView& tile, int sample, const Checkpoint& 
   const bool is_first = sample == tile.first_sample;
   const std::uint64_t cut_before = stats_.counts.cut_rays;
   if (!trace_part(tile, sample, PixelFilter::Part::positive, result_, checkpoint)) return false;
-  if (taken_away_) {
-    if (!trace_part(tile, sample, PixelFilter::Part::negative, *taken_away_, checkpoint)) return false;
-    take_away();
+  if (negative_lobe_) {
+    if (!trace_part(tile, sample, PixelFilter::Part::negative, *negative_lobe_, checkpoint)) return false;
+    subtract_negative_lobe();
   }
   if (plan_.clamp_indirect > 0) add_vector(is_first, result_.clamped, clamped_);
   if (stats_.counts.cut_rays == cut_before) return true;
@@ -112,19 +112,19 @@ bool TileRenderer<T>::trace_part(const TileView& tile, int sample, PixelFilter::
   if (places_samples_) place_samples(static_cast<std::uint32_t>(sample), pixel_streams_, part, samples_);
   send_rays(tile, samples_, draws, SampleSet::lens);
   if (!tracer_->trace(rays_, draws, into, stats_.counts, checkpoint)) return false;
-  look(tile, sample, part, into);
+  trace_emission_only(tile, sample, part, into);
   return true;
 }
 
 template <class T>
-void TileRenderer<T>::take_away() {
+void TileRenderer<T>::subtract_negative_lobe() {
   using N = Lanes<T>;
   const N more(static_cast<T>(filter_->positive())), less(static_cast<T>(filter_->negative()));
   for (int i = 0; i < kBatch; i += kWidth<T>) {
-    result_.radiance.put(i, result_.radiance.at(i) * more - taken_away_->radiance.at(i) * less);
+    result_.radiance.put(i, result_.radiance.at(i) * more - negative_lobe_->radiance.at(i) * less);
     if (plan_.clamp_indirect > 0)
-      result_.clamped.put(i, result_.clamped.at(i) * more - taken_away_->clamped.at(i) * less);
-    result_.omitted.put(i, result_.omitted.at(i) * more + taken_away_->omitted.at(i) * less);
+      result_.clamped.put(i, result_.clamped.at(i) * more - negative_lobe_->clamped.at(i) * less);
+    result_.omitted.put(i, result_.omitted.at(i) * more + negative_lobe_->omitted.at(i) * less);
   }
 }
 
@@ -149,15 +149,15 @@ void TileRenderer<T>::put_single(const TileView& tile, Film& film) {
   stats_.non_finite_pixels += film.put(tile, means_);
 }
 
-// Chooses the number of emission samples. It is kMostLooks with lens or motion blur, or if two opposite
-// corners of the pixels, or of the filter's support, see different emission. Otherwise it is one. The choice
-// is not random, so the number is independent of the samples.
+// Chooses the number of emission samples. It is kMaxEmissionSamples with lens or motion blur, or if two
+// opposite corners of the pixels, or of the filter's support, see different emission. Otherwise it is one.
+// The choice is not random, so the number is independent of the samples.
 template <class T>
-void TileRenderer<T>::begin_looks(const TileView& tile) {
-  looks_ = 0;
-  if (!tracer_->looks()) return;
-  find_streams(tile, SampleSet::look, look_streams_);
-  const Groups all = Groups::covering(0, kBatch, kWidth<T>);
+void TileRenderer<T>::begin_emission_rays(const TileView& tile) {
+  emission_rays_ = 0;
+  if (!tracer_->has_emission_pass()) return;
+  find_streams(tile, SampleSet::emission_ray, emission_ray_streams_);
+  const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<T>);
   Vec3<T> first;
   bool differs = false;
   const float reach = filter_ ? filter_->half_width() : 0.5f;
@@ -168,20 +168,21 @@ void TileRenderer<T>::begin_looks(const TileView& tile) {
     plan_.camera->generate(plan_.frame, plan_.width, plan_.height, tile, look_samples_, rays_);
     if (plan_.shutter > 0) put_middle_time(rays_);
     for (const int i : all) result_.radiance.put(i, Vec3<Lanes<T>>(Lanes<T>(T(0))));
-    tracer_->look(rays_, T(1), result_, stats_.counts);
+    tracer_->trace_emission_only(rays_, T(1), result_, stats_.counts);
     if (corner == corners[0]) first = result_.radiance[0];
     for (int slot = 0; slot < kBatch; ++slot)
       differs = differs || (rays_.t_max[slot] > 0 && result_.radiance[slot] != first);
   }
-  looks_ = differs || plan_.lens || plan_.shutter > 0 ? kMostLooks : 1;
+  emission_rays_ = differs || plan_.lens || plan_.shutter > 0 ? kMaxEmissionSamples : 1;
 }
 
 template <class T>
-void TileRenderer<T>::look(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into) {
-  for (int i = looks_ * sample; i < looks_ * (sample + 1); ++i) {
-    place_samples(static_cast<std::uint32_t>(i), look_streams_, part, look_samples_);
-    send_rays(tile, look_samples_, Draws(plan_.seed, tile, i), SampleSet::look_lens);
-    tracer_->look(rays_, T(1) / static_cast<T>(looks_), into, stats_.counts);
+void TileRenderer<T>::trace_emission_only(const TileView& tile, int sample, PixelFilter::Part part,
+                                          TraceResult<T>& into) {
+  for (int i = emission_rays_ * sample; i < emission_rays_ * (sample + 1); ++i) {
+    place_samples(static_cast<std::uint32_t>(i), emission_ray_streams_, part, look_samples_);
+    send_rays(tile, look_samples_, Draws(plan_.seed, tile, i), SampleSet::emission_ray_lens);
+    tracer_->trace_emission_only(rays_, T(1) / static_cast<T>(emission_rays_), into, stats_.counts);
   }
 }
 

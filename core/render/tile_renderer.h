@@ -30,12 +30,12 @@ class TileRenderer {
   bool trace_part(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into,
                   const Checkpoint& checkpoint);
   // Subtracts the negative part of the filter from the positive one.
-  void take_away();
+  void subtract_negative_lobe();
   // Generates camera rays through the samples, with lens positions and times drawn from `set`.
   void send_rays(const TileView& tile, const TileSamples& samples, const Draws& draws, SampleSet set);
-  // Chooses the number of emission samples and their random streams. look() traces them.
-  void begin_looks(const TileView& tile);
-  void look(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into);
+  // Chooses the number of emission samples and their random streams. trace_emission_only() traces them.
+  void begin_emission_rays(const TileView& tile);
+  void trace_emission_only(const TileView& tile, int sample, PixelFilter::Part part, TraceResult<T>& into);
   void find_streams(const TileView& tile, SampleSet set, Array<std::uint32_t>& streams);
   void place_samples(std::uint32_t sample, const Array<std::uint32_t>& streams, PixelFilter::Part part,
                      TileSamples& to) const;
@@ -51,13 +51,13 @@ class TileRenderer {
   TracerPtr<T> tracer_;
   // Random streams by slot: for the samples' positions in this tile's pixels, and for those of emission
   // samples.
-  Array<std::uint32_t> pixel_streams_, look_streams_;
+  Array<std::uint32_t> pixel_streams_, emission_ray_streams_;
   TileSamples samples_ = TileSamples::centres(), look_samples_ = TileSamples::centres();
-  int looks_ = 0;  // emission samples per sample in this tile
+  int emission_rays_ = 0;  // emission samples per sample in this tile
   RayBatch<T> rays_;
   TraceResult<T> result_;
-  std::optional<PixelFilter> filter_;           // unset: samples cover their pixels evenly
-  std::unique_ptr<TraceResult<T>> taken_away_;  // its negative lobes; null if it has none
+  std::optional<PixelFilter> filter_;              // unset: samples cover their pixels evenly
+  std::unique_ptr<TraceResult<T>> negative_lobe_;  // its negative lobes; null if it has none
   TileSums sums_;
   std::array<TileSums::Plane, 3> first_half_;  // radiance of the first half of the samples
   TileMeans means_;

@@ -83,7 +83,7 @@ bool UnitHistogram::rejects(double mean, double log_odds) const {
   return most + std::log(mean_wealth) >= log_odds;
 }
 
-double UnitHistogram::least_upper_mean(double count, double delta) {
+double UnitHistogram::min_upper_mean(double count, double delta) {
   UnitHistogram zeros;
   zeros.bins_[0].count = count;
   return zeros.upper_mean(delta);

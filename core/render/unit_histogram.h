@@ -29,7 +29,7 @@ class UnitHistogram {
   // lowest wealth for that sum counts. Returns 1 without values.
   double upper_mean(double delta) const;
   // Returns the smallest possible upper_mean() of `count` values, i.e. that of zeros.
-  static double least_upper_mean(double count, double delta);
+  static double min_upper_mean(double count, double delta);
 
  private:
   static constexpr int kOctaves = 64, kPartsOfOctave = 4;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/base/clock.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/render/worker_pool.h"
 
 namespace orrery {
@@ -58,7 +58,7 @@ class WorkerThreads {
     changed_.notify_one();
   }
 
-  void for_each(int count, const WorkerPool::Step& work, Pass* pass) {
+  void for_each(int count, const WorkerPool::Step& work, SlotLease* pass) {
     if (count == 0) return;
     Loop loop{.work = work, .count = count, .pass = pass, .free_workers = {}};
     for (int worker = count_; worker-- > 0;) loop.free_workers.push_back(worker);
@@ -84,17 +84,17 @@ class WorkerThreads {
   }
 
  private:
-  class StepTurn;
+  class StepSlice;
   // One call of for_each(), on the stack of its caller. The fields are guarded by mutex_.
   struct Loop {
     const WorkerPool::Step& work;
     const int count;
-    Pass* const pass;
-    const Work scope = WorkScope::current();  // the caller's
+    SlotLease* const pass;
+    const TaskContext scope = TaskScope::current();  // the caller's
     std::vector<int> free_workers;
-    int next = 0, running = 0;         // next step to start; steps started and not done
-    std::list<StepTurn*> paused = {};  // running steps that have yielded
-    Clock::duration used{};            // time used; starts at the minimum of the other loops
+    int next = 0, running = 0;          // next step to start; steps started and not done
+    std::list<StepSlice*> paused = {};  // running steps that have yielded
+    Clock::duration used{};             // time used; starts at the minimum of the other loops
     std::exception_ptr error = {};
     bool pass_expired = false;
     std::condition_variable changed = {};
@@ -116,12 +116,12 @@ class WorkerThreads {
   };
 
   // Turn of a step, on the stack of its thread.
-  class StepTurn final : public Turn {
+  class StepSlice final : public TimeSlice {
    public:
-    StepTurn(WorkerThreads& threads, Loop& loop, Place& place)
+    StepSlice(WorkerThreads& threads, Loop& loop, Place& place)
         : threads_(threads), loop_(loop), place_(place) {}
-    void give_way() override {
-      if (Clock::now() - place_.since >= kSlice) threads_.give_way(*this);
+    void yield() override {
+      if (Clock::now() - place_.since >= kSlice) threads_.yield(*this);
     }
     // Adds the time since the last call to that of the loop. REQUIRES: mutex_ is held.
     void charge() {
@@ -188,7 +188,7 @@ class WorkerThreads {
       Loop* const loop = next_loop();
       if (!loop) return false;
       if (loop->paused.empty()) return true;
-      StepTurn& turn = *loop->paused.front();
+      StepSlice& turn = *loop->paused.front();
       loop->paused.pop_front();
       turn.place_.since = Clock::now();
       places_.push_back(&turn.place_);
@@ -214,7 +214,7 @@ class WorkerThreads {
     loop.pass_expired = true;
   }
 
-  void give_way(StepTurn& turn) {
+  void yield(StepSlice& turn) {
     Loop& loop = turn.loop_;
     std::unique_lock lock(mutex_);
     turn.charge();
@@ -292,11 +292,11 @@ class WorkerThreads {
     loop.free_workers.pop_back();
     ++loop.running;
     lock.unlock();
-    StepTurn turn(*this, loop, place);
+    StepSlice turn(*this, loop, place);
     std::exception_ptr error;
     bool go_on = false;
     try {
-      const WorkScope scope(loop.scope);
+      const TaskScope scope(loop.scope);
       go_on = loop.work(step, worker, turn);
     } catch (...) {
       error = std::current_exception();
@@ -346,7 +346,7 @@ void WorkerPool::enqueue(bool background, std::function<void()> task) {
   (background ? parts_->background : parts_->foreground).enqueue(std::move(task));
 }
 
-void WorkerPool::for_each(int count, bool background, const Step& work, Pass* pass) {
+void WorkerPool::for_each(int count, bool background, const Step& work, SlotLease* pass) {
   (background ? parts_->background : parts_->foreground).for_each(count, work, pass);
 }
 

@@ -56,18 +56,18 @@ class MeshSet final : public ShapeSet {
   Boundsd bounds(int index) const override {
     return table_.corners(static_cast<std::size_t>(index)).bounds();
   }
-  Reach reach(int index) const override {
+  SweptBounds reach(int index) const override {
     const auto i = static_cast<std::size_t>(index);
     const auto& part = table_.part_of(i);
     const auto moving = moving_.find(part_number(i));
     if (moving == moving_.end()) return ShapeSet::reach(index);
-    Reach reach;
+    SweptBounds reach;
     for (const VertexKey& key : moving->second.keys.values) {
       const auto& [a, b, c] = moving->second.triangles[i - part.first];
       const std::vector<Vec3d>& at = *key.positions;
       const Boundsd box = Boundsd::of({at[a], at[b], at[c]});
       reach.box.include(box);
-      reach.least_diagonal = std::min(reach.least_diagonal, box.diagonal());
+      reach.min_diagonal = std::min(reach.min_diagonal, box.diagonal());
     }
     return reach;
   }
@@ -82,8 +82,8 @@ class MeshSet final : public ShapeSet {
   }
 
  private:
-  static constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 30;
-  static constexpr std::uint64_t kRoomForMoments = 16;  // factor over the pairs that coincide at all keys
+  static constexpr std::uint64_t kMaxPairs = std::uint64_t{1} << 30;
+  static constexpr std::uint64_t kMaxPairGrowth = 16;  // factor over the pairs that coincide at all keys
 
   std::size_t part_number(std::size_t triangle) const {
     return static_cast<std::size_t>(&table_.part_of(triangle) - table_.parts.data());
@@ -105,8 +105,8 @@ class MeshSet final : public ShapeSet {
     if (object.crease_degrees) {
       moving.always = position_indices_of(*moving.keys.values[0].positions);
       for (const VertexKey& key : moving.keys.values) split_position_indices(moving.always, *key.positions);
-      moving.most_pairs = kRoomForMoments * count_pairs(object.mesh, moving.always);
-      if (!may_compare(moving.most_pairs, p, source)) return false;
+      moving.max_pairs = kMaxPairGrowth * count_pairs(object.mesh, moving.always);
+      if (!may_compare(moving.max_pairs, p, source)) return false;
     }
     moving_.emplace(table_.parts.size(), std::move(moving));
     return true;
@@ -116,8 +116,8 @@ class MeshSet final : public ShapeSet {
   // limit is exceeded.
   static bool may_compare(std::uint64_t pairs, Params& p, MeshSource& source) {
     source.pairs += pairs;
-    if (source.pairs <= kMostPairs) return true;
-    p.fail("crease_degrees", "expected at most " + std::to_string(kMostPairs) +
+    if (source.pairs <= kMaxPairs) return true;
+    p.fail("crease_degrees", "expected at most " + std::to_string(kMaxPairs) +
                                  " pairs of triangles around vertices to be compared for smoothing, got " +
                                  std::to_string(source.pairs));
     return false;

@@ -11,7 +11,7 @@ class Params;
 struct MeshObject {
   TriangleMesh mesh;  // empty after a problem, which Params records
   std::optional<double> crease_degrees;
-  Keys<VertexKey> keys;  // empty if static
+  Keyframes<VertexKey> keys;  // empty if static
 };
 
 // Reads the meshes of a scene. Limits apply to their sum, because many objects and keys may name one file.

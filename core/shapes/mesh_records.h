@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/math/face_normal.h"
 #include "core/meshes/mesh_file.h"
 #include "core/shapes/primitive_set.h"

@@ -29,7 +29,7 @@ TriangleMesh MovingMesh::at(double time) const {
   TriangleMesh mesh{*vertices.positions, triangles, *vertices.normals, uvs};
   if (crease_degrees) {
     const PositionIndices now = position_indices_of(mesh.positions);
-    smooth_normals(mesh, *crease_degrees, count_pairs(mesh, now) <= most_pairs ? now : always);
+    smooth_normals(mesh, *crease_degrees, count_pairs(mesh, now) <= max_pairs ? now : always);
   }
   return mesh;
 }

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/math/keys.h"
+#include "core/math/keyframes.h"
 #include "core/meshes/repair.h"
 
 namespace orrery {
@@ -22,13 +22,13 @@ VertexKey mix(const VertexKey& before, const VertexKey& after, double share);
 struct MovingMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::array<double, 2>> uvs;  // one per vertex, or empty
-  Keys<VertexKey> keys;
+  Keyframes<VertexKey> keys;
   // If set, smooth_normals() computes the normals, around vertices that coincide at the time. If that
-  // compares more than `most_pairs` pairs, because many vertices meet for a moment, only those that coincide
+  // compares more than `max_pairs` pairs, because many vertices meet for a moment, only those that coincide
   // at all keys are used.
   std::optional<double> crease_degrees;
   PositionIndices always;  // vertices that coincide at all keys
-  std::uint64_t most_pairs;
+  std::uint64_t max_pairs;
 
   // Returns the mesh at `time`, in seconds, with its triangles in the same order.
   TriangleMesh at(double time) const;

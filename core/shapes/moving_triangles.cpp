@@ -1,6 +1,6 @@
 #include "core/shapes/moving_triangles.h"
 
-#include "core/math/stretches.h"
+#include "core/math/motion_segments.h"
 #include "core/shapes/mesh_records.h"
 
 namespace orrery {
@@ -90,7 +90,7 @@ class Mesh {
   }
 
   int first_;
-  Stretches<T> stretches_;
+  MotionSegments<T> stretches_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::vector<Vec3<T>>> positions_, normals_;
   std::vector<std::array<T, 2>> uvs_;
@@ -124,21 +124,21 @@ class Kernel final : public ShapeKernel<T> {
   std::vector<HullTriangle> hull(int) const override { return {}; }
   PackedPrimitivesPtr<T> pack(std::span<const int>) const override { return nullptr; }
 
-  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
-                                AcceleratorCounts&) const override {
+  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const LaneGroups& groups,
+                                HitBatch<T>& hits, AcceleratorCounts&) const override {
     const Mesh<T>& mesh = *mesh_of(index);
     const IndexLanes<T> id(static_cast<IndexOf<T>>(number_ + index));
     for (const int i : groups) {
       const N best = hits.t.at(i);
       const N t = distance(mesh, index, rays, i, min_first(best, N(std::numeric_limits<T>::max())));
-      const auto nearer = takes_over(t, id, best, load_index<T>(hits.primitive, i));
+      const auto nearer = is_nearer_hit(t, id, best, load_index<T>(hits.primitive, i));
       if (!any(nearer)) continue;
       hits.t.put(i, nearer, t);
       hits.primitive.put(i, mask_cast<IndexLanes<T>>(nearer), id);
     }
   }
 
-  [[gnu::flatten]] void occlude(int index, RayBatch<T>& rays, const Groups& groups,
+  [[gnu::flatten]] void occlude(int index, RayBatch<T>& rays, const LaneGroups& groups,
                                 AcceleratorCounts&) const override {
     const Mesh<T>& mesh = *mesh_of(index);
     for (const int i : groups) {
@@ -148,7 +148,7 @@ class Kernel final : public ShapeKernel<T> {
     }
   }
 
-  void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+  void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
                SurfaceBatch<T>& out) const override {
     for_each_hit(hits, groups, [&](int i, const auto& mine, const Mesh<T>& mesh, std::size_t triangle) {
       const N time = rays.time.at(i);
@@ -158,7 +158,7 @@ class Kernel final : public ShapeKernel<T> {
     });
   }
 
-  void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                   SurfaceBatch<T>& out) const override {
     for_each_hit(hits, groups, [&](int i, const auto& mine, const Mesh<T>& mesh, std::size_t triangle) {
       const MeshMapping<N> mapping = mesh.mapping(triangle, mesh.corners(triangle, rays.time.at(i)));
@@ -187,7 +187,7 @@ class Kernel final : public ShapeKernel<T> {
 
   // Calls visit(i, lanes, mesh, triangle) for each register of `groups` and each triangle hit in it.
   template <class Visit>
-  void for_each_hit(const HitBatch<T>& hits, const Groups& groups, const Visit& visit) const {
+  void for_each_hit(const HitBatch<T>& hits, const LaneGroups& groups, const Visit& visit) const {
     for (const int i : groups) {
       const IndexLanes<T> id = load_index<T>(hits.primitive, i);
       auto open = id >= IndexOf<T>(number_ + meshes_.front().first()) &&
@@ -207,9 +207,9 @@ class Kernel final : public ShapeKernel<T> {
   int number_;  // number of the set's first primitive
 };
 
-class Moving final : public MovingShapes {
+class MovingTriangleShapes final : public MovingShapes {
  public:
-  explicit Moving(std::vector<MovingTriangles> meshes) : meshes_(std::move(meshes)) {}
+  explicit MovingTriangleShapes(std::vector<MovingTriangles> meshes) : meshes_(std::move(meshes)) {}
 
   // Returns the bounds over the exposure, padded for the rounding of interpolated vertices.
   Boundsd bounds(int index) const override {
@@ -239,7 +239,7 @@ class Moving final : public MovingShapes {
 }  // namespace
 
 std::unique_ptr<MovingShapes> moving_triangles(std::vector<MovingTriangles> meshes) {
-  return std::make_unique<Moving>(std::move(meshes));
+  return std::make_unique<MovingTriangleShapes>(std::move(meshes));
 }
 
 }  // namespace orrery

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/prefetch.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/math/compress.h"
 #include "core/model/record.h"
 #include "core/model/shape.h"
@@ -78,7 +78,7 @@ class PackedRecords final : public PackedPrimitives<T> {
       for_each(block, packets[pair.ray], hit.budget, [&](const Core<T>& core, IndexOf<T> id) {
         const N t = distance(core, packets[pair.ray]);
         if (!any(t <= min_first(hit.t, N(kFar)))) return;
-        const auto nearer = takes_over(t, IndexLanes<T>(id), hit.t, hit.primitive);
+        const auto nearer = is_nearer_hit(t, IndexLanes<T>(id), hit.t, hit.primitive);
         stdx::where(nearer, hit.t) = t;
         stdx::where(mask_cast<IndexLanes<T>>(nearer), hit.primitive) = IndexLanes<T>(id);
       });

@@ -72,21 +72,21 @@ class PrimitiveKernel final : public ShapeKernel<T> {
 
   PrimitiveKernel(Records records, int first) : records_(std::move(records)), first_(first) {}
 
-  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
-                                AcceleratorCounts&) const override {
+  [[gnu::flatten]] void closest(int index, const RayBatch<T>& rays, const LaneGroups& groups,
+                                HitBatch<T>& hits, AcceleratorCounts&) const override {
     const auto shape = broadcast_record<Record, T>(records_[static_cast<std::size_t>(index)]);
     const IndexLanes<T> id(static_cast<IndexOf<T>>(first_ + index));
     for (const int i : groups) {
       const N best = hits.t.at(i);
       const N t = shape.distance(rays.at(i));
       if (!any(t <= min_first(best, N(std::numeric_limits<T>::max())))) continue;
-      const auto nearer = takes_over(t, id, best, load_index<T>(hits.primitive, i));
+      const auto nearer = is_nearer_hit(t, id, best, load_index<T>(hits.primitive, i));
       hits.t.put(i, nearer, t);
       hits.primitive.put(i, mask_cast<IndexLanes<T>>(nearer), id);
     }
   }
 
-  [[gnu::flatten]] void occlude(int index, RayBatch<T>& rays, const Groups& groups,
+  [[gnu::flatten]] void occlude(int index, RayBatch<T>& rays, const LaneGroups& groups,
                                 AcceleratorCounts&) const override {
     const auto shape = broadcast_record<Record, T>(records_[static_cast<std::size_t>(index)]);
     for (const int i : groups) {
@@ -106,7 +106,7 @@ class PrimitiveKernel final : public ShapeKernel<T> {
     return std::make_unique<PackedRecords<Record, T>>(records_, first_, indices);
   }
 
-  [[gnu::flatten]] void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const Groups& groups,
+  [[gnu::flatten]] void surface(const RayBatch<T>& rays, const HitBatch<T>& hits, const LaneGroups& groups,
                                 SurfaceBatch<T>& out) const override {
     const int last = first_ + static_cast<int>(records_.size());
     for (const int i : groups) {
@@ -118,7 +118,7 @@ class PrimitiveKernel final : public ShapeKernel<T> {
     }
   }
 
-  void parameters(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void parameters(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                   SurfaceBatch<T>& out) const override {
     const int last = first_ + static_cast<int>(records_.size());
     for (const int i : groups) {

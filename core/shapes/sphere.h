@@ -53,11 +53,11 @@ struct Ball {
     constexpr T kRounding = 32 * std::numeric_limits<T>::epsilon();
     const N grown = radius + max_component(abs(Vec3<N>(x, y, z))) * N(kRounding);
     const N reach = grown * N(std::sqrt(1 + sx * sx + sy * sy) * (1 + kRounding));
-    const auto beside = [&](const N& v, std::size_t side) {
+    const auto misses_side = [&](const N& v, std::size_t side) {
       const N lo = v - N(packet.shear_lo[side]) * z, hi = v - N(packet.shear_hi[side]) * z;
       return min_first(lo, hi) > reach || max_first(lo, hi) < -reach;
     };
-    return !beside(x, 0) && !beside(y, 1);
+    return !misses_side(x, 0) && !misses_side(y, 1);
   }
 };
 

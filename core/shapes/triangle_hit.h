@@ -114,7 +114,7 @@ struct Corners {
   // monotonic.
   MaskOf<N> may_meet(const Packet<ScalarOf<N>>& packet) const {
     if (!packet.one_origin) return MaskOf<N>(true);
-    return !beside(packet, 0) && !beside(packet, 1);
+    return !misses_side(packet, 0) && !misses_side(packet, 1);
   }
   // Returns the barycentric weights of the intersection.
   Vec3<N> weights(const Ray<N>& ray) const {
@@ -128,7 +128,7 @@ struct Corners {
   [[gnu::always_inline]] N distance_by(const Axes& axes) const {
     return intersect_triangle<N>(axes, a, b, c).t;
   }
-  [[gnu::always_inline]] MaskOf<N> beside(const Packet<ScalarOf<N>>& packet, std::size_t side) const {
+  [[gnu::always_inline]] MaskOf<N> misses_side(const Packet<ScalarOf<N>>& packet, std::size_t side) const {
     using T = ScalarOf<N>;
     const auto moved = [&](const Vec3<N>& v, std::size_t i) {
       return detail::moved<N>(v, packet.origin, packet.axis[i]);

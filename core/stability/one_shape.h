@@ -31,7 +31,7 @@ class OneShape {
     for (int i = 0; i < kBatchRoom; ++i)
       batch_->set(i, rays[static_cast<std::size_t>(std::min(i, batch_->count - 1))],
                   std::numeric_limits<T>::infinity());
-    groups_ = Groups::covering(0, batch_->count, kWidth<T>);
+    groups_ = LaneGroups::covering(0, batch_->count, kWidth<T>);
     search();
     kernel_->surface(*batch_, *hits_, groups_, *surface_);
   }
@@ -63,7 +63,7 @@ class OneShape {
   std::unique_ptr<RayBatch<T>> batch_ = std::make_unique<RayBatch<T>>();
   std::unique_ptr<HitBatch<T>> hits_ = std::make_unique<HitBatch<T>>();
   std::unique_ptr<SurfaceBatch<T>> surface_ = std::make_unique<SurfaceBatch<T>>();
-  Groups groups_;
+  LaneGroups groups_;
 };
 
 }  // namespace orrery

@@ -18,14 +18,14 @@ namespace orrery {
 namespace {
 
 // Method of a group. run() returns the CPU milliseconds of one run.
-struct Contender {
+struct TimedMethod {
   std::string name;
   std::function<double()> run;
   std::string error;
 };
-struct Contest {
+struct MethodComparison {
   std::string name;
-  std::vector<Contender> contenders;
+  std::vector<TimedMethod> contenders;
 };
 
 // Scene with 512 balls of glass over a floor.
@@ -65,7 +65,7 @@ std::function<double()> tracing(const std::shared_ptr<const Scene>& scene, const
   return [scene, request] { return rendered(scene, request).stats.cpu_ms; };
 }
 
-Contest number_types() {
+MethodComparison number_types() {
   const auto scene = balls("exact");
   const RenderRequest in_double = picture_of(Precision::double_precision),
                       in_float = picture_of(Precision::single_precision);
@@ -75,7 +75,7 @@ Contest number_types() {
             "RMS " + figure_text(rms_difference(scene, in_float, scene, in_double), "radiance")}}};
 }
 
-Contest reflectances() {
+MethodComparison reflectances() {
   const auto exact = balls("exact"), schlick = balls("schlick");
   const RenderRequest request = picture_of(Precision::double_precision);
   return {"Reflectance of glass",
@@ -104,7 +104,7 @@ std::function<double()> testing(const Distance& distance) {
   };
 }
 
-Contest triangles() {
+MethodComparison triangles() {
   const auto figures = stability_row("A12").measure();
   return {"Ray and triangle, one at a time",
           {{"Moeller-Trumbore",
@@ -118,11 +118,11 @@ Contest triangles() {
             "leaks " + figure_text(figures.ours, "%")}}};
 }
 
-Contest structures() {
+MethodComparison structures() {
   const auto scene = balls("exact");
   RenderRequest list = picture_of(Precision::double_precision);
   list.accelerator = "list";
-  Contest contest{"Structure, 513 objects", {{"list", tracing(scene, list), "reference"}}};
+  MethodComparison contest{"Structure, 513 objects", {{"list", tracing(scene, list), "reference"}}};
   for (const AcceleratorType& type : accelerator_types()) {
     if (type.name == std::string_view("list")) continue;
     RenderRequest request = list;
@@ -143,7 +143,7 @@ double median(std::vector<double> values) {
 }  // namespace
 
 std::vector<SpeedGroup> measure_speed(int rounds, const std::function<void(int done, int all)>& progress) {
-  const std::vector<Contest> contests{number_types(), reflectances(), triangles(), structures()};
+  const std::vector<MethodComparison> contests{number_types(), reflectances(), triangles(), structures()};
   std::vector<SpeedGroup> groups;
   int done = 0;
   for (const auto& [name, contenders] : contests) {

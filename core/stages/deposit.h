@@ -7,7 +7,8 @@ namespace orrery {
 // Adds radiance times throughput of the rays of `groups` to their slots, in the order of the batch. Camera
 // rays set their slots.
 template <class T>
-void deposit(const PathBatch<T>& paths, const Groups& groups, Vec3Array<T>& radiance, Vec3Array<T>& slots) {
+void deposit(const PathBatch<T>& paths, const LaneGroups& groups, Vec3Array<T>& radiance,
+             Vec3Array<T>& slots) {
   if (paths.depth == 0) {
     for (const int i : groups) slots.put(i, radiance.at(i) * paths.throughput.at(i));
     return;

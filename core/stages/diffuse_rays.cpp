@@ -5,14 +5,14 @@
 namespace orrery {
 
 template <class T>
-Groups DiffuseRays<T>::draw(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
-                            const SurfaceBatch<T>& surface, const Groups& met) {
+LaneGroups DiffuseRays<T>::draw(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
+                                const SurfaceBatch<T>& surface, const LaneGroups& met) {
   const N zero(T(0)), one(T(1));
   for (const int i : met) drawn_.weight.put(i, Vec3<N>(zero));
   for (const auto& m : geometry_.materials)
     if (m.traits.lit && m.traits.has(Lobes::diffuse))
       m.kernel->sample(paths.rays, hits, surface, draws, met, Lobes::diffuse, drawn_);
-  Groups drawn;
+  LaneGroups drawn;
   rays_.depth = paths.depth + 1;
   for (const int i : met) {
     const auto goes = max_component(drawn_.weight.at(i)) > zero;
@@ -30,11 +30,11 @@ Groups DiffuseRays<T>::draw(const PathBatch<T>& paths, const HitBatch<T>& hits, 
 
 template <class T>
 void DiffuseRays<T>::add(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
-                         const SurfaceBatch<T>& surface, const Groups& met, Vec3Array<T>& radiance,
+                         const SurfaceBatch<T>& surface, const LaneGroups& met, Vec3Array<T>& radiance,
                          TraceCounts& counts) {
-  const Groups drawn = draw(paths, hits, draws, surface, met);
+  const LaneGroups drawn = draw(paths, hits, draws, surface, met);
   if (drawn.empty()) return;
-  if (paths.depth < kDeepestRay)
+  if (paths.depth < kMaxRayDepth)
     counts.rays.reflected[static_cast<std::size_t>(rays_.depth)] += active_rays(rays_.rays, drawn);
   reset(rays_.rays, drawn, hits_);
   accelerator_.closest(rays_.rays, drawn, hits_, counts.accelerator);
@@ -45,7 +45,7 @@ void DiffuseRays<T>::add(const PathBatch<T>& paths, const HitBatch<T>& hits, con
         mask_cast<N>(load_index<T>(hits_.primitive, i) == IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
     found_.put(i, select(missed, background, nothing));
   }
-  light_.add_beyond(rays_, hits_, drawn, found_);
+  light_.add_environment(rays_, hits_, drawn, found_);
   light_.add_emission(rays_, hits_, surface_, drawn, found_);
   for (const int i : drawn)
     radiance.put(i, rays_.rays.t_max.at(i) > N(T(0)), radiance.at(i) + drawn_.weight.at(i) * found_.at(i));

@@ -17,13 +17,14 @@ class DiffuseRays {
 
   // Adds the light to the radiance of the surface points of `met`.
   void add(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
-           const SurfaceBatch<T>& surface, const Groups& met, Vec3Array<T>& radiance, TraceCounts& counts);
+           const SurfaceBatch<T>& surface, const LaneGroups& met, Vec3Array<T>& radiance,
+           TraceCounts& counts);
 
  private:
   using N = Lanes<T>;
   // Samples directions and makes rays_ of them. Returns the registers with a ray.
-  Groups draw(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
-              const SurfaceBatch<T>& surface, const Groups& met);
+  LaneGroups draw(const PathBatch<T>& paths, const HitBatch<T>& hits, const PathDraws<T>& draws,
+                  const SurfaceBatch<T>& surface, const LaneGroups& met);
 
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;

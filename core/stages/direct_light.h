@@ -22,7 +22,8 @@ class DirectLight {
   // source. `groups` are the registers with such a lane. Checks `checkpoint` before each light and skips the
   // remaining lights once cancelled.
   void add(const PathBatch<T>& paths, const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
-           const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts, const Checkpoint& checkpoint);
+           const LaneGroups& groups, Vec3Array<T>& radiance, TraceCounts& counts,
+           const Checkpoint& checkpoint);
 
  private:
   using N = Lanes<T>;

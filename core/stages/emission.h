@@ -26,7 +26,7 @@ Vec3<Lanes<T>> emission_at(const Geometry<T>& geometry, const SurfaceBatch<T>& s
 
 // Adds the emitted radiance to that of the registers of `met`.
 template <class T>
-void add_emission(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const Groups& met,
+void add_emission(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const LaneGroups& met,
                   Vec3Array<T>& radiance) {
   if (geometry.emission.empty()) return;
   for (const int i : met) radiance.put(i, radiance.at(i) + emission_at(geometry, surface, i));

@@ -17,9 +17,9 @@ MaskOf<Lanes<T>> lanes_with(const Geometry<T>& geometry, const SurfaceBatch<T>& 
 
 // Returns the registers of `groups` with such a lane.
 template <class T>
-Groups groups_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const Groups& groups,
-                   bool MaterialTraits::*trait) {
-  Groups chosen;
+LaneGroups groups_with(const Geometry<T>& geometry, const SurfaceBatch<T>& surface, const LaneGroups& groups,
+                       bool MaterialTraits::*trait) {
+  LaneGroups chosen;
   for (const int i : groups)
     if (any(lanes_with(geometry, surface, i, trait))) chosen.add(i);
   return chosen;

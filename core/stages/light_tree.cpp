@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "core/base/prefetch.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 namespace orrery {
 namespace {
@@ -48,9 +48,9 @@ struct Extent {
 };
 
 // Split policy of the tree builder.
-class Parting {
+class SplitPolicy {
  public:
-  explicit Parting(std::span<const LightBounds> lights) : lights_(lights) {
+  explicit SplitPolicy(std::span<const LightBounds> lights) : lights_(lights) {
     Boundsd all;
     for (const LightBounds& light : lights)
       if (!light.parallel) all.include(Boundsd::around(light.centre, Vec3d(light.radius)));
@@ -131,7 +131,7 @@ template <class T>
 struct LightTree<T>::Builder {
   LightTree& tree;
   std::span<const LightBounds> lights;
-  Parting parting{lights};
+  SplitPolicy split_policy{lights};
 
   // From this level on, lights are split by number, so that 16 levels of 4 bits hold any tree.
   static constexpr int kLevels = 8;
@@ -184,10 +184,10 @@ struct LightTree<T>::Builder {
                            [&](const Group& a, const Group& b) { return weight(a) < weight(b); });
       const Numbers both = largest->numbers;
       if (both.size() == 1) break;
-      const std::size_t first = level < kLevels ? parting.split(both) : both.size() / 2;
+      const std::size_t first = level < kLevels ? split_policy.split(both) : both.size() / 2;
       const Numbers left = both.first(first), right = both.subspan(first);
-      *largest = {left, parting.extent_of(left).cost()};
-      groups.insert(largest + 1, {right, parting.extent_of(right).cost()});
+      *largest = {left, split_policy.extent_of(left).cost()};
+      groups.insert(largest + 1, {right, split_policy.extent_of(right).cost()});
     }
     return groups;
   }

@@ -16,11 +16,11 @@ using Scores = Network::Scores<float>;
 constexpr float kLog2E = 1.44269504f;
 
 // Activations of a network for one example.
-struct Thought {
+struct Activations {
   Hidden first, second;
   Scores share;  // probability of each answer
 
-  Thought(const Network& network, const Network::Inputs<float>& in) {
+  Activations(const Network& network, const Network::Inputs<float>& in) {
     network.score(in, first, second, share);
     const float largest = *std::max_element(share.begin(), share.end());
     float sum = 0;
@@ -47,7 +47,7 @@ void add_slope(const float* row, const std::array<float, kIn>& in, const std::ar
 }
 
 void add_slope(const Network& network, const NetworkExample& example, Weights& slope) {
-  const Thought thought(network, example.in);
+  const Activations thought(network, example.in);
   Scores of_score = thought.share;
   of_score[example.answer] -= 1;
   Hidden of_second, of_first;

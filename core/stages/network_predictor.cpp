@@ -9,7 +9,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kNobody = 0;  // answer for rays without a candidate in their way
+constexpr int kNoOccluder = 0;  // answer for rays without a candidate in their way
 
 // Returns the primitives that occlude the most samples, in descending order. Ties are sorted by primitive
 // number.
@@ -37,10 +37,10 @@ double median(std::vector<double> values) {
 
 // Normalization of one coordinate of the ray origins. Half of the samples map to -1/2 to 1/2, and all to
 // between -1 and 1. Distant origins therefore do not compress the near ones.
-struct Framing {
+struct CoordinateNormalization {
   double middle = 0, scale = 0;
 
-  explicit Framing(std::vector<double> values) : middle(median(values)) {
+  explicit CoordinateNormalization(std::vector<double> values) : middle(median(values)) {
     for (double& value : values) value = std::abs(value - middle);
     const double half = median(std::move(values));
     if (half > 0) scale = 1 / half;
@@ -60,10 +60,10 @@ std::vector<double> column(std::span<const OcclusionSample> samples, double Vec3
   return values;
 }
 
-struct Framings {
-  Framing x, y, z;
+struct InputNormalization {
+  CoordinateNormalization x, y, z;
 
-  explicit Framings(std::span<const OcclusionSample> samples)
+  explicit InputNormalization(std::span<const OcclusionSample> samples)
       : x(column(samples, &Vec3d::x)), y(column(samples, &Vec3d::y)), z(column(samples, &Vec3d::z)) {}
   template <class N>
   Network::Inputs<N> inputs(const Ray<N>& ray) const {
@@ -76,30 +76,31 @@ template <class T>
 class NetworkPredictor final : public Predictor<T> {
  public:
   explicit NetworkPredictor(std::span<const OcclusionSample> samples)
-      : candidates_(candidates_of(samples)), framings_(samples) {
+      : candidates_(candidates_of(samples)), normalization_(samples) {
     if (candidates_.empty()) return;
     std::vector<NetworkExample> examples;
     for (const OcclusionSample& sample : samples) {
       const auto candidate = std::find(candidates_.begin(), candidates_.end(), sample.occluder);
       const auto place = static_cast<std::size_t>(candidate - candidates_.begin());
       const bool one = candidate != candidates_.end();
-      NetworkExample example{{}, one ? place + 1 : kNobody};
-      const auto inputs = framings_.inputs(sample.ray);
+      NetworkExample example{{}, one ? place + 1 : kNoOccluder};
+      const auto inputs = normalization_.inputs(sample.ray);
       for (std::size_t i = 0; i < inputs.size(); ++i) example.in[i] = static_cast<float>(inputs[i]);
       examples.push_back(example);
     }
     network_ = train_network(examples);
   }
 
-  // Proposes the candidate with the best score if it exceeds the score of kNobody less kEager. NaN scores
-  // propose nothing.
-  void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const override {
+  // Proposes the candidate with the best score if it exceeds the score of kNoOccluder less kProposalMargin.
+  // NaN scores propose nothing.
+  void propose(const RayBatch<T>& rays, const LaneGroups& groups,
+               Array<IndexOf<T>>& primitive) const override {
     for (const int i : groups) {
       IndexLanes<T> proposed(IndexOf<T>{kNoPrimitive});
       if (!candidates_.empty()) {
         Network::Scores<N> scores;
-        network_.score(framings_.inputs(rays.at(i)), scores);
-        N best = scores[kNobody] - N(T(kEager));
+        network_.score(normalization_.inputs(rays.at(i)), scores);
+        N best = scores[kNoOccluder] - N(T(kProposalMargin));
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
           const auto better = scores[c + 1] > best;
           best = select(better, scores[c + 1], best);
@@ -112,10 +113,11 @@ class NetworkPredictor final : public Predictor<T> {
 
  private:
   using N = Lanes<T>;
-  static constexpr double kEager = 2.3;  // ln 10: a test costs a tenth of the traversal that it may save
+  static constexpr double kProposalMargin =
+      2.3;  // ln 10: a test costs a tenth of the traversal that it may save
 
   std::vector<int> candidates_;
-  Framings framings_;
+  InputNormalization normalization_;
   Network network_;
 };
 

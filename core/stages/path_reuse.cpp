@@ -133,7 +133,7 @@ template <class T>
 void PathReuse<T>::connect(int turn, Connections& to, TraceCounts& counts) {
   const N zero(T(0));
   aim(turn);
-  const Groups connected = with_active_rays(shadow_, kept_);
+  const LaneGroups connected = with_active_rays(shadow_, kept_);
   for (const int i : all_) to.density.put(i, zero);
   if (connected.empty()) return;
   evaluate_materials(geometry_, {ray_, shadow_.direction, shadow_.t_max}, first_, connected, Lobes::all,
@@ -192,7 +192,7 @@ template <class T>
 bool PathReuse<T>::finish(Vec3Array<T>& radiance, TraceCounts& counts, const Checkpoint& checkpoint) {
   connect_own(connections_.front());
   for (int turn = 1; turn < group_; ++turn) {
-    if (!checkpoint.go_on()) return false;
+    if (!checkpoint.may_continue()) return false;
     connect(turn, connections_[static_cast<std::size_t>(turn)], counts);
   }
   find_arrivals();

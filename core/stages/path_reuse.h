@@ -75,8 +75,8 @@ class PathReuse {
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;
   const int group_;
-  const Groups all_ = Groups::covering(0, kBatch, kWidth<T>);
-  Groups kept_;  // registers with first vertices
+  const LaneGroups all_ = LaneGroups::covering(0, kBatch, kWidth<T>);
+  LaneGroups kept_;  // registers with first vertices
   // Partner of each slot in its group, by turn. At turn 0 a slot is its own partner.
   std::vector<Array<IndexOf<T>>> partners_;
   // First vertices by slot.

@@ -11,7 +11,8 @@ class Random final : public Predictor<T> {
  public:
   explicit Random(int count) : count_(static_cast<std::uint64_t>(count)) {}
 
-  void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const override {
+  void propose(const RayBatch<T>& rays, const LaneGroups& groups,
+               Array<IndexOf<T>>& primitive) const override {
     const auto bits = [](T x) { return static_cast<std::uint32_t>(std::bit_cast<IndexOf<T>>(x)); };
     for (const int i : groups) {
       const std::uint64_t drawn = combine_bits(bits(rays.origin.x[i]), bits(rays.direction.x[i]));
@@ -25,21 +26,21 @@ class Random final : public Predictor<T> {
 
 // Tests primitives against shadow rays.
 template <class T>
-class Proof {
+class OccluderVerifier {
  public:
-  Proof(const PrimitiveList<T>& primitives, RayBatch<T>& rays, AcceleratorCounts& counts)
+  OccluderVerifier(const PrimitiveList<T>& primitives, RayBatch<T>& rays, AcceleratorCounts& counts)
       : primitives_(primitives), rays_(rays), counts_(counts) {}
 
   // Tests a primitive against all rays of register `i`. Ignores a number that is out of range.
   void attempt(std::int64_t primitive, int i) {
     if (primitive < 0 || primitive >= static_cast<std::int64_t>(primitives_.size())) return;
     const Primitive<T>& proposed = primitives_[static_cast<std::size_t>(primitive)];
-    const Groups one = Groups::single(i);
+    const LaneGroups one = LaneGroups::single(i);
     const std::uint64_t open = active_rays(rays_, one);
     proposed.kernel->occlude(proposed.index, rays_, one, counts_);
     counts_.primitive_tests += open;
-    counts_.proposals += open;
-    counts_.proofs += open - active_rays(rays_, one);
+    counts_.predicted_occluders += open;
+    counts_.verified_occluders += open - active_rays(rays_, one);
   }
 
   // Tests the primitives proposed for rays of register `i`, while any of these rays is active.
@@ -70,7 +71,7 @@ class Predicted : public Accelerator<T> {
 
   AcceleratorFacts facts() const override { return behind_->facts(); }
 
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     behind_->closest(rays, groups, hits, counts);
   }
@@ -81,18 +82,18 @@ class Predicted : public Accelerator<T> {
 };
 
 template <class T>
-class PredictedBy final : public Predicted<T> {
+class PredictorAccelerator final : public Predicted<T> {
  public:
-  PredictedBy(const PrimitiveList<T>& primitives, std::shared_ptr<const Accelerator<T>> behind,
-              PredictorPtr<T> predictor)
+  PredictorAccelerator(const PrimitiveList<T>& primitives, std::shared_ptr<const Accelerator<T>> behind,
+                       PredictorPtr<T> predictor)
       : Predicted<T>(primitives, std::move(behind)), predictor_(std::move(predictor)) {}
 
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
-    const Groups active = with_active_rays(rays, groups);
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
+    const LaneGroups active = with_active_rays(rays, groups);
     Array<IndexOf<T>> primitive;
     predictor_->propose(rays, active, primitive);
-    Proof<T> proof(this->primitives_, rays, counts);
-    for (const int i : active) proof.attempt_each(primitive, i);
+    OccluderVerifier<T> verifier(this->primitives_, rays, counts);
+    for (const int i : active) verifier.attempt_each(primitive, i);
     this->behind_->occlude(rays, with_active_rays(rays, active), counts);
   }
 
@@ -103,20 +104,20 @@ class PredictedBy final : public Predicted<T> {
 // Shadow rays do not return their occluder. Therefore closest() is traced for one ray of each lot with an
 // occluded ray.
 template <class T>
-class PredictedByLast final : public Predicted<T> {
+class LastOccluderCache final : public Predicted<T> {
  public:
   using Predicted<T>::Predicted;
 
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
-    const Groups active = with_active_rays(rays, groups);
-    Proof<T> proof(this->primitives_, rays, counts);
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
+    const LaneGroups active = with_active_rays(rays, groups);
+    OccluderVerifier<T> verifier(this->primitives_, rays, counts);
     int last = kNoPrimitive;
     for (const std::uint16_t* from = active.begin(); from != active.end();) {
-      Groups lot;
+      LaneGroups lot;
       for (const int end = *from / kLot * kLot + kLot; from != active.end() && *from < end; ++from)
         lot.add(*from);
-      for (const int i : lot) proof.attempt(last, i);
-      const Groups open = with_active_rays(rays, lot);
+      for (const int i : lot) verifier.attempt(last, i);
+      const LaneGroups open = with_active_rays(rays, lot);
       if (open.empty()) continue;
       const Array<T> before = rays.t_max;
       this->behind_->occlude(rays, open, counts);
@@ -128,7 +129,7 @@ class PredictedByLast final : public Predicted<T> {
   static constexpr int kLot = 64;  // rays traced together
 
   // Returns the occluder of the last ray that became occluded, or kNoPrimitive.
-  int occluder(RayBatch<T>& rays, const Array<T>& before, const Groups& groups,
+  int occluder(RayBatch<T>& rays, const Array<T>& before, const LaneGroups& groups,
                AcceleratorCounts& counts) const {
     using N = Lanes<T>;
     int ray = -1;
@@ -144,7 +145,7 @@ class PredictedByLast final : public Predicted<T> {
     HitBatch<T> hits;
     hits.t.put(i, rays.t_max.at(i));
     hits.primitive.put(i, IndexLanes<T>(IndexOf<T>(kNoPrimitive)));
-    this->behind_->closest(rays, Groups::single(i), hits, counts);
+    this->behind_->closest(rays, LaneGroups::single(i), hits, counts);
     rays.t_max.put(i, others);
     return static_cast<int>(hits.primitive[ray]);
   }
@@ -161,13 +162,13 @@ template <class T>
 std::shared_ptr<const Accelerator<T>> predicted(const PrimitiveList<T>& primitives,
                                                 std::shared_ptr<const Accelerator<T>> behind,
                                                 PredictorPtr<T> predictor) {
-  return std::make_shared<const PredictedBy<T>>(primitives, std::move(behind), std::move(predictor));
+  return std::make_shared<const PredictorAccelerator<T>>(primitives, std::move(behind), std::move(predictor));
 }
 
 template <class T>
 std::shared_ptr<const Accelerator<T>> predicted_by_last(const PrimitiveList<T>& primitives,
                                                         std::shared_ptr<const Accelerator<T>> behind) {
-  return std::make_shared<const PredictedByLast<T>>(primitives, std::move(behind));
+  return std::make_shared<const LastOccluderCache<T>>(primitives, std::move(behind));
 }
 
 #define ORRERY_FOR(T)                                                                       \

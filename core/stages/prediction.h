@@ -15,7 +15,8 @@ class Predictor {
   virtual ~Predictor() = default;
 
   // Sets the proposed occluder of each ray of `groups`: any number, or kNoPrimitive for none.
-  virtual void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const = 0;
+  virtual void propose(const RayBatch<T>& rays, const LaneGroups& groups,
+                       Array<IndexOf<T>>& primitive) const = 0;
 };
 template <class T>
 using PredictorPtr = std::shared_ptr<const Predictor<T>>;

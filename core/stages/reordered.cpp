@@ -52,7 +52,7 @@ struct Extent {
 
 // Writes the keys of the active rays and returns their places.
 template <class T>
-RayOrder keys_of(const RayBatch<T>& rays, const Groups& groups, Keys& keys) {
+RayOrder keys_of(const RayBatch<T>& rays, const LaneGroups& groups, Keys& keys) {
   using N = Lanes<T>;
   std::array<Extent<T>, 3> extent;
   for (const int i : groups) {
@@ -99,20 +99,20 @@ void sort_by_digit(int digit, RayOrder& order, Keys& keys) {
 }
 
 template <class T>
-class Reordered final : public Accelerator<T> {
+class RaySortingAccelerator final : public Accelerator<T> {
  public:
-  Reordered(std::shared_ptr<const Accelerator<T>> behind, bool timed)
+  RaySortingAccelerator(std::shared_ptr<const Accelerator<T>> behind, bool timed)
       : behind_(std::move(behind)), timed_(timed) {}
 
   AcceleratorFacts facts() const override { return behind_->facts(); }
 
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     const RayOrder order = order_of(rays, groups);
     if (order.count == 0) return;
     RayBatch<T> sorted;
     HitBatch<T> found;
-    const Groups all = gather(rays, order, sorted);
+    const LaneGroups all = gather(rays, order, sorted);
     for (int to = 0; to < sorted.count; ++to) {
       const int from = place_of(order, to);
       found.t[to] = hits.t[from];
@@ -129,7 +129,7 @@ class Reordered final : public Accelerator<T> {
     }
   }
 
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
     const RayOrder order = order_of(rays, groups);
     if (order.count == 0) return;
     RayBatch<T> sorted;
@@ -141,9 +141,9 @@ class Reordered final : public Accelerator<T> {
   static int place_of(const RayOrder& order, int i) { return order.place[static_cast<std::size_t>(i)]; }
 
   // Copies the rays in that order and fills the last register with inactive rays. Returns the registers.
-  Groups gather(const RayBatch<T>& rays, const RayOrder& order, RayBatch<T>& sorted) const {
+  LaneGroups gather(const RayBatch<T>& rays, const RayOrder& order, RayBatch<T>& sorted) const {
     sorted.count = order.count;
-    const Groups all = Groups::covering(0, order.count, kWidth<T>);
+    const LaneGroups all = LaneGroups::covering(0, order.count, kWidth<T>);
     for (int to = 0; to < all.size() * kWidth<T>; ++to) {
       const int from = place_of(order, std::min(to, order.count - 1));
       sorted.set(to, rays[from], to < order.count ? rays.t_max[from] : T(-1));
@@ -159,7 +159,7 @@ class Reordered final : public Accelerator<T> {
 }  // namespace
 
 template <class T>
-RayOrder order_of(const RayBatch<T>& rays, const Groups& groups) {
+RayOrder order_of(const RayBatch<T>& rays, const LaneGroups& groups) {
   Keys keys;
   RayOrder order = keys_of(rays, groups, keys);
   if (order.count == 0) return order;
@@ -169,11 +169,11 @@ RayOrder order_of(const RayBatch<T>& rays, const Groups& groups) {
 
 template <class T>
 std::shared_ptr<const Accelerator<T>> reordered(std::shared_ptr<const Accelerator<T>> behind, bool timed) {
-  return std::make_shared<const Reordered<T>>(std::move(behind), timed);
+  return std::make_shared<const RaySortingAccelerator<T>>(std::move(behind), timed);
 }
 
-template RayOrder order_of(const RayBatch<float>&, const Groups&);
-template RayOrder order_of(const RayBatch<double>&, const Groups&);
+template RayOrder order_of(const RayBatch<float>&, const LaneGroups&);
+template RayOrder order_of(const RayBatch<double>&, const LaneGroups&);
 template std::shared_ptr<const Accelerator<float>> reordered(std::shared_ptr<const Accelerator<float>>, bool);
 template std::shared_ptr<const Accelerator<double>> reordered(std::shared_ptr<const Accelerator<double>>,
                                                               bool);

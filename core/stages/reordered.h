@@ -18,7 +18,7 @@ struct RayOrder {
 // lowest cell (Garanzha, Loop, "Fast Ray Sorting and Breadth-First Packet Traversal for GPU Ray Tracing",
 // 2010).
 template <class T>
-RayOrder order_of(const RayBatch<T>& rays, const Groups& groups);
+RayOrder order_of(const RayBatch<T>& rays, const LaneGroups& groups);
 
 // Returns an accelerator that traces rays with `behind` in that order. Its results are the same. `timed`:
 // rays have times.

@@ -12,7 +12,7 @@ namespace {
 // Returns whether rays may hit light that is not sampled: an environment, a background or surfaces.
 // (Environment maps are sampled only where they are bright.)
 template <class T>
-bool has_light_beside_drawn(const Geometry<T>& geometry) {
+bool has_unsampled_light(const Geometry<T>& geometry) {
   return geometry.environment || geometry.background != Vec3<T>() || geometry.emits_undrawn;
 }
 
@@ -25,19 +25,20 @@ SampledLight<T>::SampledLight(const Geometry<T>& geometry, const Accelerator<T>&
       tree_(geometry.light_tree.get()),
       first_emitter_(geometry.scene->lights.size()),
       apart_(!with_diffuse(drawn)),
-      wants_diffuse_rays_(apart_ && has_light_beside_drawn(geometry)),
+      wants_diffuse_rays_(apart_ && has_unsampled_light(geometry)),
       shadowed_(geometry, accelerator, plan, apart_) {
   const Scene& scene = *geometry.scene;
   environment_ = scene.environment && scene.environment->sampled();
   count_ = (tree_ ? tree_->size() : 0) + environment_;
   add_sources();
   share_ = environment_ && tree_ ? T(0.5) : T(1);
-  if (geometry.environment) beyond_.see(*geometry.environment, {0, environment_ ? share_ : T(0)});
+  if (geometry.environment)
+    environment_lighting_.see(*geometry.environment, {0, environment_ ? share_ : T(0)});
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const auto& [set, index] = scene.lights[i];
     const LightSet& lights = *scene.light_sets[set];
     if (lights.extended(index) && lights.traits().parallel)
-      beyond_.see(*geometry.lights[set], {index, share_}, tree_, i);
+      environment_lighting_.see(*geometry.lights[set], {index, share_}, tree_, i);
   }
 }
 
@@ -64,7 +65,7 @@ void SampledLight<T>::add_sources() {
 // The second random number refines the first one, because a light among many has a small probability.
 template <class T>
 void SampledLight<T>::choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
-                             const Groups& groups) {
+                             const LaneGroups& groups) {
   if (count_ == 1) {
     for (const int i : groups) {
       chosen_.put(i, IndexLanes<T>(IndexOf<T>{0}));
@@ -91,7 +92,7 @@ void SampledLight<T>::choose(const PathDraws<T>& draws, const SurfaceBatch<T>& s
 
 template <class T>
 void SampledLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws,
-                          const SurfaceBatch<T>& surface, const Groups& groups, Vec3Array<T>& radiance,
+                          const SurfaceBatch<T>& surface, const LaneGroups& groups, Vec3Array<T>& radiance,
                           TraceCounts& counts) {
   if (groups.empty() || count_ == 0) return;
   choose(draws, surface, groups);
@@ -106,7 +107,7 @@ void SampledLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws,
     const LightBatch<T>& light = shadowed_.light;
     const N by_light = light.pdf.at(i);
     const N weight = select(by_light > zero, power_heuristic(by_light, shadowed_.pdf.at(i)), one);
-    Vec3<N> found = light.incident.at(i) * shadowed_.f_cos.at(i) * weight;
+    Vec3<N> found = light.incident.at(i) * shadowed_.pi_bsdf_cos.at(i) * weight;
     if (apart_) {
       const N by_diffuse = wants_diffuse_rays_ ? shadowed_.diffuse_pdf.at(i) : zero;
       found = found + light.incident.at(i) * shadowed_.diffuse.at(i) *
@@ -118,11 +119,11 @@ void SampledLight<T>::add(const PathBatch<T>& paths, const PathDraws<T>& draws,
 
 template <class T>
 void SampledLight<T>::add_emission(const PathBatch<T>& paths, const HitBatch<T>& hits,
-                                   const SurfaceBatch<T>& surface, const Groups& met,
+                                   const SurfaceBatch<T>& surface, const LaneGroups& met,
                                    Vec3Array<T>& radiance) {
   if (geometry_.emission.empty()) return;
   const N zero(T(0)), one(T(1));
-  Groups emitting;
+  LaneGroups emitting;
   for (const int i : met) {
     const auto emits = max_component(emission_at(geometry_, surface, i)) > zero;
     if (!any(emits)) continue;

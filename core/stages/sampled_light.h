@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/stages/beyond.h"
+#include "core/stages/environment_lighting.h"
 #include "core/stages/shadowed_light.h"
 
 namespace orrery {
@@ -22,20 +22,20 @@ class SampledLight {
   // Adds the light of one sampled source per surface point to its radiance. `groups` are the registers with a
   // lit material.
   void add(const PathBatch<T>& paths, const PathDraws<T>& draws, const SurfaceBatch<T>& surface,
-           const Groups& groups, Vec3Array<T>& radiance, TraceCounts& counts);
+           const LaneGroups& groups, Vec3Array<T>& radiance, TraceCounts& counts);
 
   // Adds the radiance emitted by surfaces that were hit, weighted against the samples of add() at the rays'
   // origins.
   void add_emission(const PathBatch<T>& paths, const HitBatch<T>& hits, const SurfaceBatch<T>& surface,
-                    const Groups& met, Vec3Array<T>& radiance);
+                    const LaneGroups& met, Vec3Array<T>& radiance);
 
   // Adds the light that rays find which missed, weighted in the same way.
-  void add_beyond(const PathBatch<T>& paths, const HitBatch<T>& hits, const Groups& groups,
-                  Vec3Array<T>& radiance) {
-    beyond_.add(paths.rays, hits, groups, paths.depth > 0 ? &paths.pdf : nullptr, radiance);
+  void add_environment(const PathBatch<T>& paths, const HitBatch<T>& hits, const LaneGroups& groups,
+                       Vec3Array<T>& radiance) {
+    environment_lighting_.add(paths.rays, hits, groups, paths.depth > 0 ? &paths.pdf : nullptr, radiance);
   }
   // Returns the unweighted environment light, for camera rays.
-  Beyond<T>& beyond() { return beyond_; }
+  EnvironmentLighting<T>& beyond() { return environment_lighting_; }
 
  private:
   using N = Lanes<T>;
@@ -45,7 +45,7 @@ class SampledLight {
     std::vector<IndexOf<T>> index;  // index in the kernel by light number; -1: another kernel
   };
   void add_sources();
-  void choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface, const Groups& groups);
+  void choose(const PathDraws<T>& draws, const SurfaceBatch<T>& surface, const LaneGroups& groups);
   // Sets choices_ to the emitters hit by the lanes of `emits` in register i.
   void note_emitters(const RayBatch<T>& rays, const HitBatch<T>& hits, int i, const MaskOf<N>& emits);
 
@@ -58,7 +58,7 @@ class SampledLight {
   T share_;           // probability to choose the environment, and to choose the others
   bool apart_;        // diffuse lobes are not in `drawn`
   bool wants_diffuse_rays_;
-  Beyond<T> beyond_;
+  EnvironmentLighting<T> environment_lighting_;
   Array<IndexOf<T>> chosen_;  // light numbers
   LightChoices<T> choices_;
   ShadowedLight<T> shadowed_;

@@ -4,27 +4,27 @@ namespace orrery {
 
 template <class T>
 void ShadowedLight<T>::evaluate_diffuse(const Directions<T>& directions, const SurfaceBatch<T>& surface,
-                                        const Groups& groups) {
+                                        const LaneGroups& groups) {
   using N = Lanes<T>;
   const N zero(T(0));
   evaluate_materials(geometry_, directions, surface, groups, Lobes::diffuse, diffuse, diffuse_pdf);
   for (const int i : groups) {
     diffuse.put(i, !(diffuse_pdf.at(i) > zero), Vec3<N>(zero));
-    f_cos.put(i, !(pdf.at(i) > zero), Vec3<N>(zero));
+    pi_bsdf_cos.put(i, !(pdf.at(i) > zero), Vec3<N>(zero));
   }
 }
 
 // Shadow rays start on the side of the surface that the direction to the light selects.
 template <class T>
-Groups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
-                              bool constant_half, TraceCounts& counts) {
+LaneGroups ShadowedLight<T>::find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface,
+                                  const LaneGroups& groups, bool constant_half, TraceCounts& counts) {
   using N = Lanes<T>;
   RayBatch<T>& shadow = light.shadow;
   const Directions<T> directions{paths.rays.direction, shadow.direction, shadow.t_max, constant_half};
-  evaluate_materials(geometry_, directions, surface, groups, apart_ ? Lobes::non_diffuse : Lobes::all, f_cos,
-                     pdf);
+  evaluate_materials(geometry_, directions, surface, groups, apart_ ? Lobes::non_diffuse : Lobes::all,
+                     pi_bsdf_cos, pdf);
   if (apart_) evaluate_diffuse(directions, surface, groups);
-  Groups reached;
+  LaneGroups reached;
   for (const int i : groups) {
     const N zero(T(0));
     auto lit = pdf.at(i) > zero;

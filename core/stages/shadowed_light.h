@@ -20,44 +20,44 @@ class ShadowedLight {
   // Evaluates the materials of `groups` and traces shadow rays for lanes that reflect light. Returns the
   // registers with such a lane. light.shadow.t_max is positive if the light is visible. constant_half: see
   // Directions.
-  Groups find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const Groups& groups,
-              bool constant_half, TraceCounts& counts);
+  LaneGroups find(const PathBatch<T>& paths, const SurfaceBatch<T>& surface, const LaneGroups& groups,
+                  bool constant_half, TraceCounts& counts);
 
   LightBatch<T> light;
   // Results of MaterialKernel::evaluate(). Undefined outside the registers returned.
-  Vec3Array<T> f_cos;
+  Vec3Array<T> pi_bsdf_cos;
   Array<T> pdf;
-  // Results for diffuse lobes if `apart`; f_cos and pdf are then those of all other lobes.
+  // Results for diffuse lobes if `apart`; pi_bsdf_cos and pdf are then those of all other lobes.
   Vec3Array<T> diffuse;
   Array<T> diffuse_pdf;
 
  private:
-  // Sets `diffuse`, and clears f_cos of lanes where only diffuse lobes reflect.
+  // Sets `diffuse`, and clears pi_bsdf_cos of lanes where only diffuse lobes reflect.
   void evaluate_diffuse(const Directions<T>& directions, const SurfaceBatch<T>& surface,
-                        const Groups& groups);
+                        const LaneGroups& groups);
   const Geometry<T>& geometry_;
   const Accelerator<T>& accelerator_;
   const Plan& plan_;
   bool apart_;
 };
 
-// Sets f_cos and pdf of all lanes of `groups` for these lobes of their materials. pdf is 0 if a material is
-// not lit.
+// Sets pi_bsdf_cos and pdf of all lanes of `groups` for these lobes of their materials. pdf is 0 if a
+// material is not lit.
 template <class T>
 void evaluate_materials(const Geometry<T>& geometry, const Directions<T>& directions,
-                        const SurfaceBatch<T>& surface, const Groups& groups, Lobes lobes,
-                        Vec3Array<T>& f_cos, Array<T>& pdf) {
+                        const SurfaceBatch<T>& surface, const LaneGroups& groups, Lobes lobes,
+                        Vec3Array<T>& pi_bsdf_cos, Array<T>& pdf) {
   for (const int i : groups) pdf.put(i, Lanes<T>(T(0)));
   for (const auto& m : geometry.materials)
     if (m.traits.lit && m.traits.has(lobes))
-      m.kernel->evaluate(directions, surface, groups, lobes, f_cos, pdf);
+      m.kernel->evaluate(directions, surface, groups, lobes, pi_bsdf_cos, pdf);
 }
 
 // Sets the radiance of lanes of `groups` to reflected ambient light, if their material is lit and has these
 // lobes.
 template <class T>
 void add_ambient(const Geometry<T>& geometry, const RayBatch<T>& rays, const SurfaceBatch<T>& surface,
-                 const Groups& groups, Lobes lobes, Vec3Array<T>& radiance) {
+                 const LaneGroups& groups, Lobes lobes, Vec3Array<T>& radiance) {
   for (const auto& m : geometry.materials)
     if (m.traits.lit && m.traits.has(lobes))
       m.kernel->ambient(rays, surface, groups, lobes, geometry.ambient, radiance);

@@ -9,7 +9,7 @@ namespace orrery {
 // transmittance of bodies that light has crossed.
 template <class T>
 void evaluate_specular(const Geometry<T>& geometry, bool filters, const HitBatch<T>& hits,
-                       const SurfaceBatch<T>& surface, const Groups& groups, PathBatch<T>& paths,
+                       const SurfaceBatch<T>& surface, const LaneGroups& groups, PathBatch<T>& paths,
                        SpecularBatch<T>& out) {
   for (const auto& m : geometry.materials)
     if (m.traits.mirrors) m.kernel->specular(paths.rays, hits, surface, groups, out);

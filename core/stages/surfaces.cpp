@@ -6,7 +6,7 @@ namespace orrery {
 namespace {
 
 template <class T>
-void find_objects(const Scene& scene, const Groups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface) {
+void find_objects(const Scene& scene, const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface) {
   const auto resting = scene.object_count - static_cast<int>(scene.instances.size());
   for (const int i : groups)
     for (int lane = i; lane < i + kWidth<T>; ++lane) {
@@ -20,7 +20,7 @@ void find_objects(const Scene& scene, const Groups& groups, HitBatch<T>& hits, S
 }
 
 template <class T>
-void find_footprints(const PathBatch<T>& paths, const Groups& groups, const HitBatch<T>& hits,
+void find_footprints(const PathBatch<T>& paths, const LaneGroups& groups, const HitBatch<T>& hits,
                      SurfaceBatch<T>& surface) {
   for (const int i : groups) surface.footprint.put(i, paths.width.at(i) + paths.spread.at(i) * hits.t.at(i));
 }
@@ -28,11 +28,11 @@ void find_footprints(const PathBatch<T>& paths, const Groups& groups, const HitB
 }  // namespace
 
 template <class T>
-Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
-                     const Groups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
-                     Vec3Array<T>& radiance) {
+LaneGroups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
+                         const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
+                         Vec3Array<T>& radiance) {
   using N = Lanes<T>;
-  Groups met;
+  LaneGroups met;
   const Vec3<N> background(geometry.background);
   const N zero(T(0));
   for (const int i : groups) {
@@ -53,9 +53,11 @@ Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, c
   return met;
 }
 
-template Groups find_surfaces(const Geometry<float>&, const SurfaceFields&, const PathBatch<float>&,
-                              const Groups&, HitBatch<float>&, SurfaceBatch<float>&, Vec3Array<float>&);
-template Groups find_surfaces(const Geometry<double>&, const SurfaceFields&, const PathBatch<double>&,
-                              const Groups&, HitBatch<double>&, SurfaceBatch<double>&, Vec3Array<double>&);
+template LaneGroups find_surfaces(const Geometry<float>&, const SurfaceFields&, const PathBatch<float>&,
+                                  const LaneGroups&, HitBatch<float>&, SurfaceBatch<float>&,
+                                  Vec3Array<float>&);
+template LaneGroups find_surfaces(const Geometry<double>&, const SurfaceFields&, const PathBatch<double>&,
+                                  const LaneGroups&, HitBatch<double>&, SurfaceBatch<double>&,
+                                  Vec3Array<double>&);
 
 }  // namespace orrery

@@ -7,7 +7,7 @@ namespace orrery {
 
 // Sets the hits of `groups` to none, at the end of their rays.
 template <class T>
-void reset(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits) {
+void reset(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits) {
   for (const int i : groups) {
     hits.t.put(i, rays.t_max.at(i));
     hits.primitive.put(i, IndexLanes<T>(IndexOf<T>{kNoPrimitive}));
@@ -29,8 +29,8 @@ void find_materials(const Geometry<T>& geometry, const HitBatch<T>& hits, int i,
 // Sets the surface of every hit in `groups`, with the requested `fields`. Sets `radiance` to the background
 // for rays that missed, else to 0. Returns the registers with a surface.
 template <class T>
-Groups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
-                     const Groups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
-                     Vec3Array<T>& radiance);
+LaneGroups find_surfaces(const Geometry<T>& geometry, const SurfaceFields& fields, const PathBatch<T>& paths,
+                         const LaneGroups& groups, HitBatch<T>& hits, SurfaceBatch<T>& surface,
+                         Vec3Array<T>& radiance);
 
 }  // namespace orrery

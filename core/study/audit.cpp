@@ -15,8 +15,8 @@
 namespace orrery {
 namespace {
 
-constexpr int kSamplesOfMiddle = 64;   // instead of a single centred sample
-constexpr double kLeastWeight = 1e-4;  // min_contribution of ray trees without cuts
+constexpr int kSamplesOfMiddle = 64;  // instead of a single centred sample
+constexpr double kMinWeight = 1e-4;   // min_contribution of ray trees without cuts
 
 // Returns the numbers of `count` random pixels. Pixels are numbered row by row.
 std::vector<std::int64_t> draw_pixels(const Plan& plan, int count, std::uint64_t seed) {
@@ -48,7 +48,7 @@ RenderRequest without_cuts(const Plan& plan) {
   whole.full_model = true;
   whole.precision = Precision::double_precision;
   whole.max_depth = kMaxDepth;
-  whole.min_contribution = plan.technique->draws_light ? 0 : std::min(plan.min_contribution, kLeastWeight);
+  whole.min_contribution = plan.technique->draws_light ? 0 : std::min(plan.min_contribution, kMinWeight);
   whole.clamp_indirect = 0;
   if (plan.samples == 1 && !plan.technique->draws_light) whole.samples = kSamplesOfMiddle;
   return whole;
@@ -108,7 +108,7 @@ Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, 
   }
   found.rms = std::sqrt(squares / (3.0 * pixels));
   if (std::isfinite(range))
-    found.bound = Bound::audited(range * std::sqrt(shares.upper_mean(Certificate::kDoubt)));
+    found.bound = Bound::audited(range * std::sqrt(shares.upper_mean(Certificate::kAlpha)));
   return found;
 }
 

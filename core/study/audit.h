@@ -5,7 +5,7 @@
 
 namespace orrery {
 
-inline constexpr int kMostAuditPixels = 1 << 20;
+inline constexpr int kMaxAuditPixels = 1 << 20;
 
 // Difference between a plan's picture and that of its technique without cuts, at random pixels, in the plan's
 // space.
@@ -25,7 +25,7 @@ inline constexpr double kEqualPixels = 1e-5;
 // sample is compared with 64 samples all over the pixel. Neither render reuses paths. The bound is that of
 // UnitHistogram::upper_mean() with the certificate's doubt. Throws what make_plan() throws, InputError for
 // budgets, layers and other views, and Cancelled once control.stop is requested. REQUIRES: pixels in
-// 1..kMostAuditPixels.
+// 1..kMaxAuditPixels.
 Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, std::uint64_t seed,
             WorkerPool& pool, const RenderControl& control = {});
 

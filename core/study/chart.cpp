@@ -52,7 +52,7 @@ double Point::rays() const {
 std::optional<Interval> Point::rmse_interval() const { return interval_of(values_of(*this, rmse_of)); }
 std::optional<Interval> Point::cpu_ms_interval() const { return interval_of(values_of(*this, cpu_ms_of)); }
 
-double Point::most_rmse() const {
+double Point::max_rmse() const {
   const auto interval = rmse_interval();
   return interval ? interval->high : rmse();
 }
@@ -106,7 +106,7 @@ Interval extra_rmse(const Point& point, const Point& other, double floor) {
   });
 }
 
-bool is_beaten(const Point& point, const Point& other, double floor) {
+bool is_dominated(const Point& point, const Point& other, double floor) {
   return extra_ms(point, other).low > 0 && extra_rmse(point, other, floor).low >= 0;
 }
 
@@ -126,23 +126,24 @@ bool is_better_in_one(const Point& point, const Point& other, double floor) {
 
 }  // namespace
 
-void mark_front(std::vector<Point>& points, double floor) {
+void mark_pareto_front(std::vector<Point>& points, double floor) {
   std::vector<Point*> by_time, front;
   for (Point& p : points) by_time.push_back(&p);
   std::stable_sort(by_time.begin(), by_time.end(), [](const Point* a, const Point* b) {
     return std::pair(a->cpu_ms(), a->rmse()) < std::pair(b->cpu_ms(), b->rmse());
   });
   for (Point* p : by_time) {
-    p->standing = Standing::beaten;
-    const bool beaten =
-        std::any_of(front.begin(), front.end(), [&](const Point* q) { return is_beaten(*p, *q, floor); }) ||
+    p->pareto_status = ParetoStatus::dominated;
+    const bool dominated =
+        std::any_of(front.begin(), front.end(),
+                    [&](const Point* q) { return is_dominated(*p, *q, floor); }) ||
         std::any_of(points.begin(), points.end(), [&](const Point& q) { return is_apart(*p, q); });
-    if (!beaten) front.push_back(p);
+    if (!dominated) front.push_back(p);
   }
   for (Point* p : front) {
     const bool sure = std::all_of(front.begin(), front.end(),
                                   [&](const Point* q) { return p == q || is_better_in_one(*p, *q, floor); });
-    p->standing = sure ? Standing::front : Standing::undecided;
+    p->pareto_status = sure ? ParetoStatus::front : ParetoStatus::undecided;
   }
 }
 
@@ -152,7 +153,7 @@ std::vector<Recommendation> recommendations(const Chart& chart) {
   std::vector<Recommendation> all;
   for (const double error : kErrors) {
     const auto found = std::find_if(front.begin(), front.end(),
-                                    [&](std::size_t i) { return chart.points[i].most_rmse() < error; });
+                                    [&](std::size_t i) { return chart.points[i].max_rmse() < error; });
     if (found == front.end()) break;
     if (!all.empty() && all.back().point == *found) all.pop_back();
     all.push_back({error, *found});

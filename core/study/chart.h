@@ -28,7 +28,7 @@ struct Measurement {
 
 // Position of a point in a chart. front: more accurate or faster than each other point. undecided: the rounds
 // differ too much to decide. beaten: another point is faster and at least as accurate.
-enum class Standing { front, undecided, beaten };
+enum class ParetoStatus { front, undecided, dominated };
 
 // Several pictures of one configuration with different seeds. The n-th rounds of all points share a seed.
 struct Point {
@@ -39,7 +39,7 @@ struct Point {
   // wide.
   std::string plan, picture_plan;
   std::optional<Certificate> certificate = {};  // first round
-  Standing standing = Standing::beaten;
+  ParetoStatus pareto_status = ParetoStatus::dominated;
 
   double rmse() const;     // sqrt of the mean square error of all rounds
   double rmse_sd() const;  // standard deviation of the rounds' errors; 0 for one round
@@ -50,8 +50,8 @@ struct Point {
   std::optional<Interval> rmse_interval() const;
   std::optional<Interval> cpu_ms_interval() const;
   // Returns an upper bound of the error: the end of the interval, or the error of the only round.
-  double most_rmse() const;
-  bool on_front() const { return standing != Standing::beaten; }
+  double max_rmse() const;
+  bool on_front() const { return pareto_status != ParetoStatus::dominated; }
   // Returns the mean of value(round) over the rounds.
   template <class Value>
   double mean(const Value& value) const {
@@ -94,12 +94,12 @@ struct Chart {
 
 // Sets the standing of each point. Compares means, and paired t-intervals of 95 % over the rounds that two
 // points share. Errors below `floor` count as `floor`, and a difference of less than 1 % as none.
-void mark_front(std::vector<Point>& points, double floor);
+void mark_pareto_front(std::vector<Point>& points, double floor);
 
 // Cheapest way to stay below an error.
 struct Recommendation {
   double error;       // RMSE, linear colour
-  std::size_t point;  // its most_rmse() is below `error`
+  std::size_t point;  // its max_rmse() is below `error`
 };
 // Returns recommendations for round errors from 0.1 down to the smallest that the front reaches. Among errors
 // with the same point, only the smallest is listed.

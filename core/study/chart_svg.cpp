@@ -114,26 +114,27 @@ class Drawing {
                                p.configuration.samples, p.cpu_ms(), p.rmse());
     if (const auto error = p.rmse_interval())
       told += printed(" (95 %%: %.3g to %.3g)", error->low, error->high);
-    if (p.standing == Standing::undecided) told += ", perhaps on the front";
+    if (p.pareto_status == ParetoStatus::undecided) told += ", perhaps on the front";
     if (below) told += ", less than the reference is off";
-    text_ += printed("<g id=\"point-%zu\">", index) +
-             mark(x, y, p.configuration.double_precision, p.standing, below ? kBelowFloor : color, told) +
-             "</g>\n";
+    text_ +=
+        printed("<g id=\"point-%zu\">", index) +
+        mark(x, y, p.configuration.double_precision, p.pareto_status, below ? kBelowFloor : color, told) +
+        "</g>\n";
     if (p.on_front())
       text_ += svg_text(x + 8, y - 7, std::to_string(p.configuration.samples), "font-size=\"11\"");
   }
 
   // Draws a mark: filled on the front, half filled if undecided.
-  static std::string mark(double x, double y, bool square, Standing standing, const char* color,
+  static std::string mark(double x, double y, bool square, ParetoStatus pareto_status, const char* color,
                           const std::string& told) {
     const std::string style = printed("fill=\"%s\" stroke=\"%s\" stroke-width=\"2\"",
-                                      standing == Standing::front ? color : "#ffffff", color);
+                                      pareto_status == ParetoStatus::front ? color : "#ffffff", color);
     const std::string whole =
         square ? printed("<rect x=\"%.1f\" y=\"%.1f\" width=\"9\" height=\"9\" %s>", x - 4.5, y - 4.5,
                          style.c_str())
                : printed("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" %s>", x, y, style.c_str());
     std::string half;
-    if (standing == Standing::undecided)
+    if (pareto_status == ParetoStatus::undecided)
       half = square ? printed("<path d=\"M%.1f %.1fh-4.5v9h4.5z\" fill=\"%s\"/>", x, y - 4.5, color)
                     : printed("<path d=\"M%.1f %.1fa5 5 0 0 0 0 10z\" fill=\"%s\"/>", x, y - 5, color);
     return whole + "<title>" + escaped(told) + "</title>" + (square ? "</rect>" : "</circle>") + half;
@@ -161,7 +162,7 @@ class Drawing {
         return q.configuration.technique == c.technique && q.configuration.max_depth == c.max_depth;
       };
       if (&*std::find_if(chart_.points.begin(), chart_.points.end(), same_model) != &p) continue;
-      text_ += mark(x, y - 4, false, Standing::front, color_of(c), "");
+      text_ += mark(x, y - 4, false, ParetoStatus::front, color_of(c), "");
       text_ += svg_text(x + 16, y, c.technique + " " + std::to_string(c.max_depth));
       y += 22;
     }

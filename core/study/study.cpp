@@ -19,7 +19,7 @@ constexpr int kMoreSamples = 4;  // factor on the samples of the highest configu
 constexpr int kFirstRounds = 2;  // for every point; an interval needs two
 constexpr double kClockStep_ms = 1e-6;
 constexpr int kStep = 4;  // factor from configuration to configuration
-static_assert(kMostChartSamples * kMoreSamples <= kMaxSamples);
+static_assert(kMaxChartSamples * kMoreSamples <= kMaxSamples);
 
 void require_chartable(const RenderRequest& view, const PictureSize& measured) {
   std::vector<Problem> problems;
@@ -27,8 +27,8 @@ void require_chartable(const RenderRequest& view, const PictureSize& measured) {
   if (view.precision) problems.push_back({"/render/precision", "a chart varies this itself"});
   if (view.layers && !view.layers->empty()) problems.push_back({"/render/layers", "a chart keeps no layers"});
   const std::int64_t pixels = std::int64_t{measured.width} * measured.height;
-  if (pixels > kMostChartPixels)
-    problems.push_back({"/image", "expected at most " + std::to_string(kMostChartPixels) +
+  if (pixels > kMaxChartPixels)
+    problems.push_back({"/image", "expected at most " + std::to_string(kMaxChartPixels) +
                                       " pixels for a chart (chart_pixels), got " + std::to_string(pixels)});
   if (!problems.empty()) throw InputError(std::move(problems));
 }
@@ -91,11 +91,11 @@ Study::Study(const Scene& scene, const RenderRequest& view, const Extent& extent
                       chart_.points.back().configuration.samples * kMoreSamples};
 }
 
-void Study::add_configurations(const Plan& plan, int most_samples) {
+void Study::add_configurations(const Plan& plan, int max_samples) {
   for (Configuration configuration : models_up_to(plan)) {
     for (const bool doubles : {false, true}) {
       configuration.double_precision = doubles;
-      for (configuration.samples = 1; configuration.samples <= most_samples; configuration.samples *= kStep)
+      for (configuration.samples = 1; configuration.samples <= max_samples; configuration.samples *= kStep)
         chart_.points.push_back({.configuration = configuration,
                                  .rounds = {},
                                  .accelerator = {},
@@ -188,7 +188,7 @@ void Study::end_round(int round) {
     different.push_back(chart_.points[i]);
     numbers.push_back(i);
   }
-  mark_front(different, chart_.reference_rmse);
+  mark_pareto_front(different, chart_.reference_rmse);
   std::vector<bool> over = same_;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (round + 1 >= kFirstRounds && !different[i].on_front()) over[numbers[i]] = true;

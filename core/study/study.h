@@ -9,8 +9,8 @@
 
 namespace orrery {
 
-inline constexpr int kMostChartSamples = 1024, kMostChartRounds = 16;
-inline constexpr std::int64_t kMostChartPixels = std::int64_t{1} << 20;
+inline constexpr int kMaxChartSamples = 1024, kMaxChartRounds = 16;
+inline constexpr std::int64_t kMaxChartPixels = std::int64_t{1} << 20;
 
 // Charts speed against accuracy for one picture of a scene. The configurations vary technique, ray depth,
 // precision and samples up to those of the picture. The reference has the picture's technique, double
@@ -27,9 +27,9 @@ class Study {
     int threads = 1;   // assumed by Chart::full_seconds()
   };
   // Charts the picture of `view`. Throws what make_plan() throws. Throws InputError (/image) for more than
-  // kMostChartPixels, and (/render/samples, /render/precision) if `view` sets an option that the chart
-  // varies. The scene must live until complete(). REQUIRES: samples in 1..kMostChartSamples, rounds in
-  // 1..kMostChartRounds.
+  // kMaxChartPixels, and (/render/samples, /render/precision) if `view` sets an option that the chart
+  // varies. The scene must live until complete(). REQUIRES: samples in 1..kMaxChartSamples, rounds in
+  // 1..kMaxChartRounds.
   Study(const Scene& scene, const RenderRequest& view, const Extent& extent);
 
   // Returns the number of pictures to render: two of the reference, then the configurations, round by round.
@@ -56,7 +56,7 @@ class Study {
     int round;
   };
 
-  void add_configurations(const Plan& plan, int most_samples);
+  void add_configurations(const Plan& plan, int max_samples);
   RenderRequest request(const Configuration& configuration, int seed_step) const;
   // Queries of a picture: at the requested size, and at most kPictureWidth wide.
   struct Plans {

@@ -13,8 +13,8 @@ PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followe
     : Wavefront<T>(world, plan),
       followed_(followed),
       sampled_light_(this->geometry_, this->accelerator_, this->plan_, followed),
-      looks_(!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
-             !sampled_light_.beyond().empty()) {
+      has_emission_pass_(!world.geometry->emission.empty() || world.geometry->background != Vec3<T>() ||
+                         !sampled_light_.beyond().empty()) {
   if (sampled_light_.wants_diffuse_rays())
     diffuse_rays_ =
         std::make_unique<DiffuseRays<T>>(this->geometry_, this->accelerator_, this->plan_, sampled_light_);
@@ -24,9 +24,10 @@ PathTracer<T>::PathTracer(const World<T>& world, const Plan& plan, Lobes followe
 }
 
 template <class T>
-void PathTracer<T>::look(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out, TraceCounts& counts) {
+void PathTracer<T>::trace_emission_only(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out,
+                                        TraceCounts& counts) {
   auto& v = *this->vertices_;
-  const Groups all = Groups::covering(0, kBatch, kWidth<T>);
+  const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<T>);
   counts.rays.camera += active_rays(camera_rays, all);
   reset(camera_rays, all, v.hits);
   this->accelerator_.closest(camera_rays, all, v.hits, counts.accelerator);
@@ -46,31 +47,32 @@ void PathTracer<T>::look(const RayBatch<T>& camera_rays, T share, TraceResult<T>
 }
 
 template <class T>
-void PathTracer<T>::shade(const Groups& groups, const Groups& met) {
+void PathTracer<T>::shade(const LaneGroups& groups, const LaneGroups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const Geometry<T>& geometry = this->geometry_;
-  const bool ends = paths->depth >= this->plan_.max_depth, looked = paths->depth == 0 && looks_;
+  const bool ends = paths->depth >= this->plan_.max_depth, looked = paths->depth == 0 && has_emission_pass_;
   if (looked)
-    for (const int i : groups) radiance.put(i, Vec3<N>(N(T(0))));  // look() adds emission and background
+    for (const int i : groups)
+      radiance.put(i, Vec3<N>(N(T(0))));  // trace_emission_only() adds emission and background
   if (!with_diffuse(followed_)) {
     add_ambient(geometry, paths->rays, surface, met, ends ? Lobes::all : Lobes::diffuse, radiance);
     if (ends) add_ambient_of_mirrors(met);
   }
-  if (!looked) add_what_shines(groups, met);
+  if (!looked) add_emitted_radiance(groups, met);
   if (ends) return end(met);
   sampled_light_.add(*paths, this->draws(), surface,
                      groups_with(geometry, surface, met, &MaterialTraits::lit), radiance, this->counts());
   if (diffuse_rays_) diffuse_rays_->add(*paths, hits, this->draws(), surface, met, radiance, this->counts());
   scatter(met);
   if (reuse_ && paths->depth == 1)
-    for (const int i : met) reuse_->keep_second(i, *paths, surface, even_lanes(i));
+    for (const int i : met) reuse_->keep_second(i, *paths, surface, view_independent_lanes(i));
 }
 
 template <class T>
-void PathTracer<T>::add_ambient_of_mirrors(const Groups& met) {
+void PathTracer<T>::add_ambient_of_mirrors(const LaneGroups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const Vec3<N> ambient(this->geometry_.ambient);
-  const Groups mirrors = groups_with(this->geometry_, surface, met, &MaterialTraits::mirrors);
+  const LaneGroups mirrors = groups_with(this->geometry_, surface, met, &MaterialTraits::mirrors);
   evaluate_specular(this->geometry_, false, hits, surface, mirrors, *paths, specular_);
   for (const int i : mirrors) {
     const auto mine = lanes_with(this->geometry_, surface, i, &MaterialTraits::mirrors);
@@ -84,7 +86,7 @@ template <class T>
 void PathTracer<T>::begin() {
   if (reuse_) reuse_->begin(this->batch_draws());
   if (!indirect_) return;
-  for (const int i : Groups::covering(0, kBatch, kWidth<T>)) indirect_->put(i, Vec3<N>(N(T(0))));
+  for (const int i : LaneGroups::covering(0, kBatch, kWidth<T>)) indirect_->put(i, Vec3<N>(N(T(0))));
 }
 
 template <class T>
@@ -101,7 +103,7 @@ void PathTracer<T>::add_clamped() {
   const N most(static_cast<T>(this->plan_.clamp_indirect));
   const auto kept = [&](const N& x) { return select(x > most, most, x); };  // NaN stays NaN
   Vec3Array<T>& radiance = Wavefront<T>::sums(0);
-  for (const int i : Groups::covering(0, kBatch, kWidth<T>)) {
+  for (const int i : LaneGroups::covering(0, kBatch, kWidth<T>)) {
     const Vec3<N> all = indirect_->at(i), some(kept(all.x), kept(all.y), kept(all.z));
     radiance.put(i, radiance.at(i) + some);
     this->clamped().put(i, all - some);
@@ -109,7 +111,7 @@ void PathTracer<T>::add_clamped() {
 }
 
 template <class T>
-void PathTracer<T>::add_what_shines(const Groups& groups, const Groups& met) {
+void PathTracer<T>::add_emitted_radiance(const LaneGroups& groups, const LaneGroups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const bool second = paths->depth == 1, apart = second && (reuse_ || indirect_);
   const Vec3<N> none(N(T(0)));
@@ -121,13 +123,13 @@ void PathTracer<T>::add_what_shines(const Groups& groups, const Groups& met) {
       emission_.put(i, missed, radiance.at(i));
       radiance.put(i, missed, none);
     }
-  sampled_light_.add_beyond(*paths, hits, groups, second && indirect_ ? emission_ : radiance);
+  sampled_light_.add_environment(*paths, hits, groups, second && indirect_ ? emission_ : radiance);
   sampled_light_.add_emission(*paths, hits, surface, met, apart ? emission_ : radiance);
   if (apart) add_emission_to_first(indirect_ ? groups : met);
 }
 
 template <class T>
-void PathTracer<T>::add_emission_to_first(const Groups& groups) {
+void PathTracer<T>::add_emission_to_first(const LaneGroups& groups) {
   const PathBatch<T>& paths = *this->vertices_->paths;
   Vec3Array<T>& sums = Wavefront<T>::sums(0);
   for (const int i : groups)
@@ -149,25 +151,25 @@ Vec3<Lanes<T>> PathTracer<T>::first_weights(int i) const {
 }
 
 template <class T>
-MaskOf<Lanes<T>> PathTracer<T>::even_lanes(int i) const {
+MaskOf<Lanes<T>> PathTracer<T>::view_independent_lanes(int i) const {
   const SurfaceBatch<T>& surface = this->vertices_->surface;
   return surface_lanes(i) && lanes_with(this->geometry_, surface, i, &MaterialTraits::lit) &&
          !lanes_with(this->geometry_, surface, i, &MaterialTraits::glossy);
 }
 
 template <class T>
-void PathTracer<T>::scatter(const Groups& met) {
+void PathTracer<T>::scatter(const LaneGroups& met) {
   const auto& v = *this->vertices_;
   if (!with_diffuse(followed_))
     for (const int i : met) scatter_.weight.put(i, Vec3<N>(N(T(0))));  // for lobes not followed
   for (const auto& m : this->geometry_.materials)
     if (m.traits.has(followed_))
       m.kernel->sample(v.paths->rays, v.hits, v.surface, this->draws(), met, followed_, scatter_);
-  for (const int i : met) go_on(i);
+  for (const int i : met) continue_path(i);
 }
 
 template <class T>
-void PathTracer<T>::go_on(int i) {
+void PathTracer<T>::continue_path(int i) {
   const PathBatch<T>& paths = *this->vertices_->paths;
   const N zero(T(0)), one(T(1));
   Vec3<N> throughput = paths.throughput.at(i) * scatter_.weight.at(i);
@@ -181,8 +183,8 @@ void PathTracer<T>::go_on(int i) {
   }
   if (paths.depth > 0) {
     using std::sqrt;
-    constexpr T kLeastChance = T(0.05);
-    const N chance = min_first(one, max_first(N(kLeastChance), sqrt(select(alive, most, one))));
+    constexpr T kMinChance = T(0.05);
+    const N chance = min_first(one, max_first(N(kMinChance), sqrt(select(alive, most, one))));
     alive = alive && this->draws().two(SampleSet::survival, i).u < chance;
     throughput = throughput * (one / chance);
   }
@@ -190,12 +192,12 @@ void PathTracer<T>::go_on(int i) {
 }
 
 template <class T>
-void PathTracer<T>::end(const Groups& met) {
+void PathTracer<T>::end(const LaneGroups& met) {
   const PathBatch<T>& paths = *this->vertices_->paths;
   for (const int i : met) {
     Vec3<N> weight = paths.throughput.at(i);
     if (reuse_ && paths.depth > 0) weight = weight * first_weights(i);
-    this->note_cut(i, surface_lanes(i), weight);
+    this->record_omitted(i, surface_lanes(i), weight);
   }
 }
 

@@ -19,8 +19,9 @@ class PathTracer : public Wavefront<T> {
   // `followed` is all lobes, or all except the diffuse ones.
   PathTracer(const World<T>& world, const Plan& plan, Lobes followed);
 
-  bool looks() const final { return looks_; }
-  void look(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out, TraceCounts& counts) final;
+  bool has_emission_pass() const final { return has_emission_pass_; }
+  void trace_emission_only(const RayBatch<T>& camera_rays, T share, TraceResult<T>& out,
+                           TraceCounts& counts) final;
 
  private:
   using N = Lanes<T>;
@@ -31,22 +32,22 @@ class PathTracer : public Wavefront<T> {
     if (depth > 0 && reuse_) return reuse_->suffixes();
     return depth > 0 && indirect_ ? *indirect_ : Wavefront<T>::sums(depth);
   }
-  void shade(const Groups& groups, const Groups& met) final;
+  void shade(const LaneGroups& groups, const LaneGroups& met) final;
 
   // Adds ambient light in place of the light that smooth surfaces would mirror and refract.
-  void add_ambient_of_mirrors(const Groups& met);
-  void add_what_shines(const Groups& groups, const Groups& met);
+  void add_ambient_of_mirrors(const LaneGroups& met);
+  void add_emitted_radiance(const LaneGroups& groups, const LaneGroups& met);
   // Adds emission_ of second vertices to the light of the first ones. The first vertices find this light by
   // light sampling too, and it is neither shared nor indirect.
-  void add_emission_to_first(const Groups& groups);
+  void add_emission_to_first(const LaneGroups& groups);
   // Adds indirect light up to Plan::clamp_indirect.
   void add_clamped();
   // Samples directions and spawns the rays along them.
-  void scatter(const Groups& met);
-  void go_on(int i);
+  void scatter(const LaneGroups& met);
+  void continue_path(int i);
   // Ends the paths. Light of longer paths is left out or replaced by ambient light, and its limit is recorded
   // as omitted.
-  void end(const Groups& met);
+  void end(const LaneGroups& met);
 
   MaskOf<N> surface_lanes(int i) const {
     const auto primitive = load_index<T>(this->vertices_->hits.primitive, i);
@@ -55,11 +56,11 @@ class PathTracer : public Wavefront<T> {
   // Returns the paths' throughput at their first vertex, for paths that share their second vertices.
   Vec3<N> first_weights(int i) const;
   // Returns the lanes whose reflected light does not depend on the view.
-  MaskOf<N> even_lanes(int i) const;
+  MaskOf<N> view_independent_lanes(int i) const;
 
   const Lobes followed_;
   SampledLight<T> sampled_light_;
-  const bool looks_;
+  const bool has_emission_pass_;
   std::unique_ptr<DiffuseRays<T>> diffuse_rays_;  // null if none are needed
   std::unique_ptr<PathReuse<T>> reuse_;           // null without path reuse
   std::unique_ptr<Vec3Array<T>> indirect_;        // by slot; null without clamping

@@ -13,7 +13,7 @@ class Raycast final : public SpecularTree<T> {
  private:
   using N = Lanes<T>;
 
-  void scatter(const Groups& groups) override {
+  void scatter(const LaneGroups& groups) override {
     const auto& specular = this->specular_;
     for (const int i : groups)
       for (const Vec3<N>& weight : {specular.reflectance.at(i), specular.transmittance.at(i)})

@@ -8,19 +8,19 @@ namespace orrery {
 template <class T>
 SpecularTree<T>::SpecularTree(const World<T>& world, const Plan& plan)
     : Wavefront<T>(world, plan), direct_light_(this->geometry_, this->accelerator_, this->plan_) {
-  if (this->geometry_.environment) beyond_.see(*this->geometry_.environment, {0, 0});
+  if (this->geometry_.environment) environment_lighting_.see(*this->geometry_.environment, {0, 0});
 }
 
 template <class T>
-void SpecularTree<T>::shade(const Groups& groups, const Groups& met) {
+void SpecularTree<T>::shade(const LaneGroups& groups, const LaneGroups& met) {
   auto& [paths, hits, surface, radiance] = *this->vertices_;
   const Geometry<T>& geometry = this->geometry_;
-  beyond_.add(paths->rays, hits, groups, nullptr, radiance);
+  environment_lighting_.add(paths->rays, hits, groups, nullptr, radiance);
   direct_light_.add(*paths, this->draws(), surface, groups_with(geometry, surface, met, &MaterialTraits::lit),
                     radiance, this->counts(), this->checkpoint());
   add_emission(geometry, surface, met, radiance);
   if (!this->plan_.specular) return;
-  const Groups specular = groups_with(geometry, surface, met, &MaterialTraits::mirrors);
+  const LaneGroups specular = groups_with(geometry, surface, met, &MaterialTraits::mirrors);
   evaluate_specular(geometry, this->plan_.filters, hits, surface, specular, *paths, specular_);
   scatter(specular);
 }
@@ -46,7 +46,7 @@ template <class T>
 void SpecularTree<T>::cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
   auto& v = *this->vertices_;
   v.radiance.put(i, mask, v.radiance.at(i) + weight * Vec3<N>(this->geometry_.ambient));
-  this->note_cut(i, mask, v.paths->throughput.at(i) * weight);
+  this->record_omitted(i, mask, v.paths->throughput.at(i) * weight);
 }
 
 template class SpecularTree<float>;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/stages/beyond.h"
 #include "core/stages/direct_light.h"
+#include "core/stages/environment_lighting.h"
 #include "core/stages/lane_masks.h"
 #include "core/techniques/wavefront.h"
 
@@ -20,7 +20,7 @@ class SpecularTree : public Wavefront<T> {
  protected:
   // Continues at specular surfaces: calls follow() or cut() for the lanes of each group. `groups` are the
   // registers with a specular surface.
-  virtual void scatter(const Groups& groups) = 0;
+  virtual void scatter(const LaneGroups& groups) = 0;
 
   // Spawns a ray from the surface at register i along `direction`, with `weight` per channel. Cuts the ray
   // instead if it is too deep or too weak.
@@ -35,10 +35,10 @@ class SpecularTree : public Wavefront<T> {
   SpecularBatch<T> specular_;
 
  private:
-  void shade(const Groups& groups, const Groups& met) final;
+  void shade(const LaneGroups& groups, const LaneGroups& met) final;
 
   DirectLight<T> direct_light_;
-  Beyond<T> beyond_;
+  EnvironmentLighting<T> environment_lighting_;
 };
 
 extern template class SpecularTree<float>;

@@ -26,7 +26,7 @@ bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, Tra
     waiting_.pop_back();
     run(*batch);
     spare_.push_back(std::move(batch));
-    if (!checkpoint.go_on()) {
+    if (!checkpoint.may_continue()) {
       waiting_.clear();
       return false;
     }
@@ -36,7 +36,7 @@ bool Wavefront<T>::trace(const RayBatch<T>& camera_rays, const Draws& draws, Tra
 
 template <class T>
 void Wavefront<T>::start(const RayBatch<T>& camera_rays) {
-  const Groups all = Groups::covering(0, kBatch, kWidth<T>);
+  const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<T>);
   counts_->rays.camera += active_rays(camera_rays, all);
   out_->channels.resize(plan_.channels.size());
   auto camera = take_batch(0);
@@ -67,8 +67,8 @@ void Wavefront<T>::run(PathBatch<T>& paths) {
   reflected_ = take_batch(paths.depth + 1);
   refracted_ = take_batch(paths.depth + 1);
   for (int from = 0; from < paths.rays.count; from += plan_.slice)
-    run_slice(Groups::covering(from, std::min(from + plan_.slice, paths.rays.count), kWidth<T>));
-  if (paths.depth < kDeepestRay) {
+    run_slice(LaneGroups::covering(from, std::min(from + plan_.slice, paths.rays.count), kWidth<T>));
+  if (paths.depth < kMaxRayDepth) {
     const auto depth = static_cast<std::size_t>(paths.depth + 1);
     counts_->rays.reflected[depth] += static_cast<std::uint64_t>(reflected_->rays.count);
     counts_->rays.refracted[depth] += static_cast<std::uint64_t>(refracted_->rays.count);
@@ -88,19 +88,19 @@ void Wavefront<T>::inherit_times(PathBatch<T>& paths) const {
 }
 
 template <class T>
-void Wavefront<T>::run_slice(const Groups& groups) {
+void Wavefront<T>::run_slice(const LaneGroups& groups) {
   Vertices& v = *vertices_;
   PathBatch<T>& paths = *v.paths;
   reset(paths.rays, groups, v.hits);
   accelerator_.closest(paths.rays, groups, v.hits, counts_->accelerator);
-  const Groups met = find_surfaces(geometry_, plan_.fields, paths, groups, v.hits, v.surface, v.radiance);
+  const LaneGroups met = find_surfaces(geometry_, plan_.fields, paths, groups, v.hits, v.surface, v.radiance);
   if (paths.depth == 0) record_channels(groups, met);
   shade(groups, met);
   deposit(paths, groups, v.radiance, sums(paths.depth));
 }
 
 template <class T>
-void Wavefront<T>::record_channels(const Groups& groups, const Groups& met) {
+void Wavefront<T>::record_channels(const LaneGroups& groups, const LaneGroups& met) {
   const Vertices& v = *vertices_;
   for (const int i : met)
     counts_->camera_hits += static_cast<std::uint64_t>(
@@ -134,7 +134,7 @@ void Wavefront<T>::spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction,
 }
 
 template <class T>
-void Wavefront<T>::note_cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
+void Wavefront<T>::record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight) {
   const Vec3<T> range(plan_.cut_range);
   // Avoids 0 * infinity.
   const auto product = [](T share, T most) { return share > 0 ? share * most : T(0); };

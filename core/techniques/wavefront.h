@@ -33,7 +33,7 @@ class Wavefront : public Tracer<T> {
 
   // Adds the light that leaves surfaces toward the origins of the rays of `groups`, and continues paths by
   // spawn(). `met`: those registers with a surface.
-  virtual void shade(const Groups& groups, const Groups& met) = 0;
+  virtual void shade(const LaneGroups& groups, const LaneGroups& met) = 0;
 
   // Hooks before a batch of camera rays and after all rays spawned from it. finish() returns false if the
   // work is cancelled.
@@ -50,7 +50,7 @@ class Wavefront : public Tracer<T> {
   // Spawns the only ray from this vertex, with its sampling density.
   void spawn(int i, const MaskOf<N>& mask, const Vec3<N>& direction, const Vec3<N>& throughput, const N& pdf);
   // Records untraced rays as omitted, by their weights.
-  void note_cut(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
+  void record_omitted(int i, const MaskOf<N>& mask, const Vec3<N>& weight);
 
   // Returns the light removed by clamping, by slot.
   Vec3Array<T>& clamped() { return out_->clamped; }
@@ -70,8 +70,8 @@ class Wavefront : public Tracer<T> {
   void run(PathBatch<T>& paths);
   // Gives each ray the time of its camera ray.
   void inherit_times(PathBatch<T>& paths) const;
-  void run_slice(const Groups& groups);
-  void record_channels(const Groups& groups, const Groups& met);
+  void run_slice(const LaneGroups& groups);
+  void record_channels(const LaneGroups& groups, const LaneGroups& met);
   std::unique_ptr<PathBatch<T>> take_batch(int depth);
   void push(std::unique_ptr<PathBatch<T>> batch);
 

@@ -15,7 +15,7 @@ class Whitted final : public SpecularTree<T> {
   using N = Lanes<T>;
   using Kind = typename SpecularTree<T>::Kind;
 
-  void scatter(const Groups& groups) override {
+  void scatter(const LaneGroups& groups) override {
     const auto& v = *this->vertices_;
     const auto& specular = this->specular_;
     for (const int i : groups) {

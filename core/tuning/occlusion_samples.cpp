@@ -40,11 +40,11 @@ class Recorder final : public Accelerator<T> {
  public:
   Recorder(const Accelerator<T>& behind, DecimatingSampler<T>& into) : behind_(behind), into_(into) {}
   AcceleratorFacts facts() const override { return behind_.facts(); }
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     behind_.closest(rays, groups, hits, counts);
   }
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
     for (const int first : groups)
       for (unsigned bits = bits_of(rays.t_max.at(first) > Lanes<T>(T(0))); bits != 0; bits &= bits - 1) {
         const int i = first + std::countr_zero(bits);
@@ -74,7 +74,7 @@ void find_occluders(const Accelerator<T>& accelerator, std::span<const ShadowRay
   hits->t = rays->t_max;
   hits->primitive.values.fill(kNoPrimitive);
   AcceleratorCounts counts;
-  accelerator.closest(*rays, Groups::covering(0, rays->count, kWidth<T>), *hits, counts);
+  accelerator.closest(*rays, LaneGroups::covering(0, rays->count, kWidth<T>), *hits, counts);
   for (int i = 0; i < rays->count; ++i) {
     const Ray<T>& ray = some[static_cast<std::size_t>(i)].ray;
     samples.push_back({{Vec3d(ray.origin), Vec3d(ray.direction)}, static_cast<int>(hits->primitive[i])});

@@ -8,14 +8,14 @@
 namespace orrery {
 namespace {
 
-constexpr std::uint64_t kMostRays = 1'000'000;
+constexpr std::uint64_t kMaxRays = 1'000'000;
 
-// Requests a stop once kMostRays rays are counted.
-class RayLimit final : public Turn {
+// Requests a stop once kMaxRays rays are counted.
+class RayLimit final : public TimeSlice {
  public:
   RayLimit(const TraceCounts& counts, std::stop_source& enough) : counts_(counts), enough_(enough) {}
-  void give_way() override {
-    if (counts_.rays.total() >= kMostRays) enough_.request_stop();
+  void yield() override {
+    if (counts_.rays.total() >= kMaxRays) enough_.request_stop();
   }
 
  private:
@@ -38,7 +38,7 @@ TraceCounts try_tiles(const World<T>& world, const Plan& plan, int most, std::st
   const std::stop_callback cancelled(stop, [&] { ends.request_stop(); });
   RayLimit limit(counts, ends);
   const Checkpoint checkpoint(ends.get_token(), &limit);
-  for (int i = 0; i < count && checkpoint.go_on(); ++i) {
+  for (int i = 0; i < count && checkpoint.may_continue(); ++i) {
     const TileView tile =
         tiles.at(static_cast<int>((std::int64_t{2} * i + 1) * tiles.size() / (2 * count)), 1);
     plan.camera->generate(plan.frame, plan.width, plan.height, tile, centres, *rays);

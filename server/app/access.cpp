@@ -12,8 +12,8 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kLeastKeyBytes = 32;
-constexpr std::size_t kMostFileBytes = 1 << 20;
+constexpr std::size_t kMinKeyBytes = 32;
+constexpr std::size_t kMaxFileBytes = 1 << 20;
 
 // Reads a regular file. Rejects pipes, which might never end.
 std::string read_file(const std::string& path) {
@@ -21,11 +21,11 @@ std::string read_file(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, problem)) throw InputError(path, "is no file that can be read");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path, "cannot be read");
-  std::string bytes(kMostFileBytes + 1, '\0');
+  std::string bytes(kMaxFileBytes + 1, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
-  if (bytes.size() > kMostFileBytes)
-    throw InputError(path, "has more than " + std::to_string(kMostFileBytes) + " bytes");
+  if (bytes.size() > kMaxFileBytes)
+    throw InputError(path, "has more than " + std::to_string(kMaxFileBytes) + " bytes");
   return bytes;
 }
 
@@ -33,8 +33,8 @@ constexpr Scope scope_number(std::size_t i) { return static_cast<Scope>(1U << i)
 
 std::string read_key(const std::string& path) {
   std::string key = read_file(path);
-  if (key.size() < kLeastKeyBytes)
-    throw InputError(path, "a key has at least " + std::to_string(kLeastKeyBytes) + " bytes, got " +
+  if (key.size() < kMinKeyBytes)
+    throw InputError(path, "a key has at least " + std::to_string(kMinKeyBytes) + " bytes, got " +
                                std::to_string(key.size()));
   return key;
 }
@@ -61,13 +61,13 @@ Access::Access(std::string tokens_file, std::string share_key_file)
 }
 
 void Access::reload() {
-  auto fresh = std::make_shared<const Known>(read());
+  auto fresh = std::make_shared<const TokenTable>(read());
   const std::lock_guard lock(mutex_);
   known_ = std::move(fresh);
 }
 
-Access::Known Access::read() const {
-  Known known;
+Access::TokenTable Access::read() const {
+  TokenTable known;
   std::vector<Problem> problems;
   const auto note = [&](const std::string& place, const auto& read) {
     try {
@@ -93,7 +93,7 @@ Access::Known Access::read() const {
   return known;
 }
 
-std::shared_ptr<const Access::Known> Access::known() const {
+std::shared_ptr<const Access::TokenTable> Access::known() const {
   const std::lock_guard lock(mutex_);
   return known_;
 }
@@ -137,7 +137,7 @@ Scope parse_scopes(std::string_view list) {
   return scopes;
 }
 
-std::optional<std::string_view> lacking(Scope held, Scope needed) {
+std::optional<std::string_view> missing_scope(Scope held, Scope needed) {
   for (std::size_t i = 0; i < kScopes.size(); ++i)
     if ((needed | scope_number(i)) == needed && (held | scope_number(i)) != held) return kScopes[i];
   return std::nullopt;

@@ -19,7 +19,7 @@ constexpr Scope operator|(Scope a, Scope b) {
   return static_cast<Scope>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
 // Returns the name of the first scope of `needed` that `held` lacks, or nullopt if it lacks none.
-std::optional<std::string_view> lacking(Scope held, Scope needed);
+std::optional<std::string_view> missing_scope(Scope held, Scope needed);
 
 // Access control by tokens and signed links. Safe from any thread.
 class Access {
@@ -49,16 +49,16 @@ class Access {
   bool is_signed(std::string_view address, std::int64_t expires, std::string_view signature) const;
 
  private:
-  struct Known {
+  struct TokenTable {
     std::vector<Holder> holders;
     std::string key;
   };
-  Known read() const;
-  std::shared_ptr<const Known> known() const;
+  TokenTable read() const;
+  std::shared_ptr<const TokenTable> known() const;
 
   const std::string tokens_file_, share_key_file_;
   mutable std::mutex mutex_;
-  std::shared_ptr<const Known> known_;  // guarded by mutex_
+  std::shared_ptr<const TokenTable> known_;  // guarded by mutex_
 };
 
 // Returns a line for a tokens file.

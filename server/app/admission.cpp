@@ -10,12 +10,12 @@
 namespace orrery {
 namespace {
 
-constexpr double kRaysAByte = 1;                      // JSON or mesh data; measured: 0.5 to 2
-constexpr double kExpectedRate = 10e6;                // rays per second, all slots together
-constexpr std::chrono::milliseconds kLeastPlace{50};  // until other clients may preempt work
-constexpr auto kOwnPlace = 4 * kLeastPlace;           // until its own client may preempt it
-constexpr double kMostDebt = 16;  // maximum debt in units of kLeastPlace: a wait of seconds, not minutes
-constexpr double kSmallCost = 2 * kLeastCost;
+constexpr double kRaysAByte = 1;                         // JSON or mesh data; measured: 0.5 to 2
+constexpr double kExpectedRate = 10e6;                   // rays per second, all slots together
+constexpr std::chrono::milliseconds kMinTimeSlice{50};   // until other clients may preempt work
+constexpr auto kOwnClientTimeSlice = 4 * kMinTimeSlice;  // until its own client may preempt it
+constexpr double kMaxDebt = 16;  // maximum debt in units of kMinTimeSlice: a wait of seconds, not minutes
+constexpr double kSmallCost = 2 * kFixedCost;
 constexpr double kMemory_s = 10;  // busy seconds in which a measurement decays to 1/e
 
 // Returns the charge for time in one of `places` slots, in rays. Uses a constant rate. The measured rate
@@ -49,15 +49,15 @@ TooManyRays::TooManyRays(double expected, double most)
                          " usual rays, and one request may ask for " + whole(most) +
                          " (request_rays); a job takes longer work: POST /v1/jobs") {}
 
-double cost_of_reading(std::size_t bytes) { return kLeastCost + kRaysAByte * static_cast<double>(bytes); }
+double cost_of_reading(std::size_t bytes) { return kFixedCost + kRaysAByte * static_cast<double>(bytes); }
 
 void Quota::require_one_more(int all, int own) const {
   if (all >= most)
-    throw OverLimit(std::to_string(all) + " " + what + " already (" + limit + ")", retry_s, limit);
+    throw LimitExceeded(std::to_string(all) + " " + what + " already (" + limit + ")", retry_s, limit);
   if (own >= std::max(1, most / 2))
-    throw ClientBusy(std::to_string(own) + " " + what +
-                         " already that you asked for, which is half of all (" + limit + ")",
-                     retry_s, limit);
+    throw ClientLimitExceeded(std::to_string(own) + " " + what +
+                                  " already that you asked for, which is half of all (" + limit + ")",
+                              retry_s, limit);
 }
 
 int Admission::running() const {
@@ -66,43 +66,43 @@ int Admission::running() const {
 }
 int Admission::waiting() const {
   const std::lock_guard lock(mutex_);
-  return static_cast<int>(std::count_if(works_.begin(), works_.end(), [](const Work& w) {
+  return static_cast<int>(std::count_if(works_.begin(), works_.end(), [](const QueueEntry& w) {
     return w.state == State::waits || w.state == State::lost;
   }));
 }
 bool Admission::full() const {
   const std::lock_guard lock(mutex_);
-  return running_ >= limits_.running && !fits(Lane::interactive, kSmallCost) &&
-         greediest(waiting_costs(Lane::interactive)).second <= kSmallCost;
+  return running_ >= limits_.running && !fits(Priority::interactive, kSmallCost) &&
+         greediest(waiting_costs(Priority::interactive)).second <= kSmallCost;
 }
 
-Clock::duration Admission::longest_wait() const {
+Clock::duration Admission::shortest_client_wait() const {
   const std::lock_guard lock(mutex_);
   std::map<std::string, Clock::time_point> first;  // by client
-  for (const Work& w : works_)
-    if (w.state == State::waits && w.entry == Entry::first && w.demand.lane == Lane::interactive &&
-        !has_lost_many(w.demand))
+  for (const QueueEntry& w : works_)
+    if (w.state == State::waits && w.entry == Entry::first && w.demand.priority == Priority::interactive &&
+        !has_many_preempted(w.demand))
       first.emplace(w.demand.client, w.since);
   Clock::duration least = Clock::duration::max();
   for (const auto& [client, since] : first) least = std::min(least, timer_.now() - since);
   return first.empty() ? Clock::duration{} : least;
 }
 
-Admission::Ticket Admission::enter(const Demand& demand, const std::stop_token& stop) {
+Admission::Ticket Admission::enter(const SlotRequest& demand, const std::stop_token& stop) {
   return enter(demand, Entry::first, stop);
 }
-Admission::Ticket Admission::enter_again(const Demand& demand, const std::stop_token& stop) {
+Admission::Ticket Admission::enter_again(const SlotRequest& demand, const std::stop_token& stop) {
   return enter(demand, Entry::next, stop);
 }
 
-Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std::stop_token& stop) {
+Admission::Ticket Admission::enter(const SlotRequest& demand, Entry entry, const std::stop_token& stop) {
   HandlerSlots::Wait wait;  // destroyed after the lock
   std::unique_lock lock(mutex_);
   if (entry == Entry::first && !may_begin(demand, entry)) make_room(demand);
-  const double charge = std::min(demand.cost, kLeastCost + rays_in(kLeastPlace, limits_.running));
+  const double charge = std::min(demand.cost, kFixedCost + rays_in(kMinTimeSlice, limits_.running));
   const auto work = works_.emplace(works_.end(), demand, entry, charge);
   try {
-    wait_for_place(lock, *work, stop);
+    wait_for_slot(lock, *work, stop);
   } catch (...) {
     works_.erase(work);
     start_next();
@@ -118,7 +118,7 @@ Admission::Ticket Admission::enter(const Demand& demand, Entry entry, const std:
   }
 }
 
-Admission::Ticket::Ticket(Admission& from, Work& work, std::stop_token stop)
+Admission::Ticket::Ticket(Admission& from, QueueEntry& work, std::stop_token stop)
     : from_(&from), work_(&work), stop_(std::move(stop)) {
   set_alarms();
 }
@@ -127,12 +127,12 @@ Admission::Ticket::Ticket(Ticket&& other) noexcept
     : from_(other.from_),
       work_(std::exchange(other.work_, nullptr)),
       stop_(std::move(other.stop_)),
-      others_may_have_it_(std::move(other.others_may_have_it_)),
-      all_may_have_it_(std::move(other.all_may_have_it_)) {}
+      other_clients_alarm_(std::move(other.other_clients_alarm_)),
+      all_clients_alarm_(std::move(other.all_clients_alarm_)) {}
 
 Admission::Ticket::~Ticket() {
-  others_may_have_it_.reset();
-  all_may_have_it_.reset();
+  other_clients_alarm_.reset();
+  all_clients_alarm_.reset();
   if (!work_) return;
   from_->leave(*work_, std::uncaught_exceptions() <= exceptions_);
   HandlerSlots::resume();
@@ -146,8 +146,8 @@ void Admission::Ticket::set_alarms() {
   const auto after = [&](Clock::duration held) {
     return std::unique_ptr<Timer::Alarm>(new Timer::Alarm(from_->timer_.at(work_->since + held, start_next)));
   };
-  others_may_have_it_ = after(kLeastPlace);
-  all_may_have_it_ = after(kOwnPlace);
+  other_clients_alarm_ = after(kMinTimeSlice);
+  all_clients_alarm_ = after(kOwnClientTimeSlice);
 }
 
 void Admission::Ticket::set_cost(double rays) {
@@ -159,51 +159,52 @@ bool Admission::Ticket::expired() const { return work_->state != State::runs; }
 
 void Admission::Ticket::renew() {
   if (!expired()) return;
-  HandlerSlots::Wait wait(Waiting::Kind::begun);
+  HandlerSlots::Wait wait(WaitState::Kind::begun);
   std::unique_lock lock(from_->mutex_);
   const auto place = std::find_if(from_->works_.begin(), from_->works_.end(),
-                                  [&](const Work& work) { return &work == work_; });
+                                  [&](const QueueEntry& work) { return &work == work_; });
   from_->works_.splice(from_->works_.end(), from_->works_, place);
   work_->entry = Entry::again;
   work_->used += from_->charge_overruns(*work_);
-  work_->charge = kLeastCost;
-  from_->wait_for_place(lock, *work_, stop_);
+  work_->charge = kFixedCost;
+  from_->wait_for_slot(lock, *work_, stop_);
   lock.unlock();
   wait.end_without_slot();
   set_alarms();
 }
 
-Admission::Sharing::Sharing(Admission& in, std::shared_ptr<Sharers> sharers, std::string client)
-    : in_(in), sharers_(std::move(sharers)), client_(std::move(client)) {
+Admission::Subscription::Subscription(Admission& in, std::shared_ptr<Subscribers> subscribers,
+                                      std::string client)
+    : in_(in), subscribers_(std::move(subscribers)), client_(std::move(client)) {
   const std::lock_guard lock(in_.mutex_);
-  sharers_->insert(client_);
+  subscribers_->insert(client_);
   update_works();
   in_.start_next();
 }
 
-Admission::Sharing::~Sharing() {
+Admission::Subscription::~Subscription() {
   const std::lock_guard lock(in_.mutex_);
-  sharers_->erase(sharers_->find(client_));
+  subscribers_->erase(subscribers_->find(client_));
   update_works();
   in_.start_next();  // work of `client_` may preempt it sooner now
 }
 
-void Admission::Sharing::update_works() {
-  for (Work& work : in_.works_)
-    if (work.demand.sharers == sharers_) in_.update_wishes(work);
+void Admission::Subscription::update_works() {
+  for (QueueEntry& work : in_.works_)
+    if (work.demand.subscribers == subscribers_) in_.update_wishes(work);
 }
 
-void Admission::update_wishes(Work& work) {
-  const Demand& demand = work.demand;
+void Admission::update_wishes(QueueEntry& work) {
+  const SlotRequest& demand = work.demand;
   const auto wants = [&](const std::string& client) {
-    return demand.is_shared() ? demand.sharers->count(client) > 0 : client == demand.client;
+    return demand.is_shared() ? demand.subscribers->count(client) > 0 : client == demand.client;
   };
   const auto add = [&](const std::string& client) {
     if (!work.is_wanted_by(client))
-      work.wishes.emplace(client, Wish{virtual_finish(work, client), timer_.now()});
+      work.wishes.emplace(client, ClientShare{virtual_finish(work, client), timer_.now()});
   };
   if (demand.is_shared())
-    std::for_each(demand.sharers->begin(), demand.sharers->end(), add);
+    std::for_each(demand.subscribers->begin(), demand.subscribers->end(), add);
   else
     add(demand.client);
   std::erase_if(work.wishes, [&](const auto& entry) {
@@ -213,13 +214,14 @@ void Admission::update_wishes(Work& work) {
   });
 }
 
-double Admission::Work::finish() const {
+double Admission::QueueEntry::finish() const {
   const auto earlier = [](const auto& a, const auto& b) { return a.second.finish < b.second.finish; };
   return std::min_element(wishes.begin(), wishes.end(), earlier)->second.finish;
 }
 
-void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, const std::stop_token& stop) {
-  const Lane lane = work.demand.lane;
+void Admission::wait_for_slot(std::unique_lock<std::mutex>& lock, QueueEntry& work,
+                              const std::stop_token& stop) {
+  const Priority priority = work.demand.priority;
   const auto asked = work.since = timer_.now();
   work.wishes.clear();
   update_wishes(work);
@@ -227,20 +229,20 @@ void Admission::wait_for_place(std::unique_lock<std::mutex>& lock, Work& work, c
   start_next();
   work.changed.wait(lock, stop, [&] { return work.state != State::waits; });
   if (work.has_begun()) {  // a stop or preemption shows at the next checkpoint
-    waits_[static_cast<int>(lane)].Observe(std::chrono::duration<double>(timer_.now() - asked).count());
+    waits_[static_cast<int>(priority)].Observe(std::chrono::duration<double>(timer_.now() - asked).count());
     return;
   }
   const State state = work.state.exchange(State::dropped);
   if (state == State::waits) throw Cancelled();
-  throw ClientBusy("Others wait for their turn, and you had asked for more than they (queue_rays)",
-                   retry_after_s(lane), "queue_rays");
+  throw ClientLimitExceeded("Others wait for their turn, and you had asked for more than they (queue_rays)",
+                            retry_after_s(priority), "queue_rays");
 }
 
-void Admission::note_who_waits() {
-  for (const Lane lane : {Lane::interactive, Lane::batch}) {
-    auto& since = waited_since_[static_cast<int>(lane)];
-    const bool waits = std::any_of(works_.begin(), works_.end(), [&](const Work& w) {
-      return w.state == State::waits && w.demand.lane == lane;
+void Admission::update_backlog() {
+  for (const Priority priority : {Priority::interactive, Priority::batch}) {
+    auto& since = waited_since_[static_cast<int>(priority)];
+    const bool waits = std::any_of(works_.begin(), works_.end(), [&](const QueueEntry& w) {
+      return w.state == State::waits && w.demand.priority == priority;
     });
     if (!waits) since.reset();
     if (waits && !since) since = timer_.now();
@@ -248,24 +250,24 @@ void Admission::note_who_waits() {
 }
 
 void Admission::start_next() {
-  note_who_waits();
-  for (Work* work = next(); work; work = next()) {
-    if (!place_free(work->demand.lane)) {
-      Work& other = *loser(work->demand);
+  update_backlog();
+  for (QueueEntry* work = next(); work; work = next()) {
+    if (!has_free_slot(work->demand.priority)) {
+      QueueEntry& other = *preemption_victim(work->demand);
       other.charged_from = charged_from(other);
       other.state = State::lost;
-      ++places_lost_;
-      give_up_place(other);
+      ++preemptions_;
+      release_slot(other);
     }
     begin(*work);
   }
-  note_who_waits();
+  update_backlog();
 }
 
-void Admission::begin(Work& work) {
+void Admission::begin(QueueEntry& work) {
   if (running_++ == 0) measured_ = timer_.now();
-  if (work.demand.lane == Lane::batch) ++running_batch_;
-  latest_ = work.demand.lane;
+  if (work.demand.priority == Priority::batch) ++running_batch_;
+  latest_ = work.demand.priority;
   double& virtual_time = virtual_time_[static_cast<int>(latest_)];
   virtual_time = std::max(virtual_time, work.finish());
   std::erase_if(overruns_[static_cast<int>(latest_)],
@@ -276,82 +278,83 @@ void Admission::begin(Work& work) {
   work.changed.notify_one();
 }
 
-void Admission::leave(Work& work, bool done) {
+void Admission::leave(QueueEntry& work, bool done) {
   const std::lock_guard lock(mutex_);
   if (done)
     measure(work.demand.cost);
   else if (running_ > 0)
     measured_ = timer_.now();  // aborted: the share done is unknown
-  if (work.state == State::runs) give_up_place(work);
+  if (work.state == State::runs) release_slot(work);
   if (work.state != State::dropped) charge_overruns(work);
-  works_.remove_if([&](const Work& other) { return &other == &work; });
+  works_.remove_if([&](const QueueEntry& other) { return &other == &work; });
   start_next();
 }
 
-double Admission::charge_overruns(const Work& work) {
+double Admission::charge_overruns(const QueueEntry& work) {
   for (const auto& [client, wish] : work.wishes) charge_overrun(work, client, wish.since);
-  return kLeastCost + rays_in(timer_.now() - work.since, limits_.running);
+  return kFixedCost + rays_in(timer_.now() - work.since, limits_.running);
 }
 
-void Admission::charge_overrun(const Work& work, const std::string& client, Clock::time_point since) {
-  const int lane = static_cast<int>(work.demand.lane);
+void Admission::charge_overrun(const QueueEntry& work, const std::string& client, Clock::time_point since) {
+  const int priority = static_cast<int>(work.demand.priority);
   const auto from = std::max(since, work.charged_from.value_or(charged_from(work)));
-  const double used = kLeastCost + rays_in(timer_.now() - from, limits_.running);
+  const double used = kFixedCost + rays_in(timer_.now() - from, limits_.running);
   const bool came_later = since > work.since;  // joined running work of others
-  const double overrun = used - (came_later ? kLeastCost : std::max(kLeastCost, work.charge));
+  const double overrun = used - (came_later ? kFixedCost : std::max(kFixedCost, work.charge));
   if (overrun <= 0) return;
-  const double most = virtual_time_[lane] + kMostDebt * rays_in(kLeastPlace, limits_.running);
-  double& until = overruns_[lane][client];
-  until = std::max(until, std::min(std::max(until, virtual_time_[lane]) + overrun, most));
+  const double most = virtual_time_[priority] + kMaxDebt * rays_in(kMinTimeSlice, limits_.running);
+  double& until = overruns_[priority][client];
+  until = std::max(until, std::min(std::max(until, virtual_time_[priority]) + overrun, most));
 }
 
-Clock::time_point Admission::charged_from(const Work& work) const {
-  const auto& waited = waited_since_[static_cast<int>(work.demand.lane)];
+Clock::time_point Admission::charged_from(const QueueEntry& work) const {
+  const auto& waited = waited_since_[static_cast<int>(work.demand.priority)];
   return waited ? std::max(work.since, *waited) : timer_.now();
 }
 
-void Admission::give_up_place(const Work& work) {
+void Admission::release_slot(const QueueEntry& work) {
   --running_;
-  if (work.demand.lane == Lane::batch) --running_batch_;
+  if (work.demand.priority == Priority::batch) --running_batch_;
 }
 
-bool Admission::place_free(Lane lane) const {
+bool Admission::has_free_slot(Priority priority) const {
   if (running_ >= limits_.running) return false;
-  return lane == Lane::interactive || running_batch_ < std::max(1, limits_.running / 2);
+  return priority == Priority::interactive || running_batch_ < std::max(1, limits_.running / 2);
 }
 
-Admission::Work* Admission::loser(const Demand& demand) {
+Admission::QueueEntry* Admission::preemption_victim(const SlotRequest& demand) {
   const auto now = timer_.now();
-  Work* best = nullptr;
-  for (Work& work : works_) {
-    const auto keeps_it = is_for_its_own(demand, work) ? kOwnPlace : kLeastPlace;
+  QueueEntry* best = nullptr;
+  for (QueueEntry& work : works_) {
+    const auto keeps_it = is_for_its_own(demand, work) ? kOwnClientTimeSlice : kMinTimeSlice;
     if (work.state != State::runs || now - work.since < keeps_it) continue;
-    const Lane lane = demand.lane;
-    const bool gives = lane == Lane::interactive || work.demand.lane == lane || running_batch_ == 0;
+    const Priority priority = demand.priority;
+    const bool gives =
+        priority == Priority::interactive || work.demand.priority == priority || running_batch_ == 0;
     if (gives && (!best || work.since < best->since)) best = &work;
   }
   return best;
 }
 
-bool Admission::is_for_its_own(const Demand& demand, const Work& work) {
+bool Admission::is_for_its_own(const SlotRequest& demand, const QueueEntry& work) {
   const auto wants = [&](const std::string& client) { return work.is_wanted_by(client); };
   if (!demand.is_shared()) return wants(demand.client);
-  return std::all_of(demand.sharers->begin(), demand.sharers->end(), wants);
+  return std::all_of(demand.subscribers->begin(), demand.subscribers->end(), wants);
 }
 
-bool Admission::may_begin(const Demand& demand, Entry entry) {
-  if (entry == Entry::first && has_lost_many(demand)) return false;
-  return place_free(demand.lane) || loser(demand);
+bool Admission::may_begin(const SlotRequest& demand, Entry entry) {
+  if (entry == Entry::first && has_many_preempted(demand)) return false;
+  return has_free_slot(demand.priority) || preemption_victim(demand);
 }
 
-Admission::Work* Admission::next() {
-  Work* best = nullptr;
-  const bool batch_starves = running_batch_ == 0 && latest_ != Lane::batch;
-  const auto rank = [&](const Work& w) {
-    const bool first = batch_starves == (w.demand.lane == Lane::batch);
+Admission::QueueEntry* Admission::next() {
+  QueueEntry* best = nullptr;
+  const bool batch_starves = running_batch_ == 0 && latest_ != Priority::batch;
+  const auto rank = [&](const QueueEntry& w) {
+    const bool first = batch_starves == (w.demand.priority == Priority::batch);
     return std::pair(first ? 0 : 1, w.finish());
   };
-  for (Work& work : works_) {
+  for (QueueEntry& work : works_) {
     if (work.state != State::waits) continue;
     if (best && !(rank(work) < rank(*best))) continue;
     if (may_begin(work.demand, work.entry)) best = &work;
@@ -360,54 +363,57 @@ Admission::Work* Admission::next() {
 }
 
 // Preempted work does not queue behind later requests of its client.
-double Admission::virtual_finish(const Work& work, const std::string& client) const {
+double Admission::virtual_finish(const QueueEntry& work, const std::string& client) const {
   const bool again = work.entry == Entry::again;
-  const int lane = static_cast<int>(work.demand.lane);
-  const auto overrun = overruns_[lane].find(client);
-  double start = std::max(virtual_time_[lane], overrun == overruns_[lane].end() ? 0 : overrun->second);
-  for (const Work& w : works_)
-    if (w.state == State::waits && w.demand.lane == work.demand.lane && w.is_wanted_by(client) &&
+  const int priority = static_cast<int>(work.demand.priority);
+  const auto overrun = overruns_[priority].find(client);
+  double start =
+      std::max(virtual_time_[priority], overrun == overruns_[priority].end() ? 0 : overrun->second);
+  for (const QueueEntry& w : works_)
+    if (w.state == State::waits && w.demand.priority == work.demand.priority && w.is_wanted_by(client) &&
         (!again || w.entry == Entry::again))
       start = std::max(start, w.wishes.at(client).finish);
   return start + work.charge;
 }
 
-bool Admission::has_lost_many(const Demand& demand) const {
-  const auto lost_many = [&](const std::string& client) { return has_lost_many(demand.lane, client); };
+bool Admission::has_many_preempted(const SlotRequest& demand) const {
+  const auto lost_many = [&](const std::string& client) {
+    return has_many_preempted(demand.priority, client);
+  };
   if (!demand.is_shared()) return lost_many(demand.client);
-  return std::all_of(demand.sharers->begin(), demand.sharers->end(), lost_many);
+  return std::all_of(demand.subscribers->begin(), demand.subscribers->end(), lost_many);
 }
 
-bool Admission::has_lost_many(Lane lane, const std::string& client) const {
-  const auto lost = std::count_if(works_.begin(), works_.end(), [&](const Work& w) {
+bool Admission::has_many_preempted(Priority priority, const std::string& client) const {
+  const auto lost = std::count_if(works_.begin(), works_.end(), [&](const QueueEntry& w) {
     const bool has_lost = w.state == State::lost || (w.state == State::waits && w.entry == Entry::again);
-    return has_lost && w.demand.lane == lane && (w.demand.client == client || w.is_wanted_by(client));
+    return has_lost && w.demand.priority == priority && (w.demand.client == client || w.is_wanted_by(client));
   });
   return lost >= 2 * limits_.running;
 }
 
-std::map<std::string, double> Admission::waiting_costs(Lane lane) const {
+std::map<std::string, double> Admission::waiting_costs(Priority priority) const {
   std::map<std::string, double> costs;
-  for (const Work& w : works_)
-    if (w.counts && (w.state == State::waits || w.state == State::lost) && w.demand.lane == lane)
-      costs[w.demand.client] += std::max(std::min(kLeastCost, w.demand.cost), w.demand.cost - w.used);
+  for (const QueueEntry& w : works_)
+    if (w.counts && (w.state == State::waits || w.state == State::lost) && w.demand.priority == priority)
+      costs[w.demand.client] += std::max(std::min(kFixedCost, w.demand.cost), w.demand.cost - w.used);
   return costs;
 }
 
-double Admission::waiting_cost(Lane lane) const {
+double Admission::waiting_cost(Priority priority) const {
   double sum = 0;
-  for (const auto& [client, cost] : waiting_costs(lane)) sum += cost;
+  for (const auto& [client, cost] : waiting_costs(priority)) sum += cost;
   return sum;
 }
 
-bool Admission::fits(Lane lane, double cost) const {
-  const double waiting = waiting_cost(lane);
+bool Admission::fits(Priority priority, double cost) const {
+  const double waiting = waiting_cost(priority);
   return waiting == 0 || waiting + cost <= limits_.queue_rays;
 }
 
-Admission::Work* Admission::newest_to_begin(Lane lane, const std::string& client) {
-  const auto newest = std::find_if(works_.rbegin(), works_.rend(), [&](const Work& w) {
-    return w.entry == Entry::first && w.state == State::waits && w.demand.lane == lane &&
+Admission::QueueEntry* Admission::newest_droppable(Priority priority, const std::string& client) {
+  const auto newest = std::find_if(works_.rbegin(), works_.rend(), [&](const QueueEntry& w) {
+    return w.entry == Entry::first && w.state == State::waits && w.demand.priority == priority &&
            w.demand.client == client;
   });
   return newest == works_.rend() ? nullptr : &*newest;
@@ -415,27 +421,28 @@ Admission::Work* Admission::newest_to_begin(Lane lane, const std::string& client
 
 // Drops new work of the client with the most queued work until `demand` fits. Begun work cannot be dropped,
 // but must not lock others out: a client with less queued work is admitted anyway.
-void Admission::make_room(const Demand& demand) {
-  const Lane lane = demand.lane;
-  while (!fits(lane, demand.cost)) {
-    const auto costs = waiting_costs(lane);
+void Admission::make_room(const SlotRequest& demand) {
+  const Priority priority = demand.priority;
+  while (!fits(priority, demand.cost)) {
+    const auto costs = waiting_costs(priority);
     const auto [greedy, most] = greediest(costs);
     const auto known = costs.find(demand.client);
     const double own = known == costs.end() ? 0 : known->second;
-    if (greedy == demand.client || own + demand.cost >= most) refuse(lane, own);
-    Work* const dropped = newest_to_begin(lane, greedy);
+    if (greedy == demand.client || own + demand.cost >= most) refuse(priority, own);
+    QueueEntry* const dropped = newest_droppable(priority, greedy);
     if (!dropped) return;
     dropped->state = State::dropped;
     dropped->changed.notify_one();
   }
 }
 
-void Admission::refuse(Lane lane, double own) const {
-  const double all = waiting_cost(lane);
+void Admission::refuse(Priority priority, double own) const {
+  const double all = waiting_cost(priority);
   const std::string told = "Work of " + in_millions(all) + " rays waits already, at most " +
                            in_millions(limits_.queue_rays) + " may (queue_rays)";
-  if (own > 0 && own < all) throw ClientBusy(told + ", much of it yours", retry_after_s(lane), "queue_rays");
-  throw OverLimit(told, retry_after_s(lane), "queue_rays");
+  if (own > 0 && own < all)
+    throw ClientLimitExceeded(told + ", much of it yours", retry_after_s(priority), "queue_rays");
+  throw LimitExceeded(told, retry_after_s(priority), "queue_rays");
 }
 
 void Admission::measure(double cost) {
@@ -446,8 +453,8 @@ void Admission::measure(double cost) {
   busy_s_ = busy_s_ * faded + seconds;
 }
 
-double Admission::retry_after_s(Lane lane) const {
-  return limited_retry_s(waiting_cost(lane) / rays_a_second());
+double Admission::retry_after_s(Priority priority) const {
+  return limited_retry_s(waiting_cost(priority) / rays_a_second());
 }
 
 double Admission::rays_a_second() const { return busy_s_ > 0 ? done_rays_ / busy_s_ : kExpectedRate; }

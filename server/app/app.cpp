@@ -6,7 +6,7 @@
 #include "core/plan/cost.h"
 #include "core/plan/warnings.h"
 #include "core/render/views.h"
-#include "server/app/reading.h"
+#include "server/app/asset_reader.h"
 #include "server/app/watch.h"
 
 namespace orrery {
@@ -58,8 +58,8 @@ App::App(const Settings& settings, Timer& timer)
 template <class Work>
 void App::watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work) {
   require_open();
-  const Watch watch(caller.gone, ends_.get_token(), timer_, since,
-                    {settings_.request_seconds, "request_seconds"});
+  const WorkCancellation watch(caller.gone, ends_.get_token(), timer_, since,
+                               {settings_.request_seconds, "request_seconds"});
   const auto memory = memory_.open(caller.client);
   const std::stop_token stop = watch.stop();
   try {
@@ -74,19 +74,19 @@ void App::read(Body& body, const Caller& caller, Timing& timing, const ReadDocum
   const std::string bytes = std::move(body.bytes_);
   watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto start = Clock::now();
-    const Reading reading(assets_, admission_, caller.client, bytes.size(), stop);
+    const AssetReader reading(assets_, admission_, caller.client, bytes.size(), stop);
     work(parse_document(bytes), reading);
     timing.queue += reading.waited_ms();
     timing.load += milliseconds_since(start) - reading.waited_ms();
   });
 }
 
-AssetStore::Added App::add_asset(const std::string& sha256, Body& body, const Caller& caller) {
+AssetStore::AddResult App::add_asset(const std::string& sha256, Body& body, const Caller& caller) {
   std::string bytes = std::move(body.bytes_);
-  AssetStore::Added added;
+  AssetStore::AddResult added;
   watched(caller, timer_.now(), Stage::read, [&](const std::stop_token& stop) {
     const auto ticket =
-        admission_.enter({Lane::interactive, caller.client, cost_of_reading(bytes.size())}, stop);
+        admission_.enter({Priority::interactive, caller.client, cost_of_reading(bytes.size())}, stop);
     added = assets_.add(sha256, std::move(bytes), caller.client);
   });
   return added;
@@ -94,8 +94,8 @@ AssetStore::Added App::add_asset(const std::string& sha256, Body& body, const Ca
 
 Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
                      const Caller& caller, Timing& timing) {
-  Demand demand = services_.demand_of(scene.scene(), plan, caller.client);
-  demand.sharers = sharers_.of(key);
+  SlotRequest demand = services_.demand_of(scene.scene(), plan, caller.client);
+  demand.subscribers = subscribers_.of(key);
   const auto start = Clock::now();
   const auto since = timer_.now();
   const auto make_picture = [&](const std::stop_token& nobody_waits) {
@@ -112,14 +112,14 @@ Rendered App::render(const PreparedScene& scene, const Plan& plan, const std::st
     ++meters_.pictures_made;
     return {picture, true};
   }
-  const Pictures::Found found = pictures_.get(
-      picture_key(key, format), {caller.gone, caller.client, demand.sharers, &admission_}, make_picture);
+  const Pictures::LookupResult found = pictures_.get(
+      picture_key(key, format), {caller.gone, caller.client, demand.subscribers, &admission_}, make_picture);
   ++(found.made_here ? meters_.pictures_made : meters_.pictures_found);
   if (!found.made_here) timing.queue += milliseconds_since(start);
-  return {found.value, found.made_here && !found.value->of_kept_film};
+  return {found.value, found.made_here && !found.value->from_cached_film};
 }
 
-Admission::Ticket App::enter_in_time(const Demand& demand, Clock::time_point since, double seconds,
+Admission::Ticket App::enter_in_time(const SlotRequest& demand, Clock::time_point since, double seconds,
                                      double used_s, const std::stop_token& ends) {
   if (seconds == 0) return admission_.enter(demand, ends);
   std::stop_source late;
@@ -133,23 +133,23 @@ Admission::Ticket App::enter_in_time(const Demand& demand, Clock::time_point sin
     return ticket;
   } catch (const Cancelled&) {
     if (ends.stop_requested()) throw;
-    throw OverLimit(
+    throw LimitExceeded(
         "Others have had the service for all of the " + number_text(seconds) + " s that the picture may take",
         limited_retry_s(seconds), "renders");
   }
 }
 
 RenderControl App::limits_of(const Scene& scene, const Plan& plan) const {
-  return {.most_rays = settings_.request_rays / ray_weight(scene, plan),
-          .most_s = kShareOfBudgets * static_cast<double>(settings_.request_seconds.count())};
+  return {.max_rays = settings_.request_rays / ray_weight(scene, plan),
+          .max_s = kShareOfBudgets * static_cast<double>(settings_.request_seconds.count())};
 }
 
 Picture App::make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-                  const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,
-                  Stage& stage) {
+                  const SlotRequest& demand, Clock::time_point since, const std::stop_token& stop,
+                  Timing& timing, Stage& stage) {
   std::optional<Admission::Ticket> ticket;
   const double before_s = (timing.load + timing.plan + timing.queue) / 1000;
-  const auto enter = [&](const Demand& asked, const std::stop_token& ends) {
+  const auto enter = [&](const SlotRequest& asked, const std::stop_token& ends) {
     const auto start = Clock::now();
     ticket.emplace(enter_in_time(asked, since, *plan.asked.seconds, before_s, ends));
     timing.queue += milliseconds_since(start);
@@ -157,7 +157,7 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
   const FilmStorage storage = shared_storage(format, plan, films_.largest());
   if (storage == FilmStorage::sums) require_layers_fit(plan, memory_.most());
   RenderControl control = limits_of(scene.scene(), plan);
-  control.background = demand.lane == Lane::batch;
+  control.background = demand.priority == Priority::batch;
   control.used_s = [this, since, before_s] {
     return before_s + std::chrono::duration<double>(timer_.now() - since).count();
   };
@@ -166,12 +166,12 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
     stage = Stage::render;
     RenderControl stopped = control;
     stopped.stop = nobody_waits;
-    return WorkScope::current().memory->run(
+    return TaskScope::current().memory->run(
         nobody_waits, [&] { return services_.render(*ticket, scene, plan, storage, stopped); });
   };
-  const Films::Found film =
+  const Films::LookupResult film =
       *plan.asked.seconds > 0
-          ? Films::Found{std::make_shared<const RenderResult>(make_film(stop)), true}
+          ? Films::LookupResult{std::make_shared<const RenderResult>(make_film(stop)), true}
           : films_.get(key + std::to_string(static_cast<int>(storage)), {stop, demand.client}, make_film);
   const RenderStats& stats = film.value->stats;
   if (film.made_here) {
@@ -179,14 +179,14 @@ Picture App::make(const PreparedScene& scene, const Plan& plan, const std::strin
     timing.render = stats.trace_ms;
   } else {
     ++meters_.films_found;
-    enter({Lane::interactive, demand.client, kLeastCost, demand.sharers}, stop);
+    enter({Priority::interactive, demand.client, kFixedCost, demand.subscribers}, stop);
   }
   Picture picture{.bytes = {},
                   .stats = stats,
                   .certificate = film.value->certificate,
                   .warnings = find_warnings(scene.scene(), plan, stats.counts),
                   .budget = film.value->budget,
-                  .of_kept_film = !film.made_here};
+                  .from_cached_film = !film.made_here};
   stage = Stage::encode;
   const auto start = Clock::now();
   picture.bytes = encode_film(film.value->film, format);
@@ -218,8 +218,8 @@ SettledPlan App::settle(const PreparedScene& scene, const Plan& plan, const Call
   if (!plan.try_accelerators) return orrery::settle(scene, plan);
   std::optional<SettledPlan> settled;
   watched(caller, timer_.now(), Stage::settle, [&](const std::stop_token& stop) {
-    const auto ticket = admission_.enter({Lane::interactive, caller.client, kLeastCost}, stop);
-    const SceneStore::Measured measured(scenes_, scene);
+    const auto ticket = admission_.enter({Priority::interactive, caller.client, kFixedCost}, stop);
+    const SceneStore::SizeGuard measured(scenes_, scene);
     settled = orrery::settle(scene, plan, stop);
   });
   return *settled;
@@ -233,7 +233,7 @@ Forecast App::forecast(const PreparedScene& scene, const SettledPlan& plan, cons
   std::optional<Forecast> found;
   watched(caller, timer_.now(), Stage::settle, [&](const std::stop_token& stop) {
     auto ticket = admission_.enter(services_.demand_of(scene.scene(), pilots, caller.client), stop);
-    const SceneStore::Measured measured(scenes_, scene);
+    const SceneStore::SizeGuard measured(scenes_, scene);
     RenderControl control = limits_of(scene.scene(), *plan);
     control.stop = stop;
     control.pass = &ticket;
@@ -249,7 +249,7 @@ std::string_view App::readiness() const {
   if (retires_ || draining()) return "draining";
   if (admission_.full()) return "full";
   if (const auto state = connections_(); state != "ok") return state;
-  return admission_.longest_wait() >= kLongWait ? "slow" : "ok";
+  return admission_.shortest_client_wait() >= kLongWait ? "slow" : "ok";
 }
 
 void App::require_open() const {

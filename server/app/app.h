@@ -13,12 +13,12 @@
 #include "server/app/admission.h"
 #include "server/app/asset_store.h"
 #include "server/app/jobs.h"
-#include "server/app/meters.h"
-#include "server/app/orbit_hub.h"
+#include "server/app/orbit_registry.h"
 #include "server/app/pictures.h"
 #include "server/app/refinement.h"
 #include "server/app/render_services.h"
 #include "server/app/scene_store.h"
+#include "server/app/service_counters.h"
 #include "server/app/settings.h"
 #include "server/app/streams.h"
 #include "server/app/work_memory.h"
@@ -56,22 +56,23 @@ class App {
   SceneStore& scenes() { return scenes_; }
   AssetStore& assets() { return assets_; }
   Streams& streams() { return streams_; }
-  OrbitHub& orbits() { return orbits_; }
+  OrbitRegistry& orbits() { return orbits_; }
   Jobs& jobs() { return jobs_; }
   const Pictures& pictures() const { return pictures_; }
   const Films& films() const { return films_; }
   const Admission& admission() const { return admission_; }
   const WorkMemory& memory() const { return memory_; }
-  Meters& meters() { return meters_; }
+  ServiceCounters& meters() { return meters_; }
 
   // The only functions that take request bodies. Both charge memory to the client, wait for a slot if the
-  // work is long, and stop once the client disconnects. Both throw ClientBusy, Busy, Cancelled and TimedOut.
+  // work is long, and stop once the client disconnects. Both throw ClientLimitExceeded, Busy, Cancelled and
+  // TimedOut.
   //
   // Parses a JSON body and calls `work` to read the document, which may name assets. Also throws the errors
   // of both.
   using ReadDocument = std::function<void(const Document&, const AssetSource&)>;
   void read(Body& body, const Caller& caller, Timing& timing, const ReadDocument& work);
-  AssetStore::Added add_asset(const std::string& sha256, Body& body, const Caller& caller);
+  AssetStore::AddResult add_asset(const std::string& sha256, Body& body, const Caller& caller);
 
   // Returns the image of the plan: cached, or rendered and encoded once for all requests that wait for it.
   // `key` names the image in any format. An image with a time budget is rendered for each request, and the
@@ -113,36 +114,36 @@ class App {
   // service ends, or request_seconds have passed since `since`. `stage`: current step of the work.
   template <class Work>
   void watched(const Caller& caller, Clock::time_point since, const Stage& stage, const Work& work);
-  // Waits for a slot. Throws OverLimit if there is none within `seconds`, of which `used_s` had passed before
-  // `since`. 0: no time limit.
-  Admission::Ticket enter_in_time(const Demand& demand, Clock::time_point since, double seconds,
+  // Waits for a slot. Throws LimitExceeded if there is none within `seconds`, of which `used_s` had passed
+  // before `since`. 0: no time limit.
+  Admission::Ticket enter_in_time(const SlotRequest& demand, Clock::time_point since, double seconds,
                                   double used_s, const std::stop_token& ends);
   // Returns the limits for the budget of one request.
   RenderControl limits_of(const Scene& scene, const Plan& plan) const;
   // Renders the image, unless its film is cached, and encodes it. The client has waited since `since`.
   Picture make(const PreparedScene& scene, const Plan& plan, const std::string& key, FileFormat format,
-               const Demand& demand, Clock::time_point since, const std::stop_token& stop, Timing& timing,
-               Stage& stage);
+               const SlotRequest& demand, Clock::time_point since, const std::stop_token& stop,
+               Timing& timing, Stage& stage);
 
   Timer& timer_;
   std::function<std::string_view()> connections_ = [] { return std::string_view("ok"); };
   std::atomic<bool> retires_{false};
   std::stop_source drains_, ends_;
-  Meters meters_;
+  ServiceCounters meters_;
   Access access_;
   WorkerPool pool_;
   const Settings settings_;  // with automatic values resolved
   WorkMemory memory_;
   SceneStore scenes_;
   AssetStore assets_;
-  SharersByKey sharers_;  // by image, in any format
+  SubscribersByKey subscribers_;  // by image, in any format
   Pictures pictures_;
   Films films_;
   Admission admission_;
   RayEstimator estimator_;
   const RenderServices services_;
   Streams streams_;
-  OrbitHub orbits_;
+  OrbitRegistry orbits_;
   Jobs jobs_;
 };
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/base/hash.h"
+#include "server/http/limit_exceeded.h"
 #include "server/http/message.h"
-#include "server/http/over_limit.h"
 
 namespace orrery {
 
@@ -19,12 +19,12 @@ std::size_t bytes_of(const AssetStore::Asset& asset) {
   return kEntry + asset.bytes.size() + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
 }
 
-// Parses the file. Keeps the texels of an image if they take at most `most_texel_bytes`.
-decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::size_t most_texel_bytes) {
+// Parses the file. Keeps the texels of an image if they take at most `max_texel_bytes`.
+decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::size_t max_texel_bytes) {
   if (is_picture(bytes)) {
     auto texels = std::make_shared<const Texels>(read_picture(bytes));
     const auto [width, height] = std::pair(texels->width, texels->height);
-    if (bytes_of(*texels) > most_texel_bytes) texels = nullptr;
+    if (bytes_of(*texels) > max_texel_bytes) texels = nullptr;
     return AssetStore::Asset::Picture{picture_format(bytes), width, height, std::move(texels)};
   }
   const TriangleMesh mesh = read_mesh(bytes);
@@ -39,7 +39,8 @@ void AssetStore::require_name(const std::string& name) {
         "", "an asset is named by the SHA-256 of its bytes: 64 digits 0-9, a-f; got " + name.substr(0, 80));
 }
 
-AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes, const std::string& client) {
+AssetStore::AddResult AssetStore::add(const std::string& sha256, std::string bytes,
+                                      const std::string& client) {
   const std::string hash = sha256_hex(bytes);
   if (hash != sha256)
     throw InputError("",
@@ -50,7 +51,7 @@ AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes, 
   }
   auto asset = std::make_shared<Asset>();
   asset->bytes = std::move(bytes);
-  const std::size_t most = assets_.most_bytes(), least = bytes_of(*asset);
+  const std::size_t most = assets_.max_bytes(), least = bytes_of(*asset);
   if (least > most)
     throw InputError("", "the file takes " + std::to_string(least) + " bytes of memory, at most " +
                              std::to_string(most) + " are kept (asset_store_bytes)");
@@ -65,9 +66,9 @@ AssetStore::Added AssetStore::add(const std::string& sha256, std::string bytes, 
   }
   if (added) return {added->value, added->known};
   constexpr double kRetry_s = 30;
-  throw OverLimit("Assets of others leave no room for " + std::to_string(least) +
-                      " bytes more of yours, of " + std::to_string(most) + " for all (asset_store_bytes)",
-                  kRetry_s, "asset_store_bytes");
+  throw LimitExceeded("Assets of others leave no room for " + std::to_string(least) +
+                          " bytes more of yours, of " + std::to_string(most) + " for all (asset_store_bytes)",
+                      kRetry_s, "asset_store_bytes");
 }
 
 AssetStore::AssetPtr AssetStore::find(const std::string& sha256) {

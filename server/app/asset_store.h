@@ -31,15 +31,15 @@ class AssetStore final : public AssetSource {
   // Throws InputError unless `name` is a SHA-256 of 64 digits 0-9, a-f.
   static void require_name(const std::string& name);
 
-  explicit AssetStore(std::size_t most_bytes) : assets_(most_bytes, std::chrono::hours(1)) {}
+  explicit AssetStore(std::size_t max_bytes) : assets_(max_bytes, std::chrono::hours(1)) {}
 
-  struct Added {
+  struct AddResult {
     AssetPtr asset;
     bool known;  // it was already stored
   };
   // Stores a file for the client. Throws InputError if the bytes have another hash, are neither mesh nor
-  // image, or exceed the limit of the store. Throws OverLimit if other clients leave no room.
-  Added add(const std::string& sha256, std::string bytes, const std::string& client);
+  // image, or exceed the limit of the store. Throws LimitExceeded if other clients leave no room.
+  AddResult add(const std::string& sha256, std::string bytes, const std::string& client);
   // Throws NotFound.
   AssetPtr find(const std::string& sha256);
   // Releases the asset for the client, or with `of_all` for all clients. Removes it once no client holds it.

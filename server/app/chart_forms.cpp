@@ -7,9 +7,9 @@
 
 #include "core/params/params.h"
 #include "core/plan/limits.h"
+#include "server/app/error_report.h"
 #include "server/app/flag_name.h"
 #include "server/app/frame_path.h"
-#include "server/app/told_error.h"
 
 namespace orrery {
 namespace {
@@ -52,7 +52,7 @@ ordered_json figures_json(const Point& point, double cheapest_ms) {
   json["ssim"] = point.mean([](const Measurement& s) { return s.ssim; });
   json["non_finite"] = point.mean([](const Measurement& s) { return double(s.difference.non_finite); });
   json["on_front"] = point.on_front();
-  json["undecided"] = point.standing == Standing::undecided;
+  json["undecided"] = point.pareto_status == ParetoStatus::undecided;
   json["plan"] = point.plan;
   return json;
 }
@@ -148,10 +148,10 @@ constexpr std::array kForms{ChartForm{".svg", "image/svg+xml", drawing_of},
 void read_extent(Params& p, Study::Extent& extent) {
   extent.samples =
       static_cast<int>(p.integer("samples", "Of the highest configuration: 1, 4, 16, ... up to it.", 1,
-                                 kMostChartSamples, extent.samples));
+                                 kMaxChartSamples, extent.samples));
   extent.rounds = static_cast<int>(p.integer(
       "rounds", "Pictures of each configuration, with different seeds: two, and more of what is not beaten.",
-      1, kMostChartRounds, extent.rounds));
+      1, kMaxChartRounds, extent.rounds));
   extent.width = static_cast<int>(p.integer(
       "width",
       "Of the pictures that are rendered, which have the picture's proportions; missing or more: its own.", 1,

@@ -11,8 +11,8 @@
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
 #include "core/render/certificate.h"
+#include "server/app/error_report.h"
 #include "server/app/option_json.h"
-#include "server/app/told_error.h"
 
 namespace orrery {
 namespace {
@@ -98,7 +98,7 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan,
                     {"shadows", plan.shadows},
                     {"specular", plan.specular},
                     {"filters", plan.filters}};
-  if (const auto least = least_provable(plan)) json["least_provable"] = *least;
+  if (const auto least = min_provable(plan)) json["least_provable"] = *least;
   json["camera_rays"] = camera_rays(plan);
   json["decisions"] = std::move(decisions);
   if (forecast) json["forecast"] = forecast_json(scene, *forecast);
@@ -127,7 +127,7 @@ std::string explain_text(const Scene& scene, const Plan& plan, const std::option
   for (const Decision& d : plan.decisions)
     text += "  " + padded(d.subject, subject_width) + "  " + padded(d.choice, choice_width) + "  " +
             d.reason + bound_note(d.bound) + "\n";
-  if (const auto least = least_provable(plan)) {
+  if (const auto least = min_provable(plan)) {
     char line[96];
     std::snprintf(line, sizeof line,
                   "  samples of so many pixels prove an RMS error of %.3g at least, in %s values\n", *least,

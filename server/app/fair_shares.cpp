@@ -142,7 +142,7 @@ std::optional<FairShares::Loss> FairShares::longest_unused(Rank below) const {
 
 // Returns the client's least recently used entry. Brings the client's order up to date only here, so a use
 // costs the same however many clients hold the entry.
-std::optional<FairShares::Loss> FairShares::least_used(Clients::iterator client, Rank below) {
+std::optional<FairShares::Loss> FairShares::least_recently_used(Clients::iterator client, Rank below) {
   for (Rank rank = 0; rank < below; ++rank) {
     auto& entries = client->second.entries[rank];
     while (!entries.empty()) {
@@ -165,9 +165,9 @@ std::optional<FairShares::Loss> FairShares::next_loss(const std::string& client,
   for (auto heaviest = by_weight_.rbegin(); heaviest != by_weight_.rend(); ++heaviest) {
     if (heaviest->first <= own_weight) break;
     if (heaviest->second == client) continue;
-    if (auto loss = least_used(clients_.find(heaviest->second), ranks.others)) return loss;
+    if (auto loss = least_recently_used(clients_.find(heaviest->second), ranks.others)) return loss;
   }
-  return own == clients_.end() ? std::nullopt : least_used(own, ranks.own);
+  return own == clients_.end() ? std::nullopt : least_recently_used(own, ranks.own);
 }
 
 std::optional<std::vector<std::string>> FairShares::make_room(const std::string& client, std::size_t more,

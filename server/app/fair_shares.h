@@ -94,7 +94,7 @@ class FairShares {
   // Returns the next hold to give up, or nullopt if the client would hold the most.
   std::optional<Loss> next_loss(const std::string& client, std::size_t more, Ranks ranks);
   std::optional<Loss> longest_unused(Rank below) const;
-  std::optional<Loss> least_used(Clients::iterator client, Rank below);
+  std::optional<Loss> least_recently_used(Clients::iterator client, Rank below);
 
   const Clock::duration protected_for_;
   const std::function<Clock::time_point()> now_;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/clock.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/render/renderer.h"
 #include "core/render/views.h"
 

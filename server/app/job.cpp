@@ -10,7 +10,7 @@
 namespace orrery {
 namespace {
 
-constexpr int kMostPlanned = 1000;  // steps in the cost estimate; more are sampled evenly
+constexpr int kMaxPlanned = 1000;  // steps in the cost estimate; more are sampled evenly
 
 }  // namespace
 
@@ -36,8 +36,8 @@ void Job::release() {
 void Job::cancel() { cancelled_.request_stop(); }
 
 void Job::run() {
-  const Watch watch(cancelled_.get_token(), services_.draining, services_.timer, services_.timer.now(),
-                    {limit_, "job_seconds"});
+  const WorkCancellation watch(cancelled_.get_token(), services_.draining, services_.timer,
+                               services_.timer.now(), {limit_, "job_seconds"});
   int next = 0;
   const Pipeline pipeline{
       .pool = services_.pool,
@@ -69,16 +69,16 @@ void Job::run() {
 Plan Job::plan(int step) const { return make_plan(spec_.scene->scene(), work().request(step)); }
 
 double Job::rays_of_all() const {
-  const int steps = work().steps(), planned = std::min(steps, kMostPlanned);
+  const int steps = work().steps(), planned = std::min(steps, kMaxPlanned);
   double sum = 0;
   for (std::int64_t i = 0; i < planned; ++i)
     sum += expected_rays(spec_.scene->scene(), plan(static_cast<int>(i * steps / planned)));
   return sum * steps / planned;
 }
 
-RenderResult Job::render(int step, const Watch& watch) {
+RenderResult Job::render(int step, const WorkCancellation& watch) {
   RenderResult rendered =
-      services_.once_there_is_memory(watch.stop(), [&] { return try_render(step, watch); });
+      services_.retry_while_out_of_memory(watch.stop(), [&] { return try_render(step, watch); });
   take(step, rendered);
   return rendered;
 }
@@ -93,11 +93,11 @@ void Job::take(int step, const RenderResult& rendered) {
   rays_ = rays;
 }
 
-RenderResult Job::try_render(int step, const Watch& watch) {
+RenderResult Job::try_render(int step, const WorkCancellation& watch) {
   const Scene& scene = spec_.scene->scene();
   const Plan asked = plan(step);
-  Demand demand = services_.demand_of(scene, asked, spec_.client);
-  demand.lane = Lane::batch;
+  SlotRequest demand = services_.demand_of(scene, asked, spec_.client);
+  demand.priority = Priority::batch;
   auto ticket = services_.admission.enter_again(demand, watch.stop());
   memory_->settle(0);  // returns the grant of earlier steps
   const int tiles = TileGrid(asked.width, asked.height).size();
@@ -111,7 +111,7 @@ RenderResult Job::try_render(int step, const Watch& watch) {
   // Assumes that all steps take as long as the step with the budget.
   RenderControl control{.stop = watch.stop(),
                         .background = true,
-                        .most_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
+                        .max_s = kShareOfBudgets * static_cast<double>(limit_.count()) / work().steps()};
   const bool has_passes = has_budget(asked.asked);  // their number is unknown
   if (!has_passes)
     control.progress = [this, step, rays = expected_rays(scene, asked)](int done, int) {
@@ -152,7 +152,7 @@ void Job::end(std::exception_ptr error) {
   error_ = error;
   state_ = !error ? JobState::done : cancelled_.stop_requested() ? JobState::cancelled : JobState::failed;
   ended_ = services_.timer.now();
-  Meters& meters = services_.meters;
+  ServiceCounters& meters = services_.meters;
   ++(state_ == JobState::done        ? meters.jobs_done
      : state_ == JobState::cancelled ? meters.jobs_cancelled
                                      : meters.jobs_failed);

@@ -42,8 +42,8 @@ struct JobStatus {
   std::exception_ptr error;                // reason of a failure
 };
 
-// Long work on a thread of its own. Each step waits for a slot in the batch lane. The job keeps its results
-// after its end, but not its scene. Safe from any thread.
+// Long work on a thread of its own. Each step waits for a slot in the batch priority. The job keeps its
+// results after its end, but not its scene. Safe from any thread.
 class Job {
  public:
   // Called with the bytes of each step's result before it is stored. Throws if there is no room for them.
@@ -74,8 +74,9 @@ class Job {
   Plan plan(int step) const;
   void take(int step, const RenderResult& rendered);
   double rays_of_all() const;  // estimate for all steps from their plans alone
-  RenderResult render(int step, const Watch& watch);
-  RenderResult try_render(int step, const Watch& watch);  // throws OverLimit if memory is short
+  RenderResult render(int step, const WorkCancellation& watch);
+  RenderResult try_render(int step,
+                          const WorkCancellation& watch);  // throws LimitExceeded if memory is short
   // Records that `done` tiles of a step are finished. `rays`: estimated cost of the whole step.
   void count(int step, std::int64_t done, double rays);
   void keep(int step, Frame&& frame);

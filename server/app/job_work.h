@@ -52,8 +52,8 @@ class JobWork {
   virtual nlohmann::ordered_json links(const std::string& job_id) const = 0;
   virtual nlohmann::ordered_json links_of_step(const std::string& job_id, int step) const = 0;
   // Returns the other status members of the job after `steps_done` steps, and of a step that is done.
-  virtual nlohmann::ordered_json told(int steps_done) const = 0;
-  virtual nlohmann::ordered_json told_of_step(int step) const = 0;
+  virtual nlohmann::ordered_json status_fields(int steps_done) const = 0;
+  virtual nlohmann::ordered_json step_fields(int step) const = 0;
   // Returns the file of job `job_id` at `path`. Throws NotFound if there is none.
   virtual JobResult result(const std::string& job_id, std::string_view path) const = 0;
 };

@@ -17,7 +17,7 @@ Jobs::~Jobs() {
   entries.swap(entries_);  // destroyed without the lock: ending jobs call make_room()
 }
 
-Jobs::Started Jobs::start(JobSpec spec, const std::string& key, const std::string& content) {
+Jobs::StartResult Jobs::start(JobSpec spec, const std::string& key, const std::string& content) {
   const std::lock_guard lock(mutex_);
   forget_old();
   const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) {

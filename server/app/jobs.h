@@ -29,14 +29,14 @@ class Jobs {
 
   using JobPtr = std::shared_ptr<Job>;
 
-  struct Started {
+  struct StartResult {
     JobPtr job;
     bool known;  // already started by the client with the same key
   };
   // Starts a job. If `key` is not empty and the client already started a job with it, returns that job, or
-  // throws InputError if `content` differs. Throws OverLimit if too many jobs are running, ClientBusy if too
-  // many of them are this client's.
-  Started start(JobSpec spec, const std::string& key, const std::string& content);
+  // throws InputError if `content` differs. Throws LimitExceeded if too many jobs are running,
+  // ClientLimitExceeded if too many of them are this client's.
+  StartResult start(JobSpec spec, const std::string& key, const std::string& content);
   // Throws NotFound.
   JobPtr find(const std::string& id);
   // Cancels and removes the job. Throws NotFound.

@@ -16,24 +16,23 @@ template <class Value>
 class Lru {
  public:
   // `protected_for`: see FairShares.
-  Lru(std::size_t most_bytes, Clock::duration protected_for)
-      : most_bytes_(most_bytes), shares_(protected_for) {}
+  Lru(std::size_t max_bytes, Clock::duration protected_for) : max_bytes_(max_bytes), shares_(protected_for) {}
 
-  struct Added {
+  struct AddResult {
     Value value;
     bool known;  // it was already stored
   };
   // Returns the stored value, or stores make(). The client holds the value from now on. Returns nullopt if
   // others leave no room and the client would hold the most with this value alone. REQUIRES: bytes <=
-  // most_bytes().
+  // max_bytes().
   template <class Make>
-  std::optional<Added> add(const std::string& id, const std::string& client, std::size_t bytes,
-                           const Make& make) {
+  std::optional<AddResult> add(const std::string& id, const std::string& client, std::size_t bytes,
+                               const Make& make) {
     const std::lock_guard lock(mutex_);
     auto known = values_.find(id);
     const bool is_known = known != values_.end();
     if (!is_known) {
-      const auto evicted = shares_.make_room(client, bytes, most_bytes_, {});
+      const auto evicted = shares_.make_room(client, bytes, max_bytes_, {});
       if (!evicted) return std::nullopt;
       evictions_ += evicted->size();
       for (const std::string& other : *evicted) values_.erase(other);
@@ -41,7 +40,7 @@ class Lru {
     }
     shares_.hold(id, client);
     if (!is_known) shares_.set_weight(id, bytes);
-    return Added{known->second, is_known};
+    return AddResult{known->second, is_known};
   }
 
   std::optional<Value> find(const std::string& id) {
@@ -72,10 +71,10 @@ class Lru {
     const std::lock_guard lock(mutex_);
     return shares_.weight();
   }
-  std::size_t most_bytes() const { return most_bytes_; }
+  std::size_t max_bytes() const { return max_bytes_; }
 
  private:
-  const std::size_t most_bytes_;
+  const std::size_t max_bytes_;
   mutable std::mutex mutex_;  // guards all below
   std::map<std::string, Value> values_;
   FairShares shares_;

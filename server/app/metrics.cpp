@@ -9,7 +9,7 @@
 #include <array>
 #include <iterator>
 
-#include "server/app/meters.h"
+#include "server/app/service_counters.h"
 
 namespace orrery {
 namespace {

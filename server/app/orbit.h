@@ -34,7 +34,7 @@ struct OrbitPath {
     return *first.azimuth_degrees + static_cast<double>(frame) * step_degrees;
   }
   // Sets the settings of all later frames to those of the first one. Keeps the error space.
-  void go_on_as(const RenderSettings& settings) {
+  void continue_with(const RenderSettings& settings) {
     const std::optional<Space> space = first.space;
     static_cast<RenderSettings&>(first) = settings;
     first.space = space;

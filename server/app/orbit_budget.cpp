@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
-#include "server/app/told_error.h"
+#include "server/app/error_report.h"
 
 namespace orrery {
 
@@ -14,7 +14,7 @@ void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& 
   if (frame.budget) {
     of_first_ = frame.budget;
     plan_ = query_of(scene, frame.budget->settings);
-    return path.go_on_as(frame.budget->settings);
+    return path.continue_with(frame.budget->settings);
   }
   if (!of_first_ || of_first_->error == 0 || keeps_error(number)) return;
   BudgetOutcome missed = *of_first_;

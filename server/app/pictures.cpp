@@ -25,9 +25,9 @@ std::size_t held_bytes(const RenderResult& rendered) {
   return Film::bytes(film.width(), film.height(), film.storage(), film.channels());
 }
 
-FilmStorage shared_storage(FileFormat format, const Plan& plan, std::size_t most_bytes) {
+FilmStorage shared_storage(FileFormat format, const Plan& plan, std::size_t max_bytes) {
   const FilmStorage least = storage_for(format, plan);
-  const bool fits = Film::bytes(plan.width, plan.height, FilmStorage::linear32, {}) <= most_bytes;
+  const bool fits = Film::bytes(plan.width, plan.height, FilmStorage::linear32, {}) <= max_bytes;
   return least == FilmStorage::srgb8 && fits ? FilmStorage::linear32 : least;
 }
 

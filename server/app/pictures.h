@@ -17,7 +17,7 @@ struct Picture {
   Certificate certificate = {};
   std::vector<Problem> warnings = {};  // see find_warnings()
   std::optional<BudgetOutcome> budget = {};
-  bool of_kept_film = false;  // encoded from a cached film
+  bool from_cached_film = false;  // encoded from a cached film
 };
 std::size_t held_bytes(const Picture& picture);
 // Returns the key of an image in a format. `work`: key of the image in any format.
@@ -29,7 +29,7 @@ std::size_t held_bytes(const RenderResult& rendered);
 using Films = SingleFlight<RenderResult>;
 
 // Returns the storage for the film of an image: linear32, which serves all formats, if srgb8 would suffice
-// and the film fits in `most_bytes`. Otherwise returns the smallest storage that the format needs.
-FilmStorage shared_storage(FileFormat format, const Plan& plan, std::size_t most_bytes);
+// and the film fits in `max_bytes`. Otherwise returns the smallest storage that the format needs.
+FilmStorage shared_storage(FileFormat format, const Plan& plan, std::size_t max_bytes);
 
 }  // namespace orrery

@@ -56,7 +56,7 @@ class Line {
 
   // Encodes a frame. If memory is short, frames below 32 MiB are still kept, and the next render waits.
   Frame encode(RenderResult&& rendered, double render_ms) const {
-    const WorkScope scope({nullptr, &pipeline_.stop});
+    const TaskScope scope({nullptr, &pipeline_.stop});
     Frame frame = encode_frame(std::move(rendered), render_ms, pipeline_.encode);
     if (!memory_) return frame;
     frame.bytes.shrink_to_fit();

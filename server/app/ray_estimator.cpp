@@ -25,11 +25,11 @@ double RayEstimator::estimate(const Scene& scene, const Plan& plan) {
 }
 
 void RayEstimator::learn(const Scene& scene, const Plan& plan, std::uint64_t rays) {
-  constexpr double kEnoughCameraRays = 4096, kMostFactor = 8;
+  constexpr double kEnoughCameraRays = 4096, kMaxFactor = 8;
   const double camera_rays = double(plan.width) * plan.height * plan.samples;
   const double weight = std::min(1.0, camera_rays / kEnoughCameraRays);
   const double seen =
-      std::clamp(static_cast<double>(rays) / expected_rays(scene, plan), 1 / kMostFactor, kMostFactor);
+      std::clamp(static_cast<double>(rays) / expected_rays(scene, plan), 1 / kMaxFactor, kMaxFactor);
   const std::string nobody;  // factors belong to no client
   const auto added = factors_.add(key_of(scene, plan), nobody, 1,
                                   [&] { return std::make_shared<double>(1 + weight * (seen - 1)); });

@@ -24,9 +24,9 @@ class RayEstimator {
   void learn(const Scene& scene, const Plan& plan, std::uint64_t rays);
 
  private:
-  static constexpr std::size_t kMostFactors = 1024;  // most recently used ones
+  static constexpr std::size_t kMaxFactors = 1024;  // most recently used ones
 
-  Lru<std::shared_ptr<double>> factors_{kMostFactors, Clock::duration::max()};
+  Lru<std::shared_ptr<double>> factors_{kMaxFactors, Clock::duration::max()};
   std::mutex mutex_;  // guards the numbers that factors_ points to
 };
 

@@ -34,8 +34,8 @@ std::optional<Refinement::Step> Refinement::next(const std::stop_token& gone) {
     ++services_.meters.pictures_found;
     return Step{.samples = spec_.plan.samples, .picture = known_};
   }
-  const Watch watch(gone, services_.ends, services_.timer, services_.timer.now(),
-                    {pass_time_, "request_seconds"});
+  const WorkCancellation watch(gone, services_.ends, services_.timer, services_.timer.now(),
+                               {pass_time_, "request_seconds"});
   const std::stop_token stop = watch.stop();
   Stage stage = Stage::queue;
   const std::size_t pass = std::exchange(next_, samples_.size());  // at_end() if render() throws
@@ -53,19 +53,20 @@ Refinement::Step Refinement::render(int samples, const std::stop_token& stop, St
   const Scene& scene = spec_.scene->scene();
   Plan pass = spec_.plan;  // for its cost
   pass.samples = samples - done_;
-  const Demand demand = services_.demand_of(scene, pass, spec_.client);
+  const SlotRequest demand = services_.demand_of(scene, pass, spec_.client);
   auto ticket =
       progress_ ? services_.admission.enter_again(demand, stop) : services_.admission.enter(demand, stop);
   stage = Stage::render;
   if (!progress_) {
-    const SceneStore::Measured measured(services_.scenes, *spec_.scene);
+    const SceneStore::SizeGuard measured(services_.scenes, *spec_.scene);
     progress_ = std::make_unique<ProgressiveRender>(*spec_.scene, settle(*spec_.scene, spec_.plan, stop),
                                                     services_.pool, stop);
   }
   const RenderStats& stats = progress_->stats();
   const std::uint64_t rays_before = stats.counts.rays.total();
   const double ms_before = done_ > 0 ? stats.build_ms + stats.trace_ms : 0;
-  progress_->refine(samples, {.stop = stop, .background = demand.lane == Lane::batch, .pass = &ticket});
+  progress_->refine(samples,
+                    {.stop = stop, .background = demand.priority == Priority::batch, .pass = &ticket});
   done_ = samples;
   Step step{.samples = samples,
             .picture = {},

@@ -24,8 +24,8 @@ std::vector<std::string> split(const std::string& text) {
 
 // Returns text that is not a number unchanged, so that the reader rejects it with a message.
 nlohmann::json number_of(const std::string& text) {
-  if (const auto whole = number_in<std::int64_t>(text)) return *whole;  // a double would round it
-  if (const auto number = number_in<double>(text); number && std::isfinite(*number)) return *number;
+  if (const auto whole = parse_number<std::int64_t>(text)) return *whole;  // a double would round it
+  if (const auto number = parse_number<double>(text); number && std::isfinite(*number)) return *number;
   return text;
 }
 

@@ -7,9 +7,9 @@
 #include "core/plan/cost.h"
 #include "core/render/renderer.h"
 #include "server/app/admission.h"
-#include "server/app/meters.h"
 #include "server/app/ray_estimator.h"
 #include "server/app/scene_store.h"
+#include "server/app/service_counters.h"
 
 namespace orrery {
 
@@ -23,27 +23,27 @@ struct RenderServices {
   Timer& timer;
   std::stop_token draining;  // no new work; streams end at the next frame
   std::stop_token ends;      // cancels all work
-  Meters& meters;
+  ServiceCounters& meters;
   RayEstimator& estimator;
   WorkMemory& memory;
   SceneStore& scenes;
   double interactive_rays;  // limit for a frame in the interactive lane
 
-  // Returns the slot request for a frame. Its cost is the estimate in usual rays plus kLeastCost. The frame
+  // Returns the slot request for a frame. Its cost is the estimate in usual rays plus kFixedCost. The frame
   // is batch work if either the plan alone or the learned estimate exceeds interactive_rays.
-  Demand demand_of(const Scene& scene, const Plan& plan, const std::string& client) const {
+  SlotRequest demand_of(const Scene& scene, const Plan& plan, const std::string& client) const {
     const double rays = estimator.estimate(scene, plan), weight = ray_weight(scene, plan);
     const bool small = weight * std::max(rays, expected_rays(scene, plan)) <= interactive_rays;
-    return {small ? Lane::interactive : Lane::batch, client, kLeastCost + weight * rays};
+    return {small ? Priority::interactive : Priority::batch, client, kFixedCost + weight * rays};
   }
 
-  // Returns render(). If it throws OverLimit because other work holds the memory, waits and calls it again.
-  // Throws its other errors, and Cancelled once `stop` is requested.
+  // Returns render(). If it throws LimitExceeded because other work holds the memory, waits and calls it
+  // again. Throws its other errors, and Cancelled once `stop` is requested.
   template <class Render>
-  RenderResult once_there_is_memory(const std::stop_token& stop, const Render& render) const {
+  RenderResult retry_while_out_of_memory(const std::stop_token& stop, const Render& render) const {
     for (;;) try {
         return render();
-      } catch (const OverLimit& busy) {
+      } catch (const LimitExceeded& busy) {
         pause(busy.retry_after_s(), stop);
       }
   }
@@ -54,7 +54,7 @@ struct RenderServices {
                       FilmStorage storage, const RenderControl& control) const {
     RenderControl shared = control;
     shared.pass = &ticket;
-    const SceneStore::Measured measured(scenes, scene);
+    const SceneStore::SizeGuard measured(scenes, scene);
     const SettledPlan settled = settle(scene, plan, control.stop);
     RenderResult result = render_frame(scene, settled, storage, pool, shared);
     Plan done = *settled;
@@ -68,7 +68,7 @@ struct RenderServices {
   // Records the measured cost of the plan's samples in the ticket, the estimator and the metrics.
   void count(Admission::Ticket& ticket, const Scene& scene, const Plan& plan, std::uint64_t rays,
              double ms) const {
-    ticket.set_cost(kLeastCost + ray_weight(scene, plan) * static_cast<double>(rays));
+    ticket.set_cost(kFixedCost + ray_weight(scene, plan) * static_cast<double>(rays));
     estimator.learn(scene, plan, rays);
     meters.rays += rays;
     meters.render.Observe(ms / 1000);

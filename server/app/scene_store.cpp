@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/load/load.h"
+#include "server/http/limit_exceeded.h"
 #include "server/http/message.h"
-#include "server/http/over_limit.h"
 
 namespace orrery {
 
@@ -21,14 +21,13 @@ SceneStore::~SceneStore() {
   for (const auto& [id, entry] : scenes_) entry.scene->settle(false, false);
 }
 
-SceneStore::Kept SceneStore::keep(const Document& document, const AssetSource& assets,
-                                  const std::string& client) {
+SceneStore::KeepResult SceneStore::keep(const Document& document, const AssetSource& assets,
+                                        const std::string& client) {
   const std::string id = document.id();
   const Prepared scene = find_or_load(id, document, assets, client);
-  if (scene->loaded_bytes() > most_)
+  if (scene->loaded_bytes() > max_)
     throw InputError("", "the scene takes " + std::to_string(scene->loaded_bytes()) +
-                             " bytes of memory, at most " + std::to_string(most_) +
-                             " are kept (store_bytes)");
+                             " bytes of memory, at most " + std::to_string(max_) + " are kept (store_bytes)");
   const std::lock_guard lock(mutex_);
   if (Prepared known = find_locked(id)) {
     const bool was_kept = is_kept(id);
@@ -37,9 +36,9 @@ SceneStore::Kept SceneStore::keep(const Document& document, const AssetSource& a
   }
   if (add(scene, client, kKept)) return {scene, false};
   constexpr double kRetry_s = 30;
-  throw OverLimit("Scenes of others leave no room for " + std::to_string(scene->loaded_bytes()) +
-                      " bytes more of yours, of " + std::to_string(most_) + " for all (store_bytes)",
-                  kRetry_s, "store_bytes");
+  throw LimitExceeded("Scenes of others leave no room for " + std::to_string(scene->loaded_bytes()) +
+                          " bytes more of yours, of " + std::to_string(max_) + " for all (store_bytes)",
+                      kRetry_s, "store_bytes");
 }
 
 SceneStore::Prepared SceneStore::get(const Document& document, const AssetSource& assets,
@@ -51,7 +50,7 @@ SceneStore::Prepared SceneStore::get(const Document& document, const AssetSource
     hold(id, client, kCached);
     return known;
   }
-  if (scene->loaded_bytes() <= most_) add(scene, client, kCached);
+  if (scene->loaded_bytes() <= max_) add(scene, client, kCached);
   return scene;
 }
 
@@ -71,7 +70,7 @@ SceneStore::Prepared SceneStore::find_or_load(const std::string& id, const Docum
 
 SceneStore::Prepared SceneStore::load(const Document& document, const AssetSource& assets,
                                       const std::string& client) const {
-  const std::stop_token* const stop = WorkScope::current().stop;
+  const std::stop_token* const stop = TaskScope::current().stop;
   return work_.open(client)->run(stop ? *stop : std::stop_token(), [&] {
     return std::make_shared<const PreparedScene>(load_scene(document, assets));
   });
@@ -137,7 +136,7 @@ bool SceneStore::add(const Prepared& scene, const std::string& client, FairShare
 }
 
 bool SceneStore::make_room(const std::string& client, std::size_t bytes, FairShares::Ranks ranks) {
-  const auto evicted = shares_.make_room(client, bytes, most_, ranks);
+  const auto evicted = shares_.make_room(client, bytes, max_, ranks);
   if (!evicted) return false;
   for (const std::string& id : *evicted) {
     if (scenes_.count(id) > 0) {

@@ -26,18 +26,18 @@ class SceneStore {
  public:
   using Prepared = std::shared_ptr<const PreparedScene>;
 
-  SceneStore(std::size_t most_bytes, WorkMemory& work) : most_(most_bytes), work_(work) {}
+  SceneStore(std::size_t max_bytes, WorkMemory& work) : max_(max_bytes), work_(work) {}
   ~SceneStore();
   SceneStore(const SceneStore&) = delete;
 
-  struct Kept {
+  struct KeepResult {
     Prepared scene;
     bool known = false;  // it was already kept
   };
   // Keeps the scene of `document`. Loads it only if it is not stored, not even as a cached scene. Throws as
-  // load_scene() and WorkMemory::open(), InputError if the scene alone exceeds the limit, and OverLimit if
-  // other clients leave no room.
-  Kept keep(const Document& document, const AssetSource& assets, const std::string& client);
+  // load_scene() and WorkMemory::open(), InputError if the scene alone exceeds the limit, and LimitExceeded
+  // if other clients leave no room.
+  KeepResult keep(const Document& document, const AssetSource& assets, const std::string& client);
   // Returns the scene of `document`. Loads it only if it is not stored, and then caches it if there is room.
   // Throws as load_scene() and WorkMemory::open().
   Prepared get(const Document& document, const AssetSource& assets, const std::string& client);
@@ -49,11 +49,11 @@ class SceneStore {
   void remove(const std::string& id, const std::string& client, bool of_all);
 
   // Scope in which structures may be built for the scene. Its end updates the size of the stored scene.
-  class Measured {
+  class SizeGuard {
    public:
-    Measured(SceneStore& store, const PreparedScene& scene) : store_(store), scene_(scene) {}
-    ~Measured() { store_.measure(scene_); }
-    Measured(const Measured&) = delete;
+    SizeGuard(SceneStore& store, const PreparedScene& scene) : store_(store), scene_(scene) {}
+    ~SizeGuard() { store_.measure(scene_); }
+    SizeGuard(const SizeGuard&) = delete;
 
    private:
     SceneStore& store_;
@@ -87,7 +87,7 @@ class SceneStore {
   static void drop_built(Entry& entry);
   void erase(const std::string& id);
 
-  const std::size_t most_;
+  const std::size_t max_;
   WorkMemory& work_;
   mutable std::mutex mutex_;  // guards all below
   std::map<std::string, Entry> scenes_;

@@ -90,10 +90,10 @@ constexpr std::array kBudgets{&S::bodies_bytes,  &S::answers_bytes, &S::store_by
                               &S::picture_bytes, &S::film_bytes,    &S::job_bytes};
 
 std::int64_t whole_number(std::string_view text, std::int64_t min, std::int64_t max) {
-  constexpr double kMostExact = 1e15;  // 1e6 is an integer, too
-  auto number = number_in<std::int64_t>(text);
-  if (const auto real = number_in<double>(text);
-      !number && real && std::trunc(*real) == *real && std::abs(*real) < kMostExact)
+  constexpr double kMaxExact = 1e15;  // 1e6 is an integer, too
+  auto number = parse_number<std::int64_t>(text);
+  if (const auto real = parse_number<double>(text);
+      !number && real && std::trunc(*real) == *real && std::abs(*real) < kMaxExact)
     number = static_cast<std::int64_t>(*real);
   if (number && *number >= min && *number <= max) return *number;
   throw InputError("", "expected a whole number from " + std::to_string(min) + " to " + std::to_string(max) +

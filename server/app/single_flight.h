@@ -19,7 +19,7 @@
 namespace orrery {
 
 // Cache of values by key that computes a value only once for concurrent requests. Caches values of at most
-// `largest` bytes, and `most_bytes` in total, in the share of the client that a value was made for (see
+// `largest` bytes, and `max_bytes` in total, in the share of the client that a value was made for (see
 // FairShares). The size of a value is std::size_t held_bytes(const Value&). Safe from any thread.
 template <class Value>
 class SingleFlight {
@@ -27,19 +27,19 @@ class SingleFlight {
   using ValuePtr = std::shared_ptr<const Value>;
   // Computes a value. The token is stopped once no caller waits for the value.
   using Make = std::function<Value(const std::stop_token&)>;
-  // Caller, which is one of `sharers` until it has the value or disconnects.
+  // Caller, which is one of `subscribers` until it has the value or disconnects.
   struct Client {
     std::stop_token gone;
     std::string name = {};
-    std::shared_ptr<Sharers> sharers = {};  // clients that wait for the value; null: not tracked
-    Admission* admission = nullptr;         // guards `sharers`, if any
+    std::shared_ptr<Subscribers> subscribers = {};  // clients that wait for the value; null: not tracked
+    Admission* admission = nullptr;                 // guards `subscribers`, if any
   };
 
-  explicit SingleFlight(std::size_t most_bytes) : SingleFlight(most_bytes, most_bytes) {}
-  SingleFlight(std::size_t most_bytes, std::size_t largest)
-      : kept_(most_bytes, std::chrono::minutes(5)), largest_(largest) {}
+  explicit SingleFlight(std::size_t max_bytes) : SingleFlight(max_bytes, max_bytes) {}
+  SingleFlight(std::size_t max_bytes, std::size_t largest)
+      : kept_(max_bytes, std::chrono::minutes(5)), largest_(largest) {}
 
-  struct Found {
+  struct LookupResult {
     ValuePtr value;
     bool made_here;  // by this call; else cached or made by another
   };
@@ -47,16 +47,16 @@ class SingleFlight {
   // once neither this caller nor later callers wait. Throws the error of `make`, also to the waiting callers.
   // Busy, Cancelled and TimedOut concern only the caller of `make`; a waiting caller then computes the value.
   // Throws Cancelled once the client disconnects.
-  Found get(const std::string& key, const Client& client, const Make& make) {
+  LookupResult get(const std::string& key, const Client& client, const Make& make) {
     for (;;) {
       std::unique_lock lock(mutex_);
       if (const auto kept = kept_.find(key)) return {*kept, false};
-      std::optional<Admission::Sharing> sharing;
-      if (client.sharers) sharing.emplace(*client.admission, client.sharers, client.name);
+      std::optional<Admission::Subscription> sharing;
+      if (client.subscribers) sharing.emplace(*client.admission, client.subscribers, client.name);
       const auto known = under_way_.find(key);
       const bool first = known == under_way_.end();
-      const WorkPtr work =
-          first ? under_way_.emplace(key, std::make_shared<Work>()).first->second : known->second;
+      const InFlightPtr work =
+          first ? under_way_.emplace(key, std::make_shared<InFlight>()).first->second : known->second;
       ++work->waiting;
       lock.unlock();
       const std::stop_callback leaves(client.gone, [this, &work, &sharing] {
@@ -102,7 +102,7 @@ class SingleFlight {
   }
 
  private:
-  struct Work {
+  struct InFlight {
     int waiting = 0;                // number of callers that want the value
     std::stop_source nobody_waits;  // requested once `waiting` is 0
     bool done = false;
@@ -110,9 +110,9 @@ class SingleFlight {
     std::exception_ptr error;  // set if the error concerns all callers
     std::condition_variable_any changed;
   };
-  using WorkPtr = std::shared_ptr<Work>;
+  using InFlightPtr = std::shared_ptr<InFlight>;
 
-  void leave(Work& work) {
+  void leave(InFlight& work) {
     {
       const std::lock_guard lock(mutex_);
       if (--work.waiting > 0) return;
@@ -120,8 +120,8 @@ class SingleFlight {
     work.nobody_waits.request_stop();
   }
 
-  Found make_for_all(const std::string& key, const std::string& client, const WorkPtr& work,
-                     const Make& make) {
+  LookupResult make_for_all(const std::string& key, const std::string& client, const InFlightPtr& work,
+                            const Make& make) {
     std::exception_ptr error;
     bool theirs = false;  // the error concerns all callers
     ValuePtr value;
@@ -153,7 +153,7 @@ class SingleFlight {
   Lru<ValuePtr> kept_;
   const std::size_t largest_;
   mutable std::mutex mutex_;
-  std::map<std::string, WorkPtr> under_way_;  // guarded by mutex_, as are the entries
+  std::map<std::string, InFlightPtr> under_way_;  // guarded by mutex_, as are the entries
 };
 
 }  // namespace orrery

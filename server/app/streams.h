@@ -13,16 +13,16 @@ namespace orrery {
 class Streams {
  public:
   explicit Streams(std::size_t connections)
-      : most_(std::max(1, static_cast<int>(connections - (connections + 3) / 4))) {}
+      : max_(std::max(1, static_cast<int>(connections - (connections + 3) / 4))) {}
 
-  // Opens a stream for the client, as long as the returned object lives. Throws OverLimit or ClientBusy if
-  // there are too many.
+  // Opens a stream for the client, as long as the returned object lives. Throws LimitExceeded or
+  // ClientLimitExceeded if there are too many.
   std::shared_ptr<const void> open(const std::string& client);
 
  private:
   class Slot;
 
-  const int most_;
+  const int max_;
   std::mutex mutex_;
   std::map<std::string, int> by_client_;  // guarded by mutex_
   int all_ = 0;                           // guarded by mutex_

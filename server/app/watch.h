@@ -17,15 +17,15 @@ class TimedOut : public Error {
 
 // Cancels the work of a request once its client disconnects, its time limit expires or the service ends. Safe
 // from any thread.
-class Watch {
+class WorkCancellation {
  public:
   struct Limit {
     std::chrono::seconds time;
     const char* name;  // name in /v1/limits
   };
   // The limit counts from `since`. `timer` must outlive this object.
-  Watch(const std::stop_token& gone, const std::stop_token& service_ends, Timer& timer,
-        Clock::time_point since, const Limit& limit);
+  WorkCancellation(const std::stop_token& gone, const std::stop_token& service_ends, Timer& timer,
+                   Clock::time_point since, const Limit& limit);
 
   // Returns a token that is stopped by the first of these events.
   std::stop_token stop() const { return source_.get_token(); }
@@ -36,7 +36,7 @@ class Watch {
  private:
   enum class Reason { none, gone, service_ends, time };
   struct Stop {
-    Watch& watch;
+    WorkCancellation& watch;
     Reason reason;
     void operator()() const;
   };

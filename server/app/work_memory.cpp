@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "server/http/over_limit.h"
+#include "server/http/limit_exceeded.h"
 
 namespace orrery {
 namespace {
@@ -64,21 +64,21 @@ void WorkMemory::require_room(const std::string& client, std::size_t own, std::s
   const std::size_t of_others = taken_ - own - others_of_client;
   // Returns whether the client leaves as much as it then holds. Sums of few terms stay below 2^62.
   const auto fits = [&](std::size_t beside, std::size_t client_has) {
-    return beside + 2 * (client_has + bytes) <= most_;
+    return beside + 2 * (client_has + bytes) <= max_;
   };
   if (fits(of_others, others_of_client)) return;
   if (!fits(0, 0))
-    throw InputError("", "it takes more than " + bytes_text(most_ / 2) +
+    throw InputError("", "it takes more than " + bytes_text(max_ / 2) +
                              " of memory at one time, half of what all work may take (" + kName + ")");
   if (fits(of_others, 0))
-    throw ClientBusy("Work of yours takes " + bytes_text(others_of_client) + " of memory already, of " +
-                         bytes_text(most_) + " for all (" + kName + "), and " + bytes_text(bytes) +
-                         " more are needed",
-                     kRetry_s, kName);
-  throw OverLimit("Work of others takes " + bytes_text(of_others) + " of memory already, of " +
-                      bytes_text(most_) + " for all (" + kName + "), and " +
-                      bytes_text(others_of_client + bytes) + " are needed",
-                  kRetry_s, kName);
+    throw ClientLimitExceeded("Work of yours takes " + bytes_text(others_of_client) +
+                                  " of memory already, of " + bytes_text(max_) + " for all (" + kName +
+                                  "), and " + bytes_text(bytes) + " more are needed",
+                              kRetry_s, kName);
+  throw LimitExceeded("Work of others takes " + bytes_text(of_others) + " of memory already, of " +
+                          bytes_text(max_) + " for all (" + kName + "), and " +
+                          bytes_text(others_of_client + bytes) + " are needed",
+                      kRetry_s, kName);
 }
 
 }  // namespace orrery

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 
 namespace orrery {
 
@@ -14,14 +14,14 @@ namespace orrery {
 // hold half, two a third each. A small image always fits. Safe from any thread. Must outlive its accounts.
 class WorkMemory {
  public:
-  explicit WorkMemory(std::size_t most_bytes) : most_(most_bytes) {}
+  explicit WorkMemory(std::size_t max_bytes) : max_(max_bytes) {}
 
   // Opens an empty account for work of the client. Its run() throws InputError if the work could never fit,
-  // ClientBusy if other work of the client holds the memory, else OverLimit.
+  // ClientLimitExceeded if other work of the client holds the memory, else LimitExceeded.
   std::shared_ptr<MemoryAccount> open(const std::string& client);
 
   std::size_t bytes() const;
-  std::size_t most() const { return most_; }
+  std::size_t most() const { return max_; }
 
  private:
   class Share;
@@ -30,7 +30,7 @@ class WorkMemory {
   std::size_t resize(const std::string& client, std::size_t own, std::size_t bytes, bool already);
   void require_room(const std::string& client, std::size_t own, std::size_t bytes) const;
 
-  const std::size_t most_;
+  const std::size_t max_;
   mutable std::mutex mutex_;  // guards all below
   std::size_t taken_ = 0;
   std::map<std::string, std::size_t> taken_by_;  // by client, without zeros

@@ -6,7 +6,7 @@
 #include "core/plan/limits.h"
 #include "core/plan/plan.h"
 #include "core/study/audit.h"
-#include "server/app/told_error.h"
+#include "server/app/error_report.h"
 #include "server/commands/commands.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
@@ -91,7 +91,7 @@ Command add_audit(CLI::App& root) {
   app->footer(kAuditExamples);
   app->add_option("--pixels", options->pixels, "How many are drawn")
       ->type_name("N")
-      ->check(CLI::Range(1, kMostAuditPixels).description(""))
+      ->check(CLI::Range(1, kMaxAuditPixels).description(""))
       ->capture_default_str();
   app->add_option("--draw", options->draw, "Seed of the drawing")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{kMaxSeed}).description(""))

@@ -124,12 +124,12 @@ Command add_chart(CLI::App& root) {
       ->required();
   app->add_option("--chart-samples", options->extent.samples,
                   "Of the highest configuration: 1, 4, 16, ... up to it")
-      ->check(CLI::Range(1, kMostChartSamples).description(""))
+      ->check(CLI::Range(1, kMaxChartSamples).description(""))
       ->type_name("N")
       ->capture_default_str();
   app->add_option("--rounds", options->extent.rounds,
                   "Pictures of each configuration, with different seeds: two, and more of what is not beaten")
-      ->check(CLI::Range(1, kMostChartRounds).description(""))
+      ->check(CLI::Range(1, kMaxChartRounds).description(""))
       ->type_name("N")
       ->capture_default_str();
   app->add_option(

@@ -100,9 +100,9 @@ void print(const Totals& t, int threads) {
 }
 
 // Renders the frames of an orbit and writes them to files.
-class Turn {
+class OrbitRun {
  public:
-  explicit Turn(const OrbitOptions& options)
+  explicit OrbitRun(const OrbitOptions& options)
       : options_(options),
         names_(options.discard ? "frame-%d.png" : options.output),
         format_(format_of(names_.of(0))),
@@ -183,7 +183,7 @@ bool is_missed(const nlohmann::ordered_json& budget, int frames) {
 int orbit(const OrbitOptions& options) {
   if (options.output.empty() && !options.discard)
     throw InputError("--output", "expected a name for the frames such as frame-%04d.png, or --discard");
-  Turn turn(options);
+  OrbitRun turn(options);
   const Totals totals = turn.run();
   const nlohmann::ordered_json budget = turn.budget();
   if (!budget.is_null() && is_missed(budget, options.frames))

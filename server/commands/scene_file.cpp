@@ -15,18 +15,18 @@ namespace {
 
 std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : path; }
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
 [[noreturn]] void refuse_size(const std::string& name) {
-  throw FileError("cannot read " + name + ": it has more than " + std::to_string(kMostBytes) + " bytes");
+  throw FileError("cannot read " + name + ": it has more than " + std::to_string(kMaxBytes) + " bytes");
 }
 
 std::string read_all(std::istream& in, const std::string& name) {
   std::string bytes;
   std::array<char, 64 * 1024> block;
-  while (bytes.size() <= kMostBytes && (in.read(block.data(), block.size()), in.gcount() > 0))
+  while (bytes.size() <= kMaxBytes && (in.read(block.data(), block.size()), in.gcount() > 0))
     bytes.append(block.data(), static_cast<std::size_t>(in.gcount()));
-  if (bytes.size() > kMostBytes) refuse_size(name);
+  if (bytes.size() > kMaxBytes) refuse_size(name);
   return bytes;
 }
 
@@ -52,7 +52,7 @@ BadScene::BadScene(const std::string& file, const InputError& error) : InputErro
 std::string read_file(const std::string& path) {
   if (path == "-") return read_all(std::cin, shown_name(path));
   std::error_code no_file;  // pipes and other special files have no size
-  if (const auto size = std::filesystem::file_size(path, no_file); !no_file && size > kMostBytes)
+  if (const auto size = std::filesystem::file_size(path, no_file); !no_file && size > kMaxBytes)
     refuse_size(path);
   errno = 0;
   std::ifstream in(path, std::ios::binary);

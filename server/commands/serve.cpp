@@ -69,7 +69,7 @@ void check_values(const Settings& settings, std::vector<Problem>& problems) {
 
 // Appends errors of the environment: a host open to other machines without tokens, and process limits that
 // are too low for these settings.
-void check_surroundings(const Settings& settings, std::vector<Problem>& problems) {
+void check_environment(const Settings& settings, std::vector<Problem>& problems) {
   try {
     if (!settings.insecure && settings.tokens_file.empty() && !is_loopback(settings.host))
       problems.push_back({"--host", settings.host +
@@ -148,7 +148,7 @@ int serve(const CLI::App& app, const ServeOptions& options) {
   std::vector<Problem> problems;
   const Settings settings = read_settings(app, options.config, problems);
   check_values(settings, problems);
-  check_surroundings(settings, problems);
+  check_environment(settings, problems);
   const std::size_t tokens = count_tokens(settings, problems);
   if (options.log != "json" && options.log != "text")
     problems.push_back({"--log", "expected text or json, got " + options.log.substr(0, 80)});

@@ -10,9 +10,9 @@
 #include "core/math/instruction_level.h"
 #include "core/model/technique.h"
 #include "core/plan/plan.h"
+#include "server/app/error_report.h"
 #include "server/app/option_json.h"
 #include "server/app/render_options.h"
-#include "server/app/told_error.h"
 
 namespace orrery {
 namespace {
@@ -53,12 +53,13 @@ void rays_text(std::string& text, const RayCounts& rays) {
 }
 
 void prediction_text(std::string& text, const Plan& plan, const TraceCounts& counts) {
-  const std::uint64_t proposals = counts.accelerator.proposals, proofs = counts.accelerator.proofs;
-  const double share =
-      100.0 * static_cast<double>(proofs) / static_cast<double>(std::max<std::uint64_t>(1, proposals));
+  const std::uint64_t predicted_occluders = counts.accelerator.predicted_occluders,
+                      verified_occluders = counts.accelerator.verified_occluders;
+  const double share = 100.0 * static_cast<double>(verified_occluders) /
+                       static_cast<double>(std::max<std::uint64_t>(1, predicted_occluders));
   line(text, "%-12s %14llu by %s, of which %llu proved a shadow, %.1f %%", "proposals",
-       static_cast<unsigned long long>(proposals), std::string(name_of(plan.prediction)).c_str(),
-       static_cast<unsigned long long>(proofs), share);
+       static_cast<unsigned long long>(predicted_occluders), std::string(name_of(plan.prediction)).c_str(),
+       static_cast<unsigned long long>(verified_occluders), share);
 }
 
 }  // namespace
@@ -81,8 +82,8 @@ ordered_json stats_json(const Plan& plan, const RunStats& stats) {
                                  {"node_visits", counts.accelerator.node_visits},
                                  {"box_tests", counts.accelerator.box_tests},
                                  {"primitive_tests", counts.accelerator.primitive_tests},
-                                 {"proposals", counts.accelerator.proposals},
-                                 {"proofs", counts.accelerator.proofs},
+                                 {"proposals", counts.accelerator.predicted_occluders},
+                                 {"proofs", counts.accelerator.verified_occluders},
                                  {"cut_rays", counts.cut_rays},
                                  {"non_finite_pixels", stats.render.non_finite_pixels},
                                  {"load_ms", stats.load_ms},

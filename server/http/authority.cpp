@@ -38,7 +38,7 @@ bool is_port(std::string_view text) {
 
 }  // namespace
 
-bool names_no_domain(std::string_view text) {
+bool is_address_or_localhost(std::string_view text) {
   if (text.starts_with('[')) return true;
   const std::string_view host = text.substr(0, text.find(':'));
   return equal_ignoring_case(host, "localhost") || IpAddress::parse(host);

@@ -15,6 +15,6 @@ bool is_origin(std::string_view text);
 
 // Whether the host is an IP address or localhost, so that DNS rebinding is impossible.
 // REQUIRES: is_authority(text).
-bool names_no_domain(std::string_view text);
+bool is_address_or_localhost(std::string_view text);
 
 }  // namespace orrery

@@ -8,7 +8,7 @@
 namespace orrery {
 namespace {
 
-constexpr std::size_t kLongestLine = 256, kMostOverhead = 16 * 1024;
+constexpr std::size_t kLongestLine = 256, kMaxOverhead = 16 * 1024;
 
 [[noreturn]] void refuse(const char* why) {
   throw HttpError(400, std::string("The body is not in chunks: ") + why);
@@ -64,7 +64,7 @@ std::size_t ChunkDecoder::take_size(std::string_view bytes) {
   const std::string_view extension(end, static_cast<std::size_t>(line->data() + line->size() - end));
   if (problem != std::errc() || !(extension.empty() || extension.front() == ';'))
     refuse("a size is not in hexadecimal digits");
-  if ((overhead_ += extension.size()) > kMostOverhead) refuse("its extensions are too long");
+  if ((overhead_ += extension.size()) > kMaxOverhead) refuse("its extensions are too long");
   if (left_ > limit_.bytes - body_.size())
     throw body_too_long(limit_, "more than " + std::to_string(limit_.bytes));
   expects_ = left_ > 0 ? Expects::data : Expects::trailer;
@@ -95,7 +95,7 @@ std::size_t ChunkDecoder::take_trailer(std::string_view bytes) {
   }
   if (!is_token(line->substr(0, line->find(':'))) || line->find(':') == std::string_view::npos)
     refuse("a trailer is not NAME: VALUE");
-  if ((overhead_ += line->size()) > kMostOverhead) refuse("its trailers are too long");
+  if ((overhead_ += line->size()) > kMaxOverhead) refuse("its trailers are too long");
   return line->size() + 2;
 }
 

@@ -18,7 +18,7 @@
 namespace orrery {
 namespace {
 
-using Clock = Waiting::Clock;
+using Clock = WaitState::Clock;
 
 int milliseconds_until(Clock::time_point deadline) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
@@ -37,10 +37,10 @@ void take_from(msghdr& left, std::size_t bytes) {
 }  // namespace
 
 // Deadline for the next bytes of a message.
-class Connection::Pace {
+class Connection::MinimumRate {
  public:
   // `bytes`: size of the message; 0 if unknown.
-  Pace(std::size_t bytes, const Patience& patience)
+  MinimumRate(std::size_t bytes, const Timeouts& patience)
       : window_(patience.window),
         end_(Clock::now() + patience.whole + patience.window),
         bytes_a_window_(
@@ -62,7 +62,7 @@ class Connection::Pace {
   Clock::time_point deadline_ = Clock::now() + window_;
 };
 
-Connection::Connection(int fd, const IpAddress& peer, int wake, const Patience& patience)
+Connection::Connection(int fd, const IpAddress& peer, int wake, const Timeouts& patience)
     : fd_(fd),
       wake_(wake),
       peer_(peer),
@@ -74,7 +74,7 @@ Connection::Connection(int fd, const IpAddress& peer, int wake, const Patience& 
 
 Connection::~Connection() {
   const ::linger at_once{.l_onoff = 1, .l_linger = 0};
-  if (ends_by_reset_)
+  if (resets_on_close_)
     setsockopt(fd_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
   else
     shutdown(fd_, SHUT_RDWR);
@@ -83,10 +83,10 @@ Connection::~Connection() {
 
 void Connection::linger() {
   constexpr std::chrono::seconds kLinger{2};
-  if (broken_ || made_room() || (body_left_ == 0 && received_.empty())) return;
+  if (broken_ || is_evicted() || (body_left_ == 0 && received_.empty())) return;
   shutdown(fd_, SHUT_WR);
   reading_since_ = Clock::now();
-  last_call_.reset();
+  shutdown_deadline_.reset();
   const auto deadline = reading_since_ + kLinger;
   do received_.clear();
   while (Clock::now() < deadline && receive(deadline));
@@ -94,7 +94,7 @@ void Connection::linger() {
 
 Connection::Ready Connection::wait(short events, Clock::time_point deadline, bool heed_wake) {
   if (!waiting_.begin(events == POLLOUT ? *writing_since_ : reading_since_, events)) return Ready::none;
-  const HandlerSlots::Wait released(Waiting::Kind::client);
+  const HandlerSlots::Wait released(WaitState::Kind::client);
   pollfd ready[] = {{fd_, events, 0}, {wake_, POLLIN, 0}};
   int count;
   do count = poll(ready, heed_wake ? 2 : 1, milliseconds_until(deadline));
@@ -114,11 +114,11 @@ std::string Connection::client() const {
   return client_;
 }
 
-bool Connection::make_room(Waiting::Kind kind) {
+bool Connection::evict(WaitState::Kind kind) {
   pollfd ready{fd_, waiting_.events(), 0};
-  const bool goes_on = kind == Waiting::Kind::client && poll(&ready, 1, 0) > 0;
-  if (goes_on || !waiting_.give_up(kind)) return false;
-  if (kind == Waiting::Kind::client)  // a client that sends too slowly can still receive a 408
+  const bool goes_on = kind == WaitState::Kind::client && poll(&ready, 1, 0) > 0;
+  if (goes_on || !waiting_.evict(kind)) return false;
+  if (kind == WaitState::Kind::client)  // a client that sends too slowly can still receive a 408
     shutdown(fd_, waiting_.events() == POLLIN ? SHUT_RD : SHUT_RDWR);
   std::stop_source request;
   {
@@ -139,7 +139,8 @@ bool Connection::skip_empty_lines() {
 }
 
 bool Connection::wait_for_request() {
-  constexpr std::chrono::milliseconds kFirstWord{200};  // for the first request of a connection at shutdown
+  constexpr std::chrono::milliseconds kFirstRequestGrace{
+      200};  // for the first request of a connection at shutdown
   bool fresh = std::exchange(fresh_, false);
   reading_since_ = Clock::now();
   writing_since_.reset();
@@ -150,7 +151,7 @@ bool Connection::wait_for_request() {
     if (ready == Ready::none) return false;
     if (ready == Ready::wake) {
       if (!std::exchange(fresh, false)) return false;
-      deadline = Clock::now() + kFirstWord;
+      deadline = Clock::now() + kFirstRequestGrace;
     }
     if (!receive(deadline)) return false;
   }
@@ -159,7 +160,7 @@ bool Connection::wait_for_request() {
 
 bool Connection::receive(Clock::time_point deadline) {
   std::array<char, 64 * 1024> bytes;
-  while (!made_room()) {
+  while (!is_evicted()) {
     const ssize_t count = recv(fd_, bytes.data(), bytes.size(), 0);
     if (count > 0) {
       received_.append(bytes.data(), static_cast<std::size_t>(count));
@@ -177,20 +178,21 @@ bool Connection::receive(Clock::time_point deadline) {
 }
 
 bool Connection::wait_to_receive(Clock::time_point deadline) {
-  if (!last_call_) {
+  if (!shutdown_deadline_) {
     const Ready ready = wait(POLLIN, deadline, true);
     if (ready != Ready::wake) return ready == Ready::socket;
-    last_call_ = Clock::now() + patience_.last_call;
+    shutdown_deadline_ = Clock::now() + patience_.shutdown_grace;
   }
-  return wait(POLLIN, std::min(deadline, *last_call_), false) == Ready::socket;
+  return wait(POLLIN, std::min(deadline, *shutdown_deadline_), false) == Ready::socket;
 }
 
 HttpError Connection::too_late(const std::string& part) const {
-  if (made_room())
+  if (is_evicted())
     return {
         408,
         part + " came too slowly: others want a connection, and this one has waited longest (connections)"};
-  if (last_call_) return {503, part + " did not come before the service ended", {{"Retry-After", "1"}}};
+  if (shutdown_deadline_)
+    return {503, part + " did not come before the service ended", {{"Retry-After", "1"}}};
   return {408, part + " did not come in time"};
 }
 
@@ -248,7 +250,7 @@ std::string Connection::read_body(const Head& head, const BodyLimit& limit, cons
 }
 
 std::string Connection::read_counted(std::size_t length, const Received& received) {
-  Pace pace(length, patience_);
+  MinimumRate pace(length, patience_);
   received_.reserve(std::min<std::size_t>(length, 1 << 20));
   while (received_.size() < length) {
     receive_part(pace);
@@ -260,7 +262,7 @@ std::string Connection::read_counted(std::size_t length, const Received& receive
 }
 
 std::string Connection::read_chunks(const BodyLimit& limit, const Received& received) {
-  Pace pace(0, patience_);
+  MinimumRate pace(0, patience_);
   ChunkDecoder decoder(limit);
   while (!decoder.take(received_)) {
     received(decoder.body().size() + received_.size());
@@ -269,21 +271,21 @@ std::string Connection::read_chunks(const BodyLimit& limit, const Received& rece
   return std::move(decoder.body());
 }
 
-void Connection::receive_part(Pace& pace) {
+void Connection::receive_part(MinimumRate& pace) {
   const std::size_t before = received_.size();
   if (!receive(pace.deadline())) throw too_late("The body");
   pace.count(received_.size() - before);
   count_progress(reading_since_, received_.size() - before);
 }
 
-void Connection::abandon() const {
+void Connection::shut_down() const {
   broken_ = true;
   shutdown(fd_, SHUT_RDWR);
 }
 
 bool Connection::write(std::initializer_list<std::string_view> pieces) {
-  assert(pieces.size() <= kMostPieces);
-  std::array<iovec, kMostPieces> vectors;
+  assert(pieces.size() <= kMaxPieces);
+  std::array<iovec, kMaxPieces> vectors;
   msghdr left{};  // unsent rest
   left.msg_iov = vectors.data();
   std::size_t size = 0;
@@ -291,7 +293,7 @@ bool Connection::write(std::initializer_list<std::string_view> pieces) {
     if (!piece.empty()) vectors[left.msg_iovlen++] = {const_cast<char*>(piece.data()), piece.size()};
     size += piece.size();
   }
-  Pace pace(size, patience_);
+  MinimumRate pace(size, patience_);
   while (left.msg_iovlen > 0 && !broken_) {
     const ssize_t count = sendmsg(fd_, &left, MSG_NOSIGNAL);
     if (count >= 0) {

@@ -20,7 +20,7 @@ void require_known(const std::string& host, const std::vector<std::string>& orig
     return origin == "*" || equal_ignoring_case(origin.substr(origin.find("//") + 2), host);
   });
   const bool may_be_owned = host.find('.') != std::string::npos;  // by someone on the internet
-  if (!listed && may_be_owned && !names_no_domain(host))
+  if (!listed && may_be_owned && !is_address_or_localhost(host))
     throw HttpError(
         403, "The host " + host.substr(0, 100) +
                  " is not known here: expected an address, localhost or the host of one of cors_origins");
@@ -39,23 +39,23 @@ std::optional<Response> preflight(const Request& request, const std::vector<std:
   return response;
 }
 
-void refuse_foreign(const Request& request, const std::vector<std::string>& origins, bool domains) {
+void reject_cross_origin(const Request& request, const std::vector<std::string>& origins, bool domains) {
   constexpr std::array<std::string_view, 3> kSafe{"GET", "HEAD", "OPTIONS"};
   const auto origin = request.header("Origin");
   if (!origin || std::find(kSafe.begin(), kSafe.end(), request.method) != kSafe.end()) return;
   const std::string host =
-      request.told_host.empty() ? request.header("Host").value_or("") : request.told_host;
+      request.forwarded_host.empty() ? request.header("Host").value_or("") : request.forwarded_host;
   const std::size_t slashes = origin->find("//");
   const bool own = slashes != std::string::npos && equal_ignoring_case(origin->substr(slashes + 2), host) &&
-                   (domains || names_no_domain(host));
+                   (domains || is_address_or_localhost(host));
   if (!own && !is_listed(request, origins))
     throw HttpError(
         403, "Pages of the origin " + origin->substr(0, 100) + " may change nothing here (cors_origins)");
 }
 
-void refuse_foreign_host(const Request& request, const std::vector<std::string>& origins) {
+void reject_unknown_host(const Request& request, const std::vector<std::string>& origins) {
   require_known(request.header("Host").value_or(""), origins);
-  require_known(request.told_host, origins);  // may come from the client if the proxy does not set it
+  require_known(request.forwarded_host, origins);  // may come from the client if the proxy does not set it
 }
 
 void allow_origin(const Request& request, const std::vector<std::string>& origins, Response& response) {

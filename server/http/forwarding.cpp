@@ -51,9 +51,9 @@ std::string node_of(const std::string& entry) {
 
 // Whether `text` is a port of 1 to 5 digits or an obfuscated port that begins with _ (RFC 7239, 6.2).
 bool is_node_port(std::string_view text) {
-  constexpr std::size_t kMostDigits = 5;
+  constexpr std::size_t kMaxDigits = 5;
   const bool number =
-      text.size() <= kMostDigits && text.find_first_not_of("0123456789") == std::string_view::npos;
+      text.size() <= kMaxDigits && text.find_first_not_of("0123456789") == std::string_view::npos;
   return !text.empty() && (number || (text.front() == '_' && is_token(text)));
 }
 
@@ -96,7 +96,7 @@ std::string host_of(const Request& request) {
 }
 
 // Strips the prefix from the path. Returns false if the path does not begin with it.
-bool take_off(std::string_view prefix, Request& request) {
+bool strip_prefix(std::string_view prefix, Request& request) {
   if (prefix.empty()) return false;
   const std::vector<std::string> wanted = parse_target(prefix).segments;
   auto& segments = request.segments;
@@ -152,9 +152,9 @@ void Forwarding::apply(const IpAddress& peer, Request& request) const {
     request.client = client_of(peer, request).network();
     const std::string prefix = last_of(entries_of(request, "X-Forwarded-Prefix"));
     if (is_prefix(prefix)) request.prefix = prefix;
-    request.told_host = host_of(request);
+    request.forwarded_host = host_of(request);
   }
-  if (!take_off(request.prefix, request)) take_off(prefix_, request);
+  if (!strip_prefix(request.prefix, request)) strip_prefix(prefix_, request);
 }
 
 }  // namespace orrery

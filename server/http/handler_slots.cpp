@@ -12,9 +12,10 @@ thread_local HandlerSlots::Handler* current = nullptr;
 
 }  // namespace
 
-HandlerSlots::Handler::Handler(HandlerSlots& slots, std::string client, std::stop_token gone, Waiting& state)
+HandlerSlots::Handler::Handler(HandlerSlots& slots, std::string client, std::stop_token gone,
+                               WaitState& state)
     : slots_(slots), client_(std::move(client)), gone_(std::move(gone)), state_(state), outer_(current) {
-  state_.begin_turn(Waiting::Kind::turn);
+  state_.begin_turn(WaitState::Kind::turn);
   acquire();
   state_.end();
   if (!has_slot_) throw Cancelled("the client has gone");
@@ -37,8 +38,8 @@ void HandlerSlots::Handler::release() {
   if (std::exchange(has_slot_, false)) slots_.give_back();
 }
 
-HandlerSlots::Wait::Wait(Waiting::Kind kind)
-    : handler_(current), shown_(handler_ && kind != Waiting::Kind::client) {
+HandlerSlots::Wait::Wait(WaitState::Kind kind)
+    : handler_(current), shown_(handler_ && kind != WaitState::Kind::client) {
   if (handler_) handler_->release();
   if (shown_) handler_->state_.begin_turn(kind);
 }
@@ -57,7 +58,7 @@ void HandlerSlots::resume() {
   if (current) current->acquire();
 }
 
-void HandlerSlots::Handler::give_way() {
+void HandlerSlots::Handler::yield() {
   constexpr std::chrono::milliseconds kSlice{5};  // time slice while other handlers wait
   if (current != this || !has_slot_ || slots_.waiting() == 0) return;
   if (std::chrono::steady_clock::now() - since_ < kSlice) return;
@@ -65,8 +66,8 @@ void HandlerSlots::Handler::give_way() {
   acquire();
 }
 
-void HandlerSlots::give_way() {
-  if (current) current->give_way();
+void HandlerSlots::yield() {
+  if (current) current->yield();
 }
 
 bool HandlerSlots::take(const std::string& client, const std::stop_token& gone, bool goes_on) {

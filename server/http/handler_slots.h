@@ -9,8 +9,8 @@
 #include <stop_token>
 #include <string>
 
-#include "core/base/work_scope.h"
-#include "server/http/waiting.h"
+#include "core/base/task_scope.h"
+#include "server/http/wait_state.h"
 
 namespace orrery {
 
@@ -25,17 +25,17 @@ class HandlerSlots {
 
   // Slot holder of one request, for the thread that runs it. Holds a slot for its lifetime, except while a
   // Wait exists on the same thread. Yields at interruption points.
-  class Handler final : public Turn {
+  class Handler final : public TimeSlice {
    public:
     // Waits for a slot. Throws Cancelled if `gone` is requested first. `state` shows the wait to other
     // threads. `slots` and `state` must outlive the handler.
-    Handler(HandlerSlots& slots, std::string client, std::stop_token gone, Waiting& state);
+    Handler(HandlerSlots& slots, std::string client, std::stop_token gone, WaitState& state);
     ~Handler();
     Handler(const Handler&) = delete;
 
     // Yields the slot if other handlers wait and the thread has held it for 5 ms. Does nothing on other
     // threads.
-    void give_way() override;
+    void yield() override;
 
    private:
     friend class HandlerSlots;
@@ -46,9 +46,9 @@ class HandlerSlots {
     HandlerSlots& slots_;
     const std::string client_;
     const std::stop_token gone_;
-    Waiting& state_;
+    WaitState& state_;
     Handler* const outer_;  // previous handler of the thread
-    const WorkScope scope_{{nullptr, nullptr, this}};
+    const TaskScope scope_{{nullptr, nullptr, this}};
     bool has_slot_ = false, has_begun_ = false;
     std::chrono::steady_clock::time_point since_;  // start of holding the slot
   };
@@ -57,7 +57,7 @@ class HandlerSlots {
   class Wait {
    public:
     // Kind::client: the connection shows the wait itself.
-    explicit Wait(Waiting::Kind kind = Waiting::Kind::turn);
+    explicit Wait(WaitState::Kind kind = WaitState::Kind::turn);
     ~Wait();  // takes a slot again
     Wait(const Wait&) = delete;
     // Ends the wait without taking a slot, because its end already limits the number of computing threads.
@@ -71,8 +71,8 @@ class HandlerSlots {
 
   // Takes a slot again after Wait::end_without_slot().
   static void resume();
-  // Yields the slot of the thread's handler, if any; see Handler::give_way().
-  static void give_way();
+  // Yields the slot of the thread's handler, if any; see Handler::yield().
+  static void yield();
 
   std::size_t waiting() const { return waiting_; }
 

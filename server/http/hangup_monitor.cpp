@@ -23,8 +23,8 @@ void control(int epoll, int operation, int fd, std::uint32_t events, std::uint64
     throw std::system_error(errno, std::generic_category(), "epoll_ctl");
 }
 
-constexpr int kAsks = 4;
-constexpr std::chrono::milliseconds kBetweenAsks{50};
+constexpr int kProbes = 4;
+constexpr std::chrono::milliseconds kProbeInterval{50};
 
 // Sends a probe. Returns false if nothing can be sent any more.
 bool send_interim(int fd) {
@@ -50,14 +50,14 @@ HangupMonitor::~HangupMonitor() {
   close(end_);
 }
 
-HangupMonitor::Watching HangupMonitor::watch(int fd, std::stop_source work, bool asks) {
+HangupMonitor::Registration HangupMonitor::watch(int fd, std::stop_source work, bool probes_left) {
   const std::lock_guard lock(mutex_);
   const std::uint64_t number = ++last_number_;
   // Numbers are never reused, so a late event for a forgotten socket finds no client. epoll reports broken
   // connections even without a flag for them.
   control(epoll_, EPOLL_CTL_ADD, fd, EPOLLRDHUP | EPOLLONESHOT, number);
-  clients_.emplace(number, Client{fd, std::move(work), asks ? kAsks : 0});
-  return Watching(*this, fd, number);
+  clients_.emplace(number, Client{fd, std::move(work), probes_left ? kProbes : 0});
+  return Registration(*this, fd, number);
 }
 
 void HangupMonitor::forget(int fd, std::uint64_t number) {
@@ -66,49 +66,50 @@ void HangupMonitor::forget(int fd, std::uint64_t number) {
   clients_.erase(number);
 }
 
-void HangupMonitor::stop_asking(std::uint64_t number) {
+void HangupMonitor::stop_probing(std::uint64_t number) {
   const std::lock_guard lock(mutex_);
-  clients_.at(number).asks = 0;
+  clients_.at(number).probes_left = 0;
 }
 
-void HangupMonitor::heed(std::uint64_t number, bool broken) {
+void HangupMonitor::handle_hangup(std::uint64_t number, bool broken) {
   std::optional<std::stop_source> work;
   {
     const std::lock_guard lock(mutex_);
     const auto found = clients_.find(number);
     if (found == clients_.end()) return;
     Client& client = found->second;
-    if (!broken && client.asks > 0 && ask(client, number))
+    if (!broken && client.probes_left > 0 && send_probe(client, number))
       return control(epoll_, EPOLL_CTL_MOD, client.fd, EPOLLONESHOT, number);  // HUP and ERR only
     work = client.work;
   }
   work->request_stop();
 }
 
-bool HangupMonitor::ask(Client& client, std::uint64_t number) {
+bool HangupMonitor::send_probe(Client& client, std::uint64_t number) {
   if (!send_interim(client.fd)) return false;
-  if (--client.asks > 0) next_asks_.push_back({Clock::now() + kBetweenAsks, number});
+  if (--client.probes_left > 0) next_probes_.push_back({Clock::now() + kProbeInterval, number});
   return true;
 }
 
-void HangupMonitor::ask_again() {
-  while (!next_asks_.empty() && next_asks_.front().at <= Clock::now()) {
-    const std::uint64_t number = next_asks_.front().number;
-    next_asks_.pop_front();
+void HangupMonitor::send_due_probes() {
+  while (!next_probes_.empty() && next_probes_.front().at <= Clock::now()) {
+    const std::uint64_t number = next_probes_.front().number;
+    next_probes_.pop_front();
     std::optional<std::stop_source> work;
     {
       const std::lock_guard lock(mutex_);
       const auto found = clients_.find(number);
-      if (found == clients_.end() || found->second.asks == 0 || ask(found->second, number)) continue;
+      if (found == clients_.end() || found->second.probes_left == 0 || send_probe(found->second, number))
+        continue;
       work = found->second.work;
     }
     work->request_stop();
   }
 }
 
-int HangupMonitor::milliseconds_to_next_ask() const {
-  if (next_asks_.empty()) return -1;
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_asks_.front().at - Clock::now());
+int HangupMonitor::milliseconds_to_next_probe() const {
+  if (next_probes_.empty()) return -1;
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_probes_.front().at - Clock::now());
   return static_cast<int>(std::max<std::int64_t>(left.count(), 0));
 }
 
@@ -116,13 +117,13 @@ void HangupMonitor::run() {
   std::array<epoll_event, 64> events;
   for (;;) {
     const int count =
-        epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), milliseconds_to_next_ask());
+        epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), milliseconds_to_next_probe());
     for (int i = 0; i < count; ++i) {
       const std::uint64_t number = events[static_cast<std::size_t>(i)].data.u64;
       if (number == kEnd) return;
-      heed(number, events[static_cast<std::size_t>(i)].events & (EPOLLHUP | EPOLLERR));
+      handle_hangup(number, events[static_cast<std::size_t>(i)].events & (EPOLLHUP | EPOLLERR));
     }
-    ask_again();
+    send_due_probes();
   }
 }
 

@@ -25,18 +25,18 @@ class HangupMonitor {
   HangupMonitor(const HangupMonitor&) = delete;
 
   // Registration of a watched socket, removed by the destructor. Monitor and socket must outlive it.
-  class Watching {
+  class Registration {
    public:
-    ~Watching() { monitor_.forget(fd_, number_); }
-    Watching(const Watching&) = delete;
+    ~Registration() { monitor_.forget(fd_, number_); }
+    Registration(const Registration&) = delete;
 
     // Ends probing, since the response begins. A client that then shuts down its sending side has
     // disconnected.
-    void stop_asking() { monitor_.stop_asking(number_); }
+    void stop_probing() { monitor_.stop_probing(number_); }
 
    private:
     friend class HangupMonitor;
-    Watching(HangupMonitor& monitor, int fd, std::uint64_t number)
+    Registration(HangupMonitor& monitor, int fd, std::uint64_t number)
         : monitor_(monitor), fd_(fd), number_(number) {}
     HangupMonitor& monitor_;
     const int fd_;
@@ -45,35 +45,35 @@ class HangupMonitor {
 
   // Requests a stop of `work` on the monitor's thread when the client closes its socket or the connection
   // breaks, even if that has already happened. Stop callbacks must be short. A socket may be watched once at
-  // a time. `asks`: whether to send probes. Without probes, a client that shuts down its sending side counts
-  // as disconnected.
-  [[nodiscard]] Watching watch(int fd, std::stop_source work, bool asks);
+  // a time. `probes_left`: whether to send probes. Without probes, a client that shuts down its sending side
+  // counts as disconnected.
+  [[nodiscard]] Registration watch(int fd, std::stop_source work, bool probes_left);
 
  private:
   struct Client {
     int fd;
     std::stop_source work;
-    int asks;  // probes left
+    int probes_left;  // probes left
   };
-  struct NextAsk {
+  struct NextProbe {
     Clock::time_point at;
     std::uint64_t number;
   };
 
   void forget(int fd, std::uint64_t number);
-  void stop_asking(std::uint64_t number);
+  void stop_probing(std::uint64_t number);
   void run();
-  void heed(std::uint64_t number, bool broken);
-  void ask_again();
-  int milliseconds_to_next_ask() const;
+  void handle_hangup(std::uint64_t number, bool broken);
+  void send_due_probes();
+  int milliseconds_to_next_probe() const;
   // Sends a probe and schedules the next one. Returns false if the client has disconnected.
-  bool ask(Client& client, std::uint64_t number);
+  bool send_probe(Client& client, std::uint64_t number);
 
   const int epoll_, end_;
   std::mutex mutex_;
   std::uint64_t last_number_ = 0;            // guarded by mutex_
   std::map<std::uint64_t, Client> clients_;  // by number; guarded by mutex_
-  std::deque<NextAsk> next_asks_;            // next first; for thread_
+  std::deque<NextProbe> next_probes_;        // next first; for thread_
   std::thread thread_;                       // last: uses the other members
 };
 

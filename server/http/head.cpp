@@ -52,7 +52,7 @@ void parse_header(std::string_view line, Head& head) {
   head.headers.emplace_back(name, value);
 }
 
-void judge_coding(std::string_view coding, Head& head) {
+void check_transfer_coding(std::string_view coding, Head& head) {
   if (head.minor_version == 0) throw HttpError(400, "HTTP/1.0 has no Transfer-Encoding");
   if (head.chunked) throw HttpError(400, "Transfer-Encoding is given twice");
   if (!equal_ignoring_case(coding, "chunked"))
@@ -63,14 +63,14 @@ void judge_coding(std::string_view coding, Head& head) {
 
 // Checks the headers that determine the end of the request. A proxy that reads them differently would see
 // another request (request smuggling).
-void judge_framing(Head& head) {
+void check_framing(Head& head) {
   int hosts = 0;
   for (const auto& [name, value] : head.headers) {
     if (equal_ignoring_case(name, "Host")) {
       ++hosts;
       if (!value.empty() && !is_authority(value)) throw HttpError(400, "Host is not a host and a port");
     }
-    if (equal_ignoring_case(name, "Transfer-Encoding")) judge_coding(value, head);
+    if (equal_ignoring_case(name, "Transfer-Encoding")) check_transfer_coding(value, head);
     if (!equal_ignoring_case(name, "Content-Length")) continue;
     std::size_t length = 0;
     const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), length);
@@ -125,7 +125,7 @@ Head parse_head(std::string_view bytes) {
     first = false;
   }
   if (first) throw HttpError(400, "The request is empty");
-  judge_framing(head);
+  check_framing(head);
   head.keep_alive =
       head.minor_version == 1 ? !connection_says(head, "close") : connection_says(head, "keep-alive");
   return head;

@@ -69,8 +69,8 @@ int Listener::accept() {
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   // Limits the unsent bytes in the kernel. More would become outdated there: a slow viewer would see every
   // frame late instead of skipping some.
-  const int most_unsent = 128 * 1024;
-  setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &most_unsent, sizeof most_unsent);
+  const int max_unsent = 128 * 1024;
+  setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &max_unsent, sizeof max_unsent);
   return fd;
 }
 

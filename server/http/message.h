@@ -53,7 +53,7 @@ struct Request {
   const Route* route = nullptr;       // route with this path, or null
   std::string id;                     // sent by the client or generated; letters, digits, . _ -
   std::string client;                 // address, or name of the token
-  std::string told_host;              // host requested by the client according to a proxy, or ""
+  std::string forwarded_host;         // host requested by the client according to a proxy, or ""
   std::string prefix;                 // path prefix that clients see, stripped from `path`: "" or "/render"
   Fields query;                       // decoded; names are unique
   Fields path_values;                 // values of the route's {placeholders}
@@ -73,7 +73,7 @@ class Sink {
  public:
   virtual ~Sink() = default;
   // Writes the three pieces in order and waits. Returns false if the client has disconnected. Throws
-  // OverLimit if too many response bytes are being sent.
+  // LimitExceeded if too many response bytes are being sent.
   virtual bool write(std::string_view bytes, const SharedBytes& more = {}, std::string_view end = {}) = 0;
 };
 

@@ -15,7 +15,7 @@ constexpr std::array<std::uint8_t, 12> kMapped{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xF
 constexpr int kMappedBits = 96;
 
 // Whether the first `bits` bits are equal.
-bool begin_alike(const IpAddress& a, const IpAddress& b, int bits) {
+bool have_same_prefix(const IpAddress& a, const IpAddress& b, int bits) {
   for (std::size_t i = 0; bits > 0; ++i, bits -= 8) {
     const int unlike = a.bytes()[i] ^ b.bytes()[i];
     if (unlike >> std::max(8 - bits, 0) != 0) return false;
@@ -71,7 +71,7 @@ IpNetwork::IpNetwork(std::string_view text) {
   const auto first = IpAddress::parse(text.substr(0, slash));
   const bool v4 = first && text.find(':') == std::string_view::npos;
   const int most = v4 ? 32 : 128;
-  const auto bits = slash == std::string_view::npos ? most : number_in<int>(text.substr(slash + 1));
+  const auto bits = slash == std::string_view::npos ? most : parse_number<int>(text.substr(slash + 1));
   if (!first || !bits || *bits < 0 || *bits > most)
     throw InputError(
         "", "expected an address or a network such as 10.0.0.0/8, got " + std::string(text.substr(0, 80)));
@@ -83,6 +83,6 @@ IpNetwork::IpNetwork(std::string_view text) {
                                " are 0, got " + std::string(text));
 }
 
-bool IpNetwork::contains(const IpAddress& address) const { return begin_alike(first_, address, bits_); }
+bool IpNetwork::contains(const IpAddress& address) const { return have_same_prefix(first_, address, bits_); }
 
 }  // namespace orrery

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/http/shed.h"
+#include "server/http/overload_responder.h"
 
 namespace orrery {
 
 std::size_t descriptors_for(std::size_t connections) {
   constexpr std::size_t kOthers = 64;
-  return connections + kHealthConnections + 2 * Shed::kMost + kOthers;
+  return connections + kHealthConnections + 2 * OverloadResponder::kMost + kOthers;
 }
 
 std::size_t allow_descriptors(std::size_t count) {

@@ -36,7 +36,7 @@ class BodySink final : public Sink {
     if (sender_.gone.stop_requested()) return whole_ = false;
     const std::size_t count = bytes.size() + more.size() + end.size();
     if (count == 0) return whole_;  // an empty chunk would end the body
-    HandlerSlots::give_way();
+    HandlerSlots::yield();
     const auto share = sender_.answers.take(more, sender_.client);
     if (!chunked_) return whole_ = whole_ && connection_.write({bytes, more, end});
     std::array<char, 20> text;
@@ -93,7 +93,7 @@ bool write_response(Connection& connection, Response& response, const Framing& f
     response.stream(sink);
   } catch (const std::exception& error) {
     response.note = error.what();
-    if (framing.minor_version == 0) connection.end_by_reset();  // a normal end would complete the body
+    if (framing.minor_version == 0) connection.reset_on_close();  // a normal end would complete the body
     return false;
   }
   return sink.finish();

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "server/http/answer_budget.h"
 #include "server/http/connection.h"
 #include "server/http/message.h"
+#include "server/http/response_quota.h"
 
 namespace orrery {
 
@@ -25,7 +25,7 @@ bool has_body(const Response& response, const Framing& framing);
 
 // Client of a response, and the quota for its bytes.
 struct Sender {
-  AnswerBudget& answers;
+  ResponseQuota& answers;
   std::string client;
   std::stop_token gone = {};  // stop requested when the client disconnects
 };

@@ -14,11 +14,11 @@
 #include <tuple>
 
 #include "server/http/connection.h"
-#include "server/http/exchange.h"
 #include "server/http/listener.h"
+#include "server/http/overload_responder.h"
 #include "server/http/request_id.h"
+#include "server/http/request_processor.h"
 #include "server/http/response_writer.h"
-#include "server/http/shed.h"
 #include "server/http/threads.h"
 
 namespace orrery {
@@ -111,8 +111,8 @@ class HttpServer::Parts {
       const bool trusted = options_.forwarding.trusts(peer);
       const bool over_share =
           count(network) > share_of_one() && share_of_one() < options_.max_connections && !trusted;
-      if ((!over_share && threads_.has_room()) || make_room(network, over_share, !trusted)) {
-        const auto connection = std::make_shared<Connection>(fd, peer, wake_.fd(), Patience{});
+      if ((!over_share && threads_.has_room()) || evict(network, over_share, !trusted)) {
+        const auto connection = std::make_shared<Connection>(fd, peer, wake_.fd(), Timeouts{});
         threads_.start([this, connection, entry = remember(*connection)] { serve(*connection, entry); });
       } else {
         forget(network);
@@ -138,7 +138,7 @@ class HttpServer::Parts {
   struct Candidate {
     // Eviction order: most connections of the client first, then by kind of wait, then waits of 100 ms or
     // more before shorter ones. The oldest of the longer waits and the newest of the shorter ones come first.
-    std::tuple<std::ptrdiff_t, Waiting::Kind, bool, Clock::duration> rank;
+    std::tuple<std::ptrdiff_t, WaitState::Kind, bool, Clock::duration> rank;
     Connection* connection;
   };
   // Returns the connections that may be evicted for a newcomer, in eviction order. `of_newcomer`: connections
@@ -152,7 +152,7 @@ class HttpServer::Parts {
       const auto kind = connection->waiting().kind();
       if (!kind) continue;
       const auto since = connection->waiting().since();
-      const bool fresh = *kind != Waiting::Kind::client || Clock::now() - since < kWhile;
+      const bool fresh = *kind != WaitState::Kind::client || Clock::now() - since < kWhile;
       const std::size_t others = counts[connection->client()];
       if (fresh && others <= of_newcomer) continue;
       const auto age = since.time_since_epoch();
@@ -165,13 +165,14 @@ class HttpServer::Parts {
   // Evicts a connection for a newcomer of that network. Returns false if none can be evicted. `own`: evicts
   // only connections of the same network that wait for their client. `known`: the newcomer's client is that
   // network.
-  bool make_room(const std::string& network, bool own, bool known) {
+  bool evict(const std::string& network, bool own, bool known) {
     const std::lock_guard lock(mutex_);
     const std::vector<Candidate> found = candidates(known ? of_network_[network] : 1);
     return std::any_of(found.begin(), found.end(), [&](const Candidate& candidate) {
-      const Waiting::Kind kind = std::get<Waiting::Kind>(candidate.rank);
-      if (own && (kind != Waiting::Kind::client || candidate.connection->network() != network)) return false;
-      return candidate.connection->make_room(kind);
+      const WaitState::Kind kind = std::get<WaitState::Kind>(candidate.rank);
+      if (own && (kind != WaitState::Kind::client || candidate.connection->network() != network))
+        return false;
+      return candidate.connection->evict(kind);
     });
   }
 
@@ -184,9 +185,10 @@ class HttpServer::Parts {
       return std::to_string(count) + " connections are open already" + whose + " (connections)";
     };
     const auto error =
-        over_share ? std::make_exception_ptr(ClientBusy(
-                         told(share_of_one(), " from your address, three quarters of all"), 1, "connections"))
-                   : std::make_exception_ptr(OverLimit(told(options_.max_connections, ""), 1, "connections"));
+        over_share
+            ? std::make_exception_ptr(ClientLimitExceeded(
+                  told(share_of_one(), " from your address, three quarters of all"), 1, "connections"))
+            : std::make_exception_ptr(LimitExceeded(told(options_.max_connections, ""), 1, "connections"));
     const Response response = handler_.refuse(request, error);
     return response_head(response, {.keep_alive = false}).append(response.body);
   }
@@ -206,21 +208,21 @@ class HttpServer::Parts {
     handler_.grace_over();
     if (answer_all(Clock::now() + std::chrono::seconds(2))) return;
     const std::lock_guard lock(mutex_);
-    for (const Connection* connection : open_) connection->abandon();
+    for (const Connection* connection : open_) connection->shut_down();
   }
 
   using Open = std::list<Connection*>;
 
   // Returns false if the connection ends with the response.
   bool answer(Connection& connection) {
-    struct Counted {
+    struct BusyGuard {
       Parts& parts;
-      explicit Counted(Parts& all) : parts(all) { ++parts.busy_; }
-      ~Counted() {
+      explicit BusyGuard(Parts& all) : parts(all) { ++parts.busy_; }
+      ~BusyGuard() {
         if (--parts.busy_ == 0 && parts.draining_) parts.idle_.ring();
       }
     };
-    const Counted counted(*this);
+    const BusyGuard counted(*this);
     return exchanger_.exchange(connection);
   }
 
@@ -249,8 +251,8 @@ class HttpServer::Parts {
   const int port_;
   const Alarm wake_, idle_;  // shutdown begins; no request is left during shutdown
   HangupMonitor monitor_;
-  Exchanger exchanger_;
-  Shed shed_;
+  RequestProcessor exchanger_;
+  OverloadResponder shed_;
   std::atomic<bool> draining_{false};
   std::atomic<int> busy_{0};  // requests being read or answered
   std::atomic<std::uint64_t> refused_{0};

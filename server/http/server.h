@@ -66,8 +66,8 @@ class HttpServer {
   void run();
 
   // Begins a graceful shutdown. Closes idle connections at once, incomplete requests after
-  // Patience::last_call and other connections after their next response. New connections are served until
-  // run() returns, so that clients learn of the shutdown. Thread-safe.
+  // Timeouts::shutdown_grace and other connections after their next response. New connections are served
+  // until run() returns, so that clients learn of the shutdown. Thread-safe.
   void drain();
 
  private:

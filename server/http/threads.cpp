@@ -15,7 +15,7 @@ ConnectionThreads::~ConnectionThreads() {
 
 bool ConnectionThreads::has_room() {
   const std::lock_guard lock(mutex_);
-  if (threads_.size() - idle_ + waiting_.size() >= most_) return false;
+  if (threads_.size() - idle_ + waiting_.size() >= max_) return false;
   return idle_ > waiting_.size() || add_thread();
 }
 
@@ -32,8 +32,8 @@ bool ConnectionThreads::add_thread() {
 void ConnectionThreads::start(std::function<void()> work) {
   const std::lock_guard lock(mutex_);
   waiting_.push_back(std::move(work));
-  const std::size_t spare = most_ / 8 + 1;
-  if (idle_ < waiting_.size() && threads_.size() < most_ + spare) add_thread();
+  const std::size_t spare = max_ / 8 + 1;
+  if (idle_ < waiting_.size() && threads_.size() < max_ + spare) add_thread();
   changed_.notify_one();
 }
 

@@ -13,7 +13,7 @@ namespace orrery {
 // new connections while evicted ones end.
 class ConnectionThreads {
  public:
-  explicit ConnectionThreads(std::size_t most) : most_(most) {}
+  explicit ConnectionThreads(std::size_t most) : max_(most) {}
   ~ConnectionThreads();  // waits for all work to end
 
   // Whether fewer than `most` connections are served and a thread is free, or can be started.
@@ -25,7 +25,7 @@ class ConnectionThreads {
   void serve();
   bool add_thread();  // requires mutex_; false if the system has no more
 
-  const std::size_t most_;
+  const std::size_t max_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;

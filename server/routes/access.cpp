@@ -27,7 +27,7 @@ std::string address_of(const Request& request) {
 bool pass_by_link(const Access& access, Request& request) {
   const auto signature = find_field(request.query, kSignature);
   if (!signature) return false;
-  const auto expires = number_in<std::int64_t>(find_field(request.query, kExpires).value_or(""));
+  const auto expires = parse_number<std::int64_t>(find_field(request.query, kExpires).value_or(""));
   if (!expires || !access.is_signed(address_of(request), *expires, *signature))
     throw HttpError(403, "The link is not one that this service has signed");
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -46,29 +46,29 @@ std::string_view bearer_of(std::string_view header) {
 
 }  // namespace
 
-Audience require_access(const Access& access, Scope needed, Request& request) {
-  if (needed == Scope::none) return Audience::all;
-  if (needed == Scope::read && pass_by_link(access, request)) return Audience::link;
-  if (!access.needs_token()) return Audience::all;
+AccessLevel require_access(const Access& access, Scope needed, Request& request) {
+  if (needed == Scope::none) return AccessLevel::all;
+  if (needed == Scope::read && pass_by_link(access, request)) return AccessLevel::link;
+  if (!access.needs_token()) return AccessLevel::all;
   const std::string header = request.header("Authorization").value_or("");
   const auto holder = access.holder_of(bearer_of(header));
   if (!holder)
     throw HttpError(401,
                     header.empty() ? "A token is needed (Authorization: Bearer)" : "The token is not known",
                     {{"WWW-Authenticate", header.empty() ? "Bearer" : "Bearer error=\"invalid_token\""}});
-  if (const auto scope = lacking(holder->scopes, needed))
+  if (const auto scope = missing_scope(holder->scopes, needed))
     throw HttpError(403, "The token lacks the scope " + std::string(*scope));
-  if (find_field(request.query, kChosen) && lacking(holder->scopes, Scope::render))
+  if (find_field(request.query, kChosen) && missing_scope(holder->scopes, Scope::render))
     throw HttpError(
         403, "The token lacks the scope render, which choosing the " + std::string(kChosen) + " takes");
   request.client = holder->name;
-  return Audience::holders;
+  return AccessLevel::holders;
 }
 
 bool may_remove_others(const Access& access, const Request& request) {
   if (!access.needs_token()) return false;
   const auto holder = access.holder_of(bearer_of(request.header("Authorization").value_or("")));
-  return holder && !lacking(holder->scopes, Scope::admin);
+  return holder && !missing_scope(holder->scopes, Scope::admin);
 }
 
 bool is_link(const Request& request) {

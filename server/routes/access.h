@@ -6,11 +6,11 @@
 namespace orrery {
 
 // Clients that may see a response: everyone, holders of a token, or holders of a signed link.
-enum class Audience { all, holders, link };
+enum class AccessLevel { all, holders, link };
 
 // Authorizes a request by its token or, for the scope read, by a signed link. Sets request.client to the name
 // of the token and removes the link's parameters from the query. Throws HttpError 401 or 403.
-Audience require_access(const Access& access, Scope needed, Request& request);
+AccessLevel require_access(const Access& access, Scope needed, Request& request);
 
 // Whether the request may remove objects of other clients, which needs a token of the scope admin. Always
 // false without tokens, because addresses identify clients then.

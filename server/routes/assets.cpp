@@ -61,7 +61,7 @@ void require_asset(const Request& request) {
 Response put_asset(App& app, Request& request) {
   app.require_open();
   const std::string id = request.path_value("sha256");
-  const AssetStore::Added added = app.add_asset(id, request.body, caller_of(request));
+  const AssetStore::AddResult added = app.add_asset(id, request.body, caller_of(request));
   Response response = json_answer(added.known ? 200 : 201, json_of(id, *added.asset));
   response.set("Location", "/v1/assets/" + id);
   response.set("ETag", etag_of(id));

@@ -30,8 +30,8 @@ class ChartWork final : public JobWork {
     return {{"chart", folder() + job_id + ".svg"}};
   }
   ordered_json links_of_step(const std::string&, int) const override { return ordered_json::object(); }
-  ordered_json told(int) const override { return ordered_json::object(); }
-  ordered_json told_of_step(int) const override { return ordered_json::object(); }
+  ordered_json status_fields(int) const override { return ordered_json::object(); }
+  ordered_json step_fields(int) const override { return ordered_json::object(); }
   JobResult result(const std::string& job_id, std::string_view path) const override {
     const ChartForm* form = chart_form_of(path);
     if (!form || path != folder() + job_id + std::string(form->ending))

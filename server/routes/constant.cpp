@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/hash.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "server/http/compression.h"
 #include "server/routes/answers.h"
 
@@ -18,7 +18,7 @@ class Constant {
 
   Response answer(const Request& request) {
     std::call_once(made_, [this] {
-      const WorkScope nobody({});  // charged to no client, since any request may be the first
+      const TaskScope nobody({});  // charged to no client, since any request may be the first
       bytes_ = make_();
       gzip_ = gzip_of(type_, bytes_);
       etag_ = "\"" + sha256_hex(bytes_).substr(0, 32) + "\"";

@@ -37,18 +37,19 @@ class FrameWork final : public JobWork {
   ordered_json links_of_step(const std::string& job_id, int step) const override {
     return {{"href", folder(job_id) + std::to_string(step) + ".png"}};
   }
-  ordered_json told(int steps_done) const override {
-    ordered_json told = ordered_json::object();
-    if (steps_done == 0) return told;
-    if (ordered_json budget = budget_.json(steps_done); !budget.is_null()) told["budget"] = std::move(budget);
-    return told;
+  ordered_json status_fields(int steps_done) const override {
+    ordered_json fields = ordered_json::object();
+    if (steps_done == 0) return fields;
+    if (ordered_json budget = budget_.json(steps_done); !budget.is_null())
+      fields["budget"] = std::move(budget);
+    return fields;
   }
-  ordered_json told_of_step(int step) const override { return {{"bound", budget_.bound_json(step)}}; }
+  ordered_json step_fields(int step) const override { return {{"bound", budget_.bound_json(step)}}; }
   JobResult result(const std::string& job_id, std::string_view path) const override {
     const std::string begin = folder(job_id);
     if (path.starts_with(begin)) {
       const std::string_view name = path.substr(begin.size());
-      const auto number = number_in<int>(name.substr(0, name.find('.')));
+      const auto number = parse_number<int>(name.substr(0, name.find('.')));
       if (number && name == std::to_string(*number) + ".png" && *number >= 0 && *number < steps())
         return {
             "Frame " + std::to_string(*number), "image/png", *number + 1,

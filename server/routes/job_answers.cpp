@@ -27,7 +27,7 @@ ordered_json job_json(const Job& job, const JobStatus& status, const std::string
                        {"elapsed_s", milli(status.elapsed_s)},
                        {"events", prefix + job_path(job.id()) + "/events"}};
   json.update(with_prefix(job.work().links(job.id()), prefix));
-  json.update(job.work().told(status.steps_done));
+  json.update(job.work().status_fields(status.steps_done));
   if (status.remaining_s) json["remaining_s"] = milli(*status.remaining_s);
   if (status.error)
     json["error"] = ordered_json::parse(std::string_view(problem_response(status.error, job.id()).body));
@@ -40,7 +40,7 @@ Response start_job(App& app, Request& request, JobSpec spec, const std::string& 
   constexpr std::size_t kLongestKey = 255;
   if (key.size() > kLongestKey)
     throw HttpError(400, "Idempotency-Key has more than " + std::to_string(kLongestKey) + " characters");
-  const Jobs::Started started = app.jobs().start(std::move(spec), key, content);
+  const Jobs::StartResult started = app.jobs().start(std::move(spec), key, content);
   Response response = json_answer(202, job_json(*started.job, started.job->status(), request.prefix));
   response.set("Location", job_path(started.job->id()));
   response.set("Server-Timing", server_timing(timing));

@@ -36,7 +36,7 @@ struct Events {
     constexpr std::chrono::milliseconds kLeast{100};  // between two progress events
     constexpr std::chrono::seconds kSilence{10};      // until a comment keeps the connection alive
     for (JobStatus status = job->status(); tell(sink, status) && !ended && !gone.stop_requested();) {
-      const HandlerSlots::Wait wait(Waiting::Kind::begun);
+      const HandlerSlots::Wait wait(WaitState::Kind::begun);
       const auto spoke = timer.now();
       status = job->wait(seen, std::nullopt, spoke + kLeast, gone);
       if (status.steps_done == seen && !has_ended(status.state))
@@ -60,7 +60,7 @@ struct Events {
   std::string frame_event(ordered_json json) const {
     json["frame"] = seen;
     json.update(with_prefix(job->work().links_of_step(job->id(), seen), prefix));
-    json.update(job->work().told_of_step(seen));
+    json.update(job->work().step_fields(seen));
     return event("frame", seen + 1, json);
   }
 };
@@ -71,7 +71,7 @@ Response get_events(App& app, Request& request) {
   negotiate(request, kType);
   int seen = 0;
   if (const auto last = request.header("Last-Event-ID")) {
-    seen = number_in<int>(*last).value_or(-1);
+    seen = parse_number<int>(*last).value_or(-1);
     if (seen < 0) throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
   }
   if (seen > job->status().steps) return {.status = 204};  // ends the client's reconnects

@@ -6,8 +6,8 @@
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
 #include "server/app/app.h"
+#include "server/app/error_report.h"
 #include "server/app/picture_key.h"
-#include "server/app/told_error.h"
 #include "server/http/handler_slots.h"
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
@@ -24,7 +24,7 @@ double number_of(const Request& request, std::string_view name, double min, doub
                  std::vector<Problem>& problems) {
   for (const auto& [key, text] : request.query) {
     if (key != name) continue;
-    const auto number = number_in<double>(text);
+    const auto number = parse_number<double>(text);
     if (number && *number >= min && *number <= max) return *number;
     char range[96];
     std::snprintf(range, sizeof range, "expected a number >= %g and <= %g, got ", min, max);
@@ -79,18 +79,18 @@ SharedBytes picture_of(const std::shared_ptr<const OrbitFrame>& frame) {
 // State of an orbit stream whose first frame is rendered.
 struct OrbitRequest {
   std::shared_ptr<const void> place;
-  std::shared_ptr<OrbitCast::Viewer> viewer;
+  std::shared_ptr<OrbitBroadcast::Viewer> viewer;
   std::shared_ptr<const OrbitFrame> first;
   std::stop_token gone;
 };
 
-std::shared_ptr<const OrbitFrame> next_of(const OrbitRequest& orbit, Waiting::Kind kind) {
+std::shared_ptr<const OrbitFrame> next_of(const OrbitRequest& orbit, WaitState::Kind kind) {
   const HandlerSlots::Wait wait(kind);
   return orbit.viewer->next(orbit.gone);
 }
 
 void send(const OrbitRequest& orbit, PictureWriter&& writer) {
-  for (auto frame = orbit.first; frame; frame = next_of(orbit, Waiting::Kind::begun)) try {
+  for (auto frame = orbit.first; frame; frame = next_of(orbit, WaitState::Kind::begun)) try {
       const auto header = header_of(*frame, orbit.viewer->skipped());
       const bool written =
           writer.write({.png = picture_of(frame),
@@ -98,7 +98,7 @@ void send(const OrbitRequest& orbit, PictureWriter&& writer) {
                         .fields = {{"Orrery-Error-Bound", bound_text(frame->picture.certificate)}},
                         .last = orbit.viewer->at_end()});
       if (!written) return;
-    } catch (const OverLimit&) {  // skips the frame, as for a slow viewer
+    } catch (const LimitExceeded&) {  // skips the frame, as for a slow viewer
     }
   writer.end();
 }
@@ -118,7 +118,7 @@ Response orbit(App& app, Request& request) {
                      .viewer = app.orbits().watch(spec),
                      .first = {},
                      .gone = request.gone};
-  orbit.first = next_of(orbit, Waiting::Kind::turn);  // errors can still set the status
+  orbit.first = next_of(orbit, WaitState::Kind::turn);  // errors can still set the status
   if (!orbit.first && request.gone.stop_requested()) throw Cancelled("the client has gone");
   if (!orbit.first) throw Busy("The service ends", 5);
   response.stream = [orbit, format](Sink& sink) { send(orbit, PictureWriter(sink, format)); };

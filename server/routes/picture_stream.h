@@ -31,7 +31,7 @@ class PictureWriter {
   PictureWriter(Sink& sink, StreamFormat format) : sink_(sink), format_(format) {}
 
   // Writes a picture and waits until it is sent. Returns false if the client has disconnected. Throws
-  // OverLimit without sending it if too many response bytes are being sent.
+  // LimitExceeded without sending it if too many response bytes are being sent.
   bool write(const StreamedPicture& picture);
   // Ends the stream after the last picture.
   void end();

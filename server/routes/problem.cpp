@@ -6,7 +6,7 @@
 
 #include "core/base/shorten.h"
 #include "server/app/admission.h"
-#include "server/app/told_error.h"
+#include "server/app/error_report.h"
 #include "server/app/watch.h"
 
 namespace orrery {
@@ -14,17 +14,17 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostBytes = 64 * 1024;  // response body
+constexpr std::size_t kMaxBytes = 64 * 1024;   // response body
 constexpr std::size_t kMostCharacters = 4500;  // detail; at most 6 bytes each
 
-// Returns the body, without its last errors if all of them would exceed kMostBytes. REQUIRES: one error fits.
+// Returns the body, without its last errors if all of them would exceed kMaxBytes. REQUIRES: one error fits.
 std::string text_of(ordered_json problem) {
   const auto text = [&] {
     return problem.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
   };
   std::string body = text();
   if (!problem.contains("errors")) return body;
-  for (ordered_json& errors = problem["errors"]; body.size() > kMostBytes && errors.size() > 1; body = text())
+  for (ordered_json& errors = problem["errors"]; body.size() > kMaxBytes && errors.size() > 1; body = text())
     errors.erase(errors.size() - 1);
   return body;
 }
@@ -108,9 +108,9 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
     return missed(e, request_id);
   } catch (const NotFound& e) {
     return respond(404, e.what(), request_id);
-  } catch (const ClientBusy& e) {
+  } catch (const ClientLimitExceeded& e) {
     return try_later(429, e, request_id, e.limit());
-  } catch (const OverLimit& e) {
+  } catch (const LimitExceeded& e) {
     return try_later(503, e, request_id, e.limit());
   } catch (const Busy& e) {
     return try_later(503, e, request_id, "draining");

@@ -3,7 +3,7 @@
 #include "core/plan/plan.h"
 #include "core/plan/warnings.h"
 #include "server/app/app.h"
-#include "server/app/told_error.h"
+#include "server/app/error_report.h"
 #include "server/routes/answers.h"
 #include "server/routes/picture_stream.h"
 
@@ -48,7 +48,7 @@ bool write(PictureWriter& writer, const Refinement& refinement, const Refinement
                          .header = header,
                          .fields = fields_of(step),
                          .last = refinement.at_end()});
-  } catch (const OverLimit&) {
+  } catch (const LimitExceeded&) {
     if (refinement.at_end()) throw;
     return true;
   }

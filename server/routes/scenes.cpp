@@ -39,7 +39,7 @@ std::string etag_of_scene(const Scene& scene) { return "\"" + scene.id + "\""; }
 Response add_scene(App& app, Request& request) {
   app.require_open();
   Timing timing;
-  SceneStore::Kept kept;
+  SceneStore::KeepResult kept;
   app.read(request.body, caller_of(request), timing,
            [&](const Document& document, const AssetSource& assets) {
              kept = app.scenes().keep(document, assets, caller_of(request).client);

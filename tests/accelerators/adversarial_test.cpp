@@ -177,7 +177,7 @@ TEST_P(Adversaries, SampleScenes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Adversaries, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Adversaries, testing::ValuesIn(accelerator_names()), parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

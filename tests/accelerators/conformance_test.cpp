@@ -151,7 +151,7 @@ TEST_P(Accelerators, RaysThatAreNoNumbersMeetNothing) {
   for (const auto& hit : structure.closest(rays)) EXPECT_FALSE(hit.met());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Accelerators, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Accelerators, testing::ValuesIn(accelerator_names()), parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

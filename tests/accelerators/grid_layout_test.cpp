@@ -16,7 +16,7 @@ template <class T>
 Cells visited(const GridLayout<T>& layout, const Ray<T>& ray) {
   Cells cells;
   layout.for_each_along(
-      SingleRay<T>::of(ray), SingleProbe<T>(ray), T(0), std::numeric_limits<T>::infinity(),
+      SingleRay<T>::of(ray), RayBoxTester<T>(ray), T(0), std::numeric_limits<T>::infinity(),
       [](T) { return true; }, [&](const CellIndex& i, T, T) { cells.insert(i); });
   return cells;
 }

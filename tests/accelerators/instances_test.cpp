@@ -150,7 +150,7 @@ TEST_P(Instances, CountWhatIsTestedInThem) {
       << "of 168 triangles each";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Instances, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Instances, testing::ValuesIn(accelerator_names()), parameter_name);
 
 TEST(Instance, IsMetWhereItsMeshWouldBe) {
   covers("A38");

@@ -31,10 +31,10 @@ std::vector<Hit<T>> hits_of(const Primitive<T>& primitive, const Rays<T>& rays) 
 // Known hits to start from: of a random primitive, and of the last primitive among those at the nearest
 // distance.
 template <class T>
-struct Known {
+struct StartingHits {
   std::vector<Hit<T>> any, last;
 
-  Known(const PrimitiveList<T>& primitives, const Rays<T>& rays, const std::vector<Hit<T>>& nearest)
+  StartingHits(const PrimitiveList<T>& primitives, const Rays<T>& rays, const std::vector<Hit<T>>& nearest)
       : any(rays.size()), last(rays.size()) {
     Random random(1);
     std::vector<int> chosen;
@@ -65,7 +65,7 @@ class KnownHits : public testing::TestWithParam<std::string> {
     Structure<T> list(scene, "list"), structure(scene, GetParam());
     const std::vector<Hit<T>> nearest = list.closest(rays);
     EXPECT_EQ(wrong<T>(structure.closest(rays, nearest), nearest), 0) << "the answer itself is known";
-    const Known<T> known(list.geometry().primitives, rays, nearest);
+    const StartingHits<T> known(list.geometry().primitives, rays, nearest);
     for (const auto& hits : {known.any, known.last}) {
       EXPECT_EQ(wrong<T>(structure.closest(rays, hits), nearest), 0);
       EXPECT_EQ(wrong<T>(list.closest(rays, hits), nearest), 0);
@@ -79,7 +79,7 @@ class KnownHits : public testing::TestWithParam<std::string> {
         Rays<T> rays = any_rays<T>(half, 3000, 3);
         for (Ray<T>& ray : rays)  // most distant rays would miss
           if (half > 3) ray.direction = Vec3<T>(safe_normalize(Vec3d(-ray.origin)));
-        agree<T>(scene, enough_of(rays));
+        agree<T>(scene, subsample_rays(rays));
       }
   }
 
@@ -99,7 +99,7 @@ TEST_P(KnownHits, StayUnlessThereIsABetterOne) {
   agree_on_all<double>();
 }
 
-INSTANTIATE_TEST_SUITE_P(All, KnownHits, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, KnownHits, testing::ValuesIn(accelerator_names()), parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

@@ -71,17 +71,17 @@ Rays<T> rays_through(double half, int count, std::uint64_t seed) {
   return rays;
 }
 
-struct Followed {
+struct UpdateCounts {
   int refitted = 0, built = 0;
   double worst = 1;
 };
 
 // Compares each structure, frame by frame, with the list of that moment and with a freshly built structure.
 template <class T>
-Followed follow(const Json& json, const std::string& accelerator, int frames, int rays_a_frame,
-                double half = 7) {
+UpdateCounts follow(const Json& json, const std::string& accelerator, int frames, int rays_a_frame,
+                    double half = 7) {
   const auto scene = load(json);
-  Followed followed;
+  UpdateCounts followed;
   std::unique_ptr<Structure<T>> before;
   for (int frame = 0; frame <= frames; ++frame) {
     const double time = static_cast<double>(frame) / frames;
@@ -102,7 +102,7 @@ class Motion : public StructureTest {
  protected:
   // Expects hierarchies to be refitted at first, and rebuilt when their boxes stretch over half the square.
   // All other structures are rebuilt for each frame.
-  static void expect_both(const Followed& followed) {
+  static void expect_both(const UpdateCounts& followed) {
     const bool hierarchy = GetParam() == "bottom-up" || GetParam() == "bvh";
     EXPECT_EQ(followed.refitted > 1, hierarchy);
     EXPECT_GT(followed.built, 1);
@@ -112,7 +112,7 @@ class Motion : public StructureTest {
 
 TEST_P(Motion, PairsOfInstancesSwapPlaces) {
   covers("F19 F1");
-  const Followed followed = follow<float>(swapping_instances(), GetParam(), 20, 3000);
+  const UpdateCounts followed = follow<float>(swapping_instances(), GetParam(), 20, 3000);
   follow<double>(swapping_instances(), GetParam(), 5, 1000);
   EXPECT_EQ(followed.refitted + followed.built, 21);
   expect_both(followed);
@@ -120,7 +120,7 @@ TEST_P(Motion, PairsOfInstancesSwapPlaces) {
 
 TEST_P(Motion, PairsOfTrianglesSwapPlaces) {
   covers("F19 F1");
-  const Followed followed = follow<float>(swapping_triangles(), GetParam(), 20, 3000);
+  const UpdateCounts followed = follow<float>(swapping_triangles(), GetParam(), 20, 3000);
   follow<double>(swapping_triangles(), GetParam(), 5, 1000);
   expect_both(followed);
 }
@@ -198,7 +198,7 @@ TEST_P(Motion, WhatIsFlattenedToLinesIsNotMet) {
   EXPECT_GT(met_before, 1000);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Motion, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Motion, testing::ValuesIn(accelerator_names()), parameter_name);
 
 TEST(MovingGeometry, SharesWhatRests) {
   Json json = swapping_instances();

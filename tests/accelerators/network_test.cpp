@@ -162,7 +162,7 @@ TEST(NetworkPredictor, ProposesWhatStoodInTheWay) {
     rays->direction.x[i] = rays->direction.z[i] = 0;
     rays->direction.y[i] = rays->t_max[i] = 1;
   }
-  predictor->propose(*rays, Groups::covering(0, kBatch, kWidth<float>), *proposed);
+  predictor->propose(*rays, LaneGroups::covering(0, kBatch, kWidth<float>), *proposed);
   int right = 0;
   for (int i = 0; i < kBatch; ++i)
     right += (*proposed)[i] == occluder_at(static_cast<double>(rays->origin.x[i]));
@@ -174,7 +174,7 @@ TEST(NetworkPredictor, ProposesNothingWhereNothingWasInTheWay) {
   const auto rays = std::make_unique<RayBatch<double>>();
   const auto proposed = std::make_unique<Array<IndexOf<double>>>();
   for (const auto& samples : {std::vector<OcclusionSample>{}, std::vector<OcclusionSample>{lit}}) {
-    network_predictor<double>(samples)->propose(*rays, Groups::single(0), *proposed);
+    network_predictor<double>(samples)->propose(*rays, LaneGroups::single(0), *proposed);
     EXPECT_EQ((*proposed)[0], kNoPrimitive);
   }
 }

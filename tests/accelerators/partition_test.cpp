@@ -100,10 +100,10 @@ TEST_P(Partitions, FindTheNearerOfLongAndShort) {
   expect_few_references(scene, 8);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Partitions, testing::ValuesIn(sharing_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Partitions, testing::ValuesIn(sharing_names()), parameter_name);
 
 // Returns a closed blob of about 10,000 triangles, a metre wide, in a ring of long walls, a kilometre wide.
-Json teapot_in_a_stadium() {
+Json small_mesh_in_large_ring() {
   Json positions = Json::array(), indices = Json::array();
   constexpr int kRows = 50, kColumns = 100;
   for (int row = 0; row <= kRows; ++row)
@@ -128,7 +128,7 @@ Json teapot_in_a_stadium() {
   return scene_with(objects);
 }
 
-double tests_a_ray(const Json& scene, const std::string& name, const Rays<float>& rays) {
+double tests_per_ray(const Json& scene, const std::string& name, const Rays<float>& rays) {
   Structure<float> structure(scene, name);
   structure.closest(rays);
   return static_cast<double>(structure.counts().primitive_tests) / static_cast<double>(rays.size());
@@ -136,22 +136,22 @@ double tests_a_ray(const Json& scene, const std::string& name, const Rays<float>
 
 TEST(AdaptiveGrid, FindsTheTeapotInTheStadium) {
   covers("F10");
-  const Json scene = teapot_in_a_stadium();
+  const Json scene = small_mesh_in_large_ring();
   Random random(9);
   Rays<float> rays;
   for (int i = 0; i < 4000; ++i) {
     const Vec3d from = random.direction() * 3.0, to = random.in_cube(0.5);
     rays.push_back({Vec3f(from), Vec3f(safe_normalize(to - from))});
   }
-  const double hierarchy = tests_a_ray(scene, "bvh", rays);
-  EXPECT_LE(tests_a_ray(scene, "adaptive-grid", rays), 5 * hierarchy);
-  EXPECT_GT(tests_a_ray(scene, "grid", rays), 5 * hierarchy) << "the trap is none";
+  const double hierarchy = tests_per_ray(scene, "bvh", rays);
+  EXPECT_LE(tests_per_ray(scene, "adaptive-grid", rays), 5 * hierarchy);
+  EXPECT_GT(tests_per_ray(scene, "grid", rays), 5 * hierarchy) << "the trap is none";
 }
 
 // Expects at most 1.3 times the primitive tests of a bottom-up tree, both for evenly spread triangles and for
 // sizes that differ by a factor of 1,000.
 TEST(SurfaceAreaHeuristic, TestsAsFewPrimitivesAsGroupingFromTheBottomUp) {
-  const Json scene = teapot_in_a_stadium();
+  const Json scene = small_mesh_in_large_ring();
   Random random(10);
   Rays<float> near, far;
   for (int i = 0; i < 4000; ++i) {
@@ -159,8 +159,8 @@ TEST(SurfaceAreaHeuristic, TestsAsFewPrimitivesAsGroupingFromTheBottomUp) {
     near.push_back({Vec3f(from), Vec3f(safe_normalize(random.in_cube(0.5) - from))});
     far.push_back({Vec3f(random.in_cube(100)), Vec3f(random.direction())});
   }
-  EXPECT_LE(tests_a_ray(scene, "bvh", near), 1.3 * tests_a_ray(scene, "bottom-up", near));
-  EXPECT_LE(tests_a_ray(scene, "bvh", far), 1.3 * tests_a_ray(scene, "bottom-up", far));
+  EXPECT_LE(tests_per_ray(scene, "bvh", near), 1.3 * tests_per_ray(scene, "bottom-up", near));
+  EXPECT_LE(tests_per_ray(scene, "bvh", far), 1.3 * tests_per_ray(scene, "bottom-up", far));
 }
 
 }  // namespace

@@ -11,25 +11,28 @@ namespace orrery::test {
 namespace {
 
 // Kinds of invalid predictions.
-enum class Evil { out_of_range, always_wrong, any_number };
+enum class InvalidPrediction { out_of_range, always_wrong, any_number };
 
 template <class T>
 class Adversary final : public Predictor<T> {
  public:
-  Adversary(Evil kind, const PrimitiveList<T>& primitives)
+  Adversary(InvalidPrediction kind, const PrimitiveList<T>& primitives)
       : kind_(kind), primitives_(primitives), count_(static_cast<IndexOf<T>>(primitives.size())) {}
 
-  void propose(const RayBatch<T>& rays, const Groups& groups, Array<IndexOf<T>>& primitive) const override {
+  void propose(const RayBatch<T>& rays, const LaneGroups& groups,
+               Array<IndexOf<T>>& primitive) const override {
     using Limits = std::numeric_limits<IndexOf<T>>;
     const std::array<IndexOf<T>, 6> beyond{Limits::min(), Limits::max(), -2,
                                            count_,        count_ + 1,    kNoPrimitive};
     Random random(static_cast<std::uint64_t>(groups.size() * 1000 + rays.count));
     for (const int group : groups) {
-      const IndexOf<T> wrong = kind_ == Evil::always_wrong ? missed(rays, group) : 0;
+      const IndexOf<T> wrong = kind_ == InvalidPrediction::always_wrong ? missed(rays, group) : 0;
       for (int i = group; i < group + kWidth<T>; ++i) {
-        if (kind_ == Evil::always_wrong) primitive[i] = wrong;
-        if (kind_ == Evil::any_number) primitive[i] = random.below(2 * static_cast<int>(count_)) - count_ / 2;
-        if (kind_ == Evil::out_of_range) primitive[i] = beyond[static_cast<std::size_t>(random.below(6))];
+        if (kind_ == InvalidPrediction::always_wrong) primitive[i] = wrong;
+        if (kind_ == InvalidPrediction::any_number)
+          primitive[i] = random.below(2 * static_cast<int>(count_)) - count_ / 2;
+        if (kind_ == InvalidPrediction::out_of_range)
+          primitive[i] = beyond[static_cast<std::size_t>(random.below(6))];
       }
     }
   }
@@ -37,7 +40,7 @@ class Adversary final : public Predictor<T> {
  private:
   // Returns a primitive that no ray of the register hits, or kNoPrimitive.
   IndexOf<T> missed(const RayBatch<T>& rays, int group) const {
-    const Groups one = Groups::single(group);
+    const LaneGroups one = LaneGroups::single(group);
     const auto tried = std::make_unique<RayBatch<T>>(rays);
     AcceleratorCounts counts;
     for (std::size_t p = 0; p < primitives_.size(); ++p) {
@@ -48,13 +51,13 @@ class Adversary final : public Predictor<T> {
     return kNoPrimitive;
   }
 
-  Evil kind_;
+  InvalidPrediction kind_;
   const PrimitiveList<T>& primitives_;
   IndexOf<T> count_;
 };
 
 template <class T>
-Stage<T> adversary(Evil kind) {
+Stage<T> adversary(InvalidPrediction kind) {
   return [=](const auto& primitives, auto behind) {
     return predicted<T>(primitives, behind, std::make_shared<const Adversary<T>>(kind, primitives));
   };
@@ -83,9 +86,9 @@ std::vector<Front<T>> fronts(const Json& scene, const Rays<T>& rays) {
     return [=](const auto& primitives, auto behind) { return predicted<T>(primitives, behind, predictor); };
   };
   return {
-      {"always wrong", adversary<T>(Evil::always_wrong)},
-      {"any number", adversary<T>(Evil::any_number)},
-      {"out of range", adversary<T>(Evil::out_of_range)},
+      {"always wrong", adversary<T>(InvalidPrediction::always_wrong)},
+      {"any number", adversary<T>(InvalidPrediction::any_number)},
+      {"out of range", adversary<T>(InvalidPrediction::out_of_range)},
       {"random", by(random_predictor<T>(load(scene)->primitive_count()))},
       {"last", [](const auto& primitives, auto behind) { return predicted_by_last<T>(primitives, behind); }},
       {"network",
@@ -123,7 +126,7 @@ void expect_no_change(const Subject& subject, const std::string& accelerator, in
   Rays<T> rays = neighbouring_rays<T>(count / 2, 4);
   const Rays<T> others = any_rays<T>(3, count / 2, 5);
   rays.insert(rays.end(), others.begin(), others.end());
-  rays = enough_of(rays);
+  rays = subsample_rays(rays);
   Structure<T> reference(subject.scene, "list");
   for (const T reach : {T(0.8), std::numeric_limits<T>::infinity()}) {
     const std::vector<char> expected = reference.occluded(rays, reach);
@@ -147,7 +150,7 @@ TEST_P(PredictionOfShadows, ChangesNoneInFrontOfAnyStructure) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PredictionOfShadows, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, PredictionOfShadows, testing::ValuesIn(accelerator_names()), parameter_name);
 
 TEST(PredictionOfShadows, ChangesNoneOfMany) {  // a million in an exhaustive run
   covers("F18");
@@ -162,7 +165,7 @@ TEST(PredictionOfShadows, ChangesNoneOfMany) {  // a million in an exhaustive ru
 TEST(PredictionOfShadows, ChangesNoneOfBrokenRays) {
   covers("F18");
   const Subject subject{"balls", balls(50, 1)};
-  const Rays<float> rays = broken_rays<float>(10'000, 6);
+  const Rays<float> rays = invalid_rays<float>(10'000, 6);
   Structure<float> reference(subject.scene, "list");
   const std::vector<char> expected = reference.occluded(rays, 2);
   for (const auto& [front, stage] : fronts<float>(subject.scene, any_rays<float>(3, 2000, 5)))
@@ -177,7 +180,7 @@ TEST(PredictionOfShadows, LeavesTheNearestHitToTheStructure) {
     Structure<float> structure(scene, "bvh", stage);
     SCOPED_TRACE(front);
     expect_agreement<float>(structure, reference, rays, {});
-    EXPECT_EQ(structure.counts().proposals, 0u);
+    EXPECT_EQ(structure.counts().predicted_occluders, 0u);
   }
 }
 
@@ -189,12 +192,13 @@ TEST(PredictionCounts, TellProposalsFromProofs) {
     structure.occluded(rays, std::numeric_limits<float>::infinity());
     return structure.counts();
   };
-  const AcceleratorCounts bare = counts({}), nothing = counts(adversary<float>(Evil::out_of_range)),
-                          wrong = counts(adversary<float>(Evil::always_wrong));
-  EXPECT_EQ(nothing.proposals, 0u);
+  const AcceleratorCounts bare = counts({}),
+                          nothing = counts(adversary<float>(InvalidPrediction::out_of_range)),
+                          wrong = counts(adversary<float>(InvalidPrediction::always_wrong));
+  EXPECT_EQ(nothing.predicted_occluders, 0u);
   EXPECT_EQ(nothing.primitive_tests, bare.primitive_tests);
-  EXPECT_EQ(wrong.proposals, 1000u);
-  EXPECT_EQ(wrong.proofs, 0u);
+  EXPECT_EQ(wrong.predicted_occluders, 1000u);
+  EXPECT_EQ(wrong.verified_occluders, 0u);
   EXPECT_EQ(wrong.primitive_tests, bare.primitive_tests + 1000);
 }
 
@@ -206,7 +210,7 @@ TEST(PredictionCounts, FallWhereThePastIsAGuide) {
   });
   bare.occluded(rays, 2);
   last.occluded(rays, 2);
-  EXPECT_GT(last.counts().proofs, 1000u);
+  EXPECT_GT(last.counts().verified_occluders, 1000u);
   EXPECT_LT(last.counts().primitive_tests, bare.counts().primitive_tests);
 }
 

@@ -31,7 +31,7 @@ class Reordering : public testing::TestWithParam<std::string> {
       agree<T>(scene, any_rays<T>(3, 20'000, 2));
       agree<T>(scene, rays_from_one_point<T>(3, 5'000, 3));
       agree<T>(scene, Rays<T>(3'000, {{T(0.1), T(0.2), T(-5)}, {T(0), T(0), T(1)}}));
-      agree<T>(scene, broken_rays<T>(3'000, 4));
+      agree<T>(scene, invalid_rays<T>(3'000, 4));
     }
   }
 };
@@ -42,7 +42,7 @@ TEST_P(Reordering, ChangesNoHitAndNoShadow) {
   agree_on_all<double>();
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Reordering, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Reordering, testing::ValuesIn(accelerator_names()), parameter_name);
 
 template <class T>
 std::vector<int> order_in(const Rays<T>& rays) {
@@ -81,7 +81,7 @@ TYPED_TEST(RayOrders, HoldEachActiveRayOnce) {
   }
   const auto nobody = std::make_unique<RayBatch<T>>();
   nobody->t_max.values.fill(T(-1));
-  EXPECT_EQ(order_of(*nobody, Groups::covering(0, kBatch, kWidth<T>)).count, 0);
+  EXPECT_EQ(order_of(*nobody, LaneGroups::covering(0, kBatch, kWidth<T>)).count, 0);
 }
 
 TYPED_TEST(RayOrders, KeepTheOrderOfEqualKeys) {
@@ -156,7 +156,7 @@ TYPED_TEST(RayOrders, LeaveOtherRaysAlone) {
   hits->t = batch->t_max;
   hits->primitive.values.fill(-7);
   AcceleratorCounts counts;
-  const Groups first_half = Groups::covering(0, kBatch / 2, kWidth<T>);
+  const LaneGroups first_half = LaneGroups::covering(0, kBatch / 2, kWidth<T>);
   const RayBatch<T> before = *batch;
   for (int i = 1; i < kBatch; i += 2) hits->primitive[i] = kNoPrimitive;
   sorted.accelerator()->closest(*batch, first_half, *hits, counts);

@@ -94,12 +94,12 @@ const AcceleratorType& type_named(const std::string& name) {
   throw std::invalid_argument(name);
 }
 
-const Groups& all_groups(float) {
-  static const Groups all = Groups::covering(0, kBatch, kWidth<float>);
+const LaneGroups& all_groups(float) {
+  static const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<float>);
   return all;
 }
-const Groups& all_groups(double) {
-  static const Groups all = Groups::covering(0, kBatch, kWidth<double>);
+const LaneGroups& all_groups(double) {
+  static const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<double>);
   return all;
 }
 
@@ -151,7 +151,7 @@ TEST_P(Shutter, MovingThingsAreFoundAsByTestingEverything) {
   agrees_with_testing_everything<double>();
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Shutter, testing::ValuesIn(accelerator_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Shutter, testing::ValuesIn(accelerator_names()), parameter_name);
 
 // Hits and surfaces of rays at one time equal those of the scene at that instant.
 TEST(MovingDuringAnExposure, StandsWhereItIsAtTheRaysTime) {

@@ -70,7 +70,7 @@ class Watertight : public testing::TestWithParam<std::string> {
   void expect_no_leak(const Vec3d& middle, int count) {
     const Ball ball = ball_around(middle);
     Structure<T> structure(scene_of_ball(ball), GetParam());
-    const Rays<T> rays = enough_of(aimed<T>(ball, middle, count));
+    const Rays<T> rays = subsample_rays(aimed<T>(ball, middle, count));
     int out = 0;
     for (const auto& hit : structure.closest(rays)) out += !hit.met();
     EXPECT_EQ(out, 0) << "of " << rays.size() << " rays";
@@ -100,7 +100,7 @@ std::vector<std::string> fast_names() {
     if (name != "list" && name != "boxes" && name != "oriented-boxes") names.push_back(name);
   return names;
 }
-INSTANTIATE_TEST_SUITE_P(All, Watertight, testing::ValuesIn(fast_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(All, Watertight, testing::ValuesIn(fast_names()), parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

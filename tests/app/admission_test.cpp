@@ -17,7 +17,7 @@
 #include "tests/support/eventually.h"
 #include "tests/support/pictures.h"
 
-// Who gets a turn, and who is turned away.
+// Tests the order of admission, and rejections.
 namespace orrery {
 namespace {
 
@@ -44,15 +44,15 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
   Admission admission({.running = 2, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
   {
-    const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever);
+    const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever);
     {
       const auto interactive = admission.enter(demand("z"), kNever);
-      waiters.add("batch", demand("a", 10, Lane::batch));
+      waiters.add("batch", demand("a", 10, Priority::batch));
       waiters.add("i1", demand("a"));
       waiters.add("i2", demand("a"));
     }
     EXPECT_TRUE(test::eventually([&] { return waiters.order().size() == 2; }));
-    EXPECT_EQ(admission.waiting(), 1);  // half of the places are batch work's, and that is one
+    EXPECT_EQ(admission.waiting(), 1);  // batch work may hold half of the slots, that is one
     EXPECT_EQ(waiters.order(), (TurnOrder{"i1", "i2"}));
   }
   waiters.join();
@@ -63,10 +63,10 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
   {
     const auto second = admission.enter(demand("z"), kNever);
     others.add("i", demand("a"));
-    others.add("batch", demand("a", 10, Lane::batch));
+    others.add("batch", demand("a", 10, Priority::batch));
   }
   others.join();
-  EXPECT_EQ(others.order(), (TurnOrder{"batch", "i"}));  // none of it ran
+  EXPECT_EQ(others.order(), (TurnOrder{"batch", "i"}));  // no batch work was running
 }
 
 using std::chrono_literals::operator""ms;
@@ -79,14 +79,14 @@ TEST(Admission, WorkLosesItsPlaceAfterAWhileToWhoWaits) {
   waiters.add("a1", demand("a"));
   timer.advance(49ms);
   EXPECT_FALSE(ticket->expired());
-  ticket->renew();  // changes nothing
+  ticket->renew();  // no effect before expiry
   EXPECT_EQ(waiters.order(), TurnOrder{});
   timer.advance(1ms);
   EXPECT_TRUE(ticket->expired());
   EXPECT_TRUE(test::eventually([&] { return waiters.order() == TurnOrder{"a1"}; }));
   waiters.join();
   EXPECT_EQ(admission.running(), 0);
-  EXPECT_EQ(admission.waiting(), 1);  // what has lost its place
+  EXPECT_EQ(admission.waiting(), 1);  // the preempted ticket
   ticket->renew();
   EXPECT_FALSE(ticket->expired());
   EXPECT_EQ(admission.running(), 1);
@@ -117,7 +117,7 @@ TEST(Admission, WhoComesTakesAPlaceThatWasHeldForAWhile) {
   timer.advance(std::chrono::hours(1));
   EXPECT_FALSE(older->expired());  // nobody waits
   {
-    const auto brief = admission.enter(demand("a"), kNever);  // at once
+    const auto brief = admission.enter(demand("a"), kNever);  // admitted at once
     EXPECT_TRUE(older->expired());
     EXPECT_FALSE(newer->expired());
     EXPECT_EQ(admission.running(), 2);
@@ -136,7 +136,8 @@ class CountingTimer final : public ManualTimer {
   mutable std::atomic<int> asked{0};
 };
 
-// Of what goes on, before its next place: what took 60 ms goes on before what took 600 ms.
+// Resumed work is charged for the time used before. A ticket that used 60 ms is admitted before one that used
+// 600 ms.
 TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
   CountingTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
@@ -148,7 +149,7 @@ TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
     timer.advance(held);
     last.emplace(admission.enter(demand("y"), kNever));
   }
-  TurnOrder order;  // guarded by the one place
+  TurnOrder order;  // guarded by the only slot
   const auto renew = [&](Admission::Ticket& ticket, const char* name) {
     const int before = timer.asked;
     std::thread thread([&order, &ticket, name] {
@@ -157,7 +158,7 @@ TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
       const auto done = std::move(ticket);
     });
     EXPECT_TRUE(test::eventually([&] { return timer.asked > before; }));
-    EXPECT_EQ(admission.waiting(), 2);  // waits until it waits, as it does so with a lock held
+    EXPECT_EQ(admission.waiting(), 2);  // the thread holds a lock until it waits
     return thread;
   };
   std::thread first = renew(tickets.front(), "600 ms"), second = renew(tickets.back(), "60 ms");
@@ -167,8 +168,8 @@ TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
   EXPECT_EQ(order, (TurnOrder{"60 ms", "600 ms"}));
 }
 
-// Work of "slow", which another waits for all the time.
-void hold_while_another_waits(Admission& admission, ManualTimer& timer, std::chrono::milliseconds held) {
+// Holds a slot with work of "slow" while another client waits all the time.
+void occupy_slot_while_contended(Admission& admission, ManualTimer& timer, std::chrono::milliseconds held) {
   Waiters others(admission);
   {
     const auto ticket = admission.enter(demand("slow", 30'000), kNever);
@@ -178,11 +179,11 @@ void hold_while_another_waits(Admission& admission, ManualTimer& timer, std::chr
   others.join();
 }
 
-// However slow the work that is done: its rate does not decide what time is charged as.
+// The overrun is charged by time, not by the measured rate of slow work.
 TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
-  hold_while_another_waits(admission, timer, 1000ms);  // as 10 million rays
+  occupy_slot_while_contended(admission, timer, 1000ms);  // as 10 million rays
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z", 30'000), kNever));
   waiters.add("slow", demand("slow", 30'000));
@@ -192,7 +193,7 @@ TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"quick", "quick", "quick", "slow"}));
 }
 
-// Who had the service alone for a minute owes nothing to those who come later.
+// A client that used the service alone for a minute owes nothing to later clients.
 TEST(Admission, WhatNobodyWaitedForIsFree) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
@@ -209,15 +210,15 @@ TEST(Admission, WhatNobodyWaitedForIsFree) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"slow", "quick", "quick", "quick"}));
 }
 
-// Whatever it took from others, a client waits for seconds and not for minutes.
+// The debt is bounded, so that a client waits for seconds and not for minutes.
 TEST(Admission, WhatAClientOwesIsBounded) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e15}, timer);
-  hold_while_another_waits(admission, timer, 60'000ms);  // as 600 million rays; 16 places are 8 million
+  occupy_slot_while_contended(admission, timer, 60'000ms);  // as 600 million rays; 16 slots are 8 million
   Waiters waiters(admission);
   std::optional ticket(admission.enter(demand("z", 30'000), kNever));
   waiters.add("slow", demand("slow", 30'000));
-  for (int i = 0; i < 20; ++i) waiters.add("quick", demand("quick", 1e9));  // 0.52 million each, a place
+  for (int i = 0; i < 20; ++i) waiters.add("quick", demand("quick", 1e9));  // 0.52 million each, one slot
   ticket.reset();
   waiters.join();
   const TurnOrder order = waiters.order();
@@ -226,7 +227,7 @@ TEST(Admission, WhatAClientOwesIsBounded) {
   EXPECT_LE(before, 17);
 }
 
-// 50 ms of work, however much there is: it starts beside who asks for less, and not after hours of that.
+// Long work is charged for 50 ms at first. It starts next to shorter work, not after hours of it.
 TEST(Admission, LongWorkPaysForItsFirstPlaceAlone) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e15}, timer);
@@ -243,17 +244,17 @@ TEST(Admission, LongWorkPaysForItsFirstPlaceAlone) {
 TEST(Admission, InteractiveWorkTakesThePlaceOfBatchWork) {
   ManualTimer timer;
   Admission admission({.running = 2, .queue_rays = 1000}, timer);
-  const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever);
+  const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever);
   const auto interactive = admission.enter(demand("z"), kNever);
   Waiters waiters(admission);
-  waiters.add("batch", demand("b", 10, Lane::batch));
+  waiters.add("batch", demand("b", 10, Priority::batch));
   timer.advance(50ms);
   EXPECT_TRUE(batch.expired());
-  EXPECT_FALSE(interactive.expired());  // half of the places are batch work's, and that is one
+  EXPECT_FALSE(interactive.expired());  // batch work may hold half of the slots, that is one
   waiters.join();
   timer.advance(50ms);
   const auto other = admission.enter(demand("c"), kNever);
-  EXPECT_FALSE(interactive.expired());  // a place came free
+  EXPECT_FALSE(interactive.expired());  // a slot is free
 }
 
 TEST(Admission, BatchWorkTakesThePlaceOfInteractiveWorkWhileNoneOfItRuns) {
@@ -261,7 +262,7 @@ TEST(Admission, BatchWorkTakesThePlaceOfInteractiveWorkWhileNoneOfItRuns) {
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   const auto interactive = admission.enter(demand("z"), kNever);
   timer.advance(50ms);
-  const auto batch = admission.enter(demand("b", 10, Lane::batch), kNever);
+  const auto batch = admission.enter(demand("b", 10, Priority::batch), kNever);
   EXPECT_TRUE(interactive.expired());
   timer.advance(50ms);
   const auto other = admission.enter(demand("c"), kNever);
@@ -272,7 +273,7 @@ TEST(Admission, WhoHasLostManyPlacesBeginsNoMore) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   std::list<Admission::Ticket> own;
-  for (int i = 0; i < 2; ++i) {  // two for each place
+  for (int i = 0; i < 2; ++i) {  // two for each slot
     own.push_back(admission.enter(demand("z"), kNever));
     timer.advance(50ms);
     const auto other = admission.enter(demand("a"), kNever);
@@ -281,14 +282,14 @@ TEST(Admission, WhoHasLostManyPlacesBeginsNoMore) {
   Waiters waiters(admission);
   waiters.add("z", demand("z"));
   EXPECT_EQ(admission.running(), 0);  // though the place is free
-  { const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever); }
+  { const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever); }
   EXPECT_EQ(waiters.order(), TurnOrder{});
   own.pop_front();
   waiters.join();
   EXPECT_EQ(waiters.order(), TurnOrder{"z"});
 }
 
-// What has begun cannot be turned away, however much is left of it.
+// Work that has begun cannot be rejected, whatever its remaining cost.
 TEST(Admission, WorkThatLostItsPlaceShutsNobodyElseOut) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
@@ -300,7 +301,7 @@ TEST(Admission, WorkThatLostItsPlaceShutsNobodyElseOut) {
   Waiters waiters(admission);
   waiters.add("b", demand("b", 5000));
   EXPECT_EQ(waiters.order(), TurnOrder{});
-  EXPECT_THROW(admission.enter(demand("z", 1), kNever), OverLimit);
+  EXPECT_THROW(admission.enter(demand("z", 1), kNever), LimitExceeded);
   other.reset();
   waiters.join();
   EXPECT_EQ(waiters.order(), TurnOrder{"b"});
@@ -310,17 +311,17 @@ TEST(Admission, WorkThatLostItsPlaceShutsNobodyElseOut) {
 TEST(Admission, TheLongestWaitIsThatOfWhoWaitsLeast) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
-  EXPECT_EQ(admission.longest_wait(), Clock::duration{});
+  EXPECT_EQ(admission.shortest_client_wait(), Clock::duration{});
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
     waiters.add("a", demand("a"));
     timer.advance(10ms);
     waiters.add("b1", demand("b"));
-    waiters.add("batch", demand("c", 10, Lane::batch));
+    waiters.add("batch", demand("c", 10, Priority::batch));
     timer.advance(20ms);
     waiters.add("b2", demand("b"));
-    EXPECT_EQ(admission.longest_wait(), 20ms);
+    EXPECT_EQ(admission.shortest_client_wait(), 20ms);
   }
   waiters.join();
 }
@@ -349,8 +350,8 @@ TEST(Admission, WhatWaitsIsBoundedByItsCost) {
   {
     const auto ticket = admission.enter(demand("z"), kNever);
     EXPECT_FALSE(admission.full());
-    waiters.add("large", demand("a", 1e12));  // alone, it may wait
-    EXPECT_FALSE(admission.full());           // to another
+    waiters.add("large", demand("a", 1e12));  // a single item may exceed the limit
+    EXPECT_FALSE(admission.full());           // for another client
     EXPECT_THROW(admission.enter(demand("a", 1), kNever), Busy);
   }
   waiters.join();
@@ -371,10 +372,10 @@ TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
   Admission admission({.running = 2, .queue_rays = 100}, timer);
   Waiters waiters(admission);
   {
-    const auto batch = admission.enter(demand("z", 10, Lane::batch), kNever);
-    waiters.add("b1", demand("a", 1e6, Lane::batch));
+    const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever);
+    waiters.add("b1", demand("a", 1e6, Priority::batch));
     EXPECT_FALSE(admission.full());
-    const auto interactive = admission.enter(demand("a"), kNever);  // at once
+    const auto interactive = admission.enter(demand("a"), kNever);  // admitted at once
     waiters.add("i1", demand("b"));
     EXPECT_EQ(waiters.order(), TurnOrder{});
   }
@@ -388,14 +389,15 @@ TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
   Waiters waiters(admission);
   {
     const auto ticket = admission.enter(demand("z"), kNever);
-    for (const char* name : {"b1", "b2", "b3"}) waiters.add(name, demand("a", 10, Lane::batch));
+    for (const char* name : {"b1", "b2", "b3"}) waiters.add(name, demand("a", 10, Priority::batch));
     for (const char* name : {"i1", "i2"}) waiters.add(name, demand("b"));
   }
   waiters.join();
   EXPECT_EQ(waiters.order(), (TurnOrder{"b1", "i1", "b2", "i2", "b3"}));
 }
 
-// Work that was held back for long starts at last, and its old turn brings nobody before who waits.
+// Work starts at last after a long delay. Its old virtual finish time must not put new work ahead of waiting
+// clients.
 TEST(Admission, TimeDoesNotRunBackwards) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
@@ -407,7 +409,7 @@ TEST(Admission, TimeDoesNotRunBackwards) {
     const auto other = admission.enter(demand("y"), kNever);
   }
   std::optional<Admission::Ticket> old_ticket;
-  std::thread old([&] { old_ticket.emplace(admission.enter(demand("x"), kNever)); });  // has lost many
+  std::thread old([&] { old_ticket.emplace(admission.enter(demand("x"), kNever)); });  // has lost many slots
   EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 3; }));
   for (int i = 0; i < 10; ++i) const auto work = admission.enter(demand("y", 1000), kNever);
   std::optional ticket(admission.enter(demand("y", 1000), kNever));
@@ -433,7 +435,7 @@ TEST(Admission, WhoHasMostWaitingMakesRoom) {
     EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429"}));
     waiters.add("a4", demand("a", 30));  // now a has 60 and b 30
     EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429"}));
-    waiters.add("b2", demand("b", 30));  // which would not leave b with less than a
+    waiters.add("b2", demand("b", 30));  // b would not have less than a
     EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429", "b2 429"}));
   }
   waiters.join();
@@ -452,7 +454,7 @@ TEST(Admission, WorkThatBeganIsNotTurnedAway) {
       done = true;
     });
     EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
-    EXPECT_FALSE(admission.full());  // nor does it keep others from waiting
+    EXPECT_FALSE(admission.full());  // re-entered work does not fill the queue
   }
   again.join();
   EXPECT_TRUE(done);
@@ -471,8 +473,8 @@ TEST(Admission, WhoGivesUpLeavesTheQueue) {
   EXPECT_EQ(admission.running(), 1);
 }
 
-// The default queue takes 20 pictures of most samples at once, of which one is rendered and nothing was
-// before.
+// The default queue takes 20 images of several samples at once. One of them is rendering, with no rate
+// measured before.
 TEST(Admission, RefusesNoSecondOfWorkByDefault) {
   for (const char* name :
        {"paper", "orrery", "sphereflake-3", "mirrors", "material-reflective", "light-spot"}) {
@@ -481,7 +483,7 @@ TEST(Admission, RefusesNoSecondOfWorkByDefault) {
     const auto scene = test::load(test::sample(name));
     RenderRequest request = test::size(800, 600);
     request.samples = 4;
-    const double cost = kLeastCost + expected_rays(*scene, make_plan(*scene, request));
+    const double cost = kFixedCost + expected_rays(*scene, make_plan(*scene, request));
     Waiters waiters(admission);
     {
       const auto ticket = admission.enter(demand("z", cost), kNever);

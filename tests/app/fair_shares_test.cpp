@@ -4,7 +4,7 @@
 
 #include <random>
 
-// Who loses what where a store is full.
+// Tests evictions from a full store.
 namespace orrery {
 namespace {
 
@@ -15,7 +15,7 @@ class FairSharesTest : public testing::Test {
  protected:
   static constexpr std::size_t kMost = 100;
 
-  // Whether there was room. Notes what that evicted.
+  // Returns false if there is no room. Records the evicted entries.
   bool add(const std::string& client, const std::string& id, std::size_t weight, FairShares::Rank rank = 0,
            FairShares::Ranks ranks = {}) {
     const auto evicted = shares_.make_room(client, weight, kMost, ranks);
@@ -131,7 +131,7 @@ TEST_F(FairSharesTest, EntriesThatNobodyUsesForLongGoFirst) {
   EXPECT_EQ(evicted(), (Ids{"l2", "l3"}));
 }
 
-// A client that loses an entry held at least an equal share, counted before or after.
+// A client that loses an entry held at least an equal share, counted before or after the eviction.
 TEST_F(FairSharesTest, NobodyLosesBelowAnEqualShare) {
   std::mt19937 random(1);
   std::map<std::string, std::map<std::string, std::size_t>> model;  // client, id

@@ -11,17 +11,17 @@
 #include "tests/support/eventually.h"
 #include "tests/support/pictures.h"
 
-// Jobs by a clock that tests drive: how long they may take and are kept, and what is told of them.
+// Tests time limits, retention and status of jobs, with a manual clock.
 namespace orrery {
 namespace {
 
 using nlohmann::ordered_json;
 using std::chrono::milliseconds, std::chrono::seconds;
 
-constexpr seconds kRunTime{100}, kKept{50};
+constexpr seconds kRunTime{100}, kRetention{50};
 
-// Tiny pictures of a ball. `then` is called on the job's thread after each of them. After `enough` pictures
-// no more are wanted.
+// Renders tiny images of a ball. Calls `then` on the job's thread after each of them. Ends early after
+// `enough` images.
 class FakeWork final : public JobWork {
  public:
   FakeWork(int steps, std::size_t bytes, std::function<void(int)> then, int enough = 1 << 20)
@@ -39,8 +39,8 @@ class FakeWork final : public JobWork {
   void keep(int step, std::string&&) override { EXPECT_EQ(step, kept_++); }
   ordered_json links(const std::string&) const override { return {}; }
   ordered_json links_of_step(const std::string&, int) const override { return {}; }
-  ordered_json told(int) const override { return {}; }
-  ordered_json told_of_step(int) const override { return {}; }
+  ordered_json status_fields(int) const override { return {}; }
+  ordered_json step_fields(int) const override { return {}; }
   JobResult result(const std::string&, std::string_view) const override { throw NotFound("none"); }
 
  private:
@@ -64,7 +64,7 @@ class JobsTest : public testing::Test {
     auto work = std::make_unique<FakeWork>(steps, bytes_a_step_, std::move(then));
     return jobs().start({scene_, std::move(work), client}, "", "").job;
   }
-  // Waits for the end.
+  // Waits for the end of the job and returns its final status.
   static JobStatus end_of(const JobPtr& job) {
     EXPECT_TRUE(test::eventually([&] { return job->ended().has_value(); }));
     return job->status();
@@ -95,12 +95,13 @@ class JobsTest : public testing::Test {
   WorkerPool pool_{1};
   Admission admission_{{.running = 2, .queue_rays = 1e6}, timer_};
   std::stop_source drains_, ends_;
-  Meters meters_;
+  ServiceCounters meters_;
   RayEstimator estimator_;
   WorkMemory work_memory_{std::size_t{1} << 30};
   SceneStore scenes_{std::size_t{1} << 30, work_memory_};
   const RenderServices services_ = services_with(admission_);
-  Jobs::Limits limits_{.under_way = 4, .ended = 100, .bytes = 1 << 20, .run_time = kRunTime, .kept = kKept};
+  Jobs::Limits limits_{
+      .under_way = 4, .ended = 100, .bytes = 1 << 20, .run_time = kRunTime, .kept = kRetention};
   std::size_t bytes_a_step_ = 10;
   const std::shared_ptr<const PreparedScene> scene_ = std::make_shared<const PreparedScene>(
       test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}",
@@ -146,7 +147,7 @@ TEST_F(JobsTest, FailWhenTheirTimeIsUp) {
 TEST_F(JobsTest, AreKeptForTheTimeStatedAfterTheirEnd) {
   const auto job = start(1, [&](int) { timer_.advance(kRunTime / 2); });
   end_of(job);
-  timer_.advance(kKept);
+  timer_.advance(kRetention);
   EXPECT_TRUE(is_kept(job));
   timer_.advance(milliseconds(1));
   EXPECT_FALSE(is_kept(job));
@@ -154,32 +155,32 @@ TEST_F(JobsTest, AreKeptForTheTimeStatedAfterTheirEnd) {
 
 TEST_F(JobsTest, TellHowLongTheRestWillTake) {
   std::promise<JobPtr> started;
-  std::promise<JobStatus> told;
+  std::promise<JobStatus> reported;
   const auto job = start(4, [&](int step) {
     if (step > 0) return;
     timer_.advance(seconds(10));
-    told.set_value(started.get_future().get()->status());
+    reported.set_value(started.get_future().get()->status());
   });
   started.set_value(job);
-  const JobStatus status = told.get_future().get();
+  const JobStatus status = reported.get_future().get();
   EXPECT_EQ(status.state, JobState::running);
   EXPECT_DOUBLE_EQ(status.elapsed_s, 10);
   EXPECT_DOUBLE_EQ(status.remaining_s.value_or(-1), 30);
   EXPECT_FALSE(end_of(job).remaining_s);
 }
 
-// What a budget traces for the first picture alone tells nothing of the others.
+// Rays that a budget spent on the first image alone do not enter the estimate for the rest.
 TEST_F(JobsTest, TellHowLongTheRestWillTakeWithABudget) {
   std::promise<JobPtr> started;
-  std::promise<JobStatus> told;
+  std::promise<JobStatus> reported;
   auto work = std::make_unique<FakeWork>(4, bytes_a_step_, [&](int step) {
     timer_.advance(seconds(10));
-    if (step == 1) told.set_value(started.get_future().get()->status());
+    if (step == 1) reported.set_value(started.get_future().get()->status());
   });
   work->keep_first_to(0.5);
   const auto job = jobs().start({scene_, std::move(work), "a"}, "", "").job;
   started.set_value(job);
-  const JobStatus status = told.get_future().get();
+  const JobStatus status = reported.get_future().get();
   EXPECT_DOUBLE_EQ(status.elapsed_s, 20);
   EXPECT_DOUBLE_EQ(status.remaining_s.value_or(-1), 20);
   EXPECT_EQ(status.tiles_done, 2);
@@ -191,9 +192,9 @@ TEST_F(JobsTest, AreAtMostSoManyAtOnceAndHalfOfThemOneClients) {
   const auto goes = go.get_future().share();
   const auto wait = [&](int) { goes.wait(); };
   const auto one = start(1, wait), two = start(1, wait);
-  EXPECT_THROW(start(1, wait), ClientBusy);
+  EXPECT_THROW(start(1, wait), ClientLimitExceeded);
   const auto three = start(1, wait, "b"), four = start(1, wait, "c");
-  EXPECT_THROW(start(1, wait, "d"), OverLimit);
+  EXPECT_THROW(start(1, wait, "d"), LimitExceeded);
   go.set_value();
   for (const auto& job : {one, two, three, four}) EXPECT_EQ(end_of(job).state, JobState::done);
   EXPECT_EQ(end_of(start(1)).state, JobState::done);
@@ -242,7 +243,7 @@ TEST_F(JobsTest, OfOthersStayHoweverManyBytesAClientsTake) {
   EXPECT_TRUE(is_kept(other));
 }
 
-// A job under way goes as well where its client holds most and has no others.
+// A running job is also evicted if its client holds most and has no other jobs.
 TEST_F(JobsTest, ThatTakeMostMakeRoomWhileTheyAreUnderWay) {
   limits_.bytes = 60;
   std::promise<void> go;
@@ -270,25 +271,25 @@ TEST_F(JobsTest, LearnWhatTheirScenesTake) {
   EXPECT_DOUBLE_EQ(estimator_.estimate(scene_->scene(), plan), expected + share * (traced - expected));
 }
 
-// The rate is that of the rays that were traced: what a picture was expected to take does not count.
+// The rate counts the rays traced, not the estimate.
 TEST_F(JobsTest, TellTheAdmissionWhatTheyTook) {
   Admission admission({.running = 1, .queue_rays = 1}, timer_);
   const RenderServices services = services_with(admission);
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
   {
-    auto ticket = admission.enter({Lane::interactive, "a", 1e12}, {});
+    auto ticket = admission.enter({Priority::interactive, "a", 1e12}, {});
     services.render(ticket, *scene_, plan, FilmStorage::srgb8, {});
     timer_.advance(seconds(1));
   }
-  const double rate = kLeastCost + static_cast<double>(meters_.rays);
-  const auto ticket = admission.enter({Lane::interactive, "a", 1}, {});
+  const double rate = kFixedCost + static_cast<double>(meters_.rays);
+  const auto ticket = admission.enter({Priority::interactive, "a", 1}, {});
   std::stop_source stop;
   std::thread waits([&] {
-    EXPECT_THROW(admission.enter({Lane::interactive, "a", 7 * rate}, stop.get_token()), Cancelled);
+    EXPECT_THROW(admission.enter({Priority::interactive, "a", 7 * rate}, stop.get_token()), Cancelled);
   });
   EXPECT_TRUE(test::eventually([&] { return admission.waiting() == 1; }));
   try {
-    admission.enter({Lane::interactive, "a", 7 * rate}, {});
+    admission.enter({Priority::interactive, "a", 7 * rate}, {});
     ADD_FAILURE() << "it has a turn";
   } catch (const Busy& busy) {
     EXPECT_DOUBLE_EQ(busy.retry_after_s(), 7);

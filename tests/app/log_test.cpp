@@ -10,13 +10,13 @@
 
 #include "tests/support/eventually.h"
 
-// What becomes of the log where nobody reads it.
+// Tests the log when nobody reads it.
 namespace orrery {
 namespace {
 
 using nlohmann::json;
 
-// A pipe to write a log to.
+// Pipe to write a log to.
 class Pipe {
  public:
   Pipe() {
@@ -33,7 +33,7 @@ class Pipe {
     if (ends_[0] >= 0) close(ends_[0]);
     ends_[0] = -1;
   }
-  // All that is there.
+  // Returns all available bytes.
   std::string read_all() const {
     std::string all, part(1 << 16, '\0');
     for (ssize_t count; (count = read(ends_[0], part.data(), part.size())) > 0;)

@@ -6,8 +6,7 @@
 
 namespace orrery {
 
-// A timer whose time stands still but for advance(), which does what falls due on the calling thread, in
-// order.
+// Timer whose time changes only by advance(), which runs due alarms in order on the calling thread.
 class ManualTimer : public Timer {
  public:
   Clock::time_point now() const override { return now_; }
@@ -21,14 +20,14 @@ class ManualTimer : public Timer {
     }
     now_ = until;
   }
-  // To when the next thing is due. REQUIRES: something is.
+  // Advances to the next alarm. Requires one to be set.
   void advance_to_next() {
     std::unique_lock lock(mutex());
     now_ = next_due();
     while (do_first(lock, now_)) continue;
   }
 
-  // Waits until an alarm is set for `time`, or another one by then. For tests of what waits on other threads.
+  // Waits until an alarm is due by `time`. For tests of code that waits on other threads.
   void await_alarm_by(Clock::time_point time) {
     std::unique_lock lock(mutex());
     changed_.wait(lock, [&] { return next_due() <= time; });

@@ -10,11 +10,11 @@
 #include "core/base/error.h"
 #include "server/app/watch.h"
 
-// What is made once for all who ask, and what is kept.
+// Tests image sharing between requests, and the cache.
 namespace orrery {
 namespace {
 
-const std::stop_token kStays;
+const std::stop_token kNotCancelled;
 
 Picture picture(std::string bytes) { return {.bytes = std::move(bytes), .stats = {}, .certificate = {}}; }
 
@@ -22,7 +22,7 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
   Pictures pictures(10'000);
   int made = 0;
   const auto get = [&](const std::string& key) {
-    return pictures.get(key, {kStays}, [&](const auto&) {
+    return pictures.get(key, {kNotCancelled}, [&](const auto&) {
       ++made;
       return picture(std::string(3000, key[0]));
     });
@@ -32,7 +32,7 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
   EXPECT_EQ(get("a").value->bytes, std::string(3000, 'a'));
   EXPECT_EQ(made, 1);
   get("b");
-  get("c");  // three take more than 10,000 bytes with their figures
+  get("c");  // three exceed 10,000 bytes with their statistics
   EXPECT_LE(pictures.bytes(), 10'000U);
   EXPECT_EQ(made, 3);
   EXPECT_TRUE(get("a").made_here);
@@ -41,7 +41,8 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
 TEST(Pictures, OfAClientStayWhateverOthersAskFor) {
   Pictures pictures(50'000);
   const auto get = [&](const std::string& key, const std::string& client) {
-    return pictures.get(key, {kStays, client}, [&](const auto&) { return picture(std::string(3000, 'x')); });
+    return pictures.get(key, {kNotCancelled, client},
+                        [&](const auto&) { return picture(std::string(3000, 'x')); });
   };
   EXPECT_TRUE(get("a", "one").made_here);
   for (int i = 0; i < 100; ++i) get(std::to_string(i), "flood");
@@ -53,7 +54,7 @@ TEST(Pictures, OfAClientStayWhateverOthersAskFor) {
 TEST(Pictures, TooLargeToKeepAreMadeAllTheSame) {
   Pictures pictures(0);
   for (int i = 0; i < 2; ++i)
-    EXPECT_TRUE(pictures.get("a", {kStays}, [](const auto&) { return picture("x"); }).made_here);
+    EXPECT_TRUE(pictures.get("a", {kNotCancelled}, [](const auto&) { return picture("x"); }).made_here);
   EXPECT_EQ(pictures.bytes(), 0U);
 }
 
@@ -63,7 +64,7 @@ TEST(Pictures, ThatManyAskForAtOnceAreMadeOnce) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 8; ++i)
     threads.emplace_back([&] {
-      const auto found = pictures.get("a", {kStays}, [&](const auto&) {
+      const auto found = pictures.get("a", {kNotCancelled}, [&](const auto&) {
         while (pictures.waiting("a") < 8) std::this_thread::yield();
         ++made;
         return picture("x");
@@ -76,12 +77,12 @@ TEST(Pictures, ThatManyAskForAtOnceAreMadeOnce) {
   EXPECT_EQ(here, 1);
 }
 
-// Has a second caller join the first while that makes the picture.
+// Lets a second caller join the first while that one makes the image.
 struct Pair {
   Pictures pictures{1 << 20};
   std::stop_source first_gone, second_gone;
 
-  // Each is called with a function that gets the picture and makes it by what it is given.
+  // Calls `first` and `second` with a function that gets the image, and makes it by its argument.
   template <class First, class Second>
   void run(const First& first, const Second& second) {
     std::promise<void> making, joined;

@@ -7,10 +7,10 @@
 
 #include "core/base/error.h"
 #include "server/app/work_memory.h"
-#include "server/http/over_limit.h"
+#include "server/http/limit_exceeded.h"
 #include "tests/support/pictures.h"
 
-// Frames count as memory of whom they are made for, from their encoding until they are thrown away.
+// Tests memory accounting of frames: charged to the client from encoding until destruction.
 namespace orrery {
 namespace {
 
@@ -18,7 +18,7 @@ constexpr std::size_t kMega = 1 << 20;
 
 class PipelineMemory : public testing::Test {
  protected:
-  // Keeps `count` frames of so many bytes; `then` is called with the last one.
+  // Keeps `count` frames of `bytes` bytes, and calls `then` after the last one.
   void run(std::size_t count, std::size_t bytes, const std::function<void()>& then) {
     std::size_t next = 0;
     const auto deliver = [&](std::int64_t, Frame&& frame) {
@@ -39,7 +39,7 @@ class PipelineMemory : public testing::Test {
   }
 
   WorkMemory memory_{100 * kMega};
-  const std::shared_ptr<MemoryAccount> account_ = memory_.open("a");  // of films
+  const std::shared_ptr<MemoryAccount> account_ = memory_.open("a");  // for films
   std::vector<Frame> frames_;
 };
 
@@ -58,7 +58,7 @@ TEST_F(PipelineMemory, IsTakenBeyondTheLimitForFramesThatAreMadeAndTheNextOneWai
     const MemoryCharge film(kMega);
     interruption_point();
   };
-  run(3, 20 * kMega, [&] { EXPECT_THROW(account_->run({}, next_film), ClientBusy); });
+  run(3, 20 * kMega, [&] { EXPECT_THROW(account_->run({}, next_film), ClientLimitExceeded); });
   EXPECT_EQ(frames_.size(), 3U);
   frames_.clear();
   EXPECT_NO_THROW(account_->run({}, next_film));

@@ -6,7 +6,7 @@
 #include "core/plan/plan.h"
 #include "tests/support/pictures.h"
 
-// What is expected of renders after others of the same scene.
+// Tests ray estimates that learn from earlier renders of the same scene.
 namespace orrery {
 namespace {
 
@@ -31,7 +31,7 @@ TEST(RayEstimator, BeginsWithWhatThePlanSays) {
 
 class RaysOfSample : public testing::TestWithParam<const char*> {};
 
-// A small preview is enough to know what the picture takes, within 30 %.
+// One small preview predicts the rays of the large image within 30 %.
 TEST_P(RaysOfSample, AreKnownAfterOneRenderOfTheScene) {
   RayEstimator estimator;
   const auto scene = load(sample(GetParam()));
@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Samples, RaysOfSample,
                          testing::Values("glass", "light-many", "material-refractive", "mirrors", "orrery",
                                          "paper", "shape-mesh", "sphereflake-2"));
 
-// Halfway to what was seen, each time.
+// Each observation moves the estimate halfway to the observed value.
 TEST(RayEstimator, FollowsWhatChanges) {
   RayEstimator estimator;
   const auto scene = load(sample("paper"));
@@ -65,7 +65,8 @@ TEST(RayEstimator, FollowsWhatChanges) {
   EXPECT_NEAR(after(0.5), 1, 1e-3);
 }
 
-// A client chooses what is learned: tiny pictures teach little, and none teaches more than a factor of 8.
+// Clients can feed any sample to the estimator. A tiny image has little weight, and no image changes the
+// estimate by more than a factor of 8.
 TEST(RayEstimator, IsNotTalkedIntoAnything) {
   const auto scene = load(sample("paper"));
   const Plan plan = make_plan(*scene, size(64, 64)), tiny = make_plan(*scene, size(1, 1));

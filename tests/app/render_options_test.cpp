@@ -7,12 +7,12 @@
 #include "server/app/picture_key.h"
 #include "tests/support/pictures.h"
 
-// Render options as texts, and what they do to the key of a picture.
+// Tests textual render options, and their effect on the cache key of an image.
 namespace orrery::test {
 namespace {
 
-// Mirrors that face each other, so that depth and weight of rays matter; edges, so that samples and their
-// seed do; a ball that moves; and a matt ball before a matt wall.
+// Returns a scene in which every option shows. Facing mirrors show depth and ray weight, edges show samples
+// and seed, and a ball moves. A matt ball stands in front of a matt wall.
 Json revealing_scene() {
   return scene_of(R"([
       {'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'mirror'},
@@ -35,8 +35,8 @@ Json revealing_scene() {
       'instances': [{'model': 'ball', 'motion': [{'time': 0}, {'time': 2, 'translate': [1, 0, 0]}]}]})");
 }
 
-// Requests for other values of the option than `own` has: one for numbers, all others for choices.
-struct Others {
+// Requests for other values of the option than `own`: one for a number, all others for a choice.
+struct OtherValues {
   const RenderSettings& own;
 
   template <class Kind, class V>
@@ -77,7 +77,7 @@ struct Others {
   }
 };
 
-// As EXR, which holds all that a film does.
+// Renders to EXR, which stores the whole film.
 std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderRequest& request) {
   const PreparedScene prepared(scene);
   const SettledPlan plan = settle(prepared, make_plan(*scene, request));
@@ -85,7 +85,8 @@ std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderReque
   return encode_film(render_frame(prepared, plan, storage, shared_pool()).film, FileFormat::exr);
 }
 
-// The key of a picture has an option exactly if its row says that it changes pixels, and the pixels agree.
+// The key of an image contains an option exactly if its table row has `changes_pixels`, and the pixels
+// confirm that.
 TEST(RenderOptions, AreInTheKeyIfTheyChangePixels) {
   const auto scene = load(revealing_scene());
   const RenderSettings own = resolve(*scene, {});
@@ -94,7 +95,7 @@ TEST(RenderOptions, AreInTheKeyIfTheyChangePixels) {
   const std::string plain = file_of(scene, {}), plain_paths = file_of(scene, paths);
   for (const RenderOption& option : render_options()) {
     if (option.key == "space") continue;  // see below
-    const std::vector<RenderRequest> others = std::visit(Others{own}, option.kind);
+    const std::vector<RenderRequest> others = std::visit(OtherValues{own}, option.kind);
     ASSERT_FALSE(others.empty()) << option.key;
     bool changed = false;
     for (const RenderRequest& request : others) {

@@ -8,7 +8,7 @@
 #include "tests/app/manual_timer.h"
 #include "tests/app/waiters.h"
 
-// The time after which those who are turned away are told to come again.
+// Tests the Retry-After of rejected requests.
 namespace orrery {
 namespace {
 
@@ -16,7 +16,8 @@ using test::demand;
 using test::kNever;
 using test::Waiters;
 
-// What an admission with one place tells who comes while so many rays wait.
+// Returns the Retry-After, in seconds, from an admission with one slot while `waiting` rays wait. Returns 0
+// if the request is admitted.
 double retry_after(Admission& admission, double waiting) {
   Waiters waiters(admission);
   const auto ticket = admission.enter(demand("z"), kNever);
@@ -33,7 +34,7 @@ struct Work {
   double expected, traced;  // rays
   double seconds;
 };
-// What is told after such work, one piece after the other, while so many rays wait.
+// Returns the Retry-After, in seconds, after this work one after the other, while `waiting` rays wait.
 double retry_after(const std::vector<Work>& done, double waiting) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1}, timer);
@@ -45,7 +46,7 @@ double retry_after(const std::vector<Work>& done, double waiting) {
   return retry_after(admission, waiting);
 }
 
-// The time after which to come again: the rays that wait over the rate at which rays were traced.
+// Retry-After is the number of waiting rays over the measured rate.
 TEST(RetryAfter, IsWhatWaitsOverTheRateMeasured) {
   EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 10e6), 5);
   EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 40e6), 20);
@@ -65,7 +66,7 @@ TEST(RetryAfter, IsByTheRaysTracedNotThoseExpected) {
 
 TEST(RetryAfter, IsAGuessBeforeAnythingWasMeasured) { EXPECT_DOUBLE_EQ(retry_after({}, 50e6), 5); }
 
-// After 10 s of work a measurement counts for 1/e.
+// A measurement decays to 1/e after 10 s of work.
 TEST(RetryAfter, FollowsARateThatChanges) {
   const double faded = std::exp(-1), rate = (1e6 * faded + 9e6) / (10 * faded + 10);
   EXPECT_DOUBLE_EQ(retry_after({{1e6, 1e6, 10}, {9e6, 9e6, 10}}, 5e6), 5e6 / rate);

@@ -4,10 +4,10 @@
 
 #include "core/accelerators/registry.h"
 #include "core/base/error.h"
+#include "server/http/limit_exceeded.h"
 #include "server/http/message.h"
-#include "server/http/over_limit.h"
 
-// Which scenes are loaded, and which go when there is no more room.
+// Tests loading and eviction of scenes.
 namespace orrery {
 namespace {
 
@@ -23,7 +23,7 @@ Document ball(const std::string& title) {
       text_of(title, R"({"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "m"})"));
 }
 
-// The same object so many times: its size grows with that.
+// Returns a scene with `count` copies of one object, so that its size grows with `count`.
 Document balls(const std::string& title, int count) {
   std::string objects;
   for (int i = 0; i < count; ++i)
@@ -32,7 +32,7 @@ Document balls(const std::string& title, int count) {
   return parse_document(text_of(title, objects));
 }
 
-// One triangle, and how often it was read.
+// Source of one triangle that counts its reads.
 class CountedMeshes final : public AssetSource {
  public:
   TriangleMesh mesh_asset(const std::string&) const override {
@@ -46,14 +46,14 @@ class CountedMeshes final : public AssetSource {
 const AssetSource kNoMeshes;
 const std::string kClient = "someone";
 
-// A store with memory for work.
+// Scene store with work memory.
 struct Store {
-  explicit Store(std::size_t most_bytes) : scenes(most_bytes, work) {}
+  explicit Store(std::size_t max_bytes) : scenes(max_bytes, work) {}
   SceneStore* operator->() { return &scenes; }
   SceneStore::Prepared get(const Document& document, const AssetSource& meshes = kNoMeshes) {
     return scenes.get(document, meshes, kClient);
   }
-  SceneStore::Kept keep(const Document& document, const AssetSource& meshes = kNoMeshes) {
+  SceneStore::KeepResult keep(const Document& document, const AssetSource& meshes = kNoMeshes) {
     return scenes.keep(document, meshes, kClient);
   }
   bool has(const Document& document) {
@@ -83,7 +83,7 @@ TEST(SceneStore, KnownScenesAreNotLoadedAndTheirMeshesNotRead) {
   EXPECT_EQ(meshes.reads, 1);
   const auto again = store.get(parse_document("\n " + text_of("mesh", " " + mesh)), meshes);
   EXPECT_EQ(again, rendered) << "what was built for it is used again";
-  const SceneStore::Kept kept = store.keep(parse_document(text_of("mesh", mesh)), meshes);
+  const SceneStore::KeepResult kept = store.keep(parse_document(text_of("mesh", mesh)), meshes);
   EXPECT_EQ(kept.scene, rendered);
   EXPECT_FALSE(kept.known) << "it was rendered, not kept";
   EXPECT_TRUE(store.keep(parse_document(text_of("mesh", mesh)), meshes).known);
@@ -121,11 +121,11 @@ TEST(SceneStore, KeptScenesPushOutCachedOnesFirst) {
   store.keep(ball("old1"));
   store.get(ball("cach"));
   store.keep(ball("old2"));
-  store.get(ball("cach"));  // used last, and goes first
+  store.get(ball("cach"));  // used last, but evicted first
   store.keep(ball("new1"));
   EXPECT_FALSE(store.has(ball("cach")));
   EXPECT_TRUE(store.has(ball("old2")) && store.has(ball("new1")) && store.has(ball("old1")));
-  store.keep(ball("new2"));  // now the one used longest ago
+  store.keep(ball("new2"));  // now the least recently used
   EXPECT_FALSE(store.has(ball("old2")));
   EXPECT_TRUE(store.has(ball("new1")) && store.has(ball("new2")) && store.has(ball("old1")));
 }
@@ -189,7 +189,7 @@ TEST(SceneStore, RefusesASceneThatOthersLeaveNoRoomFor) {
   try {
     store->keep(large, kNoMeshes, "b");
     ADD_FAILURE() << "kept";
-  } catch (const OverLimit& error) {
+  } catch (const LimitExceeded& error) {
     EXPECT_STREQ(error.limit(), "store_bytes");
   }
   EXPECT_TRUE(store.has(ball("kept")));
@@ -208,14 +208,14 @@ TEST(SceneStore, OthersDoNotRemoveWhatAClientHasRendered) {
   EXPECT_FALSE(store.has(scene));
 }
 
-// Another client may have much built for a scene: its keeper then loses that, and no scene.
+// Structures that another client builds for a kept scene may be evicted, but no scene of its keeper.
 TEST(SceneStore, WhatIsBuiltForAKeptSceneCostsItsKeeperNoScene) {
   const std::size_t bare = size_of(balls("kept", 2000));
   Store store(3 * bare);
   const auto scene = store->keep(balls("kept", 2000), kNoMeshes, "a").scene;
   store->keep(ball("more"), kNoMeshes, "a");
   {
-    const SceneStore::Measured measured(store.scenes, *scene);
+    const SceneStore::SizeGuard measured(store.scenes, *scene);
     double build_ms = 0;
     store.work.open("b")->run({},
                               [&] { world_for<float>(scene->parts(), accelerator_types()[0], 0, build_ms); });
@@ -227,13 +227,13 @@ TEST(SceneStore, WhatIsBuiltForAKeptSceneCostsItsKeeperNoScene) {
     EXPECT_TRUE(store.has(kept));
 }
 
-// What was built for a kept scene goes before the scene does.
+// Structures built for a kept scene are evicted before the scene.
 TEST(SceneStore, ForgetsWhatWasBuiltWhereItTakesTooMuch) {
   const std::size_t bare = size_of(balls("kept", 2000));
   Store store(2 * bare);
   const auto scene = store.keep(balls("kept", 2000)).scene;
   {
-    const SceneStore::Measured measured(store.scenes, *scene);
+    const SceneStore::SizeGuard measured(store.scenes, *scene);
     double build_ms = 0;
     store.work.open("builder")->run({}, [&] {
       for (const AcceleratorType& type : accelerator_types())
@@ -251,7 +251,7 @@ TEST(SceneStore, GivesAllBackOnceNothingIsUsed) {
   const auto scene = store.keep(balls("kept", 2000)).scene;
   const auto other = store.get(balls("cached", 2000));
   for (const auto& some : {scene, other}) {
-    const SceneStore::Measured measured(store.scenes, *some);
+    const SceneStore::SizeGuard measured(store.scenes, *some);
     double build_ms = 0;
     store.work.open("builder")->run(
         {}, [&] { world_for<float>(some->parts(), accelerator_types()[0], 0, build_ms); });

@@ -11,7 +11,7 @@
 #include "tests/app/manual_timer.h"
 #include "tests/app/waiters.h"
 
-// Work that several clients want is nobody's alone.
+// Tests work shared by several clients.
 namespace orrery {
 namespace {
 
@@ -23,11 +23,11 @@ using test::Waiters;
 
 class SharedWork : public testing::Test {
  protected:
-  // Client a asks for a lot, and last for what is shared.
+  // Queues work of client a, and the shared work last.
   void ask() {
     for (const char* name : {"a1", "a2", "a3"}) waiters_.add(name, demand("a"));
     waiters_.add("c", demand("c", 15));
-    waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
+    waiters_.add("shared", {Priority::interactive, "a", 10, subscribers_});
   }
   const TurnOrder& order() {
     ticket_.reset();
@@ -37,7 +37,7 @@ class SharedWork : public testing::Test {
 
   ManualTimer timer_;
   Admission admission_{{.running = 1, .queue_rays = 1000}, timer_};
-  const std::shared_ptr<Sharers> sharers_ = std::make_shared<Sharers>();
+  const std::shared_ptr<Subscribers> subscribers_ = std::make_shared<Subscribers>();
   std::optional<Admission::Ticket> ticket_{admission_.enter(demand("z"), kNever)};
   Waiters waiters_{admission_};
   TurnOrder order_;
@@ -45,21 +45,21 @@ class SharedWork : public testing::Test {
 
 TEST_F(SharedWork, IsItsFirstClientsWhereNobodyElseWantsIt) {
   ask();
-  { const Admission::Sharing sharing(admission_, sharers_, "b"); }
+  { const Admission::Subscription sharing(admission_, subscribers_, "b"); }
   EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "a3", "shared"}));  // finish at 10 15 20 30 40
 }
 
 TEST_F(SharedWork, StartsInTheEarliestTurnAndCountsAsWorkOfEach) {
   ask();
-  const Admission::Sharing sharing(admission_, sharers_, "b");
+  const Admission::Subscription sharing(admission_, subscribers_, "b");
   waiters_.add("b", demand("b"));
   EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "b", "a3"}));  // finish at 10 10 15 20 20 30
 }
 
 TEST_F(SharedWork, MayBeWantedBeforeItWaits) {
-  const Admission::Sharing sharing(admission_, sharers_, "b");
-  const Admission::Sharing again(admission_, sharers_, "b");
-  { const Admission::Sharing third(admission_, sharers_, "b"); }
+  const Admission::Subscription sharing(admission_, subscribers_, "b");
+  const Admission::Subscription again(admission_, subscribers_, "b");
+  { const Admission::Subscription third(admission_, subscribers_, "b"); }
   ask();
   EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "a3"}));
 }
@@ -67,22 +67,22 @@ TEST_F(SharedWork, MayBeWantedBeforeItWaits) {
 TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
   ticket_.reset();
   std::list<Admission::Ticket> own;
-  for (int i = 0; i < 2; ++i) {  // two for each place
+  for (int i = 0; i < 2; ++i) {  // two for each slot
     own.push_back(admission_.enter(demand("a"), kNever));
     timer_.advance(50ms);
     const auto other = admission_.enter(demand("c"), kNever);
   }
-  waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
+  waiters_.add("shared", {Priority::interactive, "a", 10, subscribers_});
   EXPECT_EQ(admission_.running(), 0);
-  const Admission::Sharing sharing(admission_, sharers_, "b");
+  const Admission::Subscription sharing(admission_, subscribers_, "b");
   EXPECT_EQ(order(), (TurnOrder{"shared"}));
 }
 
 TEST_F(SharedWork, IsNoLongerWorkOfWhoHasLeft) {
-  const Admission::Sharing first(admission_, sharers_, "a");
+  const Admission::Subscription first(admission_, subscribers_, "a");
   ask();
-  std::optional<Admission::Sharing> second;
-  second.emplace(admission_, sharers_, "b");
+  std::optional<Admission::Subscription> second;
+  second.emplace(admission_, subscribers_, "b");
   waiters_.add("b", demand("b"));
   second.reset();
   waiters_.add("b again", demand("b"));
@@ -90,21 +90,21 @@ TEST_F(SharedWork, IsNoLongerWorkOfWhoHasLeft) {
 }
 
 TEST_F(SharedWork, IsNoLongerWorkOfWhoAskedFirstAndLeft) {
-  std::optional<Admission::Sharing> first;
-  first.emplace(admission_, sharers_, "a");
-  waiters_.add("shared", {Lane::interactive, "a", 10, sharers_});
-  const Admission::Sharing second(admission_, sharers_, "b");
+  std::optional<Admission::Subscription> first;
+  first.emplace(admission_, subscribers_, "a");
+  waiters_.add("shared", {Priority::interactive, "a", 10, subscribers_});
+  const Admission::Subscription second(admission_, subscribers_, "b");
   first.reset();
   waiters_.add("a", demand("a", 5));
   EXPECT_EQ(order(), (TurnOrder{"a", "shared"}));  // finish at 5 10, not at 15 10
 }
 
-// Work that several want has a place that another waits for, and keeps on working.
+// Shared work that keeps running in a slot that another client waits for.
 class SharedWorkThatRuns : public SharedWork {
  protected:
   SharedWorkThatRuns() {
     ticket_.reset();
-    ticket_.emplace(admission_.enter({Lane::interactive, "a", 1e9, sharers_}, kNever));
+    ticket_.emplace(admission_.enter({Priority::interactive, "a", 1e9, subscribers_}, kNever));
   }
   void another_waits() {
     waiters_.add("z", demand("z"));
@@ -112,7 +112,7 @@ class SharedWorkThatRuns : public SharedWork {
     waiters_.join();
     timer_.advance(200ms);
   }
-  // In which they have their turn once the work has ended.
+  // Returns the order of admission once the work has ended.
   TurnOrder order_of(const std::vector<const char*>& clients) {
     ticket_.reset();
     ticket_.emplace(admission_.enter(demand("y"), kNever));
@@ -120,11 +120,11 @@ class SharedWorkThatRuns : public SharedWork {
     return order();
   }
 
-  std::optional<Admission::Sharing> first_{std::in_place, admission_, sharers_, "a"};
+  std::optional<Admission::Subscription> first_{std::in_place, admission_, subscribers_, "a"};
 };
 
 TEST_F(SharedWorkThatRuns, IsPaidByWhoLeavesIt) {
-  const Admission::Sharing second(admission_, sharers_, "b");
+  const Admission::Subscription second(admission_, subscribers_, "b");
   another_waits();
   first_.reset();
   EXPECT_EQ(order_of({"a", "c"}), (TurnOrder{"z", "c", "a"}));
@@ -132,21 +132,21 @@ TEST_F(SharedWorkThatRuns, IsPaidByWhoLeavesIt) {
 
 TEST_F(SharedWorkThatRuns, IsPaidByWhoComesLateOnlyFromThenOn) {
   another_waits();
-  const Admission::Sharing late(admission_, sharers_, "b");
+  const Admission::Subscription late(admission_, subscribers_, "b");
   EXPECT_EQ(order_of({"a", "b", "c"}), (TurnOrder{"z", "b", "c", "a"}));
 }
 
 TEST_F(SharedWorkThatRuns, IsNotFreeToWhoComesAndLeavesAgainAndAgain) {
   waiters_.add("z", demand("z"));
   for (int i = 0; i < 8; ++i) {
-    const Admission::Sharing visit(admission_, sharers_, "b");
+    const Admission::Subscription visit(admission_, subscribers_, "b");
     timer_.advance(40ms);
   }
   EXPECT_EQ(order_of({"b", "c"}), (TurnOrder{"z", "c", "b"}));
 }
 
 TEST_F(SharedWorkThatRuns, KeepsItsPlaceNoLongerFromWhoHasLeftIt) {
-  std::optional<Admission::Sharing> second(std::in_place, admission_, sharers_, "b");
+  std::optional<Admission::Subscription> second(std::in_place, admission_, subscribers_, "b");
   waiters_.add("b", demand("b"));
   timer_.advance(100ms);
   EXPECT_FALSE(ticket_->expired());  // it is work of b, too
@@ -156,8 +156,8 @@ TEST_F(SharedWorkThatRuns, KeepsItsPlaceNoLongerFromWhoHasLeftIt) {
 }
 
 TEST_F(SharedWork, TakesAPlaceFromWhatOnlyOneOfItsClientsWants) {
-  const Admission::Sharing first(admission_, sharers_, "z"), second(admission_, sharers_, "b");
-  waiters_.add("shared", {Lane::interactive, "z", 10, sharers_});
+  const Admission::Subscription first(admission_, subscribers_, "z"), second(admission_, subscribers_, "b");
+  waiters_.add("shared", {Priority::interactive, "z", 10, subscribers_});
   timer_.advance(50ms);
   EXPECT_TRUE(ticket_->expired());
   waiters_.join();
@@ -165,30 +165,30 @@ TEST_F(SharedWork, TakesAPlaceFromWhatOnlyOneOfItsClientsWants) {
 
 TEST_F(SharedWork, CountsAsLostByWhoBeganItAndLeft) {
   ticket_.reset();
-  const Admission::Sharing stays(admission_, sharers_, "b");
+  const Admission::Subscription stays(admission_, subscribers_, "b");
   std::list<Admission::Ticket> lost;
-  for (int i = 0; i < 2; ++i) {  // two for each place
-    const Admission::Sharing leaves(admission_, sharers_, "a");
-    lost.push_back(admission_.enter({Lane::interactive, "a", 10, sharers_}, kNever));
+  for (int i = 0; i < 2; ++i) {  // two for each slot
+    const Admission::Subscription leaves(admission_, subscribers_, "a");
+    lost.push_back(admission_.enter({Priority::interactive, "a", 10, subscribers_}, kNever));
     timer_.advance(50ms);
     const auto other = admission_.enter(demand("c"), kNever);
   }
   waiters_.add("a", demand("a"));
-  EXPECT_EQ(waiters_.order(), TurnOrder{});  // though the place is free
+  EXPECT_EQ(waiters_.order(), TurnOrder{});  // although the slot is free
   lost.clear();
   waiters_.join();
 }
 
-// Two ask for one picture; the first has much waiting before it.
+// Two clients request one image, and the first has much work queued before it.
 TEST_F(SharedWork, MayBeAPicture) {
   for (const char* name : {"a1", "a2"}) waiters_.add(name, demand("a"));
   waiters_.add("c", demand("c", 15));
-  SharersByKey by_key;
+  SubscribersByKey by_key;
   Pictures pictures(1 << 20);
   const auto get = [&](const std::string& client) {
-    Demand asked = demand(client);
-    asked.sharers = by_key.of("key");
-    pictures.get("key", {kNever, client, asked.sharers, &admission_}, [&](const std::stop_token& stop) {
+    SlotRequest asked = demand(client);
+    asked.subscribers = by_key.of("key");
+    pictures.get("key", {kNever, client, asked.subscribers, &admission_}, [&](const std::stop_token& stop) {
       const auto ticket = admission_.enter(asked, stop);
       waiters_.note("picture");
       return Picture{.bytes = "x", .stats = {}};

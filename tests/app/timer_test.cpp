@@ -8,7 +8,7 @@
 
 #include "tests/app/manual_timer.h"
 
-// What is done at which time.
+// Tests alarms and their order.
 namespace orrery {
 namespace {
 
@@ -98,7 +98,7 @@ TEST(Timer, OfTheMachineKeepsTheOrderToo) {
   EXPECT_EQ(done, "sooner later");
 }
 
-// Who waits with a deadline, on a thread.
+// Thread that waits with a deadline.
 struct Waiter {
   ManualTimer timer;
   std::mutex mutex;

@@ -17,14 +17,14 @@ using TurnOrder = std::vector<std::string>;
 
 inline const std::stop_token kNever;
 
-// People who wait for their turn, each on a thread, and the order in which they got it.
+// Clients that wait for admission, each on a thread, and the order in which they were admitted.
 class Waiters {
  public:
   explicit Waiters(Admission& admission) : admission_(admission) {}
   ~Waiters() { join(); }
 
-  // Returns once `name` waits, or was turned away.
-  void add(const std::string& name, const Demand& demand) {
+  // Returns once `name` waits, or was rejected.
+  void add(const std::string& name, const SlotRequest& demand) {
     const auto settled = [&] { return admission_.waiting() + order().size(); };
     const auto before = settled();
     threads_.emplace_back([this, name, demand] { wait(name, demand); });
@@ -44,11 +44,11 @@ class Waiters {
   }
 
  private:
-  void wait(const std::string& name, const Demand& demand) {
+  void wait(const std::string& name, const SlotRequest& demand) {
     try {
       const auto ticket = admission_.enter(demand, kNever);
       note(name);
-    } catch (const ClientBusy&) {
+    } catch (const ClientLimitExceeded&) {
       note(name + " 429");
     } catch (const Busy&) {
       note(name + " 503");
@@ -61,8 +61,9 @@ class Waiters {
   TurnOrder order_;
 };
 
-inline Demand demand(const std::string& client, double cost = 10, Lane lane = Lane::interactive) {
-  return {lane, client, cost};
+inline SlotRequest demand(const std::string& client, double cost = 10,
+                          Priority priority = Priority::interactive) {
+  return {priority, client, cost};
 }
 
 }  // namespace orrery::test

@@ -4,45 +4,45 @@
 
 #include "tests/app/manual_timer.h"
 
-// When work ends early, and for what reason.
+// Tests the early end of work and its reason.
 namespace orrery {
 namespace {
 
 using std::chrono::seconds;
 
-struct Watched {
+struct WatchFixture {
   ManualTimer timer;
   std::stop_source gone, service_ends;
-  Clock::duration age{};  // of the request
-  const Watch& watch() {
+  Clock::duration age{};  // time since the request
+  const WorkCancellation& watch() {
     made.emplace(gone.get_token(), service_ends.get_token(), timer, timer.now() - age,
-                 Watch::Limit{seconds(60), "request_seconds"});
+                 WorkCancellation::Limit{seconds(60), "request_seconds"});
     return *made;
   }
-  std::optional<Watch> made;
+  std::optional<WorkCancellation> made;
 };
 
-TEST(Watch, StopsOnceTheClientHasGone) {
-  Watched w;
-  const Watch& watch = w.watch();
+TEST(WorkCancellation, StopsOnceTheClientHasGone) {
+  WatchFixture w;
+  const WorkCancellation& watch = w.watch();
   EXPECT_FALSE(watch.stop().stop_requested());
   w.gone.request_stop();
   EXPECT_TRUE(watch.stop().stop_requested());
   EXPECT_THROW(watch.explain(), Cancelled);
 }
 
-TEST(Watch, StopsOnceTheServiceEnds) {
-  Watched w;
-  const Watch& watch = w.watch();
+TEST(WorkCancellation, StopsOnceTheServiceEnds) {
+  WatchFixture w;
+  const WorkCancellation& watch = w.watch();
   w.service_ends.request_stop();
   EXPECT_TRUE(watch.stop().stop_requested());
   EXPECT_THROW(watch.explain(), Busy);
 }
 
-TEST(Watch, StopsAtItsTimeWhichCountsFromTheRequest) {
-  Watched w;
+TEST(WorkCancellation, StopsAtItsTimeWhichCountsFromTheRequest) {
+  WatchFixture w;
   w.age = seconds(20);
-  const Watch& watch = w.watch();
+  const WorkCancellation& watch = w.watch();
   w.timer.advance(seconds(40) - Clock::duration(1));
   EXPECT_FALSE(watch.stop().stop_requested());
   w.timer.advance(Clock::duration(1));
@@ -54,17 +54,17 @@ TEST(Watch, StopsAtItsTimeWhichCountsFromTheRequest) {
   }
 }
 
-TEST(Watch, OfALateRequestStopsAtOnce) {
-  Watched w;
+TEST(WorkCancellation, OfALateRequestStopsAtOnce) {
+  WatchFixture w;
   w.age = seconds(61);
-  const Watch& watch = w.watch();
+  const WorkCancellation& watch = w.watch();
   EXPECT_TRUE(watch.stop().stop_requested());
   EXPECT_THROW(watch.explain(), TimedOut);
 }
 
-TEST(Watch, TellsWhatCameFirst) {
-  Watched w;
-  const Watch& watch = w.watch();
+TEST(WorkCancellation, TellsWhatCameFirst) {
+  WatchFixture w;
+  const WorkCancellation& watch = w.watch();
   w.timer.advance(seconds(60));
   w.gone.request_stop();
   w.service_ends.request_stop();

@@ -9,9 +9,9 @@
 #include "core/base/parallel.h"
 #include "core/image/image.h"
 #include "core/render/worker_pool.h"
-#include "server/http/over_limit.h"
+#include "server/http/limit_exceeded.h"
 
-// Whose memory is whose, and who may have how much of it.
+// Tests memory accounts and their limits.
 namespace orrery {
 namespace {
 
@@ -27,7 +27,7 @@ TEST(MemoryAccount, HoldsWhatIsTakenInItsScopeUntilAnyoneGivesItBack) {
   EXPECT_GE(account->bytes(), 10 * kMega);
   EXPECT_LE(account->bytes(), 10 * kMega + 100);
   EXPECT_GE(memory.bytes(), 10 * kMega);
-  const std::vector<char> others = block(5 * kMega);  // out of its scope
+  const std::vector<char> others = block(5 * kMega);  // outside of its scope
   EXPECT_LE(account->bytes(), 10 * kMega + 100);
   std::thread([&] { std::vector<char>().swap(kept); }).join();
   EXPECT_EQ(account->bytes(), 0u);
@@ -71,8 +71,8 @@ TEST(MemoryAccount, HoldsWhatWorkersAndImagesTake) {
   WorkerPool pool(2);
   std::vector<std::vector<char>> blocks(16);
   account->run({}, [&] {
-    in_parallel(8, 1, [&](std::size_t i) { blocks[i] = block(kMega); });
-    pool.for_each(8, false, [&](int step, int, Turn&) {
+    parallel_for_each(8, 1, [&](std::size_t i) { blocks[i] = block(kMega); });
+    pool.for_each(8, false, [&](int step, int, TimeSlice&) {
       blocks[8 + static_cast<std::size_t>(step)] = block(kMega);
       return true;
     });
@@ -104,7 +104,7 @@ TEST(MemoryAccount, NeedsNoShareForWhatOthersAnswerFor) {
   EXPECT_GE(memory.bytes(), 30 * kMega);
 }
 
-// Small blocks are never refused, but the work ends at its next interruption point.
+// Small allocations never fail, but the work ends at its next interruption point.
 TEST(MemoryAccount, EndsWorkOfManySmallBlocks) {
   WorkMemory memory(2 * kMega);
   const auto account = memory.open("a");
@@ -137,19 +137,19 @@ TEST(InterruptionPoint, ThrowsOnceTheWorkIsToEnd) {
                                      }),
                Cancelled);
   EXPECT_EQ(steps, 4);
-  interruption_point();  // for nobody
+  interruption_point();  // outside of any account
 }
 
-// What refuses an account that asks for so many bytes.
+// Returns the kind and limit of the error when `account` charges `bytes`, or "" if the charge succeeds.
 std::string refusal_of(const std::shared_ptr<MemoryAccount>& account, std::size_t bytes) {
   try {
     account->run({}, [&] { MemoryCharge charge(bytes); });
     return "";
   } catch (const InputError& error) {
     return std::string("never: ") + error.what();
-  } catch (const ClientBusy& error) {
+  } catch (const ClientLimitExceeded& error) {
     return std::string("client: ") + error.limit();
-  } catch (const OverLimit& error) {
+  } catch (const LimitExceeded& error) {
     return std::string("all: ") + error.limit();
   }
 }

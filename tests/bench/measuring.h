@@ -31,7 +31,7 @@ inline std::shared_ptr<const Scene> load_scene_at(const std::string& path) {
 // Reads lines "ours" or "theirs" from standard input. Prints for each the sum of `repeats` calls of
 // seconds_of(is_ours).
 template <class SecondsOf>
-void answer_sides(int repeats, const SecondsOf& seconds_of) {
+void serve_runs(int repeats, const SecondsOf& seconds_of) {
   for (std::string side; std::getline(std::cin, side);) {
     double seconds = 0;
     for (int i = 0; i < repeats; ++i) seconds += seconds_of(side == "ours");

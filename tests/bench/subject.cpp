@@ -157,13 +157,13 @@ Subject interior(int triangles) {
   return {std::move(out.mesh), Vec3f(0.3f, 0.1f, 0.48f), kUnderCeiling, 0.25f};
 }
 
-struct Named {
+struct NamedSubject {
   const char* name;
   Subject (*make)(int triangles);
 };
-constexpr Named kSubjects[] = {{"ball", ball},        {"scan", scan}, {"cad", cad},
-                               {"foliage", foliage},  {"hair", hair}, {"cornell", cornell},
-                               {"interior", interior}};
+constexpr NamedSubject kSubjects[] = {{"ball", ball},        {"scan", scan}, {"cad", cad},
+                                      {"foliage", foliage},  {"hair", hair}, {"cornell", cornell},
+                                      {"interior", interior}};
 
 Mesh mesh_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -191,12 +191,12 @@ void fit_in_unit_sphere(Mesh& mesh) {
 
 std::vector<std::string> subject_names() {
   std::vector<std::string> names;
-  for (const Named& subject : kSubjects) names.emplace_back(subject.name);
+  for (const NamedSubject& subject : kSubjects) names.emplace_back(subject.name);
   return names;
 }
 
 Subject subject_of(const std::string& name, int triangles) {
-  for (const Named& subject : kSubjects) {
+  for (const NamedSubject& subject : kSubjects) {
     if (name != subject.name) continue;
     Subject made = subject.make(triangles);
     if (name != "ball" && name != "interior" && name != "cornell") fit_in_unit_sphere(made.mesh);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 
-struct Standing {
+struct PlacedCamera {
   CameraPlacement placement;
   std::shared_ptr<const Camera> camera;
 };
@@ -31,17 +31,17 @@ std::shared_ptr<const Camera> camera_of(Json own) {
       ->camera;
 }
 
-Standing looking_at_origin(const Vec3d& eye = {0, 0, 4}) {
+PlacedCamera looking_at_origin(const Vec3d& eye = {0, 0, 4}) {
   static const std::shared_ptr<const Camera> perspective = camera_of({{"type", "perspective"}});
   return {{.eye = eye}, perspective};
 }
 
-CameraFrame frame_at(const Standing& standing, const Orbit& orbit) {
+CameraFrame frame_at(const PlacedCamera& standing, const Orbit& orbit) {
   return orrery::frame_at(standing.placement, *standing.camera, orbit);
 }
 
 // Returns the ray through the centre of pixel (x, y).
-Ray<double> ray_through(const Standing& standing, int width, int height, int x, int y) {
+Ray<double> ray_through(const PlacedCamera& standing, int width, int height, int x, int y) {
   const auto rays = std::make_unique<RayBatch<double>>();
   const int x0 = x / kTileSide * kTileSide, y0 = y / kTileSide * kTileSide;
   standing.camera->generate(frame_at(standing, {}), width, height, {x0, y0, kTileSide, kTileSide},
@@ -60,22 +60,22 @@ void expect_near(const Vec3d& a, const Vec3d& b, double tolerance) {
 
 TEST(Orbit, TurnsAsTheFormulaOfTheSourceDoes) {
   for (const double dt : {0.0, 10.0, 45.0, 90.0, 123.0, -60.0, 270.0}) {
-    const Standing camera = looking_at_origin({1, 2, 3});
+    const PlacedCamera camera = looking_at_origin({1, 2, 3});
     const double c = std::cos(dt * kRadians), s = std::sin(dt * kRadians);
     expect_near(frame_at(camera, {dt, 0, 1}).eye, Vec3d(1 * c + 3 * s, 2, -1 * s + 3 * c), 1e-14);
   }
 }
 
 TEST(Orbit, KeepsTheCameraOfTheSceneToTheBit) {
-  const Standing camera = looking_at_origin({0.1, 0.7, 3.3});
+  const PlacedCamera camera = looking_at_origin({0.1, 0.7, 3.3});
   EXPECT_EQ(frame_at(camera, {}).eye, camera.placement.eye);
   EXPECT_EQ(frame_at(camera, {360, 0, 1}).eye, camera.placement.eye);
 }
 
 TEST(Orbit, PansEyeAndTargetAlike) {
-  const Standing camera = looking_at_origin({0.1, 0.7, 3.3});
+  const PlacedCamera camera = looking_at_origin({0.1, 0.7, 3.3});
   const Vec3d pan{0.5, -2, 8};
-  Standing moved = camera;
+  PlacedCamera moved = camera;
   moved.placement.eye = moved.placement.eye + pan;
   moved.placement.look_at = moved.placement.look_at + pan;
   const CameraFrame own = frame_at(camera, {.pan = pan}), there = frame_at(moved, {});
@@ -88,7 +88,7 @@ TEST(Orbit, PansEyeAndTargetAlike) {
 
 TEST(Orbit, FullTurnsEndWhereTheyBegan) {
   covers("E10");
-  const Standing camera = looking_at_origin({1, 2, 3});
+  const PlacedCamera camera = looking_at_origin({1, 2, 3});
   for (const double azimuth : {0.0, 33.5, -17.25, 180.0})
     for (const double turns : {1.0, 100.0, 2777.0}) {  // up to a million degrees
       const CameraFrame a = frame_at(camera, {azimuth, 10, 1}),
@@ -115,7 +115,7 @@ TEST(Orbit, LooksStraightDownWithoutLosingItsSense) {
 }
 
 TEST(Orbit, LiftStopsAtThePoles) {
-  const Standing camera = looking_at_origin({0, 3, 4});  // 36.87 degrees above the equator
+  const PlacedCamera camera = looking_at_origin({0, 3, 4});  // 36.87 degrees above the equator
   expect_near(frame_at(camera, {0, 60, 1}).back, Vec3d(0, 1, 0), 1e-15);
   expect_near(frame_at(camera, {0, 180, 1}).back, Vec3d(0, 1, 0), 1e-15);
   expect_near(frame_at(camera, {0, -180, 1}).back, Vec3d(0, -1, 0), 1e-15);
@@ -126,7 +126,7 @@ TEST(Orbit, DirectionsAreUnitAndUpright) {
   covers("E8");
   Random random(1);
   for (int i = 0; i < 10'000; ++i) {
-    Standing camera = looking_at_origin();
+    PlacedCamera camera = looking_at_origin();
     camera.placement.eye = random.in_cube(10);
     camera.placement.look_at = random.in_cube(10);
     camera.placement.up = random.direction() * random.magnitude(1e-3, 1e3);
@@ -143,14 +143,14 @@ TEST(Orbit, DirectionsAreUnitAndUpright) {
 TEST(CameraRays, OnePixelLooksAlongTheAxis) {
   covers("E11");
   expect_near(ray_through(looking_at_origin(), 1, 1, 0, 0).direction, Vec3d(0, 0, -1), 1e-15);
-  const Standing slanted = looking_at_origin({1, 2, 3});
+  const PlacedCamera slanted = looking_at_origin({1, 2, 3});
   expect_near(ray_through(slanted, 1, 1, 0, 0).direction, safe_normalize(Vec3d(-1, -2, -3)), 1e-15);
 }
 
 // The image height determines the scale of both axes, whatever the aspect ratio.
 TEST(CameraRays, HeightScalesBothAxes) {
   covers("E9");
-  const Standing camera = looking_at_origin();
+  const PlacedCamera camera = looking_at_origin();
   const auto slope = [&](int width, int height, int x, int y) {
     const Vec3d d = ray_through(camera, width, height, x, y).direction;
     return Vec3d(d.x / -d.z, d.y / -d.z, 0);
@@ -164,7 +164,7 @@ TEST(CameraRays, HeightScalesBothAxes) {
 }
 
 TEST(CameraRays, MirrorAboutTheMiddleToTheBit) {
-  const Standing camera = looking_at_origin();
+  const PlacedCamera camera = looking_at_origin();
   for (const int width : {5, 64, 99})
     for (int x = 0; x < width; x += 3) {
       const Vec3d left = ray_through(camera, width, 40, x, 7).direction,
@@ -174,7 +174,7 @@ TEST(CameraRays, MirrorAboutTheMiddleToTheBit) {
 }
 
 TEST(CameraRays, OrthographicRaysAreParallelAndSpacedByTheHeight) {
-  const Standing camera{{}, camera_of({{"type", "orthographic"}, {"height", 3}})};
+  const PlacedCamera camera{{}, camera_of({{"type", "orthographic"}, {"height", 3}})};
   const Ray<double> first = ray_through(camera, 200, 100, 0, 0),
                     last = ray_through(camera, 200, 100, 199, 99);
   EXPECT_EQ(first.direction, Vec3d(0, 0, -1));
@@ -185,7 +185,7 @@ TEST(CameraRays, OrthographicRaysAreParallelAndSpacedByTheHeight) {
 
 // Longitude grows evenly to the right and latitude upward. The centre is the view direction.
 TEST(CameraRays, OfAPanoramaHaveEvenAngles) {
-  const Standing camera{{}, camera_of({{"type", "panorama"}})};
+  const PlacedCamera camera{{}, camera_of({{"type", "panorama"}})};
   const int width = 128, height = 64;
   for (int y = 0; y < height; y += 7)
     for (int x = 0; x < width; x += 5) {
@@ -202,7 +202,7 @@ TEST(CameraRays, OfAPanoramaHaveEvenAngles) {
 
 TEST(CameraRays, PixelsBeyondThePictureAreInactive) {
   const auto rays = std::make_unique<RayBatch<float>>();
-  const Standing standing = looking_at_origin();
+  const PlacedCamera standing = looking_at_origin();
   standing.camera->generate(frame_at(standing, {}), 37, 35, TileGrid(37, 35).at(3, 1), TileSamples::centres(),
                             *rays);
   EXPECT_EQ(active_rays(*rays, groups_of(*rays)), 5u * 3u);

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-// The program as its users run it.
+// Tests of the program's command line.
 namespace orrery {
 namespace {
 
@@ -89,11 +89,11 @@ TEST_F(CommandLine, StatsCountEveryRay) {
 
 TEST_F(CommandLine, OptionsHaveTheNamesThatJsonHas) {
   const std::string explain = "explain --json " + write("s.json", kScene);
-  const std::string by_name =
+  const std::string parameter_name =
       run(explain + " --azimuth-degrees 30 --elevation-degrees 5 --fov-degrees 40 --max-depth 2").out;
-  ASSERT_TRUE(nlohmann::json::accept(by_name));
-  EXPECT_EQ(run(explain + " --azimuth 30 --elevation 5 --fov 40 --depth 2").out, by_name);
-  EXPECT_EQ(nlohmann::json::parse(by_name).at("request").at("camera").at("azimuth_degrees"), 30);
+  ASSERT_TRUE(nlohmann::json::accept(parameter_name));
+  EXPECT_EQ(run(explain + " --azimuth 30 --elevation 5 --fov 40 --depth 2").out, parameter_name);
+  EXPECT_EQ(nlohmann::json::parse(parameter_name).at("request").at("camera").at("azimuth_degrees"), 30);
 }
 
 TEST_F(CommandLine, PlanThatWasPrintedGivesThePictureAgain) {
@@ -260,8 +260,8 @@ TEST_F(CommandLine, StabilityIsToldAsTextJsonAndDocs) {
   EXPECT_EQ(run("stability --docs " + file("none")).status, 1);
 }
 
-// Without the format ffmpeg keeps every pixel's colour (4:4:4), which browsers do not play; with it, sides
-// have to be even.
+// Browsers do not play the colour format that ffmpeg would choose (4:4:4). The format yuv420p requires even
+// sides.
 TEST_F(CommandLine, HelpOfOrbitMakesAFilmThatBrowsersPlay) {
   const std::string help = run("orbit --help").out;
   EXPECT_NE(help.find("-pix_fmt yuv420p orbit.mp4"), std::string::npos) << help;

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-// Where the settings of the service come from, and what is said about those that are wrong.
+// Sources of the service's settings, and error messages for invalid ones.
 namespace orrery {
 namespace {
 
@@ -34,7 +34,7 @@ class Config : public ::testing::Test {
     int status;
     std::string out, err;
   };
-  // environment: "NAME=VALUE ..."
+  // `environment`: "NAME=VALUE ..."
   Outcome serve(const std::string& arguments, const std::string& environment = "") const {
     const char* program = std::getenv("TEST_ORRERY");
     const std::string command = environment + " " + (program ? program : "orrery") + " serve " + arguments +

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Every sample scene gives one and the same PNG for any number of threads and rays a slice: two ways each, with
-# TEST_EXHAUSTIVE=yes four in a larger size; with TEST_LEVELS=yes, for any instruction level, too: lower ones than the
-# machine's are forced through the loader's tunables.
+# Checks that every sample scene gives the same PNG for any number of threads and rays per slice: two variants
+# each, four in a larger size with TEST_EXHAUSTIVE=yes. With TEST_LEVELS=yes, lower instruction levels than
+# the machine's are forced through the loader's tunables and compared too.
 set -euo pipefail
 orrery=${TEST_ORRERY:-build/orrery}
 size="--width 60 --height 44" exhaustive=${TEST_EXHAUSTIVE:-no}
@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 lower=()
 
-level_with() { # TUNABLES: the level that the loader then picks
+level_with() { # TUNABLES: prints the level that the loader picks
   GLIBC_TUNABLES=$1 "$orrery" render scenes/shape-plane.json --width 8 --height 8 --stats | grep -o 'x86-64-v[234]\|plain'
 }
 

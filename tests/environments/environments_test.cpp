@@ -85,7 +85,7 @@ TEST(Image, HalfWhiteSkyLightsATiltedFloor) {
   const Texels half = painted(64, 128, [](int, int y) { return Vec3d(y < 64 ? 1 : 0); });
   for (const double angle : {0.0, 0.8, 1.5}) {
     Json scene = floor_under({{"type", "image"}, {"file", "sky.exr"}}, tilted(angle));
-    EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(half))),
+    EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(half))),
                 (1 + std::cos(angle)) / 2, 2e-3)
         << angle;
   }
@@ -117,11 +117,12 @@ TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
   const double expected = kScale * sum * 2 * kPi / (double{kSteps} * kSteps);  // over pi
   Json scene = floor_under(
       {{"type", "image"}, {"file", "f"}, {"rotation_degrees", kDegrees}, {"scale", kScale}}, normal);
-  EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(picture))) / expected, 1, 3e-3);
+  EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))) / expected, 1,
+              3e-3);
   // With another light, each is sampled half of the time.
   scene["lights"] =
       Json::array({{{"type", "directional"}, {"from", numbers(normal)}, {"intensity", {3, 3, 3}}}});
-  EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), OnePicture(picture))), expected + 3,
+  EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))), expected + 3,
               5e-3 * (expected + 3));
 }
 
@@ -129,7 +130,7 @@ TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
 template <class T>
 void expect_draws_as_seen(const Scene& scene, T tolerance) {
   const LightKernelPtr<T> kernel = scene.environment->kernel(T());
-  const Groups all = Groups::covering(0, kBatch, kWidth<T>);
+  const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<T>);
   const auto surface = std::make_unique<SurfaceBatch<T>>();
   const auto choices = std::make_unique<LightChoices<T>>();
   const auto out = std::make_unique<LightBatch<T>>();
@@ -181,7 +182,7 @@ TEST(Image, EveryThreadCountAndScaleGivesTheSameBits) {
     RenderRequest request = size(48, 32);
     request.technique = "path";
     request.samples = 2;
-    return render(load_scene(parse_document(scene.dump()), OnePicture(picture)), request, threads);
+    return render(load_scene(parse_document(scene.dump()), SingleImageSource(picture)), request, threads);
   };
   Json scene = sample("cornell-box");
   scene["environment"] = {{"type", "image"}, {"file", "f"}};

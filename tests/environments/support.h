@@ -22,9 +22,9 @@ inline Texels painted(int width, int height, const std::function<Vec3d(int x, in
 }
 
 // Source that returns one image for every file.
-class OnePicture final : public AssetSource {
+class SingleImageSource final : public AssetSource {
  public:
-  explicit OnePicture(Texels picture) : picture_(std::move(picture)) {}
+  explicit SingleImageSource(Texels picture) : picture_(std::move(picture)) {}
   TexelsPtr picture_file(const std::string&) const override {
     return std::make_shared<const Texels>(picture_);
   }
@@ -41,7 +41,7 @@ inline std::shared_ptr<const Scene> surrounded(const Texels& picture, const Vec3
   scene["objects"][0]["normal"] = numbers(normal);
   scene["environment"] = {{"type", "image"}, {"file", "sky.exr"}};
   scene["environment"].update(more);
-  return load_scene(parse_document(scene.dump()), OnePicture(picture));
+  return load_scene(parse_document(scene.dump()), SingleImageSource(picture));
 }
 
 }  // namespace orrery::test

@@ -6,7 +6,7 @@ namespace orrery::exact {
 
 // Cosine and sine of an angle, in units of 2^-kFractionBits. Exact at multiples of a right angle, else within
 // a few of these units.
-struct Turn {
+struct ExactRotation {
   Integer cosine, sine;
 };
 
@@ -24,7 +24,7 @@ inline Integer pi() {
   return 4 * (4 * arctangent(5) - arctangent(239));
 }
 
-inline Turn turn(double degrees) {
+inline ExactRotation turn(double degrees) {
   const int shift = bits_below_one(degrees);
   const Integer unit = Integer(1) << static_cast<unsigned>(shift);
   const Integer angle = in_units(degrees, shift), right = 90 * unit;

@@ -14,7 +14,7 @@ namespace orrery::test {
 namespace {
 
 constexpr int kWidth = 32, kHeight = 24;
-constexpr double kMostRoundings = 4;
+constexpr double kMaxRoundings = 4;
 
 int scenes_of_a_class() {
   const char* asked = std::getenv("EXACT_PIXELS");
@@ -35,11 +35,11 @@ std::vector<float> objects_seen(const Json& scene, Precision precision, const st
   return render_frame(prepared, settle(prepared, plan), FilmStorage::sums, shared_pool()).film.values(0, 0);
 }
 
-// Returns the number of roundings that explains `object` at a pixel. More than kMostRoundings means
+// Returns the number of roundings that explains `object` at a pixel. More than kMaxRoundings means
 // unexplained.
 double roundings(const exact::Oracle& oracle, int x, int y, int object, double epsilon) {
   double count = 1;
-  while (count <= kMostRoundings && !oracle.explains(x, y, object, count, epsilon)) count *= 2;
+  while (count <= kMaxRoundings && !oracle.explains(x, y, object, count, epsilon)) count *= 2;
   return count;
 }
 
@@ -67,7 +67,7 @@ TEST_P(Exact, ObjectsOfPixelsButForRoundingsAtEdges) {
           if (static_cast<int>(seen) == right) return;
           const double count = roundings(oracle, x, y, static_cast<int>(seen), epsilon);
           ++differing[std::string(type) + " within " + std::to_string(static_cast<int>(count))];
-          EXPECT_LE(count, kMostRoundings)
+          EXPECT_LE(count, kMaxRoundings)
               << type << " sees object " << seen << " instead of " << right << " at " << x << ", " << y
               << " by " << accelerator << ", scene " << i;
         };

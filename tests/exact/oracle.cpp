@@ -75,7 +75,7 @@ void Oracle::read_camera(const json& camera) {
   if (parallel_) {
     extent_ = units(camera.at("height").get<double>() / 2);
   } else {
-    const Turn half = turn(camera.value("fov_degrees", 45.0) / 2);
+    const ExactRotation half = turn(camera.value("fov_degrees", 45.0) / 2);
     extent_ = half.sine * kOne / half.cosine;
   }
 }
@@ -126,7 +126,7 @@ std::vector<Oracle::Item> Oracle::read_objects(const json& objects) const {
 Oracle::Placement Oracle::read_placement(const json& instance) const {
   const json rotate = instance.value("rotate", json::object());
   const IVec axis = units(rotate.value("axis", json::array({0, 1, 0})));
-  const Turn angle = turn(rotate.value("degrees", 0.0));
+  const ExactRotation angle = turn(rotate.value("degrees", 0.0));
   const IVec scale = units(instance.value("scale", json::array({1, 1, 1})));
   const Integer size = length(axis);
   const auto unit = [&](int i) { return Integer(axis[i] * kOne * kOne / size); };

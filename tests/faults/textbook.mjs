@@ -374,7 +374,7 @@ export const textbookFaults = [
   {
     fault: 9,
     about: "planes are crossed at one distance, without a margin for rounding",
-    file: "core/accelerators/probes.h",
+    file: "core/accelerators/box_testers.h",
     from: "const T pad = max_component(abs(ray.origin)) * kRounding<T>;",
     to: "const T pad = 0;",
     target: "test_accelerators",

@@ -5,13 +5,12 @@
 #include <cstdlib>
 #include <string>
 
-#include "server/http/exchange.h"
+#include "server/http/request_processor.h"
 #include "server/routes/problem.h"
 #include "server/routes/router.h"
 
-// Any bytes as what a client sends on one connection before it closes its side: every request is answered or
-// the connection ends, and what comes back are whole answers of ours alone, however the bytes try to end up
-// in them.
+// Fuzzes one HTTP connection: the client sends any bytes and then closes its side. Every request gets a
+// response or the connection ends. All responses are complete and ours, even if the bytes try to inject one.
 
 namespace {
 
@@ -57,7 +56,8 @@ HttpServer::Handler make_handler(const Router& router) {
           .grace_over = [] {}};
 }
 
-// What the answers of one connection may look like: heads of known headers, bodies of the length they tell.
+// Aborts unless the bytes are responses of one connection: heads of known headers, bodies of the stated
+// length.
 void check_answers(std::string_view bytes) {
   while (!bytes.empty()) {
     require(bytes.starts_with("HTTP/1.1 "));
@@ -72,7 +72,7 @@ void check_answers(std::string_view bytes) {
     require(head.find("\r\nX-Request-ID: ") != std::string::npos);
     require(head.find("\r\nInjected") == std::string::npos);
     if (head.find("\r\nTransfer-Encoding: chunked\r\n") != std::string::npos) {
-      if (bytes == "4\r\npart\r\n") return;  // cut off, as the client sends no more and seems to have left
+      if (bytes == "4\r\npart\r\n") return;  // cut off: a half-closed client counts as disconnected
       if (!bytes.starts_with("4\r\npart\r\n0\r\n\r\n")) continue;  // HEAD
       bytes.remove_prefix(14);
       continue;
@@ -84,7 +84,7 @@ void check_answers(std::string_view bytes) {
     }
     const std::size_t length = std::strtoul(head.c_str() + at + 18, nullptr, 10);
     if (bytes.starts_with("HTTP/1.1 ")) continue;  // HEAD
-    if (bytes.empty()) return;                     // HEAD, the last
+    if (bytes.empty()) return;                     // the last response, to HEAD
     require(length <= bytes.size());
     bytes.remove_prefix(length);
   }
@@ -104,7 +104,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Router router = make_router();
   static const HttpServer::Handler handler = make_handler(router);
   static HangupMonitor monitor;
-  static Exchanger exchanger({.max_bodies = 2000}, handler, monitor);
+  static RequestProcessor exchanger({.max_bodies = 2000}, handler, monitor);
   static const int wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   constexpr std::size_t kMost = 20'000;
   int ends[2];

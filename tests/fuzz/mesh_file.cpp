@@ -5,7 +5,7 @@
 #include "core/meshes/mesh_file.h"
 #include "core/meshes/repair.h"
 
-// Any bytes as a mesh file: refused, or a mesh that keeps what its header promises.
+// Fuzzes the mesh reader: any bytes are rejected, or read as a mesh that keeps the contract of its header.
 
 namespace {
 

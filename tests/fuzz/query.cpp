@@ -6,7 +6,8 @@
 #include "server/http/target.h"
 #include "server/routes/answers.h"
 
-// Any lines as a target, an Accept and an If-None-Match header: refused as wrong input, or understood.
+// Fuzzes the parsers of a target, an Accept and an If-None-Match header: any lines are rejected as invalid
+// input, or accepted.
 
 namespace {
 

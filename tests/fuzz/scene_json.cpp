@@ -4,8 +4,8 @@
 #include "core/base/error.h"
 #include "core/load/load.h"
 
-// Any text as a scene and as what a request says beside it: refused with problems that name their place, or
-// read; and what was read is written in one way alone.
+// Fuzzes the readers of scenes and requests: any text is rejected with problems that name their place, or
+// accepted. Canonical JSON of accepted text stays the same if it is parsed again.
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
-// Who may do what.
+// Tests access control: tokens, scopes, cross-origin requests and signed links.
 namespace orrery {
 namespace {
 
@@ -34,7 +34,7 @@ std::string line(const std::string& name, const std::string& scopes, const std::
 
 httplib::Headers bearer(const std::string& token) { return {{"Authorization", "Bearer " + token}}; }
 
-struct Guarded {
+struct TokenDaemon {
   Folder folder;
   std::string tokens = folder.write(
       "tokens", "# people\n" + line("reader", "read", "r") + line("painter", "read,render", "p") + "\n" +
@@ -46,7 +46,7 @@ struct Guarded {
 };
 
 TEST(Access, NeedsATokenOfTheScope) {
-  Guarded guarded;
+  TokenDaemon guarded;
   auto& client = guarded.client;
   const std::string scene = small_scene().dump();
   const auto post = [&](const char* path, const std::string& token, const std::string& body) {
@@ -105,7 +105,7 @@ TEST(Access, NeedsATokenOfTheScope) {
 }
 
 TEST(Access, TokensAreReadAgainOnSighup) {
-  Guarded guarded;
+  TokenDaemon guarded;
   const auto status = [&](const std::string& token) {
     return guarded.client.Get("/v1/limits", bearer(token))->status;
   };
@@ -140,7 +140,7 @@ TEST(Settings, OriginsAreReadAgainOnSighup) {
   EXPECT_TRUE(test::eventually([&] { return is_allowed("https://two.example"); }));
   EXPECT_FALSE(is_allowed("https://one.example"));
   EXPECT_NE(json::parse(client.Get("/v1/limits")->body).at("jobs"), 7);  // it needs a restart
-  // The files of tokens are not looked at if others are named.
+  // A changed `tokens_file` needs a restart, so the reload does not open it.
   write({{"cors_origins", {"https://one.example"}}, {"tokens_file", "/nowhere"}});
   daemon.signal(SIGHUP);
   EXPECT_TRUE(test::eventually([&] { return is_allowed("https://one.example"); }));
@@ -151,7 +151,7 @@ TEST(Settings, OriginsAreReadAgainOnSighup) {
 }
 
 TEST(Access, SignedLinksNeedNoTokenUntilTheyExpire) {
-  Guarded guarded;
+  TokenDaemon guarded;
   auto& client = guarded.client;
   const auto posted = client.Post("/v1/scenes", bearer("k"), small_scene().dump(), "application/json");
   const std::string frame = posted->get_header_value("Location") + "/frame.png?azimuth=30";
@@ -241,7 +241,7 @@ TEST(Cors, PagesFromElsewhereChangeNothing) {
   EXPECT_EQ(post("https://a.example")->status, 200);
 }
 
-// The owner of a domain can let it stand for this machine, and his pages then are of the same origin.
+// An attacker can point a domain at this machine (DNS rebinding), which makes its pages same-origin.
 TEST(Cors, DomainsChangeNothingUnlessAccessIsControlled) {
   const auto post = [](Daemon& daemon, const std::string& host) {
     const std::string here = host + ":" + std::to_string(daemon.port());
@@ -272,7 +272,7 @@ TEST(Cors, DomainsReadNothingUnlessListedOrAccessIsControlled) {
   for (const char* host : {"evil.example", "evil.example:8080", "127.0.0.1.evil.example"})
     EXPECT_EQ(status("/v1/limits", host), 403) << host;
   EXPECT_EQ(status("/", "evil.example"), 200) << "the page is nobody's secret";
-  Guarded guarded;
+  TokenDaemon guarded;
   httplib::Headers headers = bearer("r");
   headers.emplace("Host", "render.example");
   EXPECT_EQ(guarded.client.Get("/v1/limits", headers)->status, 200);

@@ -116,8 +116,7 @@ TEST_F(Assets, NameThatIsNoHashIsSaidToBeNone) {
   EXPECT_NE(problem.at("detail").get<std::string>().find("64 digits"), std::string::npos) << problem;
 }
 
-// Trying structures is work like rendering: it is bounded in time, and nobody waits for it longer than for a
-// picture.
+// `explain` builds structures, and so has the time limit and priority of a render.
 TEST(Explain, IsBoundedInTime) {
   Daemon daemon({"--request-seconds", "1"});
   httplib::Client client = daemon.client();
@@ -188,7 +187,7 @@ TEST(AssetLimits, HoldAndAreNamed) {
   EXPECT_NE(refused.at("detail").get<std::string>().find("asset_bytes"), std::string::npos);
   std::vector<std::string> meshes;  // the store holds four of them
   for (int i = 0; i < 5; ++i) meshes.push_back(kTetrahedron + "# " + std::to_string(i) + "\n");
-  const std::size_t held = 4800 / (meshes[0].size() + 1024);  // each with what it takes beside its bytes
+  const std::size_t held = 4800 / (meshes[0].size() + 1024);  // with overhead per entry
   for (const auto& mesh : meshes) EXPECT_EQ(put(mesh)->status, 201);
   for (std::size_t i = 0; i < meshes.size(); ++i)
     EXPECT_EQ(client.Get("/v1/assets/" + sha256_hex(meshes[i]))->status,

@@ -2,7 +2,7 @@
 
 #include "tests/http/daemon.h"
 
-// Speed against accuracy, measured by the service.
+// Tests charts of speed against accuracy, measured by the service.
 namespace orrery {
 namespace {
 
@@ -18,7 +18,7 @@ json ends_on(const std::string& name) {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-// Of a table, its line of names first.
+// Returns the cells of a CSV table, header line first.
 Cells cells(const std::string& csv) {
   Cells all;
   std::istringstream lines(csv);
@@ -32,7 +32,7 @@ Cells cells(const std::string& csv) {
   return all;
 }
 
-// What the table of these points is to be.
+// Returns the expected table of these points.
 Cells cells(const json& points) {
   Cells all(1);
   for (const std::string name :
@@ -64,7 +64,7 @@ class ChartTest : public HttpTest {
     EXPECT_EQ(job.at("chart"), scene_ + "/charts/" + job.at("id").get<std::string>() + ".svg");
     return job;
   }
-  // Where it is, without its ending, once it is made.
+  // Waits for the chart and returns its path without extension.
   std::string made(const json& job) {
     const auto told = client_.Get(job.at("events").get<std::string>());
     EXPECT_NE(told->body.find("event: done"), std::string::npos) << told->body;
@@ -88,7 +88,7 @@ TEST_F(ChartTest, CanBeHadAsDrawingTableAndNumbers) {
   EXPECT_EQ(chart.at("image"), json({{"width", 16}, {"height", 12}}));
   EXPECT_EQ(chart.at("reference").at("samples"), 16);
   const auto rmse = [&](std::size_t i) { return chart.at("points").at(i).at("rmse").get<double>(); };
-  EXPECT_LT(rmse(5), rmse(4));  // 4 samples and 1, of the model that is the reference's
+  EXPECT_LT(rmse(5), rmse(4));  // 4 samples and 1, of the reference's technique
   EXPECT_GT(rmse(1), rmse(5));
   EXPECT_GT(chart.at("points").at(5).at("ssim"), chart.at("points").at(1).at("ssim"));
   for (const json& point : chart.at("points")) EXPECT_GT(point.at("cpu_ms").get<double>(), 0);
@@ -117,7 +117,7 @@ TEST_F(ChartTest, PointsTellPlanPictureIntervalAndCertificate) {
     EXPECT_NEAR(full.at("seconds").get<double>(),
                 point.at("cpu_ms").get<double>() / 1000 / chart.at("threads").get<double>(), 1e-9);
     EXPECT_LE(point.at("ssim"), 1);
-    // The picture is 16 pixels wide, so that both addresses are of the same one.
+    // The image is 16 pixels wide, so that both URLs name the same one.
     const auto picture = client_.Get(point.at("picture").get<std::string>());
     ASSERT_EQ(picture->status, 200) << picture->body;
     EXPECT_TRUE(client_.Get(scene_ + "/frame.png?" + point.at("plan").get<std::string>())->body ==

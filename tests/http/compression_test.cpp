@@ -5,13 +5,13 @@
 
 #include "tests/http/daemon.h"
 
-// Which answers are compressed, and for whom.
+// Tests response compression and its negotiation.
 namespace orrery {
 namespace {
 
 const std::string kLong(5000, 'x');
 
-// The answer after compression for a client with this Accept-Encoding.
+// Returns the response after compression for a client with this Accept-Encoding.
 Response compressed(Response response, const std::string& accepts = "gzip") {
   Request request;
   request.headers = {{"Accept-Encoding", accepts}};
@@ -81,7 +81,7 @@ TEST(Compression, IsForTextOfSomeLength) {
   EXPECT_FALSE(is_compressed(compressed(text(std::string((1 << 20) + 1, 'x')))));
 }
 
-// Whose length tells of a secret beside what the client chose.
+// The compressed length could reveal a secret next to data chosen by the client.
 TEST(Compression, IsNotForWhatMayNotBeKept) {
   EXPECT_FALSE(is_compressed(compressed(text().set("Cache-Control", "no-store"))));
   EXPECT_FALSE(is_compressed(compressed(text().set("Cache-Control", "private, no-store"))));
@@ -93,7 +93,7 @@ TEST(Compression, WeakensTheETag) {
   EXPECT_EQ(find_field(compressed(text().set("ETag", "\"a\""), "").headers, "ETag"), "\"a\"");
 }
 
-// An answer that says "what you have is current" has the tag of what that is.
+// A 304 response carries the entity tag of the cached representation.
 TEST(Compression, NotModifiedHasTheTagOfWhatTheClientHas) {
   const auto tag_for = [](const std::string& known) {
     Request request;

@@ -6,13 +6,13 @@
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
-// What RFC 9110 and 9112 demand beyond everyday requests.
+// Tests uncommon requirements of RFC 9110 and 9112.
 namespace orrery {
 namespace {
 
 class Conformance : public HttpTest {
  protected:
-  // What comes for these bytes, after which the daemon closes.
+  // Returns the response to `bytes`, after which the daemon closes.
   std::string answer_to(const std::string& bytes) {
     const RawClient raw(daemon().port());
     raw.send(bytes);
@@ -86,13 +86,14 @@ TEST(Terminated, GivesHalfARequestOneLastCall) {
   EXPECT_EQ(ends.receive_all().substr(9, 3), "200");
   for (const RawClient* raw : {&head, &body}) {
     const std::string answer = raw->receive_all();
-    EXPECT_EQ(answer.substr(9, 3), "503");  // 408 would be that it waited as long as ever
+    EXPECT_EQ(answer.substr(9, 3), "503");  // a 408 would mean the usual timeout
     EXPECT_NE(answer.find("before the service ended"), std::string::npos) << answer;
   }
   EXPECT_EQ(daemon.wait(), 0);
 }
 
-// Also if it has sent the end of what it sends long before it takes the answer, which no buffer holds.
+// Includes a client that shuts down its sending side long before it reads the response, which exceeds all
+// buffers.
 TEST(ClientThatLeaves, AfterTheWholeAnswerHasNotLeftEarly) {
   Daemon daemon;
   for (int i = 0; i < 200; ++i) {
@@ -107,7 +108,7 @@ TEST(ClientThatLeaves, AfterTheWholeAnswerHasNotLeftEarly) {
     const RawClient raw(daemon.port(), 4096);
     raw.send("GET " + path + " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
     std::string answer = raw.receive_some();
-    raw.send_no_more();
+    raw.shutdown_send();
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     answer += raw.receive_all();
     EXPECT_TRUE(answer.ends_with(mesh));

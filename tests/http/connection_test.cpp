@@ -8,13 +8,13 @@
 #include <stdexcept>
 #include <thread>
 
-// Clients that trickle: a byte now and then keeps nothing open for long.
+// Tests the minimum transfer rate against clients that trickle bytes.
 namespace orrery {
 namespace {
 
-constexpr Patience kBrief{.bytes_per_s = 1000, .window = std::chrono::seconds(1)};
+constexpr Timeouts kBrief{.bytes_per_s = 1000, .window = std::chrono::seconds(1)};
 
-// A connection whose client crosses a byte in 5 ms, in both directions.
+// Connection whose client sends or reads one byte per 5 ms.
 class Trickle {
  public:
   explicit Trickle(const std::string& head) {

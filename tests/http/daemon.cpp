@@ -30,16 +30,16 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The first line the daemon prints says where it listens.
-// The number at the end of the next line, which has to begin so; 0 if it does not.
+// Reads the next line of output and returns the port at its end. Returns 0 if the line does not start with
+// `begin`.
 int port_from(int output, const std::string& begin) {
   std::string line;
   for (char c; read(output, &c, 1) == 1 && c != '\n';) line += c;
   return line.rfind(begin, 0) == 0 ? std::stoi(line.substr(line.find_last_of(": ") + 1)) : 0;
 }
 
-// Exchanges go to the file that TEST_EXCHANGES names, a line of JSON each, to be held against the service's
-// own description of itself (openapi.test.mjs).
+// Appends the exchange to the file named by TEST_EXCHANGES, as one line of JSON. openapi.test.mjs checks the
+// file against the service's OpenAPI description.
 void record(const httplib::Request& request, const httplib::Response& response) {
   static std::ofstream* const file = [] {
     const char* path = std::getenv("TEST_EXCHANGES");
@@ -74,7 +74,7 @@ httplib::Client client_of(int port) {
 
 }  // namespace
 
-std::vector<std::string> with_endless_pictures(std::vector<std::string> arguments) {
+std::vector<std::string> without_ray_limit(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--request-rays", "1000000000000"});
   return arguments;
 }
@@ -92,13 +92,13 @@ Daemon::Daemon(const std::vector<std::string>& arguments, std::optional<int> log
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  ::signal(SIGPIPE, SIG_IGN);  // a connection that breaks is a failure of one test, not the end of all
+  ::signal(SIGPIPE, SIG_IGN);  // a broken connection fails one test, not the whole run
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
   pid_ = fork();
   if (pid_ == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // should the test die
-    ::signal(SIGPIPE, SIG_DFL);        // as a shell would leave it
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // in case the test dies
+    ::signal(SIGPIPE, SIG_DFL);        // the default of a shell
     dup2(ends[1], STDOUT_FILENO);
     if (log) dup2(*log, STDERR_FILENO);
     execv(argv[0], argv.data());
@@ -212,7 +212,7 @@ bool RawClient::is_reset() const {
   return count < 0 && errno == ECONNRESET;
 }
 
-void RawClient::send_no_more() const { shutdown(fd_, SHUT_WR); }
+void RawClient::shutdown_send() const { shutdown(fd_, SHUT_WR); }
 
 void RawClient::close() {
   if (fd_ >= 0) ::close(fd_);
@@ -223,7 +223,7 @@ void RawClient::send(const std::string& bytes) const {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
     const ssize_t count = ::send(fd_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-    if (count <= 0) return;  // the daemon has had enough: its answer says why
+    if (count <= 0) return;  // the daemon stopped reading: its response says why
     sent += static_cast<std::size_t>(count);
   }
 }

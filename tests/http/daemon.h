@@ -10,10 +10,10 @@
 
 namespace orrery {
 
-// A running `orrery serve` on a free port.
+// Running `orrery serve` on a free port.
 class Daemon {
  public:
-  // log: where it writes its log, of all requests; none: warnings and errors, on our standard error.
+  // `log` receives the log of all requests. Without `log`, warnings and errors go to standard error.
   explicit Daemon(const std::vector<std::string>& arguments = {}, std::optional<int> log = {});
   ~Daemon();
   Daemon(const Daemon&) = delete;
@@ -21,24 +21,24 @@ class Daemon {
   int port() const { return port_; }
   int health_port() const { return health_port_; }
   httplib::Client client() const;
-  // Of another client: at 127.0.0.X.
+  // Returns a client with the address 127.0.0.X.
   httplib::Client client_at(int last_byte) const;
   httplib::Client health_client() const;
 
   void signal(int number) const;
-  // Waits for the end and returns the exit status, or 128 + the signal that ended it.
+  // Waits for the end and returns the exit status, or 128 + the signal that ended the process.
   int wait();
   bool running() const;
 
-  // The value of a series without labels in /metrics, or -1.
+  // Returns the value of a series without labels in /metrics, or -1.
   double metric(const std::string& series) const;
-  // Memory in use, bytes.
+  // Returns the resident memory, bytes.
   double resident_bytes() const;
   std::size_t open_files() const;
 
-  // Processor time used so far, seconds.
+  // Returns the processor time used so far, seconds.
   double cpu_seconds() const;
-  // Waits until it uses the processor, or until it no longer does. False after `limit_s`.
+  // Waits until the process uses the processor, or until it is idle. Returns false after `limit_s`.
   bool wait_until_working(double limit_s = 600) const;
   bool wait_until_idle(double limit_s = 600) const;
 
@@ -48,35 +48,35 @@ class Daemon {
   int output_ = -1;
 };
 
-// These arguments of a daemon, and one more: pictures that take hours are not refused.
-std::vector<std::string> with_endless_pictures(std::vector<std::string> arguments = {});
+// Adds an argument that disables the limit on expected rays, so that images may take hours.
+std::vector<std::string> without_ray_limit(std::vector<std::string> arguments = {});
 
-// The program under test.
+// Returns the path of the program under test.
 std::string program();
 
-// A plain TCP connection to the daemon, for requests that no HTTP library would send.
+// Plain TCP connection to the daemon, for requests that no HTTP library sends.
 class RawClient {
  public:
-  // receive_buffer: bytes that the kernel keeps for us, 0 for its own choice. from: the last byte of our
-  // address, 127.0.0.X.
+  // `receive_buffer` is the size of the kernel's receive buffer in bytes, 0 for its default. `from` is X of
+  // the client's address 127.0.0.X.
   explicit RawClient(int port, int receive_buffer = 0, std::uint8_t from = 1);
   ~RawClient();
   RawClient(const RawClient&) = delete;
 
   void send(const std::string& bytes) const;
-  // All that comes until the daemon closes, or until nothing came for 5 s.
+  // Receives until the daemon closes, or until nothing arrives for 5 s.
   std::string receive_all() const;
   std::string receive_some() const;
-  // Receives to the end. Whether that was a reset.
+  // Receives to the end. Returns true if the connection was reset.
   bool is_reset() const;
-  void send_no_more() const;
+  void shutdown_send() const;
   void close();
 
  private:
   int fd_ = -1;
 };
 
-// Tests of one suite share a daemon.
+// Fixture with one daemon for all tests of a suite.
 class HttpTest : public ::testing::Test {
  public:
   static void SetUpTestSuite() { daemon_ = new Daemon; }
@@ -89,8 +89,8 @@ class HttpTest : public ::testing::Test {
   static Daemon& daemon() { return *daemon_; }
   httplib::Client client_ = daemon_->client();
 
-  // GET by a client that has what `known` stands for. The connection is closed afterwards: httplib would wait
-  // for the body of a 304 that has none.
+  // Sends a GET with `known` as If-None-Match. Closes the connection afterwards, since httplib would wait for
+  // the missing body of a 304.
   httplib::Result get_known(const std::string& path, const std::string& known) {
     return daemon_->client().Get(path, {{"If-None-Match", known}, {"Connection", "close"}});
   }
@@ -102,23 +102,23 @@ class HttpTest : public ::testing::Test {
   static Daemon* daemon_;
 };
 
-// A ball on a mirror, small enough to render in no time. `more` replaces or adds members.
+// Returns a ball on a mirror, which renders in milliseconds. `more` replaces or adds members.
 nlohmann::json small_scene(const nlohmann::json& more = nlohmann::json::object());
 
-// The same with a ball that moves to the side from 0 to 2 s.
+// Returns the small scene with a ball that moves to the side from 0 to 2 s.
 nlohmann::json moving_scene();
 
-// Where the job that an answer tells of is to be asked for.
+// Returns the path of the job in a response body.
 std::string job_path(const nlohmann::json& job);
 
-// The body is problem details that agree with the status; returns it.
+// Expects problem details that agree with the status, and returns them.
 nlohmann::json expect_problem(const httplib::Result& result, int status);
 
 struct StreamedFrame {
   nlohmann::json header;
   std::string png;
 };
-// Takes apart a body of application/x-orrery-frames; fails the test if it is not one.
+// Parses a body of application/x-orrery-frames. Fails the test if the body is malformed.
 std::vector<StreamedFrame> parse_frames(const std::string& body);
 
 bool is_png(const std::string& bytes);

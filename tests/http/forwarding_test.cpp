@@ -4,13 +4,13 @@
 
 #include "core/base/error.h"
 
-// Who asks behind proxies, and below which path.
+// Tests the client address, host and path prefix behind proxies.
 namespace orrery {
 namespace {
 
 IpAddress address(std::string_view text) { return *IpAddress::parse(text); }
 
-// What a request with these headers is taken for, if the last proxy has the address `peer`.
+// Returns the request after Forwarding has applied `headers`, if the last proxy has the address `peer`.
 Request applied(const Fields& headers, const char* peer = "10.0.0.1", const std::string& prefix = "",
                 const std::vector<std::string>& segments = {}) {
   static const std::vector<std::string> kProxies{"10.0.0.0/8", "192.0.2.7", "fd00::/8"};
@@ -81,7 +81,7 @@ TEST(Forwarding, ReadsEveryFormOfAnAddress) {
   EXPECT_EQ(client_of({{"Forwarded", "for=203.0.113.9;by=\"a, b\", for=198.51.100.1"}}), "198.51.100.1");
 }
 
-// What the client itself sends stands before what the proxy appends, in the same line or in one before.
+// Values sent by the client precede the proxy's, in the same field line or an earlier one.
 TEST(Forwarding, AClientCannotHideWhatAProxyAppends) {
   for (const char* own :
        {"1.2.3.4:\"", "[1.2.3.4]\"", "[::]\"", "\"", "1.2.3.4, \"", "[1.2.3.4", "1.2.3.4:\\\""}) {
@@ -119,7 +119,7 @@ TEST(Forwarding, WhatIsNoAddressEndsTheList) {
   }
 }
 
-// One of two headers is the client's own where the proxy sets only the other.
+// If a proxy sets only one of the two headers, the other is the client's own.
 TEST(Forwarding, OfTwoHeadersThatDisagreeNoneIsBelieved) {
   EXPECT_EQ(client_of({{"Forwarded", "for=203.0.113.9"}, {"X-Forwarded-For", "198.51.100.1"}}), "10.0.0.1");
   EXPECT_EQ(client_of({{"Forwarded", "for=198.51.100.1"}, {"X-Forwarded-For", "198.51.100.1"}}),
@@ -128,7 +128,7 @@ TEST(Forwarding, OfTwoHeadersThatDisagreeNoneIsBelieved) {
 
 TEST(Forwarding, TheHostIsWhatTheClientAsked) {
   const auto host = [](const Fields& headers, const char* peer = "10.0.0.1") {
-    return applied(headers, peer).told_host;
+    return applied(headers, peer).forwarded_host;
   };
   EXPECT_EQ(host({{"Host", "inner"}, {"X-Forwarded-Host", "render.example"}}), "render.example");
   EXPECT_EQ(host({{"Host", "inner"}, {"Forwarded", "for=1.2.3.4;host=\"render.example:8443\""}}),

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "tests/support/eventually.h"
 
-// How many handlers compute at once, and whose turn it is.
+// Tests the limit on concurrent handlers, and the order of waiting ones.
 namespace orrery {
 namespace {
 
-// Handlers that wait for a slot, each on a thread of its own, and the order in which they got theirs.
+// Handlers that wait for a slot, each on its own thread, and the order in which they got one.
 class Queue {
  public:
   explicit Queue(HandlerSlots& slots) : slots_(slots) {}
@@ -26,12 +26,12 @@ class Queue {
     threads_.clear();
   }
 
-  // Returns once it waits.
+  // Returns once the handler waits.
   void add(const std::string& client) {
     const std::size_t before = slots_.waiting();
     std::stop_source& gone = gone_.emplace_back();
     threads_.emplace_back([this, client, token = gone.get_token()] {
-      Waiting state(POLLIN);
+      WaitState state(POLLIN);
       state.end();
       try {
         const HandlerSlots::Handler handler(slots_, client, token, state);
@@ -64,7 +64,7 @@ struct Running {
     state.end();
     handler.emplace(slots, client, gone, state);
   }
-  Waiting state{POLLIN};
+  WaitState state{POLLIN};
   std::optional<HandlerSlots::Handler> handler;
 };
 
@@ -107,7 +107,7 @@ TEST(HandlerSlots, AreFreeWhileTheirHandlerWaits) {
   queue.add("b");
   {
     const HandlerSlots::Wait wait;
-    EXPECT_EQ(first.state.gave_up(), false);
+    EXPECT_EQ(first.state.was_evicted(), false);
     EXPECT_EQ(queue.order(), "b");
   }
   queue.add("c");  // waits: the first has its slot again
@@ -132,7 +132,7 @@ TEST(HandlerSlots, StayFreeWherePlacesOfAnotherKindBoundTheWork) {
     HandlerSlots::Wait wait;
     wait.end_without_slot();
   }
-  { const Running second(slots, "b"); }  // would wait for ever
+  { const Running second(slots, "b"); }  // would otherwise wait forever
   HandlerSlots::resume();
   Queue queue(slots);
   queue.add("c");
@@ -160,12 +160,12 @@ TEST(HandlerSlots, ShowWhatTheirHandlerWaitsFor) {
   EXPECT_EQ(first.state.kind(), std::nullopt);
   {
     const HandlerSlots::Wait wait;
-    EXPECT_EQ(first.state.kind(), Waiting::Kind::turn);
-    EXPECT_FALSE(first.state.give_up(Waiting::Kind::begun));
-    EXPECT_TRUE(first.state.give_up(Waiting::Kind::turn));
-    EXPECT_FALSE(first.state.give_up(Waiting::Kind::turn)) << "once";
+    EXPECT_EQ(first.state.kind(), WaitState::Kind::turn);
+    EXPECT_FALSE(first.state.evict(WaitState::Kind::begun));
+    EXPECT_TRUE(first.state.evict(WaitState::Kind::turn));
+    EXPECT_FALSE(first.state.evict(WaitState::Kind::turn)) << "once";
   }
-  EXPECT_TRUE(first.state.gave_up());
+  EXPECT_TRUE(first.state.was_evicted());
 }
 
 }  // namespace

@@ -8,11 +8,11 @@
 #include <future>
 #include <optional>
 
-// Who learns that a client has gone.
+// Tests detection of disconnected clients.
 namespace orrery {
 namespace {
 
-constexpr bool kAsks = true;
+constexpr bool kSendsProbes = true;
 
 // Both ends of a connection.
 struct Pair {
@@ -28,43 +28,43 @@ struct Pair {
   int ends[2];
 };
 
-// What is told of a stop.
-struct Told {
+// Notification of a stop request.
+struct StopNotification {
   std::stop_source source;
   std::promise<void> promise;
   std::future<void> future = promise.get_future();
   std::stop_callback<std::function<void()>> callback{source.get_token(), [this] { promise.set_value(); }};
 };
 
-// Work for one client.
-struct Watched {
-  explicit Watched(bool asks) : watching(monitor.watch(pair.ends[0], told.source, asks)) {}
+// Work for one watched client.
+struct WatchedConnection {
+  explicit WatchedConnection(bool asks) : watching(monitor.watch(pair.ends[0], told.source, asks)) {}
   HangupMonitor monitor;
   Pair pair;
-  Told told;
-  HangupMonitor::Watching watching;
+  StopNotification told;
+  HangupMonitor::Registration watching;
 };
 
 TEST(HangupMonitor, StopsTheWorkOfWhoHangsUp) {
   HangupMonitor monitor;
   Pair stays, leaves;
-  Told staying, leaving;
-  const auto first = monitor.watch(stays.ends[0], staying.source, kAsks);
-  const auto second = monitor.watch(leaves.ends[0], leaving.source, kAsks);
+  StopNotification staying, leaving;
+  const auto first = monitor.watch(stays.ends[0], staying.source, kSendsProbes);
+  const auto second = monitor.watch(leaves.ends[0], leaving.source, kSendsProbes);
   leaves.hang_up();
   leaving.future.wait();
   EXPECT_FALSE(staying.source.stop_requested());
 }
 
 TEST(HangupMonitor, StopsTheWorkOfWhoSendsNoMore) {
-  Watched work(!kAsks);
-  EXPECT_EQ(write(work.pair.ends[1], "bytes", 5), 5);  // which is no end
+  WatchedConnection work(!kSendsProbes);
+  EXPECT_EQ(write(work.pair.ends[1], "bytes", 5), 5);  // data is not a disconnect
   shutdown(work.pair.ends[1], SHUT_WR);
   work.told.future.wait();
 }
 
 TEST(HangupMonitor, AsksWhoSendsNoMoreWhetherItWaits) {
-  Watched work(kAsks);
+  WatchedConnection work(kSendsProbes);
   shutdown(work.pair.ends[1], SHUT_WR);
   std::array<char, 100> bytes;
   const ssize_t count = read(work.pair.ends[1], bytes.data(), bytes.size());
@@ -74,9 +74,9 @@ TEST(HangupMonitor, AsksWhoSendsNoMoreWhetherItWaits) {
   work.told.future.wait();
 }
 
-// As behind a relay, which has to be told more than once.
+// A relay may need several probes before it reports the disconnect.
 TEST(HangupMonitor, AsksAgain) {
-  Watched work(kAsks);
+  WatchedConnection work(kSendsProbes);
   shutdown(work.pair.ends[1], SHUT_WR);
   const std::string once = "HTTP/1.1 100 Continue\r\n\r\n";
   std::string all(3 * once.size(), ' ');
@@ -85,8 +85,8 @@ TEST(HangupMonitor, AsksAgain) {
 }
 
 TEST(HangupMonitor, AsksNobodyOnceTheAnswerBegins) {
-  Watched work(kAsks);
-  work.watching.stop_asking();
+  WatchedConnection work(kSendsProbes);
+  work.watching.stop_probing();
   shutdown(work.pair.ends[1], SHUT_WR);
   work.told.future.wait();
   char byte;
@@ -97,18 +97,18 @@ TEST(HangupMonitor, StopsTheWorkOfWhoHasLeftBefore) {
   HangupMonitor monitor;
   Pair pair;
   pair.hang_up();
-  Told told;
-  const auto watching = monitor.watch(pair.ends[0], told.source, kAsks);
+  StopNotification told;
+  const auto watching = monitor.watch(pair.ends[0], told.source, kSendsProbes);
   told.future.wait();
 }
 
-// One connection has many requests, one after another.
+// A keep-alive connection has many requests, one after another.
 TEST(HangupMonitor, TellsOnlyTheWorkThatGoesOn) {
   HangupMonitor monitor;
   Pair pair;
-  Told before, now;
-  { const auto watching = monitor.watch(pair.ends[0], before.source, kAsks); }
-  const auto watching = monitor.watch(pair.ends[0], now.source, kAsks);
+  StopNotification before, now;
+  { const auto watching = monitor.watch(pair.ends[0], before.source, kSendsProbes); }
+  const auto watching = monitor.watch(pair.ends[0], now.source, kSendsProbes);
   pair.hang_up();
   now.future.wait();
   EXPECT_FALSE(before.source.stop_requested());

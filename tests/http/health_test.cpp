@@ -5,7 +5,7 @@
 
 #include "tests/http/daemon.h"
 
-// What supervisors see, however busy the service is.
+// Tests health checks and metrics under load.
 namespace orrery {
 namespace {
 
@@ -14,7 +14,7 @@ std::string metrics(Daemon& daemon) {
   return result && result->status == 200 ? result->body : "";
 }
 
-// The value of a series, or -1.
+// Returns the value of a series, or -1.
 double value_of(const std::string& text, const std::string& series) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)
@@ -22,9 +22,9 @@ double value_of(const std::string& text, const std::string& series) {
   return -1;
 }
 
-// Whether `holds` becomes true of the metrics within 20 s.
+// Returns true if `holds` becomes true for the metrics within 20 s.
 template <class Holds>
-bool comes_true(Daemon& daemon, const Holds& holds) {
+bool metrics_reach(Daemon& daemon, const Holds& holds) {
   for (int i = 0; i < 400; ++i) {
     if (holds(metrics(daemon))) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -42,35 +42,36 @@ TEST(Health, HasAPortOfItsOwn) {
   EXPECT_EQ(text->get_header_value("Cache-Control"), "no-store");
   for (const char* path : {"/", "/v1/catalog", "/v1/scenes"}) expect_problem(client.Get(path), 404);
   expect_problem(client.Post("/healthz", "x", "text/plain"), 405);
-  expect_problem(daemon.client().Get("/metrics"), 404);  // not for everybody
+  expect_problem(daemon.client().Get("/metrics"), 404);  // not public
 }
 
 TEST(Health, AnswersWhileAllElseIsFull) {
-  Daemon daemon(with_endless_pictures(
+  Daemon daemon(without_ray_limit(
       {"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000", "--connections", "3"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string path = "/v1/scenes/" + nlohmann::json::parse(posted->body).at("id").get<std::string>() +
                            "/frame.png?width=4096&height=4096&samples=4096&precision=double";
-  EXPECT_TRUE(comes_true(daemon, [](const auto& text) { return value_of(text, "orrery_connections") == 0; }));
+  EXPECT_TRUE(
+      metrics_reach(daemon, [](const auto& text) { return value_of(text, "orrery_connections") == 0; }));
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (int i = 0; i < 3; ++i) {  // two render, one waits; and there are no more connections
+  for (int i = 0; i < 3; ++i) {  // two render, one waits, and no connection is left
     clients.push_back(std::make_unique<RawClient>(daemon.port()));
     clients.back()->send("GET " + path + "&seed=" + std::to_string(i) + " HTTP/1.1\r\nHost: x\r\n\r\n");
-    EXPECT_TRUE(comes_true(daemon, [i](const auto& text) {
+    EXPECT_TRUE(metrics_reach(daemon, [i](const auto& text) {
       return value_of(text, "orrery_renders_running") + value_of(text, "orrery_renders_waiting") == i + 1;
     }));
   }
   auto client = daemon.health_client();
-  EXPECT_EQ(client.Get("/readyz")->status, 200);  // all is one client's, which makes room for another
+  EXPECT_EQ(client.Get("/readyz")->status, 200);  // one client holds all, and would yield to another
   EXPECT_EQ(client.Get("/healthz")->status, 200);
   RawClient refused(daemon.port());
   EXPECT_NE(refused.receive_all().find(" 503 "), std::string::npos);
   const std::string text = metrics(daemon);
   EXPECT_EQ(value_of(text, "orrery_ready"), 1);
   EXPECT_EQ(value_of(text, "orrery_renders_running"), 2);
-  // Who loses its turn goes on until it notices.
+  // A preempted render continues until its next checkpoint.
   EXPECT_TRUE(
-      comes_true(daemon, [](const auto& now) { return value_of(now, "orrery_renders_waiting") == 1; }));
+      metrics_reach(daemon, [](const auto& now) { return value_of(now, "orrery_renders_waiting") == 1; }));
   EXPECT_EQ(value_of(text, "orrery_connections"), 3);
   EXPECT_EQ(value_of(text, "orrery_connections_refused_total"), 1);
 }
@@ -89,8 +90,8 @@ TEST(Health, MetricsCountWhatWasAnswered) {
   client.Get(scene + "/frame.png?width=0");
   client.Get("/nothing/here");
   const std::string none = "orrery_requests_total{code=\"404\",method=\"GET\",route=\"none\"}";
-  EXPECT_TRUE(comes_true(daemon, [&](const std::string& now) { return value_of(now, none) == 1; }));
-  const std::string text = metrics(daemon);  // an answer is counted once it is sent
+  EXPECT_TRUE(metrics_reach(daemon, [&](const std::string& now) { return value_of(now, none) == 1; }));
+  const std::string text = metrics(daemon);  // a response is counted once it is sent
   const std::string frame = ",method=\"GET\",route=\"/v1/scenes/{id}/frame.png\"}";
   EXPECT_EQ(value_of(text, "orrery_requests_total{code=\"200\"" + frame), 3);
   EXPECT_EQ(value_of(text, "orrery_requests_total{code=\"422\"" + frame), 1);
@@ -146,7 +147,7 @@ TEST(Health, MetricsTellWhyRequestsWereRefused) {
   const auto job = client.Post("/v1/jobs", endless.dump(), "application/json");
   ASSERT_EQ(job->status, 202) << job->body;
   expect_problem(client.Post("/v1/jobs", endless.dump(), "application/json"), 503);
-  EXPECT_TRUE(comes_true(daemon, [](const auto& text) {
+  EXPECT_TRUE(metrics_reach(daemon, [](const auto& text) {
     return value_of(text, "orrery_refusals_total{reason=\"body_bytes\"}") == 1 &&
            value_of(text, "orrery_refusals_total{reason=\"jobs\"}") == 1;
   })) << metrics(daemon);
@@ -162,20 +163,20 @@ TEST(Health, MetricsTellHowJobsEnded) {
     return job_path(nlohmann::json::parse(job->body));
   };
   start(32, 1);
-  start(1000, 1);  // its picture is too large
+  start(1000, 1);  // its image is too large
   const std::string endless = start(4096, 4096);
   EXPECT_EQ(client.Delete(endless)->status, 204);
   for (const char* outcome : {"done", "failed", "cancelled"})
-    EXPECT_TRUE(comes_true(daemon,
-                           [&](const auto& text) {
-                             return value_of(text, "orrery_jobs_ended_total{outcome=\"" +
-                                                       std::string(outcome) + "\"}") == 1;
-                           }))
+    EXPECT_TRUE(metrics_reach(daemon,
+                              [&](const auto& text) {
+                                return value_of(text, "orrery_jobs_ended_total{outcome=\"" +
+                                                          std::string(outcome) + "\"}") == 1;
+                              }))
         << outcome << metrics(daemon);
   EXPECT_GT(value_of(metrics(daemon), "orrery_queue_wait_seconds_count{lane=\"batch\"}"), 1);
 }
 
-// Labels are those of routes: what clients make up does not fill the memory.
+// Labels are route patterns, so that arbitrary paths cannot exhaust memory.
 TEST(Health, StrangeRequestsShareOneSeries) {
   Daemon daemon;
   const auto lines = [&] {
@@ -188,9 +189,9 @@ TEST(Health, StrangeRequestsShareOneSeries) {
     raw.receive_all();
   };
   ask("BREW", "/coffee");
-  const auto is_counted = [&](const std::string& route) {  // soon after the answer
+  const auto is_counted = [&](const std::string& route) {  // soon after the response
     const std::string series = "orrery_request_seconds_count{route=\"" + route + "\"}";
-    return comes_true(daemon, [&](const auto& text) { return value_of(text, series) > 0; });
+    return metrics_reach(daemon, [&](const auto& text) { return value_of(text, series) > 0; });
   };
   ASSERT_TRUE(is_counted("none") && is_counted("/metrics"));
   const auto before = lines();

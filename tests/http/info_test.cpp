@@ -1,7 +1,7 @@
 #include "server/app/render_options.h"
 #include "tests/http/daemon.h"
 
-// What the service says about itself, and the files it carries.
+// Tests the service's self-description, and its embedded files.
 namespace orrery {
 namespace {
 
@@ -90,8 +90,8 @@ TEST_F(Info, DescribesItself) {
   EXPECT_EQ(get_known("/openapi.json", description->get_header_value("ETag"))->status, 304);
 }
 
-// What is said of an option: a range, choices, or else the type alone.
-bool says_what_is_allowed(const nlohmann::json& schema) {
+// Returns true if the schema bounds its values by a range, an enumeration, items or boolean type.
+bool bounds_its_values(const nlohmann::json& schema) {
   const bool number = schema.contains("minimum") || schema.contains("exclusiveMinimum");
   const bool both = number && (schema.contains("maximum") || schema.contains("exclusiveMaximum"));
   return both || schema.contains("enum") || schema.contains("items") || schema.value("type", "") == "boolean";
@@ -105,7 +105,7 @@ TEST_F(Info, DescribesEveryRenderOption) {
     const auto& parameter = components.at("parameters").at(component);
     EXPECT_EQ(parameter.at("name"), name);
     EXPECT_FALSE(parameter.at("description").get<std::string>().empty()) << name;
-    EXPECT_TRUE(says_what_is_allowed(parameter.at("schema"))) << name;
+    EXPECT_TRUE(bounds_its_values(parameter.at("schema"))) << name;
     const nlohmann::json reference = {{"$ref", "#/components/parameters/" + component}};
     for (const char* path : {"frame.png", "orbit", "explain"}) {
       const auto& asked = description.at("paths").at("/v1/scenes/{id}/" + std::string(path)).at("get");
@@ -116,14 +116,14 @@ TEST_F(Info, DescribesEveryRenderOption) {
   for (const RenderOption& option : render_options()) {
     const auto& section = components.at("schemas").at(name_of(option.section)).at("properties");
     EXPECT_FALSE(section.at(option.key).at("description").get<std::string>().empty()) << option.key;
-    EXPECT_TRUE(says_what_is_allowed(section.at(option.key))) << option.key;
+    EXPECT_TRUE(bounds_its_values(section.at(option.key))) << option.key;
   }
 }
 
 TEST_F(Info, LimitsAndDefaultsOfEveryRenderOptionArePublished) {
   const auto limits = get_json("/v1/limits").at("options"), defaults = get_json("/v1/catalog").at("defaults");
   for (const RenderOption& option : render_options()) {
-    EXPECT_TRUE(says_what_is_allowed(limits.at(option.key))) << option.key;
+    EXPECT_TRUE(bounds_its_values(limits.at(option.key))) << option.key;
     EXPECT_EQ(defaults.at(option.key), nlohmann::json::parse(option.text(default_settings())));
   }
   EXPECT_EQ(limits.at("samples"), nlohmann::json({{"type", "integer"}, {"minimum", 1}, {"maximum", 4096}}));

@@ -1,6 +1,6 @@
 #include "tests/http/daemon.h"
 
-// What is wrong with a scene is told, and the daemon goes on serving.
+// Tests that invalid scenes are reported, and that the daemon keeps serving.
 namespace orrery {
 namespace {
 
@@ -8,8 +8,8 @@ struct BadInput {
   const char* name;
   std::string body;
   int status;
-  const char* pointer;   // of the first error
-  const char* sentence;  // a part of its detail
+  const char* pointer;   // location of the first error
+  const char* sentence;  // part of its detail
 };
 void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
 
@@ -100,8 +100,8 @@ TEST_F(Bodies, JustUnderTheLimitAreRead) {
   EXPECT_EQ(client_.Post("/v1/render", scene, "application/json")->status, 200);
 }
 
-// Names of control characters, which JSON writes with six bytes each, as deep as they may be: the longest
-// errors that there are.
+// Deeply nested names of control characters give the longest possible errors. JSON escapes each character
+// with six bytes.
 TEST_F(Bodies, GetErrorsOfAtMost64KiB) {
   const std::string name(1000, '\x01'), written = nlohmann::json(name).dump();
   std::string deep = "1";

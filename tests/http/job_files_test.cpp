@@ -3,13 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "server/http/answer_budget.h"
+#include "server/http/response_quota.h"
 #include "server/http/target.h"
 #include "server/routes/routes.h"
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
-// Files of jobs, as the answers that are sent of them.
+// Tests responses with files of jobs.
 namespace orrery {
 namespace {
 
@@ -39,8 +39,8 @@ TEST_F(JobFiles, AreTheSameBytesForAllReaders) {
   const nlohmann::json order = {{"scene", small_scene()}, {"image", {{"width", 1200}, {"height", 900}}}};
   const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));
   EXPECT_TRUE(test::eventually([&] { return json_of(answer("GET", job)).at("state") == "done"; }));
-  AnswerBudget budget(200'000);
-  std::vector<AnswerBudget::Share> shares;
+  ResponseQuota budget(200'000);
+  std::vector<ResponseQuota::Share> shares;
   std::set<const char*> places;
   for (int reader = 0; reader < 100; ++reader) {
     const Response response = answer("GET", job + "/frames/0.png");
@@ -52,7 +52,7 @@ TEST_F(JobFiles, AreTheSameBytesForAllReaders) {
   EXPECT_EQ(places.size(), 1U);
 }
 
-// A reader keeps the bytes that it is sent, whatever becomes of the job.
+// A response keeps its bytes after the job is deleted.
 TEST_F(JobFiles, OutliveTheirJobWhileTheyAreSent) {
   const nlohmann::json order = {{"scene", small_scene()}};
   const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));

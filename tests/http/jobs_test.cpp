@@ -6,7 +6,7 @@
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
-// Work that goes on while nobody is connected.
+// Tests jobs, which run without a connected client.
 namespace orrery {
 namespace {
 
@@ -33,10 +33,10 @@ std::vector<Event> parse_events(const std::string& text) {
   return events;
 }
 
-// One who is told of a job from now on.
+// Client that receives the events of a job from now on.
 class Watcher {
  public:
-  // Returns once something was told.
+  // Returns once the first bytes have arrived.
   Watcher(const Daemon& daemon, const json& job)
       : thread_([this, &daemon, path = job_path(job) + "/events"] {
           daemon.client().Get(path, [this](const char* bytes, std::size_t count) {
@@ -47,7 +47,7 @@ class Watcher {
         }) {
     EXPECT_TRUE(test::eventually([this] { return begun_.load(); }));
   }
-  // Waits for the end.
+  // Waits for the end of the stream and returns its events.
   std::vector<Event> told() {
     thread_.join();
     return parse_events(text_);
@@ -84,7 +84,7 @@ json endless() {
           {"render", {{"samples", 4096}, {"precision", "double"}}}};
 }
 
-// Eight connections: streams may have six of them, and one client half of these.
+// Streams may use six of the eight connections, and one client half of these.
 TEST(Streams, LeaveConnectionsToOthers) {
   Daemon daemon({"--connections", "8"});
   httplib::Client client = daemon.client();
@@ -100,11 +100,11 @@ TEST(Streams, LeaveConnectionsToOthers) {
   const auto refused = client.Get(events);
   EXPECT_EQ(refused->status, 429) << refused->body;
   const int retry_s = std::stoi(refused->get_header_value("Retry-After"));
-  EXPECT_TRUE(retry_s == 5 || retry_s == 6) << retry_s;  // not everybody at one time
+  EXPECT_TRUE(retry_s == 5 || retry_s == 6) << retry_s;  // with jitter
   EXPECT_EQ(json::parse(refused->body).at("detail"),
             "3 streams are open already that you asked for, which is half of all (connections)");
   third.close();
-  EXPECT_TRUE(test::eventually([&] { return watch(RawClient(daemon.port())) == "200"; }));  // soon noticed
+  EXPECT_TRUE(test::eventually([&] { return watch(RawClient(daemon.port())) == "200"; }));  // slot freed
 }
 
 TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
@@ -134,7 +134,7 @@ TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
   expect_problem(client_.Get(job_path(job) + "/frames/0.jpg"), 404);
 }
 
-// The first frame chooses the plan, which gives all of them.
+// The first frame determines the plan for all frames.
 TEST_F(JobTest, OrbitKeepsToABudget) {
   const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", {{"error", 0.2}}}});
   const auto told = events(job);
@@ -255,7 +255,7 @@ json post_job(Daemon& daemon, const json& body, int status = 202) {
   return json::parse(result->body);
 }
 
-// What is told of a job until it ends.
+// Waits for the end of the job and returns its events.
 std::vector<Event> events_of(Daemon& daemon, const json& job) {
   return parse_events(daemon.client().Get(job_path(job) + "/events")->body);
 }

@@ -6,7 +6,7 @@
 #include "tests/support/eventually.h"
 #include "tests/support/sanitized.h"
 
-// Work that nobody waits for any more, and the end of the daemon.
+// Tests cancellation after disconnects, and shutdown of the daemon.
 namespace orrery {
 namespace {
 
@@ -20,7 +20,7 @@ std::string post(Daemon& daemon, const nlohmann::json& scene) {
 std::string get(const std::string& path) { return "GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n"; }
 
 TEST(ClientThatLeaves, EndsItsRender) {
-  Daemon daemon(with_endless_pictures());
+  Daemon daemon(without_ray_limit());
   const std::string scene = post(daemon, small_scene());
   RawClient raw(daemon.port());
   raw.send(get(scene + "/frame.png" + kEndless));
@@ -32,14 +32,14 @@ TEST(ClientThatLeaves, EndsItsRender) {
             std::string::npos);
 }
 
-// It looks like one that leaves, until it is asked.
+// A half-closed connection looks like a disconnect until the server probes it.
 TEST(ClientThatSendsNoMore, GetsItsAnswer) {
   Daemon daemon;
   const RawClient raw(daemon.port());
   const std::string size = test::kSanitized ? "?width=400&height=400" : "?width=800&height=800";
   const std::string frame = post(daemon, small_scene()) + "/frame.png" + size + "&samples=16";
   raw.send(get(frame) + get("/healthz"));
-  raw.send_no_more();
+  raw.shutdown_send();
   const std::string answers = raw.receive_all();
   const std::size_t picture = answers.find("HTTP/1.1 200"), health = answers.rfind("HTTP/1.1 200");
   EXPECT_NE(picture, std::string::npos);
@@ -48,17 +48,17 @@ TEST(ClientThatSendsNoMore, GetsItsAnswer) {
   EXPECT_EQ(daemon.metric("orrery_clients_left_total"), 0);
 }
 
-TEST(ClientThatSendsNoMore, HasLeftIfItSpeaksHttp10) {  // it could not be asked
-  Daemon daemon(with_endless_pictures());
+TEST(ClientThatSendsNoMore, HasLeftIfItSpeaksHttp10) {  // no probe in HTTP/1.0
+  Daemon daemon(without_ray_limit());
   const RawClient raw(daemon.port());
   raw.send("GET " + post(daemon, small_scene()) + "/frame.png" + kEndless + " HTTP/1.0\r\n\r\n");
   ASSERT_TRUE(daemon.wait_until_working());
-  raw.send_no_more();
+  raw.shutdown_send();
   EXPECT_TRUE(daemon.wait_until_idle());
 }
 
 TEST(ClientThatLeaves, EndsItsPostedRender) {
-  Daemon daemon(with_endless_pictures());
+  Daemon daemon(without_ray_limit());
   const std::string body =
       small_scene({{"image", {{"width", 4096}, {"height", 4096}}}, {"render", {{"samples", 4096}}}}).dump();
   RawClient raw(daemon.port());
@@ -70,7 +70,7 @@ TEST(ClientThatLeaves, EndsItsPostedRender) {
 }
 
 TEST(ClientThatLeaves, EndsItsOrbit) {
-  Daemon daemon(with_endless_pictures());
+  Daemon daemon(without_ray_limit());
   RawClient raw(daemon.port());
   raw.send(get(post(daemon, small_scene()) + "/orbit?frames=3600&fps=0&width=4096&height=4096&samples=4096"));
   ASSERT_TRUE(daemon.wait_until_working());
@@ -79,10 +79,11 @@ TEST(ClientThatLeaves, EndsItsOrbit) {
 }
 
 TEST(ClientThatLeaves, EndsItsRefinement) {
-  Daemon daemon(with_endless_pictures());
+  Daemon daemon(without_ray_limit());
   RawClient raw(daemon.port());
   raw.send(get(post(daemon, small_scene()) + "/refinement?width=400&height=300&samples=4096"));
-  // The next pass has 128 samples a pixel, 8 under a sanitizer: it is being traced when the client goes.
+  // The next pass has 128 samples a pixel, 8 under a sanitizer. The pass is running when the client
+  // disconnects.
 #ifdef ORRERY_SANITIZED
   constexpr int kPasses = 4;
 #else
@@ -99,15 +100,15 @@ TEST(ClientThatLeaves, EndsItsRefinement) {
 }
 
 TEST(ClientThatDoesNotRead, HoldsUpItsRefinementAlone) {
-  Daemon daemon(with_endless_pictures());
+  Daemon daemon(without_ray_limit());
   const RawClient raw(daemon.port(), 4096);
   raw.send(get(post(daemon, small_scene()) + "/refinement?width=1024&height=1024&samples=4096"));
   EXPECT_TRUE(test::eventually([&] { return !raw.receive_some().empty(); }));
-  EXPECT_TRUE(daemon.wait_until_idle());  // for 10 s and more there would be work
+  EXPECT_TRUE(daemon.wait_until_idle());  // rendering on would take 10 s or more
   EXPECT_EQ(daemon.metric("orrery_renders_running"), 0);
 }
 
-// Bodies that come slowly, or never, do not fill the memory: they have a limit together.
+// Slow or incomplete request bodies share one byte limit.
 TEST(ClientsThatDawdle, ShareALimitOfBytes) {
   Daemon daemon({"--body-bytes", "1000000", "--asset-bytes", "1000000", "--bodies-bytes", "1500000"});
   const auto head = [](int bytes) {
@@ -119,14 +120,14 @@ TEST(ClientsThatDawdle, ShareALimitOfBytes) {
     return client;
   };
   auto slow = dawdle();
-  const RawClient tells(daemon.port());  // and sends nothing, which takes nothing
+  const RawClient tells(daemon.port());  // announces a body, but sends nothing, which uses nothing
   tells.send(head(1'000'000));
   const auto post_until = [&](int status) {
     for (int i = 0;; ++i) {
       auto result = daemon.client().Post("/v1/scenes", std::string(600'000, ' '), "application/json");
       if (i == 500 || (result && result->status == status)) return result;
       if (!slow) continue;
-      slow.reset();  // who is read last is refused, and that may have been the slow one
+      slow.reset();  // the last to be read is refused, perhaps the slow one
       slow = dawdle();
     }
   };
@@ -136,11 +137,11 @@ TEST(ClientsThatDawdle, ShareALimitOfBytes) {
   EXPECT_EQ(refused->get_header_value("Retry-After"), "2");
   EXPECT_EQ(daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json")->status, 201);
   slow.reset();
-  expect_problem(post_until(400), 400);  // read now, and no JSON
+  expect_problem(post_until(400), 400);  // read now, but not JSON
 }
 
 TEST(ClientThatLeaves, LeavesTheQueueToo) {
-  Daemon daemon(with_endless_pictures({"--threads", "1", "--interactive-rays", "1000000000000"}));
+  Daemon daemon(without_ray_limit({"--threads", "1", "--interactive-rays", "1000000000000"}));
   const std::string path = post(daemon, small_scene()) + "/frame.png";
   std::vector<std::unique_ptr<RawClient>> clients;
   for (int i = 0; i < 3; ++i) {  // two render, one waits
@@ -155,14 +156,14 @@ TEST(ClientThatLeaves, LeavesTheQueueToo) {
 }
 
 TEST(Deadline, EndsARenderThatTakesTooLong) {
-  Daemon daemon(with_endless_pictures({"--request-seconds", "1"}));
+  Daemon daemon(without_ray_limit({"--request-seconds", "1"}));
   const auto result = daemon.client().Get(post(daemon, small_scene()) + "/frame.png" + kEndless);
   const auto problem = expect_problem(result, 504);
   EXPECT_NE(problem.value("detail", "").find("request_seconds"), std::string::npos);
   EXPECT_TRUE(daemon.wait_until_idle());
 }
 
-// A picture that takes about two seconds here.
+// Returns the path of an image that takes about two seconds on this machine.
 std::string slow_picture(Daemon& daemon, const std::string& scene) {
   const double before = daemon.cpu_seconds();
   daemon.client().Get(scene + "/frame.png?width=1000&height=1000&samples=4");
@@ -171,7 +172,7 @@ std::string slow_picture(Daemon& daemon, const std::string& scene) {
   return scene + "/frame.png?width=1000&height=1000&seed=1&samples=" + std::to_string(samples);
 }
 
-// What the shell prints, and its exit status.
+// Runs a shell command and returns its output and exit status.
 std::pair<std::string, int> run(const std::string& command) {
   FILE* const pipe = popen((command + " 2>&1").c_str(), "r");
   std::string text;
@@ -203,7 +204,7 @@ TEST(Addresses, AreEnoughOrTheServiceDoesNotStart) {
             std::pair(std::string(), 0));
 }
 
-// A balancer has the time to notice.
+// The drain delay gives a load balancer time to notice.
 TEST(Terminated, GoesOnServingForADelayWhileNotReady) {
   Daemon daemon({"--drain-delay-seconds", "3600"});
   const std::string scene = post(daemon, small_scene());
@@ -276,7 +277,7 @@ TEST(Terminated, DoesNotWaitForIdleConnections) {
 }
 
 TEST(Terminated, GivesUpWhatOutlastsTheGrace) {
-  Daemon daemon(with_endless_pictures({"--grace-seconds", "1"}));
+  Daemon daemon(without_ray_limit({"--grace-seconds", "1"}));
   const std::string path = post(daemon, small_scene()) + "/frame.png" + kEndless;
   auto running = std::async(std::launch::async, [&] { return daemon.client().Get(path); });
   ASSERT_TRUE(daemon.wait_until_working());
@@ -286,7 +287,7 @@ TEST(Terminated, GivesUpWhatOutlastsTheGrace) {
 }
 
 TEST(Terminated, TwiceEndsAtOnce) {
-  Daemon daemon(with_endless_pictures());
+  Daemon daemon(without_ray_limit());
   RawClient raw(daemon.port());
   raw.send(get(post(daemon, small_scene()) + "/frame.png" + kEndless));
   ASSERT_TRUE(daemon.wait_until_working());

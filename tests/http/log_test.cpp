@@ -8,7 +8,7 @@
 
 #include "tests/http/daemon.h"
 
-// The service goes on whatever becomes of its log.
+// Tests that the service keeps running if its log is blocked or closed.
 namespace orrery {
 namespace {
 
@@ -29,7 +29,7 @@ struct LogPipe {
   int ends[2];
 };
 
-constexpr int kMany = 1000;  // whose lines of 200 bytes and more take thrice what a pipe does
+constexpr int kMany = 1000;  // lines of 200 bytes or more, three times a pipe's capacity
 
 void expect_answers(const Daemon& daemon, int count) {
   httplib::Client client = daemon.client();

@@ -5,15 +5,15 @@
 
 namespace orrery {
 
-// Bytes that a client may send, and the statuses of the answers to them; the daemon closes after the last.
+// Bytes from a client, and the statuses of the responses. The daemon closes after the last.
 struct RawCase {
   const char* name;
   std::string bytes;
   std::vector<int> statuses;
 };
 
-// Each from a file of its own.
-std::vector<RawCase> framing_cases();  // where requests end
+// Cases of malformed_framing.cpp, malformed_head.cpp and malformed_meaning.cpp.
+std::vector<RawCase> framing_cases();  // message framing
 std::vector<RawCase> head_cases();     // request lines and headers
 std::vector<RawCase> meaning_cases();  // well formed, but to be refused, ignored or limited
 

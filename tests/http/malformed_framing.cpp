@@ -4,14 +4,14 @@
 namespace orrery {
 namespace {
 
-// A POST whose framing headers are `headers`, with bytes after the head.
+// Returns a POST with the framing headers `headers`, and bytes after the head.
 std::string post(const std::string& headers, const std::string& after) {
   return "POST /v1/render HTTP/1.1\r\nHost: x\r\n" + headers + "\r\n" + after;
 }
 
 constexpr const char* kInner = "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
 
-// A body in two chunks.
+// Returns a body in two chunks.
 std::string in_chunks(const std::string& body) {
   char size[20];
   std::snprintf(size, sizeof size, "%zX\r\n", body.size() - 1);
@@ -32,7 +32,7 @@ std::vector<RawCase> framing_cases() {
   const std::string good = post("Content-Length: " + std::to_string(whole.size()) + "\r\n", whole);
   const std::string last = "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
   return {
-      // The length of a body in chunks shows only as they come.
+      // The total length of a chunked body is unknown until its last chunk.
       {"ChunkedThenARequest", post(chunked, in_chunks(whole)) + last, {200, 200}},
       {"ChunkedInCapitals", post("TRANSFER-ENCODING: CHUNKED\r\n", in_chunks(whole)) + last, {200, 200}},
       {"ChunkExtensionAndTrailer",
@@ -78,7 +78,7 @@ std::vector<RawCase> framing_cases() {
        "GET /healthz HTTP/1.1\r\nHost: x\r\n" + chunked + "\r\n0\r\n\r\n" + kInner,
        {200}},
 
-      // Two readers of one of these would disagree where the next request begins (CVE-2026-34441).
+      // Two parsers could disagree on the start of the next request (CVE-2026-34441).
       {"LengthAndCoding", post("Content-Length: 5\r\n" + chunked, "0\r\n\r\n" + std::string(kInner)), {400}},
       {"CodingAndLength", post(chunked + "Content-Length: 5\r\n", "0\r\n\r\n" + std::string(kInner)), {400}},
       {"TwoLengths", post("Content-Length: 2\r\nContent-Length: 3\r\n", "{}"), {400}},
@@ -99,7 +99,7 @@ std::vector<RawCase> framing_cases() {
       {"LengthMissing", post("", "{}"), {411}},
       {"LengthMissingInOldVersion", "POST /v1/render HTTP/1.0\r\n\r\n{}", {411}},
 
-      // What follows an answered request.
+      // Bytes after an answered request.
       {"Pipelined", kInner + good + last, {200, 200, 200}},
       {"BodyThatNobodyReadsIsNoRequest",
        "POST /nosuch HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(std::string(kInner).size()) +

@@ -5,7 +5,7 @@ namespace {
 
 using std::string_literals::operator""s;
 
-// A GET of this target, the last on its connection.
+// Returns a GET of `target`, the last on its connection.
 std::string get(const std::string& target, const std::string& headers = "") {
   return "GET " + target + " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + headers + "\r\n";
 }
@@ -16,7 +16,7 @@ std::string many_headers(int count) {
   return headers;
 }
 
-// A head of so many bytes.
+// Returns a head of `size` bytes.
 std::string head_of(std::size_t size) {
   const std::string rest = get("/healthz", "A: \r\n");
   return get("/healthz", "A: " + std::string(size - rest.size(), 'a') + "\r\n");

@@ -8,7 +8,7 @@ std::string get(const std::string& headers) {
   return "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + headers + "\r\n";
 }
 
-// A POST of a good scene with these headers, the last on its connection.
+// Returns a POST of a valid scene with `headers`, the last on its connection.
 std::string post(const std::string& headers, const std::string& body = small_scene().dump()) {
   return "POST /v1/render HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + headers +
          "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
@@ -26,7 +26,7 @@ std::vector<RawCase> meaning_cases() {
   const std::string json = "Content-Type: application/json\r\n";
   const std::string multipart = "Content-Type: multipart/form-data; boundary=";
   return {
-      // Bodies that unfold (CVE-2026-22776) are never unfolded.
+      // Compressed bodies (CVE-2026-22776) are never decompressed.
       {"BodyGzip", post(json + "Content-Encoding: gzip\r\n", "\x1F\x8B\x08"), {415}},
       {"BodyBrotli", post(json + "Content-Encoding: br\r\n", "\x81"), {415}},
       {"BodyIdentityTwice", post(json + "Content-Encoding: identity, identity\r\n"), {415}},
@@ -43,7 +43,7 @@ std::vector<RawCase> meaning_cases() {
       {"TypeLong", post("Content-Type: " + std::string(8000, 'a') + "/b\r\n"), {415}},
       {"TypeOfNothing", post("Content-Type: ;;;\r\n"), {200}},
 
-      // Ranges are not offered, so each is ignored (RFC 9110, 14.2); many that overlap cost nothing.
+      // Ranges are not supported, so each is ignored (RFC 9110, 14.2). Many overlapping ranges cost nothing.
       {"Range", get("Range: bytes=0-1\r\n"), {200}},
       {"RangeFromTheEnd", get("Range: bytes=-1\r\n"), {200}},
       {"RangeBackwards", get("Range: bytes=5-1\r\n"), {200}},
@@ -57,7 +57,7 @@ std::vector<RawCase> meaning_cases() {
            ranges(100) + "\r\n",
        {404}},
 
-      // Names that a library kept for itself are headers like others (CVE-2025-66570).
+      // Names that a library reserved for itself are ordinary headers (CVE-2025-66570).
       {"HeadersOfTheLibrary",
        get("REMOTE_ADDR: 10.0.0.1\r\nREMOTE_PORT: 1\r\nLOCAL_ADDR: 10.0.0.1\r\nLOCAL_PORT: 1\r\n"),
        {200}},
@@ -79,7 +79,7 @@ std::vector<RawCase> meaning_cases() {
       {"MethodOverride", get("X-HTTP-Method-Override: DELETE\r\n"), {200}},
       {"OptionsOfAPath", "OPTIONS /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n", {204}},
 
-      // Lists without end.
+      // Endless lists.
       {"AcceptLong", get("Accept: " + std::string(12'000, ',') + "\r\n"), {200}},
       {"AcceptOfManyWeights",
        "GET /v1/scenes/" + std::string(64, '0') +

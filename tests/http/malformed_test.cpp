@@ -5,7 +5,7 @@
 #include "tests/http/daemon.h"
 #include "tests/support/sanitized.h"
 
-// Bytes that no honest client sends: each gets the right answer, and the daemon goes on as before.
+// Tests malformed input: each case gets the right response, and the daemon keeps serving.
 namespace orrery {
 
 void PrintTo(const RawCase& raw, std::ostream* out) { *out << raw.name; }
@@ -29,7 +29,7 @@ struct Answer {
   std::string head, body;
 };
 
-// The value of a header, or "".
+// Returns the value of a header, or "".
 std::string header(const Answer& answer, const std::string& name) {
   const std::size_t at = answer.head.find("\r\n" + name + ": ");
   if (at == std::string::npos) return {};
@@ -37,7 +37,7 @@ std::string header(const Answer& answer, const std::string& name) {
   return answer.head.substr(begin, answer.head.find("\r\n", begin) - begin);
 }
 
-// Takes the answers apart by their Content-Length; fails the test where that does not work.
+// Splits the responses by their Content-Length. Fails the test if that is impossible.
 std::vector<Answer> answers_in(std::string bytes) {
   std::vector<Answer> answers;
   while (!bytes.empty()) {
@@ -94,12 +94,12 @@ TEST(MalformedTable, AgainAndAgainTakesNoMemoryAndNoDescriptors) {
   const auto send_all = [&] {
     for (const RawCase& raw : cases) send(daemon, raw.bytes);
   };
-  for (int i = 0; i < 2; ++i) send_all();  // buffers that stay
+  for (int i = 0; i < 2; ++i) send_all();  // warms up persistent buffers
   const double memory = daemon.resident_bytes();
   const std::size_t files = daemon.open_files();
   for (int i = 0; i < (test::kSanitized ? 5 : 50); ++i) send_all();
   EXPECT_LE(daemon.resident_bytes() - memory, kMost);
-  EXPECT_LE(daemon.open_files(), files + 2);  // a thread may be closing yet
+  EXPECT_LE(daemon.open_files(), files + 2);  // a thread may still be closing
   RecordProperty("growth_bytes", static_cast<int>(daemon.resident_bytes() - memory));
   RecordProperty("cases", static_cast<int>(cases.size()));
 }

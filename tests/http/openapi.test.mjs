@@ -1,6 +1,6 @@
-// Holds every exchange of the http tests against the service's own description: the status is listed, the body is
-// of a listed type and valid, listed headers are there; a body that was accepted is one that the description
-// allows; and every operation was asked for.
+// Checks every exchange of the http tests against the service's OpenAPI description. The status and the media
+// type are listed, the body is valid, and listed headers are present. An accepted request body is allowed by
+// the description, and every operation was requested.
 import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
@@ -33,7 +33,7 @@ ajv.addSchema(description, kHome);
 
 const escaped = (part) => part.replaceAll("~", "~0").replaceAll("/", "~1");
 const pointer_to = (...parts) => parts.map((part) => `/${escaped(part)}`).join("");
-// The object at a pointer, and the pointer of the component that it refers to.
+// Returns the object at a pointer, or the component that it refers to, with the pointer to it.
 function resolve(pointer) {
   const at = pointer.split("/").slice(1).map((part) => part.replaceAll("~1", "/").replaceAll("~0", "~"));
   const value = at.reduce((object, part) => object?.[part], description);

@@ -178,7 +178,7 @@ TEST_F(OrbitStream, WhoComesLateSeesAtOnceWhatIsShown) {
 }
 
 TEST(OrbitFailure, FrameThatTakesTooLongIsSaidNotHidden) {
-  Daemon daemon(with_endless_pictures({"--request-seconds", "1"}));
+  Daemon daemon(without_ray_limit({"--request-seconds", "1"}));
   httplib::Client client = daemon.client();
   const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
@@ -196,7 +196,7 @@ TEST(OrbitFailure, StreamThatFailsIsBrokenOff) {
     };
     return response;
   };
-  std::promise<std::pair<std::string, bool>> served;  // the note, and whether the client left
+  std::promise<std::pair<std::string, bool>> served;  // the note, and true if the client disconnected
   HttpServer server({.host = "127.0.0.1", .port = 0},
                     {.admit = [&](Request&) -> HttpServer::Admitted {
                        return {{}, answer};
@@ -208,12 +208,12 @@ TEST(OrbitFailure, StreamThatFailsIsBrokenOff) {
                          },
                      .grace_over = [] {}});
   std::thread thread([&] { server.run(); });
-  EXPECT_FALSE(httplib::Client("127.0.0.1", server.port()).Get("/"));  // no end of the chunks came
+  EXPECT_FALSE(httplib::Client("127.0.0.1", server.port()).Get("/"));  // the last chunk is missing
   EXPECT_EQ(served.get_future().get(), std::pair(std::string("no more"), false));
   served = {};
   const RawClient old(server.port());
   old.send("GET / HTTP/1.0\r\n\r\n");
-  EXPECT_TRUE(old.is_reset());  // its end would be that of the body
+  EXPECT_TRUE(old.is_reset());  // a close would end the body
   server.drain();
   thread.join();
 }
@@ -238,7 +238,7 @@ TEST_F(OrbitStream, EqualOrbitsAreRenderedOnce) {
   int shared = 0;
   for (const auto& frame : others) {
     const auto& twin = by_number[frame.header.at("frame")];
-    // Two renders of a frame never take equally long to the last digit.
+    // Two separate renders of a frame never have equal times to the last digit.
     if (!twin.is_null() && twin.at("render_ms") == frame.header.at("render_ms") &&
         twin.at("encode_ms") == frame.header.at("encode_ms"))
       ++shared;
@@ -256,7 +256,7 @@ TEST_F(OrbitStream, WhoComesLateStillGetsAWholeOrbit) {
   EXPECT_EQ(late.size() + late.back().header.at("skipped").get<std::size_t>(), 20u);
 }
 
-// Asks for frames that are more than the kernel's buffers hold, and reads none before receive().
+// Client that requests more frames than the kernel buffers hold, and reads none before receive().
 class SlowViewer {
  public:
   SlowViewer(int port, const std::string& url) : raw_(port, 8 * 1024) {
@@ -266,7 +266,7 @@ class SlowViewer {
 
   std::vector<StreamedFrame> receive() const {
     const std::string answer = raw_.receive_all();
-    std::string body;  // out of its chunks
+    std::string body;  // without chunk framing
     for (std::size_t at = answer.find("\r\n\r\n") + 4; at < answer.size();) {
       const std::size_t length = std::stoul(answer.substr(at), nullptr, 16);
       at = answer.find("\r\n", at) + 2;
@@ -297,7 +297,7 @@ void expect_some_skipped(const std::vector<StreamedFrame>& seen) {
 
 TEST_F(OrbitStream, SlowViewerMissesFramesAndTheFastOneNone) {
   const std::string url =
-      path(kLargeFrames + (test::kSanitized ? "&fps=3" : "&fps=4"));  // all within the window of a write
+      path(kLargeFrames + (test::kSanitized ? "&fps=3" : "&fps=4"));  // all within the write timeout
   const SlowViewer slow(daemon().port(), url);
   const auto fast = parse_frames(client_.Get(url, kFrames)->body);
   expect_some_skipped(slow.receive());  // only now
@@ -308,7 +308,7 @@ TEST_F(OrbitStream, SlowViewerMissesFramesAndTheFastOneNone) {
 TEST_F(OrbitStream, SlowViewerAloneIsShownWhatIsDueNow) {
   const SlowViewer slow(daemon().port(), path(kLargeFrames + "&fps=10"));
   std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // longer than the orbit
-  ASSERT_TRUE(daemon().wait_until_idle());  // where rendering is slow: until none is taken
+  ASSERT_TRUE(daemon().wait_until_idle());                       // slow rendering: until no frame is sent
   std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // 10 frames are due meanwhile
   expect_some_skipped(slow.receive());
 }

@@ -47,7 +47,7 @@ TEST_F(PictureBudget, IsRepeatedByItsContentLocation) {
   }
 }
 
-// Also by another daemon, of other threads.
+// Another daemon with another number of threads repeats the image.
 TEST_F(PictureBudget, IsRepeatedByAnotherDaemon) {
   test::covers("certificate-31 certificate-32");
   Daemon other({"--threads", "3"});
@@ -70,10 +70,10 @@ TEST_F(PictureBudget, IsRepeatedByAnotherDaemon) {
     EXPECT_EQ(here->get_header_value(header), also->get_header_value(header)) << header;
 }
 
-// Rather than answered late. The time is over before a turn can come, but not where one is free.
+// The request is refused if its time ends before a slot is free. A free slot always admits it.
 TEST(PictureBudgetOfTime, IsRefusedWhereOthersHaveTheService) {
   test::covers("certificate-37");
-  Daemon daemon(with_endless_pictures({"--renders", "1"}));
+  Daemon daemon(without_ray_limit({"--renders", "1"}));
   httplib::Client client = daemon.client();
   const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string frame = posted->get_header_value("Location") + "/frame.png";
@@ -109,7 +109,7 @@ TEST_F(PictureBudget, ThatIsMissedIsSaidOrFails) {
   EXPECT_EQ(problem["certificate"]["space"], "display");
 }
 
-// Whether it is met is known once it is made.
+// A miss is known only after rendering.
 TEST_F(PictureBudget, IsNotPromisedByHead) {
   const auto head = client_.Head(path("error=0.001&on_miss=fail"));
   EXPECT_TRUE(head->get_header_value("ETag").empty());

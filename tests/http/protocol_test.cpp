@@ -4,13 +4,13 @@
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
-// Requests that no HTTP library would send.
+// Tests requests that no HTTP library sends.
 namespace orrery {
 namespace {
 
 class Protocol : public HttpTest {
  protected:
-  // The status of the answer to these bytes, after which the daemon closes; 0 for none.
+  // Returns the status of the response to `bytes`, after which the daemon closes, or 0 without a response.
   int status_of(const std::string& bytes) {
     const RawClient raw(daemon().port());
     raw.send(bytes);
@@ -22,7 +22,7 @@ class Protocol : public HttpTest {
   }
 };
 
-// However the bytes are cut.
+// Sends the bytes one by one.
 TEST_F(Protocol, BodiesMayComeInChunks) {
   const std::string scene = small_scene().dump();
   char size[20];
@@ -111,11 +111,11 @@ TEST_F(Protocol, OldClientsGetStreamsThatEndWithTheConnection) {
 }
 
 TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
-  Daemon daemon(with_endless_pictures({"--connections", "2"}));
+  Daemon daemon(without_ray_limit({"--connections", "2"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
   ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
-  const RawClient first(daemon.port()), second(daemon.port());  // at work: they make no room
+  const RawClient first(daemon.port()), second(daemon.port());  // busy, so not evicted
   const std::string path = "/v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096";
   first.send("GET " + path + "&seed=1 HTTP/1.1\r\nHost: x\r\n\r\n");
   second.send("GET " + path + "&seed=2 HTTP/1.1\r\nHost: x\r\n\r\n");
@@ -143,10 +143,10 @@ std::string health_from(const Daemon& daemon, std::uint8_t address) {
 }
 
 TEST(Connections, OfOneAddressLeaveAQuarterToOthers) {
-  Daemon daemon(with_endless_pictures({"--connections", "8", "--queue-rays", "1000000000000"}));
+  Daemon daemon(without_ray_limit({"--connections", "8", "--queue-rays", "1000000000000"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
-  std::vector<std::unique_ptr<RawClient>> at_work;  // they make no room
+  std::vector<std::unique_ptr<RawClient>> at_work;  // busy, so not evicted
   for (int i = 0; i < 6; ++i) {
     at_work.push_back(std::make_unique<RawClient>(daemon.port(), 0, kGreedy));
     at_work.back()->send("GET /v1/scenes/" + id + "/frame.png?width=4096&height=4096&samples=4096&seed=" +
@@ -163,10 +163,9 @@ TEST(Connections, OfOneAddressLeaveAQuarterToOthers) {
   EXPECT_EQ(health_from(daemon, kOther).substr(0, 12), "HTTP/1.1 200");
 }
 
-// Two addresses hold all connections, and most of their requests wait for a turn.
+// Two addresses hold all connections, and most of their requests are queued.
 TEST(Connections, WhoseRequestsWaitForATurnMakeRoomForOthers) {
-  Daemon daemon(
-      with_endless_pictures({"--connections", "8", "--threads", "1", "--queue-rays", "1000000000000"}));
+  Daemon daemon(without_ray_limit({"--connections", "8", "--threads", "1", "--queue-rays", "1000000000000"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
   ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
@@ -184,14 +183,14 @@ TEST(Connections, WhoseRequestsWaitForATurnMakeRoomForOthers) {
   const RawClient newcomer(daemon.port(), 0, 4);
   newcomer.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
   EXPECT_EQ(newcomer.receive_some().substr(0, 12), "HTTP/1.1 200");
-  const std::string evicted = holders[4]->receive_all();  // the newest of the address that had most
+  const std::string evicted = holders[4]->receive_all();  // the newest of the address with most
   EXPECT_EQ(evicted.substr(0, 12), "HTTP/1.1 429");
   EXPECT_NE(evicted.find("\r\nRetry-After: "), std::string::npos);
   EXPECT_NE(evicted.find("(connections)"), std::string::npos) << evicted;
 }
 
 TEST(Connections, ThatAreAllAtWorkMakeTheServiceFull) {
-  Daemon daemon(with_endless_pictures({"--connections", "2"}));
+  Daemon daemon(without_ray_limit({"--connections", "2"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
   ASSERT_TRUE(test::eventually([&] { return daemon.metric("orrery_connections") == 0; }));
@@ -205,13 +204,13 @@ TEST(Connections, ThatAreAllAtWorkMakeTheServiceFull) {
   EXPECT_EQ(nlohmann::json::parse(ready->body).at("status"), "full");
 }
 
-// Some of those that one address opened all at once make room for others, who need not wait for that.
+// Idle connections of a burst from one address are evicted for other clients without delay.
 TEST(Connections, OfABurstMakeRoomForOthers) {
   Daemon daemon({"--connections", "8"});
   std::vector<std::unique_ptr<RawClient>> burst, others;
   for (int i = 0; i < 6; ++i) burst.push_back(std::make_unique<RawClient>(daemon.port(), 0, kGreedy));
   for (int i = 0; i < 4; ++i) others.push_back(std::make_unique<RawClient>(daemon.port(), 0, kOther));
-  for (const auto& other : others) {  // and stay
+  for (const auto& other : others) {  // they stay open
     other->send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
     EXPECT_EQ(other->receive_some().substr(0, 12), "HTTP/1.1 200");
   }

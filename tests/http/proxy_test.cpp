@@ -2,7 +2,7 @@
 
 #include "tests/http/daemon.h"
 
-// The service as it is behind a proxy.
+// Tests the service behind a proxy.
 namespace orrery {
 namespace {
 
@@ -45,7 +45,7 @@ TEST(Proxy, LinksBeginWithThePrefix) {
   EXPECT_EQ(client.Get("/render/v1/jobs/" + id + "/frames/0.png")->status, 200);
 }
 
-// Where the prefix is taken off, and by whom, changes nothing of what was signed.
+// A signature holds with and without the prefix, whichever side strips it.
 TEST(Proxy, SharedLinksHoldBelowThePrefix) {
   const std::string key = ::testing::TempDir() + "proxy_share_key";
   std::ofstream(key) << std::string(32, 'k');
@@ -63,7 +63,7 @@ TEST(Proxy, SharedLinksHoldBelowThePrefix) {
   }
 }
 
-// A page whose owner lets its domain stand for this machine can send any header.
+// A page on a domain that points at this machine (DNS rebinding) can send any header.
 TEST(Proxy, AHostThatIsToldDoesNotExcuseTheOther) {
   const Daemon daemon({"--trusted-proxies", "127.0.0.1", "--cors-origins", "https://render.example"});
   auto client = daemon.client();
@@ -79,7 +79,7 @@ TEST(Proxy, AHostThatIsToldDoesNotExcuseTheOther) {
   EXPECT_EQ(post->status, 201);
 }
 
-// Half of the streams are for one client: of two behind one proxy, each has its own half.
+// One client may run half of the jobs. Two clients behind one proxy have separate quotas.
 TEST(Proxy, EachClientBehindItHasItsOwnShares) {
   const Daemon daemon({"--trusted-proxies", "127.0.0.1", "--jobs", "2"});
   auto client = daemon.client();
@@ -89,7 +89,7 @@ TEST(Proxy, EachClientBehindItHasItsOwnShares) {
     return client.Post("/v1/jobs", {{"X-Forwarded-For", who}}, job.dump(), "application/json")->status;
   };
   EXPECT_EQ(start("198.51.100.1", 3000), 202);
-  EXPECT_EQ(start("203.0.113.9, 198.51.100.1", 3001), 429);  // whatever the client itself says before
+  EXPECT_EQ(start("203.0.113.9, 198.51.100.1", 3001), 429);  // ignores the client's own entry
   EXPECT_EQ(start("198.51.100.2", 3002), 202);
 }
 

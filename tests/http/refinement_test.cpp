@@ -11,7 +11,7 @@ class RefinementStream : public HttpTest {
  protected:
   const std::string scene_ = "/v1/scenes/" + post_scene(small_scene().dump());
 
-  // Of a view that no other test has asked for.
+  // Returns the query of a view that no other test requests.
   static std::string view(int azimuth, int samples) {
     return "azimuth=" + std::to_string(azimuth) + "&samples=" + std::to_string(samples);
   }
@@ -35,12 +35,12 @@ class RefinementStream : public HttpTest {
 TEST_F(RefinementStream, PassesDoubleTheSamples) {
   EXPECT_EQ(samples_of(refine(view(1, 64) + "&technique=path")), (std::vector{1, 2, 4, 8, 16, 32, 64}));
   EXPECT_EQ(samples_of(refine(view(1, 12) + "&technique=path")), (std::vector{1, 3, 6, 12}));
-  // A single sample of this technique lies in the middle of its pixel and is none of more.
+  // A single sample of this technique lies at the pixel centre and is not one of a longer sequence.
   EXPECT_EQ(samples_of(refine(view(1, 8))), (std::vector{2, 4, 8}));
   EXPECT_EQ(samples_of(refine(view(1, 1))), (std::vector{1}));
 }
 
-// Where another daemon renders them at once: here they would be kept.
+// Another daemon renders each image directly. This one would answer from its cache.
 TEST_F(RefinementStream, EachPassIsThePictureOfSoManySamples) {
   Daemon other;
   httplib::Client client = other.client();
@@ -85,7 +85,7 @@ TEST_F(RefinementStream, EndsAtOnceWithAPictureThatIsKept) {
   EXPECT_EQ(samples_of(again), (std::vector{16}));
   EXPECT_EQ(again.at(0).header.at("rays"), 0);
   EXPECT_GT(again.at(0).header.at("error").at("rays"), 0);
-  const auto part = client_.Get(scene_ + "/frame.png?" + view(4, 8));  // pictures of passes are kept, too
+  const auto part = client_.Get(scene_ + "/frame.png?" + view(4, 8));  // images of passes are cached, too
   EXPECT_FALSE(part->has_header("X-Rays"));
   EXPECT_EQ(daemon().metric("orrery_rays_total"), before);
 }

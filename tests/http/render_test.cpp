@@ -82,7 +82,7 @@ TEST_F(Render, AcceptChoosesTheFormat) {
   EXPECT_EQ(two_lines->get_header_value("Content-Type"), "image/jpeg");
 }
 
-// What is asked for in each format of a daemon with these settings, and the rays traced for each.
+// Bodies in each format from a daemon with these settings, and the rays traced for each.
 struct Formats {
   std::vector<std::string> bodies;
   std::vector<double> rays;
@@ -144,7 +144,7 @@ TEST_F(Render, LayersThatASceneAsksForAreLeftOutOfWhatHasNone) {
 
 TEST_F(Render, UselessPicturesAreWarnedOf) {
   const auto warning = [&](const nlohmann::json& scene) {
-    for (int i = 0; i < 2; ++i) render(scene);  // also of what is kept
+    for (int i = 0; i < 2; ++i) render(scene);  // also from the cache
     return render(scene)->get_header_value("Orrery-Warning");
   };
   EXPECT_EQ(warning(small_scene()), "");
@@ -218,8 +218,8 @@ TEST_F(Render, OptionsInTheAddressOfAPostAreNotPassedOver) {
 
 constexpr const char* kJson = "application/json";
 
-// 2 threads x 10 s x 50 million rays, and what two balls of which one is a mirror take: half of the rays go
-// on at each of 5 levels, the other half ask one light.
+// The limit is 2 threads x 10 s x 50 million rays. The scene has two balls, one a mirror: half of the rays
+// continue at each of 5 levels, the others sample one light.
 TEST(RenderThatTakesTooLong, IsRefusedAtOnceAndToldWhereToGo) {
   Daemon daemon({"--threads", "2", "--request-seconds", "10"});
   httplib::Client client = daemon.client();
@@ -238,7 +238,7 @@ TEST(RenderThatTakesTooLong, IsRefusedAtOnceAndToldWhereToGo) {
   const std::string scene = posted->get_header_value("Location");
   for (const char* address : {"/frame.png?", "/orbit?frames=2&"})
     expect_refused(client.Get(scene + address + "width=4096&height=4096&samples=256"));
-  EXPECT_TRUE(test::eventually([&] {  // counted once the answer has gone
+  EXPECT_TRUE(test::eventually([&] {  // counted after the response
     return daemon.metric("orrery_refusals_total{reason=\"request_rays\"}") == 3;
   }));
   EXPECT_EQ(daemon.metric("orrery_rays_total"), 0);
@@ -246,7 +246,7 @@ TEST(RenderThatTakesTooLong, IsRefusedAtOnceAndToldWhereToGo) {
   EXPECT_EQ(client.Post("/v1/jobs", body.dump(), kJson)->status, 202);
 }
 
-// 48 x 32 pixels are expected to take 4,536 rays and take fewer, which the next estimate knows.
+// 48 x 32 pixels have an estimate of 4,536 rays and take fewer, which lowers the next estimate.
 TEST(RenderThatTakesTooLong, IsJudgedByWhatTheSceneTookBefore) {
   Daemon daemon({"--request-rays", "4536"});
   httplib::Client client = daemon.client();
@@ -261,7 +261,7 @@ TEST(RenderThatTakesTooLong, IsJudgedByWhatTheSceneTookBefore) {
   EXPECT_EQ(render(49)->status, 200);
 }
 
-// A second or so of work, all at once, and nothing known of the scene yet.
+// About a second of concurrent work, with no estimate for the scene yet.
 TEST(RendersAtOnce, OfASampleAreAllAnswered) {
   Daemon daemon;
   const auto scene = nlohmann::json::parse(daemon.client().Get("/scenes/paper.json")->body);

@@ -8,21 +8,21 @@
 #include <stdexcept>
 #include <thread>
 
-// Answers as bytes.
+// Tests serialization of responses.
 namespace orrery {
 namespace {
 
-// A connection whose other end is a socket of ours.
+// Connection to a socket of the test.
 class Wire {
  public:
   Wire() : Wire(0) {}
-  // send_buffer: bytes that the kernel takes before somebody reads; 0: its own choice.
+  // `send_buffer` is the size of the kernel's send buffer in bytes, 0 for its default.
   explicit Wire(int send_buffer) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
       throw std::runtime_error("socketpair");
     if (send_buffer > 0) setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof send_buffer);
-    connection_.emplace(ends[0], IpAddress(), wake_, Patience{});
+    connection_.emplace(ends[0], IpAddress(), wake_, Timeouts{});
     reader_ = ends[1];
   }
   ~Wire() {
@@ -38,7 +38,7 @@ class Wire {
     if (reader_ >= 0) close(reader_);
     reader_ = -1;
   }
-  // All that comes until the connection ends.
+  // Receives until the connection ends.
   std::string receive_all() const {
     std::string all;
     std::string bytes(5000, '\0');
@@ -53,7 +53,7 @@ class Wire {
 
  private:
   const int wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  AnswerBudget answers_{8 << 20};
+  ResponseQuota answers_{8 << 20};
   int reader_ = -1;
   std::optional<Connection> connection_;
 };
@@ -89,7 +89,7 @@ TEST(ResponseWriter, WhereThereIsNoBodyNoneIsWrittenOrAnnounced) {  // RFC 9110,
   EXPECT_EQ(written({.status = 304, .body = "x"}), "HTTP/1.1 304 Not Modified\r\n\r\n");
   EXPECT_EQ(written({.status = 304, .stream = stream_of({"x"}).stream}), "HTTP/1.1 304 Not Modified\r\n\r\n");
   EXPECT_EQ(written({.body = "four"}, {.head_only = true}), "HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\n");
-  EXPECT_EQ(written({}, {.head_only = true}), "HTTP/1.1 200 OK\r\n\r\n");  // of unknown length
+  EXPECT_EQ(written({}, {.head_only = true}), "HTTP/1.1 200 OK\r\n\r\n");  // unknown length
   EXPECT_EQ(written(stream_of({"x"}), {.head_only = true}), "HTTP/1.1 200 OK\r\n\r\n");
 }
 

@@ -10,7 +10,7 @@
 #include "server/http/target.h"
 #include "tests/http/daemon.h"
 
-// What each route asks of a token, and how loudly it is logged.
+// Tests the scope and log level of each route.
 namespace orrery {
 namespace {
 
@@ -39,22 +39,22 @@ class Routes : public ::testing::Test {
   Router router_, health_;
 };
 
-struct Wanted {
+struct RouteScope {
   const char *method, *path;
   Scope scope;
 };
 
 TEST_F(Routes, AskForTheScopesThatTheyAreFor) {
   for (const auto& [method, path, scope] : {
-           Wanted{"POST", "/v1/render", Scope::render},
-           Wanted{"POST", "/v1/jobs", Scope::render},
-           Wanted{"DELETE", "/v1/jobs/a", Scope::render},
-           Wanted{"POST", "/v1/scenes/a/charts", Scope::render},
-           Wanted{"POST", "/v1/scenes", Scope::write},
-           Wanted{"DELETE", "/v1/scenes/a", Scope::write},
-           Wanted{"PUT", "/v1/assets/a", Scope::write},
-           Wanted{"DELETE", "/v1/assets/a", Scope::write},
-           Wanted{"POST", "/v1/shares", Scope::read | Scope::write},
+           RouteScope{"POST", "/v1/render", Scope::render},
+           RouteScope{"POST", "/v1/jobs", Scope::render},
+           RouteScope{"DELETE", "/v1/jobs/a", Scope::render},
+           RouteScope{"POST", "/v1/scenes/a/charts", Scope::render},
+           RouteScope{"POST", "/v1/scenes", Scope::write},
+           RouteScope{"DELETE", "/v1/scenes/a", Scope::write},
+           RouteScope{"PUT", "/v1/assets/a", Scope::write},
+           RouteScope{"DELETE", "/v1/assets/a", Scope::write},
+           RouteScope{"POST", "/v1/shares", Scope::read | Scope::write},
        })
     EXPECT_EQ(find(method, path).scope, scope) << method << " " << path;
   for (const char* path :
@@ -67,9 +67,9 @@ TEST_F(Routes, AskForTheScopesThatTheyAreFor) {
     EXPECT_EQ(find("GET", path).scope, Scope::none) << path;
 }
 
-// A path of the description as one that may be asked for.
-std::string with_places_filled(std::string path) {
-  // Each sample has routes of its own.
+// Returns a path of the API description with its placeholders replaced.
+std::string with_placeholders_filled(std::string path) {
+  // Samples have one route each.
   if (path.starts_with("/scenes/thumbnails/")) return "/scenes/thumbnails/paper.webp";
   if (path.starts_with("/scenes/")) return "/scenes/paper.json";
   for (std::size_t at; (at = path.find('{')) != std::string::npos;)
@@ -95,7 +95,7 @@ TEST_F(Routes, AreThoseThatTheDescriptionHas) {
     }
     std::string list;
     for (const std::string& method : described) list += (list.empty() ? "" : ", ") + method;
-    Request request = request_for("OPTIONS", with_places_filled(path));
+    Request request = request_for("OPTIONS", with_placeholders_filled(path));
     EXPECT_EQ(router_.allowed_methods(request), list) << path;
     ++found;
   }
@@ -112,7 +112,7 @@ TEST_F(Routes, OnlyThoseThatSupervisorsAskAreLoggedQuietly) {
     EXPECT_EQ(find("GET", path).log, LogLevel::info);
 }
 
-// A body of that route whose reading takes more memory than one client may have.
+// Returns a body for the route that exceeds the memory of one client when parsed.
 std::string hostile_body(const Route& route) {
   std::string body;
   if (route.pattern == "/v1/assets/{sha256}") {

@@ -3,7 +3,7 @@
 
 #include "tests/http/daemon.h"
 
-// Clients that hold connections and do not go on: others are served meanwhile, and nothing is kept of them.
+// Tests clients that hold connections without progress. Other clients are served, and no resource leaks.
 namespace orrery {
 namespace {
 
@@ -13,7 +13,7 @@ constexpr int kConnections = 8;
 
 class SlowClients : public ::testing::Test {
  protected:
-  // Twice as many connections as there may be, each after these bytes; the second half pushes out the first.
+  // Opens twice as many connections as allowed and sends `bytes` on each. The second half evicts the first.
   Clients open(const std::string& bytes, int receive_buffer = 0) {
     Clients clients;
     for (int i = 0; i < 2 * kConnections; ++i) {
@@ -38,7 +38,7 @@ class SlowClients : public ::testing::Test {
     EXPECT_LE(daemon_.open_files(), before);
   }
 
-  // Longer than a connection may be silent while others want it.
+  // Sleeps longer than a connection may be idle while others wait.
   static void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }
 
   Daemon daemon_{{"--connections", std::to_string(kConnections)}};
@@ -57,7 +57,7 @@ TEST_F(SlowClients, WhoseHeadsTrickleMakeRoomAndAreToldSo) {
   Clients clients = open("GET /healthz HTTP/1.1\r\nHost: x\r\n");
   clients.back()->send("A: b\r\n");
   expect_others_are_served();
-  const std::string answer = clients.front()->receive_all();  // the oldest went first
+  const std::string answer = clients.front()->receive_all();  // the oldest was evicted first
   EXPECT_EQ(answer.substr(0, 12), "HTTP/1.1 408");
   EXPECT_NE(answer.find("(connections)"), std::string::npos) << answer;
   clients.clear();
@@ -77,7 +77,7 @@ TEST_F(SlowClients, WhoseBodiesTrickleMakeRoomAndAreToldSo) {
 
 TEST_F(SlowClients, WhoDoNotReadMakeRoom) {
   const std::size_t before = daemon_.open_files();
-  // More than the kernel keeps for both ends, asked for again and again without reading.
+  // Requests for more than both kernel buffers hold, never read.
   std::string requests;
   for (int i = 0; i < 200; ++i) requests += "GET /scenes/sphereflake-3.json HTTP/1.1\r\nHost: x\r\n\r\n";
   Clients clients = open(requests, 4096);

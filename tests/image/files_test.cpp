@@ -71,7 +71,7 @@ TEST(Encoding, EndsWhenNobodyWantsIt) {
   const Image codes = noise(8, 200), linear = floats(8, 200);
   std::stop_source source;
   const std::stop_token stop = source.get_token();
-  const WorkScope scope({nullptr, &stop});
+  const TaskScope scope({nullptr, &stop});
   EXPECT_NE(encode_png(codes), "");
   EXPECT_NE(encode_exr(linear), "");
   source.request_stop();

@@ -24,7 +24,7 @@ struct Kernel {
   Vec3Array<double> radiance{};
   Array<double> pdf{};
   Array<IndexOf<double>> slot{};
-  Groups all = Groups::covering(0, kBatch, kWidth<double>);
+  LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<double>);
 
   explicit Kernel(const Json& light)
       : scene(load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
@@ -150,7 +150,7 @@ Json over_floor(const Vec3d& from, const Vec3d& to) {
 }
 
 // Returns the radiance of a floor point lit by a line, with 200,000 points in place of the line.
-double by_dots(const Vec3d& from, const Vec3d& to, const Vec3d& at) {
+double irradiance_by_points(const Vec3d& from, const Vec3d& to, const Vec3d& at) {
   constexpr int kDots = 200'000;
   double sum = 0;
   for (int i = 0; i < kDots; ++i) {
@@ -173,7 +173,7 @@ TEST(Line, IrradianceIsThatOfItsPoints) {
   for (int i = 0; i < 20; ++i) {
     const Vec3d from = random.in_cube(2) + Vec3d(0, 2.5, 0), to = random.in_cube(2) + Vec3d(0, 2.5, 0);
     const Estimate found = estimate(over_floor(from, to), Vec3d(0, 0.05, 30), Vec3d(), 1);
-    const double expected = by_dots(from, to, Vec3d());
+    const double expected = irradiance_by_points(from, to, Vec3d());
     EXPECT_NEAR(found.mean, expected, 4 * found.error() + 1e-6 * expected) << i;
   }
 }
@@ -192,7 +192,7 @@ TEST(Line, EndsTowardWhatItLights) {
 TEST(Line, IsOnePointOfItsPowerToTrees) {
   Json scene = over_floor(Vec3d(-1, 2, 0), Vec3d(1, 2, 0));
   scene["materials"]["white"] = {{"type", "rough"}, {"kd", 1}};
-  const Answer answer = Tracing(scene).trace({Vec3d(0, 0.05, 30), safe_normalize(Vec3d(0, -0.05, -30))});
+  const TraceOutput answer = Tracing(scene).trace({Vec3d(0, 0.05, 30), safe_normalize(Vec3d(0, -0.05, -30))});
   EXPECT_NEAR(answer.radiance.x, 2.0 / 4 / kPi, 1e-12);
 }
 

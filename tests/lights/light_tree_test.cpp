@@ -42,12 +42,12 @@ std::vector<LightBounds> lights_of(int count, Make make) {
   return lights;
 }
 
-struct Chosen {
+struct SelectedLight {
   std::size_t light;
   double probability;
 };
 template <class T>
-Chosen choose(const LightTree<T>& tree, const Vec3<T>& at, double u) {
+SelectedLight choose(const LightTree<T>& tree, const Vec3<T>& at, double u) {
   using N = Lanes<T>;
   std::array<double, LightTree<T>::kPoints> numbers;
   numbers.fill(u);
@@ -189,7 +189,7 @@ TEST(LightTree, ChoosesTheSameAtAnyScale) {
     for (int i = 0; i < 1000; ++i) {
       const Vec3f at(random.in_cube(1));
       const double u = random.unit();
-      const Chosen one = choose(tree, at, u), two = choose(other, at * static_cast<float>(scale), u);
+      const SelectedLight one = choose(tree, at, u), two = choose(other, at * static_cast<float>(scale), u);
       EXPECT_EQ(one.light, two.light);
       EXPECT_EQ(one.probability, two.probability);
     }

@@ -103,7 +103,7 @@ Json spot(double inner, double outer) {
           {"inner_degrees", inner},
           {"outer_degrees", outer}};
 }
-ArrivingLight<double> in_beam(const Json& light, double degrees) {
+IncidentLight<double> in_beam(const Json& light, double degrees) {
   const double a = degrees * std::numbers::pi / 180;
   return arrival<double>(light, Vec3d(std::sin(a), 0, -std::cos(a)) * 3);
 }

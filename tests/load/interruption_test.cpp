@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/accelerators/registry.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/load/load.h"
 #include "core/meshes/repair.h"
 #include "core/params/document.h"
@@ -9,18 +9,18 @@
 #include "tests/meshes/writers.h"
 #include "tests/support/scenes.h"
 
-// All that is done with input of any size ends once nobody wants it any more.
+// Tests cancellation of work on input of any size.
 namespace orrery {
 namespace {
 
-// Whether the work ends with Cancelled where a stop was requested before, and without it ends well.
+// Returns true if `act` throws Cancelled after a stop request. Requires `act` to succeed without one.
 template <class Act>
 bool is_interrupted(const Act& act) {
   act();
   std::stop_source source;
   source.request_stop();
   const std::stop_token stop = source.get_token();
-  const WorkScope scope({nullptr, &stop});
+  const TaskScope scope({nullptr, &stop});
   try {
     act();
   } catch (const Cancelled&) {
@@ -56,7 +56,7 @@ TEST(Interruption, EndsSmoothing) {
   }));
 }
 
-// The stop is requested where the facets take their memory: no stage after theirs takes any.
+// Requests the stop when the facets allocate their memory. No later stage may allocate any.
 TEST(Interruption, EndsSmoothingAmongTheFacets) {
   constexpr std::size_t kTriangles = 1000, kOfFacets = kTriangles * 3 * sizeof(Vec3d);
   constexpr std::size_t kOfIndices = kTriangles * 3 * sizeof(std::uint32_t);
@@ -83,12 +83,12 @@ TEST(Interruption, EndsBuildingEveryStructure) {
   for (const AcceleratorType& type : accelerator_types())
     EXPECT_TRUE(is_interrupted([&] {
       double build_ms = 0;
-      const std::stop_token* const stop = WorkScope::current().stop;
+      const std::stop_token* const stop = TaskScope::current().stop;
       world_for<float>(PreparedScene(scene).parts(), type, 0, build_ms, stop ? *stop : std::stop_token());
     })) << type.name;
 }
 
-// What was interrupted is built for who asks next.
+// An interrupted build is repeated by the next caller.
 TEST(Interruption, LeavesNothingHalfBuilt) {
   const PreparedScene scene(load_scene(kScene));
   std::stop_source source;
@@ -99,24 +99,24 @@ TEST(Interruption, LeavesNothingHalfBuilt) {
   EXPECT_EQ(world_for<float>(scene.parts(), type, 0, build_ms).geometry->primitives.size(), 1u);
 }
 
-class CountedTurn final : public Turn {
+class CountedTurn final : public TimeSlice {
  public:
-  void give_way() override { ++asked; }
+  void yield() override { ++asked; }
   std::atomic<int> asked{0};
 };
 
 TEST(Interruption, LetsOthersGoFirst) {
   CountedTurn turn;
-  const WorkScope scope({nullptr, nullptr, &turn});
+  const TaskScope scope({nullptr, nullptr, &turn});
   load_scene(kScene);
   EXPECT_GT(turn.asked, 0);
 }
 
-// Those that wait for the scene would keep what the builder waits for.
+// A thread that holds the scene's lock must not yield, since waiting threads may hold what the builder needs.
 TEST(Interruption, LetsNobodyGoFirstWhileASceneIsLocked) {
   const PreparedScene scene(load_scene(kScene));
   CountedTurn turn;
-  const WorkScope scope({nullptr, nullptr, &turn});
+  const TaskScope scope({nullptr, nullptr, &turn});
   double build_ms = 0;
   world_for<float>(scene.parts(), accelerator_types()[0], 0, build_ms);
   EXPECT_EQ(turn.asked, 0);

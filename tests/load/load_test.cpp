@@ -16,7 +16,8 @@ namespace {
 
 std::string problem_of_object(const char* object) { return first_problem(scene_of(object)); }
 
-// The same scene as text, with `what` replaced, for what no JSON tree can hold.
+// Returns the first problem of the scene as text, with `what` replaced by `by`. A JSON tree cannot hold some
+// of these values.
 std::string problem_of_text(const char* what, const char* by) {
   std::string text = scene_of("[{'type': 'sphere', 'center': [0.125, 0, 0], 'radius': 0.375}]").dump();
   text.replace(text.find(what), std::string_view(what).size(), by);
@@ -51,7 +52,8 @@ TEST(Load, RefusesBadNumbersByName) {
   EXPECT_NE(first_problem_in_text(""), "accepted");
 }
 
-// No surface scatters less than nothing, and no body makes light stronger.
+// Reflectances and filters are between 0 and 1: no surface scatters a negative share, and no medium amplifies
+// light.
 TEST(Load, HoldsSharesOfLightBetweenNothingAndAll) {
   const auto problem = [](const char* material) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
@@ -99,7 +101,7 @@ TEST(Load, GivesEachPrimitiveItsMaterial) {
       if (material_types()[i].name == type) return first[i];
     return -1;
   };
-  // Primitives are numbered shape type by shape type: spheres stand before meshes, meshes before boxes.
+  // Primitives are numbered by shape type: spheres before meshes, meshes before boxes.
   EXPECT_EQ(scene->material_of[0], set_of("rough") + 1);
   EXPECT_EQ(scene->material_of[1], set_of("reflective"));
   EXPECT_EQ(scene->material_of[2], set_of("rough"));

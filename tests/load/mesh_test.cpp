@@ -4,11 +4,11 @@
 #include "core/params/document.h"
 #include "tests/support/scenes.h"
 
-// Meshes that scenes name instead of holding them.
+// Tests meshes that scenes reference by name.
 namespace orrery::test {
 namespace {
 
-// A roof of two squares that meet at 90 degrees, and a triangle without area.
+// Returns a roof of two squares that meet at 90 degrees, and a triangle without area.
 TriangleMesh roof() {
   TriangleMesh mesh;
   mesh.positions = {{0, 1, 0}, {0, 1, 2}, {1, 0, 0}, {1, 0, 2}, {-1, 0, 0}, {-1, 0, 2}};
@@ -59,8 +59,8 @@ Vec3d shading_normal(const Scene& scene, const Vec3d& from, const Vec3d& toward)
     rays.t_max[0] = 100;
     hits.t = rays.t_max;
     hits.primitive.values.fill(kNoPrimitive);
-    for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, rays, Groups::single(0), hits, counts);
-    kernel->surface(rays, hits, Groups::single(0), surface);
+    for (int i = 0; i < shapes->size(); ++i) kernel->closest(i, rays, LaneGroups::single(0), hits, counts);
+    kernel->surface(rays, hits, LaneGroups::single(0), surface);
     return {surface.normal.x[0], surface.normal.y[0], surface.normal.z[0]};
   }
   return {};
@@ -85,7 +85,7 @@ TEST(AssetFiles, AreRefusedWhereTheirNameStands) {
             "/objects/0/crease_degrees");
 }
 
-// Just beside the ridge: flat without a crease angle or with one below 90 degrees, straight up above it.
+// Next to the ridge, the normal is flat unless the crease angle exceeds 90 degrees, and then vertical.
 TEST(AssetFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
   const auto normal = [](const char* object) {
     return shading_normal(*load_scene(text_of(object), Shelf()), {1e-9, 3, 1}, {0, -1, 0});
@@ -101,7 +101,7 @@ TEST(AssetFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
   EXPECT_LT(std::abs(smooth.x), 0.35);
 }
 
-// Many objects may name one file: it is read once, and their limits are common.
+// A file named by many objects is read once, and its size counts once for the limits.
 TEST(AssetFiles, AreReadOnceALoad) {
   class Counting final : public AssetSource {
    public:
@@ -144,7 +144,7 @@ TEST(AssetFiles, AreTooManyTogether) {
   }
 }
 
-// Several meshes share one set: each keeps its own vertices and normals.
+// Several meshes share one shape set, but each keeps its own vertices and normals.
 TEST(AssetFiles, KeepApartInOneScene) {
   const auto scene = load_scene(
       text_of("[{'type': 'mesh', 'positions': [[5, 0, 0], [6, 0, 0], [5, 1, 0]], 'indices': [[0, 1, 2]],"
@@ -159,7 +159,7 @@ TEST(AssetFiles, KeepApartInOneScene) {
   EXPECT_NEAR(shading_normal(*scene, {0.5, 3, 1}, {0, -1, 0}).x, std::sqrt(0.5), 1e-12);
 }
 
-// Around one vertex of n triangles, smoothing compares n * n pairs of them.
+// Smoothing around a vertex of n triangles compares n * n pairs of them.
 TEST(AssetFiles, AVertexOfTooManyTrianglesIsNotSmoothed) {
   Json mesh = {{"type", "mesh"}, {"positions", {{0, 0, 1}}}, {"crease_degrees", 30}};
   const auto fan = [&](int triangles) {

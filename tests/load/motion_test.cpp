@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/load/load.h"
 #include "core/params/document.h"
 #include "tests/support/covers.h"
 #include "tests/support/scenes.h"
 
-// What a scene may say about what moves in it.
+// Tests the validation of motion in scenes.
 namespace orrery::test {
 namespace {
 
@@ -94,8 +94,8 @@ TEST(LoadMotion, FilesAreStagesOfOneMesh) {
       "/objects/0/motion/1");
 }
 
-// One mesh of 100,000 vertices, and how often it was asked for.
-class Heavy final : public AssetSource {
+// Source of one mesh of 100,000 vertices, which counts its reads.
+class LargeMeshSource final : public AssetSource {
  public:
   mutable int read = 0;
   TriangleMesh mesh_file(const std::string&) const override {
@@ -110,7 +110,7 @@ class Heavy final : public AssetSource {
 TEST(LoadMotion, CountsKeysBeforeTheyTakeMemory) {
   Json scene = scene_of(R"([{'type': 'mesh', 'file': 'a.obj'}])");
   for (int i = 0; i < 2'000; ++i) scene["objects"][0]["motion"].push_back({{"time", i}, {"file", "a.obj"}});
-  const Heavy heavy;
+  const LargeMeshSource heavy;
   try {
     load_scene(scene.dump(), heavy);
     ADD_FAILURE() << "accepted";
@@ -127,11 +127,11 @@ TEST(LoadMotion, KeysShareWhatTheyHaveInCommon) {
     Json scene = scene_of(R"([{'type': 'mesh', 'file': 'a.obj'}])");
     scene["objects"][0]["motion"] = json(keys);
     const auto account = MemoryAccount::open([] { return [](std::size_t most, bool) { return most; }; });
-    const auto loaded = account->run({}, [&] { return load_scene(scene.dump(), Heavy()); });
+    const auto loaded = account->run({}, [&] { return load_scene(scene.dump(), LargeMeshSource()); });
     return account->bytes();
   };
   const std::size_t few = bytes("[{'time': 0}, {'time': 1}]"),
-                    vertices = Heavy().mesh_file("").positions.size();
+                    vertices = LargeMeshSource().mesh_file("").positions.size();
   EXPECT_LT(bytes("[{'time': 0}, {'time': 1}, {'time': 2}]"), few + 10'000);
   EXPECT_GE(bytes("[{'time': 0}, {'time': 1, 'file': 'b.obj'}]"), few + vertices * sizeof(Vec3d));
 }
@@ -162,7 +162,7 @@ TEST(LoadMotion, StandsWhereItsKeysSay) {
   EXPECT_EQ(box(99), Vec3d(3, 9, 0));
 }
 
-// Meshes that rest keep their triangles beside one that moves, whatever stands before and behind.
+// Resting meshes before and after a moving one keep their triangles.
 TEST(LoadMotion, LeavesOtherMeshesAlone) {
   Json scene = mesh_with("[{'time': 0}, {'time': 1, 'positions': [[0, 0, 0], [5, 0, 0], [0, 1, 0]]}]");
   const Json resting = json(

@@ -32,7 +32,7 @@ double albedo(const Probe<double>& material, double cosine) {
   double sum = 0;
   const auto found = material.evaluated(cases);
   for (std::size_t i = 0; i < cases.size(); ++i)
-    sum += found[i].f_cos.x * 4 * std::sqrt(1 - cases[i].light.z);
+    sum += found[i].pi_bsdf_cos.x * 4 * std::sqrt(1 - cases[i].light.z);
   return sum / (kSteps * kSteps);
 }
 
@@ -50,7 +50,7 @@ TEST(OrenNayarMaterial, WithoutRoughnessIsLambert) {
     Case c;
     c.light = random.direction_above(c.normal);
     c.direction = -random.direction_above(c.normal);
-    EXPECT_NEAR(smooth.evaluated(c).f_cos.x, lambert.evaluated(c).f_cos.x, 1e-15);
+    EXPECT_NEAR(smooth.evaluated(c).pi_bsdf_cos.x, lambert.evaluated(c).pi_bsdf_cos.x, 1e-15);
   }
 }
 
@@ -80,13 +80,13 @@ TEST(OrenNayarMaterial, ShinesBackTowardTheLight) {
     Case c;
     c.light = tilted(cosine);
     c.direction = -c.light;
-    return clay(0.3, 1).evaluated(c).f_cos.x;
+    return clay(0.3, 1).evaluated(c).pi_bsdf_cos.x;
   };
   EXPECT_GT(back(0.2) / back(1), 0.75);
   Case ahead;
   ahead.light = tilted(0.2);
   ahead.direction = -tilted(0.2, 0.5);
-  EXPECT_LT(clay(0.3, 1).evaluated(ahead).f_cos.x, 0.3 * back(0.2));
+  EXPECT_LT(clay(0.3, 1).evaluated(ahead).pi_bsdf_cos.x, 0.3 * back(0.2));
 }
 
 }  // namespace

@@ -79,12 +79,12 @@ TEST(Glass, RoughFiltersWhatCrossedTheBody) {
   point.t = 2;
   for (const double z : {1.0, -1.0}) {
     point.light = Vec3d(0, 0, z);
-    const auto filtered = glass.evaluated(point).f_cos, plain = clear.evaluated(point).f_cos;
+    const auto filtered = glass.evaluated(point).pi_bsdf_cos, plain = clear.evaluated(point).pi_bsdf_cos;
     EXPECT_NEAR(filtered.x / plain.x, 0.81, 1e-12);
     EXPECT_NEAR(filtered.z / plain.z, 0.01, 1e-12);
   }
   point.side = 1;
-  EXPECT_EQ(glass.evaluated(point).f_cos, clear.evaluated(point).f_cos);
+  EXPECT_EQ(glass.evaluated(point).pi_bsdf_cos, clear.evaluated(point).pi_bsdf_cos);
 }
 
 TEST(Plastic, OfAWhiteBaseReflectsAllLight) {
@@ -196,10 +196,10 @@ TEST(CookTorrance, ReflectsWhatItsFormulaSays) {
         cases.push_back(seen_at(cosine));
         cases.back().light = tilted(std::sqrt((i + 0.5) / kSteps), (j + 0.5) / kSteps);
       }
-    Vec3d sum;  // over the squares of cosines: f_cos / cosine
+    Vec3d sum;  // over the squares of cosines: pi_bsdf_cos / cosine
     const auto found = gold.evaluated(cases);
     for (std::size_t i = 0; i < cases.size(); ++i)
-      sum = sum + found[i].f_cos / (cases[i].light.z * kSteps * kSteps);
+      sum = sum + found[i].pi_bsdf_cos / (cases[i].light.z * kSteps * kSteps);
     const Vec3d mean = mean_weight(gold, seen_at(cosine));
     EXPECT_NEAR(mean.x, sum.x, 2e-3);
     EXPECT_NEAR(mean.z, sum.z, 2e-3);
@@ -222,7 +222,7 @@ TEST(Materials, TellHowMuchEnergyTheyCreate) {
     const auto scene =
         load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),
                         Json{{"materials", {{"white", nullptr}, {"it", json(material)}}}}));
-    return scene->facts.most_reflected.value;
+    return scene->facts.max_albedo.value;
   };
   EXPECT_NEAR(most("{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}"),
               1.155, 0.01);

@@ -20,7 +20,7 @@ Case seen_at(double cosine) {
   return c;
 }
 // Returns a perfect mirror: with n = 0 Fresnel's equations give 1.
-Probe<double> silverest(double alpha) {
+Probe<double> perfect_mirror(double alpha) {
   return Probe<double>(
       Json{{"type", "metal"}, {"n", {0, 0, 0}}, {"k", {1, 1, 1}}, {"roughness", std::sqrt(alpha)}});
 }
@@ -96,7 +96,7 @@ TEST(Metal, LosesAndMakesNoLight) {
     for (const double cosine : {1.0, 0.6, 0.3, 0.1, 0.03}) {
       constexpr int kDraws = 1'000'000;
       double sum = 0;
-      for (const auto& drawn : silverest(alpha).sampled(seen_at(cosine), kDraws)) sum += drawn.weight.x;
+      for (const auto& drawn : perfect_mirror(alpha).sampled(seen_at(cosine), kDraws)) sum += drawn.weight.x;
       EXPECT_NEAR(sum / kDraws, 1, 2e-3) << alpha << " " << cosine;
       worst = std::max(worst, std::abs(sum / kDraws - 1));
     }

@@ -11,17 +11,17 @@ namespace orrery::test {
 namespace {
 
 // Batch of samples at one surface point, seen along one ray.
-struct Drawn {
+struct SampleBatch {
   RayBatch<double> rays;
   HitBatch<double> hits;
   SurfaceBatch<double> surface;
   Array<IndexOf<double>> slot;
   ScatterBatch<double> out;
-  Vec3Array<double> f_cos;
+  Vec3Array<double> pi_bsdf_cos;
   Array<double> pdf, reach;
-  Groups all = Groups::covering(0, kBatch, kWidth<double>);
+  LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<double>);
 
-  Drawn(const Vec3d& direction, double side) {
+  SampleBatch(const Vec3d& direction, double side) {
     rays.count = kBatch;
     for (int i = 0; i < kBatchRoom; ++i) {
       rays.set(i, {Vec3d(0, 0, 1), direction}, 1);
@@ -49,11 +49,11 @@ MaterialKernelPtr<double> kernel_of(const char* material) {
 
 const Vec3d kSlanted = safe_normalize(Vec3d(0.6, 0.1, -0.7));
 
-// The mean of the weights is the albedo, here by quadrature over the hemisphere (f_cos is pi times the
+// The mean of the weights is the albedo, here by quadrature over the hemisphere (pi_bsdf_cos is pi times the
 // share). A tolerance of 1.5 % is four standard deviations of the highlight.
 TEST(RoughSampling, MeanWeightIsTheAlbedo) {
   const auto kernel = kernel_of("{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.4, 'shininess': 8}");
-  const auto drawn = std::make_unique<Drawn>(kSlanted, 1.0);
+  const auto drawn = std::make_unique<SampleBatch>(kSlanted, 1.0);
   Vec3d sum;
   constexpr int kSamples = 64;
   for (int sample = 0; sample < kSamples; ++sample) {
@@ -70,13 +70,14 @@ TEST(RoughSampling, MeanWeightIsTheAlbedo) {
     for (int i = 0; i < kSteps; ++i) {
       const double z = (a + 0.5) / kSteps, angle = 2 * std::numbers::pi * (i + 0.5) / kSteps;
       const double r = std::sqrt(1 - z * z);
-      drawn->f_cos.set(i, Vec3d());
+      drawn->pi_bsdf_cos.set(i, Vec3d());
       drawn->rays.origin.set(i, {r * std::cos(angle), r * std::sin(angle), z});
     }
     kernel->evaluate({drawn->rays.direction, drawn->rays.origin, drawn->reach}, drawn->surface,
-                     Groups::covering(0, kSteps, kWidth<double>), Lobes::all, drawn->f_cos, drawn->pdf);
+                     LaneGroups::covering(0, kSteps, kWidth<double>), Lobes::all, drawn->pi_bsdf_cos,
+                     drawn->pdf);
     for (int i = 0; i < kSteps; ++i)
-      if (drawn->pdf[i] > 0) albedo = albedo + drawn->f_cos[i] * (2.0 / (kSteps * kSteps));
+      if (drawn->pdf[i] > 0) albedo = albedo + drawn->pi_bsdf_cos[i] * (2.0 / (kSteps * kSteps));
   }
   EXPECT_NEAR(mean.x / albedo.x, 1, 0.015);
   EXPECT_NEAR(mean.y / albedo.y, 1, 0.015);
@@ -85,12 +86,12 @@ TEST(RoughSampling, MeanWeightIsTheAlbedo) {
 
 TEST(RoughSampling, TellsTheDensityThatEvaluateTells) {
   const auto kernel = kernel_of("{'type': 'rough', 'kd': 0.5}");
-  const auto drawn = std::make_unique<Drawn>(kSlanted, 1.0);
+  const auto drawn = std::make_unique<SampleBatch>(kSlanted, 1.0);
   const Draws draws(3, TileView{32, 64, kTileSide, kTileSide}, 5);
   kernel->sample(drawn->rays, drawn->hits, drawn->surface, PathDraws<double>{draws, drawn->slot, 2},
                  drawn->all, Lobes::all, drawn->out);
   kernel->evaluate({drawn->rays.direction, drawn->out.direction, drawn->reach}, drawn->surface, drawn->all,
-                   Lobes::all, drawn->f_cos, drawn->pdf);
+                   Lobes::all, drawn->pi_bsdf_cos, drawn->pdf);
   double mean_cosine = 0;
   for (int i = 0; i < kBatch; ++i) {
     ASSERT_NEAR(length(drawn->out.direction[i]), 1, 1e-14);
@@ -103,7 +104,7 @@ TEST(RoughSampling, TellsTheDensityThatEvaluateTells) {
 // Glass without a filter loses no light: each sample has weight 1, and the mirrored share is Fresnel's.
 TEST(RefractiveSampling, MirrorsInProportionToTheReflectance) {
   const auto kernel = kernel_of("{'type': 'refractive', 'ior': 1.5, 'fresnel': 'exact'}");
-  const auto drawn = std::make_unique<Drawn>(safe_normalize(Vec3d(1, 0, -1)), 1.0);
+  const auto drawn = std::make_unique<SampleBatch>(safe_normalize(Vec3d(1, 0, -1)), 1.0);
   int mirrored = 0;
   constexpr int kSamples = 16;
   for (int sample = 0; sample < kSamples; ++sample) {
@@ -121,7 +122,7 @@ TEST(RefractiveSampling, MirrorsInProportionToTheReflectance) {
 
 TEST(ReflectiveSampling, IsTheMirroredRay) {
   const auto kernel = kernel_of("{'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]}");
-  const auto drawn = std::make_unique<Drawn>(kSlanted, 1.0);
+  const auto drawn = std::make_unique<SampleBatch>(kSlanted, 1.0);
   const Draws draws(1, TileView{0, 0, kTileSide, kTileSide}, 0);
   kernel->sample(drawn->rays, drawn->hits, drawn->surface, PathDraws<double>{draws, drawn->slot, 0},
                  drawn->all, Lobes::all, drawn->out);

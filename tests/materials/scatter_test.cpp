@@ -165,8 +165,8 @@ TEST_P(Scattering, IsTheSameFromLightToViewerAndBack) {
   double worst = 0;
   for (std::size_t i = 0; i < there.size(); ++i) {
     const double change = there[i].light.z < 0 ? far * far / (near * near) : 1;
-    const double f = forth[i].f_cos.x / std::abs(there[i].light.z);
-    const double r = reverse[i].f_cos.x / back[i].light.z * change;
+    const double f = forth[i].pi_bsdf_cos.x / std::abs(there[i].light.z);
+    const double r = reverse[i].pi_bsdf_cos.x / back[i].light.z * change;
     if (f > 0) worst = std::max(worst, std::abs(f - r) / std::max(f, r));
   }
   EXPECT_LT(worst, 1e-12);
@@ -190,7 +190,8 @@ TEST_P(Scattering, WeighsDrawsByWhatItEvaluates) {
       ASSERT_EQ(drawn[i].pdf, told[i].pdf);
       ASSERT_NEAR(length(drawn[i].direction), 1, 1e-14);
       const double scale = 1 / (std::numbers::pi * told[i].pdf);
-      ASSERT_NEAR(length(drawn[i].weight - told[i].f_cos * scale), 0, 1e-13 * (1 + length(drawn[i].weight)));
+      ASSERT_NEAR(length(drawn[i].weight - told[i].pi_bsdf_cos * scale), 0,
+                  1e-13 * (1 + length(drawn[i].weight)));
     }
   }
 }
@@ -217,7 +218,8 @@ TEST_P(Scattering, FloatAndDoubleAgree) {
   const auto a = exact.evaluated(doubles);
   const auto b = single.evaluated(floats);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_NEAR(static_cast<double>(b[i].f_cos.x), a[i].f_cos.x, 2e-4 * (a[i].f_cos.x + 0.01));
+    ASSERT_NEAR(static_cast<double>(b[i].pi_bsdf_cos.x), a[i].pi_bsdf_cos.x,
+                2e-4 * (a[i].pi_bsdf_cos.x + 0.01));
     ASSERT_NEAR(static_cast<double>(b[i].pdf), a[i].pdf, 2e-4 * (a[i].pdf + 0.01));
   }
 }
@@ -241,8 +243,8 @@ void million_points(const Material& tested) {
   int wrong = 0;
   const auto found = material.evaluated(cases);
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const auto& [f_cos, pdf] = found[i];
-    wrong += !(std::isfinite(pdf) && pdf >= 0 && std::isfinite(f_cos.x) && f_cos.x >= 0);
+    const auto& [pi_bsdf_cos, pdf] = found[i];
+    wrong += !(std::isfinite(pdf) && pdf >= 0 && std::isfinite(pi_bsdf_cos.x) && pi_bsdf_cos.x >= 0);
     wrong += pdf > 0 && !transmits && !(dot(cases[i].light, cases[i].geometric) > 0);
   }
   for (int i = 0; i < 2'000; ++i)
@@ -304,11 +306,11 @@ TEST_P(LobesOf, AddUpToTheMaterial) {
   Vec3d ambient;
   for (const Lobes lobes : parts()) {
     const auto part = material_.evaluated(cases, lobes);
-    for (std::size_t i = 0; i < cases.size(); ++i) sum[i] = sum[i] + part[i].f_cos;
+    for (std::size_t i = 0; i < cases.size(); ++i) sum[i] = sum[i] + part[i].pi_bsdf_cos;
     ambient = ambient + material_.ambient({}, lobes);
   }
   for (std::size_t i = 0; i < cases.size(); ++i)
-    ASSERT_NEAR(length(sum[i] - whole[i].f_cos), 0, 1e-12 * (1 + length(sum[i])));
+    ASSERT_NEAR(length(sum[i] - whole[i].pi_bsdf_cos), 0, 1e-12 * (1 + length(sum[i])));
   EXPECT_NEAR(length(ambient - material_.ambient()), 0, 1e-14);
 }
 
@@ -342,7 +344,8 @@ TEST_P(LobesOf, WeighDrawsByWhatTheyEvaluate) {
       if (drawn[i].pdf == 0) continue;
       ASSERT_NEAR(drawn[i].pdf, told[i].pdf, 1e-13 * told[i].pdf);
       const double scale = 1 / (std::numbers::pi * told[i].pdf);
-      ASSERT_NEAR(length(drawn[i].weight - told[i].f_cos * scale), 0, 1e-12 * (1 + length(drawn[i].weight)));
+      ASSERT_NEAR(length(drawn[i].weight - told[i].pi_bsdf_cos * scale), 0,
+                  1e-12 * (1 + length(drawn[i].weight)));
     }
   }
 }
@@ -361,7 +364,7 @@ TEST(Scatter, WhatLooksOtherwiseFromAnotherSideIsGlossy) {
     for (int a = 0; a < kViewers; ++a) {
       Case first = seen_from(viewer(0)), other = seen_from(viewer(a));
       first.light = other.light = safe_normalize(Vec3d(0.3, -0.2, 0.6));
-      same = same && length(probe.evaluated(first).f_cos - probe.evaluated(other).f_cos) < 1e-12;
+      same = same && length(probe.evaluated(first).pi_bsdf_cos - probe.evaluated(other).pi_bsdf_cos) < 1e-12;
     }
     EXPECT_EQ(probe.traits().glossy, !same) << material.name;
   }

@@ -21,7 +21,7 @@ double share_opposite(const Vec3d& d) {
 }
 // Returns the same share for the side face towards which d.x points. A ray reaches the side if its way there
 // is at most `reach`, the way along x to the top, and shorter than along y.
-double share_beside(double dx, double dy, double dz) {
+double share_of_side(double dx, double dy, double dz) {
   const double reach = std::min(1.0, std::abs(dx / dz)), turn = std::abs(dx / dy);
   return reach < turn ? reach - reach * reach / (2 * turn) : turn / 2;
 }
@@ -39,8 +39,8 @@ std::array<double, 6> form_factors(std::size_t from) {
       const auto point = stratified_point(sample, mix_bits(stream));
       const Vec3d d = cosine_direction(normal, double{point.u}, double{point.v});
       shares[from ^ 1u] += share_opposite({d[x], d[y], d[z]});
-      shares[2 * x + (d[x] > 0)] += share_beside(d[x], d[y], d[z]);
-      shares[2 * y + (d[y] > 0)] += share_beside(d[y], d[x], d[z]);
+      shares[2 * x + (d[x] > 0)] += share_of_side(d[x], d[y], d[z]);
+      shares[2 * y + (d[y] > 0)] += share_of_side(d[y], d[x], d[z]);
     }
   for (double& share : shares) share /= double{kStreams} * kSamples;
   return shares;

@@ -57,7 +57,7 @@ TYPED_TEST(Records, BecomeAnotherPrecisionFieldByField) {
 TYPED_TEST(Records, GroupsCoverEveryRay) {
   constexpr int width = kWidth<TypeParam>;
   for (const int count : {0, 1, width - 1, width, width + 1, kBatch}) {
-    const Groups all = Groups::covering(0, count, width);
+    const LaneGroups all = LaneGroups::covering(0, count, width);
     EXPECT_EQ(all.size(), (count + width - 1) / width);
     int next = 0;
     for (const int first : all) {

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/image/files.h"
 #include "core/pictures/decode_process.h"
 #include "core/pictures/picture_file.h"

@@ -32,7 +32,7 @@ Json value_of(const RenderOption& option, const RenderSettings& settings) {
   return Json::parse(option.text(settings));
 }
 
-struct Ends {
+struct ExtremeValues {
   template <class I>
   std::vector<Json> operator()(const RenderOption::Integer<I>& kind) const {
     return {kind.min, kind.max};
@@ -51,14 +51,14 @@ struct Ends {
   std::vector<Json> operator()(const auto&) const { return {}; }
 };
 // Returns the minimum and maximum of an option, or all its choices.
-std::vector<Json> values_at_the_ends(const RenderOption& option) {
-  std::vector<Json> values = std::visit(Ends(), option.kind);
+std::vector<Json> extreme_values(const RenderOption& option) {
+  std::vector<Json> values = std::visit(ExtremeValues(), option.kind);
   if (option.form() == RenderOption::Form::string)
     for (const std::string_view choice : option.choices()) values.push_back(choice);
   return values;
 }
 
-struct Beyond {
+struct InvalidValues {
   template <class I>
   std::vector<Json> operator()(const RenderOption::Integer<I>& kind) const {
     return {kind.min - 1, kind.max + 1, 1.5, "1", true, 1e300};
@@ -75,7 +75,9 @@ struct Beyond {
   std::vector<Json> operator()(const auto&) const { return {"nosuch", "", 0, true}; }
 };
 // Returns values that the option must reject.
-std::vector<Json> values_beyond(const RenderOption& option) { return std::visit(Beyond(), option.kind); }
+std::vector<Json> invalid_values(const RenderOption& option) {
+  return std::visit(InvalidValues(), option.kind);
+}
 
 TEST(RenderOptions, HaveDifferentNamesAndAWord) {
   std::set<std::string_view> names;
@@ -154,8 +156,8 @@ TEST(RenderOptions, BudgetsFreeWhatIsNotAskedWhateverTheSceneSays) {
 
 TEST(RenderOptions, AreReadUpToTheirLimitsAndWrittenAsTheyWere) {
   for (const RenderOption& option : render_options()) {
-    ASSERT_GE(values_at_the_ends(option).size(), 2U) << option.key;
-    for (const Json& value : values_at_the_ends(option)) {
+    ASSERT_GE(extreme_values(option).size(), 2U) << option.key;
+    for (const Json& value : extreme_values(option)) {
       SCOPED_TRACE(std::string(option.key) + " " + value.dump());
       ASSERT_EQ(problem(option, value), "");
       const RenderSettings settings = read({{name_of(option.section), {{option.key, value}}}});
@@ -169,7 +171,7 @@ TEST(RenderOptions, AreReadUpToTheirLimitsAndWrittenAsTheyWere) {
 
 TEST(RenderOptions, AreRefusedBeyondTheirLimits) {
   for (const RenderOption& option : render_options())
-    for (const Json& value : values_beyond(option))
+    for (const Json& value : invalid_values(option))
       EXPECT_TRUE(problem(option, value).starts_with(option.pointer())) << option.key << " " << value;
 }
 
@@ -178,12 +180,12 @@ TEST(RenderOptions, ThatSceneAndRequestShareHaveOneRange) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
     const std::string section(name_of(option.section));
     const std::string unknown = option.section == Section::budget ? "" : "/" + section;  // unknown to scenes
-    for (const Json& value : values_at_the_ends(option)) {
+    for (const Json& value : extreme_values(option)) {
       scene[section][option.key] = value;
       EXPECT_EQ(first_problem(scene), option.in_scene ? "accepted" : unknown) << option.key;
       EXPECT_TRUE(!option.in_scene || value_of(option, load(scene)->render) == value) << option.key;
     }
-    for (const Json& value : values_beyond(option)) {
+    for (const Json& value : invalid_values(option)) {
       scene[section][option.key] = value;
       EXPECT_TRUE(first_problem(scene).starts_with(option.in_scene ? option.pointer() : unknown))
           << option.key << " " << value;
@@ -194,7 +196,7 @@ TEST(RenderOptions, ThatSceneAndRequestShareHaveOneRange) {
 TEST(RenderOptions, OfARequestComeBeforeThoseOfItsScene) {
   for (const RenderOption& option : render_options()) {
     if (!option.in_scene) continue;
-    const std::vector<Json> values = values_at_the_ends(option);
+    const std::vector<Json> values = extreme_values(option);
     Json json = sample("orrery");  // has motion
     json[std::string(name_of(option.section))][option.key] = values[0];
     const auto scene = load(json);

@@ -17,8 +17,8 @@
 namespace orrery::test {
 namespace {
 
-constexpr double kMostError = 5e-4;  // root mean square, off edges
-constexpr float kEdge = 0.1f;        // radiance step between neighbours at an edge
+constexpr double kMaxError = 5e-4;  // root mean square, off edges
+constexpr float kEdge = 0.1f;       // radiance step between neighbours at an edge
 
 struct View {
   Plan plan;
@@ -89,7 +89,7 @@ std::vector<std::string> hard_scenes() {
 }
 
 TEST_P(HardForFloat, IsRenderedAsInDouble) {
-  EXPECT_LE(error_of_choice(load(from_file("tests/scenes/precision/" + GetParam() + ".json"))), kMostError);
+  EXPECT_LE(error_of_choice(load(from_file("tests/scenes/precision/" + GetParam() + ".json"))), kMaxError);
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, HardForFloat, testing::ValuesIn(hard_scenes()), [](const auto& test) {
   std::string name = test.param;
@@ -105,7 +105,7 @@ TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
     scene["image"] = {{"width", small ? 32 : 96}, {"height", small ? 24 : 72}};
     const auto loaded = load(scene);
     EXPECT_FALSE(make_plan(*loaded, {}).double_precision) << name;
-    EXPECT_LE(error_of_choice(loaded), kMostError) << name;
+    EXPECT_LE(error_of_choice(loaded), kMaxError) << name;
   }
 }
 
@@ -301,11 +301,11 @@ TEST(Precision, OfRandomScenesIsThatOfDouble) {
     const View right = view(scene, Precision::double_precision);
     const double error = error_off_edges(view(scene, Precision::single_precision), right);
     const Plan plan = make_plan(*scene, {});
-    (error > kMostError ? float_errs : float_suffices) += 1;
+    (error > kMaxError ? float_errs : float_suffices) += 1;
     if (plan.double_precision) continue;
     ++in_float;
     worst = std::max(worst, error);
-    EXPECT_LE(error, kMostError) << "seed " << seed;
+    EXPECT_LE(error, kMaxError) << "seed " << seed;
   }
   RecordProperty("scenes in float", in_float);
   RecordProperty("scenes for which float suffices", float_suffices);

@@ -68,7 +68,7 @@ Samples render_shifted(const PreparedScene& scene, const Plan& of_picture, float
 
 std::vector<bool> normals_facing_away(const PreparedScene& scene, const Plan& plan) {
   const World<double> world = world_of(scene, plan);
-  const Groups all = Groups::covering(0, kBatch, kWidth<double>);
+  const LaneGroups all = LaneGroups::covering(0, kBatch, kWidth<double>);
   const auto hits = std::make_unique<HitBatch<double>>();
   const auto surface = std::make_unique<SurfaceBatch<double>>();
   AcceleratorCounts counts;

@@ -20,7 +20,7 @@ struct Fading {
 Fading fading_of(const Json& light) {
   const Vec3d c = vector_of(light, "attenuation", {1, 0, 0});
   if (c.y == 0 && c.z == 0) return {std::min(1.0, 1 / c.x), ""};
-  if (c.x == 0 || (c.y != 0 && c.z != 0)) throw Inexpressible("an attenuation of this form");
+  if (c.x == 0 || (c.y != 0 && c.z != 0)) throw UnsupportedFeature("an attenuation of this form");
   const double power = c.y != 0 ? 1 : 2;
   const double distance = c.y != 0 ? c.x / c.y : std::sqrt(c.x / c.z);
   return {0.5 / c.x, " fade_power " + text(power) + " fade_distance " + text(distance)};
@@ -42,7 +42,7 @@ std::string light_of(const Json& light, double exposure) {
   if (type == "directional")
     return "light_source { " + text(normalize(vector_of(light, "from")) * kFarAway) + " rgb " +
            text(intensity) + " parallel point_at 0 }\n";
-  if (type != "point" && type != "spot") throw Inexpressible("the light type " + type);
+  if (type != "point" && type != "spot") throw UnsupportedFeature("the light type " + type);
   const Fading fading = fading_of(light);
   return "light_source { " + text(vector_of(light, "position")) + " rgb " + text(intensity * fading.factor) +
          (type == "spot" ? cone_of(light) : "") + fading.keywords + " }\n";

@@ -11,7 +11,8 @@ namespace {
 // if `b` is 0 and `a` is not.
 Vec3d ratio(const Vec3d& a, const Vec3d& b) {
   const auto one = [](double x, double of) {
-    if (of == 0 && x != 0) throw Inexpressible("ambient light from a channel that is not in the pigment");
+    if (of == 0 && x != 0)
+      throw UnsupportedFeature("ambient light from a channel that is not in the pigment");
     return of == 0 ? 0 : x / of;
   };
   return {one(a.x, b.x), one(a.y, b.y), one(a.z, b.z)};
@@ -24,9 +25,10 @@ Material rough(const Json& m) {
   const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8));
   const Vec3d ambient = ratio(coefficient_of(m, "ka", kd) * cd, kd * cd);
   const Vec3d highlight = coefficient_of(m, "ks", Vec3d(0)) * vector_of(m, "cs", Vec3d(1));
-  if (highlight.x != highlight.y || highlight.y != highlight.z) throw Inexpressible("a coloured highlight");
+  if (highlight.x != highlight.y || highlight.y != highlight.z)
+    throw UnsupportedFeature("a coloured highlight");
   const double shininess = m.value("shininess", 20.0);
-  if (shininess == 0 && highlight.x > 0) throw Inexpressible("a highlight of shininess 0");
+  if (shininess == 0 && highlight.x > 0) throw UnsupportedFeature("a highlight of shininess 0");
   std::string finish = "diffuse 1 ambient rgb " + text(ambient);
   if (highlight.x > 0)
     finish += m.value("shading", "blinn-phong") == "phong"
@@ -37,7 +39,7 @@ Material rough(const Json& m) {
 
 // Schlick's approximation is a reflection that rises from F0 to 1 with the fifth power of 1 - cos.
 Material reflective(const Json& m) {
-  if (m.value("fresnel", "schlick") != "schlick") throw Inexpressible("Fresnel's equations of a metal");
+  if (m.value("fresnel", "schlick") != "schlick") throw UnsupportedFeature("Fresnel's equations of a metal");
   const Vec3d n = vector_of(m, "n"), k = vector_of(m, "k"), one(1);
   const Vec3d top = (n - one) * (n - one) + k * k, bottom = (n + one) * (n + one) + k * k;
   const Vec3d f0(top.x / bottom.x, top.y / bottom.y, top.z / bottom.z);
@@ -50,9 +52,10 @@ Material reflective(const Json& m) {
 // reflected light.)
 Material refractive(const Json& m) {
   if (m.value("fresnel", "schlick") != "exact")
-    throw Inexpressible("Schlick's approximation by the outer cosine");
+    throw UnsupportedFeature("Schlick's approximation by the outer cosine");
   const Vec3d filter = vector_of(m, "filter", Vec3d(1));
-  if (std::min({filter.x, filter.y, filter.z}) <= 0) throw Inexpressible("a filter that lets nothing pass");
+  if (std::min({filter.x, filter.y, filter.z}) <= 0)
+    throw UnsupportedFeature("a filter that lets nothing pass");
   const Vec3d absorption(-std::log(filter.x), -std::log(filter.y), -std::log(filter.z));
   std::string interior = "ior " + text(m.at("ior").get<double>());
   if (filter != Vec3d(1)) interior += " media { absorption rgb " + text(absorption) + " }";
@@ -70,7 +73,7 @@ Material material_of(const Json& material) {
   if (type == "rough") return rough(material);
   if (type == "reflective") return reflective(material);
   if (type == "refractive") return refractive(material);
-  throw Inexpressible("the material type " + type);
+  throw UnsupportedFeature("the material type " + type);
 }
 
 }  // namespace orrery::povray

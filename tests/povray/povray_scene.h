@@ -8,7 +8,7 @@
 namespace orrery {
 
 // Error for a scene that POV-Ray 3.7 cannot express.
-class Inexpressible : public std::runtime_error {
+class UnsupportedFeature : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -18,7 +18,7 @@ namespace orrery {
 namespace {
 
 constexpr double kLargestRms = 0.0002;  // 10 times the error of POV-Ray's 16 bits for a range of 0 to 4
-constexpr double kMostLeftOut = 0.02;
+constexpr double kMaxOmitted = 0.02;
 
 // Scene in our format and, optionally, in POV-Ray's.
 struct Case {
@@ -125,7 +125,7 @@ TEST_P(Povray, PictureEqualsOurs) {
               result.rms, result.rms_of_all, 100 * result.left_out, result.largest, result.largest_x,
               result.largest_y);
   EXPECT_LE(result.rms, kLargestRms);
-  EXPECT_LE(result.left_out, kMostLeftOut);
+  EXPECT_LE(result.left_out, kMaxOmitted);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Povray, testing::ValuesIn(kCases),

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/render/budget.h"
 #include "tests/support/pictures.h"
 
@@ -30,7 +30,7 @@ TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
 TEST(ErrorBudget, IsMissedByFewerSamplesThanAreNamed) {
   RenderRequest r = square(64, 0.9);
   r.samples = 1024;
-  const RenderResult result = rendered(test::load(test::sample("paper")), r, {.most_rays = 1e6});
+  const RenderResult result = rendered(test::load(test::sample("paper")), r, {.max_rays = 1e6});
   EXPECT_LT(*result.budget->settings.samples, 1024);
   EXPECT_FALSE(result.budget->met());
   EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;

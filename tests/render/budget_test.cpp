@@ -297,7 +297,7 @@ TEST(ErrorBudget, NamesWhatCannotBeProved) {
 
 TEST(ErrorBudget, StopsAtTheRaysThatThereMayBe) {
   const auto scene = test::load(test::sample("cornell-box"));
-  const RenderResult result = rendered(scene, with_error(64, 0.03, Space::display), {.most_rays = 1e6});
+  const RenderResult result = rendered(scene, with_error(64, 0.03, Space::display), {.max_rays = 1e6});
   EXPECT_FALSE(result.budget->met());
   EXPECT_LE(static_cast<double>(result.stats.counts.rays.total()), 1e6);
   EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;
@@ -409,7 +409,7 @@ TEST(TimeBudget, FailsAsSoonAsItIsSurelyMissed) {
     FAIL() << "expected BudgetMissed";
   } catch (const BudgetMissed& missed) {
     EXPECT_FALSE(missed.outcome().seconds_met);
-    EXPECT_NEAR(*missed.outcome().least_s, 1.024, 0.2);
+    EXPECT_NEAR(*missed.outcome().min_s, 1.024, 0.2);
     EXPECT_NE(std::string(missed.what()).find("the first pass would take about"), std::string::npos);
     EXPECT_FALSE(missed.certificate().total().rms) << "nothing is known of a picture that was not made";
   }
@@ -421,7 +421,7 @@ TEST(TimeBudget, FailsAsSoonAsItIsSurelyMissed) {
     FAIL() << "expected BudgetMissed";
   } catch (const BudgetMissed& missed) {
     EXPECT_FALSE(missed.outcome().seconds_met);
-    EXPECT_FALSE(missed.outcome().least_s) << "a few tiles tell nothing";
+    EXPECT_FALSE(missed.outcome().min_s) << "a few tiles tell nothing";
   }
   FakeClock in_time;
   r.seconds = 2;
@@ -439,7 +439,7 @@ TEST(TimeBudget, GoesBackToWhatWasMade) {
   const RenderRequest r = with_error(256, 0.0002, Space::linear);
   FakeClock clock;
   RenderControl control = clock.control();
-  control.most_s = 0.1;  // a pass takes 0.064
+  control.max_s = 0.1;  // a pass takes 0.064
   const RenderResult late = rendered(scene, r, control);
   EXPECT_LT(clock.now_s, 0.1);
   EXPECT_GT(clock.tiles, 64) << "another pass began";

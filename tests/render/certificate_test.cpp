@@ -63,21 +63,21 @@ void expect_within_bounds(const Json& scene, const RenderRequest& cut, Tightness
   const std::vector<Ray<double>> rays = camera_rays(plan);
   const auto planned = test::Tracing(loaded, cut).trace(rays);
   const auto full = test::Tracing(loaded, request(20, 1e-5)).trace(rays);
-  double most_bound = 0, most_error = 0, bounds = 0, errors = 0;
+  double max_bound = 0, max_error = 0, bounds = 0, errors = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Vec3d bound = product(planned[i].weights, plan.cut_range);
     const Vec3d rest = product(full[i].weights, plan.cut_range);
     const Vec3d error = abs(planned[i].radiance - full[i].radiance);
     for (const auto channel : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
       ASSERT_LE(error.*channel, bound.*channel + rest.*channel + 1e-12) << scene.dump().substr(0, 2000);
-      most_bound = std::max(most_bound, bound.*channel);
-      most_error = std::max(most_error, error.*channel);
+      max_bound = std::max(max_bound, bound.*channel);
+      max_error = std::max(max_error, error.*channel);
       bounds += bound.*channel * bound.*channel;
       errors += error.*channel * error.*channel;
     }
   }
-  if (most_error < 1e-4) return;
-  tightness.of_max.push_back(most_bound / most_error);
+  if (max_error < 1e-4) return;
+  tightness.of_max.push_back(max_bound / max_error);
   tightness.of_rms.push_back(std::sqrt(bounds / errors));
 }
 
@@ -216,7 +216,7 @@ TEST(Ledger, CountsASubstituteThatIsTooBright) {
 // Returns the number of images, of 60 seeds with 4 samples, whose bound is at least their error. The
 // reference has `samples_of_truth` samples. Calls check(certificate, error) for each image.
 template <class Check>
-int held_over_seeds(const Json& scene, RenderRequest r, int samples_of_truth, const Check& check) {
+int count_bounded_seeds(const Json& scene, RenderRequest r, int samples_of_truth, const Check& check) {
   const auto loaded = test::load(scene);
   const auto values_of = [&](const Film& film) {
     const std::vector<double> linear = test::linear_values(film);
@@ -248,7 +248,7 @@ TEST(Certificate, OfSamplesHoldsOverSeeds) {
                                {"radius", 0.025},
                                {"material", "lamp"}});
   for (const Json& scene : {test::sample("paper"), test::sample("glass"), dots}) {
-    const int held = held_over_seeds(scene, request(5), 1024, [](const Certificate&, double) {});
+    const int held = count_bounded_seeds(scene, request(5), 1024, [](const Certificate&, double) {});
     EXPECT_GE(held, 56) << scene["title"];
   }
 }
@@ -266,7 +266,7 @@ TEST(Certificate, OfPathsHoldsOnADisplay) {
       const auto check = [&](const Certificate& certificate, double error) {
         EXPECT_GE(*certificate.estimate, 0.9 * error) << name << " " << reuse;
       };
-      EXPECT_GE(held_over_seeds(test::sample(name), r, 512, check), 56) << name << " " << reuse;
+      EXPECT_GE(count_bounded_seeds(test::sample(name), r, 512, check), 56) << name << " " << reuse;
     }
   }
 }
@@ -397,7 +397,7 @@ TEST(Certificate, NeverTellsAnErrorOfNothingFromSamples) {
   EXPECT_EQ(certificate.estimate, 0);
   EXPECT_EQ(certificate.total().kind, Bound::Kind::estimated);
   EXPECT_GE(*certificate.total().rms, 2 * std::sqrt(std::log(20) / (64 * 64)) / 2);
-  EXPECT_EQ(certificate.total().rms, certificate.least_provable) << "and none can tell less";
+  EXPECT_EQ(certificate.total().rms, certificate.min_provable) << "and none can tell less";
   r.technique = "path";  // a lamp sampled by area has no bound
   EXPECT_EQ(test::rendered(empty, r).certificate.total().kind, Bound::Kind::unknown);
 }
@@ -437,7 +437,7 @@ TEST(Clamp, LedgerIsWhatIsTakenAway) {
       const test::Picture all = test::render(loaded, r);
       r.clamp_indirect = 0.3;
       const test::Picture some = test::render(loaded, r);
-      const Clamped& away = some.stats.clamped;
+      const ClampLedger& away = some.stats.clamped;
       EXPECT_GT(away.mean(0), 0) << name;
       std::size_t c = 0;
       for (float Vec3f::*channel : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
@@ -478,11 +478,11 @@ TEST(Certificate, OfPassesBoundsThatOfTheWhole) {
   r.samples = 8;
   const PreparedScene prepared(loaded);
   const SettledPlan plan = settle(prepared, make_plan(*loaded, r));
-  const Omitted whole =
+  const OmissionLedger whole =
       render_frame(prepared, plan, FilmStorage::linear32, test::shared_pool()).stats.omitted;
   ProgressiveRender passes(prepared, plan, test::shared_pool(), {});
   for (const int samples : {2, 4, 8}) passes.refine(samples);
-  const Omitted& joined = passes.stats().omitted;
+  const OmissionLedger& joined = passes.stats().omitted;
   EXPECT_EQ(joined.samples, 8);
   EXPECT_NEAR(joined.mean(), whole.mean(), 1e-9);
   EXPECT_GE(joined.rms(), whole.rms() * (1 - 1e-9));

@@ -55,13 +55,13 @@ class StopsAtThirdBatch final : public Accelerator<float> {
  public:
   explicit StopsAtThirdBatch(std::shared_ptr<const Accelerator<float>> behind) : behind_(std::move(behind)) {}
   AcceleratorFacts facts() const override { return behind_->facts(); }
-  void closest(const RayBatch<float>& rays, const Groups& groups, HitBatch<float>& hits,
+  void closest(const RayBatch<float>& rays, const LaneGroups& groups, HitBatch<float>& hits,
                AcceleratorCounts& counts) const override {
     if (++batches == 3) stop.request_stop();
     if (batches > 1000) throw std::runtime_error("it goes on");
     behind_->closest(rays, groups, hits, counts);
   }
-  void occlude(RayBatch<float>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(RayBatch<float>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
     behind_->occlude(rays, groups, counts);
   }
 

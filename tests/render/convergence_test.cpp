@@ -48,8 +48,7 @@ double squared_bias(const std::vector<double>& errors) {
 
 // Returns b^2 in its own standard errors, over seeds. Errors of stratified samples fall faster than 1 / n,
 // which makes b^2 negative.
-double standard_errors_above_nothing(const Json& json, const RenderRequest& r,
-                                     const RenderRequest& unbiased) {
+double bias_in_standard_errors(const Json& json, const RenderRequest& r, const RenderRequest& unbiased) {
   constexpr int kSeeds = 8;
   const auto scene = test::load(json);
   std::array<std::vector<double>, 2> truth;
@@ -89,14 +88,14 @@ TEST(Convergence, LeavesNoBiasInAnyModeThatHasNone) {
   for (const Mode& mode : modes) {
     RenderRequest r = test::size(16, 16);
     mode.set(r);
-    EXPECT_LE(standard_errors_above_nothing(test::sample(mode.scene), r, r), 3) << mode.name;
+    EXPECT_LE(bias_in_standard_errors(test::sample(mode.scene), r, r), 3) << mode.name;
   }
 }
 
 TEST(Convergence, ShowsTheBiasOfAClamp) {
   RenderRequest unbiased = test::size(16, 16), clamped = unbiased;
   clamped.clamp_indirect = 0.1;
-  EXPECT_GT(standard_errors_above_nothing(test::sample("cornell-box"), clamped, unbiased), 3);
+  EXPECT_GT(bias_in_standard_errors(test::sample("cornell-box"), clamped, unbiased), 3);
 }
 
 }  // namespace

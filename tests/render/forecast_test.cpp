@@ -20,8 +20,8 @@ RenderRequest square() {
   return r;
 }
 
-Forecast foretold(const std::shared_ptr<const Scene>& scene, const RenderRequest& request,
-                  WorkerPool& pool = test::shared_pool(), const RenderControl& control = {}) {
+Forecast extrapolated(const std::shared_ptr<const Scene>& scene, const RenderRequest& request,
+                      WorkerPool& pool = test::shared_pool(), const RenderControl& control = {}) {
   const PreparedScene prepared(scene);
   return forecast(prepared, settle(prepared, make_plan(*scene, request)), pool, control);
 }
@@ -34,7 +34,7 @@ TEST(Forecast, ComesToTheSamplesAndRaysOfABudget) {
       RenderRequest r = square();
       r.error = error;
       r.space = Space::display;
-      const Forecast told = foretold(scene, r);
+      const Forecast told = extrapolated(scene, r);
       const RenderResult made = test::rendered(scene, r);
       const int samples = *told.outcome.settings.samples, taken = *made.budget->settings.samples;
       EXPECT_LE(std::max(samples, taken), 2 * std::min(samples, taken)) << name << error;
@@ -52,13 +52,13 @@ TEST(Forecast, OfGivenSamplesTellsTheirRaysAndError) {
     RenderRequest r = square();
     r.precision = Precision::double_precision;
     r.samples = 6;
-    const Forecast told = foretold(scene, r);
+    const Forecast told = extrapolated(scene, r);
     const RenderResult made = test::rendered(scene, r);
     EXPECT_EQ(told.outcome.settings.samples, 6);
     EXPECT_NEAR(told.rays / static_cast<double>(made.stats.counts.rays.total()), 1, 0.15) << name;
     EXPECT_NEAR(*told.certificate.estimate / *made.certificate.estimate, 1, 0.4) << name;
     r.samples = 1;
-    const Forecast single = foretold(scene, r);
+    const Forecast single = extrapolated(scene, r);
     const RenderResult one = test::rendered(scene, r);
     EXPECT_NEAR(single.rays / static_cast<double>(one.stats.counts.rays.total()), 1, 0.15) << name;
     EXPECT_TRUE(std::isfinite(single.seconds)) << name;
@@ -71,7 +71,7 @@ TEST(Forecast, OfABudgetOfTimeFillsIt) {
   const auto scene = load(sample("cornell-box"));
   RenderRequest r = square();
   r.seconds = 100;
-  const Forecast told = foretold(scene, r, test::shared_pool(), {.used_s = [] { return 0.0; }});
+  const Forecast told = extrapolated(scene, r, test::shared_pool(), {.used_s = [] { return 0.0; }});
   EXPECT_LE(told.outcome.used_s, 100);
   EXPECT_TRUE(told.outcome.used_s > 50 || told.outcome.settings.samples == 4096) << told.outcome.used_s;
   EXPECT_TRUE(told.outcome.met());
@@ -83,7 +83,7 @@ TEST(Forecast, DependsOnThePlanAlone) {
     const auto scene = load(sample(name));
     RenderRequest r = square();
     r.error = 0.03;
-    const Forecast a = foretold(scene, r), b = foretold(scene, r, one);
+    const Forecast a = extrapolated(scene, r), b = extrapolated(scene, r, one);
     EXPECT_EQ(a.outcome.settings.samples, b.outcome.settings.samples) << name;
     EXPECT_EQ(a.rays, b.rays) << name;
     EXPECT_EQ(a.certificate.total().rms, b.certificate.total().rms) << name;
@@ -95,7 +95,7 @@ TEST(Forecast, OfGivenSamplesIsNotEndedByLimits) {
   RenderRequest r = square();
   r.samples = 4096;
   const Forecast told =
-      foretold(load(sample("paper")), r, test::shared_pool(), {.most_rays = 10, .most_s = 1e-3});
+      extrapolated(load(sample("paper")), r, test::shared_pool(), {.max_rays = 10, .max_s = 1e-3});
   EXPECT_EQ(told.outcome.settings.samples, 4096);
 }
 
@@ -106,7 +106,7 @@ TEST(Forecast, TellsWhatOnlyTilesLeaveOut) {
   r.samples = 4;
   r.max_depth = 8;
   ASSERT_EQ(test::rendered(scene, r).stats.counts.cut_rays, 3u);
-  const Bound bound = foretold(scene, r).certificate.terms.front().bound;
+  const Bound bound = extrapolated(scene, r).certificate.terms.front().bound;
   EXPECT_EQ(bound.kind, Bound::Kind::estimated);
   EXPECT_GT(*bound.rms, 0);
 }
@@ -115,10 +115,10 @@ TEST(Forecast, SaysWhatWouldBeMissed) {
   RenderRequest r = square();
   r.error = 1e-6;
   r.on_miss = OnMiss::fail;
-  const BudgetOutcome told = foretold(load(sample("paper")), r).outcome;
+  const BudgetOutcome told = extrapolated(load(sample("paper")), r).outcome;
   EXPECT_FALSE(told.met());
   EXPECT_NE(told.reason.find("prove no less"), std::string::npos) << told.reason;
-  EXPECT_GT(*told.least_error, 1e-6);
+  EXPECT_GT(*told.min_error, 1e-6);
 }
 
 // The pilot is the whole image, or the image is smaller than a block.
@@ -128,7 +128,7 @@ TEST(Forecast, IsThereForTheSmallestPictures) {
     r.width = r.height = side;
     r.error = 0.05;
     r.technique = "path";
-    const Forecast told = foretold(load(sample("cornell-box")), r);
+    const Forecast told = extrapolated(load(sample("cornell-box")), r);
     EXPECT_GT(told.rays, side * side) << side;
     EXPECT_TRUE(std::isfinite(told.seconds)) << side;
   }
@@ -137,7 +137,7 @@ TEST(Forecast, IsThereForTheSmallestPictures) {
 TEST(Forecast, EndsWhenItIsStopped) {
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(foretold(load(sample("paper")), square(), test::shared_pool(), {.stop = stop.get_token()}),
+  EXPECT_THROW(extrapolated(load(sample("paper")), square(), test::shared_pool(), {.stop = stop.get_token()}),
                Cancelled);
 }
 

@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Golden,
                          testing::Values("paper", "glass", "mirrors", "light-many", "material-reflective",
                                          "shape-mesh", "shape-infinite-cylinder", "instances", "orrery",
                                          "flag", "technique-distributed"),
-                         by_name);
+                         parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

@@ -81,7 +81,7 @@ TEST_P(EveryScene, LooksTheSameWithShadowsPredicted) {
   covers("F18");
   for (RenderRequest request : {in_float(small()), in_double(small())}) {
     const Picture reference = render(scene_, request);
-    EXPECT_EQ(reference.stats.counts.accelerator.proposals, 0u);
+    EXPECT_EQ(reference.stats.counts.accelerator.predicted_occluders, 0u);
     for (const bool reorder : {false, true})
       for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
         request.reorder = reorder;
@@ -143,7 +143,7 @@ TEST_P(EveryScene, CountsCameraRaysAndNoImpossibleOnes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(sample_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(sample_names()), parameter_name);
 
 // Returns a scene of random shapes, materials and lights. The eye may be anywhere, also inside of a shape.
 Json random_scene(std::uint64_t seed) {

@@ -39,8 +39,8 @@ TEST(Pilot, ForetellsTheRaysOfAPicture) {
   for (int i = 0; i < 100; ++i) {
     const auto [pilot, picture] = traced(random_optics(random), kSide);
     ASSERT_EQ(pilot.counts.rays.camera * 64, picture.counts.rays.camera);
-    const double foretold = 64.0 * static_cast<double>(pilot.counts.rays.total());
-    near += std::abs(foretold / static_cast<double>(picture.counts.rays.total()) - 1) <= 0.1;
+    const double extrapolated = 64.0 * static_cast<double>(pilot.counts.rays.total());
+    near += std::abs(extrapolated / static_cast<double>(picture.counts.rays.total()) - 1) <= 0.1;
   }
   EXPECT_GE(near, 95);
 }

@@ -90,16 +90,18 @@ TEST(Stages, CountWhatWasProposedAndProved) {
     const Picture picture = render(balls_over_a_floor(), asking(prediction));
     const AcceleratorCounts& counts = picture.stats.counts.accelerator;
     SCOPED_TRACE(name_of(prediction));
-    EXPECT_GT(counts.proofs, 0u);
-    EXPECT_GT(counts.proposals, counts.proofs);
+    EXPECT_GT(counts.verified_occluders, 0u);
+    EXPECT_GT(counts.predicted_occluders, counts.verified_occluders);
   }
-  EXPECT_EQ(render(balls_over_a_floor(), asking(Prediction::none)).stats.counts.accelerator.proposals, 0u);
+  EXPECT_EQ(
+      render(balls_over_a_floor(), asking(Prediction::none)).stats.counts.accelerator.predicted_occluders,
+      0u);
 }
 
 TEST(Stages, NetworkProvesMoreThanChance) {
   const auto share = [](Prediction prediction) {
     const AcceleratorCounts counts = render(sample("paper"), asking(prediction)).stats.counts.accelerator;
-    return static_cast<double>(counts.proofs) / static_cast<double>(counts.proposals);
+    return static_cast<double>(counts.verified_occluders) / static_cast<double>(counts.predicted_occluders);
   };
   EXPECT_GT(share(Prediction::network), 1.5 * share(Prediction::random));
 }
@@ -110,8 +112,8 @@ TEST(Stages, CountTheSameTwice) {
     const auto counts = [&](int threads) {
       return render(sample("paper"), asking(prediction), threads).stats.counts.accelerator;
     };
-    EXPECT_EQ(counts(1).proofs, counts(2).proofs);
-    EXPECT_EQ(counts(1).proposals, counts(3).proposals);
+    EXPECT_EQ(counts(1).verified_occluders, counts(2).verified_occluders);
+    EXPECT_EQ(counts(1).predicted_occluders, counts(3).predicted_occluders);
   }
 }
 

@@ -19,9 +19,9 @@ namespace {
 constexpr bool kForeground = false;
 
 // Yields until `done`, for at most a minute. Returns `done`.
-bool give_way_until(const std::atomic<bool>& done, Turn& turn) {
+bool give_way_until(const std::atomic<bool>& done, TimeSlice& turn) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (!done && std::chrono::steady_clock::now() < end) turn.give_way();
+  while (!done && std::chrono::steady_clock::now() < end) turn.yield();
   return done;
 }
 
@@ -29,7 +29,7 @@ TEST(WorkerPool, DoesEveryStepOnceWithAWorkerOfItsOwn) {
   WorkerPool pool(3);
   std::mutex mutex;
   std::multiset<int> steps, busy;
-  pool.for_each(200, kForeground, [&](int step, int worker, Turn&) {
+  pool.for_each(200, kForeground, [&](int step, int worker, TimeSlice&) {
     {
       const std::lock_guard lock(mutex);
       steps.insert(step);
@@ -52,14 +52,14 @@ TEST(WorkerPool, ALongStepLetsOthersGoFirst) {
     std::atomic<int> begun = 0;
     std::atomic<bool> small_done = false, seen = true;
     std::thread large([&] {
-      pool.for_each(threads, kForeground, [&](int, int, Turn& turn) {
+      pool.for_each(threads, kForeground, [&](int, int, TimeSlice& turn) {
         ++begun;
         if (!give_way_until(small_done, turn)) seen = false;
         return true;
       });
     });
     while (begun < threads) std::this_thread::yield();  // all threads are busy
-    pool.for_each(4, kForeground, [](int, int, Turn&) { return true; });
+    pool.for_each(4, kForeground, [](int, int, TimeSlice&) { return true; });
     small_done = true;
     large.join();
     EXPECT_TRUE(seen) << threads;
@@ -73,17 +73,17 @@ TEST(WorkerPool, AStepThatNeverGivesWayStopsNobody) {
     std::atomic<int> begun = 0;
     std::atomic<bool> done = false;
     std::thread stubborn([&] {
-      pool.for_each(2 * threads, kForeground, [&](int, int, Turn& turn) {
+      pool.for_each(2 * threads, kForeground, [&](int, int, TimeSlice& turn) {
         ++begun;
         EXPECT_TRUE(test::eventually([&] { return done.load(); }));
-        turn.give_way();  // continues, although it lost its slot
+        turn.yield();  // continues, although it lost its slot
         return true;
       });
     });
     while (begun < threads) std::this_thread::yield();  // all threads are busy
     std::atomic<bool> task_done = false;
     pool.enqueue(kForeground, [&] { task_done = true; });
-    pool.for_each(4, kForeground, [](int, int, Turn&) { return true; });
+    pool.for_each(4, kForeground, [](int, int, TimeSlice&) { return true; });
     EXPECT_TRUE(test::eventually([&] { return task_done.load(); }));
     EXPECT_EQ(begun, threads);
     done = true;
@@ -100,7 +100,7 @@ TEST(WorkerPool, ATaskThatTakesLongStopsNobody) {
     seen = test::eventually([&] { return done.load(); });
   });
   while (!begun) std::this_thread::yield();
-  pool.for_each(3, kForeground, [](int, int, Turn&) { return true; });
+  pool.for_each(3, kForeground, [](int, int, TimeSlice&) { return true; });
   done = true;
   EXPECT_TRUE(test::eventually([&] { return seen.load(); }));
 }
@@ -113,7 +113,7 @@ TEST(WorkerPool, StepsThatGaveWayGoOnInTurn) {
   std::vector<std::thread> callers;
   for (int i = 0; i < kLoops; ++i)
     callers.emplace_back([&] {
-      pool.for_each(2, kForeground, [&](int, int, Turn& turn) {
+      pool.for_each(2, kForeground, [&](int, int, TimeSlice& turn) {
         if (++present == 2 * kLoops) all_present = true;
         if (!give_way_until(all_present, turn)) seen = false;
         EXPECT_LE(++running, 2);  // as many as there are threads, however many yielded
@@ -126,7 +126,7 @@ TEST(WorkerPool, StepsThatGaveWayGoOnInTurn) {
 }
 
 // Pass that expires once, and is renewed on request.
-struct OnePass final : Pass {
+struct OnePass final : SlotLease {
   bool expired() const override { return !asked.exchange(true); }
   void renew() override {
     paused = true;
@@ -147,8 +147,8 @@ TEST(WorkerPool, NoStepRunsWhileAPassIsRenewed) {
   std::thread caller([&] {
     pool.for_each(
         3, kForeground,
-        [&](int, int, Turn& turn) {
-          while (!ends) ++progress, turn.give_way();
+        [&](int, int, TimeSlice& turn) {
+          while (!ends) ++progress, turn.yield();
           return true;
         },
         &pass);
@@ -158,7 +158,7 @@ TEST(WorkerPool, NoStepRunsWhileAPassIsRenewed) {
   // free.
   EXPECT_TRUE(test::eventually([&] {
     const std::uint64_t before = progress;
-    pool.for_each(20, kForeground, [](int, int, Turn&) { return true; });
+    pool.for_each(20, kForeground, [](int, int, TimeSlice&) { return true; });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     return progress == before;
   }));
@@ -175,7 +175,7 @@ TEST(WorkerPool, APassThatIsNotRenewedEndsTheLoop) {
   pass.fails = true;
   pass.give_back.release();
   std::atomic<int> begun = 0;
-  const auto work = [&](int, int, Turn& turn) {
+  const auto work = [&](int, int, TimeSlice& turn) {
     ++begun;
     return give_way_until(pass.paused, turn);
   };
@@ -187,7 +187,7 @@ TEST(WorkerPool, TasksAreDoneWhileALongStepRuns) {
   WorkerPool pool(1);
   std::atomic<bool> done = false;
   bool seen = false;
-  pool.for_each(1, kForeground, [&](int, int, Turn& turn) {
+  pool.for_each(1, kForeground, [&](int, int, TimeSlice& turn) {
     pool.enqueue(kForeground, [&] { done = true; });
     seen = give_way_until(done, turn);
     return true;
@@ -198,14 +198,14 @@ TEST(WorkerPool, TasksAreDoneWhileALongStepRuns) {
 TEST(WorkerPool, AFailureEndsTheLoopAndIsThrown) {
   WorkerPool pool(2);
   std::atomic<int> begun = 0;
-  const auto fail = [&](int, int, Turn&) -> bool {
+  const auto fail = [&](int, int, TimeSlice&) -> bool {
     ++begun;
     throw std::runtime_error("a step failed");
   };
   EXPECT_THROW(pool.for_each(1000, kForeground, fail), std::runtime_error);
   EXPECT_LE(begun, 2);
   begun = 0;
-  pool.for_each(1000, kForeground, [&](int, int, Turn&) { return ++begun < 5; });
+  pool.for_each(1000, kForeground, [&](int, int, TimeSlice&) { return ++begun < 5; });
   EXPECT_LE(begun, 6);
 }
 

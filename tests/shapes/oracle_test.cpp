@@ -126,7 +126,7 @@ TEST_P(ShapeOracle, DoubleFindsWhatLongDoubleFinds) {
   check<double>();
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, ShapeOracle, testing::ValuesIn(shape_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(Shapes, ShapeOracle, testing::ValuesIn(shape_names()), parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

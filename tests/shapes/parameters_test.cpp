@@ -7,23 +7,23 @@
 namespace orrery::test {
 namespace {
 
-struct Found {
+struct SurfaceParameters {
   Vec3d position, geometric, tangent;
   double u, v, s, t;
 };
 
-std::vector<Found> parameters_of(const Json& scene_json, const Rays<double>& rays) {
+std::vector<SurfaceParameters> parameters_of(const Json& scene_json, const Rays<double>& rays) {
   const auto scene = load(scene_json);
   const auto batch = std::make_unique<RayBatch<double>>();
   const auto hits = std::make_unique<HitBatch<double>>();
   const auto surface = std::make_unique<SurfaceBatch<double>>();
-  std::vector<Found> found;
+  std::vector<SurfaceParameters> found;
   for (const auto& shapes : scene->shapes) {
     if (shapes->size() == 0) continue;
     const auto kernel = shapes->kernel(double(), 0);
     for_each_batch<double>(rays, [&](std::span<const Ray<double>> some, std::size_t) {
       fill_batch(some, std::numeric_limits<double>::infinity(), *batch);
-      const Groups groups = groups_of(*batch);
+      const LaneGroups groups = groups_of(*batch);
       hits->t = batch->t_max;
       hits->primitive.values.fill(kNoPrimitive);
       AcceleratorCounts counts;
@@ -45,7 +45,7 @@ TEST_P(ShapeParameters, TangentsAreUnitAndLieInTheSurface) {
   for (const Json& object : shape_samples(GetParam())) {
     const auto found = parameters_of(scene_with(object), rays_at<double>(object, {1, Vec3d()}, 400, 3));
     ASSERT_GT(found.size(), 20u) << object;
-    for (const Found& f : found) {
+    for (const SurfaceParameters& f : found) {
       ASSERT_NEAR(length(f.tangent), 1, 1e-12) << object;
       ASSERT_NEAR(dot(f.tangent, f.geometric), 0, 1e-9) << object;
       ASSERT_TRUE(std::isfinite(f.u) && std::isfinite(f.v) && std::isfinite(f.s) && std::isfinite(f.t));
@@ -95,7 +95,7 @@ TEST(Parameters, OfASphereAreLongitudeAndLatitude) {
 TEST(Parameters, OfAMeshAreItsTextureCoordinates) {
   const Json mesh = json(R"({'type': 'mesh', 'positions': [[0, 0, 0], [4, 0, 0], [0, 4, 0]],
                              'indices': [[0, 1, 2]], 'uvs': [[0.5, 0], [0.5, 1], [0.25, 0]]})");
-  const Found f = parameters_of(scene_with(mesh), {{{1, 1, 5}, {0, 0, -1}}}).at(0);
+  const SurfaceParameters f = parameters_of(scene_with(mesh), {{{1, 1, 5}, {0, 0, -1}}}).at(0);
   EXPECT_NEAR(f.u, 0.25, 1e-15);
   EXPECT_NEAR(f.v, 0.25, 1e-15);
   EXPECT_NEAR(f.s, 0.4375, 1e-15);

@@ -107,7 +107,7 @@ TEST_P(RayContract, EqualHitsGoToTheLowestNumber) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, RayContract, testing::ValuesIn(shape_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(Shapes, RayContract, testing::ValuesIn(shape_names()), parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

@@ -40,8 +40,7 @@ class Leaver {
       const Vec3d normal = safe_normalize(Vec3d(spots_[i].geometric));
       Vec3d direction = random.direction_above(normal);
       const Vec3d along = direction - normal * dot(direction, normal);
-      if (i % 2)
-        direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(kLeastTilt, 0.1));
+      if (i % 2) direction = safe_normalize(safe_normalize(along) + normal * random.magnitude(kMinTilt, 0.1));
       up.push_back(spots_[i].leaving(Vec3<T>(direction)));
       down.push_back(spots_[i].leaving(Vec3<T>(direction - normal * (2 * dot(direction, normal)))));
     }
@@ -60,7 +59,7 @@ class Leaver {
   }
 
  private:
-  static constexpr double kLeastTilt = 256 * static_cast<double>(std::numeric_limits<T>::epsilon());
+  static constexpr double kMinTilt = 256 * static_cast<double>(std::numeric_limits<T>::epsilon());
 
   // Returns false if a downward ray at an edge leaves through the next face at once.
   bool runs_inside(const Ray<T>& ray, T step) const {
@@ -73,7 +72,7 @@ class Leaver {
   Target<long double> exact_;
   Rays<T> rays_;
   std::vector<Hit<T>> hits_;
-  std::vector<Spot<T>> spots_;
+  std::vector<SurfaceSample<T>> spots_;
 };
 
 class Respawn : public testing::TestWithParam<std::string> {
@@ -109,7 +108,7 @@ TEST_P(Respawn, NoFloatRayMeetsThePlaceItLeft) {
   check<float>(150'000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Respawn, testing::ValuesIn(shape_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(Shapes, Respawn, testing::ValuesIn(shape_names()), parameter_name);
 
 TEST(Step, IsBelowTwoNanometresAThousandKilometresAway) {
   covers("A17");

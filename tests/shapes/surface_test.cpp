@@ -16,15 +16,15 @@ constexpr long double kUlp = std::numeric_limits<T>::epsilon();
 
 // One shape at one placement, with rays that hit it and their surface points.
 template <class T>
-struct Sitting {
+struct PlacedShape {
   Json scene;
   Target<T> shape;
   Exact exact;
   Rays<T> rays;
   std::vector<Hit<T>> hits;
-  std::vector<Spot<T>> spots;
+  std::vector<SurfaceSample<T>> spots;
 
-  Sitting(const Json& object, const Placement& placement, int count)
+  PlacedShape(const Json& object, const Placement& placement, int count)
       : scene(scene_with(placement.of(object))), shape(scene), exact(scene) {
     for (const auto& ray : rays_at<T>(object, placement, count, 17))
       if (shape.closest(ray).met()) rays.push_back(ray);
@@ -41,12 +41,12 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
  protected:
   // Calls check(sitting, placement) for every sample of the type at every placement.
   template <class T, class Check>
-  void for_each_sitting(int rays, const Check& check) {
+  void for_each_placed_shape(int rays, const Check& check) {
     for (const Json& object : shape_samples(GetParam()))
       for (const Placement& placement : placements<T>()) {
         SCOPED_TRACE(object.dump() + " of size " + std::to_string(placement.size) + " at " +
                      std::to_string(placement.offset.x));
-        const Sitting<T> sitting(object, placement, rays);
+        const PlacedShape<T> sitting(object, placement, rays);
         EXPECT_GT(sitting.hits.size(), static_cast<std::size_t>(rays / 20));
         check(sitting, placement);
       }
@@ -55,7 +55,7 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
   // Positions are within 8 ulp of the largest coordinate. Normals face the ray, with unit length to 4 ulp.
   template <class T>
   void check_positions() {
-    for_each_sitting<T>(1000, [](const Sitting<T>& s, const Placement& placement) {
+    for_each_placed_shape<T>(1000, [](const PlacedShape<T>& s, const Placement& placement) {
       int off = 0, turned = 0, long_or_short = 0;
       for (std::size_t i = 0; i < s.hits.size(); ++i) {
         const Vec normal(s.spots[i].geometric), shading(s.spots[i].normal), at(s.spots[i].position);
@@ -85,7 +85,7 @@ TEST_P(ShapeSurface, DoublePositionsLieOnTheShape) { check_positions<double>(); 
 
 // Neighbouring points of the surface, found by other rays, lie at right angles to the normal.
 TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
-  for_each_sitting<double>(1000, [](const Sitting<double>& s, const Placement& placement) {
+  for_each_placed_shape<double>(1000, [](const PlacedShape<double>& s, const Placement& placement) {
     const long double h = 1e-6L * static_cast<long double>(placement.size);
     int judged = 0, slanted = 0;
     for (std::size_t i = 0; i < s.hits.size(); ++i) {
@@ -117,7 +117,7 @@ TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
 // A ray from a closed convex shape outward misses, and a ray from just inside hits the surface again.
 TEST_P(ShapeSurface, NormalsOfClosedShapesPointOutward) {
   covers("A38");
-  for_each_sitting<double>(1000, [](const Sitting<double>& s, const Placement& placement) {
+  for_each_placed_shape<double>(1000, [](const PlacedShape<double>& s, const Placement& placement) {
     if (!s.shape.traits(0).closed || !s.shape.traits(0).convex) return;
     const long double h = 1e-3L * static_cast<long double>(placement.size);
     for (std::size_t i = 0; i < s.hits.size(); ++i) {
@@ -129,7 +129,7 @@ TEST_P(ShapeSurface, NormalsOfClosedShapesPointOutward) {
 }
 
 TEST_P(ShapeSurface, BoundsHoldEveryPosition) {
-  for_each_sitting<float>(500, [](const Sitting<float>& s, const Placement&) {
+  for_each_placed_shape<float>(500, [](const PlacedShape<float>& s, const Placement&) {
     for (std::size_t i = 0; i < s.hits.size(); ++i) {
       const Bounds<float> box = padded<float>(s.shape.bounds(s.hits[i].primitive));
       const Vec3f& p = s.spots[i].position;
@@ -139,7 +139,7 @@ TEST_P(ShapeSurface, BoundsHoldEveryPosition) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, ShapeSurface, testing::ValuesIn(shape_names()), by_name);
+INSTANTIATE_TEST_SUITE_P(Shapes, ShapeSurface, testing::ValuesIn(shape_names()), parameter_name);
 
 // Open shapes face as specified in their input.
 TEST(OpenShapes, FaceAsTheyWereGiven) {

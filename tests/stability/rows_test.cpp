@@ -32,7 +32,7 @@ std::vector<std::string> all_ids() {
   for (const StabilityRow& row : stability_rows()) ids.push_back(row.id);
   return ids;
 }
-INSTANTIATE_TEST_SUITE_P(Rows, Stability, testing::ValuesIn(all_ids()), by_name);
+INSTANTIATE_TEST_SUITE_P(Rows, Stability, testing::ValuesIn(all_ids()), parameter_name);
 
 TEST(StabilityRows, HaveNamesOfTheirOwn) {
   const auto ids = all_ids();

@@ -30,38 +30,38 @@ Point point(const std::vector<Round>& rounds, int samples = 1) {
 }
 Point point(double cpu_ms, double rmse, int samples = 1) { return point({{cpu_ms, rmse}}, samples); }
 
-std::vector<Standing> front_of(std::vector<Point> points, double floor = 0) {
-  mark_front(points, floor);
-  std::vector<Standing> standings;
-  for (const Point& p : points) standings.push_back(p.standing);
+std::vector<ParetoStatus> front_of(std::vector<Point> points, double floor = 0) {
+  mark_pareto_front(points, floor);
+  std::vector<ParetoStatus> standings;
+  for (const Point& p : points) standings.push_back(p.pareto_status);
   return standings;
 }
 
 using testing::ElementsAre;
-using enum Standing;
+using enum ParetoStatus;
 
 TEST(Front, HoldsWhatNothingBeatsInBoth) {
-  EXPECT_THAT(front_of({point(1, 0.5), point(2, 0.1), point(3, 0.2)}), ElementsAre(front, front, beaten));
-  EXPECT_THAT(front_of({point(3, 0.2), point(2, 0.1), point(1, 0.5)}), ElementsAre(beaten, front, front));
-  EXPECT_THAT(front_of({point(1, 0), point(2, 0)}), ElementsAre(front, beaten));
+  EXPECT_THAT(front_of({point(1, 0.5), point(2, 0.1), point(3, 0.2)}), ElementsAre(front, front, dominated));
+  EXPECT_THAT(front_of({point(3, 0.2), point(2, 0.1), point(1, 0.5)}), ElementsAre(dominated, front, front));
+  EXPECT_THAT(front_of({point(1, 0), point(2, 0)}), ElementsAre(front, dominated));
 }
 
 TEST(Front, TakesAOnePercentSmallerErrorForNoSmaller) {
-  EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995)}), ElementsAre(front, beaten));
+  EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995)}), ElementsAre(front, dominated));
   EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0985)}), ElementsAre(front, front));
   EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995), point(3, 0.0989)}),
-              ElementsAre(front, beaten, front));
+              ElementsAre(front, dominated, front));
 }
 
 TEST(Front, TakesErrorsBelowTheFloorForTheFloor) {
   EXPECT_THAT(front_of({point(1, 0.01), point(2, 0.002), point(3, 0.001)}), ElementsAre(front, front, front));
   EXPECT_THAT(front_of({point(1, 0.01), point(2, 0.002), point(3, 0.001)}, 0.002),
-              ElementsAre(front, front, beaten));
+              ElementsAre(front, front, dominated));
 }
 
 TEST(Front, LeavesUndecidedWhatRoundsCannotTell) {
   const Point quick = point({{1, 0.1}, {1.01, 0.1}, {0.99, 0.1}});
-  EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.13}, {1.9, 0.12}})}), ElementsAre(front, beaten));
+  EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.13}, {1.9, 0.12}})}), ElementsAre(front, dominated));
   // Possibly more accurate, possibly not.
   EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.07}, {1.9, 0.15}})}), ElementsAre(front, undecided));
   // Less accurate, possibly faster.
@@ -73,14 +73,14 @@ TEST(Front, ComparesPointsRoundByRound) {
   // The rounds differ much more than the points, since the same seeds and load shift both alike.
   EXPECT_THAT(
       front_of({point({{1, 0.10}, {2, 0.20}, {3, 0.15}}), point({{1.5, 0.10}, {2.5, 0.20}, {3.5, 0.15}})}),
-      ElementsAre(front, beaten));
+      ElementsAre(front, dominated));
 }
 
 // The two common rounds are too few to decide, but all rounds of each are not.
 TEST(Front, HoldsNothingThatIsBeatenBeyondTheIntervals) {
   const Point slow =
       point({{20, 0.2}, {4, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}});
-  EXPECT_THAT(front_of({point({{1, 0.1}, {1.01, 0.1}}), slow}), ElementsAre(front, beaten));
+  EXPECT_THAT(front_of({point({{1, 0.1}, {1.01, 0.1}}), slow}), ElementsAre(front, dominated));
 }
 
 TEST(Point, SumsUpItsRounds) {
@@ -99,14 +99,14 @@ TEST(Point, SumsUpItsRounds) {
 // Student's t of two degrees of freedom is 4.302652730 at 0.975.
 TEST(Point, HasIntervalsOfItsMeans) {
   EXPECT_FALSE(point(5, 0.3).rmse_interval());
-  EXPECT_EQ(point(5, 0.3).most_rmse(), 0.3);
+  EXPECT_EQ(point(5, 0.3).max_rmse(), 0.3);
   const Point p = point({{5, 0.3}, {7, 0.4}, {6, 0.2}});
   const double half = 4.302652730 / std::sqrt(3);
   EXPECT_NEAR(p.cpu_ms_interval()->low, 6 - half, 0.02);
   EXPECT_NEAR(p.cpu_ms_interval()->high, 6 + half, 0.02);
   EXPECT_NEAR(p.rmse_interval()->low, 0.3 - 0.1 * half, 0.002);
   EXPECT_NEAR(p.rmse_interval()->high, 0.3 + 0.1 * half, 0.002);
-  EXPECT_EQ(p.most_rmse(), p.rmse_interval()->high);
+  EXPECT_EQ(p.max_rmse(), p.rmse_interval()->high);
   EXPECT_EQ(point({{1, 0.3}, {9, 0.3}}).cpu_ms_interval()->low, 0) << "no mean is negative";
   const Point same = point({{5, 0.3}, {5, 0.3}});
   EXPECT_NEAR(same.rmse_interval()->high - same.rmse_interval()->low, 0, 1e-12);
@@ -138,7 +138,7 @@ Chart chart() {
   chart.reference_rmse = 0.001;
   for (const int samples : {1, 4, 16}) chart.points.push_back(point(2.0 * samples, 0.1 / samples, samples));
   chart.points.push_back(point(40, 0, 64));
-  mark_front(chart.points, chart.reference_rmse);
+  mark_pareto_front(chart.points, chart.reference_rmse);
   return chart;
 }
 
@@ -212,7 +212,7 @@ TEST(Drawing, FillsHalfOfWhatIsUndecidedAndGreysWhatTheReferenceCannotTell) {
   using testing::Not;
   Chart unsure = chart();
   EXPECT_THAT(svg_of(unsure), Not(HasSubstr("perhaps on the front")));
-  unsure.points[1].standing = undecided;
+  unsure.points[1].pareto_status = undecided;
   const std::string svg = svg_of(unsure);
   const std::string mark = svg.substr(svg.find("<g id=\"point-1\">"), svg.find("</g>", svg.find("point-1")));
   EXPECT_THAT(mark, HasSubstr("fill=\"#ffffff\""));

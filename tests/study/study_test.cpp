@@ -179,7 +179,7 @@ TEST(Study, GoesOnWithWhatIsUndecided) {
   });
   for (const Point& p : chart.points) {
     EXPECT_EQ(p.rounds.size(), 4U);
-    EXPECT_NE(p.standing, Standing::beaten);
+    EXPECT_NE(p.pareto_status, ParetoStatus::dominated);
   }
 }
 
@@ -204,14 +204,14 @@ double rmse_of(const Picture& picture, const std::vector<double>& reference) {
   return rms_difference(values, reference);
 }
 
-struct Charted {
+struct ChartedScene {
   std::shared_ptr<const Scene> scene;
   Chart chart;
   std::vector<double> reference;
 };
 
-Charted charted(const char* name, int rounds) {
-  Charted made;
+ChartedScene charted(const char* name, int rounds) {
+  ChartedScene made;
   made.scene = load(sample(name));
   RenderRequest view = size(24, 24);
   view.azimuth_degrees = 10;
@@ -232,7 +232,7 @@ Charted charted(const char* name, int rounds) {
 
 TEST(Study, GivesThePlanThatRendersThePointsPicture) {
   for (const char* name : {"glass", "cornell-box", "flag"}) {
-    const Charted made = charted(name, 1);
+    const ChartedScene made = charted(name, 1);
     for (const Point& p : made.chart.points) {
       EXPECT_EQ(p.plan, p.picture_plan) << "no wider than the pictures that charts point to";
       const Picture picture = render(made.scene, request_of(p.plan));
@@ -269,7 +269,7 @@ TEST(Study, IntervalsHoldTheErrorsOfOtherSeeds) {
   constexpr int kSeeds = 24;
   int points = 0, inside = 0;
   for (const char* name : {"glass", "cornell-box", "mirrors", "paper"}) {
-    const Charted made = charted(name, 4);
+    const ChartedScene made = charted(name, 4);
     for (const std::size_t i : made.chart.front()) {
       const Point& p = made.chart.points[i];
       const Interval interval = *p.rmse_interval();

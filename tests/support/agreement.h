@@ -8,26 +8,25 @@
 #include "core/base/hash.h"
 #include "tests/support/structures.h"
 
-// Tests of one registered structure, which must find what the list finds.
+// Tests of one registered structure, whose results must equal those of the list.
 namespace orrery::test {
 
-// What a structure finds: the nearest hits, and the shadows up to each of some reaches.
+// Results of a structure: closest hits, and occlusion up to each distance of `reaches`.
 template <class T>
-struct Findings {
+struct TraversalResults {
   std::vector<Hit<T>> closest;
   std::vector<std::vector<char>> occluded;
 
-  Findings(Structure<T>& structure, const Rays<T>& all, std::initializer_list<T> reaches) {
-    const Rays<T> rays = enough_of(all);
+  TraversalResults(Structure<T>& structure, const Rays<T>& all, std::initializer_list<T> reaches) {
+    const Rays<T> rays = subsample_rays(all);
     closest = structure.closest(rays);
     for (const T t_max : reaches) occluded.push_back(structure.occluded(rays, t_max));
   }
 };
 
-// The same primitives at the same distances, to the bit, and the same shadows. REQUIRES: some ray meets
-// something; to agree that all miss proves nothing.
+// Expects bit-identical hits and equal occlusion. Fails if no ray hits anything, as that would prove nothing.
 template <class T>
-void expect_agreement(const Findings<T>& found, const Findings<T>& expected) {
+void expect_agreement(const TraversalResults<T>& found, const TraversalResults<T>& expected) {
   int wrong = 0, met = 0;
   for (std::size_t i = 0; i < expected.closest.size(); ++i) {
     const Hit<T>&a = found.closest[i], &b = expected.closest[i];
@@ -41,14 +40,16 @@ void expect_agreement(const Findings<T>& found, const Findings<T>& expected) {
 template <class T>
 void expect_agreement(Structure<T>& structure, Structure<T>& reference, const Rays<T>& rays,
                       std::initializer_list<T> reaches) {
-  expect_agreement(Findings<T>(structure, rays, reaches), Findings<T>(reference, rays, reaches));
+  expect_agreement(TraversalResults<T>(structure, rays, reaches),
+                   TraversalResults<T>(reference, rays, reaches));
 }
 
-// What the list finds. It is asked once for the same question, whatever structures are held against it: it
-// takes longer than all of them.
+// Returns the results of the list. Caches them by scene, rays and reaches: the list is slower than all
+// structures.
 template <class T>
-const Findings<T>& list_finds(const Json& scene, const Rays<T>& rays, std::initializer_list<T> reaches) {
-  static std::map<std::string, Findings<T>> known;
+const TraversalResults<T>& list_results(const Json& scene, const Rays<T>& rays,
+                                        std::initializer_list<T> reaches) {
+  static std::map<std::string, TraversalResults<T>> known;
   std::string question = scene.dump();
   question.append(reinterpret_cast<const char*>(rays.data()), rays.size() * sizeof(Ray<T>));
   question.append(reinterpret_cast<const char*>(reaches.begin()), reaches.size() * sizeof(T));
@@ -56,7 +57,7 @@ const Findings<T>& list_finds(const Json& scene, const Rays<T>& rays, std::initi
   const auto found = known.find(key);
   if (found != known.end()) return found->second;
   Structure<T> list(scene, "list");
-  return known.emplace(key, Findings<T>(list, rays, reaches)).first->second;
+  return known.emplace(key, TraversalResults<T>(list, rays, reaches)).first->second;
 }
 
 class StructureTest : public testing::TestWithParam<std::string> {
@@ -64,7 +65,7 @@ class StructureTest : public testing::TestWithParam<std::string> {
   template <class T>
   AcceleratorFacts agree(const Json& scene, const Rays<T>& rays, std::initializer_list<T> reaches) {
     Structure<T> structure(scene, GetParam());
-    expect_agreement(Findings<T>(structure, rays, reaches), list_finds<T>(scene, rays, reaches));
+    expect_agreement(TraversalResults<T>(structure, rays, reaches), list_results<T>(scene, rays, reaches));
     return structure.facts();
   }
 };

@@ -6,10 +6,10 @@
 
 #include "core/model/batch.h"
 
-// Lists of rays to batches and back.
+// Conversion of ray lists to batches.
 namespace orrery::test {
 
-// The rays as a batch whose last register is padded with inactive ones. REQUIRES: 1 to kBatch rays.
+// Fills a batch with rays and the remaining room with inactive rays. REQUIRES: 1 to kBatch rays.
 template <class T>
 void fill_batch(std::span<const Ray<T>> rays, T t_max, RayBatch<T>& batch) {
   batch.count = static_cast<int>(rays.size());
@@ -21,11 +21,11 @@ void fill_batch(std::span<const Ray<T>> rays, T t_max, RayBatch<T>& batch) {
 }
 
 template <class T>
-Groups groups_of(const RayBatch<T>& batch) {
-  return Groups::covering(0, batch.count, kWidth<T>);
+LaneGroups groups_of(const RayBatch<T>& batch) {
+  return LaneGroups::covering(0, batch.count, kWidth<T>);
 }
 
-// Calls visit(part of the rays, index of its first one) for parts that fit a batch.
+// Calls visit(part, index of its first ray) for consecutive parts of at most kBatch rays.
 template <class T, class Visit>
 void for_each_batch(std::span<const Ray<T>> rays, const Visit& visit) {
   for (std::size_t from = 0; from < rays.size(); from += kBatch)

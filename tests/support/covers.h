@@ -7,11 +7,12 @@
 
 namespace orrery::test {
 
-// Notes which rows of the stability catalogue the running test covers ("A1 A3"); script/test prints them all.
+// Records the rows of the stability catalogue that the running test covers ("A1 A3"). script/test prints
+// them.
 inline void covers(const char* rows) { testing::Test::RecordProperty("stability", rows); }
 
-// Names the cases of a parameterised suite after the parameter itself.
-inline std::string by_name(const testing::TestParamInfo<std::string>& parameter) {
+// Returns the parameter as the name of a test case, with "_" for all but letters and digits.
+inline std::string parameter_name(const testing::TestParamInfo<std::string>& parameter) {
   std::string name = parameter.param;
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';

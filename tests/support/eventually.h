@@ -5,8 +5,8 @@
 
 namespace orrery::test {
 
-// Waits for what other threads or processes do: asks ready() until it is true. False if that takes longer
-// than ten minutes: only what hangs does, on any machine.
+// Calls ready() every millisecond until it returns true. Returns false after ten minutes, which only a hang
+// takes.
 template <class Ready>
 bool eventually(const Ready& ready) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(10);

@@ -5,7 +5,7 @@
 namespace orrery::test {
 
 template <class T>
-ArrivingLight<T> arrival(const Json& light, const Vec3<T>& at) {
+IncidentLight<T> arrival(const Json& light, const Vec3<T>& at) {
   const auto scene = load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
                                      Json{{"lights", Json::array({light})}}));
   const auto surface = std::make_unique<SurfaceBatch<T>>();
@@ -15,11 +15,11 @@ ArrivingLight<T> arrival(const Json& light, const Vec3<T>& at) {
   for (int i = 0; i < kWidth<T>; ++i) surface->position.set(i, at);
   const LightPlace& place = scene->lights.front();
   scene->light_sets[place.set]->kernel(T())->sample(*surface, {place.index}, PathDraws<T>{draws, *slots, 0},
-                                                    Groups::single(0), *out);
+                                                    LaneGroups::single(0), *out);
   return {out->shadow.direction[0], out->shadow.t_max[0], out->incident[0]};
 }
 
-template ArrivingLight<float> arrival(const Json&, const Vec3<float>&);
-template ArrivingLight<double> arrival(const Json&, const Vec3<double>&);
+template IncidentLight<float> arrival(const Json&, const Vec3<float>&);
+template IncidentLight<double> arrival(const Json&, const Vec3<double>&);
 
 }  // namespace orrery::test

@@ -3,18 +3,18 @@
 #include "core/model/light.h"
 #include "tests/support/scenes.h"
 
-// One light, asked directly about single points.
+// Direct evaluation of one light at single points.
 namespace orrery::test {
 
-// What arrives at a point.
+// Light that arrives at a point.
 template <class T>
-struct ArrivingLight {
+struct IncidentLight {
   Vec3<T> direction;  // toward the light
-  T t_max;            // metres to it, infinite for a distant one, -1: no light arrives
+  T t_max;            // metres to the light, infinite if distant, -1 if none arrives
   Vec3<T> incident;
 };
 
 template <class T>
-ArrivingLight<T> arrival(const Json& light, const Vec3<T>& at);
+IncidentLight<T> arrival(const Json& light, const Vec3<T>& at);
 
 }  // namespace orrery::test

@@ -10,27 +10,27 @@ struct Batches {
   RayBatch<T> rays;
   HitBatch<T> hits;
   SurfaceBatch<T> surface;
-  Vec3Array<T> light, f_cos;
+  Vec3Array<T> light, pi_bsdf_cos;
   Array<T> reach, pdf;
   SpecularBatch<T> specular;
   ScatterBatch<T> scatter;
   Array<IndexOf<T>> slot;
   Vec3Array<T> radiance;
-  Groups groups;
+  LaneGroups groups;
 };
 
-// Lanes past the cases hold another material, none at all.
+// Fills the batch with cases. Lanes past the cases have no material.
 template <class T>
 void fill(std::span<const typename Probe<T>::Case> cases, Batches<T>& b) {
   const int count = static_cast<int>(cases.size());
-  b.groups = Groups::covering(0, count, kWidth<T>);
+  b.groups = LaneGroups::covering(0, count, kWidth<T>);
   for (int i = 0; i < kBatchRoom; ++i) {
     const auto& one = cases[static_cast<std::size_t>(i < count ? i : 0)];
     b.rays.direction.set(i, one.direction);
     b.surface.normal.set(i, one.normal);
     b.surface.geometric.set(i, one.geometric);
     b.light.set(i, one.light);
-    b.f_cos.set(i, Vec3<T>());
+    b.pi_bsdf_cos.set(i, Vec3<T>());
     b.reach[i] = 1;
     b.pdf[i] = 0;
     b.surface.side[i] = one.side;
@@ -53,28 +53,28 @@ Probe<T>::Probe(const Json& material)
 template <class T>
 std::vector<Vec3<T>> Probe<T>::reflected(std::span<const Case> cases) const {
   std::vector<Vec3<T>> found;
-  for (const Evaluated& one : evaluated(cases)) found.push_back(one.f_cos);
+  for (const Evaluation& one : evaluated(cases)) found.push_back(one.pi_bsdf_cos);
   return found;
 }
 
 template <class T>
-std::vector<typename Probe<T>::Evaluated> Probe<T>::evaluated(std::span<const Case> cases,
-                                                              Lobes lobes) const {
+std::vector<typename Probe<T>::Evaluation> Probe<T>::evaluated(std::span<const Case> cases,
+                                                               Lobes lobes) const {
   const auto b = std::make_unique<Batches<T>>();
-  std::vector<Evaluated> found;
+  std::vector<Evaluation> found;
   while (!cases.empty()) {
     const auto some = cases.first(std::min<std::size_t>(cases.size(), kBatch));
     fill<T>(some, *b);
-    kernel_->evaluate({b->rays.direction, b->light, b->reach}, b->surface, b->groups, lobes, b->f_cos,
+    kernel_->evaluate({b->rays.direction, b->light, b->reach}, b->surface, b->groups, lobes, b->pi_bsdf_cos,
                       b->pdf);
     for (int i = 0; i < static_cast<int>(some.size()); ++i)
-      found.push_back({b->pdf[i] > 0 ? b->f_cos[i] : Vec3<T>(), b->pdf[i]});
+      found.push_back({b->pdf[i] > 0 ? b->pi_bsdf_cos[i] : Vec3<T>(), b->pdf[i]});
     cases = cases.subspan(some.size());
   }
   return found;
 }
 
-// Each batch has a seed, and each of its slots a pixel, of its own.
+// Uses a different seed for each batch, and a different pixel for each of its slots.
 template <class T>
 std::vector<typename Probe<T>::Sampled> Probe<T>::sampled(const Case& one, int count, std::uint64_t seed,
                                                           Lobes lobes) const {

@@ -8,10 +8,10 @@
 #include "core/model/material.h"
 #include "tests/support/scenes.h"
 
-// One material, asked directly about single directions.
+// Direct evaluation of one material in single directions.
 namespace orrery::test {
 
-// A unit direction at an angle of this cosine to the z axis, so many turns about it.
+// Returns a unit direction at an angle of this cosine to the z axis, rotated by `turns` about it.
 inline Vec3d tilted(double cosine, double turns = 0) {
   const double sine = std::sqrt(1 - cosine * cosine), angle = 2 * std::numbers::pi * turns;
   return {sine * std::cos(angle), sine * std::sin(angle), cosine};
@@ -20,36 +20,37 @@ inline Vec3d tilted(double cosine, double turns = 0) {
 template <class T>
 class Probe {
  public:
-  // `material` as it stands in a scene.
+  // `material`: JSON as in a scene.
   explicit Probe(const Json& material);
   explicit Probe(const char* material) : Probe(json(material)) {}
 
-  // A ray that met the surface, and a light.
+  // Ray that hits the surface, and a light.
   struct Case {
-    Vec3<T> direction{0, 0, -1};  // of the ray, unit
-    Vec3<T> light{0, 0, 1};       // toward the light, unit
-    Vec3<T> normal{0, 0, 1};      // for shading, on the ray's side
+    Vec3<T> direction{0, 0, -1};  // unit direction of the ray
+    Vec3<T> light{0, 0, 1};       // unit direction toward the light
+    Vec3<T> normal{0, 0, 1};      // shading normal, on the ray's side
     Vec3<T> geometric{0, 0, 1};
     T side = 1;  // -1: the ray comes from the inside
-    T t = 1;     // metres it came
+    T t = 1;     // length of the ray, metres
   };
   struct Specular {
     Vec3<T> reflectance, transmittance, refracted, filter;
   };
 
-  // What leaves toward the ray's origin of a light of intensity 1; 0 where the material leaves the light out.
+  // Returns the part of a light of intensity 1 that is reflected toward the ray's origin. 0 if the material
+  // ignores the light.
   std::vector<Vec3<T>> reflected(std::span<const Case> cases) const;
   Vec3<T> reflected(const Case& one) const { return reflected(std::span(&one, 1)).front(); }
-  // What the kernel says of these pairs of directions; f_cos is 0 where pdf is.
-  struct Evaluated {
-    Vec3<T> f_cos;
+  // Result of the kernel for a pair of directions. pi_bsdf_cos is 0 if pdf is 0.
+  struct Evaluation {
+    Vec3<T> pi_bsdf_cos;
     T pdf;
   };
-  std::vector<Evaluated> evaluated(std::span<const Case> cases, Lobes lobes = Lobes::all) const;
-  Evaluated evaluated(const Case& one, Lobes lobes = Lobes::all) const {
+  std::vector<Evaluation> evaluated(std::span<const Case> cases, Lobes lobes = Lobes::all) const;
+  Evaluation evaluated(const Case& one, Lobes lobes = Lobes::all) const {
     return evaluated(std::span(&one, 1), lobes).front();
   }
-  // Directions drawn at one surface point, independent of each other.
+  // Independent sample of a direction at one surface point.
   struct Sampled {
     Vec3<T> direction, weight;
     T pdf;
@@ -60,7 +61,7 @@ class Probe {
   Specular specular(const Case& one) const { return specular(std::span(&one, 1)).front(); }
   MaterialTraits traits() const;
   ReflectionLimits limits() const;
-  // What leaves under ambient light of 1.
+  // Returns the reflection of ambient light of 1.
   Vec3<T> ambient(const Case& one = {}, Lobes lobes = Lobes::all) const;
 
  private:

@@ -4,19 +4,19 @@
 #include "tests/support/rays.h"
 #include "tests/support/shapes.h"
 
-// Scenes of many things about the origin, and rays among them.
+// Scenes of many objects around the origin, and rays among them.
 namespace orrery::test {
 
-// Balls within 3 of the origin.
+// Returns balls with centres in [-3, 3]^3.
 Json balls(int count, std::uint64_t seed);
-// All registered shapes, unbounded ones too, within 2.
+// Returns all registered shapes, unbounded ones too, at offsets in [-2, 2]^3.
 Json mixture(std::uint64_t seed);
-// A wavy sheet of 2 * side * side triangles over [-2, 2]^2.
+// Returns a wavy sheet of 2 * side * side triangles over [-2, 2]^2.
 Json wavy_sheet(int side);
-// Planes through the origin's neighbourhood, and a few balls.
+// Returns planes near the origin, and three balls.
 Json planes(int count, std::uint64_t seed);
 
-// Rays anywhere within `half` of the origin in any direction.
+// Returns rays with origins in [-half, half]^3 and any directions.
 template <class T>
 Rays<T> any_rays(double half, int count, std::uint64_t seed) {
   Random random(seed);
@@ -35,9 +35,9 @@ Rays<T> rays_from_one_point(double half, int count, std::uint64_t seed) {
   return rays;
 }
 
-// Rays of which many hold what is no number, infinite, or next to nothing.
+// Returns rays with many components that are NaN, infinite, huge, zero or denormal.
 template <class T>
-Rays<T> broken_rays(int count, std::uint64_t seed) {
+Rays<T> invalid_rays(int count, std::uint64_t seed) {
   using Limits = std::numeric_limits<T>;
   Random random(seed);
   const std::array<T, 8> odd{Limits::quiet_NaN(),

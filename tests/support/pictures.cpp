@@ -9,7 +9,7 @@
 namespace orrery::test {
 namespace {
 
-// Largest difference of a channel; infinite if one of the two is no number.
+// Returns the largest difference of a channel, or infinity if a difference is NaN or infinite.
 double distance(const Vec3f& a, const Vec3f& b) {
   const Vec3d d = abs(Vec3d(a) - Vec3d(b));
   return std::isfinite(d.x + d.y + d.z) ? max_component(d) : std::numeric_limits<double>::infinity();

@@ -6,7 +6,7 @@
 #include "core/render/renderer.h"
 #include "tests/support/scenes.h"
 
-// Whole pictures, through plan, tiles and pool as a user gets them.
+// Whole pictures, rendered through plan, tiles and pool.
 namespace orrery::test {
 
 struct Picture {
@@ -15,33 +15,33 @@ struct Picture {
   RenderStats stats;
 
   const Vec3f& at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
-  // Sum over pixels of one channel.
+  // Returns the sum of one channel over all pixels.
   double sum(float Vec3f::*channel = &Vec3f::x) const;
-  // How many pixels are brighter than `level` in some channel.
+  // Returns the number of pixels that are brighter than `level` in some channel.
   int brighter_than(float level) const;
 };
 
-// threads 0: the shared pool of two.
+// Renders a scene. `threads` 0: the shared pool of two.
 Picture render(const Json& scene, const RenderRequest& request = {}, int threads = 0);
 Picture render(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {}, int threads = 0);
 
-// What a plan of the scene renders on the shared pool: linear, unless a budget has sums kept.
+// Renders a plan of the scene on the shared pool. The film is linear, unless a budget requires sums.
 RenderResult rendered(const std::shared_ptr<const Scene>& scene, const RenderRequest& request = {},
                       const RenderControl& control = {});
-// Values of all pixels and channels, in linear radiance. REQUIRES: as Film::image() of linear32.
+// Returns the values of all pixels and channels in linear radiance. REQUIRES: as Film::image() of linear32.
 std::vector<double> linear_values(const Film& film);
-// As a display shows them, before they are rounded to codes.
+// Returns display values, before rounding to codes.
 std::vector<double> shown(std::vector<double> linear);
 double rms_difference(const std::vector<double>& a, const std::vector<double>& b);
 
-// The pool that tests share.
+// Returns the pool that tests share.
 WorkerPool& shared_pool();
 
-// Largest difference of two pictures of one size in any channel.
+// Returns the largest difference of two pictures of one size in any channel.
 double largest_difference(const Picture& a, const Picture& b);
-// Equal to the bit (and so NaN equals NaN).
+// Returns whether two pictures are bit-identical, so that NaN equals NaN.
 bool identical(const Picture& a, const Picture& b);
-// How many pixels differ by more than `tolerance` in some channel.
+// Returns the number of pixels that differ by more than `tolerance` in some channel.
 int differing_pixels(const Picture& a, const Picture& b, double tolerance);
 
 RenderRequest size(int width, int height);

@@ -11,7 +11,7 @@ class Random : public SplitMix {
  public:
   using SplitMix::SplitMix;
 
-  // Every power of ten between the two is as likely as any other.
+  // Returns a number between the two, uniform in its logarithm.
   double magnitude(double low, double high) { return low * std::pow(high / low, unit()); }
 
   Vec3d direction() {  // uniform over the sphere
@@ -19,13 +19,13 @@ class Random : public SplitMix {
     const double across = std::sqrt(1 - z * z);
     return {across * std::cos(angle), across * std::sin(angle), z};
   }
-  Vec3d direction_above(const Vec3d& normal) {  // uniform over the half sphere about `normal`
+  Vec3d direction_above(const Vec3d& normal) {  // uniform over the hemisphere about `normal`
     const Vec3d d = direction();
     return dot(d, normal) < 0 ? -d : d;
   }
 };
 
-// Some unit vector at right angles to `v`.
+// Returns a unit vector perpendicular to `v`.
 inline Vec3d perpendicular(const Vec3d& v) {
   const Vec3d other = std::abs(v.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
   return safe_normalize(cross(v, other));

@@ -52,7 +52,7 @@ std::vector<Hit<T>> Target<T>::closest(std::span<const Ray<T>> rays, std::span<c
     fill_batch(some, std::numeric_limits<T>::infinity(), *batch);
     hits->t.values = batch->t_max.values;
     hits->primitive.values.fill(kNoPrimitive);
-    const Groups groups = groups_of(*batch);
+    const LaneGroups groups = groups_of(*batch);
     for (const int primitive : only) {
       const Part& part = part_of(primitive);
       part.kernel->closest(primitive - part.first, *batch, groups, *hits, counts);
@@ -70,7 +70,7 @@ std::vector<char> Target<T>::occluded(std::span<const Ray<T>> rays, T t_max) con
   AcceleratorCounts counts;
   for_each_batch(rays, [&](std::span<const Ray<T>> some, std::size_t from) {
     fill_batch(some, t_max, *batch);
-    const Groups groups = groups_of(*batch);
+    const LaneGroups groups = groups_of(*batch);
     for (const Part& part : parts_)
       for (int i = 0; i < part.last - part.first; ++i) part.kernel->occlude(i, *batch, groups, counts);
     for (int i = 0; i < batch->count; ++i) found[from + static_cast<std::size_t>(i)] = batch->t_max[i] < T(0);
@@ -79,8 +79,8 @@ std::vector<char> Target<T>::occluded(std::span<const Ray<T>> rays, T t_max) con
 }
 
 template <class T>
-std::vector<Spot<T>> Target<T>::surfaces(std::span<const Ray<T>> rays, std::span<const Hit<T>> hits) const {
-  std::vector<Spot<T>> found(rays.size());
+std::vector<SurfaceSample<T>> Target<T>::surfaces(std::span<const Ray<T>> rays, std::span<const Hit<T>> hits) const {
+  std::vector<SurfaceSample<T>> found(rays.size());
   const auto batch = std::make_unique<RayBatch<T>>();
   const auto hit_batch = std::make_unique<HitBatch<T>>();
   const auto surface = std::make_unique<SurfaceBatch<T>>();
@@ -91,7 +91,7 @@ std::vector<Spot<T>> Target<T>::surfaces(std::span<const Ray<T>> rays, std::span
       hit_batch->t[i] = hits[from + static_cast<std::size_t>(i)].t;
       hit_batch->primitive[i] = hits[from + static_cast<std::size_t>(i)].primitive;
     }
-    const Groups groups = groups_of(*batch);
+    const LaneGroups groups = groups_of(*batch);
     for (const Part& part : parts_) part.kernel->surface(*batch, *hit_batch, groups, *surface);
     for (int i = 0; i < batch->count; ++i)
       found[from + static_cast<std::size_t>(i)] = {surface->position[i], surface->geometric[i],

@@ -10,7 +10,7 @@
 #include "tests/support/exhaustive.h"
 #include "tests/support/scenes.h"
 
-// Single rays against the shapes of a scene, in any precision. The kernels see whole batches.
+// Single rays intersected with the shapes of a scene, in any precision. The kernels get whole batches.
 namespace orrery::test {
 
 template <class T>
@@ -21,14 +21,14 @@ struct Hit {
   bool met() const { return primitive != kNoPrimitive; }
 };
 
-// The surface at a hit, as the shape tells it.
+// Surface at a hit.
 template <class T>
-struct Spot {
-  Vec3<T> position, geometric, normal;  // the normals stand on the ray's side
+struct SurfaceSample {
+  Vec3<T> position, geometric, normal;  // the normals are on the ray's side
   T side, step;
 
   Vec3<T> outward() const { return geometric * side; }
-  // A ray that leaves along `direction`, as a technique would send it.
+  // Returns a ray that leaves along `direction`, with the offset that a technique would use.
   Ray<T> leaving(const Vec3<T>& direction) const {
     const T away = dot(direction, geometric) < T(0) ? -step : step;
     return {position + geometric * away, direction};
@@ -38,10 +38,10 @@ struct Spot {
 template <class T>
 using Rays = std::vector<Ray<T>>;
 
-// All of them in an exhaustive run, else some 1,000 of those all over, and under a sanitizer in any case: it
-// wants to see all of the code but not all numbers.
+// Returns all rays in an exhaustive run without sanitizers, else about 1,000 evenly spaced ones. Sanitizers
+// need to run all of the code, but not all numbers.
 template <class T>
-Rays<T> enough_of(const Rays<T>& rays) {
+Rays<T> subsample_rays(const Rays<T>& rays) {
   if (!reduced()) return rays;
   constexpr std::size_t kEnough = 1'000;
   Rays<T> some;
@@ -54,7 +54,7 @@ template <class T>
 class Target {
  public:
   explicit Target(const Json& scene);
-  // One object of a scene for each shape type, or several.
+  // Returns a target of one object or a list of objects in JSON.
   static Target of_objects(std::string_view objects) { return Target(scene_of(objects)); }
 
   const Scene& scene() const { return *scene_; }
@@ -62,15 +62,15 @@ class Target {
   ShapeTraits traits(int primitive) const;
   Boundsd bounds(int primitive) const;
 
-  // The nearest hit of each ray, against all primitives or those of `only`.
+  // Returns the closest hit of each ray with all primitives, or with those of `only`.
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays) const;
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays, std::span<const int> only) const;
   Hit<T> closest(const Ray<T>& ray) const { return closest(std::span(&ray, 1)).front(); }
-  // Whether anything stands on each ray nearer than `t_max`.
+  // Returns whether each ray is occluded before `t_max`.
   std::vector<char> occluded(std::span<const Ray<T>> rays, T t_max) const;
-  // Surfaces of the hits; those that met nothing are left alone.
-  std::vector<Spot<T>> surfaces(std::span<const Ray<T>> rays, std::span<const Hit<T>> hits) const;
-  Spot<T> surface(const Ray<T>& ray, const Hit<T>& hit) const {
+  // Returns the surfaces of the hits. Entries of misses are unspecified.
+  std::vector<SurfaceSample<T>> surfaces(std::span<const Ray<T>> rays, std::span<const Hit<T>> hits) const;
+  SurfaceSample<T> surface(const Ray<T>& ray, const Hit<T>& hit) const {
     return surfaces(std::span(&ray, 1), std::span(&hit, 1)).front();
   }
 

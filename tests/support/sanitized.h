@@ -2,7 +2,8 @@
 
 namespace orrery::test {
 
-// Built with a sanitizer: up to a hundred times slower, and freed memory is kept to find who still uses it.
+// True in builds with a sanitizer. They are up to a hundred times slower and keep freed memory to find later
+// uses.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;
 #else

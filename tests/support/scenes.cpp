@@ -22,18 +22,18 @@ constexpr std::string_view kEmptyScene = R"({
   "materials": {"white": {"type": "rough", "kd": 1}}
 })";
 
-// What the keys of the scene format mean.
+// Keys of the scene format, by meaning.
 const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center",   "point",  "base",
                                        "top",       "min", "max",     "position", "corner", "to"};
 const std::set<std::string> kSides = {"a", "b"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};
 const std::set<std::string> kLengths = {"radius", "height", "aperture_radius", "focus_distance"};
 const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
-const std::set<std::string> kPerLength = {"intensity_per_metre"};  // colours that grow with lengths
+const std::set<std::string> kPerLength = {"intensity_per_metre"};  // colours that scale with lengths
 
 using Change = std::function<void(const std::string& key, Json& value)>;
 
-// Calls `change` for each key and value of `object` and of the keys of its motion.
+// Calls `change` for each key and value of `object` and of its motion.
 void change_members(Json& object, const Change& change) {
   const bool line = object.contains("to");  // its "from" is a point
   for (auto& [key, value] : object.items()) {
@@ -43,7 +43,7 @@ void change_members(Json& object, const Change& change) {
   }
 }
 
-// The same for the camera, the objects and the lights of a scene: all that has a place.
+// Calls `change` for the members of the camera, the objects, the lights and the instances of a scene.
 void change_places(Json& scene, const Change& change) {
   change_members(scene["camera"], change);
   for (const char* list : {"objects", "lights", "instances"})
@@ -89,7 +89,7 @@ void mirror_mesh(Json& object) {
     for (Json& normal : object["normals"]) normal[0] = -normal[0].get<double>();
 }
 
-// A turn seen in a mirror goes the other way round, about the mirrored axis.
+// Mirrors an instance. Its rotation is reversed, about the mirrored axis.
 void mirror_instance(Json& instance) {
   const Vec3d scale = vector(instance.value("scale", Json{1, 1, 1}));
   instance["scale"] = numbers(Vec3d(-scale.x, scale.y, scale.z));

@@ -38,7 +38,7 @@ const std::map<std::string, std::vector<Json>>& all_samples() {
   return samples;
 }
 
-// Where on the object rays are aimed: inside its box, or near the placement if it has none.
+// Returns a target point for rays, in or near the object's box. Unbounded objects use the placement.
 Vec3d aim(Random& random, const Boundsd& bounds, const Placement& placement) {
   if (!bounds.bounded()) return placement.offset + random.in_cube(2 * placement.size);
   const Vec3d middle = (bounds.lo + bounds.hi) * 0.5, half = (bounds.hi - bounds.lo) * 0.6;
@@ -51,8 +51,8 @@ Vec3d along_an_axis(Random& random) {
   return turn == 0 ? d : turn == 1 ? Vec3d(d.z, 0, 0) : Vec3d(0, d.z, 0);
 }
 
-// A ray that passes the spot nearly within the surface, at an angle of `least` or more.
-Ray<double> grazing(Random& random, const Spot<double>& spot, double size, double least) {
+// Returns a ray through the spot that grazes the surface, at an angle of at least `least`.
+Ray<double> grazing(Random& random, const SurfaceSample<double>& spot, double size, double least) {
   const Vec3d along = cross(spot.geometric, random.direction());
   const double tilt = random.magnitude(least, 0.1) * (random.below(2) ? 1 : -1);
   const Vec3d direction = safe_normalize(safe_normalize(along) + spot.geometric * tilt);
@@ -94,7 +94,7 @@ Rays<T> rays_at(const Json& object, const Placement& placement, int count, std::
     bounds = Boundsd();
     for (int i = 0; i < target.primitive_count(); ++i) bounds.include(target.bounds(i));
   }
-  constexpr double kLeastTilt = std::is_same_v<T, float> ? 2e-4 : 1e-6;
+  constexpr double kMinTilt = std::is_same_v<T, float> ? 2e-4 : 1e-6;
   Random random(seed);
   Rays<double> rays;
   for (int i = 0; i < count; ++i) {
@@ -104,9 +104,9 @@ Rays<T> rays_at(const Json& object, const Placement& placement, int count, std::
     rays.push_back({at - direction * distance, direction});
   }
   const std::vector<Hit<double>> hits = target.closest(rays);
-  const std::vector<Spot<double>> spots = target.surfaces(rays, hits);
+  const std::vector<SurfaceSample<double>> spots = target.surfaces(rays, hits);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (hits[i].met() && i % 3 == 0) rays[i] = grazing(random, spots[i], placement.size, kLeastTilt);
+    if (hits[i].met() && i % 3 == 0) rays[i] = grazing(random, spots[i], placement.size, kMinTilt);
   Rays<T> converted;
   for (const auto& ray : rays) converted.push_back(unit_ray<T>(ray));
   return converted;

@@ -4,7 +4,7 @@
 
 namespace orrery::test {
 
-// A token of which a stop has been requested.
+// Returns a token with a stop request.
 inline std::stop_token stopped() {
   std::stop_source source;
   source.request_stop();

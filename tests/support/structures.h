@@ -11,7 +11,7 @@ namespace orrery::test {
 
 std::vector<std::string> accelerator_names();
 
-// What stands in front of an accelerator: makes the two one.
+// Function that puts a stage in front of an accelerator.
 template <class T>
 using Stage = std::function<std::shared_ptr<const Accelerator<T>>(const PrimitiveList<T>&,
                                                                   std::shared_ptr<const Accelerator<T>>)>;
@@ -20,18 +20,19 @@ template <class T>
 class Structure {
  public:
   Structure(const Json& scene, const std::string& accelerator, const Stage<T>& stage = {});
-  // The scene as it stands at `time`; if there is a `before`, as it follows from that.
+  // Builds the structure over the scene at `time`. With `before`, refits the earlier structure if its type
+  // allows that.
   Structure(const std::shared_ptr<const Scene>& scene, const std::string& accelerator, double time,
             const Structure* before = nullptr);
 
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays);
-  // The same where a hit of each ray is known already; REQUIRES: as many.
+  // Returns the same, given an already known hit of each ray. REQUIRES: one known hit per ray.
   std::vector<Hit<T>> closest(std::span<const Ray<T>> rays, std::span<const Hit<T>> known);
   std::vector<char> occluded(std::span<const Ray<T>> rays, T t_max);
   AcceleratorFacts facts() const { return accelerator_->facts(); }
   const Geometry<T>& geometry() const { return *geometry_; }
   const std::shared_ptr<const Accelerator<T>>& accelerator() const { return accelerator_; }
-  const AcceleratorCounts& counts() const { return counts_; }  // of all calls so far
+  const AcceleratorCounts& counts() const { return counts_; }  // sum over all calls
 
  private:
   std::shared_ptr<const Geometry<T>> geometry_;

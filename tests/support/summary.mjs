@@ -1,9 +1,9 @@
-// Reads <folder>/test-reports of each build folder given and prints which rows of the stability catalogue the
-// passed tests cover, the test cases that failed with what they said, and how many test cases passed, failed
-// and were skipped. Exits with 1 on a failure.
+// Reads <folder>/test-reports of each build folder given. Prints the rows of the stability catalogue that
+// passed tests cover, the failed test cases with their messages, and the numbers of passed, failed and
+// skipped test cases. Exits with 1 on a failure.
 //
-// A ctest that is a GoogleTest executable counts its cases; any other counts as one. C++ tests name their
-// rows by RecordProperty("stability", "A1 A2"), scripts by printing a line "stability: A1 A2".
+// GoogleTest executables count their cases. Any other ctest counts as one. C++ tests name their rows by
+// RecordProperty("stability", "A1 A2"), scripts by printing a line "stability: A1 A2".
 
 import {existsSync, readFileSync} from 'node:fs';
 import {join} from 'node:path';
@@ -30,7 +30,7 @@ const entities = {
 const plain = (text) => text.replace(/&([#\w]+);/g, (whole, name) => entities[name] ?? whole);
 const note = (text) => text.split(/\s+/).filter(Boolean).forEach((row) => rows.add(row));
 
-// Counts the cases of one GoogleTest report and says how many of them failed.
+// Counts the cases of one GoogleTest report. Returns the number of failed ones.
 function countGoogleTest(xml) {
   let failed = 0;
   for (const one of cases(xml)) {
@@ -59,7 +59,7 @@ for (const folder of process.argv.slice(2)) {
     const status = attribute(one, 'status');
     const detail = join(reports, `test_${attribute(one, 'name')}.xml`);
     if (existsSync(detail)) {
-      // A crash on the way out fails the executable though all of its cases passed.
+      // A crash at exit fails the executable although all of its cases passed.
       if (countGoogleTest(readFileSync(detail, 'utf8')) > 0 || status !== 'fail') continue;
       ++total.failed;
       failures.push(`${attribute(one, 'name')}: the executable failed, not one of its cases`);

@@ -7,21 +7,21 @@
 
 namespace orrery::test {
 
-// Passes everything on to the accelerator that the plan chose, and keeps what it was asked. Each batch of
-// rays is asked for in one call, because the batches of these tests are no larger than a slice.
+// Accelerator decorator that records the rays of all calls. Each batch of rays is one call, because the
+// batches of these tests are no larger than a slice.
 class Tracing::Recorder final : public Accelerator<double> {
  public:
   explicit Recorder(AcceleratorPtr<double> real) : real_(std::move(real)) {}
 
   AcceleratorFacts facts() const override { return real_->facts(); }
-  void closest(const RayBatch<double>& rays, const Groups& groups, HitBatch<double>& hits,
+  void closest(const RayBatch<double>& rays, const LaneGroups& groups, HitBatch<double>& hits,
                AcceleratorCounts& counts) const override {
     std::vector<Ray<double>> generation;
     collect(rays, groups, generation);
     generations.push_back(std::move(generation));
     real_->closest(rays, groups, hits, counts);
   }
-  void occlude(RayBatch<double>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(RayBatch<double>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
     collect(rays, groups, shadow);
     real_->occlude(rays, groups, counts);
   }
@@ -30,7 +30,8 @@ class Tracing::Recorder final : public Accelerator<double> {
   mutable std::vector<Ray<double>> shadow;
 
  private:
-  static void collect(const RayBatch<double>& rays, const Groups& groups, std::vector<Ray<double>>& into) {
+  static void collect(const RayBatch<double>& rays, const LaneGroups& groups,
+                      std::vector<Ray<double>>& into) {
     for (const int first : groups)
       for (int i = first; i < first + kWidth<double>; ++i)
         if (rays.t_max[i] > 0) into.push_back({rays.origin[i], rays.direction[i]});
@@ -44,7 +45,7 @@ Tracing::Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest reques
   request.precision = Precision::double_precision;
   request.slice = kBatch;
   plan_ = make_plan(*scene, request);
-  plan_.cut_range = Vec3d(1);  // the ledger is of weights then
+  plan_.cut_range = Vec3d(1);  // makes the ledger count weights
   world_.geometry = make_geometry<double>(scene, *plan_.accelerator);
   auto recorder = std::make_unique<Recorder>(build(*plan_.accelerator, world_.geometry->primitives));
   recorder_ = recorder.get();
@@ -54,9 +55,9 @@ Tracing::Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest reques
 
 Tracing::~Tracing() = default;
 
-Answer Tracing::trace(const Ray<double>& ray) { return trace(std::vector<Ray<double>>{ray}).front(); }
+TraceOutput Tracing::trace(const Ray<double>& ray) { return trace(std::vector<Ray<double>>{ray}).front(); }
 
-std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays, int sample) {
+std::vector<TraceOutput> Tracing::trace(const std::vector<Ray<double>>& rays, int sample) {
   assert(rays.size() <= static_cast<std::size_t>(kBatch));
   const auto batch = std::make_unique<RayBatch<double>>();
   const auto result = std::make_unique<TraceResult<double>>();
@@ -65,8 +66,8 @@ std::vector<Answer> Tracing::trace(const std::vector<Ray<double>>& rays, int sam
   recorder_->generations.clear();
   recorder_->shadow.clear();
   tracer_->trace(*batch, Draws(plan_.seed, TileView{0, 0, kTileSide, kTileSide}, sample), *result, counts_);
-  if (tracer_->looks()) tracer_->look(*batch, 1, *result, counts_);
-  std::vector<Answer> answers;
+  if (tracer_->has_emission_pass()) tracer_->trace_emission_only(*batch, 1, *result, counts_);
+  std::vector<TraceOutput> answers;
   for (int i = 0; i < static_cast<int>(rays.size()); ++i)
     answers.push_back({result->radiance[i], result->omitted[i], max_component(result->omitted[i])});
   return answers;
@@ -83,7 +84,7 @@ Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, 
   Tracing tracing(scene, request);
   std::vector<double> means(kBatch);
   for (int sample = 0; sample < samples; ++sample) {
-    const std::vector<Answer> answers = tracing.trace(rays, sample);
+    const std::vector<TraceOutput> answers = tracing.trace(rays, sample);
     for (std::size_t i = 0; i < means.size(); ++i) means[i] += answers[i].radiance.x / samples;
   }
   double sum = 0, squares = 0;
@@ -133,7 +134,7 @@ std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request
       places.push_back(static_cast<std::size_t>((tile.y0 + p.y) * plan.width + tile.x0 + p.x));
       rays.push_back({batch->origin[slot], batch->direction[slot]});
     }
-    const std::vector<Answer> answers = tracing.trace(rays);
+    const std::vector<TraceOutput> answers = tracing.trace(rays);
     for (std::size_t i = 0; i < places.size(); ++i) pixels[places[i]] = answers[i].radiance;
   }
   return pixels;

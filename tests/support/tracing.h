@@ -9,32 +9,32 @@
 #include "core/plan/plan.h"
 #include "tests/support/scenes.h"
 
-// Single rays through the technique itself, in double precision: no camera, no picture, no rounding to float;
-// and every ray that it sends on the way.
+// Single rays traced by a technique in double precision, without camera, picture and rounding to float. All
+// rays that the technique sends are recorded.
 namespace orrery::test {
 
-struct Answer {
+struct TraceOutput {
   Vec3d radiance;
-  Vec3d weights;  // the ledger: of the rays that were not traced
-  double cut;     // the largest of these
+  Vec3d weights;  // ledger of the rays that were not traced
+  double cut;     // largest component of `weights`
 };
 
 class Tracing {
  public:
-  // The request's precision is ignored.
+  // Ignores the precision and the slice of the request.
   explicit Tracing(const std::shared_ptr<const Scene>& scene, RenderRequest request = {});
   explicit Tracing(const Json& scene, RenderRequest request = {});
   ~Tracing();
 
-  Answer trace(const Ray<double>& ray);
-  // Up to kBatch rays at once, as a tile would be, with the random numbers of one of its samples.
-  std::vector<Answer> trace(const std::vector<Ray<double>>& rays, int sample = 0);
+  TraceOutput trace(const Ray<double>& ray);
+  // Traces up to kBatch rays at once, like a tile, with the random numbers of one sample.
+  std::vector<TraceOutput> trace(const std::vector<Ray<double>>& rays, int sample = 0);
 
-  // The rays of the last trace by depth, shadow rays apart.
+  // Rays of the last trace by depth, without shadow rays.
   using Generations = std::vector<std::vector<Ray<double>>>;
   const Generations& rays() const;
   const std::vector<Ray<double>>& shadow_rays() const;
-  const TraceCounts& counts() const { return counts_; }  // of all traces so far
+  const TraceCounts& counts() const { return counts_; }  // sum over all traces
   const World<double>& world() const { return world_; }
 
  private:
@@ -47,11 +47,11 @@ class Tracing {
 };
 
 struct Estimate {
-  double mean, sd;  // of one slot's samples together
+  double mean, sd;  // over slots, each the mean of its samples
   double error() const { return sd / std::sqrt(double{kBatch}); }
 };
-// Of the red light along one ray that a technique finds, from the slots of a batch, which are independent of
-// each other unless their paths share what they find; the `samples` of a slot are stratified.
+// Estimates the red light along one ray from the slots of a batch. The slots are independent unless their
+// paths are reused. The `samples` of a slot are stratified.
 Estimate estimate(const std::shared_ptr<const Scene>& scene, const Vec3d& from, const Vec3d& toward,
                   int max_depth, const char* technique = "path");
 Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
@@ -59,7 +59,7 @@ Estimate estimate(const Json& scene, const Vec3d& from, const Vec3d& toward, int
 Estimate estimate_alone(const Json& scene, const Vec3d& from, const Vec3d& toward, int max_depth,
                         int samples);  // by paths, with reuse 1
 
-// Radiance of every pixel in double precision, without the picture's rounding to float.
+// Returns the radiance of every pixel in double precision, without the picture's rounding to float.
 std::vector<Vec3d> trace_picture(const Json& scene, const RenderRequest& request);
 
 }  // namespace orrery::test

@@ -143,7 +143,7 @@ TEST(Cie171, AClosedRoomKeepsTheLampsLight) {
     rays.resize(kBatch / 6 * 6);
     request.seed = static_cast<std::uint64_t>(batch);
     double mean = 0;
-    for (const Answer& answer : Tracing(loaded, request).trace(rays))
+    for (const TraceOutput& answer : Tracing(loaded, request).trace(rays))
       mean += answer.radiance.x / static_cast<double>(rays.size());
     sum += mean / kBatches;
     squares += mean * mean / kBatches;

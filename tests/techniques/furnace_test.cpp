@@ -48,7 +48,7 @@ double trace_paths(const Json& scene, const Ray<double>& ray, int max_depth, int
   double reflected = 0;
   for (int batch = 0; batch < batches; ++batch) {
     Tracing tracing(loaded, alone(max_depth, static_cast<std::uint64_t>(batch)));
-    for (const Answer& answer : tracing.trace(rays)) visit(answer.radiance.x);
+    for (const TraceOutput& answer : tracing.trace(rays)) visit(answer.radiance.x);
     for (const std::uint64_t n : tracing.counts().rays.reflected) reflected += static_cast<double>(n);
   }
   return reflected / (batches * double{kBatch});
@@ -106,7 +106,7 @@ TEST(ClosedRoom, LedgerHasTheWeightOfWhatIsCut) {
       const std::vector<Ray<double>> rays(kBatch, from_to(Vec3d(0.1, 0.2, 0.3), Vec3d(1, 0.4, -0.5)));
       Moments cut(std::pow(rho, depth)), whole(1 / (1 - rho));
       for (std::uint64_t seed = 0; seed < 32; ++seed)
-        for (const Answer& answer : Tracing(loaded, alone(depth, seed)).trace(rays)) {
+        for (const TraceOutput& answer : Tracing(loaded, alone(depth, seed)).trace(rays)) {
           cut.add(answer.cut);
           whole.add(answer.radiance.x + answer.cut * rho / (1 - rho));
         }

@@ -102,7 +102,7 @@ TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
     }
   double sum = 0;
   const auto found = material.evaluated(cases);
-  for (std::size_t i = 0; i < cases.size(); ++i) sum += found[i].f_cos.x * angle[i] / std::numbers::pi;
+  for (std::size_t i = 0; i < cases.size(); ++i) sum += found[i].pi_bsdf_cos.x * angle[i] / std::numbers::pi;
 
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'}]",
                         "{'materials': {'white': {}, 'lamp': {'type': 'lambert', 'reflectance': 0, "

@@ -56,7 +56,7 @@ TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
   covers("E1");
   for (const auto& [reflectance, depth] : {std::pair{.5, 5}, {.9, 5}, {.99, 10}, {.9, 32}}) {
     const double left = std::pow(reflectance, depth + 1);
-    const Answer answer = Tracing(mirrors(reflectance, 0.25), limits(depth)).trace(kUpright());
+    const TraceOutput answer = Tracing(mirrors(reflectance, 0.25), limits(depth)).trace(kUpright());
     EXPECT_NEAR(answer.cut, left, 1e-13);
     EXPECT_NEAR(answer.radiance.x, left * 0.25, 1e-13);
   }
@@ -77,7 +77,7 @@ TEST(ClosedRoom, WallsThatShineAndMirrorSumTheGeometricSeries) {
               {{"white",
                 {{"type", "refractive"}, {"kd", nullptr}, {"ior", index_of(albedo)}, {"fresnel", "exact"}}}}},
              {"background", {sky, sky, sky}}});
-    const Answer answer = Tracing(room, limits(walls)).trace(kUpright());
+    const TraceOutput answer = Tracing(room, limits(walls)).trace(kUpright());
     EXPECT_NEAR(answer.radiance.x + answer.cut * sky, sky, 1e-12 * sky);
     return answer.radiance.x;
   };
@@ -109,10 +109,10 @@ TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
 // transmit 1/5.
 TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
   covers("E2");
-  const Answer coarse = Tracing(slabs(2, .5), limits(32, 1.0 / 255)).trace(kDown);
+  const TraceOutput coarse = Tracing(slabs(2, .5), limits(32, 1.0 / 255)).trace(kDown);
   EXPECT_GT(std::abs(coarse.radiance.x - .2), 1.0 / 255) << "each branch is small, together they are not";
   EXPECT_LE(std::abs(coarse.radiance.x - .2), coarse.cut);
-  const Answer fine = Tracing(slabs(2, .5), limits(32, 1e-5)).trace(kDown);
+  const TraceOutput fine = Tracing(slabs(2, .5), limits(32, 1e-5)).trace(kDown);
   EXPECT_LE(std::abs(fine.radiance.x - .2), fine.cut);
   EXPECT_LT(fine.cut, coarse.cut / 5);
 }
@@ -123,9 +123,9 @@ TEST(Threshold, NoneIsTheDefaultAndCostsNothingOfASingleBranch) {
   covers("E3");
   EXPECT_EQ(load(slabs(1, .9))->render.min_contribution, 0);
   const double exact = (1 - .9) / (1 + .9);
-  const Answer with = Tracing(slabs(1, .9), limits(32, 1.0 / 255)).trace(kDown);
+  const TraceOutput with = Tracing(slabs(1, .9), limits(32, 1.0 / 255)).trace(kDown);
   EXPECT_LE(std::abs(with.radiance.x - exact), with.cut);
-  const Answer without = Tracing(slabs(1, .9), limits(32)).trace(kDown);
+  const TraceOutput without = Tracing(slabs(1, .9), limits(32)).trace(kDown);
   EXPECT_LE(std::abs(without.radiance.x - exact), without.cut);
   EXPECT_LE(without.cut, .1 * std::pow(.9, 30)) << "what is still between the surfaces after 30 of them";
   // A corridor that ends: six mirrors of .9 and then the sky give .9^6, nearly to the last bit.

@@ -30,7 +30,7 @@ TEST(ShadingNormal, SendsNoMirroredRayIntoTheSurface) {
     Vec3d direction = random.direction_above(Vec3d(0, 0, 1)) * -1;
     direction.z *= random.magnitude(1e-3, 1);
     direction = safe_normalize(direction);
-    const Answer answer = tracing.trace(Ray<double>{at - direction * 2, direction});
+    const TraceOutput answer = tracing.trace(Ray<double>{at - direction * 2, direction});
     if (tracing.rays().size() < 2) continue;
     ++sent;
     sunk += !(tracing.rays()[1][0].direction.z > 0);

@@ -136,14 +136,14 @@ Estimate by_light(const Json& lamp, const Probe<double>& material, int samples) 
     for (int i = 0; i < kBatchRoom; ++i) choices->index[i] = (i + sample) % parts;
     const Draws draws(3, TileView{0, 0, kTileSide, kTileSide}, sample);
     kernel->sample_each(*surface, *choices, PathDraws<double>{draws, slot, 0},
-                        Groups::covering(0, kBatch, kWidth<double>), *out);
+                        LaneGroups::covering(0, kBatch, kWidth<double>), *out);
     std::vector<Probe<double>::Case> cases;
     for (int i = 0; i < kBatch; ++i) cases.push_back(view(out->shadow.direction[i]));
     const auto found = material.evaluated(cases);
     for (int i = 0; i < kBatch; ++i)
       if (out->shadow.t_max[i] > 0)
         slots[static_cast<std::size_t>(i)] +=
-            found[static_cast<std::size_t>(i)].f_cos.x * out->incident[i].x / samples;
+            found[static_cast<std::size_t>(i)].pi_bsdf_cos.x * out->incident[i].x / samples;
   }
   return of_slots(slots);
 }
@@ -159,7 +159,7 @@ Estimate by_lobe(const Json& lamp, const Probe<double>& material, int samples) {
     const auto drawn = material.sampled(view(kUp), kBatch, static_cast<std::uint64_t>(sample) + 1);
     std::vector<Ray<double>> rays;
     for (const auto& one : drawn) rays.push_back({Vec3d(), one.weight.x > 0 ? one.direction : -kUp});
-    const std::vector<Answer> seen = lit.trace(rays);
+    const std::vector<TraceOutput> seen = lit.trace(rays);
     for (std::size_t i = 0; i < drawn.size(); ++i)
       slots[i] += (drawn[i].weight.x > 0 ? drawn[i].weight.x * seen[i].radiance.x : 0) / samples;
   }

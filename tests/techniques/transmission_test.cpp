@@ -70,7 +70,7 @@ TEST(Slab, TruncatedSeriesIsOffByNoMoreThanTheLedger) {
   covers("D9");
   const double expected[] = {.9216, .92307456, .9230769193};
   for (int trips = 0; trips < 3; ++trips) {
-    const Answer answer = Tracing(slab(), depth(2 + 2 * trips)).trace(slanted(0));
+    const TraceOutput answer = Tracing(slab(), depth(2 + 2 * trips)).trace(slanted(0));
     EXPECT_NEAR(answer.radiance.x, expected[trips], 5e-10);
     EXPECT_GT(answer.cut, 0);
     EXPECT_LE(12.0 / 13 - answer.radiance.x, answer.cut);
@@ -120,9 +120,9 @@ TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
           const Vec3d direction = random.direction();
           rays.push_back({random.in_cube(0.9) - direction * 5, direction});
         }
-        for (const Answer& answer : dark.trace(rays))
+        for (const TraceOutput& answer : dark.trace(rays))
           EXPECT_NEAR(answer.radiance.x + answer.cut, 1, 1e-12) << object << ior;
-        for (const Answer& answer : even.trace(rays))
+        for (const TraceOutput& answer : even.trace(rays))
           EXPECT_NEAR(answer.radiance.x, 1, 1e-12) << object << ior;
       }
 }
@@ -140,7 +140,7 @@ TEST(Furnace, BallFallsShortByWhatItsDepthLeavesOut) {
     for (int i = 0; i < kBatch; ++i)  // rings of equal area
       rays.push_back({{std::sqrt((i + 0.5) / kBatch), 0, 5}, {0, 0, -1}});
     double sum = 0;
-    for (const Answer& answer : tracing.trace(rays)) {
+    for (const TraceOutput& answer : tracing.trace(rays)) {
       EXPECT_NEAR(answer.radiance.x + answer.cut, 1, 1e-12);
       sum += 1 - answer.radiance.x;
     }

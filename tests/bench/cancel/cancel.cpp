@@ -8,7 +8,7 @@
 
 #include "core/accelerators/registry.h"
 #include "core/base/clock.h"
-#include "core/base/work_scope.h"
+#include "core/base/task_scope.h"
 #include "core/meshes/repair.h"
 #include "core/params/document.h"
 #include "core/plan/plan.h"

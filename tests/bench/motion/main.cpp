@@ -18,7 +18,7 @@ namespace orrery::bench {
 namespace {
 
 constexpr int kFrames = 40, kTiles = 64;
-constexpr double kLeastSeconds = 0.1;  // minimum length of a run
+constexpr double kMinRunSeconds = 0.1;  // minimum length of a run
 
 World<float> make(const std::shared_ptr<const Scene>& scene, const Plan& plan, double time,
                   const World<float>& before) {
@@ -55,7 +55,7 @@ int run(const std::string& path, const std::string& what) {
     return thread_seconds() - start;
   };
   seconds_of(true);
-  const int repeats = std::max(1, static_cast<int>(kLeastSeconds / seconds_of(false)));
+  const int repeats = std::max(1, static_cast<int>(kMinRunSeconds / seconds_of(false)));
   std::printf("%s\n", nlohmann::json({{"frames", kFrames},
                                       {"refitted", refitted},
                                       {"surface_area_growth", worst},
@@ -63,7 +63,7 @@ int run(const std::string& path, const std::string& what) {
                           .dump()
                           .c_str());
   std::fflush(stdout);
-  answer_sides(repeats, seconds_of);
+  serve_runs(repeats, seconds_of);
   return 0;
 }
 

@@ -23,17 +23,17 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr int kTiles = 64;
-constexpr double kLeastSeconds = 0.1;  // minimum length of a run
+constexpr double kMinRunSeconds = 0.1;  // minimum length of a run
 
 // Rays of one recorded call, and hits known beforehand.
 struct Call {
   RayBatch<float> rays;
-  Groups groups;
+  LaneGroups groups;
   HitBatch<float> hits;
 };
 using Calls = std::vector<std::unique_ptr<Call>>;
 
-std::unique_ptr<Call> call_of(const RayBatch<float>& rays, const Groups& groups) {
+std::unique_ptr<Call> call_of(const RayBatch<float>& rays, const LaneGroups& groups) {
   auto call = std::make_unique<Call>(Call{rays, groups, {}});
   call->hits.t = rays.t_max;
   call->hits.primitive.values.fill(kNoPrimitive);
@@ -45,12 +45,12 @@ class Recorder final : public Accelerator<float> {
   Recorder(const Accelerator<float>& real, Calls& camera, Calls& shadow)
       : real_(real), camera_(camera), shadow_(shadow) {}
   AcceleratorFacts facts() const override { return real_.facts(); }
-  void closest(const RayBatch<float>& rays, const Groups& groups, HitBatch<float>& hits,
+  void closest(const RayBatch<float>& rays, const LaneGroups& groups, HitBatch<float>& hits,
                AcceleratorCounts& counts) const override {
     camera_.push_back(call_of(rays, groups));
     real_.closest(rays, groups, hits, counts);
   }
-  void occlude(RayBatch<float>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(RayBatch<float>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
     shadow_.push_back(call_of(rays, groups));
     real_.occlude(rays, groups, counts);
   }
@@ -90,14 +90,14 @@ Calls bounced(const Calls& camera, const Accelerator<float>& accelerator, bool s
     for (int i = 0; i < kBatch; ++i)
       batch->set(i, rays[from + static_cast<std::size_t>(i)], std::numeric_limits<float>::infinity());
     batch->count = kBatch;
-    calls.push_back(call_of(*batch, Groups::covering(0, kBatch, kWidth<float>)));
+    calls.push_back(call_of(*batch, LaneGroups::covering(0, kBatch, kWidth<float>)));
   }
   return calls;
 }
 
 // Returns the CPU seconds of tracing copies of all calls. Adds to `counts` and `occluded`.
-double ask(const Accelerator<float>& accelerator, const Calls& calls, bool shadows, AcceleratorCounts& counts,
-           std::uint64_t& occluded) {
+double trace_calls(const Accelerator<float>& accelerator, const Calls& calls, bool shadows,
+                   AcceleratorCounts& counts, std::uint64_t& occluded) {
   const auto rays = std::make_unique<RayBatch<float>>();
   const auto hits = std::make_unique<HitBatch<float>>();
   double seconds = 0;
@@ -167,21 +167,22 @@ int run(const Task& task) {
   const Calls& ours = sides.ours.empty() ? sides.theirs : sides.ours;
   AcceleratorCounts with, without;
   std::uint64_t occluded = 0, again = 0;
-  ask(*sides.with, ours, sides.shadows, with, occluded);
-  const double once = ask(*sides.without, sides.theirs, sides.shadows, without, again);
+  trace_calls(*sides.with, ours, sides.shadows, with, occluded);
+  const double once = trace_calls(*sides.without, sides.theirs, sides.shadows, without, again);
   if (occluded != again) throw std::runtime_error("the stage changed an answer");
-  const int repeats = std::max(1, static_cast<int>(kLeastSeconds / once));
+  const int repeats = std::max(1, static_cast<int>(kMinRunSeconds / once));
   std::printf("%s\n", ordered_json({{"rays", rays_of(sides.theirs)},
                                     {"ray_s", once / static_cast<double>(rays_of(sides.theirs))},
                                     {"occluded", occluded},
-                                    {"proposals", with.proposals},
-                                    {"proofs", with.proofs},
+                                    {"proposals", with.predicted_occluders},
+                                    {"proofs", with.verified_occluders},
                                     {"build_ms", sides.build_ms}})
                           .dump()
                           .c_str());
   std::fflush(stdout);
-  answer_sides(repeats, [&](bool mine) {
-    return ask(mine ? *sides.with : *sides.without, mine ? ours : sides.theirs, sides.shadows, with, again);
+  serve_runs(repeats, [&](bool mine) {
+    return trace_calls(mine ? *sides.with : *sides.without, mine ? ours : sides.theirs, sides.shadows, with,
+                       again);
   });
   return 0;
 }

@@ -23,7 +23,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr int kTiles = 12;
-constexpr double kPatience = 2;  // limit of CPU seconds for repeated builds
+constexpr double kMaxBuildSeconds = 2;  // limit of CPU seconds for repeated builds
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -36,13 +36,13 @@ class Stopwatch final : public Accelerator<T> {
  public:
   explicit Stopwatch(std::shared_ptr<const Accelerator<T>> real) : real_(std::move(real)) {}
   AcceleratorFacts facts() const override { return real_->facts(); }
-  void closest(const RayBatch<T>& rays, const Groups& groups, HitBatch<T>& hits,
+  void closest(const RayBatch<T>& rays, const LaneGroups& groups, HitBatch<T>& hits,
                AcceleratorCounts& counts) const override {
     const double start = thread_seconds();
     real_->closest(rays, groups, hits, counts);
     seconds_ += thread_seconds() - start;
   }
-  void occlude(RayBatch<T>& rays, const Groups& groups, AcceleratorCounts& counts) const override {
+  void occlude(RayBatch<T>& rays, const LaneGroups& groups, AcceleratorCounts& counts) const override {
     const double start = thread_seconds();
     real_->occlude(rays, groups, counts);
     seconds_ += thread_seconds() - start;
@@ -76,7 +76,7 @@ Candidate<T> candidate_of(const AcceleratorType& type, const std::shared_ptr<con
   Candidate<T> candidate{&type, {geometry, nullptr}, nullptr, {}, {}, {}};
   std::shared_ptr<const Accelerator<T>> built;
   double spent = 0;
-  for (int i = 0; i < rounds && spent < kPatience; ++i) {
+  for (int i = 0; i < rounds && spent < kMaxBuildSeconds; ++i) {
     built.reset();
     const double start = thread_seconds();
     built = build(type, geometry->primitives);

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/render/omission_ledger.h"
+
+namespace orrery {
+
+// Ledger of Plan::clamp_indirect: radiance that the clamp removed from these samples. Its mean is exact for
+// the samples. The spread between tiles gives its standard error as an estimate of the expectation.
+struct ClampLedger {
+  OmissionLedger pixels;            // all channels together
+  std::array<Sum, 3> sum, squares;  // per channel; a value is the sum of a tile
+  double tiles = 0;
+
+  double mean(std::size_t channel) const {
+    return pixels.values > 0 ? sum[channel] * 3 / pixels.values / pixels.samples : 0;
+  }
+  double standard_error(std::size_t channel) const {
+    if (tiles < 2) return std::numeric_limits<double>::infinity();
+    const double of_tile = sum[channel] / tiles;
+    const double variance =
+        std::max(0.0, squares[channel] / tiles - of_tile * of_tile) * tiles * tiles / (tiles - 1);
+    return std::sqrt(variance) * 3 / pixels.values / pixels.samples;
+  }
+
+  void add_tile(const std::array<double, 3>& of_channels) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum[c] += of_channels[c];
+      squares[c] += of_channels[c] * of_channels[c];
+    }
+    ++tiles;
+  }
+  // Adds other pixels with the same samples.
+  void add(const ClampLedger& other) {
+    pixels.add(other.pixels);
+    add_sums(other);
+  }
+  // Adds other samples of the same pixels. Their tiles count as more tiles, which rather overestimates the
+  // error.
+  void join(const ClampLedger& other) {
+    pixels.join(other.pixels);
+    add_sums(other);
+  }
+
+ private:
+  void add_sums(const ClampLedger& other) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum[c] += other.sum[c];
+      squares[c] += other.squares[c];
+    }
+    tiles += other.tiles;
+  }
+};
+
+}  // namespace orrery

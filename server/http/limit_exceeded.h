@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/error.h"
+
+namespace orrery {
+
+// Thrown if a limit of the service is reached, so that the request cannot be served now.
+class LimitExceeded : public Busy {
+ public:
+  // `limit`: name in /v1/limits. Must live as long as the program.
+  LimitExceeded(const std::string& message, double retry_after_s, const char* limit)
+      : Busy(message, retry_after_s), limit_(limit) {}
+  const char* limit() const noexcept { return limit_; }
+
+ private:
+  const char* limit_;
+};
+
+// Thrown if the client has reached its share of a limit. Rejects its current or its newest request.
+class ClientLimitExceeded : public LimitExceeded {
+ public:
+  using LimitExceeded::LimitExceeded;
+};
+
+}  // namespace orrery
