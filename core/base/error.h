@@ -14,7 +14,7 @@ namespace orrery {
 // One problem in the input.
 struct Problem {
   std::string pointer;  // JSON Pointer (RFC 6901) to the value; "" for the whole document
-  std::string detail;   // one sentence without the place: expected and actual value
+  std::string detail;   // one sentence without the place: allowed and actual value
 
   // Returns the detail, preceded by the pointer unless that is empty.
   std::string text() const { return pointer.empty() ? detail : pointer + ": " + detail; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,13 @@ inline std::size_t character_count(std::string_view text) {
 inline std::string_view first_characters(std::string_view text, std::size_t characters) {
   for (std::size_t i = 0; i < text.size(); ++i)
     if (!continues_character(text[i]) && characters-- == 0) return text.substr(0, i);
+  return text;
+}
+
+// Returns the number with commas between groups of three digits: 8,388,608.
+inline std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
   return text;
 }
 

@@ -1,7 +1,10 @@
 #include "core/meshes/gltf_json.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
+#include "core/base/task_scope.h"
 #include "core/meshes/formats.h"
 #include "core/meshes/text.h"
 
@@ -14,6 +17,90 @@ constexpr std::size_t kMaxValues = 1'000'000;  // 16 to 80 bytes of memory each,
 constexpr std::string_view kTopKeys[] = {"asset",       "scene",   "scenes",
                                          "nodes",       "meshes",  "accessors",
                                          "bufferViews", "buffers", "extensionsRequired"};
+
+// Builds the document from parser events. Skips the values that geometry does not need. nlohmann's parser
+// with a callback takes quadratic time instead: it searches a container for discarded values after each
+// element.
+class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  nlohmann::json& document() { return document_; }
+  std::size_t error_position() const { return error_position_; }  // in bytes
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t&) override { return false; }  // not part of JSON text
+  bool start_object(std::size_t) override { return open(nlohmann::json::object()); }
+  bool start_array(std::size_t) override { return open(nlohmann::json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& name) override {
+    check_depth();
+    if (skipped_ > 0) return true;
+    const bool is_top = depth_ == 1;
+    skips_next_ = is_top ? std::find(std::begin(kTopKeys), std::end(kTopKeys), name) == std::end(kTopKeys)
+                         : name == "extras" || name == "extensions";
+    key_ = std::move(name);
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception&) override {
+    error_position_ = position;
+    return false;
+  }
+
+ private:
+  // Adds a value to the open container. Returns true.
+  bool add(nlohmann::json value) {
+    count_value();
+    if (skipped_ == 0 && !std::exchange(skips_next_, false)) place(std::move(value));
+    return true;
+  }
+  bool open(nlohmann::json container) {
+    count_value();
+    ++depth_;
+    if (skipped_ > 0 || std::exchange(skips_next_, false))
+      ++skipped_;
+    else
+      open_.push_back(&place(std::move(container)));
+    return true;
+  }
+  bool close() {
+    --depth_;
+    if (skipped_ > 0)
+      --skipped_;
+    else
+      open_.pop_back();
+    return true;
+  }
+  nlohmann::json& place(nlohmann::json value) {
+    if (open_.empty()) return document_ = std::move(value);
+    nlohmann::json& parent = *open_.back();
+    if (parent.is_object()) return parent[key_] = std::move(value);
+    parent.push_back(std::move(value));
+    return parent.back();
+  }
+  void check_depth() const {
+    if (depth_ > kMaxDepth)
+      throw InputError("", "JSON is nested too deep (limit " + std::to_string(kMaxDepth) + ")");
+  }
+  void count_value() {
+    check_depth();
+    interruption_point(values_++);
+    if (values_ > kMaxValues)
+      throw InputError("", "JSON has too many values (limit " + std::to_string(kMaxValues) + ")");
+  }
+
+  nlohmann::json document_;
+  std::vector<nlohmann::json*> open_;  // containers from the root to the innermost
+  std::string key_;                    // of the next value
+  bool skips_next_ = false;            // the next value is not needed
+  int skipped_ = 0;                    // open containers that are not needed
+  int depth_ = 0;                      // open containers
+  std::size_t values_ = 0, error_position_ = 0;
+};
 
 }  // namespace
 
@@ -74,29 +161,12 @@ std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t
 }
 
 nlohmann::json parse_gltf(std::string_view text) {
-  using Event = nlohmann::json::parse_event_t;
-  std::size_t values = 0;
-  // Returns false for values that the document leaves out.
-  const auto keep = [&](int depth, Event event, const nlohmann::json& value) {
-    if (depth > kMaxDepth)
-      throw InputError("", "expected JSON nested at most " + std::to_string(kMaxDepth) + " deep, got more");
-    if (event != Event::key) {
-      values += event != Event::object_end && event != Event::array_end;
-      if (values > kMaxValues)
-        throw InputError("", "expected at most " + std::to_string(kMaxValues) + " JSON values, got more");
-      return true;
-    }
-    const auto& key = value.get_ref<const std::string&>();
-    if (depth == 1) return std::find(std::begin(kTopKeys), std::end(kTopKeys), key) != std::end(kTopKeys);
-    return key != "extras" && key != "extensions";
-  };
-  try {
-    nlohmann::json document = nlohmann::json::parse(text.begin(), text.end(), keep);
-    if (!document.is_object()) throw InputError("", "expected a glTF document as a JSON object, got none");
-    return document;
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError("", "expected a glTF document in JSON, got " + excerpt(error.what(), 160));
-  }
+  GltfBuilder builder;
+  const bool complete = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
+  if (!complete)
+    throw InputError("", "JSON syntax error at byte " + std::to_string(builder.error_position()));
+  if (!builder.document().is_object()) throw InputError("", "glTF document must be a JSON object");
+  return std::move(builder.document());
 }
 
 }  // namespace orrery

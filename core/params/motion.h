@@ -23,12 +23,12 @@ auto read_motion(Params& p, const Read& read) {
         const double time =
             key.number("time", "Seconds; more than in the key before.", {.min = -kMaxTime, .max = kMaxTime});
         if (!keys.empty() && time <= keys.times.back())
-          key.fail("time", "expected more than " + number_text(keys.times.back()) +
-                               ", the time of the key before, got " + number_text(time));
+          key.fail("time", "must be > " + number_text(keys.times.back()) +
+                               ", the time of the previous key (got " + number_text(time) + ")");
         keys.times.push_back(time);
         keys.values.push_back(read(key));
       });
-  if (keys.times.size() == 1) p.fail("motion", "expected no key or two at least, got 1");
+  if (keys.times.size() == 1) p.fail("motion", "must be a list of no keys or at least 2 (got 1)");
   return keys;
 }
 

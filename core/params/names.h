@@ -13,7 +13,7 @@ namespace orrery {
 // Names that a document defines and refers to, numbered in insertion order.
 class Names {
  public:
-  // `kind` is the noun in errors: no material "slver" (did you mean "silver"?).
+  // `kind` is the noun in errors: unknown material "slver" (did you mean "silver"?).
   explicit Names(std::string kind) : kind_(std::move(kind)) {}
 
   // Returns the index of the new name. REQUIRES: `name` is not in the set.

@@ -18,15 +18,17 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::string_view kEndOfText = "the end of the text";
+
 std::string in_plain_words(std::string text) {
   static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
       {"'[', '{', or a literal", "a value"},
-      {"number literal", "number"},
+      {"number literal", "a number"},
       {"string literal", "text in double quotes"},
       {"true literal", "true"},
       {"false literal", "false"},
       {"null literal", "null"},
-      {"end of input", "end of the text"},
+      {"end of input", kEndOfText},
       {"ill-formed UTF-8 byte", "a byte that is not UTF-8"}};
   for (const auto& [theirs, ours] : kWords) {
     const std::size_t at = text.find(theirs);
@@ -35,17 +37,17 @@ std::string in_plain_words(std::string text) {
   return text;
 }
 
-// Rewrites an error that names only a missing closing bracket. A comma is also valid there, and is more often
-// forgotten.
-std::string comma_missing(const std::string& reason) {
+// Rewrites "unexpected X; expected Y" as "must be Y (got X)". If Y is a closing bracket, a comma is also valid
+// there, and is more often forgotten.
+std::string in_our_grammar(const std::string& reason) {
   constexpr std::string_view kUnexpected = "unexpected ", kExpected = "; expected ";
   const std::size_t split = reason.find(kExpected);
   if (!reason.starts_with(kUnexpected) || split == reason.npos) return reason;
-  const std::string expected = reason.substr(split + kExpected.size());
-  const std::string came = reason.substr(kUnexpected.size(), split - kUnexpected.size());
-  if (expected != "'}'" && expected != "']'") return reason;
-  return came == "end of the text" ? expected + " is missing at the end of the text"
-                                   : "a comma or " + expected + " is missing before " + came;
+  const std::string allowed = reason.substr(split + kExpected.size());
+  const std::string got = reason.substr(kUnexpected.size(), split - kUnexpected.size());
+  if (allowed != "'}'" && allowed != "']'") return "must be " + allowed + " (got " + got + ")";
+  return got == kEndOfText ? allowed + " is missing at " + std::string(kEndOfText)
+                           : "a comma or " + allowed + " is missing before " + got;
 }
 
 // Returns the reason from nlohmann's message `what`: "[json.exception...] parse error at line 1, column 2:
@@ -54,7 +56,7 @@ std::string comma_missing(const std::string& reason) {
 std::string reason_of(std::string_view what) {
   const std::size_t dash = what.find(" - ");
   const std::string_view reason = dash == what.npos ? what : what.substr(dash + 3);
-  return comma_missing(in_plain_words(std::string(reason.substr(0, reason.find("; last read: ")))));
+  return in_our_grammar(in_plain_words(std::string(reason.substr(0, reason.find("; last read: ")))));
 }
 
 class TreeBuilder {
@@ -89,7 +91,8 @@ class TreeBuilder {
                                 const json::exception& error) {
     constexpr int kNumberOverflow = 406;
     if (error.id == kNumberOverflow) {
-      problems_.push_back({next_pointer(), "number too large for a double, got " + in_quotes(token)});
+      const std::string token_text = in_quotes(token);
+      problems_.push_back({next_pointer(), "must be a number that a double can hold (got " + token_text + ")"});
       throw InputError(std::move(problems_));
     }
     // `position` is the number of bytes read. The last byte read is the wrong character or ends the wrong
@@ -101,7 +104,7 @@ class TreeBuilder {
 
   void refuse_zero_bytes() {
     const std::size_t zero = text_.find('\0');  // nlohmann would end the text here
-    if (zero != text_.npos) fail(zero, "a zero byte cannot be in JSON text");
+    if (zero != text_.npos) fail(zero, "JSON text must not contain a zero byte");
   }
 
   json finish() {
@@ -123,8 +126,8 @@ class TreeBuilder {
 
   bool open(json container) {
     if (levels_.size() == limits_.depth) {
-      throw InputError(next_pointer(), "arrays and objects are more than " + std::to_string(limits_.depth) +
-                                           " deep (limit: JSON depth)");
+      throw InputError(next_pointer(), "JSON nesting has more than " + grouped(limits_.depth) +
+                                           " levels (limit " + grouped(limits_.depth) + ", JSON depth)");
     }
     json* placed = put(std::move(container));
     levels_.push_back({placed});
@@ -139,8 +142,8 @@ class TreeBuilder {
   json* put(json value) {
     interruption_point(nodes_);
     if (++nodes_ > limits_.nodes) {
-      throw InputError(next_pointer(), "the document has more than " + std::to_string(limits_.nodes) +
-                                           " values (limit: JSON nodes)");
+      throw InputError(next_pointer(), "document has more than " + grouped(limits_.nodes) +
+                                           " JSON values (limit " + grouped(limits_.nodes) + ", JSON nodes)");
     }
     if (levels_.empty()) {
       root_ = std::move(value);

@@ -57,7 +57,7 @@ void Reader::finish() {
     if (was_asked(key)) continue;
     std::vector<Key> free;  // known keys that are absent; one of them may be meant
     std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(free), [&](Key k) { return !lookup(k); });
-    problems_.add(pointer(), "unknown key " + in_quotes(key) + did_you_mean(key, free));
+    problems_.add(pointer(), "unknown key " + in_quotes(key) + did_you_mean_key(key, free));
   }
 }
 
@@ -67,9 +67,9 @@ const json* Reader::lookup(Key key) const {
   return found == members.end() ? nullptr : &found->second;
 }
 
-void Reader::note_missing(Key key, const std::string& expected) {
+void Reader::note_missing(Key key, const std::string& allowed) {
   if (std::find(excused_.begin(), excused_.end(), key) != excused_.end()) return;
-  note(pointer(), "missing key " + in_quotes(key) + ": expected " + expected);
+  note(pointer(), "missing key " + in_quotes(key) + " (must be " + allowed + ")");
 }
 
 void Reader::note(std::string pointer, std::string detail) {
@@ -77,72 +77,79 @@ void Reader::note(std::string pointer, std::string detail) {
   problems_.add(std::move(pointer), std::move(detail));
 }
 
-void Reader::note_value(std::string pointer, const std::string& expected, const json& got,
-                        const std::string& hint) {
-  note(std::move(pointer), "expected " + expected + ", got " + brief(got) + hint);
+void Reader::note_value(std::string pointer, const std::string& allowed, const json& got,
+                        const std::optional<std::string>& suggestion) {
+  const std::string hint = suggestion ? "; did you mean " + in_quotes(*suggestion) + "?" : "";
+  note(std::move(pointer), "must be " + allowed + " (got " + brief(got) + hint + ")");
+}
+
+void Reader::note_size(std::string pointer, const std::string& allowed, std::size_t entries) {
+  note(std::move(pointer), "must be " + allowed + " (got " + std::to_string(entries) +
+                               (entries == 1 ? " entry)" : " entries)"));
 }
 
 double Reader::do_number(Key key, Doc, const Range& range, const Fallback<double>& fallback) {
-  const auto expected = [&] { return "a number" + range_text(range); };
-  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const auto allowed = [&] { return "a number" + range_text(range); };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, allowed);
   const std::optional<double> number = value ? number_in(*value, range) : std::nullopt;
-  if (value && !number) note_value(pointer(key), expected(), *value);
+  if (value && !number) note_value(pointer(key), allowed(), *value);
   return number.value_or(fallback.value.value_or(stand_in(range)));
 }
 
 std::int64_t Reader::do_integer(Key key, Doc, std::int64_t min, std::int64_t max,
                                 const Fallback<std::int64_t>& fallback) {
-  const auto expected = [&] {
+  const auto allowed = [&] {
     return min == max ? std::to_string(min)
-                      : "an integer >= " + std::to_string(min) + " and <= " + std::to_string(max);
+                      : "an integer from " + std::to_string(min) + " to " + std::to_string(max);
   };
-  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, allowed);
   if (!value) return fallback.value.value_or(min);
   const std::optional<std::int64_t> number = integer_of(*value);
   if (number && *number >= min && *number <= max) return *number;
-  note_value(pointer(key), expected(), *value);
+  note_value(pointer(key), allowed(), *value);
   return fallback.value.value_or(min);
 }
 
 bool Reader::do_flag(Key key, Doc, const Fallback<bool>& fallback) {
-  const auto expected = [] { return std::string("true or false"); };
-  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const auto allowed = [] { return std::string("true or false"); };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, allowed);
   if (value && value->is_boolean()) return value->get<bool>();
-  if (value) note_value(pointer(key), expected(), *value);
+  if (value) note_value(pointer(key), allowed(), *value);
   return fallback.value.value_or(false);
 }
 
 const std::string* Reader::read_choice(const json& value, const Location& location, Options options) {
   const std::string* word = value.get_ptr<const std::string*>();
   if (word && std::find(options.begin(), options.end(), *word) != options.end()) return word;
-  note_value(location_text(location), one_of(options), value, word ? did_you_mean(*word, options) : "");
+  note_value(location_text(location), choice_text(options), value,
+             word ? nearest(*word, options) : std::nullopt);
   return nullptr;
 }
 
 std::string Reader::do_choice(Key key, Doc, Options options, const Fallback<std::string_view>& fallback) {
-  const auto expected = [&] { return one_of(options); };
-  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const auto allowed = [&] { return choice_text(options); };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, allowed);
   const std::string* word = value ? read_choice(*value, {key}, options) : nullptr;
   return word ? *word : std::string(fallback.value.value_or(options.front()));
 }
 
 std::string Reader::do_text(Key key, Doc, std::size_t max_length, const char* fallback) {
-  const auto expected = [&] { return "a text of at most " + std::to_string(max_length) + " characters"; };
-  const json* value = find(key, fallback ? Need::optional : Need::required, expected);
+  const auto allowed = [&] { return "a text of at most " + std::to_string(max_length) + " characters"; };
+  const json* value = find(key, fallback ? Need::optional : Need::required, allowed);
   if (!value) return fallback ? fallback : "";
   const std::string* text = value->get_ptr<const std::string*>();
   if (text && character_count(*text) <= max_length) return *text;
-  note_value(pointer(key), expected(), *value);
+  note_value(pointer(key), allowed(), *value);
   return fallback ? fallback : "";
 }
 
 std::size_t Reader::do_reference(Key key, Doc, const Names& names) {
-  const auto expected = [&] { return "the name of a " + names.kind(); };
-  const json* value = find(key, Need::required, expected);
+  const auto allowed = [&] { return "the name of a " + names.kind(); };
+  const json* value = find(key, Need::required, allowed);
   if (!value) return 0;
   const std::string* name = value->get_ptr<const std::string*>();
   if (!name) {
-    note_value(pointer(key), expected(), *value);
+    note_value(pointer(key), allowed(), *value);
     return 0;
   }
   const std::optional<std::size_t> index = names.find(*name);
@@ -152,19 +159,19 @@ std::size_t Reader::do_reference(Key key, Doc, const Names& names) {
       if (known.size() == kMaxCandidates) break;
       known.push_back(entry.first);
     }
-    note(pointer(key), "no " + names.kind() + " " + in_quotes(*name) + did_you_mean(*name, known));
+    note(pointer(key), "unknown " + names.kind() + " " + in_quotes(*name) + did_you_mean(*name, known));
   }
   return index.value_or(0);
 }
 
 std::optional<std::size_t> Reader::do_pick(Key key, Doc, std::span<const Choice> choices) {
   std::vector<Key> types;
-  const auto expected = [&] {
+  const auto allowed = [&] {
     types.clear();
     for (const Choice& choice : choices) types.push_back(choice.type);
-    return one_of(types);
+    return choice_text(types);
   };
-  const json* value = find(key, Need::required, expected);
+  const json* value = find(key, Need::required, allowed);
   const std::string* word = value ? value->get_ptr<const std::string*>() : nullptr;
   if (word) {
     const auto chosen =
@@ -172,8 +179,8 @@ std::optional<std::size_t> Reader::do_pick(Key key, Doc, std::span<const Choice>
     if (chosen != choices.end()) return static_cast<std::size_t>(chosen - choices.begin());
   }
   if (value) {
-    const std::string words = expected();
-    note_value(pointer(key), words, *value, word ? did_you_mean(*word, types) : "");
+    const std::string words = allowed();
+    note_value(pointer(key), words, *value, word ? nearest(*word, types) : std::nullopt);
   }
   type_unknown_ = true;
   return std::nullopt;
@@ -195,9 +202,9 @@ std::size_t Reader::do_form(KeySets key_sets) {
   const bool empty_allowed = std::find(sets.begin(), sets.end(), "") != sets.end();
   if (begun == 1 || (begun == 0 && empty_allowed)) return best;
 
-  std::string expected, got;
+  std::string allowed, got;
   for (const std::string& set : sets) {
-    if (!set.empty()) expected += (expected.empty() ? "either " : ", or ") + set;
+    if (!set.empty()) allowed += (allowed.empty() ? "either " : ", or ") + set;
   }
   for (const auto& keys : key_sets) {
     for (const Key key : keys) {
@@ -206,7 +213,7 @@ std::size_t Reader::do_form(KeySets key_sets) {
       excused_.push_back(key);
     }
   }
-  note(pointer(), "expected " + expected + ", got " + (got.empty() ? "none of them" : got));
+  note(pointer(), "must have " + allowed + " (got " + (got.empty() ? "none of them" : got) + ")");
   return best;
 }
 

@@ -74,15 +74,15 @@ class Reader final : public Params {
   enum class Need { required, optional };
 
   // Returns the value of `key`, or null if it is missing. Marks the key as read. A missing required key is
-  // reported with the text of `expected()`.
-  template <class Expected>
-  const nlohmann::json* find(Key key, Need need, const Expected& expected) {
+  // reported with the text of `allowed()`.
+  template <class Allowed>
+  const nlohmann::json* find(Key key, Need need, const Allowed& allowed) {
     asked_.push_back(key);
     const nlohmann::json* value = lookup(key);
-    if (!value && need == Need::required) note_missing(key, expected());
+    if (!value && need == Need::required) note_missing(key, allowed());
     return value;
   }
-  void note_missing(Key key, const std::string& expected);
+  void note_missing(Key key, const std::string& allowed);
   const nlohmann::json* lookup(Key key) const;
   // Returns the list at `key`. Reports an error and returns null if the type or the size is wrong.
   const nlohmann::json* find_list(Key key, Count count, std::string_view noun);
@@ -98,8 +98,11 @@ class Reader final : public Params {
   void read_inside(const nlohmann::json& value, const Location& location, const Read& read);
 
   void note(std::string pointer, std::string detail);
-  void note_value(std::string pointer, const std::string& expected, const nlohmann::json& got,
-                  const std::string& hint = "");
+  // Reports "must be `allowed` (got `got`)", with "; did you mean" and the suggestion if it is not empty.
+  void note_value(std::string pointer, const std::string& allowed, const nlohmann::json& got,
+                  const std::optional<std::string>& suggestion = {});
+  // Reports that a list or map has the wrong size.
+  void note_size(std::string pointer, const std::string& allowed, std::size_t entries);
   std::string location_text(const Location& location) const;  // JSON Pointer
 
   Reader* parent_ = nullptr;

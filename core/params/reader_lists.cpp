@@ -60,8 +60,8 @@ void Reader::read_three(const json& value, const Location& location, Kind kind, 
 }
 
 Vec3d Reader::do_three(Key key, Doc, Kind kind, const Range& range, const Fallback<Vec3d>& fallback) {
-  const auto expected = [&] { return three_text(kind == Kind::coefficient, kind == Kind::direction, range); };
-  const json* value = find(key, fallback.value ? Need::optional : Need::required, expected);
+  const auto allowed = [&] { return three_text(kind == Kind::coefficient, kind == Kind::direction, range); };
+  const json* value = find(key, fallback.value ? Need::optional : Need::required, allowed);
   const double x = stand_in(range);
   Vec3d three = fallback.value.value_or(kind == Kind::direction ? Vec3d{0, 0, 1} : Vec3d{x, x, x});
   if (value) read_three(*value, {key}, kind, range, three);
@@ -69,15 +69,15 @@ Vec3d Reader::do_three(Key key, Doc, Kind kind, const Range& range, const Fallba
 }
 
 const json* Reader::find_list(Key key, Count count, std::string_view noun) {
-  const auto expected = [&] { return "a list of " + count_text(count) + " " + std::string(noun); };
-  const json* list = find(key, count.min > 0 ? Need::required : Need::optional, expected);
+  const auto allowed = [&] { return "a list of " + count_text(count) + " " + std::string(noun); };
+  const json* list = find(key, count.min > 0 ? Need::required : Need::optional, allowed);
   if (!list) return nullptr;
   if (!list->is_array()) {
-    note_value(pointer(key), expected(), *list);
+    note_value(pointer(key), allowed(), *list);
     return nullptr;
   }
   if (list->size() < count.min || list->size() > count.max) {
-    note(pointer(key), "expected " + expected() + ", got " + std::to_string(list->size()));
+    note_size(pointer(key), allowed(), list->size());
     return nullptr;
   }
   return list;
@@ -109,22 +109,22 @@ std::vector<std::array<double, 2>> Reader::do_pairs(Key key, Doc, Count count) {
 
 void Reader::read_triple(const json& value, const Location& location, std::int64_t bound,
                          std::array<std::int64_t, 3>& triple) {
-  const Range range{.min = 0, .max = static_cast<double>(bound), .exclusive_max = true};
-  const auto expected = [&](const char* what) { return what + range_text(range); };
+  const Range range{.min = 0, .max = static_cast<double>(bound - 1)};
+  const auto allowed = [&](const char* noun) { return noun + range_text(range); };
   if (!value.is_array() || value.size() != 3)
-    return note_value(location_text(location), expected("3 integers"), value);
+    return note_value(location_text(location), allowed("3 integers"), value);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::optional<double> number = number_in(value[i], range);
     if (number && *number == std::trunc(*number)) {
       triple[i] = static_cast<std::int64_t>(*number);
     } else {
-      note_value(location_text(location) + "/" + std::to_string(i), expected("an integer"), value[i]);
+      note_value(location_text(location) + "/" + std::to_string(i), allowed("an integer"), value[i]);
     }
   }
 }
 
 std::vector<std::array<std::int64_t, 3>> Reader::do_triples(Key key, Doc, Count count, std::int64_t bound) {
-  const json* list = find_list(key, count, "threes of integers");
+  const json* list = find_list(key, count, "triples of integers");
   std::vector<std::array<std::int64_t, 3>> all(list ? list->size() : count.min);
   for (std::size_t i = 0; list && i < all.size(); ++i) read_triple((*list)[i], {key, i}, bound, all[i]);
   return all;
@@ -138,7 +138,7 @@ std::vector<std::string> Reader::do_choices(Key key, Doc, Options options) {
     const std::string* word = read_choice((*list)[i], location, options);
     if (!word) continue;
     if (std::find(words.begin(), words.end(), *word) != words.end())
-      note(location_text(location), "expected different words, got " + in_quotes(*word) + " again");
+      note(location_text(location), "must not repeat an earlier word (got " + in_quotes(*word) + ")");
     words.push_back(*word);
   }
   return words;
@@ -164,18 +164,18 @@ void Reader::do_each(Key key, Doc, Count count, const Read& read) {
 }
 
 void Reader::do_each_named(Key key, Doc, Count count, const ReadNamed& read) {
-  const auto expected = [&] { return "an object with " + count_text(count) + " members"; };
-  const json* map = find(key, count.min > 0 ? Need::required : Need::optional, expected);
+  const auto allowed = [&] { return "an object with " + count_text(count) + " members"; };
+  const json* map = find(key, count.min > 0 ? Need::required : Need::optional, allowed);
   if (!map) return;
-  if (!map->is_object()) return note_value(pointer(key), expected(), *map);
+  if (!map->is_object()) return note_value(pointer(key), allowed(), *map);
   if (map->size() < count.min || map->size() > count.max) {
-    return note(pointer(key), "expected " + expected() + ", got " + std::to_string(map->size()));
+    return note_size(pointer(key), allowed(), map->size());
   }
   for (const auto& [name, value] : map->get_ref<const json::object_t&>()) {
     const Location location{.key = key, .name = name};
     if (name.empty() || character_count(name) > kMaxNameLength) {
-      note(location_text(location), "expected a name of 1 to " + std::to_string(kMaxNameLength) +
-                                        " characters, got " + in_quotes(name));
+      note(location_text(location), "must be a name of 1 to " + std::to_string(kMaxNameLength) +
+                                        " characters (got " + in_quotes(name) + ")");
       continue;
     }
     read_inside(value, location, [&, &name = name](Params& inside) { read(name, inside); });
@@ -184,7 +184,7 @@ void Reader::do_each_named(Key key, Doc, Count count, const ReadNamed& read) {
 
 void read_document(const Document& document, const Params::Read& read) {
   if (!json_of(document).is_object()) {
-    throw InputError(document.pointer(), "expected an object, got " + brief(json_of(document)));
+    throw InputError(document.pointer(), "must be an object (got " + brief(json_of(document)) + ")");
   }
   ProblemList problems;
   Reader root(document, problems);

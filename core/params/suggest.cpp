@@ -1,6 +1,7 @@
 #include "core/params/suggest.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -20,6 +21,70 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+// Returns the letters and digits of the text, in lower case: "diffusecolor" for "Diffuse_Color".
+std::string plain_letters(std::string_view text) {
+  std::string letters = lower_case(text);
+  std::erase_if(letters, [](char c) { return c == '_' || c == '-' || c == ' '; });
+  return letters;
+}
+
+// Words of other programs, each with the keys of the same meaning. An object has at most a few of them, so
+// the first one that it can take is suggested.
+struct Synonym {
+  std::string_view word;
+  std::array<std::string_view, 6> keys;
+};
+constexpr Synonym kSynonyms[] = {
+    {"albedo", {"kd", "reflectance", "base_color", "diffuse"}},
+    {"diffuse", {"kd", "reflectance", "base_color"}},
+    {"diffusecolor", {"kd", "reflectance", "base_color", "diffuse"}},
+    {"diffusecolour", {"kd", "reflectance", "base_color", "diffuse"}},
+    {"color", {"kd", "reflectance", "base_color", "diffuse", "intensity", "radiance"}},
+    {"colour", {"kd", "reflectance", "base_color", "diffuse", "intensity", "radiance"}},
+    {"ambient", {"ka"}},
+    {"ambientcolor", {"ka"}},
+    {"ambientcolour", {"ka"}},
+    {"specular", {"ks"}},
+    {"specularcolor", {"ks", "specular"}},
+    {"specularcolour", {"ks", "specular"}},
+    {"exponent", {"shininess"}},
+    {"emissive", {"emission"}},
+    {"emit", {"emission"}},
+    {"emitted", {"emission"}},
+    {"eta", {"ior", "n"}},
+    {"index", {"ior", "n"}},
+    {"refractiveindex", {"ior", "n"}},
+    {"indexofrefraction", {"ior", "n"}},
+    {"position", {"eye", "center", "point", "corner", "translate"}},
+    {"pos", {"eye", "center", "position", "point", "corner", "translate"}},
+    {"origin", {"eye", "center", "position", "point", "corner", "translate"}},
+    {"location", {"eye", "center", "position", "point", "corner", "translate"}},
+    {"from", {"eye", "position"}},
+    {"lookfrom", {"eye"}},
+    {"target", {"look_at"}},
+    {"lookat", {"look_at"}},
+    {"look", {"look_at"}},
+    {"fov", {"fov_degrees"}},
+    {"angle", {"fov_degrees", "degrees", "angle_degrees", "outer_degrees"}},
+    {"transform", {"translate"}},
+    {"matrix", {"translate"}},
+    {"translation", {"translate"}},
+    {"rotation", {"rotate"}},
+    {"size", {"width", "radius", "scale"}},
+    {"resolution", {"width"}},
+    {"spp", {"samples"}},
+    {"samplesperpixel", {"samples"}},
+    {"bounces", {"max_depth", "depth"}},
+    {"maxbounces", {"max_depth", "depth"}},
+    {"depth", {"max_depth"}},
+    {"vertices", {"positions"}},
+    {"points", {"positions", "vertices"}},
+    {"faces", {"indices"}},
+    {"triangles", {"indices"}},
+    {"filename", {"file"}},
+    {"path", {"file"}},
+};
+
 // Returns the edit distance to accept. Two edits in a word of three letters would match almost anything.
 int slips_allowed(std::size_t length) { return std::min(kMaxSlips, static_cast<int>((length + 2) / 3)); }
 
@@ -33,6 +98,10 @@ std::optional<std::string> only_one_beginning_with(std::string_view word,
     found = candidate;
   }
   return found;
+}
+
+std::string question(const std::optional<std::string>& name) {
+  return name ? " (did you mean " + in_quotes(*name) + "?)" : "";
 }
 
 }  // namespace
@@ -83,9 +152,23 @@ std::optional<std::string> nearest(std::string_view word, std::span<const std::s
   return only_one_beginning_with(wanted, candidates);
 }
 
+std::optional<std::string> nearest_key(std::string_view word, std::span<const std::string_view> keys) {
+  if (word.size() > kMaxWord) return std::nullopt;
+  const std::string letters = plain_letters(word);
+  const auto synonym = std::find_if(std::begin(kSynonyms), std::end(kSynonyms),
+                                    [&](const Synonym& s) { return s.word == letters; });
+  if (synonym != std::end(kSynonyms))
+    for (const std::string_view key : synonym->keys)
+      if (!key.empty() && std::find(keys.begin(), keys.end(), key) != keys.end()) return std::string(key);
+  return nearest(word, keys);
+}
+
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
-  const std::optional<std::string> name = nearest(word, candidates);
-  return name ? " (did you mean " + in_quotes(*name) + "?)" : "";
+  return question(nearest(word, candidates));
+}
+
+std::string did_you_mean_key(std::string_view word, std::span<const std::string_view> keys) {
+  return question(nearest_key(word, keys));
 }
 
 }  // namespace orrery

@@ -20,7 +20,13 @@ int edit_distance(std::string_view a, std::string_view b, int limit);
 // only candidate that begins with `word` ("w" for "width").
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
-// Returns ` (did you mean "radius"?)`, or "" if no candidate is close.
+// Returns the key that `word` stands for, or nullopt if none is likely. Accepts a key of the same meaning
+// (other programs say "albedo" for "kd" and "spp" for "samples"), then a key that nearest() finds. `keys` must
+// be those that the object can still take.
+std::optional<std::string> nearest_key(std::string_view word, std::span<const std::string_view> keys);
+
+// Return ` (did you mean "radius"?)`, or "" if no candidate is close.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
+std::string did_you_mean_key(std::string_view word, std::span<const std::string_view> keys);
 
 }  // namespace orrery

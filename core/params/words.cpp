@@ -131,6 +131,10 @@ std::string one_of(std::span<const std::string_view> words, std::string_view las
   return text;
 }
 
+std::string choice_text(std::span<const std::string_view> words) {
+  return (words.size() > 2 ? "one of " : "") + one_of(words);
+}
+
 std::string pointer_step(std::string_view key) {
   std::string step = "/";
   for (const char c : shortened(key)) {
@@ -146,11 +150,14 @@ std::string pointer_step(std::string_view key) {
 }
 
 std::string range_text(const Range& range) {
+  const bool has_min = std::isfinite(range.min), has_max = std::isfinite(range.max);
+  if (has_min && has_max && !range.exclusive_min && !range.exclusive_max)
+    return " from " + number_text(range.min) + " to " + number_text(range.max);
   std::string text;
-  if (std::isfinite(range.min)) text += (range.exclusive_min ? " > " : " >= ") + number_text(range.min);
-  if (std::isfinite(range.max)) {
-    if (!text.empty()) text += " and";
-    text += (range.exclusive_max ? " < " : " <= ") + number_text(range.max);
+  if (has_min) text += (range.exclusive_min ? " > " : " of at least ") + number_text(range.min);
+  if (has_max) {
+    if (has_min) text += " and";
+    text += (range.exclusive_max ? " < " : " of at most ") + number_text(range.max);
   }
   return text;
 }
@@ -158,6 +165,7 @@ std::string range_text(const Range& range) {
 std::string count_text(Count count) {
   if (count.min == count.max) return std::to_string(count.min);
   if (count.max == Count{}.max) return "at least " + std::to_string(count.min);
+  if (count.min == 0) return "at most " + std::to_string(count.max);
   return std::to_string(count.min) + " to " + std::to_string(count.max);
 }
 

@@ -24,13 +24,16 @@ std::string in_quotes(std::string_view name);
 // Lists the quoted words: "a", "b" or "c".
 std::string one_of(std::span<const std::string_view> words, std::string_view last_join = " or ");
 
+// Lists the allowed words: `"a" or "b"`, `one of "a", "b" or "c"`.
+std::string choice_text(std::span<const std::string_view> words);
+
 // Returns "/" and the key, escaped for a JSON Pointer (RFC 6901). Long keys are shortened.
 std::string pointer_step(std::string_view key);
 
-// Formats the limits: " > 0 and <= 1e12", or "" if there are none.
+// Formats the limits: " from 0 to 1", " > 0", " of at least 0", or "" if there are none.
 std::string range_text(const Range& range);
 
-// Formats the count: "at least 1", "3", "1 to 1024". The caller appends a noun.
+// Formats the count: "at least 1", "at most 3", "3", "1 to 1024". The caller appends a noun.
 std::string count_text(Count count);
 
 // Returns a number inside the range, as a placeholder for an invalid value.

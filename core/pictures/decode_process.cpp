@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -84,6 +85,9 @@ int file_of_parts(const PictureFile& file) {
   return number;
 }
 
+// Weight of about a tenth beside a thread that renders. A burst of uploads may start dozens of decoders.
+constexpr int kNiceness = 10;
+
 // Decoder process. The destructor kills it if it is still running.
 class Decoder {
  public:
@@ -108,6 +112,7 @@ class Decoder {
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (error) throw std::system_error(error, std::generic_category(), "starting orrery-decode");
+    setpriority(PRIO_PROCESS, static_cast<id_t>(process_), kNiceness);
   }
   ~Decoder() {
     if (process_ > 0) kill(process_, SIGKILL), wait();

@@ -159,7 +159,7 @@ export const certificateFaults = [
     fault: 13,
     about: "an audit reports its share without a confidence bound",
     file: "core/study/audit.cpp",
-    from: "range * std::sqrt(shares.upper_mean(Certificate::kDoubt))",
+    from: "range * std::sqrt(shares.upper_mean(Certificate::kAlpha))",
     to: "found.rms",
     target: "test_render",
     tests: ["Audit.BoundsTheShare*"],

@@ -3,6 +3,7 @@
 #include "core/accelerators/registry.h"
 #include "core/base/task_scope.h"
 #include "core/load/load.h"
+#include "core/meshes/gltf_json.h"
 #include "core/meshes/repair.h"
 #include "core/params/document.h"
 #include "core/prepare/prepared_scene.h"
@@ -34,6 +35,10 @@ const std::string kScene =
 
 TEST(Interruption, EndsReadingJson) {
   EXPECT_TRUE(is_interrupted([] { parse_document("[1, 2, 3]"); }));
+}
+
+TEST(Interruption, EndsReadingGltf) {
+  EXPECT_TRUE(is_interrupted([] { parse_gltf("{}"); }));
 }
 
 TEST(Interruption, EndsReadingScenes) {

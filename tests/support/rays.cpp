@@ -79,7 +79,8 @@ std::vector<char> Target<T>::occluded(std::span<const Ray<T>> rays, T t_max) con
 }
 
 template <class T>
-std::vector<SurfaceSample<T>> Target<T>::surfaces(std::span<const Ray<T>> rays, std::span<const Hit<T>> hits) const {
+std::vector<SurfaceSample<T>> Target<T>::surfaces(std::span<const Ray<T>> rays,
+                                                  std::span<const Hit<T>> hits) const {
   std::vector<SurfaceSample<T>> found(rays.size());
   const auto batch = std::make_unique<RayBatch<T>>();
   const auto hit_batch = std::make_unique<HitBatch<T>>();
