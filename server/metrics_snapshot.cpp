@@ -48,30 +48,29 @@ std::ptrdiff_t open_files() {
 void append_process_metrics(std::vector<MetricFamily>& families, const ServiceCounters& meters) {
   constexpr MetricType kCounter = MetricType::Counter, kGauge = MetricType::Gauge;
   const double started = std::chrono::duration<double>(meters.started.time_since_epoch()).count();
-  families.insert(
-      families.end(),
-      {{"process_cpu_seconds_total", "Processor time used", kCounter, {value(process_cpu_ms() / 1000)}},
-       {"process_start_time_seconds",
-        "Start of the service, in seconds since 1970",
-        kGauge,
-        {value(started)}},
-       {"process_resident_memory_bytes", "Memory in use", kGauge, {value(resident_bytes())}},
-       {"process_open_fds", "Open file descriptors", kGauge, {value(open_files())}}});
+  families.insert(families.end(),
+                  {{"process_cpu_seconds_total", "CPU time used", kCounter, {value(process_cpu_ms() / 1000)}},
+                   {"process_start_time_seconds",
+                    "Start of the service, in seconds since 1970",
+                    kGauge,
+                    {value(started)}},
+                   {"process_resident_memory_bytes", "Resident memory", kGauge, {value(resident_bytes())}},
+                   {"process_open_fds", "Open file descriptors", kGauge, {value(open_files())}}});
 }
 
 MetricFamily given_up_family(const ServiceCounters& meters) {
-  MetricFamily family{"orrery_given_up_total",
-                      "Work that ended before it was done (its client had gone, its time was up or the "
-                      "service ended), by what it was at",
-                      MetricType::Counter,
-                      {}};
+  MetricFamily family{
+      "orrery_given_up_total",
+      "Work cancelled because the client disconnected, the time was up or the service stopped, by stage",
+      MetricType::Counter,
+      {}};
   for (std::size_t i = 0; i < kStages.size(); ++i)
     family.metric.push_back(value(meters.given_up[i], {{"stage", std::string(kStages[i])}}));
   return family;
 }
 
 MetricFamily limits_family(const Settings& settings) {
-  MetricFamily family{"orrery_limit", "Limits, as /v1/limits tells them", MetricType::Gauge, {}};
+  MetricFamily family{"orrery_limit", "Limits of /v1/limits", MetricType::Gauge, {}};
   for (const Setting& limit : limits())
     family.metric.push_back(value(std::stod(limit.text(settings)), {{"limit", std::string(limit.name)}}));
   family.metric.push_back(value(work_bytes(settings), {{"limit", "work_bytes"}}));
@@ -90,46 +89,46 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
        "1, with the version as a label",
        kGauge,
        {value(1, {{"version", std::string(kVersion)}})}},
-      {"orrery_ready", "1 while new work is taken", kGauge, {value(app.readiness() == "ok")}},
-      {"orrery_renders_running", "Renders that have their turn", kGauge, {value(admission.running())}},
-      {"orrery_renders_waiting", "Renders that wait for their turn", kGauge, {value(admission.waiting())}},
+      {"orrery_ready", "1 while new work is accepted", kGauge, {value(app.readiness() == "ok")}},
+      {"orrery_renders_running", "Renders that hold a slot", kGauge, {value(admission.running())}},
+      {"orrery_renders_waiting", "Renders in the queue", kGauge, {value(admission.waiting())}},
       {"orrery_places_lost_total",
-       "Times that work lost its turn to other work",
+       "Preemptions: running work that yielded its slot to other work",
        kCounter,
        {value(admission.preemptions())}},
       {"orrery_queue_wait_seconds",
-       "From asking for a turn to having it",
+       "Queue time of requests",
        MetricType::Histogram,
        {histogram(admission.waits(Priority::interactive), {{"lane", "interactive"}}),
         histogram(admission.waits(Priority::batch), {{"lane", "batch"}})}},
       {"orrery_render_seconds",
-       "Of a frame: building its structure and tracing it",
+       "Time to build the structure and trace a frame",
        MetricType::Histogram,
        {histogram(meters.render)}},
       {"orrery_rays_total", "Rays traced", kCounter, {value(meters.rays)}},
       {"orrery_cache_hits_total",
-       "Pictures that were there, or else their films, and posted scenes",
+       "Images, films and scenes found in a cache",
        kCounter,
        {value(meters.pictures_found, {{"cache", "pictures"}}),
         value(meters.films_found, {{"cache", "films"}}), value(scenes.hits(), {{"cache", "scenes"}})}},
       {"orrery_cache_misses_total",
-       "Pictures that were encoded, films that were rendered for them, and scenes that were loaded",
+       "Images encoded, films rendered and scenes loaded",
        kCounter,
        {value(meters.pictures_made, {{"cache", "pictures"}}),
         value(meters.pictures_made - meters.films_found, {{"cache", "films"}}),
         value(scenes.loads(), {{"cache", "scenes"}})}},
       {"orrery_work_bytes",
-       "Bytes that scenes which are not kept and pictures under way take",
+       "Bytes of scenes that are not cached and of images in progress",
        kGauge,
        {value(app.memory().bytes())}},
       {"orrery_stored_bytes",
-       "Bytes kept",
+       "Bytes stored",
        kGauge,
        {value(scenes.bytes(), {{"store", "scenes"}}), value(app.assets().bytes(), {{"store", "assets"}}),
         value(app.pictures().bytes(), {{"store", "pictures"}}),
         value(app.films().bytes(), {{"store", "films"}}), value(app.jobs().bytes(), {{"store", "jobs"}})}},
       {"orrery_evictions_total",
-       "Entries that a full store has evicted",
+       "Entries evicted from a full store",
        kCounter,
        {value(scenes.evictions(), {{"store", "scenes"}}),
         value(app.assets().evictions(), {{"store", "assets"}}),
@@ -137,23 +136,23 @@ std::vector<MetricFamily> collect_metrics(App& app, const HttpServer& server, co
         value(app.films().evictions(), {{"store", "films"}}),
         value(app.jobs().evictions(), {{"store", "jobs"}})}},
       {"orrery_reload_failures_total",
-       "Times that SIGHUP found files that cannot be used",
+       "SIGHUPs with unusable files",
        kCounter,
        {value(meters.reloads_failed)}},
-      {"orrery_orbits", "Different orbits that are streamed", kGauge, {value(app.orbits().count())}},
-      {"orrery_jobs", "Jobs under way", kGauge, {value(app.jobs().under_way())}},
+      {"orrery_orbits", "Distinct orbits being streamed", kGauge, {value(app.orbits().count())}},
+      {"orrery_jobs", "Unfinished jobs", kGauge, {value(app.jobs().under_way())}},
       {"orrery_jobs_ended_total",
-       "Jobs by how they ended",
+       "Ended jobs by outcome",
        kCounter,
        {value(meters.jobs_done, {{"outcome", "done"}}), value(meters.jobs_failed, {{"outcome", "failed"}}),
         value(meters.jobs_cancelled, {{"outcome", "cancelled"}})}},
       {"orrery_log_lines_dropped_total",
-       "Lines of the log that were not written, as its reader did not read or was gone",
+       "Log lines dropped because the reader did not read or was gone",
        kCounter,
        {value(log.dropped())}},
-      {"orrery_connections", "Connections that are open", kGauge, {value(server.connections())}},
+      {"orrery_connections", "Open connections", kGauge, {value(server.connections())}},
       {"orrery_connections_refused_total",
-       "Connections turned away because there were too many",
+       "Connections rejected because there were too many",
        kCounter,
        {value(server.refused())}},
   };

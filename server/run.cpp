@@ -10,23 +10,22 @@
 #include "core/params/suggest.h"
 #include "core/render/renderer.h"
 #include "server/commands/commands.h"
+#include "server/commands/help_layout.h"
 #include "server/commands/scene_file.h"
 
 namespace orrery {
 namespace {
 
-constexpr auto kCommands = {add_serve, add_render,  add_orbit,  add_check,     add_explain, add_chart,
-                            add_audit, add_catalog, add_schema, add_stability, add_token};
+constexpr auto kCommands = {add_render,  add_orbit,  add_check,     add_explain, add_chart, add_audit,
+                            add_catalog, add_schema, add_stability, add_serve,   add_token, add_help};
 
 constexpr const char* kProgramExamples = R"(
 Examples:
-  orrery serve                                  then open http://127.0.0.1:8080
   orrery render scenes/paper.json -o paper.png
-  orrery orbit scenes/paper.json --frames 120 -o frame-%04d.png
-  orrery check my-scene.json
+  orrery serve                                # page on http://127.0.0.1:8080
 
-Status: 0 done, 1 failed, 2 wrong input or usage, 3 a budget missed with --on-miss fail, 130 interrupted.
-`orrery COMMAND --help` tells more.
+Exit status: 0 success, 1 failure, 2 invalid input or usage, 3 missed budget,
+130 interrupted. Details: orrery help COMMAND, orrery help options
 )";
 
 int fail(int status, const std::string& message) {
@@ -42,25 +41,31 @@ std::optional<std::string> unknown_command(int argc, char** argv, const std::vec
   for (const Command& command : commands) names.push_back(command.app->get_name());
   if (std::find(names.begin(), names.end(), word) != names.end()) return std::nullopt;
   const std::vector<std::string_view> views(names.begin(), names.end());
-  return "there is no command " + word + did_you_mean(word, views) + "; see orrery --help";
+  const auto meant = nearest(word, views);
+  return "unknown command \"" + word + "\"" + (meant ? " (did you mean " + *meant + "?)" : "") +
+         "; see orrery --help";
 }
 
-// Returns an error message with the unknown flags and suggestions, or with all unexpected words if no flag is
-// unknown.
+// Returns an error message with the unknown options and suggestions, or with the unknown arguments if there
+// is no unknown option.
 std::string unknown_words(const CLI::App& app) {
   const CLI::App& command = *app.get_subcommands().front();
   std::vector<std::string> flags;
   for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) flags.push_back(name);
   const std::vector<std::string_view> known(flags.begin(), flags.end());
-  std::string text, unknown_flags;
+  const auto add = [](std::string& list, const std::string& entry) {
+    list += (list.empty() ? "" : ", ") + entry;
+  };
+  std::string arguments, options;
   for (const std::string& word : app.remaining(true)) {
-    text += " " + word;
-    if (word.starts_with("--"))
-      unknown_flags += " " + word + did_you_mean(word.substr(0, word.find('=')), known);
+    add(arguments, "unknown argument \"" + word + "\"");
+    if (!word.starts_with("--")) continue;
+    const std::string name = word.substr(0, word.find('='));
+    const auto meant = nearest_key(name.substr(2), known);
+    add(options, "unknown option " + name + (meant ? " (did you mean --" + *meant + "?)" : ""));
   }
-  return "not expected:" + (unknown_flags.empty() ? text : unknown_flags) + "; see orrery " +
-         command.get_name() + " --help";
+  return (options.empty() ? arguments : options) + "; see orrery " + command.get_name() + " --help";
 }
 
 int run_chosen(const std::vector<Command>& commands) {
@@ -87,12 +92,16 @@ int run_chosen(const std::vector<Command>& commands) {
 
 int run(int argc, char** argv) {
   try {
-    CLI::App app("A render service: post a scene, get a picture, watch it turn.", "orrery");
-    app.footer(kProgramExamples);
+    CLI::App app("Render 3D scenes to images, on the command line or over HTTP", "orrery");
+    set_help_layout(app);
     app.set_version_flag("--version", std::string(kVersion) + " (" + std::string(instruction_level()) + ")");
     app.require_subcommand(1);
     std::vector<Command> commands;
-    for (const auto& add : kCommands) commands.push_back(add(app));
+    for (const auto& add : kCommands) {
+      commands.push_back(add(app));
+      commands.back().app->set_help_flag("-h,--help", "Print this help and exit");  // now the last option
+    }
+    app.footer(kProgramExamples);  // commands added later would inherit it
     if (const auto problem = unknown_command(argc, argv, commands)) return fail(kBadInput, *problem);
     try {
       app.parse(argc, argv);

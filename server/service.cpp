@@ -130,7 +130,7 @@ void Service::reload(const std::function<Settings()>& read) try {
   log_.write(fields.contains("needs_restart") ? LogLevel::warning : LogLevel::info, "reloaded", fields);
 } catch (const std::exception& error) {
   ++app_.meters().reloads_failed;
-  log_.write(LogLevel::error, "not reloaded", {{"error", error.what()}});
+  log_.write(LogLevel::error, "reload failed", {{"error", error.what()}});
 }
 
 std::vector<std::string> Service::origins() const {

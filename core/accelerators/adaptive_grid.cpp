@@ -14,7 +14,7 @@ using AdaptiveGrid = SingleRayAccelerator<T, GridTree<T, kNested>>;
 
 AcceleratorType adaptive_grid_type() {
   return {"adaptive-grid",
-          "Cells with grids of their own where many primitives are.",
+          "Uniform grid with nested grids in crowded cells.",
           {.ray = 38, .visit = 28, .box = 0, .primitive = 1.3},
           build_accelerator<AdaptiveGrid, float>,
           build_accelerator<AdaptiveGrid, double>};

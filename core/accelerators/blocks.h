@@ -35,7 +35,7 @@ class Blocks {
     const auto block = static_cast<std::uint32_t>(indices.size() / kSize);
     if (block > kBlockMask)
       throw InputError("/render/accelerator",
-                       "expected a structure of at most 67108864 blocks of primitives");
+                       "structure has more than 67,108,864 blocks of primitives (limit 67,108,864, blocks)");
     for (const std::uint32_t place : places) indices.push_back(primitives[place].index);
     indices.resize((block + 1) * kSize, kNothing);
     return static_cast<BlockName>(making - partial_packs_.begin()) << kBlockBits | block;

@@ -197,7 +197,7 @@ using BottomUp = Hierarchy<T, BottomUpBuilder<T>>;
 
 AcceleratorType bottom_up_type() {
   return {"bottom-up",
-          "A hierarchy of boxes grouped from the bottom up, near ones first.",
+          "BVH built bottom-up by merging the nearest boxes.",
           {.ray = 9, .visit = 13, .box = 0, .primitive = 0.9},
           build_accelerator<BottomUp, float>,
           build_accelerator<BottomUp, double>};

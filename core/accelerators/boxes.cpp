@@ -71,7 +71,7 @@ class Boxes final : public Accelerator<T> {
 
 AcceleratorType boxes_type() {
   return {"boxes",
-          "A box around each primitive is tested first.",
+          "List of primitives, each tested after its axis-aligned bounding box.",
           {.ray = 0, .visit = 0, .box = 0.25, .primitive = 2.6, .each = 0.25},
           build_accelerator<Boxes, float>,
           build_accelerator<Boxes, double>};

@@ -13,7 +13,7 @@ using UniformGrid = SingleRayAccelerator<T, GridTree<T, kUniform>>;
 
 AcceleratorType grid_type() {
   return {"grid",
-          "Space cut into equal cells, which a ray visits in order.",
+          "Uniform grid.",
           {.ray = 61, .visit = 19, .box = 0, .primitive = 1.25},
           build_accelerator<UniformGrid, float>,
           build_accelerator<UniformGrid, double>};

@@ -49,7 +49,7 @@ using KdMedian = SingleRayAccelerator<T, SpaceTree<T, MedianSplitter<T>>>;
 
 AcceleratorType kd_median_type() {
   return {"kd-median",
-          "Space halved by planes through the median of what is there.",
+          "k-d tree with splits at the median.",
           {.ray = 31, .visit = 6.2, .box = 0, .primitive = 1.0},
           build_accelerator<KdMedian, float>,
           build_accelerator<KdMedian, double>};

@@ -69,7 +69,7 @@ using KdSah = SingleRayAccelerator<T, SpaceTree<T, SurfaceSplitter<T>>>;
 
 AcceleratorType kd_sah_type() {
   return {"kd-sah",
-          "Space divided by planes that the surface area heuristic chooses.",
+          "k-d tree with splits by the surface area heuristic.",
           {.ray = 46, .visit = 4.2, .box = 0, .primitive = 1.0},
           build_accelerator<KdSah, float>,
           build_accelerator<KdSah, double>};

@@ -27,7 +27,7 @@ class List final : public Accelerator<T> {
 
 AcceleratorType list_type() {
   return {"list",
-          "Every ray against every primitive: the reference.",
+          "List of primitives, all tested by every ray: the reference.",
           {.ray = 2, .visit = 0, .box = 0, .primitive = 0.5, .each = 0.5},
           build_accelerator<List, float>,
           build_accelerator<List, double>};

@@ -117,7 +117,7 @@ using ObbTree = SingleRayAccelerator<T, OrientedTree<T>>;
 
 AcceleratorType obb_tree_type() {
   return {"obb-tree",
-          "A hierarchy of boxes that are turned as what is in them lies.",
+          "Hierarchy of oriented bounding boxes.",
           {.ray = 54, .visit = 0, .box = 3.1, .primitive = 5.7},
           build_accelerator<ObbTree, float>,
           build_accelerator<ObbTree, double>};

@@ -49,7 +49,7 @@ using Octree = SingleRayAccelerator<T, SpaceTree<T, OctantSplitter<T>>>;
 
 AcceleratorType octree_type() {
   return {"octree",
-          "Cells cut into eight, again and again, where many primitives are.",
+          "Octree.",
           {.ray = 28, .visit = 5.6, .box = 0, .primitive = 1.0},
           build_accelerator<Octree, float>,
           build_accelerator<Octree, double>};

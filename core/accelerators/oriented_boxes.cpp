@@ -71,7 +71,7 @@ using OrientedBoxes = SingleRayAccelerator<T, PerPrimitiveObb<T>>;
 
 AcceleratorType oriented_boxes_type() {
   return {"oriented-boxes",
-          "A box around each primitive, turned as it lies, is tested first.",
+          "List of primitives, each tested after its oriented bounding box.",
           {.ray = 24, .visit = 0, .box = 2.8, .primitive = 0, .each = 2.8},
           build_accelerator<OrientedBoxes, float>,
           build_accelerator<OrientedBoxes, double>};

@@ -24,11 +24,11 @@ class Orthographic final : public CameraOf<Orthographic> {
 };
 
 std::unique_ptr<Camera> read(Params& p) {
-  return std::make_unique<Orthographic>(p.positive("height", "Metres that the picture's height shows."));
+  return std::make_unique<Orthographic>(p.positive("height", "Height of the view, in metres."));
 }
 
 }  // namespace
 
-CameraType orthographic_type() { return {"orthographic", "Everything is seen along parallel rays.", read}; }
+CameraType orthographic_type() { return {"orthographic", "Orthographic projection: parallel rays.", read}; }
 
 }  // namespace orrery

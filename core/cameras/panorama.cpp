@@ -34,7 +34,7 @@ std::unique_ptr<Camera> read(Params&) { return std::make_unique<Panorama>(); }
 
 CameraType panorama_type() {
   return {"panorama",
-          "All directions around one point: 360 degrees across and 180 high, in a picture of 2 to 1.", read};
+          "Equirectangular panorama: 360 degrees wide and 180 degrees high, for images of 2 to 1.", read};
 }
 
 }  // namespace orrery

@@ -29,12 +29,14 @@ class Perspective final : public CameraOf<Perspective> {
 
 std::unique_ptr<Camera> read(Params& p) {
   return std::make_unique<Perspective>(
-      p.number("fov_degrees", "Vertical angle of the picture, for any aspect.",
+      p.number("fov_degrees", "Vertical field of view in degrees, for any aspect ratio.",
                {.min = 0, .max = 180, .exclusive_min = true, .exclusive_max = true}, 45.0));
 }
 
 }  // namespace
 
-CameraType perspective_type() { return {"perspective", "Everything is seen from one point.", read}; }
+CameraType perspective_type() {
+  return {"perspective", "Perspective projection: all rays start at one point.", read};
+}
 
 }  // namespace orrery

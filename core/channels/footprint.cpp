@@ -12,7 +12,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType footprint_channel() {
   return {"footprint",
-          "Metres that a pixel covers on the surface, across the ray.",
+          "Width of a pixel on the surface, across the ray, in metres.",
           {"R"},
           ChannelMean::of_hits,
           0,

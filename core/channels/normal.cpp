@@ -12,7 +12,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType normal_channel() {
   return {"normal",
-          "Unit shading normal on the side of the camera, in the axes of the scene.",
+          "Unit shading normal on the camera's side, in scene coordinates.",
           {"X", "Y", "Z"},
           ChannelMean::of_hits,
           0,

@@ -15,7 +15,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType object_channel() {
   return {"object",
-          "Number of the object, counted from 1 as the scene lists them; 0 is nothing.",
+          "Number of the object, from 1 in the order of the scene; 0: none.",
           {"Id"},
           ChannelMean::first_sample,
           0,

@@ -12,7 +12,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType position_channel() {
   return {"position",
-          "Where the camera ray meets a surface, in metres.",
+          "Hit point of the camera ray, in metres.",
           {"X", "Y", "Z"},
           ChannelMean::of_hits,
           0,

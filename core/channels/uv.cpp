@@ -15,7 +15,7 @@ void record(const FirstHits<T>& first, const LaneGroups& groups, Vec3Array<T>& v
 
 ChannelType uv_channel() {
   return {"uv",
-          "Texture coordinates of the surface.",
+          "Texture coordinates at the hit point.",
           {"U", "V"},
           ChannelMean::of_hits,
           0,

@@ -10,7 +10,7 @@ struct Constant {
   Vec3<N> everywhere;
 
   static Constant<double> read(Params& p) {
-    return {p.color("radiance", "What a ray sees that meets nothing.", Vec3d(1))};
+    return {p.color("radiance", "Radiance of rays that leave the scene.", Vec3d(1))};
   }
   Vec3d constant() const { return Vec3d(everywhere); }
   Vec3<N> most() const { return everywhere; }
@@ -20,7 +20,7 @@ struct Constant {
 }  // namespace
 
 EnvironmentType constant_type() {
-  return {"constant", "The same light from everywhere.", read_formula<Constant>};
+  return {"constant", "The same radiance from all directions.", read_formula<Constant>};
 }
 
 }  // namespace orrery

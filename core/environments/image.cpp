@@ -116,7 +116,7 @@ class ImageEnvironment final : public Environment {
 
 TexelsPtr read_picture_of(Params& p, const char* key, const std::string& name, const auto& read) {
   try {
-    if (name.empty()) throw InputError("", "expected a name, got \"\"");
+    if (name.empty()) throw InputError("", "must be a name (got \"\")");
     return read(name);
   } catch (const InputError& error) {
     p.fail(key, error.problems().front().detail);
@@ -128,19 +128,20 @@ std::shared_ptr<const Environment> read_image(Params& p, const AssetSource& sour
   constexpr std::size_t kMostNameLength = 1024;
   TexelsPtr picture;
   if (p.form({{"file"}, {"asset"}}) == 0) {
-    const std::string name = p.text(
-        "file", "EXR, HDR, PNG or JPEG file in the scene's folder or below it; on the command line only.",
-        kMostNameLength);
+    const std::string name =
+        p.text("file", "EXR, HDR, PNG or JPEG file in or below the scene's folder; command line only.",
+               kMostNameLength);
     picture = read_picture_of(p, "file", name, [&](const std::string& n) { return source.picture_file(n); });
   } else {
     const std::string name = p.text("asset", "SHA-256 of an uploaded EXR, HDR, PNG or JPEG file.", 64);
     picture =
         read_picture_of(p, "asset", name, [&](const std::string& n) { return source.picture_asset(n); });
   }
-  const double degrees = p.number("rotation_degrees", "Turn of the sky about +y, anticlockwise from above.",
-                                  {.min = -1e6, .max = 1e6}, 0.0);
+  const double degrees =
+      p.number("rotation_degrees", "Rotation about +y in degrees, anticlockwise from above.",
+               {.min = -1e6, .max = 1e6}, 0.0);
   const double scale =
-      p.number("scale", "Factor of the picture's radiance.", {.min = 0, .max = kMaxColor}, 1.0);
+      p.number("scale", "Factor on the radiance of the image.", {.min = 0, .max = kMaxColor}, 1.0);
   if (!picture) return nullptr;
   return std::make_shared<ImageEnvironment>(
       TurnedMap{LightMap(*picture), sine_cosine_degrees(degrees), scale});
@@ -149,10 +150,8 @@ std::shared_ptr<const Environment> read_image(Params& p, const AssetSource& sour
 }  // namespace
 
 EnvironmentType image_type() {
-  return {
-      "image",
-      "An equirectangular picture: its centre lies toward -z, its top toward +y, its right half toward +x.",
-      read_image};
+  return {"image", "An equirectangular image: centre toward -z, top toward +y, right half toward +x.",
+          read_image};
 }
 
 }  // namespace orrery

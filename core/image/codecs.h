@@ -12,14 +12,14 @@ Image decode_jpeg(std::span<const std::byte> bytes, std::size_t max_pixels);
 Image decode_exr(std::span<const std::byte> bytes, std::size_t max_pixels);
 
 inline InputError damaged(const char* format, const char* why) {
-  return InputError("", std::string("the ") + format + " picture is damaged: " + why);
+  return InputError("", std::string(format) + ": image is damaged: " + why);
 }
 
 inline void check_size(std::size_t width, std::size_t height, std::size_t max_pixels) {
   constexpr std::size_t kMaxSide = 65535;
   if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide || width * height > max_pixels)
-    throw InputError("", "expected a picture of 1 to " + std::to_string(max_pixels) + " pixels, got " +
-                             std::to_string(width) + " x " + std::to_string(height));
+    throw InputError("", "image must have 1 to " + std::to_string(max_pixels) + " pixels (got " +
+                             std::to_string(width) + " x " + std::to_string(height) + ")");
 }
 
 }  // namespace orrery

@@ -38,7 +38,7 @@ class MemoryStream final : public Imf::IStream {
   bool read(char* to, int count) override {
     const auto size = static_cast<std::size_t>(count);
     if (position_ > bytes_.size() || bytes_.size() - position_ < size)
-      throw std::runtime_error("it ends too early");
+      throw std::runtime_error("data ends early");
     std::memcpy(to, bytes_.data() + position_, size);
     position_ += size;
     return position_ < bytes_.size();

@@ -24,7 +24,7 @@ Image decode_image(std::span<const std::byte> bytes, std::size_t max_pixels) {
   if (starts_with(bytes, kPngMagic)) return decode_png(bytes, max_pixels);
   if (starts_with(bytes, kJpegMagic)) return decode_jpeg(bytes, max_pixels);
   if (starts_with(bytes, kExrMagic)) return decode_exr(bytes, max_pixels);
-  throw InputError("", "expected a PNG, JPEG or EXR picture");
+  throw InputError("", "must be a PNG, JPEG or EXR image");
 }
 
 }  // namespace orrery

@@ -9,16 +9,18 @@ namespace orrery {
 template <class N>
 Directional<double> Directional<N>::read(Params& p) {
   const Vec3d from = p.direction("from", "Direction toward the light.");
-  const Vec3d intensity = p.color("intensity", "A white surface that faces intensity 1 reads 1.", Vec3d(1));
-  const double angle = p.number(
-      "angle_degrees", "Of the light's disc, across, as paths see it; the sun's is 0.53; 0: parallel light.",
-      {.min = 0, .max = 180}, 0.0);
+  const Vec3d intensity = p.color(
+      "intensity", "Intensity; a white surface that faces a light of intensity 1 has radiance 1.", Vec3d(1));
+  const double angle =
+      p.number("angle_degrees",
+               "Angular diameter of the disc, for path and distributed; the sun: 0.53; 0: parallel light.",
+               {.min = 0, .max = 180}, 0.0);
   const double sine = sine_cosine_degrees(angle / 4).sine;
   return {from, intensity, 2 * sine * sine};
 }
 
 LightType directional_type() {
-  return {"directional", "Light from infinitely far away, parallel or from a disc.",
+  return {"directional", "A light at infinite distance, parallel or from a disc.",
           make_light_set<Directional>};
 }
 

@@ -9,13 +9,18 @@ namespace orrery {
 template <class N>
 Spot<double> Spot<N>::read(Params& p) {
   constexpr Range kHalfAngle = {.min = 0, .max = 180};
-  const Vec3d position = p.point("position", "Where the light is, in metres.");
-  const Vec3d direction = p.direction("direction", "Where the beam goes.");
-  const Vec3d intensity = p.color("intensity", "A white surface that faces intensity 1 reads 1.", Vec3d(1));
+  const Vec3d position = p.point("position", "Position of the light, in metres.");
+  const Vec3d direction = p.direction("direction", "Direction of the beam.");
+  const Vec3d intensity = p.color(
+      "intensity", "Intensity; a white surface that faces a light of intensity 1 has radiance 1.", Vec3d(1));
   const Attenuation<double> attenuation = read_attenuation(p);
-  const double inner = p.number("inner_degrees", "Half angle of the full beam.", kHalfAngle, 15.0);
-  const double outer = p.number("outer_degrees", "Half angle where the beam ends.", kHalfAngle, 30.0);
-  if (inner > outer) p.fail("inner_degrees", "expected at most outer_degrees");
+  const double inner =
+      p.number("inner_degrees", "Half angle of the full-intensity beam, in degrees.", kHalfAngle, 15.0);
+  const double outer =
+      p.number("outer_degrees", "Half angle at which the beam ends, in degrees.", kHalfAngle, 30.0);
+  if (inner > outer)
+    p.fail("inner_degrees",
+           "must be at most outer_degrees, " + number_text(outer) + " (got " + number_text(inner) + ")");
   const double cos_inner = sine_cosine_degrees(inner).cosine, cos_outer = sine_cosine_degrees(outer).cosine;
   return {position, direction, intensity, attenuation, cos_inner, cos_outer, cos_inner - cos_outer};
 }
@@ -25,9 +30,9 @@ template <class N>
 RoundingLimit Spot<N>::rounding() const {
   constexpr double kMaxError = 2e-4;
   const double width = cos_range > 0 ? cos_range : 1 - cos_outer;
-  return {kMaxError * width, "its beam ends within a difference of cosines of " + number_text(width)};
+  return {kMaxError * width, "the edge of its beam spans a difference of cosines of " + number_text(width)};
 }
 
-LightType spot_type() { return {"spot", "Light from one point in a cone.", make_light_set<Spot>}; }
+LightType spot_type() { return {"spot", "A point light that shines into a cone.", make_light_set<Spot>}; }
 
 }  // namespace orrery

@@ -93,7 +93,7 @@ void add_lights(const Scene& scene, SceneFacts& facts) {
     const LightPlace place = scene.lights[i];
     RoundingLimit limit = scene.light_sets[place.set]->rounding(place.index);
     if (limit.epsilon < facts.rounding.epsilon)
-      facts.rounding = {limit.epsilon, "of /lights/" + std::to_string(i) + " " + limit.reason};
+      facts.rounding = {limit.epsilon, "/lights/" + std::to_string(i) + ": " + limit.reason};
   }
 }
 
@@ -124,7 +124,7 @@ void add_materials(const Scene& scene, std::span<const std::int32_t> first_user,
       if (limit.epsilon < facts.rounding.epsilon)
         facts.rounding = {
             limit.epsilon,
-            "of the material of " + pointer_to_object(scene, first_user[first + i]) + " " + limit.reason};
+            "the material of " + pointer_to_object(scene, first_user[first + i]) + ": " + limit.reason};
     }
     if (used) facts.materials |= set->traits();
     first += static_cast<std::size_t>(set->size());

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/base/hash.h"
+#include "core/base/shorten.h"
 #include "core/base/task_scope.h"
 #include "core/cameras/registry.h"
 #include "core/environments/registry.h"
@@ -28,35 +29,37 @@ std::vector<Choice> choices_of(const Types& types) {
 }
 
 void read_camera(Params& p, Scene& scene) {
-  const auto type = p.pick("type", "Projection.", choices_of(camera_types()));
+  const auto type = p.pick("type", "Projection type.", choices_of(camera_types()));
   if (!type) return;
   CameraPlacement& placement = scene.placement;
-  placement.eye = p.point("eye", "Where the picture is taken from, in metres.");
-  placement.look_at = p.point("look_at", "What stands in the middle of the picture, in metres.");
-  placement.up = p.direction("up", "Direction that is up in the picture.", Vec3d(0, 1, 0));
+  placement.eye = p.point("eye", "Position of the camera, in metres.");
+  placement.look_at = p.point("look_at", "Point at the centre of the image, in metres.");
+  placement.up = p.direction("up", "Direction that is up in the image.", Vec3d(0, 1, 0));
   placement.aperture_radius =
-      p.number("aperture_radius", "Of the lens that paths are seen through, in metres; 0: a pinhole.",
+      p.number("aperture_radius", "Radius of the lens in metres, for path and distributed; 0: pinhole.",
                {.min = 0, .max = kMaxLength}, 0.0);
-  const double focus = p.positive(
-      "focus_distance", "Along the view to what is sharp, in metres; to look_at if left out.", derived(1.0));
+  const double focus =
+      p.positive("focus_distance",
+                 "Distance of the focal plane along the view, in metres; default: to look_at.", derived(1.0));
   if (p.has("focus_distance")) placement.focus_distance = focus;
-  placement.blades = {static_cast<int>(p.integer(
-                          "blades", "Sides of the aperture, at least 3; 0: it is round.", 0, kMaxBlades, 0)),
-                      p.number("blade_degrees", "Turn of its first corner, from right toward up.",
-                               {.min = -360, .max = 360}, 0.0)};
+  placement.blades = {
+      static_cast<int>(
+          p.integer("blades", "Number of aperture blades, at least 3; 0: round.", 0, kMaxBlades, 0)),
+      p.number("blade_degrees", "Angle of the first aperture corner in degrees, from right toward up.",
+               {.min = -360, .max = 360}, 0.0)};
   if (const int blades = placement.blades.count; blades == 1 || blades == 2)
-    p.fail("blades", "expected 0 or at least 3, got " + std::to_string(blades));
+    p.fail("blades", "must be 0 or at least 3 (got " + std::to_string(blades) + ")");
   scene.camera = camera_types()[*type].read(p);
   if (scene.camera->all_around() && placement.aperture_radius > 0)
-    p.fail("aperture_radius", "expected 0, as nothing can be in focus all around, got " +
-                                  number_text(placement.aperture_radius));
+    p.fail("aperture_radius", "must be 0 for a panorama, which cannot focus in all directions (got " +
+                                  number_text(placement.aperture_radius) + ")");
   for (const auto& [name, value] : scene.camera->parameters())
     if (std::string_view(name) == "fov_degrees") scene.render.fov_degrees = value;
   const Vec3d view = safe_normalize(placement.look_at - placement.eye);
   if (view == Vec3d())
-    p.fail("look_at", "expected a point other than eye");
+    p.fail("look_at", "must differ from eye");
   else if (!(length(cross(view, placement.up)) > 1e-9))
-    p.fail("up", "expected a direction that is not along the view");
+    p.fail("up", "must not be parallel to the view direction");
 }
 
 // Asset source that loads each mesh once, however often the scene names it. Images are not cached, because a
@@ -94,9 +97,9 @@ class ObjectReader {
 
   void read(Params& p, const Names& materials, MeshSource& meshes) {
     interruption_point();
-    const auto type = p.pick("type", "Kind of shape.", choices_of(shape_types()));
+    const auto type = p.pick("type", "Shape type.", choices_of(shape_types()));
     if (!type) return;
-    const std::size_t material = p.reference("material", "Name of its material.", materials);
+    const std::size_t material = p.reference("material", "Name of the material.", materials);
     const int primitives = shapes_[*type]->add(p, meshes);
     objects_by_shape_[*type].push_back({material, primitives, count_++});
   }
@@ -124,24 +127,25 @@ constexpr Range kTurns{.min = -1e6, .max = 1e6};
 
 Vec3d read_scale(Params& p, const Fallback<Vec3d>& fallback) {
   constexpr double kMinScale = 1e-6, kMaxScale = 1e6;
-  const auto scale = p.numbers3("scale", "Factors along x, y and z; negative ones mirror.",
+  const auto scale = p.numbers3("scale", "Scale factors along x, y and z; negative factors mirror.",
                                 {.min = -kMaxScale, .max = kMaxScale}, fallback);
   for (const double factor : scale)
     if (std::abs(factor) < kMinScale)
-      p.fail("scale", "expected factors of at least 1e-6 in size, got " + number_text(factor));
+      p.fail("scale", "factors must be at least 1e-6 in magnitude (got " + number_text(factor) + ")");
   return {scale[0], scale[1], scale[2]};
 }
 
 // Reads the placement at one key. Missing values default to those of `rest`.
 Placement read_key(Params& p, const Placement& rest) {
   Placement key{read_scale(p, derived(rest.scale)),
-                p.number("degrees", "About the axis of 'rotate'; more than a turn is several.", kTurns,
-                         derived(rest.degrees)),
-                p.point("translate", "Where the model's origin is, in metres.", derived(rest.translate))};
+                p.number("degrees", "Rotation in degrees about the axis of `rotate`; 720 is two turns.",
+                         kTurns, derived(rest.degrees)),
+                p.point("translate", "Position of the model's origin, in metres.", derived(rest.translate))};
   for (const double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
     if (key.scale.*axis * rest.scale.*axis < 0)
-      p.fail("scale", "expected the signs that the factors have without motion, got " +
-                          number_text(key.scale.*axis) + " instead of " + number_text(rest.scale.*axis));
+      p.fail("scale", "factors must have the same signs as without motion (got " +
+                          number_text(key.scale.*axis) + " instead of " + number_text(rest.scale.*axis) +
+                          ")");
   return key;
 }
 
@@ -150,11 +154,12 @@ Instance read_placement(Params& p, std::size_t model) {
   Instance instance{model, Vec3d(0, 1, 0), {}};
   Placement rest;
   rest.scale = read_scale(p, Vec3d(1));
-  p.optional_object("rotate", "Turn about an axis through the origin.", [&](Params& r) {
+  p.optional_object("rotate", "Rotation about an axis through the origin.", [&](Params& r) {
     instance.axis = r.direction("axis", "Direction of the axis.", Vec3d(0, 1, 0));
-    rest.degrees = r.number("degrees", "Anticlockwise, seen from the axis' tip.", kTurns, 0.0);
+    rest.degrees =
+        r.number("degrees", "Angle in degrees, anticlockwise as seen from the tip of the axis.", kTurns, 0.0);
   });
-  rest.translate = p.point("translate", "Where the model's origin goes, in metres.", Vec3d(0));
+  rest.translate = p.point("translate", "Position of the model's origin, in metres.", Vec3d(0));
   instance.motion = read_motion(p, [&](Params& key) { return read_key(key, rest); });
   if (instance.motion.empty()) instance.motion = {{0}, {rest}};
   return instance;
@@ -169,41 +174,41 @@ class SceneReader {
   }
 
   void read(Params& p) {
-    p.integer("version", "Version of this format.", 1, 1);
-    scene_->title = p.text("title", "A name for people.", 200, "");
-    scene_->description = p.text("description", "What there is to see.", 200, "");
-    p.object("camera", "Where the picture is taken from.", [&](Params& c) { read_camera(c, *scene_); });
-    p.optional_object("image", "Size of the picture.",
+    p.integer("version", "Version of the scene format.", 1, 1);
+    scene_->title = p.text("title", "Title of the scene.", 200, "");
+    scene_->description = p.text("description", "Description of the scene.", 200, "");
+    p.object("camera", "Camera.", [&](Params& c) { read_camera(c, *scene_); });
+    p.optional_object("image", "Image size.",
                       [&](Params& i) { read_scene_options(i, Section::image, scene_->render); });
-    scene_->ambient = p.color("ambient", "Light that comes from everywhere.", Vec3d(0));
-    scene_->background = p.color("background", "What a ray sees that meets nothing.", Vec3d(0));
-    p.object_if_given("environment", "What surrounds the scene, in place of the background.",
+    scene_->ambient = p.color("ambient", "Ambient light.", Vec3d(0));
+    scene_->background = p.color("background", "Radiance of rays that leave the scene.", Vec3d(0));
+    p.object_if_given("environment", "Surroundings of the scene, instead of a background.",
                       [&](Params& e) { read_environment(e); });
     if (p.has("background") && p.has("environment"))
-      p.fail("background", "expected a background or an environment, got both");
+      p.fail("background", "cannot be used with an environment");
     p.each_named("materials", "Materials by name.", {},
                  [&](const std::string& name, Params& m) { read_material(name, m); });
     p.each("lights", "Light sources.", {0, kMaxLights}, [&](Params& l) { read_light(l); });
-    p.each("objects", "What there is to see, beside instances.", {0, kMaxObjects}, [&](Params& o) {
+    p.each("objects", "Objects, in addition to instances.", {0, kMaxObjects}, [&](Params& o) {
       objects_.read(o, names_, meshes_);
       ++scene_->object_count;
     });
     p.each_named("models", "Objects that instances place, by name.", {},
                  [&](const std::string& name, Params& m) { read_model(name, m); });
     std::size_t instanced = 0;
-    p.each("instances", "Models that stand in the scene.", {0, kMaxObjects}, [&](Params& i) {
-      const std::size_t model = i.reference("model", "Name of what stands there.", model_names_);
+    p.each("instances", "Instances of models.", {0, kMaxObjects}, [&](Params& i) {
+      const std::size_t model = i.reference("model", "Name of the model.", model_names_);
       scene_->instances.push_back(read_placement(i, model));
       if (model < scene_->models.size()) instanced += count_primitives(scene_->models[model].shapes);
       ++scene_->object_count;
     });
     if (instanced > kMaxInstanced)
-      p.fail("instances", "expected at most " + std::to_string(kMaxInstanced) +
-                              " primitives in all instances (instanced_primitives), got " +
-                              std::to_string(instanced));
+      p.fail("instances", "instances have " + grouped(instanced) + " primitives (limit " +
+                              grouped(kMaxInstanced) + ", instanced_primitives)");
     if (scene_->object_count == 0)
-      p.fail("objects", "expected 1 to " + std::to_string(kMaxObjects) + " objects or instances, got 0");
-    p.optional_object("render", "How the picture is made.",
+      p.fail("objects",
+             "scene must have 1 to " + std::to_string(kMaxObjects) + " objects or instances (got 0)");
+    p.optional_object("render", "Default render options of requests.",
                       [&](Params& r) { read_scene_options(r, Section::render, scene_->render); });
   }
 
@@ -217,8 +222,8 @@ class SceneReader {
     scene_->facts = gather_facts(*scene_);
     const LocatedValue& smallest = scene_->facts.smallest_feature;
     if (smallest.value > 0 && smallest.value < kMinSize)  // moving triangles may have size 0 at times
-      throw InputError(smallest.where, "expected shapes and triangles of at least " + number_text(kMinSize) +
-                                           " m in size, got " + number_text(smallest.value));
+      throw InputError(smallest.where, "shapes and triangles must be at least " + number_text(kMinSize) +
+                                           " m in size (got " + number_text(smallest.value) + ")");
     return scene_;
   }
 
@@ -230,19 +235,19 @@ class SceneReader {
   };
 
   void read_material(const std::string& name, Params& p) {
-    const auto type = p.pick("type", "Kind of material.", choices_of(material_types()));
+    const auto type = p.pick("type", "Material type.", choices_of(material_types()));
     names_.add(name);
     if (!type) return places_.push_back({0, 0, {}});
     MaterialSet& set = *scene_->materials[*type];
     const int index = set.size();
     set.add(p);
     const Vec3d emission =
-        p.color("emission", "Radiance that its surfaces send out on both sides, per channel.", Vec3d(0));
+        p.color("emission", "Radiance that surfaces emit on both sides, per channel.", Vec3d(0));
     places_.push_back({*type, index, emission});
   }
 
   void read_environment(Params& p) {
-    const auto type = p.pick("type", "Kind of environment.", choices_of(environment_types()));
+    const auto type = p.pick("type", "Environment type.", choices_of(environment_types()));
     if (!type) return;
     const auto environment = environment_types()[*type].read(p, assets_);
     if (!environment) return;
@@ -253,7 +258,7 @@ class SceneReader {
   }
 
   void read_light(Params& p) {
-    const auto type = p.pick("type", "Kind of light.", choices_of(light_types()));
+    const auto type = p.pick("type", "Light type.", choices_of(light_types()));
     if (!type) return;
     LightSet& set = *scene_->light_sets[*type];
     scene_->lights.push_back({*type, set.size()});
@@ -264,7 +269,7 @@ class SceneReader {
     model_names_.add(name);
     Model& model = scene_->models.emplace_back();
     ObjectReader& objects = model_objects_.emplace_back(model.shapes);
-    p.each("objects", "What it consists of.", {1, kMaxObjects},
+    p.each("objects", "Objects of the model.", {1, kMaxObjects},
            [&](Params& o) { objects.read(o, names_, meshes_); });
   }
 
@@ -354,9 +359,10 @@ std::shared_ptr<const Scene> load_scene(std::string_view json, const AssetSource
 std::string scene_schema() {
   const AssetSource none;
   SceneReader reader(none);
-  return describe("scene.json", "orrery scene",
-                  "A scene for orrery, version 1. Lengths in metres, angles in degrees, colours linear.",
-                  [&](Params& p) { reader.read(p); });
+  return describe(
+      "scene.json", "orrery scene",
+      "Scene format of orrery, version 1. Lengths are in metres, angles in degrees, colours linear.",
+      [&](Params& p) { reader.read(p); });
 }
 
 }  // namespace orrery

@@ -7,10 +7,10 @@ namespace {
 
 std::string_view summary_of(Section section) {
   switch (section) {
-    case Section::camera: return "Where on its orbit the camera stands.";
-    case Section::image: return "Size of the picture.";
-    case Section::render: return "How the picture is made.";
-    case Section::budget: return "How near the picture comes, and how soon.";
+    case Section::camera: return "Camera position on its orbit.";
+    case Section::image: return "Image size.";
+    case Section::render: return "Render options.";
+    case Section::budget: return "Error and time budget.";
   }
   return "";
 }
@@ -26,8 +26,8 @@ void read_settings(Params& p, RenderSettings& settings) {
 RenderRequest read_request(const Document& document, const std::function<void(Params&)>& more) {
   RenderRequest request;
   read_document(document, [&](Params& p) {
-    p.any("scene", "The scene itself.");
-    p.any("scene_id", "Or the id of one sent before.");
+    p.any("scene", "Scene.");
+    p.any("scene_id", "Id of a stored scene, instead of `scene`.");
     read_settings(p, request);
     if (more) more(p);
   });
@@ -36,7 +36,7 @@ RenderRequest read_request(const Document& document, const std::function<void(Pa
 
 std::string request_schema() {
   RenderSettings settings;
-  return describe("request.json", "orrery request", "What a request says beside its scene.",
+  return describe("request.json", "orrery request", "Options of a request.",
                   [&](Params& p) { read_settings(p, settings); });
 }
 

@@ -32,11 +32,12 @@ FacetAlbedo<double> lossless_albedo(double alpha, double far_index) {
 template <class N>
 Glass<double> Glass<N>::read(Params& p) {
   const double ior =
-      p.number("ior", "Index of refraction inside over outside.", {.min = 0.1, .max = 10}, 1.5);
-  const double roughness =
-      p.number("roughness", "0: smooth, 1: the roughest. Its square is alpha of the distribution GGX.",
-               {.min = 0, .max = 1}, 0.0);
-  const Vec3d filter = p.color("filter", "What remains of light after one metre inside.", Vec3d(1), 1);
+      p.number("ior", "Index of refraction, inside over outside.", {.min = 0.1, .max = 10}, 1.5);
+  const double roughness = p.number(
+      "roughness", "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
+      {.min = 0, .max = 1}, 0.0);
+  const Vec3d filter =
+      p.color("filter", "Share of light that remains after one metre inside, per channel.", Vec3d(1), 1);
   Glass<double> glass{};
   glass.body = {ior, normal_reflectance(ior, 0.0), 1.0, log2_filter_of(filter)};
   const double alpha = roughness * roughness;
@@ -101,7 +102,7 @@ class GlassKernel final : public LobeKernel<Glass, T> {
 }  // namespace
 
 MaterialType glass_type() {
-  return {"glass", "Glass, smooth or of microfacets: mirrors, refracts, and may filter light inside.",
+  return {"glass", "Smooth or rough microfacet glass: reflects, refracts and may absorb light.",
           make_material_set<Glass, GlassKernel>};
 }
 

@@ -7,7 +7,7 @@ namespace orrery {
 
 template <class N>
 Lambert<double> Lambert<N>::read(Params& p) {
-  return {p.coefficient("reflectance", "Share of light that it reflects.", Vec3d(0.8), 1)};
+  return {p.coefficient("reflectance", "Share of light that is reflected.", Vec3d(0.8), 1)};
 }
 
 namespace {
@@ -18,8 +18,7 @@ using LambertKernel = DiffuseKernel<Lambert, T>;
 }  // namespace
 
 MaterialType lambert_type() {
-  return {"lambert", "A matt surface, equally bright from everywhere.",
-          make_material_set<Lambert, LambertKernel>};
+  return {"lambert", "A Lambertian (ideal diffuse) surface.", make_material_set<Lambert, LambertKernel>};
 }
 
 }  // namespace orrery

@@ -26,14 +26,14 @@ double mean_reflectance(double n, double k) {
 // Reads the index of refraction and the extinction, by name or as numbers.
 std::pair<Vec3d, Vec3d> read_indices(Params& p) {
   if (p.form({{"n", "k"}, {"name"}}) == 0) {
-    const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
-    const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
+    const Vec3d n = p.color("n", "Index of refraction, per channel.");
+    const Vec3d k = p.color("k", "Extinction coefficient, per channel.");
     return {n, k};
   }
   std::array<std::string_view, kMetals> names;
   std::transform(metal_indices().begin(), metal_indices().end(), names.begin(),
                  [](const MetalIndices& metal) { return metal.name; });
-  const std::string name = p.choice("name", "A metal whose measured indices are known.", names);
+  const std::string name = p.choice("name", "Metal with measured indices.", names);
   const auto known = std::find(names.begin(), names.end(), name) - names.begin();
   const MetalIndices& metal = metal_indices()[static_cast<std::size_t>(known) % kMetals];
   return {metal.n, metal.k};
@@ -44,9 +44,9 @@ std::pair<Vec3d, Vec3d> read_indices(Params& p) {
 template <class N>
 Metal<double> Metal<N>::read(Params& p) {
   const auto [n, k] = read_indices(p);
-  const double roughness =
-      p.number("roughness", "0: a mirror, 1: the roughest. Its square is alpha of the distribution GGX.",
-               {.min = 0, .max = 1}, 0.3);
+  const double roughness = p.number(
+      "roughness", "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
+      {.min = 0, .max = 1}, 0.3);
   Metal<double> metal{n, k, {}, roughness * roughness, {}, {}};
   metal.f0 = metal.reflectance(1);
   if (metal.alpha < kMinAlpha) {
@@ -173,7 +173,7 @@ class MetalKernel final : public MaterialRecords<Metal, T> {
 }  // namespace
 
 MaterialType metal_type() {
-  return {"metal", "A metal of microfacets, rough or smooth, coloured by Fresnel's law.",
+  return {"metal", "A rough or smooth microfacet metal, coloured by Fresnel reflection.",
           make_material_set<Metal, MetalKernel>};
 }
 

@@ -14,14 +14,16 @@ double mean_schlick(double f0) { return f0 + (1 - f0) / 21; }
 
 template <class N>
 MetallicRoughness<double> MetallicRoughness<N>::read(Params& p) {
-  const Vec3d color = p.coefficient("base_color", "Colour of the base, or of the metal.", Vec3d(0.8), 1);
-  const double metallic = p.number("metallic", "0: no metal, 1: metal.", {.min = 0, .max = 1}, 0.0);
-  const double roughness =
-      p.number("roughness",
-               "0: polished, 1: the roughest. Its square is alpha of the distribution GGX, 0.001 at least.",
-               {.min = 0, .max = 1}, 0.5);
+  const Vec3d color =
+      p.coefficient("base_color", "Albedo of the base, or reflectance of the metal.", Vec3d(0.8), 1);
+  const double metallic =
+      p.number("metallic", "Metalness: 0 for a dielectric, 1 for a metal.", {.min = 0, .max = 1}, 0.0);
+  const double roughness = p.number(
+      "roughness",
+      "Roughness from 0 (smooth) to 1; its square is the alpha of the GGX distribution, at least 0.001.",
+      {.min = 0, .max = 1}, 0.5);
   const bool is_strict =
-      p.flag("strict", "Whether the formula of glTF 2.0 is kept, which creates and loses energy.", false);
+      p.flag("strict", "Use the formula of glTF 2.0 unchanged, which creates and loses energy.", false);
   MetallicRoughness<double> found{};
   found.f0 = Vec3d(kDielectric) * (1 - metallic) + color * metallic;
   found.base = color * (1 - metallic);
@@ -70,7 +72,7 @@ using MetallicRoughnessKernel = LobeKernel<MetallicRoughness, T>;
 }  // namespace
 
 MaterialType metallic_roughness_type() {
-  return {"metallic-roughness", "The material of glTF 2.0, without the energy that its formula creates.",
+  return {"metallic-roughness", "The glTF 2.0 material, corrected to conserve energy.",
           make_material_set<MetallicRoughness, MetallicRoughnessKernel>};
 }
 

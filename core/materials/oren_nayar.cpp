@@ -12,7 +12,7 @@ OrenNayar<double> OrenNayar<N>::read(Params& p) {
   const Vec3d reflectance =
       p.coefficient("reflectance", "Share of light that a facet reflects.", Vec3d(0.8), 1);
   const double roughness =
-      p.number("roughness", "0: smooth, as lambert; 1: the roughest.", {.min = 0, .max = 1}, 0.5);
+      p.number("roughness", "Roughness from 0 (equal to lambert) to 1.", {.min = 0, .max = 1}, 0.5);
   const double a = 1 / (1 + kFujii * roughness), mean = a * (1 + kMeanG * roughness);
   const auto multiple = [&](double rho) {
     return rho * rho * mean / (1 - rho * (1 - mean)) * (a * roughness / (kFujii - kMeanG));
@@ -29,7 +29,7 @@ using OrenNayarKernel = DiffuseKernel<OrenNayar, T>;
 }  // namespace
 
 MaterialType oren_nayar_type() {
-  return {"oren-nayar", "A matt surface of facets, brighter toward the light, as clay or plaster.",
+  return {"oren-nayar", "A diffuse surface of rough facets, such as clay or plaster.",
           make_material_set<OrenNayar, OrenNayarKernel>};
 }
 

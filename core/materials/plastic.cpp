@@ -12,10 +12,11 @@ Plastic<double> Plastic<N>::read(Params& p) {
   const Vec3d reflectance =
       p.coefficient("reflectance", "Share of light that the base reflects.", Vec3d(0.8), 1);
   const double ior =
-      p.number("ior", "Index of refraction of the coat over outside.", {.min = 1, .max = 10}, 1.5);
-  const double roughness = p.number(
-      "roughness", "Of the coat. 0: smooth, 1: the roughest. Its square is alpha of the distribution GGX.",
-      {.min = 0, .max = 1}, 0.3);
+      p.number("ior", "Index of refraction of the coat, over outside.", {.min = 1, .max = 10}, 1.5);
+  const double roughness =
+      p.number("roughness",
+               "Roughness of the coat from 0 (smooth) to 1; its square is the alpha of the GGX distribution.",
+               {.min = 0, .max = 1}, 0.3);
   Plastic<double> plastic{{}, ior, roughness * roughness, {}, 0};
   if (plastic.alpha < kMinAlpha) {
     plastic.alpha = 0;
@@ -77,7 +78,7 @@ class PlasticKernel final : public LobeKernel<Plastic, T> {
 }  // namespace
 
 MaterialType plastic_type() {
-  return {"plastic", "A matt base under a clear coat, smooth or rough.",
+  return {"plastic", "A diffuse base under a smooth or rough clear coat.",
           make_material_set<Plastic, PlasticKernel>};
 }
 

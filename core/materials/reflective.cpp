@@ -8,10 +8,11 @@ namespace orrery {
 
 template <class N>
 Reflective<double> Reflective<N>::read(Params& p) {
-  const Vec3d n = p.color("n", "Index of refraction of the metal, per channel.");
-  const Vec3d k = p.color("k", "Extinction of the metal, per channel.");
+  const Vec3d n = p.color("n", "Index of refraction, per channel.");
+  const Vec3d k = p.color("k", "Extinction coefficient, per channel.");
   const bool exact =
-      p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
+      p.choice("fresnel", "Reflectance formula: Schlick's approximation or Fresnel's equations.",
+               {"schlick", "exact"}, "schlick") == "exact";
   const Vec3d f0(normal_reflectance(n.x, k.x), normal_reflectance(n.y, k.y), normal_reflectance(n.z, k.z));
   return {n, k, f0, exact ? 1.0 : 0.0};
 }
@@ -51,7 +52,7 @@ class ReflectiveKernel final : public MaterialRecords<Reflective, T> {
 }  // namespace
 
 MaterialType reflective_type() {
-  return {"reflective", "A metal mirror coloured by Fresnel's law.",
+  return {"reflective", "A smooth metal, coloured by Fresnel reflection.",
           make_material_set<Reflective, ReflectiveKernel>};
 }
 

@@ -8,10 +8,12 @@ namespace orrery {
 
 template <class N>
 Refractive<double> Refractive<N>::read(Params& p) {
-  const double ior = p.number("ior", "Index of refraction inside over outside.", {.min = 0.01, .max = 100});
+  const double ior = p.number("ior", "Index of refraction, inside over outside.", {.min = 0.01, .max = 100});
   const bool exact =
-      p.choice("fresnel", "How the reflectance is computed.", {"schlick", "exact"}, "schlick") == "exact";
-  const Vec3d filter = p.color("filter", "What remains of light after one metre inside.", Vec3d(1), 1);
+      p.choice("fresnel", "Reflectance formula: Schlick's approximation or Fresnel's equations.",
+               {"schlick", "exact"}, "schlick") == "exact";
+  const Vec3d filter =
+      p.color("filter", "Share of light that remains after one metre inside, per channel.", Vec3d(1), 1);
   return {ior, normal_reflectance(ior, 0.0), exact ? 1.0 : 0.0, log2_filter_of(filter)};
 }
 
@@ -57,7 +59,7 @@ class RefractiveKernel final : public MaterialRecords<Refractive, T> {
 }  // namespace
 
 MaterialType refractive_type() {
-  return {"refractive", "Clear glass: mirrors and refracts, may filter light inside.",
+  return {"refractive", "Smooth glass: reflects, refracts and may absorb light.",
           make_material_set<Refractive, RefractiveKernel>};
 }
 

@@ -11,13 +11,13 @@ namespace orrery {
 template <class N>
 Rough<double> Rough<N>::read(Params& p) {
   const Vec3d kd = p.coefficient("kd", "Diffuse coefficient.", Vec3d(0.8));
-  const Vec3d ka = p.coefficient("ka", "Ambient coefficient; kd if left out.", derived(kd));
+  const Vec3d ka = p.coefficient("ka", "Ambient coefficient; default: kd.", derived(kd));
   const Vec3d ks = p.coefficient("ks", "Specular coefficient.", Vec3d(0));
   const Vec3d cd = p.color("cd", "Colour that multiplies ka and kd.", Vec3d(1));
   const Vec3d cs = p.color("cs", "Colour that multiplies ks.", Vec3d(1));
   const double shininess = p.number("shininess", "Exponent of the highlight.", {.min = 0, .max = 1e6}, 20.0);
   const bool phong =
-      p.choice("shading", "Model of the highlight.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
+      p.choice("shading", "Highlight model.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";
   Rough<double> rough{ka * cd, kd * cd, ks * cs, shininess, phong ? 1.0 : 0.0, 0};
   const bool alone = rough.diffuse == Vec3d(0) && rough.specular != Vec3d(0);
   if (alone && shininess >= kMinShininess) rough.chance = 1;
@@ -114,7 +114,7 @@ class RoughKernel final : public MaterialRecords<Rough, T> {
 }  // namespace
 
 MaterialType rough_type() {
-  return {"rough", "Ambient, Lambert diffuse and a Phong or Blinn-Phong highlight.",
+  return {"rough", "Ambient and Lambert diffuse terms with a Phong or Blinn-Phong highlight.",
           make_material_set<Rough, RoughKernel>};
 }
 

@@ -10,16 +10,15 @@ namespace orrery {
 
 template <class N>
 Translucent<double> Translucent<N>::read(Params& p) {
-  const Vec3d back =
-      p.coefficient("reflectance", "Share of light that leaves on the side it came from.", Vec3d(0.4), 1);
+  const Vec3d back = p.coefficient("reflectance", "Share of light that is reflected.", Vec3d(0.4), 1);
   const Vec3d left(std::min(0.4, 1 - back.x), std::min(0.4, 1 - back.y), std::min(0.4, 1 - back.z));
   const Vec3d on = p.coefficient("transmittance",
-                                 "Share of light that leaves on the far side; unless told 0.4, or what "
-                                 "`reflectance` leaves if that is less.",
+                                 "Share of light that is transmitted; default: 0.4, or 1 - reflectance if "
+                                 "that is less.",
                                  left, 1);
   const double most = max_component(back + on);
   if (most > 1)
-    p.fail("transmittance", "expected a sum with reflectance of at most 1, got " + number_text(most));
+    p.fail("transmittance", "sum with reflectance must be at most 1 (got " + number_text(most) + ")");
   const double all = max_component(back) + max_component(on);
   return {back, on, all > 0 ? max_component(on) / all : 0};
 }
@@ -100,7 +99,7 @@ class TranslucentKernel final : public MaterialRecords<Translucent, T> {
 }  // namespace
 
 MaterialType translucent_type() {
-  return {"translucent", "A thin sheet that scatters light on both sides, as paper or a leaf.",
+  return {"translucent", "A thin sheet that scatters light to both sides, such as paper or a leaf.",
           make_material_set<Translucent, TranslucentKernel>};
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/shorten.h"
 #include "core/meshes/mesh_file.h"
 
 // Declarations shared by the readers of mesh formats.
@@ -30,13 +31,13 @@ bool is_keyword(std::string_view word, std::string_view keyword);
 
 inline void check_vertices(std::size_t count, const MeshLimits& limits) {
   if (count > limits.vertices)
-    throw InputError("", "expected at most " + std::to_string(limits.vertices) + " vertices, got " +
-                             std::to_string(count) + " or more");
+    throw InputError("", "mesh has at least " + grouped(count) + " vertices (limit " +
+                             grouped(limits.vertices) + ", mesh_vertices)");
 }
 inline void check_triangles(std::size_t count, const MeshLimits& limits) {
   if (count > limits.triangles)
-    throw InputError("", "expected at most " + std::to_string(limits.triangles) + " triangles, got " +
-                             std::to_string(count) + " or more");
+    throw InputError("", "mesh has at least " + grouped(count) + " triangles (limit " +
+                             grouped(limits.triangles) + ", mesh_triangles)");
 }
 
 inline bool is_finite(const Vec3d& v) {
@@ -57,9 +58,10 @@ inline bool is_position(const Vec3d& v) {
   const auto in_range = [](double x) { return std::abs(x) <= kMaxMeshCoordinate; };
   return in_range(v.x) && in_range(v.y) && in_range(v.z);
 }
-inline std::string expected_position(const Vec3d& got) {
-  return "expected coordinates of at most " + text_of(kMaxMeshCoordinate) + " in magnitude, got " +
-         text_of(got);
+// Returns the error text for a position that is out of range. `place` is appended to its value.
+inline std::string position_problem(const Vec3d& got, const std::string& place = "") {
+  return "coordinates must be at most " + text_of(kMaxMeshCoordinate) + " in magnitude (got " + text_of(got) +
+         place + ")";
 }
 
 }  // namespace orrery

@@ -30,8 +30,8 @@ class SceneReader {
     if (const auto required = file_.root().find("extensionsRequired"))
       for (std::size_t i = 0; i < required->size(); ++i)
         if (const GltfValue extension = required->item(i); !is_harmless(extension.text()))
-          extension.fail("expected an extension that geometry can do without, got " +
-                         excerpt(extension.text()));
+          extension.fail("must be an extension that does not change geometry (got " +
+                         excerpt(extension.text()) + ")");
     const GltfValue nodes = file_.root().at("nodes");
     place(nodes, roots(nodes));
     if (!all_normals_) mesh_.normals.clear();
@@ -79,7 +79,7 @@ class SceneReader {
       const Visit visit = stack.back();
       stack.pop_back();
       const GltfValue node = nodes.item(visit.node);
-      if (reached[visit.node]) node.fail("expected a tree of nodes, got this one twice");
+      if (reached[visit.node]) node.fail("nodes must form a tree (got this node twice)");
       reached[visit.node] = true;
       const Affined world_from_node = compose(visit.world_from_parent, transform_of(node));
       if (const auto mesh = node.find("mesh")) {
@@ -95,9 +95,10 @@ class SceneReader {
 
   void add_primitive(const GltfValue& primitive, const Affined& world_from_node) {
     if (++placed_ > kMaxPlaced)
-      primitive.fail("expected at most " + std::to_string(kMaxPlaced) + " placed primitives, got more");
+      primitive.fail("file places more than " + grouped(kMaxPlaced) + " primitives (limit " +
+                     grouped(kMaxPlaced) + ")");
     const std::uint64_t mode = integer_or(primitive, "mode", 4);
-    if (mode > 6) primitive.fail("expected a mode from 0 to 6, got " + std::to_string(mode));
+    if (mode > 6) primitive.fail("mode must be from 0 to 6 (got " + std::to_string(mode) + ")");
     if (mode < 4) return;  // points and lines have no surface
     const GltfValue attributes = primitive.at("attributes");
     const std::size_t first = mesh_.positions.size();
@@ -117,7 +118,7 @@ class SceneReader {
       interruption_point(i);
       const Vec3d p =
           world_from_node.point({positions.value(i, 0), positions.value(i, 1), positions.value(i, 2)});
-      if (!is_position(p)) attributes.fail(expected_position(p) + " at vertex " + std::to_string(i));
+      if (!is_position(p)) attributes.fail(position_problem(p, " at vertex " + std::to_string(i)));
       mesh_.positions.push_back(p);
     }
     const auto normals = optional_accessor(attributes, "NORMAL", "VEC3", positions.count);
@@ -127,7 +128,8 @@ class SceneReader {
       const Vec3d n(normals->value(i, 0), normals->value(i, 1), normals->value(i, 2));
       const Vec3d turned = transformed_normal(world_from_node, n);
       if (!is_finite(turned))
-        attributes.fail("expected finite normals, got " + text_of(n) + " at vertex " + std::to_string(i));
+        attributes.fail("normals must be finite (got " + text_of(n) + " at vertex " + std::to_string(i) +
+                        ")");
       mesh_.normals.push_back(turned);
     }
     const auto uvs = optional_accessor(attributes, "TEXCOORD_0", "VEC2", positions.count);
@@ -136,7 +138,8 @@ class SceneReader {
       interruption_point(i);
       const double u = uvs->value(i, 0), v = uvs->value(i, 1);
       if (!std::isfinite(u) || !std::isfinite(v))
-        attributes.fail("expected finite uvs, got others at vertex " + std::to_string(i));
+        attributes.fail("texture coordinates must be finite (got (" + text_of(u) + ", " + text_of(v) +
+                        ") at vertex " + std::to_string(i) + ")");
       mesh_.uvs.push_back({u, 1 - v});
     }
   }
@@ -147,8 +150,8 @@ class SceneReader {
     if (!index) return std::nullopt;
     const GltfNumbers numbers = file_.accessor(*index, type);
     if (numbers.count != count)
-      index->fail("expected as many as positions (" + std::to_string(count) + "), got " +
-                  std::to_string(numbers.count));
+      index->fail("must have " + std::to_string(count) + " elements, one per position (got " +
+                  std::to_string(numbers.count) + ")");
     return numbers;
   }
 
@@ -163,8 +166,9 @@ class SceneReader {
       interruption_point(i);
       const double index = numbers.value(i, 0);
       if (!(index >= 0 && index < count && index == std::floor(index)))
-        user.fail("expected indices from 0 to below " + std::to_string(mesh_.positions.size() - first) +
-                  ", got " + text_of(index) + " at " + std::to_string(i));
+        user.fail("indices must be integers of at least 0 and < " +
+                  std::to_string(mesh_.positions.size() - first) + " (got " + text_of(index) + " at entry " +
+                  std::to_string(i) + ")");
       indices.push_back(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(index));
     }
     return indices;
@@ -174,8 +178,8 @@ class SceneReader {
                      bool mirrored) {
     const std::size_t n = order.size();
     if (n < 3 || (mode == 4 && n % 3 != 0))
-      primitive.fail("expected 3 vertices or more, and of single triangles a multiple of 3, got " +
-                     std::to_string(n));
+      primitive.fail("must have at least 3 vertices, and a multiple of 3 for separate triangles (got " +
+                     std::to_string(n) + ")");
     const std::size_t count = mode == 4 ? n / 3 : n - 2;
     check_triangles(mesh_.triangles.size() + count, limits_);
     for (std::size_t i = 0; i < count; ++i) {

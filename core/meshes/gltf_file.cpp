@@ -43,8 +43,8 @@ constexpr ComponentType kComponentTypes[] = {{5120, 1, load<std::int8_t, false>,
 ComponentType component_type(const GltfValue& code) {
   for (const ComponentType& type : kComponentTypes)
     if (type.code == code.integer()) return type;
-  code.fail("expected a component type from 5120 to 5126 other than 5124, got " +
-            std::to_string(code.integer()));
+  code.fail("must be a component type from 5120 to 5126 other than 5124 (got " +
+            std::to_string(code.integer()) + ")");
 }
 
 struct Chunks {
@@ -56,25 +56,27 @@ struct Chunks {
 Chunks split_glb(std::string_view bytes) {
   constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
   const auto word = [&](std::size_t at) { return little_endian<std::uint32_t>(bytes.data() + at); };
-  if (bytes.size() < 12) throw InputError("", "expected a GLB header of 12 bytes, got fewer");
-  if (word(4) != 2) fail_at("byte 4", "expected GLB version 2, got " + std::to_string(word(4)));
+  if (bytes.size() < 12)
+    throw InputError(
+        "", "file must begin with a GLB header of 12 bytes (got " + std::to_string(bytes.size()) + ")");
+  if (word(4) != 2) fail_at("byte 4", "must be GLB version 2 (got " + std::to_string(word(4)) + ")");
   if (word(8) > bytes.size())
-    fail_at("byte 8", "expected a GLB length of at most " + std::to_string(bytes.size()) +
-                          ", the size of the file, got " + std::to_string(word(8)));
+    fail_at("byte 8", "must be a GLB length of at most " + std::to_string(bytes.size()) +
+                          ", the size of the file (got " + std::to_string(word(8)) + ")");
   bytes = bytes.substr(0, word(8));
   Chunks chunks;
   std::size_t at = 12;
   while (bytes.size() >= at + 8) {
     const std::size_t left = bytes.size() - at - 8;
     if (word(at) > left)
-      fail_at("byte " + std::to_string(at), "expected a GLB chunk of at most " + std::to_string(left) +
-                                                " bytes, got " + std::to_string(word(at)));
+      fail_at("byte " + std::to_string(at), "must be a GLB chunk of at most " + std::to_string(left) +
+                                                " bytes (got " + std::to_string(word(at)) + ")");
     const std::string_view chunk = bytes.substr(at + 8, word(at));
     if (at == 12 && word(at + 4) == kJson) chunks.json = chunk;
     if (at > 12 && word(at + 4) == kBinary && chunks.binary.empty()) chunks.binary = chunk;
     at += 8 + chunk.size();
   }
-  if (chunks.json.empty()) fail_at("byte 12", "expected a GLB chunk \"JSON\" with content, got none");
+  if (chunks.json.empty()) fail_at("byte 12", "must be a GLB chunk \"JSON\" with content (got none)");
   return chunks;
 }
 
@@ -90,7 +92,9 @@ std::array<std::int8_t, 256> base64_digits() {
 // Decodes base64 (RFC 4648). Padding is optional.
 std::vector<char> decode_base64(std::string_view text, const GltfValue& place) {
   while (text.ends_with('=')) text.remove_suffix(1);
-  if (text.size() % 4 == 1) place.fail("expected base64, got an odd number of digits");
+  if (text.size() % 4 == 1)
+    place.fail("must be base64 (got " + std::to_string(text.size()) +
+               " digits, of which the last is incomplete)");
   const auto digits = base64_digits();
   std::vector<char> bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
@@ -98,7 +102,8 @@ std::vector<char> decode_base64(std::string_view text, const GltfValue& place) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const int digit = digits[static_cast<unsigned char>(text[i])];
     if (digit < 0)
-      place.fail("expected base64, got " + excerpt(text.substr(i, 1)) + " at digit " + std::to_string(i));
+      place.fail("must be base64 (got " + excerpt(text.substr(i, 1)) + " at digit " + std::to_string(i) +
+                 ")");
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
     const std::size_t pending = (i + 1) * 6 % 8;  // bits of an incomplete byte after this digit
     if (i % 4 != 0) bytes.push_back(static_cast<char>(bits >> pending));
@@ -114,7 +119,8 @@ GltfFile::GltfFile(std::string_view bytes) {
   document_ = parse_gltf(chunks.json);
   binary_ = chunks.binary;
   const GltfValue version = root().at("asset").at("version");
-  if (!version.text().starts_with("2.")) version.fail("expected \"2.0\", got " + excerpt(version.text()));
+  if (!version.text().starts_with("2."))
+    version.fail("must be \"2.0\" (got " + excerpt(version.text()) + ")");
   if (const auto buffers = root().find("buffers")) buffers_.resize(buffers->size());
 }
 
@@ -128,17 +134,18 @@ std::string_view GltfFile::buffer(const GltfValue& user) {
     constexpr std::string_view kMark = ";base64,";
     const std::size_t comma = text.find(',');
     if (!text.starts_with("data:") || comma == text.npos || !text.substr(0, comma + 1).ends_with(kMark))
-      uri->fail("expected a data: URI in base64 (other files are not read), got " + excerpt(text));
+      uri->fail("must be a data: URI in base64, because other files are not read (got " + excerpt(text) +
+                ")");
     entry.own = decode_base64(std::string_view(text).substr(comma + 1), *uri);
     entry.bytes = {entry.own.data(), entry.own.size()};
   } else {
-    if (index != 0 || binary_.empty()) buffer.fail("expected a member \"uri\", got none");
+    if (index != 0 || binary_.empty()) buffer.fail("missing key \"uri\"");
     entry.bytes = binary_;
   }
   const GltfValue length = buffer.at("byteLength");
   if (length.integer() > entry.bytes.size())
-    length.fail("expected at most " + std::to_string(entry.bytes.size()) + " bytes, as are there, got " +
-                std::to_string(length.integer()));
+    length.fail("must be at most " + std::to_string(entry.bytes.size()) + ", the bytes of the buffer (got " +
+                std::to_string(length.integer()) + ")");
   entry.bytes = entry.bytes.substr(0, length.integer());
   entry.decoded = true;
   return entry.bytes;
@@ -149,16 +156,18 @@ std::string_view GltfFile::view(const GltfValue& user) {
   const std::string_view bytes = buffer(view.at("buffer"));
   const std::uint64_t offset = integer_or(view, "byteOffset", 0), length = view.at("byteLength").integer();
   if (offset > bytes.size() || length > bytes.size() - offset)
-    view.fail("expected byteOffset + byteLength of at most " + std::to_string(bytes.size()) +
-              ", the size of the buffer, got " + std::to_string(offset) + " + " + std::to_string(length));
+    view.fail("byteOffset + byteLength must be at most " + std::to_string(bytes.size()) +
+              ", the bytes of the buffer (got " + std::to_string(offset) + " + " + std::to_string(length) +
+              ")");
   return bytes.substr(offset, length);
 }
 
 GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
   const GltfValue accessor = root().at("accessors").item(user.integer());
-  if (accessor.find("sparse")) accessor.fail("expected an accessor that is not sparse, got a sparse one");
+  if (accessor.find("sparse")) accessor.fail("must be an accessor that is not sparse (got a sparse one)");
   const GltfValue stated = accessor.at("type");
-  if (stated.text() != type) stated.fail("expected " + excerpt(type) + ", got " + excerpt(stated.text()));
+  if (stated.text() != type)
+    stated.fail("must be " + excerpt(type) + " (got " + excerpt(stated.text()) + ")");
   const ComponentType component = component_type(accessor.at("componentType"));
   const auto normalized = accessor.find("normalized");
 
@@ -173,14 +182,14 @@ GltfNumbers GltfFile::accessor(const GltfValue& user, std::string_view type) {
   const std::uint64_t offset = integer_or(accessor, "byteOffset", 0), count = accessor.at("count").integer();
   numbers.stride = integer_or(root().at("bufferViews").item(view_index.integer()), "byteStride", element);
   if (numbers.stride < element || numbers.stride > 252)
-    accessor.fail("expected a byteStride from " + std::to_string(element) + " to 252, got " +
-                  std::to_string(numbers.stride));
+    accessor.fail("byteStride must be from " + std::to_string(element) + " to 252 (got " +
+                  std::to_string(numbers.stride) + ")");
   if (count == 0 || offset > bytes.size() || element > bytes.size() - offset ||
       count - 1 > (bytes.size() - offset - element) / numbers.stride)
-    accessor.fail("expected 1 or more elements of " + std::to_string(element) + " bytes, " +
+    accessor.fail("must have at least 1 element of " + std::to_string(element) + " bytes, " +
                   std::to_string(numbers.stride) + " apart, within the " + std::to_string(bytes.size()) +
-                  " bytes of the buffer view, got " + std::to_string(count) + " from byte " +
-                  std::to_string(offset));
+                  " bytes of the buffer view (got " + std::to_string(count) + " from byte " +
+                  std::to_string(offset) + ")");
   numbers.count = count;
   numbers.data = bytes.data() + offset;
   return numbers;

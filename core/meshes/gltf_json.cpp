@@ -84,18 +84,20 @@ class GltfBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
   void check_depth() const {
     if (depth_ > kMaxDepth)
-      throw InputError("", "JSON is nested too deep (limit " + std::to_string(kMaxDepth) + ")");
+      throw InputError("", "JSON nesting has more than " + std::to_string(kMaxDepth) + " levels (limit " +
+                               std::to_string(kMaxDepth) + ")");
   }
   void count_value() {
     check_depth();
     interruption_point(values_++);
     if (values_ > kMaxValues)
-      throw InputError("", "JSON has too many values (limit " + std::to_string(kMaxValues) + ")");
+      throw InputError("", "document has more than " + grouped(kMaxValues) + " JSON values (limit " +
+                               grouped(kMaxValues) + ")");
   }
 
   nlohmann::json document_;
   std::vector<nlohmann::json*> open_;  // containers from the root to the innermost
-  std::string key_;                    // of the next value
+  std::string key_;                    // key of the next value
   bool skips_next_ = false;            // the next value is not needed
   int skipped_ = 0;                    // open containers that are not needed
   int depth_ = 0;                      // open containers
@@ -113,7 +115,7 @@ std::optional<GltfValue> GltfValue::find(const char* key) const {
 
 GltfValue GltfValue::at(const char* key) const {
   const auto found = find(key);
-  if (!found) fail(std::string("expected a member \"") + key + "\", got none");
+  if (!found) fail(std::string("missing key \"") + key + "\"");
   return *found;
 }
 
@@ -124,7 +126,8 @@ std::size_t GltfValue::size() const {
 
 GltfValue GltfValue::item(std::size_t i) const {
   if (i >= size())
-    fail("expected entry " + std::to_string(i) + ", got " + std::to_string(size()) + " entries");
+    fail("must have entry " + std::to_string(i) + " (got " + std::to_string(size()) +
+         (size() == 1 ? " entry)" : " entries)"));
   return {(*value_)[i], path_ + '/' + std::to_string(i)};
 }
 
@@ -150,9 +153,9 @@ const std::string& GltfValue::text() const {
 
 void GltfValue::fail(const std::string& detail) const { fail_at(path_.empty() ? "/" : path_, detail); }
 
-void GltfValue::fail_type(const char* expected) const {
+void GltfValue::fail_type(const char* allowed) const {
   const std::string got = value_->is_structured() ? value_->type_name() : value_->dump();
-  fail(std::string("expected ") + expected + ", got " + (got.size() > 40 ? value_->type_name() : got));
+  fail(std::string("must be ") + allowed + " (got " + (got.size() > 40 ? value_->type_name() : got) + ")");
 }
 
 std::uint64_t integer_or(const GltfValue& object, const char* key, std::uint64_t fallback) {
@@ -165,7 +168,7 @@ nlohmann::json parse_gltf(std::string_view text) {
   const bool complete = nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
   if (!complete)
     throw InputError("", "JSON syntax error at byte " + std::to_string(builder.error_position()));
-  if (!builder.document().is_object()) throw InputError("", "glTF document must be a JSON object");
+  if (!builder.document().is_object()) throw InputError("", "must be a JSON object");
   return std::move(builder.document());
 }
 

@@ -9,7 +9,7 @@ namespace {
 template <std::size_t count>
 std::array<double, count> numbers_of(const GltfValue& value) {
   if (value.size() != count)
-    value.fail("expected " + std::to_string(count) + " numbers, got " + std::to_string(value.size()));
+    value.fail("must be " + std::to_string(count) + " numbers (got " + std::to_string(value.size()) + ")");
   std::array<double, count> numbers;
   for (std::size_t i = 0; i < count; ++i) numbers[i] = value.item(i).number();
   return numbers;
@@ -27,7 +27,7 @@ Affined rotation_of(const GltfValue& value) {
   auto q = numbers_of<4>(value);
   double largest = 0;
   for (const double part : q) largest = std::max(largest, std::abs(part));
-  if (!(largest > 0)) value.fail("expected a quaternion other than 0, got 0");
+  if (!(largest > 0)) value.fail("must be a quaternion other than 0 (got 0)");
   double square = 0;
   for (double& part : q) square += (part / largest) * (part / largest);
   for (double& part : q) part = part / largest / std::sqrt(square);
@@ -44,7 +44,7 @@ Affined transform_of(const GltfValue& node) {
   if (const auto matrix = node.find("matrix")) {
     const auto m = numbers_of<16>(*matrix);  // column-major
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-      matrix->fail("expected 0, 0, 0 and 1 as the last row, got a projection");
+      matrix->fail("last row must be 0, 0, 0 and 1 (got a projection)");
     return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
   }
   const auto quaternion = node.find("rotation");

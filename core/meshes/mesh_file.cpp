@@ -70,15 +70,15 @@ MeshFormat mesh_format(std::string_view bytes) {
   if (is_keyword(word, "solid")) return MeshFormat::stl;
   if (std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords))
     return MeshFormat::obj;
-  throw InputError("", "expected an OBJ, PLY, STL (84 + 50 n bytes if binary) or glTF file, got " +
-                           std::to_string(bytes.size()) + " bytes that begin with " + excerpt(bytes));
+  throw InputError("", "must be an OBJ, PLY, STL (84 + 50 n bytes if binary) or glTF file (got " +
+                           std::to_string(bytes.size()) + " bytes that begin with " + excerpt(bytes) + ")");
 }
 
 TriangleMesh read_mesh(std::string_view bytes, const MeshLimits& limits) {
   const MeshFormat format = mesh_format(bytes);
   const bool is_text = binary_stl_triangles(bytes) == 0;  // a binary STL may begin with any bytes
   TriangleMesh mesh = read_as(format, is_text ? without_byte_order_mark(bytes) : bytes, limits);
-  if (mesh.triangles.empty()) throw InputError("", "expected a mesh of at least 1 triangle, got none");
+  if (mesh.triangles.empty()) throw InputError("", "mesh must have at least 1 triangle (got 0)");
   finish_normals(mesh);
   return mesh;
 }

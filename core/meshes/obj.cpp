@@ -25,7 +25,7 @@ class ObjReader {
       keyword = text_.word_of_line();
       if (keyword == "v") {
         positions_.push_back(read_three("v"));
-        if (!is_position(positions_.back())) text_.fail(expected_position(positions_.back()));
+        if (!is_position(positions_.back())) text_.fail(position_problem(positions_.back()));
         check_vertices(positions_.size(), limits_);
       } else if (keyword == "vn") {
         normals_.push_back(read_three("vn"));
@@ -62,7 +62,7 @@ class ObjReader {
       if (slash == rest.npos) break;
       rest.remove_prefix(slash + 1);
     }
-    if (count == 3) text_.fail("expected position/uv/normal for a corner, got " + excerpt(word));
+    if (count == 3) text_.fail("corner must be position/uv/normal (got " + excerpt(word) + ")");
     Corner corner;
     corner.position = read_index(parts[0], positions_.size(), "v");
     if (!parts[1].empty()) corner.uv = read_index(parts[1], uvs_.size(), "vt");
@@ -81,9 +81,12 @@ class ObjReader {
   std::uint32_t read_index(std::string_view word, std::size_t count, const char* what) const {
     const std::int64_t index = text_.integer_in(word, std::string(what) + " of a corner");
     const auto size = static_cast<std::int64_t>(count);
+    const std::string got = " (got " + std::to_string(index) + ")";
+    if (size == 0)
+      text_.fail(std::string(what) + " of a corner must be absent before the first " + what + got);
     if (index == 0 || index > size || index < -size)
-      text_.fail(std::string("expected a ") + what + " of a corner from 1 to " + std::to_string(size) +
-                 " or -1 to -" + std::to_string(size) + ", got " + std::to_string(index));
+      text_.fail(std::string(what) + " of a corner must be from 1 to " + std::to_string(size) +
+                 " or -1 to -" + std::to_string(size) + got);
     return static_cast<std::uint32_t>(index > 0 ? index - 1 : size + index);
   }
 
@@ -99,7 +102,7 @@ class ObjReader {
       check_triangles(triangles_.size(), limits_);
       fan[1] = vertex;
     }
-    if (count < 3) text_.fail("expected a face of 3 corners or more, got " + std::to_string(count));
+    if (count < 3) text_.fail("face must have at least 3 corners (got " + std::to_string(count) + ")");
   }
 
   TriangleMesh build() {

@@ -50,7 +50,7 @@ class PlyReader {
   void count_vertices() {
     const auto is_vertex = [](const PlyElement& element) { return element.name == "vertex"; };
     const auto count = std::count_if(header_.elements.begin(), header_.elements.end(), is_vertex);
-    if (count != 1) body_.fail("expected one element \"vertex\", got " + std::to_string(count));
+    if (count != 1) body_.fail("file must have one element \"vertex\" (got " + std::to_string(count) + ")");
     vertices_ = std::find_if(header_.elements.begin(), header_.elements.end(), is_vertex)->count;
     check_vertices(vertices_, limits_);
   }
@@ -64,15 +64,15 @@ class PlyReader {
       if (element.name == "face" && is_polygon(property)) fewest += 3 * Body::min_bytes(property.type);
     }
     if (fewest > 0 && element.count > body_.bytes_left() / fewest)
-      body_.fail("expected " + std::to_string(element.count) + " of element " + excerpt(element.name) +
-                 ", each of " + std::to_string(fewest) + " bytes or more, got " +
-                 std::to_string(body_.bytes_left()) + " bytes");
+      body_.fail("element " + excerpt(element.name) + " must have " + std::to_string(element.count) +
+                 " entries of at least " + std::to_string(fewest) + " bytes (got " +
+                 std::to_string(body_.bytes_left()) + " bytes)");
   }
 
   void read_vertices(const PlyElement& element) {
     std::array<bool, kSlots + 1> has{};
     for (const PlyProperty& property : element.properties) has[slot_of(property)] = true;
-    if (!has[kX] || !has[kY] || !has[kZ]) body_.fail("expected properties x, y and z of a vertex, got fewer");
+    if (!has[kX] || !has[kY] || !has[kZ]) body_.fail("vertex must have the properties x, y and z");
     has_normals_ = has[kNx] && has[kNy] && has[kNz];
     has_uvs_ = has[kU] && has[kV];
     mesh_.positions.reserve(element.count);
@@ -125,9 +125,9 @@ class PlyReader {
     interruption_point(mesh_.positions.size());
     const Vec3d position(values[kX], values[kY], values[kZ]), normal(values[kNx], values[kNy], values[kNz]);
     const auto number = [&] { return std::to_string(mesh_.positions.size()); };
-    if (!is_position(position)) body_.fail(expected_position(position) + " for vertex " + number());
+    if (!is_position(position)) body_.fail(position_problem(position, " for vertex " + number()));
     if (!is_finite(normal) || !std::isfinite(values[kU]) || !std::isfinite(values[kV]))
-      body_.fail("expected finite values for vertex " + number() + ", got others");
+      body_.fail("values of vertex " + number() + " must be finite");
     mesh_.positions.push_back(position);
     if (has_normals_) mesh_.normals.push_back(normal);
     if (has_uvs_) mesh_.uvs.push_back({values[kU], values[kV]});
@@ -135,8 +135,7 @@ class PlyReader {
 
   void read_faces(const PlyElement& element) {
     const auto polygon = std::find_if(element.properties.begin(), element.properties.end(), is_polygon);
-    if (polygon == element.properties.end())
-      body_.fail("expected a list \"vertex_indices\" of a face, got none");
+    if (polygon == element.properties.end()) body_.fail("face must have a list \"vertex_indices\"");
     check_triangles(mesh_.triangles.size() + element.count, limits_);
     mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i)
@@ -151,8 +150,8 @@ class PlyReader {
   void read_polygon(const PlyProperty& property, std::uint64_t face) {
     const std::uint64_t count = list_length(property);
     if (count < 3)
-      body_.fail("expected 3 corners or more of face " + std::to_string(face) + ", got " +
-                 std::to_string(count));
+      body_.fail("face " + std::to_string(face) + " must have at least 3 corners (got " +
+                 std::to_string(count) + ")");
     check_triangles(mesh_.triangles.size() + count - 2, limits_);
     const auto value = body_.describe(property.type);
     std::array<std::uint32_t, 3> fan{};
@@ -160,8 +159,8 @@ class PlyReader {
       interruption_point(face + i);
       const double index = body_.read(value);
       if (!(index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)))
-        body_.fail("expected a vertex from 0 to below " + std::to_string(vertices_) + " of face " +
-                   std::to_string(face) + ", got " + text_of(index));
+        body_.fail("vertex of face " + std::to_string(face) + " must be an integer of at least 0 and < " +
+                   std::to_string(vertices_) + " (got " + text_of(index) + ")");
       fan[std::min<std::uint64_t>(i, 2)] = static_cast<std::uint32_t>(index);
       if (i < 2) continue;
       mesh_.triangles.push_back(fan);
@@ -173,7 +172,7 @@ class PlyReader {
     const double count = body_.read(body_.describe(*property.count_type));
     constexpr double kMost = 4294967295.0;  // largest value of the widest type
     if (!(count >= 0 && count <= kMost && count == std::floor(count)))
-      body_.fail("expected a length of a list, got " + text_of(count));
+      body_.fail("length of a list must be an integer from 0 to 4294967295 (got " + text_of(count) + ")");
     return static_cast<std::uint64_t>(count);
   }
   void skip_list(const PlyProperty& property) {

@@ -45,9 +45,9 @@ class AsciiPly {
   static std::size_t min_bytes(PlyType) { return 2; }
   std::size_t bytes_left() const { return text_.rest().size() + 1; }
 
-  double read(Value) { return text_.number("a value"); }
+  double read(Value) { return text_.number("value"); }
   void skip(Value) {
-    if (text_.word().empty()) fail("expected a value, got the end of the file");
+    if (text_.word().empty()) fail("must be a value (got the end of the file)");
   }
   [[noreturn]] void fail(const std::string& detail) const { text_.fail(detail); }
 
@@ -75,7 +75,8 @@ class BinaryPly {
     return value.load(at);
   }
   void skip(const Value& value) {
-    if (value.size > rest_.size()) fail("expected " + std::to_string(value.size) + " bytes, got the end");
+    if (value.size > rest_.size())
+      fail("must be a value of " + std::to_string(value.size) + " bytes (got the end of the file)");
     rest_.remove_prefix(value.size);
   }
   const char* take(std::size_t bytes) {  // REQUIRES: bytes <= bytes_left()

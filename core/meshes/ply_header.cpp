@@ -24,22 +24,22 @@ PlyType read_type(TextReader& text) {
   const std::string_view word = text.word_of_line();
   for (const auto& [name, type] : kTypeNames)
     if (name == word) return type;
-  text.fail("expected a type from char to double, got " + excerpt(word));
+  text.fail("must be a type from char to double (got " + excerpt(word) + ")");
 }
 
 PlyEncoding read_encoding(TextReader& text) {
   const std::string_view name = text.word_of_line(), version = text.word_of_line();
-  if (version != "1.0") text.fail("expected version 1.0, got " + excerpt(version));
+  if (version != "1.0") text.fail("must be version 1.0 (got " + excerpt(version) + ")");
   if (name == "ascii") return PlyEncoding::ascii;
   if (name == "binary_little_endian") return PlyEncoding::little_endian;
   if (name == "binary_big_endian") return PlyEncoding::big_endian;
-  text.fail("expected ascii, binary_little_endian or binary_big_endian, got " + excerpt(name));
+  text.fail("must be one of ascii, binary_little_endian or binary_big_endian (got " + excerpt(name) + ")");
 }
 
 PlyElement read_element(TextReader& text) {
   const std::string_view name = text.word_of_line();
-  const std::int64_t count = text.integer_in(text.word_of_line(), "the number of elements");
-  if (count < 0) text.fail("expected a number of elements of at least 0, got " + std::to_string(count));
+  const std::int64_t count = text.integer_in(text.word_of_line(), "number of elements");
+  if (count < 0) text.fail("number of elements must be at least 0 (got " + std::to_string(count) + ")");
   return {name, static_cast<std::uint64_t>(count), {}};
 }
 
@@ -52,7 +52,7 @@ PlyProperty read_property(TextReader& text) {
   text.word_of_line();
   const PlyType count_type = read_type(text);
   if (count_type == PlyType::float32 || count_type == PlyType::float64)
-    text.fail("expected an integer type for the length of a list, got float or double");
+    text.fail("length of a list must have an integer type (got float or double)");
   const PlyType type = read_type(text);
   return {text.word_of_line(), type, count_type};
 }
@@ -72,7 +72,7 @@ PlyHeader read_ply_header(std::string_view bytes) {
   while (text.next_line()) {  // skips "ply"
     const std::string_view keyword = text.word_of_line();
     if (keyword == "end_header") {
-      if (!encoding) text.fail("expected a line \"format\" before it");
+      if (!encoding) text.fail("\"end_header\" must follow a line \"format\"");
       text.end_text(bytes.starts_with("ply\r") && !bytes.starts_with("ply\r\n"));
       return {*encoding, std::move(elements), text};
     }
@@ -81,16 +81,17 @@ PlyHeader read_ply_header(std::string_view bytes) {
     } else if (keyword == "element") {
       elements.push_back(read_element(text));
     } else if (keyword == "property") {
-      if (elements.empty()) text.fail("expected an element before a property");
+      if (elements.empty()) text.fail("property must follow an element");
       elements.back().properties.push_back(read_property(text));
       ++properties;
     } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-      text.fail("expected a keyword of a PLY header, got " + excerpt(keyword));
+      text.fail("must be a keyword of a PLY header (got " + excerpt(keyword) + ")");
     }
     if (properties + elements.size() > kMaxProperties)
-      text.fail("expected at most " + std::to_string(kMaxProperties) + " elements and properties, got more");
+      text.fail("header has more than " + grouped(kMaxProperties) + " elements and properties (limit " +
+                grouped(kMaxProperties) + ")");
   }
-  text.fail("expected \"end_header\", got the end of the file");
+  text.fail("must be \"end_header\" (got the end of the file)");
 }
 
 }  // namespace orrery

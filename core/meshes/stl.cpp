@@ -57,7 +57,7 @@ TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
       corners[k] = {value(0), value(1), value(2)};
       if (!is_position(corners[k]))
         fail_at("facet " + std::to_string(i) + " at byte " + std::to_string(kHeader + i * kFacet),
-                expected_position(corners[k]));
+                position_problem(corners[k]));
     }
     builder.add(corners);
   }
@@ -67,8 +67,8 @@ TriangleMesh read_binary(std::string_view bytes, const MeshLimits& limits) {
 void expect(TextReader& text, std::string_view wanted) {
   const std::string_view word = text.word();
   if (!is_keyword(word, wanted))
-    text.fail("expected " + excerpt(wanted) + ", got " +
-              (word.empty() ? "the end of the file" : excerpt(word)));
+    text.fail("must be " + excerpt(wanted) + " (got " +
+              (word.empty() ? "the end of the file" : excerpt(word)) + ")");
 }
 
 // Reads "facet normal i j k  outer loop  vertex x y z (3 times)  endloop  endfacet" after its first word.
@@ -83,7 +83,7 @@ std::array<Vec3d, 3> read_facet(TextReader& text) {
     corner.x = text.number("x");
     corner.y = text.number("y");
     corner.z = text.number("z");
-    if (!is_position(corner)) text.fail(expected_position(corner));
+    if (!is_position(corner)) text.fail(position_problem(corner));
   }
   expect(text, "endloop");
   expect(text, "endfacet");
@@ -102,11 +102,11 @@ TriangleMesh read_ascii(std::string_view bytes, const MeshLimits& limits) {
     } else if (inside && is_keyword(word, "facet")) {
       builder.add(read_facet(text));
     } else {
-      text.fail(std::string("expected ") + (inside ? "\"facet\" or \"endsolid\"" : "\"solid\"") + ", got " +
-                excerpt(word));
+      text.fail(std::string("must be ") + (inside ? "\"facet\" or \"endsolid\"" : "\"solid\"") + " (got " +
+                excerpt(word) + ")");
     }
   }
-  if (inside) text.fail("expected \"endsolid\", got the end of the file");
+  if (inside) text.fail("must be \"endsolid\" (got the end of the file)");
   return builder.take();
 }
 

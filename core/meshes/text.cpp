@@ -99,7 +99,7 @@ void TextReader::end_text(bool lone_returns) {
     pass_line_end();
 }
 
-double TextReader::parse_number(std::string_view word, std::string_view what) const {
+double TextReader::parse_number(std::string_view word, std::string_view name) const {
   const std::string_view digits = unsigned_plus(word);
   const char* end = digits.data() + digits.size();
   double value = 0;
@@ -109,19 +109,18 @@ double TextReader::parse_number(std::string_view word, std::string_view what) co
                         std::fabs(std::strtod(std::string(digits).c_str(), nullptr)) < 1;
   if (vanishes) return 0;
   if (error != std::errc() || stop != end || !std::isfinite(value))
-    fail("expected a finite number for " + std::string(what) + ", got " +
-         (word.empty() ? "nothing" : excerpt(word)));
+    fail(std::string(name) + " must be a finite number (got " + (word.empty() ? "nothing" : excerpt(word)) +
+         ")");
   return value;
 }
 
-std::int64_t TextReader::integer_in(std::string_view word, std::string_view what) const {
+std::int64_t TextReader::integer_in(std::string_view word, std::string_view name) const {
   const std::string_view digits = unsigned_plus(word);
   const char* end = digits.data() + digits.size();
   std::int64_t value = 0;
   const auto [stop, error] = std::from_chars(digits.data(), end, value);
   if (error != std::errc() || stop != end)
-    fail("expected an integer for " + std::string(what) + ", got " +
-         (word.empty() ? "nothing" : excerpt(word)));
+    fail(std::string(name) + " must be an integer (got " + (word.empty() ? "nothing" : excerpt(word)) + ")");
   return value;
 }
 

@@ -25,12 +25,12 @@ class TextReader {
   void end_text(bool lone_returns);
 
   // Returns the next word on this line or a later one as a number: see parse_number().
-  double number(std::string_view what) { return parse_number(word(), what); }
+  double number(std::string_view name) { return parse_number(word(), name); }
 
   // Returns the number that `word` spells: the nearest double, or an integer. Throws InputError with the
-  // line, `what` and the word if it is invalid or out of range.
-  double parse_number(std::string_view word, std::string_view what) const;
-  std::int64_t integer_in(std::string_view word, std::string_view what) const;
+  // line, `name` and the word if it is invalid or out of range.
+  double parse_number(std::string_view word, std::string_view name) const;
+  std::int64_t integer_in(std::string_view word, std::string_view name) const;
 
   [[noreturn]] void fail(const std::string& detail) const;  // throws InputError with the line
   std::string_view rest() const { return rest_; }

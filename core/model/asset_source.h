@@ -25,10 +25,11 @@ class AssetSource {
 
  private:
   [[noreturn]] static void refuse_files() {
-    throw InputError("", "files are read on the command line only: upload it and name it by 'asset'");
+    throw InputError("",
+                     "files can be read on the command line only; upload the file and name it in \"asset\"");
   }
   [[noreturn]] static void refuse_assets() {
-    throw InputError("", "assets are kept by the service only: name a file beside the scene by 'file'");
+    throw InputError("", "assets exist in the service only; name a file next to the scene in \"file\"");
   }
 };
 

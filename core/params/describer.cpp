@@ -45,9 +45,8 @@ Schema three_numbers(const char* type, const Range& range) {
 }
 
 constexpr const char* kBeyond =
-    " A schema cannot say what values must mean together: a name that must exist, points that must differ, "
-    "an index "
-    "that must be below a count. The program checks that as well.";
+    " The program also checks conditions that a schema cannot express: names must exist, points must "
+    "differ, and indices must be below a count.";
 
 const Schema kEmptyList = Schema::array();
 const Schema kEmptyObject = Schema::object();
@@ -147,7 +146,7 @@ Schema Describer::three(Kind kind, const Range& range) {
     case Kind::point: return define("point", "A point: x, y and z in metres.", numbers);
     case Kind::direction:
       numbers["not"] = {{"const", {0, 0, 0}}};
-      return define("direction", "A direction of any length but 0.", numbers);
+      return define("direction", "A direction of any length except 0.", numbers);
     case Kind::color:
       if (range.max != kMaxColor) return numbers;
       return define("color", "A colour: linear red, green and blue.", numbers);

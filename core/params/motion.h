@@ -15,19 +15,18 @@ inline constexpr std::size_t kMaxKeys = 10'000;  // keyframes of one "motion" li
 template <class Read>
 auto read_motion(Params& p, const Read& read) {
   Keyframes<decltype(read(p))> keys;
-  p.each(
-      "motion",
-      "Where it is at which time, in between on the way: no key or two at least. What a key leaves out is as "
-      "without it.",
-      {0, kMaxKeys}, [&](Params& key) {
-        const double time =
-            key.number("time", "Seconds; more than in the key before.", {.min = -kMaxTime, .max = kMaxTime});
-        if (!keys.empty() && time <= keys.times.back())
-          key.fail("time", "must be > " + number_text(keys.times.back()) +
-                               ", the time of the previous key (got " + number_text(time) + ")");
-        keys.times.push_back(time);
-        keys.values.push_back(read(key));
-      });
+  p.each("motion",
+         "Keyframes, interpolated linearly: none, or at least two. A value that a key omits is that without "
+         "motion.",
+         {0, kMaxKeys}, [&](Params& key) {
+           const double time = key.number("time", "Time in seconds, greater than that of the previous key.",
+                                          {.min = -kMaxTime, .max = kMaxTime});
+           if (!keys.empty() && time <= keys.times.back())
+             key.fail("time", "must be > " + number_text(keys.times.back()) +
+                                  ", the time of the previous key (got " + number_text(time) + ")");
+           keys.times.push_back(time);
+           keys.values.push_back(read(key));
+         });
   if (keys.times.size() == 1) p.fail("motion", "must be a list of no keys or at least 2 (got 1)");
   return keys;
 }

@@ -37,8 +37,8 @@ std::string in_plain_words(std::string text) {
   return text;
 }
 
-// Rewrites "unexpected X; expected Y" as "must be Y (got X)". If Y is a closing bracket, a comma is also valid
-// there, and is more often forgotten.
+// Rewrites "unexpected X; expected Y" as "must be Y (got X)". If Y is a closing bracket, a comma is also
+// valid there, and is more often forgotten.
 std::string in_our_grammar(const std::string& reason) {
   constexpr std::string_view kUnexpected = "unexpected ", kExpected = "; expected ";
   const std::size_t split = reason.find(kExpected);
@@ -91,8 +91,8 @@ class TreeBuilder {
                                 const json::exception& error) {
     constexpr int kNumberOverflow = 406;
     if (error.id == kNumberOverflow) {
-      const std::string token_text = in_quotes(token);
-      problems_.push_back({next_pointer(), "must be a number that a double can hold (got " + token_text + ")"});
+      problems_.push_back(
+          {next_pointer(), "must be a number that a double can hold (got " + in_quotes(token) + ")"});
       throw InputError(std::move(problems_));
     }
     // `position` is the number of bytes read. The last byte read is the wrong character or ends the wrong
@@ -127,7 +127,7 @@ class TreeBuilder {
   bool open(json container) {
     if (levels_.size() == limits_.depth) {
       throw InputError(next_pointer(), "JSON nesting has more than " + grouped(limits_.depth) +
-                                           " levels (limit " + grouped(limits_.depth) + ", JSON depth)");
+                                           " levels (limit " + grouped(limits_.depth) + ", json_depth)");
     }
     json* placed = put(std::move(container));
     levels_.push_back({placed});
@@ -143,7 +143,7 @@ class TreeBuilder {
     interruption_point(nodes_);
     if (++nodes_ > limits_.nodes) {
       throw InputError(next_pointer(), "document has more than " + grouped(limits_.nodes) +
-                                           " JSON values (limit " + grouped(limits_.nodes) + ", JSON nodes)");
+                                           " JSON values (limit " + grouped(limits_.nodes) + ", json_nodes)");
     }
     if (levels_.empty()) {
       root_ = std::move(value);
@@ -215,7 +215,7 @@ class TreeBuilder {
     offset = std::min(offset, text_.size());
     if (reason == "invalid literal" || reason.starts_with("invalid number")) {
       const std::string_view word = word_at(offset);
-      reason = word.empty() ? "unexpected character " + in_quotes(text_.substr(offset, 1))
+      reason = word.empty() ? "invalid character " + in_quotes(text_.substr(offset, 1))
                             : in_quotes(word) + " is not a JSON value";
       if (!word.empty()) offset = static_cast<std::size_t>(word.data() - text_.data());
     }

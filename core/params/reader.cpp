@@ -84,8 +84,8 @@ void Reader::note_value(std::string pointer, const std::string& allowed, const j
 }
 
 void Reader::note_size(std::string pointer, const std::string& allowed, std::size_t entries) {
-  note(std::move(pointer), "must be " + allowed + " (got " + std::to_string(entries) +
-                               (entries == 1 ? " entry)" : " entries)"));
+  note(std::move(pointer),
+       "must be " + allowed + " (got " + std::to_string(entries) + (entries == 1 ? " entry)" : " entries)"));
 }
 
 double Reader::do_number(Key key, Doc, const Range& range, const Fallback<double>& fallback) {

@@ -21,8 +21,8 @@ int edit_distance(std::string_view a, std::string_view b, int limit);
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 // Returns the key that `word` stands for, or nullopt if none is likely. Accepts a key of the same meaning
-// (other programs say "albedo" for "kd" and "spp" for "samples"), then a key that nearest() finds. `keys` must
-// be those that the object can still take.
+// (other programs say "albedo" for "kd" and "spp" for "samples"), then a key that nearest() finds. `keys`
+// must be those that the object can still take.
 std::optional<std::string> nearest_key(std::string_view word, std::span<const std::string_view> keys);
 
 // Return ` (did you mean "radius"?)`, or "" if no candidate is close.

@@ -48,7 +48,7 @@ std::string decoder_path() {
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (const fs::path& path : {folder / "orrery-decode", folder.parent_path() / "orrery-decode"})
     if (access(path.c_str(), X_OK) == 0) return path;
-  throw InputError("", "pictures cannot be read: there is no program orrery-decode in " + folder.string());
+  throw InputError("", "images cannot be read: program orrery-decode is missing in " + folder.string());
 }
 
 const char* plugin_of(PictureFormat format) {
@@ -78,14 +78,14 @@ int file_of_parts(const PictureFile& file) {
       const ssize_t written = write(number, part.data(), std::min(part.size(), kAtOnce));
       if (written < 0) {
         close(number);
-        fail_system("writing a file in memory");
+        fail_system("cannot write a file in memory");
       }
       part.remove_prefix(static_cast<std::size_t>(written));
     }
   return number;
 }
 
-// Weight of about a tenth beside a thread that renders. A burst of uploads may start dozens of decoders.
+// Gives a decoder about a tenth of the CPU share of a render thread. A burst of uploads can start dozens.
 constexpr int kNiceness = 10;
 
 // Decoder process. The destructor kills it if it is still running.
@@ -111,7 +111,7 @@ class Decoder {
                                   const_cast<char* const*>(arguments), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
-    if (error) throw std::system_error(error, std::generic_category(), "starting orrery-decode");
+    if (error) throw std::system_error(error, std::generic_category(), "cannot start orrery-decode");
     setpriority(PRIO_PROCESS, static_cast<id_t>(process_), kNiceness);
   }
   ~Decoder() {
@@ -141,7 +141,7 @@ std::size_t read_full(int from, std::span<std::byte> bytes) {
     pollfd ready{from, POLLIN, 0};
     if (poll(&ready, 1, kLook_ms) <= 0) continue;
     const ssize_t more = read(from, bytes.data() + got, bytes.size() - got);
-    if (more < 0 && errno != EINTR) fail_system("reading a decoded picture");
+    if (more < 0 && errno != EINTR) fail_system("cannot read a decoded image");
     if (more == 0) break;
     got += static_cast<std::size_t>(std::max<ssize_t>(more, 0));
   }
@@ -150,9 +150,9 @@ std::size_t read_full(int from, std::span<std::byte> bytes) {
 
 [[noreturn]] void fail_ended(int status) {
   if (WIFSIGNALED(status))
-    throw InputError("", std::string("the picture cannot be decoded: the decoder ended by signal ") +
-                             strsignal(WTERMSIG(status)));
-  fail_damaged("the decoder gave up");
+    throw InputError("", std::string("image cannot be decoded: signal ended the decoder (") +
+                             strsignal(WTERMSIG(status)) + ")");
+  throw InputError("", "image is damaged: decoder stopped early");
 }
 
 }  // namespace
@@ -175,7 +175,9 @@ Texels decode_in_process(const PictureFile& file) {
     throw InputError("", std::move(text));
   }
   if (header.width != file.width || header.height != file.height)
-    fail_damaged("its size is another than its header states");
+    throw InputError("", "image is damaged: decoded size must be the size in the header, " +
+                             std::to_string(file.width) + " x " + std::to_string(file.height) + " (got " +
+                             std::to_string(header.width) + " x " + std::to_string(header.height) + ")");
   Texels picture{static_cast<int>(header.width), static_cast<int>(header.height), {}};
   picture.rgb.resize(std::size_t{3} * header.width * header.height);
   const std::span<std::byte> texels = std::as_writable_bytes(std::span(picture.rgb));

@@ -36,9 +36,9 @@ void check_texels(const Texels& picture) {
     if (value >= 0 && value <= kMaxTexel) continue;
     const std::size_t texel = i / 3, width = static_cast<std::size_t>(picture.width);
     char text[128];
-    std::snprintf(text, sizeof text, "expected texels of 0 to %g, got %g in column %zu of row %zu",
+    std::snprintf(text, sizeof text, "texels must be from 0 to %g (got %g in column %zu of row %zu, ",
                   double{kMaxTexel}, double{value}, texel % width, texel / width);
-    throw InputError("", std::string(text) + " (counted from 0 at the upper left)");
+    throw InputError("", std::string(text) + "counted from 0 at the upper left)");
   }
 }
 
@@ -58,8 +58,8 @@ bool is_picture(std::string_view bytes) { return signature_of(bytes) != nullptr;
 
 PictureFormat picture_format(std::string_view bytes) {
   if (const Signature* const known = signature_of(bytes)) return known->format;
-  throw InputError("", "expected an EXR, Radiance HDR, PNG or JPEG file, got " +
-                           std::to_string(bytes.size()) + " bytes of another kind");
+  throw InputError("", "must be an EXR, Radiance HDR, PNG or JPEG file (got " + std::to_string(bytes.size()) +
+                           " bytes of another format)");
 }
 
 Texels read_picture(std::string_view bytes, const PictureLimits& limits) {

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/shorten.h"
+
 namespace orrery {
 
 // Decoded image in linear light.
@@ -28,12 +30,12 @@ struct PictureLimits {
       return of_side >= 1 && of_side <= static_cast<std::uint64_t>(side);
     };
     if (!within(width) || !within(height) || width * height > texels)
-      return "expected a picture of 1 to " + std::to_string(side) + " texels a side and at most " +
-             std::to_string(texels) + " in all, got " + std::to_string(width) + " x " +
-             std::to_string(height);
+      return "image has " + std::to_string(width) + " x " + std::to_string(height) + " texels (limit 1 to " +
+             grouped(static_cast<std::uint64_t>(side)) + " per side, picture_side, and " + grouped(texels) +
+             " in all, picture_texels)";
     if (of_channels < 1 || of_channels > channels)
-      return "expected a picture of 1 to " + std::to_string(channels) + " channels, got " +
-             std::to_string(of_channels);
+      return "image must have 1 to " + std::to_string(channels) + " channels (got " +
+             std::to_string(of_channels) + ")";
     return {};
   }
 };

@@ -18,14 +18,23 @@ PictureFile inspect_picture(std::string_view bytes, PictureFormat format, const 
 }
 
 std::string_view ByteReader::take(std::size_t count) {
-  if (count > left()) fail_damaged("it has no end");
+  if (count > left())
+    fail_damaged(offset(), "data ends early (needs " + std::to_string(count) +
+                               (count == 1 ? " byte" : " bytes") + ", got " + std::to_string(left()) + ")");
   at_ += count;
   return bytes_.substr(at_ - count, count);
 }
 
+ByteReader ByteReader::part(std::size_t count) {
+  const std::size_t begin = offset();
+  return ByteReader(take(count), 0, begin);
+}
+
 std::string_view ByteReader::take_until(char end) {
   const std::size_t found = bytes_.find(end, at_);
-  if (found == std::string_view::npos) fail_damaged("it has no end");
+  if (found == std::string_view::npos)
+    fail_damaged(offset(),
+                 "data ends early (no byte " + std::to_string(static_cast<unsigned char>(end)) + " follows)");
   const std::string_view taken = bytes_.substr(at_, found - at_);
   at_ = found + 1;
   return taken;
@@ -43,6 +52,8 @@ std::uint32_t ByteReader::little_endian_32() {
   return value;
 }
 
-void fail_damaged(const std::string& why) { throw InputError("", "the picture is damaged: " + why); }
+void fail_damaged(std::size_t byte, const std::string& why) {
+  throw InputError("", "damaged at byte " + std::to_string(byte) + ": " + why);
+}
 
 }  // namespace orrery

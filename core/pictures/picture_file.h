@@ -41,14 +41,18 @@ void inspect_jpeg(std::string_view bytes, PictureFile& file);
 void inspect_exr(std::string_view bytes, PictureFile& file);
 void inspect_hdr(std::string_view bytes, PictureFile& file);
 
-// Sequential reader of the bytes of a file. Reading beyond the end throws InputError: the file has no end.
+// Sequential reader of the bytes of a file, or of a part that begins at byte `begin` of the file. Reading
+// beyond the end throws InputError.
 class ByteReader {
  public:
-  explicit ByteReader(std::string_view bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
+  explicit ByteReader(std::string_view bytes, std::size_t at = 0, std::size_t begin = 0)
+      : bytes_(bytes), at_(at), begin_(begin) {}
 
   std::size_t at() const { return at_; }
+  std::size_t offset() const { return begin_ + at_; }  // in the file
   std::size_t left() const { return bytes_.size() - at_; }
   std::string_view take(std::size_t count);
+  ByteReader part(std::size_t count);     // reader of the next bytes, which are skipped
   std::string_view take_until(char end);  // `end` is skipped and not returned
   unsigned byte() { return static_cast<unsigned char>(take(1)[0]); }
   std::uint32_t big_endian(int bytes);
@@ -56,10 +60,10 @@ class ByteReader {
 
  private:
   std::string_view bytes_;
-  std::size_t at_;
+  std::size_t at_, begin_;
 };
 
-// Throws InputError with the text "the picture is damaged: " + `why`.
-[[noreturn]] void fail_damaged(const std::string& why);
+// Throws InputError with the text "damaged at byte N: " + `why`. Bytes of the file are counted from 0.
+[[noreturn]] void fail_damaged(std::size_t byte, const std::string& why);
 
 }  // namespace orrery

@@ -72,7 +72,7 @@ struct RenderOption {
   Section section;
   Kind kind;
   std::string_view placeholder = {};  // name of the value in help; empty: its choices
-  std::string_view help;              // one sentence
+  std::string_view help;              // description in schemas and in help; ends with a full stop
   bool in_scene = true;               // a scene may set it, as the default of its requests
   bool changes_pixels = true;         // another value may give another picture
   // Default of an integer that depends on the technique, or null. Schemas do not show it.

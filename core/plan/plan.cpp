@@ -35,8 +35,8 @@ class Planner {
   Plan make() {
     take_request();
     if (scene_.facts.left_out > 0)
-      decide("triangles without area", std::to_string(scene_.facts.left_out) + " left out",
-             "no ray can meet them");
+      decide("triangles without area", std::to_string(scene_.facts.left_out) + " dropped",
+             "no ray can hit them");
     if (!scene_.motion.empty()) {
       const auto& [first, last] = scene_.motion;
       decide("time", seconds(plan_.time), "the motion runs from " + seconds(first) + " to " + seconds(last));
@@ -111,23 +111,23 @@ class Planner {
     plan_.free_contribution = *asked.error > 0 && !request_.min_contribution && !plan_.technique->draws_light;
     if (*asked.error > 0)
       decide("error", "at most " + number_text(*asked.error) + " RMS",
-             "as asked, of " + std::string(name_of(plan_.space)) +
-                 " values; samples are traced until they tell that it is so");
-    if (*asked.seconds > 0) decide("seconds", "at most " + seconds(*asked.seconds), "as asked");
+             "as specified, in " + std::string(name_of(plan_.space)) +
+                 " values; samples are added until the certificate promises it");
+    if (*asked.seconds > 0) decide("seconds", "at most " + seconds(*asked.seconds), "as specified");
     if (plan_.free_samples)
-      decide("samples", "at most " + std::to_string(plan_.samples), "a budget chooses them");
+      decide("samples", "at most " + std::to_string(plan_.samples), "chosen by the budget");
   }
 
   void open_shutter() {
     const double asked = *plan_.asked.shutter;
     if (asked == 0) return;
     if (!scene_.motion.within({plan_.time, plan_.time + asked}))
-      return decide("shutter", "absent", "nothing moves while it is open");
+      return decide("shutter", "none", "nothing moves during the exposure");
     plan_.shutter = asked;
     const bool all_at_once = plan_.samples == 1 && !plan_.technique->draws_light;
     decide("shutter", "open for " + seconds(asked),
-           all_at_once ? "the only sample is taken in the middle of it; more are spread over it"
-                       : "each sample is taken at a time of its own");
+           all_at_once ? "the only sample is taken in the middle; more would be spread over the exposure"
+                       : "each sample has its own time");
   }
 
   void choose_filter() {
@@ -135,10 +135,11 @@ class Planner {
     if (!warps_samples(filter, *plan_.asked.filter_width)) return;
     plan_.filtered = plan_.samples > 1 || plan_.technique->draws_light;
     if (plan_.filtered)
-      decide("filter", std::string(name_of(filter)),
-             has_negative_lobes(filter) ? "as asked; what it takes away has samples of its own" : "as asked");
+      decide(
+          "filter", std::string(name_of(filter)),
+          has_negative_lobes(filter) ? "as specified; negative lobes have separate samples" : "as specified");
     else
-      decide("filter", "absent", "the only sample is taken in the pixel's middle");
+      decide("filter", "none", "the only sample is at the pixel centre");
   }
 
   void take_camera() {
@@ -147,7 +148,7 @@ class Planner {
     if (auto turned = scene_.camera->with_fov(*plan_.asked.fov_degrees))
       plan_.camera = std::move(turned);
     else if (request_.fov_degrees)
-      decide("angle of view", "not as asked", "the camera of the scene has none");
+      decide("field of view", "ignored", "the camera of the scene has none");
     plan_.frame = frame_at(scene_.placement, *plan_.camera, orbit_of(plan_.asked));
     for (const std::string& name : *plan_.asked.layers) {
       plan_.channels.push_back(find_type(channel_types(), name));
@@ -162,20 +163,21 @@ class Planner {
       plan_.double_precision = asked == Precision::double_precision;
       return decide("precision", precision_name(plan_.double_precision),
                     is_free(request_.precision)
-                        ? "what float does to a picture is not bounded, and budgets promise errors"
-                        : "as asked",
+                        ? "the error of float is not bounded, and a budget needs a bound"
+                        : "as specified",
                     rounding_bound());
     }
     if (plan_.technique->draws_light && plan_.frame.aperture_radius > plan_.frame.focus_distance) {
       plan_.double_precision = true;
-      return decide("precision", "double", "rays leave the lens far from where they are sharp",
+      return decide("precision", "double", "the aperture radius exceeds the focus distance",
                     rounding_bound());
     }
     const RoundingLimit limit = rounding_limit(scene_, plan_);
     plan_.double_precision = !(double{std::numeric_limits<float>::epsilon()} <= limit.epsilon);
-    decide("precision", precision_name(plan_.double_precision),
-           plan_.double_precision ? limit.reason : "rounding to float is small beside all that is to be seen",
-           rounding_bound());
+    decide(
+        "precision", precision_name(plan_.double_precision),
+        plan_.double_precision ? limit.reason : "float rounding is small compared with all visible details",
+        rounding_bound());
   }
 
   // Returns the error of rounding. Float has no proven bound yet. Double is the reference and counts as
@@ -186,28 +188,29 @@ class Planner {
     const std::string& asked = *plan_.asked.accelerator;
     if (asked != "auto") {
       plan_.accelerator = find_type(accelerator_types(), asked);
-      return decide("accelerator", asked, "as asked");
+      return decide("accelerator", asked, "as specified");
     }
     const int count = scene_.primitive_count();
     const bool few = count <= kFewPrimitives;
     plan_.try_accelerators = !few && count <= kMaxTries && !plan_.technique->draws_light;
     plan_.accelerator = find_type(accelerator_types(), few ? "list" : "bvh");
     decide("accelerator", plan_.accelerator->name,
-           few ? "so few primitives that testing each costs less than any structure"
-               : "of all structures it took the least time on every scene measured with more than " +
-                     std::to_string(kMaxTries) + " primitives, and on paths");
+           few ? "with at most " + std::to_string(kFewPrimitives) +
+                     " primitives, testing each is cheaper than any structure"
+               : "the fastest structure on every measured scene with more than " + std::to_string(kMaxTries) +
+                     " primitives, and for paths");
   }
 
   void choose_order() {
     plan_.reorder = *plan_.asked.reorder;
-    if (plan_.reorder) decide("order of rays", "sorted by origin and direction", "as asked");
+    if (plan_.reorder) decide("ray order", "sorted by origin and direction", "as specified");
   }
 
   void choose_prediction() {
     plan_.prediction = *plan_.asked.prediction;
     if (plan_.prediction != Prediction::none)
-      decide("prediction of shadows", std::string(name_of(plan_.prediction)),
-             "as asked; what it proposes is tested, so the picture stays the same");
+      decide("shadow prediction", std::string(name_of(plan_.prediction)),
+             "as specified; every prediction is verified, so the image does not change");
   }
 
   void choose_lights() {
@@ -215,73 +218,68 @@ class Planner {
     plan_.direct_light = glows && scene_.facts.materials.lit;
     if (!plan_.direct_light) {
       plan_.shadows = false;
-      return decide("direct light", "absent",
-                    glows ? "no material in use answers light sources" : "no light source");
+      return decide("direct light", "none", glows ? "no material in use is lit directly" : "no light source");
     }
     const bool parallel_light =
         any_light([](const LightSet& lights, int) { return lights.traits().parallel; });
     plan_.constant_half = parallel_light && plan_.camera->parallel();
     if (plan_.constant_half)
-      decide("half vector", "computed once",
-             "the viewer and a light are parallel, so it is the same everywhere");
+      decide("half vector", "computed once", "viewer and light are parallel, so it is the same everywhere");
     plan_.shadows = !lonely_convex() || scene_.facts.materials.transmits;
-    decide("shadows", plan_.shadows ? "traced" : "absent",
-           plan_.shadows ? "objects may stand between light and surface"
-                         : "the only object is convex and seen from outside: nothing stands in its light");
+    decide("shadows", plan_.shadows ? "traced" : "none",
+           plan_.shadows ? "objects may block light"
+                         : "the only object is convex and seen from outside: nothing blocks its light");
   }
 
   // Reports scene features that only path techniques render.
   void leave_out_for_trees() {
     const std::string only =
-        std::string(plan_.technique->name) + " does not follow such light; distributed and path do";
-    if (plan_.frame.aperture_radius > 0) decide("lens", "absent", only, Bound::unknown());
+        std::string(plan_.technique->name) + " does not model it; distributed and path do";
+    if (plan_.frame.aperture_radius > 0) decide("lens", "ignored", only, Bound::unknown());
     if (scene_.facts.materials.emits)
-      decide("light of surfaces that emit", "seen, lights nothing", only, Bound::unknown());
+      decide("light of emissive surfaces", "visible, lights nothing", only, Bound::unknown());
     if (scene_.environment)
-      decide("light of the environment", "seen, lights nothing", only, Bound::unknown());
+      decide("light of the environment", "visible, lights nothing", only, Bound::unknown());
     if (any_light([](const LightSet& lights, int index) { return lights.extended(index); }))
-      decide("extent of lights", "absent: one point or direction each", only, Bound::unknown());
+      decide("extent of lights", "ignored: one point or direction each", only, Bound::unknown());
   }
 
   void choose_paths() {
     plan_.lens = plan_.frame.aperture_radius > 0;
     if (plan_.lens)
-      decide("lens", "thin",
-             "its aperture has a radius of " + number_text(plan_.frame.aperture_radius) + " m");
+      decide("lens", "thin", "aperture radius " + number_text(plan_.frame.aperture_radius) + " m");
     plan_.min_contribution = 0;
     plan_.clamp_indirect = *plan_.asked.clamp_indirect;
     if (plan_.clamp_indirect > 0)
-      decide("clamp of indirect light", "at " + number_text(plan_.clamp_indirect),
-             "as asked; the picture tells what it took away", Bound::unknown());
+      decide("indirect light clamp", "at " + number_text(plan_.clamp_indirect),
+             "as specified; the image reports the removed light", Bound::unknown());
     if (plan_.technique->interreflects) {
-      if (scene_.ambient != Vec3d(0)) decide("ambient light", "absent", "surfaces light each other instead");
+      if (scene_.ambient != Vec3d(0)) decide("ambient light", "ignored", "surfaces light each other instead");
       choose_reuse();
     } else if (scene_.facts.materials.diffuse) {
-      decide("light between diffuse surfaces",
-             scene_.ambient == Vec3d(0) ? "absent" : "ambient light instead",
-             std::string(plan_.technique->name) + " ends paths at diffuse surfaces; path follows them",
+      decide("diffuse interreflection", scene_.ambient == Vec3d(0) ? "none" : "ambient light instead",
+             std::string(plan_.technique->name) + " ends paths at diffuse surfaces; path continues them",
              Bound::unknown());
     }
     decide("depth", std::to_string(plan_.max_depth),
-           depth_reason() + (plan_.technique->interreflects
-                                 ? "; what longer paths would bring is left out"
-                                 : "; ambient light stands for what longer paths would bring"),
+           depth_reason() + (plan_.technique->interreflects ? "; light of longer paths is omitted"
+                                                            : "; ambient light replaces longer paths"),
            cut_bound(std::pow(max_component(scene_.facts.albedo), plan_.max_depth)));
   }
 
   std::string depth_reason() const {
-    if (is_free(request_.max_depth)) return "the most there may be, for the budget asked";
-    return request_.max_depth || scene_.render.max_depth ? "as asked" : "by default";
+    if (is_free(request_.max_depth)) return "the maximum, because of the budget";
+    return request_.max_depth || scene_.render.max_depth ? "as specified" : "default";
   }
 
   void choose_reuse() {
     const bool shares = plan_.max_depth >= 2 && scene_.facts.materials.lit && plan_.shutter == 0;
     plan_.reuse = shares ? static_cast<int>(std::bit_floor(static_cast<unsigned>(*plan_.asked.reuse)))
                          : 1;  // must divide a tile
-    decide("reuse of paths", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
-           plan_.reuse > 1     ? "connections to what others found cost less than paths of one's own"
-           : shares            ? "as asked"
-           : plan_.shutter > 0 ? "paths of different times meet different scenes"
+    decide("path reuse", plan_.reuse > 1 ? "groups of " + std::to_string(plan_.reuse) : "none",
+           plan_.reuse > 1     ? "connections to vertices of other paths cost less than new paths"
+           : shares            ? "as specified"
+           : plan_.shutter > 0 ? "paths at different times cross different scenes"
                                : "no path has a second vertex that receives light");
   }
 
@@ -291,31 +289,31 @@ class Planner {
     plan_.filters = plan_.specular && used.filters;
     if (!plan_.specular) {
       plan_.max_depth = 0;
-      return decide("mirrored and refracted rays", "absent", "no smooth material in use mirrors or refracts");
+      return decide("reflected and refracted rays", "none", "no smooth material in use reflects or refracts");
     }
     if (!plan_.technique->secondary_rays) {
       plan_.max_depth = 0;
-      return decide("mirrored and refracted rays", "absent",
-                    std::string(plan_.technique->name) + " sends none", Bound::unknown());
+      return decide("reflected and refracted rays", "none",
+                    std::string(plan_.technique->name) + " traces none", Bound::unknown());
     }
-    if (!used.transmits) decide("refracted rays", "absent", "no material in use is transparent");
-    if (!plan_.filters) decide("filtering in bodies", "absent", "no body in use weakens light");
+    if (!used.transmits) decide("refracted rays", "none", "no material in use is transparent");
+    if (!plan_.filters) decide("absorption in bodies", "none", "no material in use absorbs light inside");
     if (!used.transmits && lonely_convex() && plan_.max_depth > 1) {
       plan_.max_depth = 1;
-      decide("depth", "1", "the only object is convex: its mirrored rays meet nothing");
+      decide("depth", "1", "the only object is convex: its reflected rays hit nothing");
     } else {
       decide("depth", std::to_string(plan_.max_depth),
-             depth_reason() + "; deeper rays are replaced by ambient light", cut_bound(1));
+             depth_reason() + "; ambient light replaces deeper rays", cut_bound(1));
     }
     if (plan_.min_contribution > 0)
-      decide("least contribution",
+      decide("minimum contribution",
              (plan_.free_contribution ? "at most " : "") + number_text(plan_.min_contribution),
-             contribution_reason() + "; weaker rays are replaced by ambient light", cut_bound(1));
+             contribution_reason() + "; ambient light replaces weaker rays", cut_bound(1));
   }
 
   std::string contribution_reason() const {
-    if (plan_.free_contribution) return "the error asked chooses it";
-    return is_free(request_.min_contribution) ? "a quarter of what a code of 8 bits stands for" : "as asked";
+    if (plan_.free_contribution) return "chosen by the error budget";
+    return is_free(request_.min_contribution) ? "a quarter of an 8-bit code" : "as specified";
   }
 
   // Returns an a-priori bound of rays that are not traced, of this total weight. The bound measured while

@@ -26,17 +26,17 @@ class Limits {
 
   RoundingLimit strictest() {
     take(facts_.rounding);
-    take_length(facts_.smallest_feature.value, facts_.smallest_feature.where + " has parts that may be " +
-                                                   metres(facts_.smallest_feature.value) + " large");
+    take_length(facts_.smallest_feature.value, facts_.smallest_feature.where + " has features as small as " +
+                                                   metres(facts_.smallest_feature.value));
     take_length(facts_.layer_distance.value, "a surface of " + facts_.layer_distance.where + " is " +
-                                                 metres(facts_.layer_distance.value) + " from the next");
+                                                 metres(facts_.layer_distance.value) +
+                                                 " from the next surface");
     const double pixel = footprint();
-    take_length(pixel, "a pixel is " + metres(pixel) + " wide where things are");
+    take_length(pixel, "a pixel is " + metres(pixel) + " wide at the nearest object");
     take_mirrors();
     if (facts_.smallest_feature.value < kMinLengthInFloat)
-      take({0, facts_.smallest_feature.where + " has parts that may be " +
-                   metres(facts_.smallest_feature.value) +
-                   " large: products of such lengths are too small for float"});
+      take({0, facts_.smallest_feature.where + " has features as small as " +
+                   metres(facts_.smallest_feature.value) + ": products of such lengths underflow in float"});
     return strictest_;
   }
 
@@ -45,9 +45,8 @@ class Limits {
     if (limit.epsilon < strictest_.epsilon) strictest_ = limit;
   }
   void take_length(double length, const std::string& what) {
-    take(
-        {kMaxOfLength * length / (kRoundings * magnitude_.value),
-         what + ", beside coordinates of up to " + metres(magnitude_.value) + " (" + magnitude_.where + ")"});
+    take({kMaxOfLength * length / (kRoundings * magnitude_.value),
+          what + ", with coordinates up to " + metres(magnitude_.value) + " (" + magnitude_.where + ")"});
   }
 
   // Returns the width of a pixel in metres, at the nearest bounded primitive or at look_at if that is nearer.
@@ -73,7 +72,7 @@ class Limits {
     const double growth = std::pow(chain.growth, *plan_.asked.max_depth);
     take({kMaxTurn * chain.radius / (kRoundings * magnitude_.value * growth),
           "each of " + std::to_string(*plan_.asked.max_depth) + " reflections from " + chain.where +
-              " may multiply rounding by " + number_text(chain.growth)});
+              " may multiply the rounding error by " + number_text(chain.growth)});
   }
 
   const SceneFacts& facts_;

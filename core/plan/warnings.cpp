@@ -263,13 +263,14 @@ Problem lost_caustic(const Scene& scene, const Plan& plan) {
     if (smooth < 0) return {};
     char instead[96];
     if (parallel)
-      std::snprintf(instead, sizeof instead, "an angle_degrees of 0.53, the sun's, would show it");
+      std::snprintf(instead, sizeof instead, "set angle_degrees to 0.53 (the sun)");
     else
-      std::snprintf(instead, sizeof instead, "a sphere lamp of radius %.1g m in its place would show it",
+      std::snprintf(instead, sizeof instead, "use a sphere lamp of radius %.1g m instead",
                     0.01 * (scene.facts.bounds.bounded() ? scene.facts.bounds.diagonal() : 1.0));
     return {"/lights/" + std::to_string(i),
-            "what it throws on other surfaces by way of " + pointer_to_object(scene, smooth) +
-                ", which mirrors or refracts, is left out: it has no extent for paths to meet; " + instead};
+            "caustics by way of " + pointer_to_object(scene, smooth) +
+                ", which mirrors or refracts, are left out (no path can hit a light without extent); " +
+                instead};
   }
   return {};
 }
@@ -277,17 +278,17 @@ Problem lost_caustic(const Scene& scene, const Plan& plan) {
 std::vector<Problem> warnings(const Scene& scene, const Plan& plan, bool empty) {
   std::vector<Problem> found;
   if (is_unlit(scene, plan))
-    found.push_back({"/lights", "no light source and no ambient light: every surface is black"});
+    found.push_back({"/lights", "scene has no light source and no ambient light; every surface is black"});
   if (!plan.camera->parallel() && is_enclosed(scene, plan))
-    found.push_back({"/camera/eye", "the camera is inside an opaque shape that holds no light"});
+    found.push_back({"/camera/eye", "camera is inside an opaque shape that contains no light"});
   const LocatedValue& most = scene.facts.max_albedo;
   if (plan.technique->draws_light && most.value > kMaxReflected)
     found.push_back(
         {most.where + "/material",
-         "it sends on up to " + percents(most.value) +
-             " of the light that it gets; plastic, and metallic-roughness that is not strict, create none"});
+         "material reflects up to " + percents(most.value) +
+             " of the incoming light; plastic and non-strict metallic-roughness create no light"});
   if (Problem lost = lost_caustic(scene, plan); !lost.detail.empty()) found.push_back(std::move(lost));
-  if (empty) found.push_back({"/camera", "nothing is in view: the picture shows the background alone"});
+  if (empty) found.push_back({"/camera", "nothing is in view; the image shows only the background"});
   return found;
 }
 

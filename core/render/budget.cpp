@@ -36,7 +36,7 @@ constexpr int kSeenTiles = 16;           // tiles of the first pass before its t
 constexpr double kSurelyLate = 1.5;      // factor on the time limit
 constexpr double kShareOfEncoding = 0.02, kEncodedPixelsPerSecond = 8e6;
 
-constexpr const char* kNoMemory = "there is no memory for another pass";
+constexpr const char* kNoMemory = "not enough memory for another pass";
 
 class BudgetedRender {
  public:
@@ -221,7 +221,7 @@ class BudgetedRender {
       if (control_.stop.stop_requested()) throw;
       if (is_first) throw BudgetMissed(outcome(), made_.certificate);
       gave_up_ = true;
-      reason_ = "time was up";
+      reason_ = "time limit reached";
       return false;
     }
     made_.film.reset();
@@ -322,7 +322,7 @@ class BudgetedRender {
     if (is_timed()) {
       const double fit = made_.samples + (deadline_s() - used_s()) / (kSlower * pass_s_per_sample_);
       if (fit < next) {
-        reason_ = "more samples would not end in time";
+        reason_ = "more samples would exceed the time limit";
         return 0;
       }
       if (seconds_ > 0 && fit < most && fit < kLastPassReach * made_.samples)
@@ -330,8 +330,8 @@ class BudgetedRender {
     }
     const double rays = rays_per_sample_ * next;
     if (rays <= control_.max_rays) return next;
-    reason_ = "twice as many samples would take " + rounded(rays) + " rays, more than the " +
-              rounded(control_.max_rays) + " that there may be";
+    reason_ = "twice as many samples take " + rounded(rays) + " rays (limit " + rounded(control_.max_rays) +
+              ", request_rays)";
     return 0;
   }
 
@@ -361,21 +361,21 @@ class BudgetedRender {
     for (const Certificate::Term& term : made_.certificate.terms)
       if (term.bound.kind == Bound::Kind::unknown && (made_.samples > 0 || is_not_sampling(term)))
         return term.subject + ": " + term.reason;
-    if (!made_.certificate.min_provable) return "samples: nothing limits what one may bring";
-    if (*rest() > error_) return "all but the samples may be " + rounded(*rest());
-    if (!is_provable()) return "samples of that many pixels prove no less than " + rounded(*least());
+    if (!made_.certificate.min_provable) return "samples: radiance of a sample is unbounded";
+    if (*rest() > error_) return "error apart from sampling may be " + rounded(*rest());
+    if (!is_provable()) return "smallest provable error at this size: " + rounded(*least());
     if (!reason_.empty()) return reason_;
     const bool near = *made_.certificate.total().rms <= kNearLeast * *least();
-    return near ? "more samples would hardly prove less, at least " + rounded(*least())
-                : "there may be no more samples";
+    return near ? "more samples hardly reduce the provable error (smallest: " + rounded(*least()) + ")"
+                : "limit of samples reached";
   }
 
   std::string late_reason() const {
-    if (min_s_ > 0) return "the first pass would take about " + rounded(min_s_) + " s";
-    if (is_late_) return "time was up in the first pass";
-    if (gave_up_) return "a pass took longer than the one before, and ending it took too long";
+    if (min_s_ > 0) return "first pass would take about " + rounded(min_s_) + " s";
+    if (is_late_) return "time limit reached in the first pass";
+    if (gave_up_) return "a pass took longer than the previous one, and stopping it took too long";
     const bool first = made_.samples == progressive_samples(*made_.plan).front();
-    return std::string(first ? "the first" : "the last") + " pass took longer";
+    return std::string(first ? "first" : "last") + " pass exceeded the time limit";
   }
 
   // Returns the smallest provable error, or nullopt if no error can be proved.
@@ -416,7 +416,7 @@ void BudgetOutcome::end_at(double seconds_used) {
   used_s = seconds_used;
   if (seconds == 0 || seconds_used <= seconds || !seconds_met) return;
   seconds_met = false;
-  reason = (reason.empty() ? "" : reason + "; ") + "the file took longer to encode than there was time";
+  reason = (reason.empty() ? "" : reason + "; ") + "encoding exceeded the time limit";
 }
 
 void require_met(const BudgetOutcome& outcome, const Certificate& certificate) {
@@ -424,9 +424,7 @@ void require_met(const BudgetOutcome& outcome, const Certificate& certificate) {
 }
 
 BudgetMissed::BudgetMissed(BudgetOutcome outcome, const Certificate& certificate)
-    : Error("the budget is missed: " + outcome.reason),
-      outcome_(std::move(outcome)),
-      certificate_(certificate) {}
+    : Error("budget missed: " + outcome.reason), outcome_(std::move(outcome)), certificate_(certificate) {}
 
 RenderResult render_within_budget(const PreparedScene& scene, const SettledPlan& plan, WorkerPool& pool,
                                   const RenderControl& control) {

@@ -32,23 +32,23 @@ Certificate::Term omitted_term(const Plan& plan, const RenderStats& stats) {
   if (stats.counts.cut_rays == 0) return {subject, {}};
   const OmissionLedger& omitted = stats.omitted;
   if (!std::isfinite(omitted.max() + omitted.rms()))
-    return {subject, Bound::unknown(), "nothing limits what they would find"};
+    return {subject, Bound::unknown(), "their radiance is unbounded"};
   return {subject, bound_of(plan, omitted, !plan.technique->draws_light)};
 }
 
 // Bounds the light that the clamp removed.
 Certificate::Term clamp_term(const Plan& plan, const RenderStats& stats) {
-  const char* const subject = "clamp of indirect light";
+  const char* const subject = "indirect light clamp";
   const OmissionLedger& away = stats.clamped.pixels;
   if (away.sum == 0) return {subject, {}};
   if (!std::isfinite(away.max() + away.rms()))
-    return {subject, Bound::unknown(), "what it cuts has no limit"};
+    return {subject, Bound::unknown(), "the removed light is unbounded"};
   return {subject, bound_of(plan, away, false)};
 }
 
 Certificate::Term precision_term(const Plan& plan) {
   if (plan.double_precision) return {"precision", {}};
-  return {"precision", Bound::unknown(), "no ray was traced in double precision besides"};
+  return {"precision", Bound::unknown(), "no ray was traced in double precision for comparison"};
 }
 
 // Returns whether the errors of a tile's pixels are correlated. If they are independent, means over tiles
@@ -69,11 +69,12 @@ bool pixels_are_alike(const SampledError& error) {
 // one more sample is too weak to be clipped, it shows in the difference.)
 Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, double doubt) {
   const char* const subject = Certificate::kSamples;
-  if (!stats.error.known()) return {subject, Bound::unknown(), "only an even number of them tells its error"};
-  if (!stats.halves.known()) return {subject, Bound::unknown(), "nothing limits what one may bring"};
+  if (!stats.error.known())
+    return {subject, Bound::unknown(), "the error can be estimated only for an even number"};
+  if (!stats.halves.known()) return {subject, Bound::unknown(), "radiance of a sample is unbounded"};
   const bool reused = plan.reuse > 1;
   if (!reused && pixels_are_alike(stats.error))
-    return {subject, Bound::unknown(), "pixels of a tile err alike, as if they had one source of chance"};
+    return {subject, Bound::unknown(), "errors of the pixels of a tile are correlated"};
   const double beyond = plan.beyond_range(stats.error.samples), part = beyond > 0 ? doubt / 2 : doubt;
   const double seen = plan.halves_range() * std::sqrt(stats.halves.upper_mean(part, reused)) / 2;
   if (beyond == 0) return {subject, Bound::estimated(seen)};
@@ -82,7 +83,7 @@ Certificate::Term sampling_term(const Plan& plan, const RenderStats& stats, doub
 
 // Bounds the rounding to 8-bit codes: half a code at most, and uniformly distributed if it was not measured.
 Certificate::Term encoding_term(const RenderStats& stats) {
-  const char* const subject = "codes of 8 bits";
+  const char* const subject = "8-bit codes";
   constexpr double kHalf = 0.5 / 255;
   if (!stats.halves.known()) return {subject, {Bound::Kind::estimated, kHalf, kHalf / std::sqrt(3.0)}};
   return {subject, Bound::proved(kHalf + kCurveError, stats.halves.rounding() + kCurveError)};
@@ -124,8 +125,8 @@ Certificate certify(const Plan& plan, const RenderStats& stats, double doubt) {
     }
   }
   if (stats.non_finite_pixels > 0)
-    found.terms.push_back({"values that are not finite", Bound::unknown(),
-                           std::to_string(stats.non_finite_pixels) + " pixels have one"});
+    found.terms.push_back({"non-finite values", Bound::unknown(),
+                           std::to_string(stats.non_finite_pixels) + " pixels have such a value"});
   return found;
 }
 

@@ -32,13 +32,15 @@ FilmStorage storage_for(FileFormat format, const Plan& plan) {
 
 void require_layers_kept(const RenderRequest& request, FileFormat format) {
   if (format != FileFormat::exr && request.layers && !request.layers->empty())
-    throw InputError("/render/layers", "expected none, as EXR is the only format that keeps layers");
+    throw InputError("/render/layers", format == FileFormat::png
+                                           ? "cannot be used with PNG (only EXR stores layers); use EXR"
+                                           : "cannot be used with JPEG (only EXR stores layers); use EXR");
 }
 
 void choose_space(RenderRequest& request, FileFormat format) {
   if (format == FileFormat::jpeg && request.error.value_or(0) > 0)
     throw InputError("/budget/error",
-                     "expected none, as what JPEG leaves out has no bound; PNG and EXR keep one");
+                     "cannot be used with JPEG (compression error is unbounded); use PNG or EXR");
   if (has_budget(request)) require_picture(request, "a budget");
   const bool open = request.space.value_or(Space::automatic) == Space::automatic;
   if (open && has_budget(request) && format == FileFormat::png) request.space = Space::display;

@@ -10,10 +10,10 @@ void Box<N>::read(Params& p, std::vector<Box<double>>& out) {
   const Vec3d lo = p.point("min", "Corner with the smallest coordinates, in metres.");
   const Vec3d hi = p.point("max", "Corner with the largest coordinates, in metres.");
   if (!(lo.x < hi.x && lo.y < hi.y && lo.z < hi.z))
-    p.fail("max", "expected every coordinate to be larger than that of min");
+    p.fail("max", "must be larger than min in every coordinate");
   out.push_back({lo, hi, Boundsd::of({lo, hi}).magnitude()});
 }
 
-ShapeType box_type() { return {"box", "A box along the axes.", make_shape_set<Box>}; }
+ShapeType box_type() { return {"box", "An axis-aligned box.", make_shape_set<Box>}; }
 
 }  // namespace orrery

@@ -12,19 +12,19 @@ void Cylinder<N>::read(Params& p, std::vector<Cylinder<double>>& out) {
     const Vec3d base = p.point("base", "Centre of one cap, in metres.");
     const Vec3d top = p.point("top", "Centre of the other cap, in metres.");
     const double radius = p.positive("radius", "Radius, in metres.");
-    if (base == top) p.fail("top", "expected a point other than base");
+    if (base == top) p.fail("top", "must differ from base");
     const double reach = std::max(max_component(abs(base)), max_component(abs(top))) + radius;
     out.push_back({(base + top) * 0.5, safe_normalize(top - base), radius, length(top - base) / 2, reach});
   } else {
     const Vec3d point = p.point("point", "Any point of the axis, in metres.");
-    const Vec3d axis = p.direction("axis", "Direction of the axis; the cylinder has no ends.");
+    const Vec3d axis = p.direction("axis", "Direction of the axis; the cylinder is infinite.");
     const double radius = p.positive("radius", "Radius, in metres.");
     out.push_back({point, axis, radius, infinity, max_component(abs(point)) + radius});
   }
 }
 
 ShapeType cylinder_type() {
-  return {"cylinder", "A round column, with caps or infinitely long.", make_shape_set<Cylinder>};
+  return {"cylinder", "A circular cylinder, with caps or infinitely long.", make_shape_set<Cylinder>};
 }
 
 }  // namespace orrery

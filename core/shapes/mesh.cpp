@@ -1,5 +1,6 @@
 #include <map>
 
+#include "core/base/shorten.h"
 #include "core/meshes/repair.h"
 #include "core/params/params.h"
 #include "core/shapes/mesh_reader.h"
@@ -117,9 +118,9 @@ class MeshSet final : public ShapeSet {
   static bool may_compare(std::uint64_t pairs, Params& p, MeshSource& source) {
     source.pairs += pairs;
     if (source.pairs <= kMaxPairs) return true;
-    p.fail("crease_degrees", "expected at most " + std::to_string(kMaxPairs) +
-                                 " pairs of triangles around vertices to be compared for smoothing, got " +
-                                 std::to_string(source.pairs));
+    p.fail("crease_degrees", "smoothing compares " + grouped(source.pairs) +
+                                 " pairs of triangles around vertices (limit " + grouped(kMaxPairs) +
+                                 ", smoothing pairs)");
     return false;
   }
 

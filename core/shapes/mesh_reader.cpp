@@ -1,5 +1,6 @@
 #include "core/shapes/mesh_reader.h"
 
+#include "core/base/shorten.h"
 #include "core/params/motion.h"
 
 namespace orrery {
@@ -8,6 +9,11 @@ namespace {
 constexpr MeshLimits kLimits;
 constexpr std::size_t kMostNameLength = 1024;
 
+std::string entries_text(std::size_t count, const char* why, std::size_t got) {
+  return "must be a list of " + std::to_string(count) + " entries, " + why + " (got " + std::to_string(got) +
+         ")";
+}
+
 // Returns a consistent mesh, even after recorded problems.
 TriangleMesh read_inline(Params& p) {
   TriangleMesh mesh;
@@ -15,20 +21,17 @@ TriangleMesh read_inline(Params& p) {
   const auto bound = static_cast<std::int64_t>(mesh.positions.size());
   const auto triples = p.index_triples("indices", "Vertices of each triangle, anticlockwise from the front.",
                                        {1, kLimits.triangles}, bound);
-  mesh.normals =
-      p.directions("normals", "Direction to shade with at each vertex; left out, triangles are flat.",
-                   {0, kLimits.vertices});
+  mesh.normals = p.directions("normals", "Shading normal of each vertex; default: flat triangles.",
+                              {0, kLimits.vertices});
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
-    p.fail("normals", "expected as many as positions (" + std::to_string(mesh.positions.size()) + "), got " +
-                          std::to_string(mesh.normals.size()));
+    p.fail("normals", entries_text(mesh.positions.size(), "one per position", mesh.normals.size()));
     mesh.normals.clear();
   }
   mesh.uvs =
-      p.pairs("uvs", "Texture coordinates (u, v) at each vertex, (0, 0) at the lower left of an image.",
+      p.pairs("uvs", "Texture coordinates (u, v) of each vertex; (0, 0) is the lower left of an image.",
               {0, kLimits.vertices});
   if (!mesh.uvs.empty() && mesh.uvs.size() != mesh.positions.size()) {
-    p.fail("uvs", "expected as many as positions (" + std::to_string(mesh.positions.size()) + "), got " +
-                      std::to_string(mesh.uvs.size()));
+    p.fail("uvs", entries_text(mesh.positions.size(), "one per position", mesh.uvs.size()));
     mesh.uvs.clear();
   }
   for (const auto& triple : triples) {
@@ -43,14 +46,15 @@ TriangleMesh read_inline(Params& p) {
 template <class Read>
 TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name, const Read& read) {
   if (name.empty()) {
-    p.fail(key, "expected a name, got \"\"");
+    p.fail(key, "must be a name (got \"\")");
     return {};
   }
   try {
     TriangleMesh mesh = read(name);
     for (const Vec3d& v : mesh.positions)
       if (!(max_component(abs(v)) <= kMaxCoordinate))
-        throw InputError("", "expected coordinates of at most 1e12 metres");
+        throw InputError("", "coordinates must be at most 1e12 m in magnitude (got " +
+                                 number_text(max_component(abs(v))) + ")");
     return mesh;
   } catch (const InputError& error) {
     p.fail(key, error.problems().front().detail);
@@ -59,8 +63,7 @@ TriangleMesh read_elsewhere(Params& p, const char* key, const std::string& name,
 }
 
 std::string file_name(Params& p, const char* fallback = nullptr) {
-  return p.text("file",
-                "OBJ, PLY, STL or glTF file in the scene's folder or below it; on the command line only.",
+  return p.text("file", "OBJ, PLY, STL or glTF file in or below the scene's folder; command line only.",
                 kMostNameLength, fallback);
 }
 std::string asset_name(Params& p, const char* fallback = nullptr) {
@@ -88,8 +91,8 @@ MeshObject MeshReader::read(Params& p) {
     default: mesh = read_asset(p, source_.assets, asset_name(p));
   }
   const double crease = p.number("crease_degrees",
-                                 "Shading is smooth across edges where faces meet at less than this angle; "
-                                 "left out, the normals are those of the mesh.",
+                                 "Smooth shading across edges whose faces meet at less than this angle; "
+                                 "default: the normals of the mesh.",
                                  {.min = 0, .max = 180}, derived(0.0));
   if (p.has("crease_degrees")) object.crease_degrees = crease;
   if (!fits(mesh.positions.size(), mesh.triangles.size(), p)) mesh = {};
@@ -103,20 +106,20 @@ MeshObject MeshReader::read(Params& p) {
 // Reads the vertices of the mesh at one time.
 VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const VertexKey& at_rest) {
   std::vector<Vec3d> positions =
-      p.points("positions", "Vertices, as many as the mesh has.", {0, kLimits.vertices});
+      p.points("positions", "Vertices in metres, as many as in the mesh.", {0, kLimits.vertices});
   std::vector<Vec3d> normals = p.directions(
-      "normals", "Direction to shade with at each vertex, if the mesh has such.", {0, kLimits.vertices});
+      "normals", "Shading normal of each vertex, if the mesh has normals.", {0, kLimits.vertices});
   const std::string file = file_name(p, ""), asset = asset_name(p, "");
   if (p.has("positions") + p.has("file") + p.has("asset") > 1)
-    p.fail("", "expected one of positions, file and asset");
+    p.fail("", "must have at most one of positions, file and asset");
   if (!fits(rest.positions.size(), rest.triangles.size(), p)) return at_rest;
   if (p.has("file") || p.has("asset")) {
     TriangleMesh mesh =
         p.has("file") ? read_file(p, source_.assets, file) : read_asset(p, source_.assets, asset);
     if (mesh.triangles != rest.triangles)
-      p.fail("", "expected the triangles that the mesh has without motion (" +
-                     std::to_string(rest.triangles.size()) + ", of the same vertices), got " +
-                     std::to_string(mesh.triangles.size()));
+      p.fail("", "must have the " + std::to_string(rest.triangles.size()) +
+                     " triangles of the mesh without motion, with the same vertices (got " +
+                     std::to_string(mesh.triangles.size()) + ")");
     positions = std::move(mesh.positions);
     if (!rest.normals.empty() && normals.empty()) normals = std::move(mesh.normals);
   }
@@ -124,8 +127,7 @@ VertexKey MeshReader::read_key(Params& p, const TriangleMesh& rest, const Vertex
                          const SharedVectors& resting) {
     if (given.empty()) return resting;
     if (given.size() == count) return share(std::move(given));
-    p.fail(what, "expected as many as the mesh has without motion (" + std::to_string(count) + "), got " +
-                     std::to_string(given.size()));
+    p.fail(what, entries_text(count, "as in the mesh without motion", given.size()));
     return resting;
   };
   return {taken("positions", positions, rest.positions.size(), at_rest.positions),
@@ -138,11 +140,10 @@ bool MeshReader::fits(std::size_t vertices, std::size_t triangles, Params& p) {
   source_.triangles += triangles;
   source_.full = source_.vertices > kLimits.vertices || source_.triangles > kLimits.triangles;
   if (source_.full)
-    p.fail("", "expected at most " + std::to_string(kLimits.vertices) + " vertices (mesh_vertices) and " +
-                   std::to_string(kLimits.triangles) +
-                   " triangles (mesh_triangles) in all meshes of a scene and their keys, got " +
-                   std::to_string(source_.vertices) + " and " + std::to_string(source_.triangles) +
-                   " so far");
+    p.fail("", "meshes of the scene and their keys have at least " + grouped(source_.vertices) +
+                   " vertices (limit " + grouped(kLimits.vertices) + ", mesh_vertices) and " +
+                   grouped(source_.triangles) + " triangles (limit " + grouped(kLimits.triangles) +
+                   ", mesh_triangles)");
   return !source_.full;
 }
 

@@ -8,10 +8,10 @@ namespace orrery {
 template <class N>
 void Plane<N>::read(Params& p, std::vector<Plane<double>>& out) {
   const Vec3d point = p.point("point", "Any point of the plane, in metres.");
-  const Vec3d normal = p.direction("normal", "Direction that the front faces.");
+  const Vec3d normal = p.direction("normal", "Normal of the front side.");
   out.push_back({point, normal});
 }
 
-ShapeType plane_type() { return {"plane", "An infinite flat surface.", make_shape_set<Plane>}; }
+ShapeType plane_type() { return {"plane", "An infinite plane.", make_shape_set<Plane>}; }
 
 }  // namespace orrery

@@ -12,8 +12,6 @@ void Sphere<N>::read(Params& p, std::vector<Sphere<double>>& out) {
   out.push_back({{center, radius}, max_component(abs(center)) + radius});
 }
 
-ShapeType sphere_type() {
-  return {"sphere", "Points at one distance from a centre.", make_shape_set<Sphere>};
-}
+ShapeType sphere_type() { return {"sphere", "A sphere.", make_shape_set<Sphere>}; }
 
 }  // namespace orrery

@@ -9,15 +9,13 @@ namespace orrery {
 template <class N>
 void Triangle<N>::read(Params& p, std::vector<Triangle<double>>& out) {
   std::vector<Vec3d> v =
-      p.points("vertices", "The three vertices, in metres; anticlockwise from the front.", {3, 3});
+      p.points("vertices", "Three vertices in metres, anticlockwise from the front.", {3, 3});
   v.resize(3);
   const Vec3d normal = face_normal(v[0], v[1], v[2]);
-  if (normal == Vec3d()) p.fail("vertices", "expected three vertices that are not on one line");
+  if (normal == Vec3d()) p.fail("vertices", "must be three points that are not on one line");
   out.push_back({{v[0], v[1], v[2]}, normal, Boundsd::of({v[0], v[1], v[2]}).magnitude()});
 }
 
-ShapeType triangle_type() {
-  return {"triangle", "Three vertices and the flat surface between them.", make_shape_set<Triangle>};
-}
+ShapeType triangle_type() { return {"triangle", "A flat triangle.", make_shape_set<Triangle>}; }
 
 }  // namespace orrery

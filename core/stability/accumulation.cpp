@@ -32,12 +32,12 @@ StabilityFigures measure() {
 
 StabilityRow accumulation_row() {
   return {"A34",
-          "Sums over samples",
+          "Sums of samples",
           "mean of 1,024 samples of radiance 0.1: relative error",
           "1",
           "one sum in float",
           1e-6,
-          "the film's sums in double",
+          "sums of the film, in double",
           1e-12,
           measure};
 }

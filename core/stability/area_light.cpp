@@ -37,9 +37,9 @@ StabilityFigures deviations(double height) {
 
 StabilityFigures measure() {
   LineChart chart{"area-light",
-                  "Noise of a sample of a square light of side 1 m",
-                  "height above its middle, m",
-                  "standard deviation over mean",
+                  "Noise of one sample of a square light of side 1 m",
+                  "height above its centre, m",
+                  "standard deviation / mean",
                   true,
                   true,
                   {{"by area", {}}, {"by solid angle", {}}}};
@@ -56,12 +56,12 @@ StabilityFigures measure() {
 StabilityRow area_light_row() {
   return {"B16",
           "Square light at one centimetre",
-          "light of a square of 1 m on a point 1 cm before its middle: standard deviation of a sample over "
-          "the mean",
+          "light of a square of 1 m on a point 1 cm in front of its centre: standard deviation of a sample, "
+          "relative to the mean",
           "1",
-          "points drawn evenly by area (Cook, Porter, Carpenter 1984)",
+          "points sampled uniformly by area (Cook, Porter, Carpenter 1984)",
           25,
-          "points drawn evenly by solid angle (Urena, Fajardo, King 2013)",
+          "points sampled uniformly by solid angle (Urena, Fajardo, King 2013)",
           1,
           measure};
 }

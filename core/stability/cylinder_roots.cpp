@@ -33,11 +33,11 @@ StabilityFigures measure() {
 StabilityRow cylinder_roots_row() {
   return {"A7",
           "Roots of a cylinder",
-          "distance to a cylinder by rays that are slanted or of length 2: largest relative error",
+          "distance to a cylinder along slanted rays and rays of length 2: largest relative error",
           "1",
-          "(-B - sqrt(D)) / 2 * A as it is printed, without brackets about 2 A",
+          "(-B - sqrt(D)) / 2 * A as printed, without parentheses around 2 A",
           10,
-          "roots c / q and q / a, discriminant from the perpendicular residue",
+          "roots c / q and q / a; discriminant from the perpendicular residue",
           1e-15,
           measure};
 }

@@ -50,12 +50,12 @@ StabilityFigures measure() {
 
 StabilityRow far_scene_row() {
   return {"A18",
-          "Scene a thousand kilometres off",
-          "picture of a scene of 2 m moved by 1e6 m along each axis: largest change of a value",
+          "Scene at a thousand kilometres",
+          "image of a scene of 2 m moved by 1e6 m along each axis: largest change of a value",
           "radiance",
-          "float, whose numbers are 0.06 m apart there",
+          "float, whose spacing there is 0.06 m",
           0.5,
-          "the number type that the plan takes by coordinates and sizes: double",
+          "number type that the plan chooses from coordinates and sizes: double",
           1e-6,
           measure};
 }

@@ -43,7 +43,7 @@ StabilityFigures wrong_from(double distance) {
 
 StabilityFigures measure() {
   LineChart chart{"far-sphere",
-                  "Rays that meet or miss a sphere wrongly, in float",
+                  "Wrong hits and misses of a sphere, in float",
                   "distance, radii",
                   "rays decided wrongly, %",
                   true,
@@ -63,12 +63,12 @@ StabilityFigures measure() {
 
 StabilityRow far_sphere_row() {
   return {"A1",
-          "Sphere from afar",
-          "whether rays meet a sphere that is 10,000 radii away, in float: rays decided wrongly",
+          "Distant sphere",
+          "hits and misses of a sphere that is 10,000 radii away, in float: rays decided wrongly",
           "%",
           "discriminant b^2 - 4 a c (Glassner 1989)",
           20,
-          "discriminant from the part of the origin perpendicular to the ray (Haines and others 2019)",
+          "discriminant from the component of the origin perpendicular to the ray (Haines and others 2019)",
           0.02,
           measure};
 }

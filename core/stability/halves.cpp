@@ -70,12 +70,12 @@ StabilityFigures measure() {
 StabilityRow halves_row() {
   return {"certificate-18",
           "Halves of the samples",
-          "RMS error of a picture of an edge that 16 samples tell of themselves, beside the true one: factor "
-          "between",
+          "RMS error of an image of an edge, estimated from its 16 samples: factor between estimate and true "
+          "error",
           "1",
-          "every other sample against the rest (Dammertz and others 2010)",
+          "every second sample compared with the rest (Dammertz and others 2010)",
           4,
-          "the first half of a net against the second, which are nets themselves",
+          "first half of a net compared with the second half; both are nets",
           1.6,
           measure};
 }

@@ -29,11 +29,11 @@ StabilityFigures measure() {
 StabilityRow leaving_glass_row() {
   return {"D4",
           "Rays that leave glass",
-          "direction of rays out of glass of index 1.5, up to 41 degrees inside: largest error",
+          "directions of rays that leave glass of index 1.5, at up to 41 degrees inside: largest error",
           "degrees",
-          "the ratio of indices on entering, kept on leaving",
+          "index ratio of entering rays, also used for leaving rays",
           50,
-          "Snell's law by the side that the ray comes from",
+          "Snell's law with the index ratio of the side of the ray",
           1e-10,
           measure};
 }

@@ -31,11 +31,11 @@ StabilityFigures measure() {
 StabilityRow offset_step_row() {
   return {"A17",
           "Offset at a thousand kilometres",
-          "rays that leave a ball of 1 m at coordinates of 1e6 m: how far they are moved off it",
+          "rays that leave a ball of 1 m at coordinates of 1e6 m: size of the offset",
           "m",
-          "256 last places of each coordinate, in float (Waechter, Binder 2019)",
+          "256 units in the last place of each coordinate, in float (Waechter, Binder 2019)",
           10,
-          "8 roundings of the shape's coordinates, in double, which the plan takes there",
+          "8 roundings of the shape's coordinates, in double, which the plan chooses there",
           2e-9,
           measure};
 }

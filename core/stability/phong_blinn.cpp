@@ -49,12 +49,12 @@ StabilityFigures differ_at(double light_degrees, double about_most) {
 
 StabilityFigures measure() {
   LineChart chart{"phong-blinn",
-                  "Blinn's highlight with 4.02 n in place of Phong's with n = 50",
-                  "angle of light and normal, degrees",
+                  "Blinn highlight with 4.02 n instead of Phong with n = 50",
+                  "angle between light and normal, degrees",
                   "largest difference of highlights up to 1",
                   false,
                   true,
-                  {{"viewers anywhere", {}}, {"viewers in plane of the two", {}}}};
+                  {{"any viewer", {}}, {"viewer in incidence plane", {}}}};
   StabilityFigures figures{0, 0};
   for (double light = 0; light < 90; light += 4) {
     const StabilityFigures all = differ_at(light, 180), in_plane = differ_at(light, 0);
@@ -72,11 +72,11 @@ StabilityFigures measure() {
 StabilityRow phong_blinn_row() {
   return {"B7",
           "Phong and Blinn",
-          "Phong's highlight of exponent 50, of any light and viewer: largest error",
+          "Phong highlight with exponent 50, for any light and viewer: largest error",
           "radiance",
-          "Blinn's with 4.02 times the exponent, as it fits in the plane of incidence",
+          "Blinn highlight with 4.02 times the exponent, which fits in the plane of incidence",
           0.9,
-          "the highlight that the material names, never another",
+          "the highlight model that the material names",
           1e-12,
           measure};
 }

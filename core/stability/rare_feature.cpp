@@ -81,13 +81,13 @@ StabilityFigures measure() {
 
 StabilityRow rare_feature_row() {
   return {"E20",
-          "Features that few samples meet",
-          "1,024 pixels with a dot on a hundredth of each, made until their error is 0.01: how far their "
-          "mean is off",
+          "Features that few samples hit",
+          "1,024 pixels, each with a dot on a hundredth of its area, rendered to an error of 0.01: error of "
+          "their mean",
           "%",
-          "each pixel ends once the halves of its own samples agree (as renderers decide that stop by pixel)",
+          "each pixel stops when the halves of its own samples agree (as in renderers that stop per pixel)",
           70,
-          "one number of samples for the picture, from the halves of all pixels",
+          "one sample count for the image, from the halves of all pixels",
           3,
           measure};
 }

@@ -25,27 +25,27 @@ std::string row_of(const StabilityResult& result) {
          figure_text(row.ours_at_most, row.unit) + (result.holds() ? "" : ", **not kept**") + " |\n";
 }
 
-constexpr const char* kIntroduction = R"(# Where numerical methods fail
+constexpr const char* kIntroduction = R"(# Numerical stability
 
-Each row computes one thing twice: by a known method, as its source prints it, and by the code that renders here. Both
-are measured by what they are off: 0 is exact. The bound is what a test holds of this program's method. Tests that are
-about the same thing name the same id.
+Each row computes one quantity twice: with a known method, as published, and with the method that orrery uses. Numbers
+are errors; 0 is exact. A test checks that the method of orrery keeps its bound. Tests of the same subject name the
+same id.
 
-`orrery stability` measures all of it on the build at hand (`--json` for programs; `GET /v1/stability` of the service).
-The figures are the same on every machine, so this page is written by `orrery stability --docs docs`, and a test compares
-it with what the program measures.
+`orrery stability` measures all rows on the running build (`--json` for programs; `GET /v1/stability` of the service).
+The results are the same on every machine. `orrery stability --docs docs` writes this page, and a test compares it with
+the measurements.
 
-| id | what is computed | known method | is off by | this program's method | is off by | bound |
+| id | quantity | known method | error | method of orrery | error | bound |
 |---|---|---|---|---|---|---|
 )";
 
 constexpr const char* kSpeed = R"(
-## Speed beside accuracy
+## Speed and accuracy
 
-`orrery stability --speed` has methods that do the same take turns, and prints their CPU time over that of the first of
-their group beside what they are off. Measured on one machine:
+`orrery stability --speed` measures methods for the same task in interleaved runs. It prints their CPU time relative to
+the first method of the group, and their error. Measured on one machine:
 
-![Speed beside accuracy, measured on one machine](pictures/speed.svg)
+![Relative CPU time and error of methods, measured on one machine](pictures/speed.svg)
 )";
 
 }  // namespace
@@ -65,8 +65,7 @@ std::string stability_text(std::span<const StabilityResult> results) {
     text += printed("%-15s", row.id) + row.quantity + "\n";
     text += printed("  %12s  ", figure_text(result.figures.known, row.unit).c_str()) + row.known + "\n";
     text += printed("  %12s  ", figure_text(result.figures.ours, row.unit).c_str()) + row.ours + "; " +
-            (result.holds() ? "keeps" : "DOES NOT KEEP") + " " + figure_text(row.ours_at_most, row.unit) +
-            "\n";
+            (result.holds() ? "within" : "EXCEEDS") + " " + figure_text(row.ours_at_most, row.unit) + "\n";
   }
   return text + printed("%zu of %zu rows keep their bounds\n", kept, results.size());
 }

@@ -20,7 +20,7 @@ StabilityFigures errors_at(double index, double degrees) {
 StabilityFigures measure() {
   StabilityFigures worst{0, 0};
   LineChart chart{"schlick",
-                  "Schlick's approximation beside Fresnel's equations",
+                  "Schlick's approximation compared with Fresnel's equations",
                   "angle of incidence, degrees",
                   "error of the reflectance",
                   false,
@@ -45,11 +45,11 @@ StabilityFigures measure() {
 StabilityRow schlick_row() {
   return {"D7",
           "Schlick's approximation",
-          "what surfaces of index 1.1, 1.333, 1.5 and 2.417 mirror of rays in air: largest error",
+          "reflectance of surfaces of index 1.1, 1.333, 1.5 and 2.417 for rays in air: largest error",
           "reflectance",
           "F0 + (1 - F0) (1 - cos)^5 (Schlick 1994)",
           0.2,
-          "Fresnel's equations, unless a scene names Schlick's",
+          "Fresnel's equations, unless a scene selects Schlick's approximation",
           1e-12,
           measure};
 }

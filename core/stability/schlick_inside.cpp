@@ -25,12 +25,12 @@ StabilityFigures measure() {
 
 StabilityRow schlick_inside_row() {
   return {"D6",
-          "Schlick's cosine inside of glass",
-          "what a surface of glass of index 1.5 mirrors of rays inside of it: largest error",
+          "Schlick's cosine inside glass",
+          "reflectance of glass of index 1.5 for rays inside it: largest error",
           "reflectance",
           "Schlick's approximation with the cosine of incidence, also inside",
           0.9,
-          "Fresnel's equations; Schlick's, where a scene names it, with the cosine in air",
+          "Fresnel's equations; Schlick's approximation, if a scene selects it, uses the cosine in air",
           1e-12,
           measure};
 }

@@ -46,7 +46,7 @@ StabilityFigures self_hits_at(double c) {
 
 StabilityFigures measure() {
   LineChart chart{"self-hit",
-                  "Rays that leave a plane and meet it at once, in float",
+                  "Rays that leave a plane and hit it again, in float",
                   "coordinates of the plane, m",
                   "rays, %",
                   true,
@@ -67,11 +67,11 @@ StabilityFigures measure() {
 StabilityRow self_hit_row() {
   return {"A16",
           "Shadow acne",
-          "rays that leave a plane through (1e5, 1e5, 1e5), in float: rays that meet it at once",
+          "rays that leave a plane through (1e5, 1e5, 1e5), in float: rays that hit it again at once",
           "%",
-          "hit at o + t d, and nothing nearer than a fixed epsilon of 1e-4 is met",
+          "hit at o + t d; hits nearer than a fixed epsilon of 1e-4 are ignored",
           30,
-          "hit put back on the shape, then moved by 8 roundings of its coordinates along the normal",
+          "hit projected onto the shape, then offset along the normal by 8 roundings of its coordinates",
           0,
           measure};
 }

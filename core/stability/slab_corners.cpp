@@ -32,15 +32,16 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow slab_corners_row() {
-  return {"A27",
-          "Corners of boxes",
-          "rays exactly through corners of flat boxes, coordinates up to 1e6 m, in double: rays that miss",
-          "%",
-          "slabs by min and max (Kay, Kajiya 1986)",
-          10,
-          "far planes 4 roundings farther, and an order that NaN loses in (Ize 2013)",
-          0,
-          measure};
+  return {
+      "A27",
+      "Corners of boxes",
+      "rays exactly through corners of flat boxes with coordinates up to 1e6 m, in double: rays that miss",
+      "%",
+      "slab test by min and max (Kay, Kajiya 1986)",
+      10,
+      "far planes moved out by 4 roundings, and comparisons that discard NaN (Ize 2013)",
+      0,
+      measure};
 }
 
 }  // namespace orrery

@@ -44,12 +44,12 @@ StabilityFigures measure() {
 
 StabilityRow sliver_row() {
   return {"A15",
-          "Sliver of aspect 100,000",
-          "where rays meet a triangle 100 m long and 1 mm wide, in float: largest distance from the ray",
+          "Sliver of aspect ratio 100,000",
+          "hit points on a triangle 100 m long and 1 mm wide, in float: largest distance from the ray",
           "m",
-          "weights from rounded products (Woop, Benthin, Wald 2013, as printed)",
+          "barycentric weights from rounded products (Woop, Benthin, Wald 2013, as printed)",
           1e-3,
-          "products that are exact until they are subtracted (Dekker 1971)",
+          "products that are exact until the subtraction (Dekker 1971)",
           1e-5,
           measure};
 }

@@ -26,11 +26,11 @@ StabilityFigures measure() {
 StabilityRow small_triangle_row() {
   return {"A13",
           "Small triangles",
-          "13 triangles with sides from 0.99 m to 0.99 pm, a ray at each: triangles missed",
+          "13 triangles with sides from 0.99 m to 0.99 pm, one ray at each: triangles missed",
           "of 13",
-          "determinants below 1e-6 taken for 0 (Moeller, Trumbore 1997, as printed)",
+          "determinants below 1e-6 treated as 0 (Moeller, Trumbore 1997, as printed)",
           10,
-          "only a determinant of 0 is none",
+          "only a determinant of exactly 0 is a miss",
           0,
           measure};
 }

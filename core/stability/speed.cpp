@@ -106,7 +106,7 @@ std::function<double()> testing(const Distance& distance) {
 
 MethodComparison triangles() {
   const auto figures = stability_row("A12").measure();
-  return {"Ray and triangle, one at a time",
+  return {"Ray-triangle test, single rays",
           {{"Moeller-Trumbore",
             testing([](const Ray<double>& ray, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
               return moller_trumbore(ray, a, b, c, 0.0);
@@ -181,12 +181,11 @@ std::string svg_of(const std::vector<SpeedGroup>& groups) {
     rows += static_cast<double>(group.methods.size()) + 1.5;
     for (const auto& method : group.methods) most = std::max(most, method.time);
   }
-  std::string text = svg_begin(kWidth, kTop + rows * kRow, "Speed beside accuracy");
-  text += svg_text(20, 28, "Speed beside accuracy", "font-size=\"15\" font-weight=\"bold\"");
-  text += svg_text(
-      20, 46,
-      "CPU time over that of the first of its group, and what a method is off; measured on one machine",
-      "font-size=\"11\"");
+  std::string text = svg_begin(kWidth, kTop + rows * kRow, "Speed and accuracy");
+  text += svg_text(20, 28, "Speed and accuracy", "font-size=\"15\" font-weight=\"bold\"");
+  text += svg_text(20, 46,
+                   "CPU time relative to the first method of the group, and error; measured on one machine",
+                   "font-size=\"11\"");
   double y = kTop;
   const Axis axis{0, most, kLeft, kRight, false};
   for (const SpeedGroup& group : groups) {

@@ -43,10 +43,11 @@ StabilityFigures measure() {
 
 StabilityRow tangent_frame_row() {
   return {"A30",
-          "Basis about a normal",
-          "two tangents of unit vectors near -z, in float: largest error of a length or an angle's cosine",
+          "Tangent frame of a normal",
+          "two tangents of unit vectors near -z, in float: largest error of a length or of the cosine of an "
+          "angle",
           "1",
-          "1 / (1 + z), with a case for the pole (Frisvad 2012)",
+          "1 / (1 + z), with a special case for the pole (Frisvad 2012)",
           0.5,
           "1 / (sign + z) (Duff and others 2017)",
           1e-6,

@@ -37,13 +37,13 @@ StabilityFigures measure() {
 StabilityRow threshold_row() {
   return {"E2",
           "Rays of little weight",
-          "two slabs whose surfaces mirror half, rays of weight below 1/255 left out: error over what is "
-          "told of it",
+          "two slabs whose surfaces reflect half, rays of weight below 1/255 omitted: error divided by its "
+          "reported bound",
           "1",
-          "each ray changes a pixel by less than 1/255, so that is told (adaptive tree depth; Hall, "
-          "Greenberg 1983)",
+          "bound of one ray, 1/255, reported for all omitted rays (adaptive tree depth; Hall, Greenberg "
+          "1983)",
           10,
-          "the ledger sums the weights of all rays that are left out",
+          "sum of the weights of all omitted rays",
           1,
           measure};
 }

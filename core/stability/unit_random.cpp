@@ -19,11 +19,11 @@ StabilityFigures measure() {
 StabilityRow unit_random_row() {
   return {"A33",
           "Random numbers below 1",
-          "the 256 largest numbers of 32 bits as a float in [0, 1): how many become 1",
+          "the 256 largest 32-bit integers as floats in [0, 1): numbers that become 1",
           "of 256",
           "float(bits) / 2^32",
           128,
-          "the upper 24 bits",
+          "upper 24 bits",
           0,
           measure};
 }

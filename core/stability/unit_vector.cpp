@@ -26,11 +26,11 @@ StabilityFigures measure() {
 StabilityRow unit_vector_row() {
   return {"A31",
           "Unit vector",
-          "unit vectors of vectors from 1e-23 to 1e20 long, in float: largest error of the length",
+          "normalization of vectors of length 1e-23 to 1e20, in float: largest error of the length",
           "1",
           "division by the root of the sum of squares, which underflows or overflows",
           1,
-          "the largest component is scaled to 1 first",
+          "largest component scaled to 1 first",
           2.4e-7,
           measure};
 }

@@ -32,16 +32,15 @@ StabilityFigures measure() {
 }  // namespace
 
 StabilityRow upper_mean_row() {
-  return {
-      "certificate-26",
-      "Interval of a mean",
-      "intervals of 95 % for the mean of 256 values of which one in 2,000 is not 0: intervals that miss it",
-      "%",
-      "normal distribution by the central limit theorem",
-      80,
-      "betting (Waudby-Smith, Ramdas 2024)",
-      5,
-      measure};
+  return {"certificate-26",
+          "Confidence interval of a mean",
+          "95 % intervals for the mean of 256 values, one in 2,000 of which is not 0: intervals that miss it",
+          "%",
+          "normal distribution (central limit theorem)",
+          80,
+          "betting (Waudby-Smith, Ramdas 2024)",
+          5,
+          measure};
 }
 
 }  // namespace orrery

@@ -41,12 +41,12 @@ StabilityRow watertight_edges_row() {
   return {
       "A12",
       "Edges of a closed mesh",
-      "rays from inside of a ball of 2,208 triangles at its vertices and middles of edges, in double: rays "
-      "that leave it",
+      "rays from inside a ball of 2,208 triangles toward its vertices and edge midpoints, in double: rays "
+      "that leak out",
       "%",
-      "barycentric coordinates of each triangle by itself (Moeller, Trumbore 1997)",
+      "barycentric coordinates of each triangle separately (Moeller, Trumbore 1997)",
       5,
-      "signs of edge functions that neighbours share (Woop, Benthin, Wald 2013)",
+      "signs of edge functions that adjacent triangles share (Woop, Benthin, Wald 2013)",
       0,
       measure};
 }

@@ -75,7 +75,7 @@ Audit audit(const PreparedScene& scene, const RenderRequest& asked, int pixels, 
   require_no_budget(asked, "an audit");
   require_picture(asked, "an audit");
   if (asked.layers && !asked.layers->empty())
-    throw InputError("/render/layers", "expected none: an audit keeps no layers");
+    throw InputError("/render/layers", "cannot be used with an audit (an audit has no layers)");
   RenderRequest alone = asked;
   alone.reuse = 1;
   const Plan plan = make_plan(scene.scene(), alone);

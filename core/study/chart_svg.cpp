@@ -47,7 +47,7 @@ class Drawing {
     text_ += svg_text(kLeft, 30, shortened(name()), "font-size=\"18\" font-weight=\"bold\"");
     text_ +=
         svg_text(kLeft, 52,
-                 printed("%d x %d pixels; error against %s depth %d in double precision, %d samples",
+                 printed("%d x %d pixels; reference: %s, depth %d, double precision, %d samples",
                          chart_.measured.width, chart_.measured.height, chart_.reference.technique.c_str(),
                          chart_.reference.max_depth, chart_.reference.samples));
     draw_axes();
@@ -58,7 +58,7 @@ class Drawing {
   }
 
  private:
-  std::string name() const { return chart_.title.empty() ? "a scene without title" : chart_.title; }
+  std::string name() const { return chart_.title.empty() ? "untitled scene" : chart_.title; }
   double x_of(const Point& p) const { return x_.place(p.cpu_ms() / cheapest_ms_); }
   double y_of(const Point& p) const { return p.rmse() > 0 ? y_.place(p.rmse()) : kBottom - kZeroLane / 3; }
 
@@ -74,10 +74,10 @@ class Drawing {
       text_ += svg_text(kLeft - 8, y_.place(tick) + 4, printed("%g", tick), "text-anchor=\"end\"");
     }
     text_ += svg_text((kLeft + kRight) / 2, kBottom + 46,
-                      printed("CPU time of a picture, times the cheapest (%.3g ms)", cheapest_ms_),
+                      printed("CPU time per image, relative to the cheapest (%.3g ms)", cheapest_ms_),
                       "text-anchor=\"middle\"");
     const double middle = (kTop + kBottom) / 2;
-    text_ += svg_text(22, middle, "RMS error, linear colour",
+    text_ += svg_text(22, middle, "RMS error (linear)",
                       printed("text-anchor=\"middle\" transform=\"rotate(-90 22 %.1f)\"", middle).c_str());
   }
 
@@ -86,7 +86,7 @@ class Drawing {
     if (!(chart_.reference_rmse > 0)) return;
     const double y = y_.place(chart_.reference_rmse);
     text_ += svg_line(kLeft, y, kRight, y, "stroke=\"#888888\" stroke-dasharray=\"2 4\"");
-    text_ += svg_text(kLeft + 6, y - 5, printed("the reference is off by about %.2g", chart_.reference_rmse),
+    text_ += svg_text(kLeft + 6, y - 5, printed("error of the reference: about %.2g", chart_.reference_rmse),
                       "fill=\"#666666\" font-size=\"11\"");
   }
 
@@ -114,8 +114,8 @@ class Drawing {
                                p.configuration.samples, p.cpu_ms(), p.rmse());
     if (const auto error = p.rmse_interval())
       told += printed(" (95 %%: %.3g to %.3g)", error->low, error->high);
-    if (p.pareto_status == ParetoStatus::undecided) told += ", perhaps on the front";
-    if (below) told += ", less than the reference is off";
+    if (p.pareto_status == ParetoStatus::undecided) told += ", possibly on the Pareto front";
+    if (below) told += ", below the error of the reference";
     text_ +=
         printed("<g id=\"point-%zu\">", index) +
         mark(x, y, p.configuration.double_precision, p.pareto_status, below ? kBelowFloor : color, told) +
@@ -167,9 +167,9 @@ class Drawing {
       y += 22;
     }
     for (const char* note :
-         {"technique and ray depth", "square, dashed: double", "", "filled: no other is faster and",
-          "nearer; half filled: the rounds", "differ too much to tell; beside", "it, the samples a pixel", "",
-          "grey: nearer than the", "reference can tell"}) {
+         {"technique and ray depth", "square, dashed: double", "", "filled: on the Pareto front;",
+          "half filled: possibly, the rounds", "differ too much to be certain;", "number: samples per pixel",
+          "", "grey: below the error of", "the reference"}) {
       text_ += svg_text(x - 6, y + 4, note, "fill=\"#666666\" font-size=\"11\"");
       y += *note ? 15 : 7;
     }

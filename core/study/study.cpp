@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "core/base/error.h"
+#include "core/base/shorten.h"
 #include "core/model/accelerator.h"
 #include "core/model/technique.h"
 #include "core/plan/limits.h"
@@ -23,13 +24,16 @@ static_assert(kMaxChartSamples * kMoreSamples <= kMaxSamples);
 
 void require_chartable(const RenderRequest& view, const PictureSize& measured) {
   std::vector<Problem> problems;
-  if (view.samples) problems.push_back({"/render/samples", "a chart varies this itself"});
-  if (view.precision) problems.push_back({"/render/precision", "a chart varies this itself"});
-  if (view.layers && !view.layers->empty()) problems.push_back({"/render/layers", "a chart keeps no layers"});
+  if (view.samples)
+    problems.push_back({"/render/samples", "cannot be used with a chart (the chart varies it)"});
+  if (view.precision)
+    problems.push_back({"/render/precision", "cannot be used with a chart (the chart varies it)"});
+  if (view.layers && !view.layers->empty())
+    problems.push_back({"/render/layers", "cannot be used with a chart (a chart has no layers)"});
   const std::int64_t pixels = std::int64_t{measured.width} * measured.height;
   if (pixels > kMaxChartPixels)
-    problems.push_back({"/image", "expected at most " + std::to_string(kMaxChartPixels) +
-                                      " pixels for a chart (chart_pixels), got " + std::to_string(pixels)});
+    problems.push_back({"/image", "chart has " + grouped(static_cast<std::uint64_t>(pixels)) +
+                                      " pixels (limit " + grouped(kMaxChartPixels) + ", chart_pixels)"});
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 

@@ -16,7 +16,7 @@ class Path final : public PathTracer<T> {
 // this depth.
 TechniqueType path_type() {
   return {.name = "path",
-          .summary = "Light from everywhere, along paths that are drawn (Kajiya 1986).",
+          .summary = "Path tracing: global illumination along random paths (Kajiya 1986).",
           .max_depth = 9,
           .secondary_rays = true,
           .draws_light = true,

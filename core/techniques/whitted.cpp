@@ -32,7 +32,7 @@ class Whitted final : public SpecularTree<T> {
 
 TechniqueType whitted_type() {
   return {.name = "whitted",
-          .summary = "Mirrored and refracted rays as well (Whitted 1980).",
+          .summary = "Ray casting plus reflected and refracted rays (Whitted 1980).",
           .max_depth = 5,
           .secondary_rays = true,
           .not_followed = {"soft shadows", "interreflection", "caustics"},

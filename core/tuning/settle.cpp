@@ -43,7 +43,7 @@ Decision choose(PreparedScene::Parts& parts, const Plan& plan, std::stop_token s
   const auto cheapest = std::min_element(
       tried.begin(), tried.end(), [](const TrialResult& a, const TrialResult& b) { return a.cost < b.cost; });
   const TrialResult& best = cheapest->cost < kGain * tried.front().cost ? *cheapest : tried.front();
-  std::string reason = "by what was counted on some tiles, times what each costs, in ns a ray:";
+  std::string reason = "estimated from operation counts on some tiles, in ns per ray:";
   for (const TrialResult& t : tried) {
     char text[80];
     std::snprintf(text, sizeof text, "%s %s %.3g", &t == &tried.front() ? "" : ",", t.type->name, t.cost);

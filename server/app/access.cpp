@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/shorten.h"
 #include "core/params/suggest.h"
 
 namespace orrery {
@@ -18,14 +19,16 @@ constexpr std::size_t kMaxFileBytes = 1 << 20;
 // Reads a regular file. Rejects pipes, which might never end.
 std::string read_file(const std::string& path) {
   std::error_code problem;
-  if (!std::filesystem::is_regular_file(path, problem)) throw InputError(path, "is no file that can be read");
+  if (!std::filesystem::is_regular_file(path, problem))
+    throw InputError(path, "must be a readable regular file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path, "cannot be read");
   std::string bytes(kMaxFileBytes + 1, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   if (bytes.size() > kMaxFileBytes)
-    throw InputError(path, "has more than " + std::to_string(kMaxFileBytes) + " bytes");
+    throw InputError(path, "file has more than " + grouped(kMaxFileBytes) + " bytes (limit " +
+                               grouped(kMaxFileBytes) + ")");
   return bytes;
 }
 
@@ -34,8 +37,8 @@ constexpr Scope scope_number(std::size_t i) { return static_cast<Scope>(1U << i)
 std::string read_key(const std::string& path) {
   std::string key = read_file(path);
   if (key.size() < kMinKeyBytes)
-    throw InputError(path, "a key has at least " + std::to_string(kMinKeyBytes) + " bytes, got " +
-                               std::to_string(key.size()));
+    throw InputError(path, "key must have at least " + std::to_string(kMinKeyBytes) + " bytes (got " +
+                               std::to_string(key.size()) + ")");
   return key;
 }
 
@@ -44,8 +47,8 @@ Access::Holder read_holder(const std::string& line) {
   std::string name, scopes, hash, more;
   words >> name >> scopes >> hash;
   if (hash.empty() || words >> more)
-    throw InputError("", "expected a name, scopes and the SHA-256 of a token, with blanks between them");
-  if (!is_sha256_hex(hash)) throw InputError("", "expected a SHA-256 of 64 digits 0-9, a-f as the last word");
+    throw InputError("", "must be a name, scopes and the SHA-256 of a token, separated by blanks");
+  if (!is_sha256_hex(hash)) throw InputError("", "last word must be a SHA-256 of 64 digits 0-9 and a-f");
   return {.name = name, .token_sha256 = hash, .scopes = parse_scopes(scopes)};
 }
 
@@ -88,7 +91,8 @@ Access::TokenTable Access::read() const {
     note(tokens_file_ + ":" + std::to_string(number), [&] { known.holders.push_back(read_holder(line)); });
   }
   if (needs_token() && known.holders.empty() && problems.empty())
-    problems.push_back({tokens_file_, "names no token: nobody could use the service"});
+    problems.push_back(
+        {tokens_file_, "file must contain at least one token; without one, nobody can use the service"});
   if (!problems.empty()) throw InputError(std::move(problems));
   return known;
 }
@@ -109,7 +113,7 @@ std::optional<Access::Holder> Access::holder_of(std::string_view token) const {
 
 std::string Access::sign(std::string_view address, std::int64_t expires) const {
   const auto now = known();
-  if (now->key.empty()) throw NotFound("This service signs no links: it has no key (share_key_file)");
+  if (now->key.empty()) throw NotFound("service has no key to sign links (share_key_file)");
   return hmac_sha256_hex(now->key, signed_text(address, expires));
 }
 
@@ -124,14 +128,17 @@ std::string token_line(std::string_view name, std::string_view scopes, std::stri
 }
 
 Scope parse_scopes(std::string_view list) {
-  if (list.empty()) throw InputError("", "expected a scope: read, render, write or admin");
+  constexpr std::string_view kAllowed = "must be one of \"read\", \"render\", \"write\" or \"admin\"";
+  if (list.empty()) throw InputError("", std::string(kAllowed) + " (got \"\")");
   std::istringstream names{std::string(list)};
   Scope scopes = Scope::none;
   for (std::string name; std::getline(names, name, ',');) {
     const auto known = std::find(kScopes.begin(), kScopes.end(), name);
-    if (known == kScopes.end())
-      throw InputError("", "there is no scope \"" + name.substr(0, 40) + "\"" + did_you_mean(name, kScopes) +
-                               "; there are read, render, write and admin");
+    if (known == kScopes.end()) {
+      const auto meant = nearest(name, kScopes);
+      throw InputError("", std::string(kAllowed) + " (got \"" + name.substr(0, 40) + "\"" +
+                               (meant ? "; did you mean \"" + *meant + "\"?" : "") + ")");
+    }
     scopes = scopes | scope_number(known - kScopes.begin());
   }
   return scopes;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/shorten.h"
 #include "server/http/handler_slots.h"
 
 namespace orrery {
@@ -26,7 +27,8 @@ double rays_in(std::chrono::duration<double> held, int places) {
 
 std::string whole(double rays) {
   char text[32];
-  std::snprintf(text, sizeof text, rays < 1e15 ? "%.0f" : "%.3g", rays);
+  if (rays < 1e15) return grouped(static_cast<std::uint64_t>(std::llround(std::max(rays, 0.0))));
+  std::snprintf(text, sizeof text, "%.3g", rays);
   return text;
 }
 
@@ -45,18 +47,23 @@ std::string in_millions(double rays) {
 }  // namespace
 
 TooManyRays::TooManyRays(double expected, double most)
-    : InputError("", "the picture is expected to take as long as " + whole(expected) +
-                         " usual rays, and one request may ask for " + whole(most) +
-                         " (request_rays); a job takes longer work: POST /v1/jobs") {}
+    : InputError("", "image takes an estimated " + whole(expected) + " rays (limit " + whole(most) +
+                         ", request_rays); start a job for longer work: POST /v1/jobs") {}
 
 double cost_of_reading(std::size_t bytes) { return kFixedCost + kRaysAByte * static_cast<double>(bytes); }
 
 void Quota::require_one_more(int all, int own) const {
+  const auto items = [&](int count, const char* owner) {
+    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s") + owner +
+           (count == 1 ? " is " : " are ") + state;
+  };
+  const int share = std::max(1, most / 2);
   if (all >= most)
-    throw LimitExceeded(std::to_string(all) + " " + what + " already (" + limit + ")", retry_s, limit);
-  if (own >= std::max(1, most / 2))
-    throw ClientLimitExceeded(std::to_string(own) + " " + what +
-                                  " already that you asked for, which is half of all (" + limit + ")",
+    throw LimitExceeded(items(all, "") + " (limit " + std::to_string(most) + ", " + limit + ")", retry_s,
+                        limit);
+  if (own >= share)
+    throw ClientLimitExceeded(items(own, " of this client") + " (limit " + std::to_string(share) +
+                                  " per client, half of " + limit + ")",
                               retry_s, limit);
 }
 
@@ -234,8 +241,10 @@ void Admission::wait_for_slot(std::unique_lock<std::mutex>& lock, QueueEntry& wo
   }
   const State state = work.state.exchange(State::dropped);
   if (state == State::waits) throw Cancelled();
-  throw ClientLimitExceeded("Others wait for their turn, and you had asked for more than they (queue_rays)",
-                            retry_after_s(priority), "queue_rays");
+  throw ClientLimitExceeded(
+      "queue is full: request dropped, because this client has the most rays queued (limit " +
+          in_millions(limits_.queue_rays) + ", queue_rays)",
+      retry_after_s(priority), "queue_rays");
 }
 
 void Admission::update_backlog() {
@@ -438,11 +447,12 @@ void Admission::make_room(const SlotRequest& demand) {
 
 void Admission::refuse(Priority priority, double own) const {
   const double all = waiting_cost(priority);
-  const std::string told = "Work of " + in_millions(all) + " rays waits already, at most " +
-                           in_millions(limits_.queue_rays) + " may (queue_rays)";
+  const std::string full = "queue is full: " + in_millions(all) + " rays queued",
+                    limit = " (limit " + in_millions(limits_.queue_rays) + ", queue_rays)";
   if (own > 0 && own < all)
-    throw ClientLimitExceeded(told + ", much of it yours", retry_after_s(priority), "queue_rays");
-  throw LimitExceeded(told, retry_after_s(priority), "queue_rays");
+    throw ClientLimitExceeded(full + ", " + in_millions(own) + " of them by this client" + limit,
+                              retry_after_s(priority), "queue_rays");
+  throw LimitExceeded(full + limit, retry_after_s(priority), "queue_rays");
 }
 
 void Admission::measure(double cost) {

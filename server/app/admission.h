@@ -37,7 +37,7 @@ inline double limited_retry_s(double seconds) { return std::clamp(seconds, 1.0, 
 // Limit on concurrent items of one kind. require_one_more() throws LimitExceeded if `all` items have reached
 // `most`, and ClientLimitExceeded if the client's `own` items have reached half of it.
 struct Quota {
-  const char *what, *limit;  // in messages: "jobs are under way", "jobs"
+  const char *noun, *state, *limit;  // in messages: "job", "running" and "jobs"
   int most;
   double retry_s;
   void require_one_more(int all, int own) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/base/shorten.h"
 #include "core/plan/cost.h"
 #include "core/plan/warnings.h"
 #include "core/render/views.h"
@@ -29,10 +30,10 @@ Settings decided(Settings settings, const WorkerPool& pool) {
 void require_layers_fit(const Plan& plan, std::size_t work_bytes) {
   const std::size_t bytes = Film::bytes(plan.width, plan.height, FilmStorage::sums, plan.channels);
   if (bytes <= work_bytes / 2) return;
-  throw InputError("/render/layers", "expected layers that take at most " + std::to_string(work_bytes / 2) +
-                                         " bytes while they are rendered (half of work_bytes), these take " +
-                                         std::to_string(bytes) + " at " + std::to_string(plan.width) + " x " +
-                                         std::to_string(plan.height) + " pixels");
+  throw InputError("/render/layers", "layers take " + grouped(bytes) + " bytes at " +
+                                         std::to_string(plan.width) + " x " + std::to_string(plan.height) +
+                                         " pixels (limit " + grouped(work_bytes / 2) +
+                                         ", half of work_bytes)");
 }
 
 }  // namespace
@@ -133,9 +134,9 @@ Admission::Ticket App::enter_in_time(const SlotRequest& demand, Clock::time_poin
     return ticket;
   } catch (const Cancelled&) {
     if (ends.stop_requested()) throw;
-    throw LimitExceeded(
-        "Others have had the service for all of the " + number_text(seconds) + " s that the picture may take",
-        limited_retry_s(seconds), "renders");
+    throw LimitExceeded("other clients used the service for longer than the image may take (limit " +
+                            number_text(seconds) + " s, seconds)",
+                        limited_retry_s(seconds), "renders");
   }
 }
 
@@ -253,7 +254,7 @@ std::string_view App::readiness() const {
 }
 
 void App::require_open() const {
-  if (draining()) throw Busy("The service is about to end and takes no new work", 5);
+  if (draining()) throw Busy("service is shutting down", 5);
 }
 
 }  // namespace orrery

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/hash.h"
+#include "core/base/shorten.h"
 #include "server/http/limit_exceeded.h"
 #include "server/http/message.h"
 
@@ -19,6 +20,16 @@ std::size_t bytes_of(const AssetStore::Asset& asset) {
   return kEntry + asset.bytes.size() + (picture && picture->texels ? bytes_of(*picture->texels) : 0);
 }
 
+// Returns the format of a mesh file. An upload may also be an image, so an error names those formats, too.
+MeshFormat format_of(const std::string& bytes) {
+  try {
+    return mesh_format(bytes);
+  } catch (const InputError& error) {
+    throw InputError("",
+                     error.problems().front().detail + "; an image must be an EXR, HDR, PNG or JPEG file");
+  }
+}
+
 // Parses the file. Keeps the texels of an image if they take at most `max_texel_bytes`.
 decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::size_t max_texel_bytes) {
   if (is_picture(bytes)) {
@@ -27,24 +38,24 @@ decltype(AssetStore::Asset::content) content_of(const std::string& bytes, std::s
     if (bytes_of(*texels) > max_texel_bytes) texels = nullptr;
     return AssetStore::Asset::Picture{picture_format(bytes), width, height, std::move(texels)};
   }
+  const MeshFormat format = format_of(bytes);
   const TriangleMesh mesh = read_mesh(bytes);
-  return AssetStore::Asset::Mesh{mesh_format(bytes), mesh.positions.size(), mesh.triangles.size()};
+  return AssetStore::Asset::Mesh{format, mesh.positions.size(), mesh.triangles.size()};
 }
 
 }  // namespace
 
 void AssetStore::require_name(const std::string& name) {
   if (!is_sha256_hex(name))
-    throw InputError(
-        "", "an asset is named by the SHA-256 of its bytes: 64 digits 0-9, a-f; got " + name.substr(0, 80));
+    throw InputError("", "asset name must be the SHA-256 of the bytes, 64 digits 0-9 and a-f (got " +
+                             name.substr(0, 80) + ")");
 }
 
 AssetStore::AddResult AssetStore::add(const std::string& sha256, std::string bytes,
                                       const std::string& client) {
   const std::string hash = sha256_hex(bytes);
   if (hash != sha256)
-    throw InputError("",
-                     "the SHA-256 of these bytes is " + hash + ", which must be the name they are put under");
+    throw InputError("", "asset name must be the SHA-256 of the bytes, " + hash + " (got " + sha256 + ")");
   if (const auto known = assets_.find(sha256)) {
     assets_.add(sha256, client, bytes_of(**known), [&] { return *known; });
     return {*known, true};
@@ -53,8 +64,8 @@ AssetStore::AddResult AssetStore::add(const std::string& sha256, std::string byt
   asset->bytes = std::move(bytes);
   const std::size_t most = assets_.max_bytes(), least = bytes_of(*asset);
   if (least > most)
-    throw InputError("", "the file takes " + std::to_string(least) + " bytes of memory, at most " +
-                             std::to_string(most) + " are kept (asset_store_bytes)");
+    throw InputError("", "file takes " + grouped(least) + " bytes of memory (limit " + grouped(most) +
+                             ", asset_store_bytes)");
   // Limits texels to a quarter of the store, so that one image does not evict most others.
   asset->content = content_of(asset->bytes, std::min(most / 4, most - least));
   const auto add = [&] { return assets_.add(sha256, client, bytes_of(*asset), [&] { return asset; }); };
@@ -66,24 +77,25 @@ AssetStore::AddResult AssetStore::add(const std::string& sha256, std::string byt
   }
   if (added) return {added->value, added->known};
   constexpr double kRetry_s = 30;
-  throw LimitExceeded("Assets of others leave no room for " + std::to_string(least) +
-                          " bytes more of yours, of " + std::to_string(most) + " for all (asset_store_bytes)",
+  throw LimitExceeded("assets of other clients leave no room for " + grouped(least) + " more bytes (limit " +
+                          grouped(most) + ", asset_store_bytes)",
                       kRetry_s, "asset_store_bytes");
 }
 
 AssetStore::AssetPtr AssetStore::find(const std::string& sha256) {
   const auto found = assets_.find(sha256);
-  if (!found) throw NotFound("There is no asset " + sha256.substr(0, 64) + " (any more): put it again");
+  if (!found)
+    throw NotFound("unknown asset " + sha256.substr(0, 64) + " (it may have been evicted; upload it again)");
   return *found;
 }
 
 void AssetStore::remove(const std::string& sha256, const std::string& client, bool of_all) {
   switch (assets_.remove(sha256, client, of_all)) {
     case Lru<AssetPtr>::Removed::yes: return;
-    case Lru<AssetPtr>::Removed::unknown: throw NotFound("There is no asset " + sha256.substr(0, 64));
+    case Lru<AssetPtr>::Removed::unknown: throw NotFound("unknown asset " + sha256.substr(0, 64));
     case Lru<AssetPtr>::Removed::not_held:
-      throw HttpError(403,
-                      "An asset is removed by a client that has put it, or by a token of the scope admin");
+      throw HttpError(
+          403, "asset can be removed only by a client that uploaded it or with a token of scope admin");
   }
 }
 
@@ -91,7 +103,8 @@ AssetStore::AssetPtr AssetStore::find_for_scene(const std::string& sha256) const
   require_name(sha256);
   const auto found = assets_.find(sha256);
   if (!found)
-    throw InputError("", "there is no asset " + sha256 + " (any more): put it to /v1/assets/" + sha256);
+    throw InputError("", "unknown asset " + sha256 + " (it may have been evicted; upload it to /v1/assets/" +
+                             sha256 + ")");
   return *found;
 }
 

@@ -147,15 +147,14 @@ constexpr std::array kForms{ChartForm{".svg", "image/svg+xml", drawing_of},
 
 void read_extent(Params& p, Study::Extent& extent) {
   extent.samples =
-      static_cast<int>(p.integer("samples", "Of the highest configuration: 1, 4, 16, ... up to it.", 1,
-                                 kMaxChartSamples, extent.samples));
-  extent.rounds = static_cast<int>(p.integer(
-      "rounds", "Pictures of each configuration, with different seeds: two, and more of what is not beaten.",
-      1, kMaxChartRounds, extent.rounds));
-  extent.width = static_cast<int>(p.integer(
-      "width",
-      "Of the pictures that are rendered, which have the picture's proportions; missing or more: its own.", 1,
-      kMaxImageSide, derived(std::int64_t{0})));
+      static_cast<int>(p.integer("samples", "Maximum samples per pixel of the configurations 1, 4, 16, ...",
+                                 1, kMaxChartSamples, extent.samples));
+  extent.rounds = static_cast<int>(
+      p.integer("rounds", "Images per configuration with different seeds: two, more if not dominated.", 1,
+                kMaxChartRounds, extent.rounds));
+  extent.width = static_cast<int>(
+      p.integer("width", "Width of the rendered images in pixels; default and maximum: that of the image.", 1,
+                kMaxImageSide, derived(std::int64_t{0})));
 }
 
 std::string flags_of_plan(const std::string& plan) {

@@ -45,7 +45,7 @@ std::string promise_text(const Certificate& certificate) {
   const Bound total = certificate.total();
   if (total.rms) return "RMS error " + rounded(*total.rms) + ", " + std::string(name_of(total.kind));
   if (certificate.estimate) return "RMS error about " + rounded(*certificate.estimate) + ", not bounded";
-  return "an error that it does not tell";
+  return "unknown error";
 }
 
 std::string forecast_text(const Forecast& forecast) {
@@ -111,14 +111,15 @@ nlohmann::ordered_json explain_json(const Scene& scene, const Plan& plan,
 }
 
 std::string explain_text(const Scene& scene, const Plan& plan, const std::optional<Forecast>& forecast) {
-  std::string text =
-      std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels, " +
-      (plan.free_samples ? "at most " : "") + std::to_string(plan.samples) +
-      (plan.samples == 1 ? " sample" : " samples") + " each, of " + std::to_string(scene.object_count) +
-      (scene.object_count == 1 ? " object" : " objects") + " in the light of " +
-      std::to_string(scene.lights.size()) + (scene.facts.materials.emits ? " and of what emits" : "") +
-      (scene.environment && plan.technique->draws_light ? " and of an environment" : "") + ": " +
-      std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "\n";
+  std::string text = std::to_string(plan.width) + " x " + std::to_string(plan.height) + " pixels, " +
+                     (plan.free_samples ? "at most " : "") + std::to_string(plan.samples) +
+                     (plan.samples == 1 ? " sample" : " samples") + " per pixel, " +
+                     std::to_string(camera_rays(plan)) + " camera rays, " + plan.technique->name + "; " +
+                     std::to_string(scene.object_count) +
+                     (scene.object_count == 1 ? " object, " : " objects, ") +
+                     std::to_string(scene.lights.size()) + (scene.lights.size() == 1 ? " light" : " lights") +
+                     (scene.facts.materials.emits ? ", emissive surfaces" : "") +
+                     (scene.environment && plan.technique->draws_light ? ", environment" : "") + "\n";
   std::size_t subject_width = 0, choice_width = 0;
   for (const Decision& d : plan.decisions) {
     subject_width = std::max(subject_width, d.subject.size());
@@ -129,8 +130,7 @@ std::string explain_text(const Scene& scene, const Plan& plan, const std::option
             d.reason + bound_note(d.bound) + "\n";
   if (const auto least = min_provable(plan)) {
     char line[96];
-    std::snprintf(line, sizeof line,
-                  "  samples of so many pixels prove an RMS error of %.3g at least, in %s values\n", *least,
+    std::snprintf(line, sizeof line, "  smallest RMS error provable at this size: %.3g (%s)\n", *least,
                   name_of(plan.space).data());
     text += line;
   }

@@ -14,7 +14,7 @@ namespace orrery {
 
 // Immutable file made by a job.
 struct JobResult {
-  std::string name;       // in error messages: "Frame 3"
+  std::string name;       // in error messages: "frame 3"
   std::string_view type;  // "image/png"
   // Number of first steps that the file needs, or nullopt for all.
   std::optional<int> after;

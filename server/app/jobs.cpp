@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/shorten.h"
 #include "server/http/request_id.h"
 
 namespace orrery {
@@ -25,7 +26,7 @@ Jobs::StartResult Jobs::start(JobSpec spec, const std::string& key, const std::s
   });
   if (known != entries_.end()) {
     if (known->content == content) return {known->job, true};
-    throw InputError("", "another job was started by the Idempotency-Key " + key.substr(0, 80));
+    throw InputError("", "Idempotency-Key " + key.substr(0, 80) + " is in use for another job");
   }
   require_place(spec.client);
   constexpr std::size_t kIdBytes = 16;  // unguessable
@@ -44,7 +45,7 @@ void Jobs::require_place(const std::string& client) const {
     ++under_way;
     own += entry.job->client() == client;
   }
-  Quota{.what = "jobs are under way", .limit = "jobs", .most = limits_.under_way, .retry_s = 10}
+  Quota{.noun = "job", .state = "running", .limit = "jobs", .most = limits_.under_way, .retry_s = 10}
       .require_one_more(under_way, own);
 }
 
@@ -55,7 +56,7 @@ Jobs::JobPtr Jobs::find(const std::string& id) {
   ended_.touch(id);
   for (const Entry& entry : entries_)
     if (entry.job->id() == id && !entry.evicted) return entry.job;
-  throw NotFound("There is no job " + id.substr(0, 64) + " (any more)");
+  throw NotFound("unknown job " + id.substr(0, 64) + " (it may have expired)");
 }
 
 void Jobs::remove(const std::string& id) {
@@ -122,8 +123,8 @@ void Jobs::make_room(const std::string& id, const std::string& client, std::size
   if (!bytes_.holds(id, client)) throw Cancelled();
   const auto evicted = bytes_.make_room(client, bytes, limits_.bytes, {.own = kUnderWay});
   if (!evicted)
-    throw InputError("", "the pictures of all jobs take more than " + std::to_string(limits_.bytes) +
-                             " bytes (job_bytes)");
+    throw InputError("", "images of all jobs take more than " + grouped(limits_.bytes) + " bytes (limit " +
+                             grouped(limits_.bytes) + ", job_bytes)");
   evictions_ += evicted->size();
   forget(*evicted);
   bytes_.set_weight(id, bytes_.weight(id) + bytes);

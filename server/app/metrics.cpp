@@ -23,25 +23,25 @@ struct Metrics::Families {
   prometheus::Registry registry;
   prometheus::Family<Counter>& requests = prometheus::BuildCounter()
                                               .Name("orrery_requests_total")
-                                              .Help("Requests answered, by route, method and status")
+                                              .Help("Requests by route, method and status")
                                               .Register(registry);
-  prometheus::Family<Histogram>& seconds = prometheus::BuildHistogram()
-                                               .Name("orrery_request_seconds")
-                                               .Help("From a request's first byte to the last of its answer")
-                                               .Register(registry);
-  prometheus::Family<Counter>& refusals =
-      prometheus::BuildCounter()
-          .Name("orrery_refusals_total")
-          .Help("Requests refused by the limit that they hit, or because the service ends (draining)")
+  prometheus::Family<Histogram>& seconds =
+      prometheus::BuildHistogram()
+          .Name("orrery_request_seconds")
+          .Help("Time from the first byte of a request to the last byte of its response")
           .Register(registry);
+  prometheus::Family<Counter>& refusals = prometheus::BuildCounter()
+                                              .Name("orrery_refusals_total")
+                                              .Help("Rejected requests by limit, or draining during shutdown")
+                                              .Register(registry);
   Counter& sent_bytes = prometheus::BuildCounter()
                             .Name("orrery_sent_bytes_total")
-                            .Help("Bytes of answers, heads among them")
+                            .Help("Bytes of responses with their headers")
                             .Register(registry)
                             .Add({});
   Counter& clients_left = prometheus::BuildCounter()
                               .Name("orrery_clients_left_total")
-                              .Help("Requests whose client left before the end of the answer")
+                              .Help("Requests whose client disconnected before the end of the response")
                               .Register(registry)
                               .Add({});
 };

@@ -36,8 +36,8 @@ ordered_json option_schemas() {
     ordered_json schema = request["properties"][section]["properties"][key];
     std::string description = schema["description"];
     if (option.in_scene && !option.by_technique)
-      description += " As the scene says, or " + option.text(default_settings()) + ".";
-    if (!option.changes_pixels) description += " Changes no pixel.";
+      description += " Default: that of the scene, else " + option.text(default_settings()) + ".";
+    if (!option.changes_pixels) description += " Does not change pixels.";
     if (schema.contains("$ref")) {  // only the request schema has the shared definitions
       const std::string reference = schema["$ref"];
       schema.erase("$ref");

@@ -57,9 +57,9 @@ inline OrbitPath full_turn(const Scene& scene, const RenderRequest& first, int f
 inline void require_range(const OrbitPath& path, int frames, std::string_view step_pointer) {
   const double azimuth = path.azimuth_degrees(frames - 1);
   if (!(std::abs(azimuth) <= kMaxOrbitDegrees))
-    throw InputError(std::string(step_pointer), "expected a last frame at no more than " +
-                                                    number_text(kMaxOrbitDegrees) +
-                                                    " degrees of azimuth, got " + number_text(azimuth));
+    throw InputError(std::string(step_pointer),
+                     "azimuth of the last frame must be from -" + number_text(kMaxOrbitDegrees) + " to " +
+                         number_text(kMaxOrbitDegrees) + " degrees (got " + number_text(azimuth) + ")");
 }
 
 // Parameters of an orbit stream.

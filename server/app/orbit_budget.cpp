@@ -19,8 +19,9 @@ void OrbitBudget::add(const Scene& scene, const RenderResult& frame, OrbitPath& 
   if (!of_first_ || of_first_->error == 0 || keeps_error(number)) return;
   BudgetOutcome missed = *of_first_;
   missed.error_met = false;
-  missed.reason = "frame " + std::to_string(number) + ": of what the first one took it may be off by " +
-                  (at(number).bound.rms ? rounded(*at(number).bound.rms) : "an unknown error");
+  missed.reason = "frame " + std::to_string(number) +
+                  " with the settings of the first frame has an error of " +
+                  (at(number).bound.rms ? "up to " + rounded(*at(number).bound.rms) : "unknown size");
   require_met(missed, frame.certificate);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/number.h"
+#include "core/base/shorten.h"
 #include "core/load/load.h"
 #include "core/params/json.h"
 #include "core/params/suggest.h"
@@ -87,10 +88,13 @@ std::vector<OptionText> option_texts(const Fields& query,
     const bool again =
         std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return t.option == option; });
     if (!option)
-      problems.push_back({called(name), "unknown parameter" + did_you_mean(name, names)});
+      problems.push_back({called(name), "unknown query parameter \"" + shortened(name, 40) + "\"" +
+                                            did_you_mean_key(name, names)});
     else if (again)
-      problems.push_back({called(name), "given as " + std::string(option->key) + " and as " +
-                                            std::string(option->short_name)});
+      problems.push_back(
+          {called(name), "cannot be used with \"" +
+                             std::string(name == option->key ? option->short_name : option->key) +
+                             "\", another name of the same option"});
     else
       texts.push_back({option, called(name), value});
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/shorten.h"
 #include "core/load/load.h"
 #include "server/http/limit_exceeded.h"
 #include "server/http/message.h"
@@ -26,8 +27,8 @@ SceneStore::KeepResult SceneStore::keep(const Document& document, const AssetSou
   const std::string id = document.id();
   const Prepared scene = find_or_load(id, document, assets, client);
   if (scene->loaded_bytes() > max_)
-    throw InputError("", "the scene takes " + std::to_string(scene->loaded_bytes()) +
-                             " bytes of memory, at most " + std::to_string(max_) + " are kept (store_bytes)");
+    throw InputError("", "scene takes " + grouped(scene->loaded_bytes()) + " bytes of memory (limit " +
+                             grouped(max_) + ", store_bytes)");
   const std::lock_guard lock(mutex_);
   if (Prepared known = find_locked(id)) {
     const bool was_kept = is_kept(id);
@@ -36,8 +37,8 @@ SceneStore::KeepResult SceneStore::keep(const Document& document, const AssetSou
   }
   if (add(scene, client, kKept)) return {scene, false};
   constexpr double kRetry_s = 30;
-  throw LimitExceeded("Scenes of others leave no room for " + std::to_string(scene->loaded_bytes()) +
-                          " bytes more of yours, of " + std::to_string(max_) + " for all (store_bytes)",
+  throw LimitExceeded("scenes of other clients leave no room for " + grouped(scene->loaded_bytes()) +
+                          " more bytes (limit " + grouped(max_) + ", store_bytes)",
                       kRetry_s, "store_bytes");
 }
 
@@ -79,16 +80,16 @@ SceneStore::Prepared SceneStore::load(const Document& document, const AssetSourc
 SceneStore::Prepared SceneStore::find(const std::string& id) {
   const std::lock_guard lock(mutex_);
   if (Prepared known = find_locked(id)) return known;
-  throw NotFound("There is no scene " + id.substr(0, 64) + " (any more): post it again");
+  throw NotFound("unknown scene " + id.substr(0, 64) + " (it may have been evicted; post it again)");
 }
 
 void SceneStore::remove(const std::string& id, const std::string& client, bool of_all) {
   const std::lock_guard lock(mutex_);
-  if (scenes_.count(id) == 0) throw NotFound("There is no scene " + id.substr(0, 64));
+  if (scenes_.count(id) == 0) throw NotFound("unknown scene " + id.substr(0, 64));
   if (of_all) return erase(id);
   if (!shares_.holds(id, client))
     throw HttpError(403,
-                    "A scene is removed by a client that has posted it, or by a token of the scope admin");
+                    "scene can be removed only by a client that posted it or with a token of scope admin");
   shares_.release(built_id(id), client);
   if (shares_.release(id, client)) return erase(id);
   weigh(id);

@@ -75,7 +75,7 @@ class SingleFlight {
       }
       if (value) return {value, false};
       if (error) std::rethrow_exception(error);
-      if (client.gone.stop_requested()) throw Cancelled("the client has gone");
+      if (client.gone.stop_requested()) throw Cancelled("client disconnected");
     }
   }
 

@@ -26,8 +26,8 @@ class Streams::Slot {
 std::shared_ptr<const void> Streams::open(const std::string& client) {
   const std::lock_guard lock(mutex_);
   const auto own = by_client_.find(client);
-  Quota{.what = "streams are open", .limit = "connections", .most = max_, .retry_s = 5}.require_one_more(
-      all_, own == by_client_.end() ? 0 : own->second);
+  Quota{.noun = "stream", .state = "open", .limit = "connections", .most = max_, .retry_s = 5}
+      .require_one_more(all_, own == by_client_.end() ? 0 : own->second);
   return std::make_shared<const Slot>(*this, client);
 }
 

@@ -18,11 +18,12 @@ void WorkCancellation::Stop::operator()() const {
 
 void WorkCancellation::explain() const {
   switch (reason_) {
-    case Reason::service_ends: throw Busy("The service ends", 5);
+    case Reason::service_ends: throw Busy("service is shutting down", 5);
     case Reason::time:
-      throw TimedOut("It took more than " + std::to_string(limit_.time.count()) + " s (" + limit_.name +
-                     "); fewer pixels or samples take less");
-    default: throw Cancelled("the client has gone");
+      throw TimedOut("request took more than " + std::to_string(limit_.time.count()) + " s (limit " +
+                     std::to_string(limit_.time.count()) + " s, " + limit_.name +
+                     "); use fewer pixels or samples");
+    default: throw Cancelled("client disconnected");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/shorten.h"
 #include "server/http/limit_exceeded.h"
 
 namespace orrery {
@@ -11,7 +12,7 @@ namespace {
 constexpr const char* kName = "work_bytes";
 constexpr double kRetry_s = 2;
 
-std::string bytes_text(std::size_t bytes) { return std::to_string(bytes) + " bytes"; }
+std::string bytes_text(std::size_t bytes) { return grouped(bytes) + " bytes"; }
 
 }  // namespace
 
@@ -68,16 +69,16 @@ void WorkMemory::require_room(const std::string& client, std::size_t own, std::s
   };
   if (fits(of_others, others_of_client)) return;
   if (!fits(0, 0))
-    throw InputError("", "it takes more than " + bytes_text(max_ / 2) +
-                             " of memory at one time, half of what all work may take (" + kName + ")");
+    throw InputError("", "request needs at least " + bytes_text(bytes) + " of memory at one time (limit " +
+                             grouped(max_ / 2) + ", half of " + kName + ")");
   if (fits(of_others, 0))
-    throw ClientLimitExceeded("Work of yours takes " + bytes_text(others_of_client) +
-                                  " of memory already, of " + bytes_text(max_) + " for all (" + kName +
-                                  "), and " + bytes_text(bytes) + " more are needed",
+    throw ClientLimitExceeded("requests of this client take " + bytes_text(others_of_client) +
+                                  " of memory, and " + grouped(bytes) + " more are needed (limit " +
+                                  grouped(max_) + " for all clients, " + kName + ")",
                               kRetry_s, kName);
-  throw LimitExceeded("Work of others takes " + bytes_text(of_others) + " of memory already, of " +
-                          bytes_text(max_) + " for all (" + kName + "), and " +
-                          bytes_text(others_of_client + bytes) + " are needed",
+  throw LimitExceeded("requests of other clients take " + bytes_text(of_others) + " of memory, and " +
+                          grouped(others_of_client + bytes) + " are needed (limit " + grouped(max_) +
+                          " for all clients, " + kName + ")",
                       kRetry_s, kName);
 }
 

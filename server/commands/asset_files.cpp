@@ -9,15 +9,14 @@ namespace orrery {
 template <class Read>
 auto AssetFiles::read_with(const std::string& name, const Read& read) const {
   namespace fs = std::filesystem;
-  if (name.find('\0') != std::string::npos)
-    throw InputError("", "expected the name of a file, got a NUL in it");
+  if (name.find('\0') != std::string::npos) throw InputError("", "file name must not contain a NUL");
   std::error_code error;
   const fs::path folder = fs::canonical(folder_.empty() ? "." : folder_, error);
   const fs::path path = fs::canonical(folder / name, error);  // resolves symbolic links
   if (error) throw InputError("", "cannot read " + (folder_ / name).string() + ": " + error.message());
   if (std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first != folder.end())
-    throw InputError("", "expected a file in the scene's folder or below it, got " + name);
-  if (!fs::is_regular_file(path)) throw InputError("", "cannot read " + name + ": it is no file");
+    throw InputError("", "must be a file in the scene's folder or below it (got " + name + ")");
+  if (!fs::is_regular_file(path)) throw InputError("", "cannot read " + name + ": not a regular file");
   try {
     return read(read_file(path.string()));
   } catch (const FileError& unreadable) {

@@ -7,7 +7,9 @@
 #include "core/plan/plan.h"
 #include "core/study/audit.h"
 #include "server/app/error_report.h"
+#include "server/commands/checks.h"
 #include "server/commands/commands.h"
+#include "server/commands/help_layout.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
 #include "server/commands/scene_file.h"
@@ -22,9 +24,10 @@ Examples:
   orrery audit scenes/glass.json --precision float --depth 3 --pixels 16384
   orrery audit scenes/cornell-box.json --samples 16 --json
 
-Writes no picture. Renders pixels that are drawn at random once as asked and once by the whole model: in double
-precision, to the greatest depth, with nothing cut. Says how far they differ, and how far the whole picture does at
-most, with 95 % confidence and whatever the scene.
+Renders random pixels with the given options and with the full model: double
+precision, maximum depth, no cuts. Prints the difference, and a bound for the
+whole image that holds with 95 % confidence for any scene. Writes no image.
+Budgets and layers are not supported.
 )";
 
 struct AuditOptions {
@@ -47,11 +50,11 @@ nlohmann::ordered_json audit_json(const Audit& found, const Plan& plan) {
 
 std::string audit_text(const Audit& found, const Plan& plan) {
   char text[640];
-  char bound[64] = "unknown: nothing limits how far one pixel may be off";
+  char bound[64] = "unknown: the error of a pixel is unbounded";
   if (found.bound.rms) std::snprintf(bound, sizeof bound, "%.3g RMS, 95 %%", *found.bound.rms);
   std::snprintf(text, sizeof text,
-                "%-12s %d drawn of %d x %d, of which %d differ by more than %g\n"
-                "%-12s %.3g RMS, %.3g at most, of %s values; the whole model leaves out %.3g at most\n"
+                "%-12s %d random of %d x %d, %d differ by more than %g\n"
+                "%-12s %.3g RMS, %.3g maximum, in %s values; the full model omits at most %.3g\n"
                 "%-12s %s\n",
                 "pixels", found.pixels, plan.width, plan.height, found.differing, kEqualPixels, "difference",
                 found.rms, found.max, std::string(name_of(plan.space)).c_str(), found.left_out, "bound",
@@ -87,19 +90,22 @@ int run_audit(const AuditOptions& options) {
 
 Command add_audit(CLI::App& root) {
   const auto options = std::make_shared<AuditOptions>();
-  CLI::App* app = root.add_subcommand("audit", "Hold some pixels of a render against the whole model");
+  CLI::App* app = root.add_subcommand("audit", "Compare random pixels of a render with the full model");
   app->footer(kAuditExamples);
-  app->add_option("--pixels", options->pixels, "How many are drawn")
-      ->type_name("N")
-      ->check(CLI::Range(1, kMaxAuditPixels).description(""))
-      ->capture_default_str();
-  app->add_option("--draw", options->draw, "Seed of the drawing")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{kMaxSeed}).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  app->add_flag("--json", options->json, "Print JSON");
+  add_render_flags(*app, options->render, CommonOptions(kCommonOptions).first(3));  // without budgets
   add_threads_flag(*app, options->threads);
-  add_render_flags(*app, options->render);
+  app->add_option("--pixels", options->pixels,
+                  with_range("Number of random pixels", 1, kMaxAuditPixels, std::to_string(options->pixels)))
+      ->type_name("N")
+      ->check(integer_from(1, kMaxAuditPixels))
+      ->group("Audit");
+  app->add_option("--draw", options->draw,
+                  with_range("Seed of the choice of pixels", 0, static_cast<double>(kMaxSeed),
+                             std::to_string(options->draw)))
+      ->check(integer_from(0, kMaxSeed))
+      ->type_name("N")
+      ->group("Audit");
+  app->add_flag("--json", options->json, "Print JSON")->group("Output");
   return {app, [options] { return run_audit(*options); }};
 }
 

@@ -9,7 +9,7 @@ namespace orrery {
 
 Command add_catalog(CLI::App& root) {
   CLI::App* app =
-      root.add_subcommand("catalog", "Print all shapes, materials, lights, techniques ... as JSON");
+      root.add_subcommand("catalog", "Print all shapes, materials, lights and other types as JSON");
   return {app, [] {
             std::cout << catalog_json().dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
             return kDone;

@@ -6,7 +6,9 @@
 #include "core/study/study.h"
 #include "server/app/chart_forms.h"
 #include "server/app/frame.h"
+#include "server/commands/checks.h"
 #include "server/commands/commands.h"
+#include "server/commands/help_layout.h"
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
@@ -18,13 +20,15 @@ namespace {
 
 constexpr const char* kChartExamples = R"(
 Examples:
-  orrery chart scenes/glass.json -o glass.svg
-  orrery chart scenes/paper.json -o paper.csv --width 300 --height 300 --chart-samples 256
-  orrery chart scenes/cornell-box.json -o box.json --chart-width 160 --pictures box/
+  orrery chart scenes/glass.json -o glass.svg --chart-width 200
+  orrery chart scenes/paper.json -o paper.csv --width 300 --height 300
+  orrery chart scenes/cornell-box.json -o box.json --pictures box/
 
-Renders the scene in many ways, some rounds of each, and charts what they cost against how far they are from the
-picture in double precision with four times the samples. Prints the cheapest flags for some errors. On a busy
-machine times mean little; errors do.
+Renders the scene in many configurations and charts CPU time against the error.
+The reference has double precision and four times the samples. Prints the
+cheapest options for some errors. Times mean little on a busy machine; errors
+are not affected. Charts vary --samples and --precision themselves; budgets,
+layers and --view are not supported.
 )";
 
 struct ChartOptions {
@@ -68,8 +72,9 @@ void write_pictures(const std::string& folder, const Study& study, const Prepare
 }
 
 void print_recommendations(const Chart& chart) {
-  std::printf("RMS error in linear colour, time of %d threads at %d x %d pixels (95 %%), and flags:\n",
-              chart.threads, chart.size.width, chart.size.height);
+  std::printf(
+      "RMS error (linear), predicted time on %d threads at %d x %d pixels (95 %% interval), options:\n",
+      chart.threads, chart.size.width, chart.size.height);
   for (const Recommendation& r : recommendations(chart)) {
     const Point& point = chart.points[r.point];
     const auto ms = [&](double cpu_ms) { return 1000 * chart.full_seconds(cpu_ms); };
@@ -84,7 +89,8 @@ void print_recommendations(const Chart& chart) {
 int chart(ChartOptions options) {
   const ChartForm* form = chart_form_of(ending_of(options.output));
   if (!form)
-    throw InputError("--output", "expected a name that ends in .svg, .csv or .json, got " + options.output);
+    throw InputError("--output",
+                     "must be a name that ends in .svg, .csv or .json (got " + options.output + ")");
   const RenderRequest request = read_render_flags(options.render);
   require_writable(options.output);
   if (!options.pictures.empty()) {
@@ -92,7 +98,7 @@ int chart(ChartOptions options) {
     std::filesystem::create_directories(options.pictures, failed);
     if (!std::filesystem::is_directory(options.pictures, failed))
       throw FileError("cannot write to " + options.pictures +
-                      " (--pictures): it is no folder, nor can be made one");
+                      " (--pictures): not a folder, and it cannot be created");
     require_writable((std::filesystem::path(options.pictures) / "0.png").string());
   }
   std::optional<ProgressBar> bar(std::in_place, "pictures");
@@ -117,30 +123,35 @@ int chart(ChartOptions options) {
 
 Command add_chart(CLI::App& root) {
   const auto options = std::make_shared<ChartOptions>();
-  CLI::App* app = root.add_subcommand("chart", "Chart speed against accuracy of a picture");
+  CLI::App* app = root.add_subcommand("chart", "Chart speed against accuracy of an image");
   app->footer(kChartExamples);
-  app->add_option("-o,--output", options->output, "The chart; its ending chooses a drawing, a table or JSON")
-      ->type_name("FILE.{svg,csv,json}")
-      ->required();
-  app->add_option("--chart-samples", options->extent.samples,
-                  "Of the highest configuration: 1, 4, 16, ... up to it")
-      ->check(CLI::Range(1, kMaxChartSamples).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  app->add_option("--rounds", options->extent.rounds,
-                  "Pictures of each configuration, with different seeds: two, and more of what is not beaten")
-      ->check(CLI::Range(1, kMaxChartRounds).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  app->add_option(
-         "--chart-width", options->extent.width,
-         "Pixels, of the pictures that are rendered; times are predicted for the picture's own width")
-      ->check(CLI::Range(1, kMaxImageSide).description(""))
-      ->type_name("N");
-  app->add_option("--pictures", options->pictures, "A folder for PNG files of what no other beats")
-      ->type_name("DIR");
+  app->add_option("-o,--output", options->output, "Chart file: .svg, .csv or .json (required)")
+      ->type_name("FILE")
+      ->required()
+      ->group(kCommonGroup);
+  add_render_flags(*app, options->render, CommonOptions(kCommonOptions).first(2));  // a chart varies the rest
   add_threads_flag(*app, options->threads);
-  add_render_flags(*app, options->render);
+  app->add_option("--chart-samples", options->extent.samples,
+                  with_range("Maximum samples per pixel of the configurations 1, 4, 16, ...", 1,
+                             kMaxChartSamples, std::to_string(options->extent.samples)))
+      ->check(integer_from(1, kMaxChartSamples))
+      ->type_name("N")
+      ->group("Chart");
+  app->add_option("--rounds", options->extent.rounds,
+                  with_range("Images per configuration with different seeds: two, more if not dominated", 1,
+                             kMaxChartRounds, std::to_string(options->extent.rounds)))
+      ->check(integer_from(1, kMaxChartRounds))
+      ->type_name("N")
+      ->group("Chart");
+  app->add_option("--chart-width", options->extent.width,
+                  with_range("Width of the rendered images in pixels; times are predicted for full width", 1,
+                             kMaxImageSide, "full width"))
+      ->check(integer_from(1, kMaxImageSide))
+      ->type_name("N")
+      ->group("Chart");
+  app->add_option("--pictures", options->pictures, "Folder for PNG files of the Pareto front")
+      ->type_name("DIR")
+      ->group("Output");
   return {app, [options] { return chart(*options); }};
 }
 

@@ -14,9 +14,9 @@ Examples:
   orrery check my-scene.json
   orrery check --json scenes/*.json
 
-Prints a line for each problem: the file, where in it (a JSON Pointer), and what was expected; and for each
-warning: why a picture by the scene's own camera would show nothing useful. The status is 0 if all scenes are
-good, with or without warnings, and 2 if not.
+Prints one line per error or warning: file, JSON Pointer, and the allowed and
+the actual value. Warnings concern the image of the scene's own camera. Exit
+status: 0 if all scenes are valid, with or without warnings; 2 if not.
 )";
 
 struct CheckOptions {
@@ -76,10 +76,12 @@ int check(const CheckOptions& options) {
 
 Command add_check(CLI::App& root) {
   const auto options = std::make_shared<CheckOptions>();
-  CLI::App* app = root.add_subcommand("check", "Say what is wrong with scenes");
+  CLI::App* app = root.add_subcommand("check", "Report errors and warnings of scenes");
   app->footer(kCheckExamples);
-  app->add_option("SCENE", options->scenes, "JSON files of scenes, or - for standard input")->required();
-  app->add_flag("--json", options->json, "Print problems and warnings as a JSON array");
+  app->add_option("SCENE", options->scenes, "Scene files (JSON), or - for standard input")
+      ->required()
+      ->group("Arguments");
+  app->add_flag("--json", options->json, "Print errors and warnings as a JSON array");
   return {app, [options] { return check(*options); }};
 }
 

@@ -25,6 +25,7 @@ Command add_audit(CLI::App& root);
 Command add_catalog(CLI::App& root);
 Command add_schema(CLI::App& root);
 Command add_stability(CLI::App& root);
+Command add_help(CLI::App& root);
 
 // Exit statuses of the program.
 inline constexpr int kDone = 0, kFailed = 1, kBadInput = 2, kMissed = 3, kInterrupted = 130;

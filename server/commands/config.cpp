@@ -8,9 +8,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "core/base/shorten.h"
 #include "core/params/json.h"
 #include "core/params/suggest.h"
 #include "server/app/flag_name.h"
+#include "server/commands/help_layout.h"
 #include "server/commands/scene_file.h"
 
 namespace orrery {
@@ -38,19 +40,32 @@ std::vector<std::string> names_as(const Spell& spell) {
   return names;
 }
 
-// Returns a problem for the unknown `name`, with the most similar name of `known` as a suggestion.
-Problem unknown(const std::string& place, const std::string& what, const std::string& name,
+// Returns a problem for the unknown `name` of a kind such as "setting", with the most similar name of `known`
+// as a suggestion.
+Problem unknown(const std::string& place, const char* kind, const std::string& name,
                 const std::vector<std::string>& known) {
   const std::vector<std::string_view> views(known.begin(), known.end());
-  return {place, what + did_you_mean(name, views)};
+  const auto meant = nearest(name, views);
+  return {place, std::string("unknown ") + kind + " " + shortened(name, 80) +
+                     (meant ? " (did you mean " + *meant + "?)" : "")};
+}
+
+// Returns the help of a setting with its range and its default.
+std::string help_of(const Setting& setting) {
+  const std::string fallback = setting.text(Settings());
+  if (setting.max > 0)
+    return with_range(setting.help, static_cast<double>(setting.min), static_cast<double>(setting.max),
+                      fallback);
+  const bool has_default = !fallback.empty() && !std::holds_alternative<bool Settings::*>(setting.member);
+  return std::string(setting.help) + (has_default ? " (default " + fallback + ")" : "");
 }
 
 void add_flag(CLI::App& app, const Setting& setting, const char* group) {
-  const std::string help(setting.help), flag = flag_of(setting.name);
+  const std::string help = help_of(setting), flag = flag_of(setting.name);
   const bool takes_value = !std::holds_alternative<bool Settings::*>(setting.member);
   CLI::Option* option = takes_value ? app.add_option(flag, help) : app.add_flag(flag, help);
   option->envname(variable_of(setting.name))->group(group);
-  if (takes_value) option->type_name(std::string(setting.value))->default_str(setting.text(Settings()));
+  if (takes_value) option->type_name(std::string(setting.value));
   if (is_list(setting)) option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
@@ -68,11 +83,13 @@ std::string text_of(const nlohmann::json& value, bool list) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean() || value.is_number()) return value.dump();
   if (!list || !value.is_array())
-    throw InputError(
-        "", list ? "expected a text or a list of texts" : "expected a number, a text, true or false");
+    throw InputError("", std::string(list ? "must be a text or a list of texts"
+                                          : "must be a number, a text, true or false") +
+                             " (got " + shortened(value.dump(), 40) + ")");
   std::string texts;
   for (const auto& entry : value) {
-    if (!entry.is_string()) throw InputError("", "expected a list of texts");
+    if (!entry.is_string())
+      throw InputError("", "must be a list of texts (got " + shortened(value.dump(), 40) + ")");
     texts += (texts.empty() ? "" : ",") + entry.get<std::string>();
   }
   return texts;
@@ -86,7 +103,7 @@ void read_members(Settings& settings, const nlohmann::json& json, const std::str
                                   [&wanted = name](const Setting& s) { return s.name == wanted; });
     const std::string before = "/" + name.substr(0, 80) + ": ";
     if (row == rows.end()) {
-      problems.push_back(unknown(path, before + "unknown key", name,
+      problems.push_back(unknown(path, "setting", name,
                                  names_as([](std::string_view known) { return std::string(known); })));
       continue;
     }
@@ -103,7 +120,7 @@ nlohmann::json read_file_of_settings(const std::string& path, std::vector<Proble
   try {
     const Document document = parse_document(read_file(path));
     if (json_of(document).is_object()) return json_of(document);
-    problems.push_back({path, "expected an object"});
+    problems.push_back({path, "must be an object"});
   } catch (const InputError& error) {
     for (const Problem& p : error.problems()) problems.push_back({path, p.text()});
   } catch (const FileError& error) {
@@ -135,7 +152,7 @@ void refuse_unknown_variables(std::vector<Problem>& problems) {
     const std::string name(text.substr(0, text.find('=')));
     const bool ours = name.starts_with(kPrefix) && name != kTokenOfClients;
     if (ours && std::find(known.begin(), known.end(), name) == known.end())
-      problems.push_back(unknown(name, "there is no such setting", name, known));
+      problems.push_back(unknown("", "setting", name, known));
   }
 }
 
@@ -148,9 +165,9 @@ void refuse_unknown_flags(const std::vector<std::string>& words, const CLI::App&
     const std::string name = word.substr(0, word.find('='));
     const bool flag = word.starts_with('-');
     if (flag)
-      problems.push_back(unknown(name, "there is no such flag", name, known));
+      problems.push_back(unknown("", "option", name, known));
     else if (!after_flag)
-      problems.push_back({word, "was not expected here"});
+      problems.push_back({"", "unknown argument " + shortened(word, 80)});
     after_flag = flag && name == word;
   }
 }

@@ -17,8 +17,9 @@ Examples:
   orrery explain scenes/paper.json --technique raycast --json
   orrery explain scenes/cornell-box.json --error 0.02 --measure
 
-Says what a render of the scene would model, and for each thing that it would leave out, why it is not needed.
-Renders nothing; with --measure some of the pixels, to foretell samples, rays, seconds and error of the picture.
+Each line is a decision of the plan: choice, reason and error bound. Nothing is
+rendered. --measure traces some pixels to predict samples, rays, seconds and
+error of the image.
 )";
 
 struct ExplainOptions {
@@ -46,12 +47,13 @@ int explain(const ExplainOptions& options) {
 
 Command add_explain(CLI::App& root) {
   const auto options = std::make_shared<ExplainOptions>();
-  CLI::App* app = root.add_subcommand("explain", "Say what a render would model, and why no more");
+  CLI::App* app = root.add_subcommand("explain", "Print the plan of a render, with reasons and error bounds");
   app->footer(kExplainExamples);
-  app->add_flag("--json", options->json, "Print JSON");
-  app->add_flag("--measure", options->measure, "Trace some pixels and foretell what the picture takes");
-  add_threads_flag(*app, options->threads);
   add_render_flags(*app, options->render);
+  add_threads_flag(*app, options->threads);
+  app->add_flag("--measure", options->measure, "Trace some pixels and predict cost and error of the image")
+      ->group("Output");
+  app->add_flag("--json", options->json, "Print JSON")->group("Output");
   return {app, [options] { return explain(*options); }};
 }
 

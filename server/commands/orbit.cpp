@@ -1,13 +1,14 @@
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/number.h"
 #include "core/plan/plan.h"
 #include "server/app/orbit_budget.h"
 #include "server/app/pipeline.h"
+#include "server/commands/checks.h"
 #include "server/commands/commands.h"
 #include "server/commands/frame_names.h"
+#include "server/commands/help_layout.h"
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
 #include "server/commands/render_flags.h"
@@ -21,25 +22,16 @@ namespace {
 constexpr const char* kOrbitExamples = R"(
 Examples:
   orrery orbit scenes/paper.json --frames 120 -o frame-%04d.png
-  orrery orbit scenes/paper.json --frames 45 --step 2 --elevation 20 -o turn-%d.jpg
-  orrery orbit scenes/paper.json --frames 240 --discard       how fast? renders and encodes, keeps nothing
-  orrery orbit scenes/glass.json --error 0.02 -o frame-%04d.png       as many samples as the first frame needs
+  orrery orbit scenes/paper.json --frames 45 --step 2 -o turn-%d.jpg
+  orrery orbit scenes/glass.json --error 0.02 -o frame-%04d.png
+  orrery orbit scenes/paper.json --frames 240 --discard      # prints the speed
 
-Turns the camera once about the scene, or by --step from frame to frame, while what moves in it moves. A film of
-the frames that every browser plays, its sides made even:
-  ffmpeg -framerate 30 -i frame-%04d.png -vf "pad=ceil(iw/2)*2:ceil(ih/2)*2" -pix_fmt yuv420p orbit.mp4
+The camera turns once around the scene, or by --step per frame, while the motion
+of the scene plays. A budget applies to the first frame; all frames use its
+samples. FFmpeg makes a film that browsers play (the filter makes sides even):
+  ffmpeg -framerate 30 -i frame-%04d.png -vf "pad=ceil(iw/2)*2:ceil(ih/2)*2" \
+    -pix_fmt yuv420p orbit.mp4
 )";
-
-// Unlike CLI::Range, rejects NaN.
-CLI::Validator within(double min, double max) {
-  const CLI::Range range(min, max);
-  return CLI::Validator(
-      [range](std::string& text) {
-        const bool number = !text.empty() && std::isfinite(std::strtod(text.c_str(), nullptr));
-        return number ? range(text) : "expected a number, got " + text.substr(0, 40);
-      },
-      "");
-}
 
 struct OrbitOptions {
   std::string output, stats;
@@ -87,15 +79,15 @@ nlohmann::ordered_json json_of(const Totals& t, int threads) {
 }
 
 void print(const Totals& t, int threads) {
-  std::printf("%d frames in %.2f s, %.1f a second, threads %d\n", t.frames, t.seconds, t.frames / t.seconds,
+  std::printf("%d frames in %.2f s, %.1f frames/s, threads %d\n", t.frames, t.seconds, t.frames / t.seconds,
               threads);
-  std::printf("a frame: %.2f ms rendering, %.2f ms encoding, %.0f bytes, %.0f rays, %.2f ms of processor\n",
+  std::printf("per frame: %.2f ms rendering, %.2f ms encoding, %.0f bytes, %.0f rays, %.2f ms CPU time\n",
               t.render_ms / t.frames, t.encode_ms / t.frames, double(t.bytes) / t.frames,
               double(t.rays) / t.frames, 1000 * t.cpu_s / t.frames);
   if (t.refitted > 0)
     std::printf(
-        "a frame: %.2f ms making ready; %d structures followed the motion, %d were built anew; "
-        "boxes at most %.2f times as large beside what they hold as when built\n",
+        "per frame: %.2f ms building; structures: %d refitted, %d rebuilt; surface area of boxes at most "
+        "%.2f times that at build time\n",
         t.build_ms / t.frames, t.refitted, t.frames - t.refitted, t.worst);
 }
 
@@ -169,10 +161,10 @@ class OrbitRun {
 
 std::string budget_line(const nlohmann::ordered_json& budget, int frames) {
   const auto &largest = budget["largest_bound"], &met = budget["frames_met"];
-  std::string text = met.is_null() ? "" : "kept by " + met.dump() + " of ";
-  text += std::to_string(frames) + " frames, which may be off by " +
-          (largest.is_null() ? "an unknown error" : rounded(largest.get<double>()));
-  if (budget.contains("reason")) text += "; the first one: " + budget["reason"].get<std::string>();
+  std::string text = met.is_null() ? "" : "met by " + met.dump() + " of ";
+  text += std::to_string(frames) + " frames, with an error of " +
+          (largest.is_null() ? "unknown size" : "up to " + rounded(largest.get<double>()));
+  if (budget.contains("reason")) text += "; first frame: " + budget["reason"].get<std::string>();
   return text;
 }
 
@@ -182,12 +174,13 @@ bool is_missed(const nlohmann::ordered_json& budget, int frames) {
 
 int orbit(const OrbitOptions& options) {
   if (options.output.empty() && !options.discard)
-    throw InputError("--output", "expected a name for the frames such as frame-%04d.png, or --discard");
+    throw InputError("--output",
+                     "must be a name for the frames such as frame-%04d.png; --discard writes no files");
   OrbitRun turn(options);
   const Totals totals = turn.run();
   const nlohmann::ordered_json budget = turn.budget();
   if (!budget.is_null() && is_missed(budget, options.frames))
-    std::cerr << "orrery: warning: the budget is missed: " << budget_line(budget, options.frames) << "\n";
+    std::cerr << "orrery: warning: budget missed: " << budget_line(budget, options.frames) << "\n";
   if (options.stats == "json") {
     nlohmann::ordered_json json = json_of(totals, turn.threads());
     if (!budget.is_null()) json["budget"] = budget;
@@ -196,7 +189,7 @@ int orbit(const OrbitOptions& options) {
     print(totals, turn.threads());
     if (!budget.is_null())
       std::cout << "budget: " << budget_line(budget, options.frames)
-                << "\nmade as the first frame: " << budget["plan"].get<std::string>() << "\n";
+                << "\nplan of the first frame: " << budget["plan"].get<std::string>() << "\n";
   }
   return kDone;
 }
@@ -205,30 +198,39 @@ int orbit(const OrbitOptions& options) {
 
 Command add_orbit(CLI::App& root) {
   const auto options = std::make_shared<OrbitOptions>();
-  CLI::App* app = root.add_subcommand("orbit", "Render the frames of a turn about the scene");
+  CLI::App* app = root.add_subcommand("orbit", "Render the frames of an orbit around a scene");
   app->footer(kOrbitExamples);
-  app->add_option("--frames", options->frames, "How many")
-      ->check(CLI::Range(1, 1'000'000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  options->step_given =
-      app->add_option("--step", options->step, "Degrees from frame to frame; without it, one full turn")
-          ->check(within(-360, 360))
-          ->type_name("DEGREES");
-  options->time_step_given =
-      app->add_option("--time-step", options->time_step,
-                      "Seconds of the scene's motion from frame to frame; without it, all of the motion")
-          ->check(within(-3600, 3600))
-          ->type_name("SECONDS");
-  auto* output =
-      app->add_option("-o,--output", options->output, "Names of the frames; %04d becomes the number")
-          ->type_name("NAME-%04d.{png,jpg,exr}");
-  app->add_flag("--discard", options->discard,
-                "Render and encode, but write nothing: prints how fast that is")
-      ->excludes(output);
-  app->add_flag("--stats{text}", options->stats, "Print what it took; --stats=json for programs");
-  add_threads_flag(*app, options->threads);
+  auto* output = app->add_option("-o,--output", options->output,
+                                 "Image files: .png, .jpg or .exr; %d or %04d becomes the frame number")
+                     ->type_name("NAME-%04d.png")
+                     ->group(kCommonGroup);
   add_render_flags(*app, options->render);
+  add_threads_flag(*app, options->threads);
+  constexpr int kMaxFrames = 1'000'000;
+  constexpr double kMaxStep = 360, kMaxTimeStep = 3600;
+  app->add_option("--frames", options->frames,
+                  with_range("Number of frames", 1, kMaxFrames, std::to_string(options->frames)))
+      ->check(integer_from(1, kMaxFrames))
+      ->type_name("N")
+      ->group("Orbit");
+  options->step_given =
+      app->add_option("--step", options->step,
+                      with_range("Degrees per frame", -kMaxStep, kMaxStep, "one full turn in all frames"))
+          ->check(number_from(-kMaxStep, kMaxStep))
+          ->type_name("DEGREES")
+          ->group("Orbit");
+  options->time_step_given = app->add_option("--time-step", options->time_step,
+                                             with_range("Seconds of scene motion per frame", -kMaxTimeStep,
+                                                        kMaxTimeStep, "the whole motion in all frames"))
+                                 ->check(number_from(-kMaxTimeStep, kMaxTimeStep))
+                                 ->type_name("SECONDS")
+                                 ->group("Orbit");
+  app->add_flag("--discard", options->discard, "Render and encode, print the speed, write no file")
+      ->excludes(output)
+      ->group("Output");
+  app->add_flag("--stats{text}", options->stats, "Print times and sizes, as text or JSON")
+      ->option_text("[=json]")
+      ->group("Output");
   return {app, [options] { return orbit(*options); }};
 }
 

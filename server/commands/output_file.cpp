@@ -41,7 +41,7 @@ FileFormat format_of(const std::string& path) {
   if (ending == ".png") return FileFormat::png;
   if (ending == ".jpg" || ending == ".jpeg") return FileFormat::jpeg;
   if (ending == ".exr") return FileFormat::exr;
-  throw InputError("--output", "expected a name that ends in .png, .jpg or .exr, got " + path);
+  throw InputError("--output", "must be a name that ends in .png, .jpg or .exr (got " + path + ")");
 }
 
 bool is_same_file(const std::string& a, const std::string& b) { return target_of(a) == target_of(b); }

@@ -18,11 +18,11 @@ namespace {
 constexpr const char* kRenderExamples = R"(
 Examples:
   orrery render scenes/paper.json -o paper.png
-  orrery render scenes/glass.json -o glass.png --width 1920 --height 1080 --samples 16
-  orrery render scenes/paper.json -o turned.exr --azimuth 30 --elevation 10 --distance 1.5
-  orrery render scenes/paper.json --stats            renders, writes no picture
+  orrery render scenes/glass.json -o glass.png --width 1920 --height 1080
+  orrery render scenes/paper.json -o turned.exr --azimuth 30 --elevation 10
   orrery render scenes/cornell-box.json -o box.png --error 0.02
   orrery render scenes/cornell-box.json -o box.png --seconds 2
+  orrery render scenes/paper.json --stats           # statistics, no image
 )";
 
 struct RenderOptions {
@@ -44,7 +44,7 @@ Plan made_plan(Plan plan, const std::optional<BudgetOutcome>& budget) {
 RenderResult render_with_progress(const PreparedScene& scene, const Plan& plan, FileFormat format,
                                   WorkerPool& pool, const SignalWatch& signals, Clock::time_point begin,
                                   ProgressBar& bar) {
-  bar.say("making " + std::to_string(scene.scene().primitive_count()) + " primitives ready");
+  bar.say("preparing " + std::to_string(scene.scene().primitive_count()) + " primitives");
   return render_frame(scene, settle(scene, plan, signals.interrupted()), storage_for(format, plan), pool,
                       {.stop = signals.interrupted(),
                        .progress = [&](int done, int total) { bar.update(done, total); },
@@ -61,7 +61,7 @@ int render(const RenderOptions& options) {
   if (options.certificate) {
     if (options.output && is_same_file(*options.certificate, *options.output))
       throw InputError("--certificate",
-                       "expected another file than that of --output, got " + *options.certificate);
+                       "must differ from the file of --output (got " + *options.certificate + ")");
     require_writable(*options.certificate);
   }
   RunStats stats;
@@ -96,7 +96,7 @@ int render(const RenderOptions& options) {
     write_file(*options.output, bytes);
   }
   if (is_missed(stats.budget))
-    std::cerr << "orrery: warning: the budget is missed: " << stats.budget->reason << "\n";
+    std::cerr << "orrery: warning: budget missed: " << stats.budget->reason << "\n";
   if (options.certificate)
     write_file(*options.certificate, certificate_file_json(scene.scene(), plan, stats).dump(2) + "\n");
   if (options.stats == "json")
@@ -110,19 +110,22 @@ int render(const RenderOptions& options) {
 
 Command add_render(CLI::App& root) {
   const auto options = std::make_shared<RenderOptions>();
-  CLI::App* app = root.add_subcommand("render", "Render a scene to a picture");
+  CLI::App* app = root.add_subcommand("render", "Render a scene to an image");
   app->footer(kRenderExamples);
-  app->add_option("-o,--output", options->output, "The picture; its ending chooses PNG, JPEG or EXR")
-      ->type_name("FILE.{png,jpg,exr}");
-  app->add_option(
-         "--certificate", options->certificate,
-         "Where the error that is promised is written to as JSON, with the plan that gives the picture again")
-      ->type_name("FILE");
-  app->add_flag("--stats{text}", options->stats,
-                "Print what was traced and what it took; --stats=json for programs")
-      ->check(CLI::IsMember({"text", "json"}));
-  add_threads_flag(*app, options->threads);
+  app->add_option("-o,--output", options->output,
+                  "Image file: .png, .jpg or .exr; without it, only statistics are printed")
+      ->type_name("FILE")
+      ->group(kCommonGroup);
   add_render_flags(*app, options->render);
+  add_threads_flag(*app, options->threads);
+  app->add_option("--certificate", options->certificate,
+                  "Write the error bound as JSON, with a plan that renders the same image")
+      ->type_name("FILE")
+      ->group("Output");
+  app->add_flag("--stats{text}", options->stats, "Print rays, times and errors, as text or JSON")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->option_text("[=json]")
+      ->group("Output");
   return {app, [options] { return render(*options); }};
 }
 

@@ -2,10 +2,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+
 #include "core/model/batch.h"
 #include "core/render/views.h"
 #include "server/app/flag_name.h"
 #include "server/app/render_options.h"
+#include "server/commands/checks.h"
+#include "server/commands/help_layout.h"
+#include "server/commands/option_help.h"
 #include "server/http/target.h"
 
 namespace orrery {
@@ -20,11 +25,6 @@ std::string flags_of(const RenderOption& option) {
   return option.short_name.empty() ? flag_of(option.key) : short_flag_of(option) + "," + flag_of(option.key);
 }
 
-// Returns the help text without its full stop.
-std::string help_of(const RenderOption& option) {
-  return std::string(option.help.substr(0, option.help.size() - option.help.ends_with('.')));
-}
-
 // Returns the options of --plan. A URL counts from its "?" on; without "?" it has no options.
 std::vector<OptionText> texts_of_plan(std::string_view plan) {
   if (plan.find('?') == plan.npos && plan.find('/') != plan.npos) return {};
@@ -36,36 +36,66 @@ std::vector<OptionText> texts_of_plan(std::string_view plan) {
   }
 }
 
-}  // namespace
+constexpr int kMaxThreads = 1024;
 
-void add_render_flags(CLI::App& app, RenderFlags& flags) {
-  app.add_option("SCENE", flags.scene, "The scene's JSON file, or - for standard input")->required();
+void add_threads(CLI::App& app, int& threads, const std::string& group) {
+  app.add_option("--threads", threads,
+                 with_range("Render threads; 0: one per core", 0, kMaxThreads, std::to_string(threads)))
+      ->check(integer_from(0, kMaxThreads))
+      ->type_name("N")
+      ->group(group);
+}
+
+// Adds the flags of all image options. `before` precedes the headings in the names of their groups.
+void add_image_flags(CLI::App& app, RenderFlags& flags, CommonOptions common, const std::string& before) {
   const auto options = render_options();
   flags.texts.resize(options.size());
   for (std::size_t i = 0; i < options.size(); ++i) {
     CLI::Option* option = app.add_option(flags_of(options[i]), flags.texts[i], help_of(options[i]));
-    option->type_name(options[i].value_name())->group("Picture");
+    const bool is_common = std::find(common.begin(), common.end(), options[i].key) != common.end();
+    option->type_name(options[i].value_name())
+        ->group(is_common ? kCommonGroup : before + std::string(heading_of(options[i])));
     flags.options.push_back(option);
   }
-  app.add_option(
-         "--plan", flags.plan,
-         "Any of these options as an address has them, such as a plan that was printed; what is given "
-         "beside it counts")
-      ->type_name("A=B&C=D")
-      ->group("Picture");
-  app.add_flag("--full-model", flags.full_model, "Leave no stage out, even where the scene does not need it")
-      ->group("Advanced");
-  app.add_option("--slice", flags.slice, "Rays that pass the stages together; changes no result")
-      ->check(CLI::Range(16, kBatch).description(""))
+  app.add_flag("--full-model", flags.full_model, "Omit no stage, even if the scene does not need it")
+      ->group(before + "Speed");
+  app.add_option("--slice", flags.slice,
+                 with_range("Rays that pass the stages together; does not change the image", 16, kBatch,
+                            std::to_string(flags.slice)))
+      ->check(integer_from(16, kBatch))
       ->type_name("N")
-      ->capture_default_str()
-      ->group("Advanced");
+      ->group(before + "Speed");
+  app.add_option("--plan", flags.plan,
+                 "Image options as a query or URL, such as a printed plan; other options override it")
+      ->type_name("A=B&C=D")
+      ->group(before + "Plan");
+}
+
+}  // namespace
+
+void add_render_flags(CLI::App& app, RenderFlags& flags, CommonOptions common) {
+  app.add_option("SCENE", flags.scene, "Scene file (JSON), or - for standard input")
+      ->required()
+      ->group("Arguments");
+  add_image_flags(app, flags, common, std::string(kListed));
 }
 
 void add_threads_flag(CLI::App& app, int& threads) {
-  app.add_option("--threads", threads, "Threads that render; 0: one a core")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->type_name("N");
+  add_threads(app, threads, std::string(kListed) + "Speed");
+}
+
+std::string image_options_help() {
+  CLI::App app;
+  RenderFlags flags;
+  int threads = 0;
+  app.set_help_flag();
+  add_image_flags(app, flags, {}, "");
+  add_threads(app, threads, "Speed");
+  return R"(Image options of render, orbit, explain, chart and audit.
+An option overrides the value in the scene. Requests use the same names in JSON
+and in queries: "max_depth" for --max-depth. A default applies if the scene has
+no value.
+)" + option_groups_text(app);
 }
 
 RenderRequest read_render_flags(const RenderFlags& flags) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
@@ -15,6 +18,13 @@ class Option;
 
 namespace orrery {
 
+// Group of the options that the help of a command describes first.
+inline constexpr const char* kCommonGroup = "Common options";
+// Keys of the image options in that group. The help lists the other image options by name.
+using CommonOptions = std::span<const std::string_view>;
+inline constexpr std::array<std::string_view, 5> kCommonOptions{"width", "height", "samples", "error",
+                                                                "seconds"};
+
 // Flags of every command that renders or plans. Must not move after add_render_flags().
 struct RenderFlags {
   std::string scene;                  // file name, or "-"
@@ -25,8 +35,11 @@ struct RenderFlags {
   int slice = Plan{}.slice;
 };
 
-void add_render_flags(CLI::App& app, RenderFlags& flags);
+void add_render_flags(CLI::App& app, RenderFlags& flags, CommonOptions common = kCommonOptions);
 void add_threads_flag(CLI::App& app, int& threads);
+
+// Returns the text of `orrery help options`.
+std::string image_options_help();
 
 // Returns the request of the flags. Throws InputError with flag names.
 RenderRequest read_render_flags(const RenderFlags& flags);

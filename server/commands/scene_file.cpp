@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "core/base/shorten.h"
 #include "core/load/load.h"
 #include "server/commands/asset_files.h"
 
@@ -18,7 +19,8 @@ std::string shown_name(const std::string& path) { return path == "-" ? "standard
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
 [[noreturn]] void refuse_size(const std::string& name) {
-  throw FileError("cannot read " + name + ": it has more than " + std::to_string(kMaxBytes) + " bytes");
+  throw FileError("cannot read " + name + ": file has more than " + grouped(kMaxBytes) + " bytes (limit " +
+                  grouped(kMaxBytes) + ")");
 }
 
 std::string read_all(std::istream& in, const std::string& name) {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/base/shorten.h"
 #include "core/base/version.h"
 #include "core/math/instruction_level.h"
 #include "server/commands/commands.h"
@@ -24,16 +25,19 @@ namespace {
 
 constexpr const char* kServeExamples = R"(
 Examples:
-  orrery serve                                     then open http://127.0.0.1:8080
-  orrery serve --port 0                            any free port; the first line printed says which
-  orrery serve --config orrery.json                settings by their names: {"port": 80, "body_bytes": 1000000}
-  curl --data-binary @scenes/paper.json http://127.0.0.1:8080/v1/render -o paper.png
+  orrery serve                          # page on http://127.0.0.1:8080
+  orrery serve --port 0                 # a free port, printed on the first line
+  orrery serve --config orrery.json     # {"port": 80, "body_bytes": 1000000}
+  curl --data-binary @scenes/paper.json http://127.0.0.1:8080/v1/render -o a.png
 
-A setting comes from its flag, or else its variable (ORRERY_PORT), or else the file, or else is as shown. Names
-that do not exist are refused in all three; ORRERY_TOKEN alone is left to clients.
-All that is posted or put is kept in memory only and ends with the service.
-SIGTERM or Ctrl-C ends it, after --drain-delay-seconds: running requests are answered, streams stop after a frame. A second one ends it at once.
-SIGHUP reads the files of tokens and keys again, and cors_origins of --config; the log names what else differs.
+A setting comes from its option (--port), else from its environment variable
+(ORRERY_PORT), else from the file, else from its default. Unknown names are
+errors, except ORRERY_TOKEN, which clients use.
+All data is in memory and lost when the service stops.
+SIGTERM or Ctrl-C stops the service after --drain-delay-seconds: running
+requests finish, streams end after a frame. A second signal exits at once.
+SIGHUP reloads tokens, keys and cors_origins. The log lists other changed
+settings, which need a restart.
 )";
 
 struct ServeOptions {
@@ -51,19 +55,20 @@ void check_values(const Settings& settings, std::vector<Problem>& problems) {
     }
   };
   if (settings.port == settings.health_port && settings.port != 0)
-    problems.push_back({"--health-port", "is the same as --port, " + std::to_string(settings.port)});
+    problems.push_back(
+        {"--health-port", "must differ from --port (got " + std::to_string(settings.port) + ")"});
   for (const std::string& origin : settings.cors_origins)
     if (origin != "*" && origin != "null" && !is_origin(origin))
       problems.push_back(
           {"--cors-origins",
-           "expected *, null or origins such as https://app.example:8443, got " + origin.substr(0, 80)});
+           "must be *, null or origins such as https://app.example:8443 (got " + origin.substr(0, 80) + ")"});
   for (const std::string& proxy : settings.trusted_proxies)
     note("--trusted-proxies", [&] { IpNetwork{proxy}; });
   note("--path-prefix", [&] { Forwarding({}, settings.path_prefix); });
   for (const std::string_view own : {"/v1/", "/scenes/", "/schemas/", "/healthz/", "/readyz/"})
     if ((settings.path_prefix + "/").starts_with(own))
       problems.push_back(
-          {"--path-prefix", "is where the service has addresses of its own: " + settings.path_prefix});
+          {"--path-prefix", "must not be a path of the service itself (got " + settings.path_prefix + ")"});
   note("--memory-bytes", [&] { work_bytes(settings); });
 }
 
@@ -73,8 +78,8 @@ void check_environment(const Settings& settings, std::vector<Problem>& problems)
   try {
     if (!settings.insecure && settings.tokens_file.empty() && !is_loopback(settings.host))
       problems.push_back({"--host", settings.host +
-                                        " can be reached from other machines, and everyone who reaches it "
-                                        "may render; give --tokens-file, or --insecure if that is meant"});
+                                        " can be reached from other machines, so anyone could render; "
+                                        "set --tokens-file, or --insecure to allow it"});
   } catch (const Error& error) {  // the host cannot be resolved
     problems.push_back({"--host", error.what()});
   }
@@ -82,16 +87,16 @@ void check_environment(const Settings& settings, std::vector<Problem>& problems)
       settings.threads > 0 ? static_cast<std::size_t>(settings.threads) : std::thread::hardware_concurrency();
   const std::size_t addresses = settings.memory_bytes + addresses_for(settings.connections, threads);
   if (const std::size_t allowed = allowed_addresses(); allowed < addresses)
-    problems.push_back({"--memory-bytes",
-                        std::to_string(settings.memory_bytes) + ", " + std::to_string(settings.connections) +
-                            " connections and " + std::to_string(threads) + " threads may take " +
-                            std::to_string(addresses) + " bytes of addresses, the process may have " +
-                            std::to_string(allowed) + " (ulimit -v)"});
+    problems.push_back({"--memory-bytes", grouped(settings.memory_bytes) + " bytes, " +
+                                              std::to_string(settings.connections) + " connections and " +
+                                              std::to_string(threads) + " threads may take " +
+                                              grouped(addresses) + " bytes of address space (limit " +
+                                              grouped(allowed) + ", ulimit -v)"});
   const std::size_t needed = descriptors_for(settings.connections), allowed = allow_descriptors(needed);
   if (allowed < needed)
-    problems.push_back({"--connections", std::to_string(settings.connections) + " may take " +
-                                             std::to_string(needed) + " open files, the process may have " +
-                                             std::to_string(allowed) + " (ulimit -n)"});
+    problems.push_back({"--connections", std::to_string(settings.connections) + " connections may take " +
+                                             grouped(needed) + " open files (limit " + grouped(allowed) +
+                                             ", ulimit -n)"});
 }
 
 // Returns the number of tokens. Appends the errors of the token and key files.
@@ -133,7 +138,7 @@ int run_service(const Settings& settings, const Log& log, const std::function<Se
             {{"version", kVersion},
              {"instructions", instruction_level()},
              {"port", service.port()},
-             {"storage", "in memory only: what is posted is forgotten when the service ends"}});
+             {"storage", "in memory only, lost when the service stops"}});
   service.run();
   {
     const std::lock_guard lock(mutex);
@@ -151,7 +156,7 @@ int serve(const CLI::App& app, const ServeOptions& options) {
   check_environment(settings, problems);
   const std::size_t tokens = count_tokens(settings, problems);
   if (options.log != "json" && options.log != "text")
-    problems.push_back({"--log", "expected text or json, got " + options.log.substr(0, 80)});
+    problems.push_back({"--log", "must be text or json (got " + options.log.substr(0, 80) + ")"});
   if (!problems.empty()) throw InputError(std::move(problems));
   if (options.print_config) std::cout << config_text(settings);
   if (options.check_config && !settings.tokens_file.empty())
@@ -174,14 +179,15 @@ int serve(const CLI::App& app, const ServeOptions& options) {
 
 Command add_serve(CLI::App& root) {
   const auto options = std::make_shared<ServeOptions>();
-  CLI::App* app = root.add_subcommand("serve", "Answer requests over HTTP, and show the page");
+  CLI::App* app = root.add_subcommand("serve", "Run the HTTP service and its web page");
   app->footer(kServeExamples);
-  app->add_option("--config", options->config, "JSON file of settings")->type_name("FILE");
-  app->add_flag("--check-config", options->check_config, "Say all that is wrong with the settings, and end");
+  app->add_option("--config", options->config, "Settings file (JSON)")->type_name("FILE");
+  app->add_flag("--check-config", options->check_config, "Report all errors of the settings and exit");
   app->add_flag("--print-config", options->print_config,
-                "Print all settings as a file for --config, and end");
+                "Print all settings as a file for --config and exit");
   app->add_flag("--quiet", options->quiet, "Log warnings and errors only");
-  app->add_option("--log", options->log, "Form of the log on standard error; text on a terminal, else json")
+  app->add_option("--log", options->log,
+                  "Format of the log on standard error (default: text on a terminal, else json)")
       ->type_name("text|json");
   add_setting_flags(*app);
   return {app, [app, options] { return serve(*app, *options); }};

@@ -7,7 +7,9 @@
 #include "core/stability/report.h"
 #include "core/stability/speed.h"
 #include "server/app/stability_json.h"
+#include "server/commands/checks.h"
 #include "server/commands/commands.h"
+#include "server/commands/help_layout.h"
 #include "server/commands/output_file.h"
 #include "server/commands/progress.h"
 
@@ -18,11 +20,12 @@ constexpr const char* kStabilityExamples = R"(
 Examples:
   orrery stability
   orrery stability --json
-  orrery stability --docs docs      writes stability.md there and the pictures that it shows
+  orrery stability --docs docs      # writes docs/stability.md and its images
   orrery stability --speed --svg speed.svg
 
-Measures known numerical methods that fail, beside the ones of this program, in a third of a second. Status: 1 if a bound
-is not kept. --speed measures what methods cost instead, as ratios of CPU time on this machine: methods take turns.
+Measures the errors of known numerical methods and of the methods used here, in
+a third of a second. Exit status 1 if a bound is exceeded. --speed measures CPU
+time instead, as ratios, in interleaved runs.
 )";
 
 struct StabilityOptions {
@@ -42,7 +45,7 @@ void write_docs(const std::string& folder, std::span<const StabilityResult> resu
 
 int speed(const StabilityOptions& options) {
   if (!options.svg.empty() && !options.svg.ends_with(".svg"))
-    throw InputError("--svg", "expected a name that ends with .svg, got " + options.svg.substr(0, 40));
+    throw InputError("--svg", "must be a name that ends in .svg (got " + options.svg.substr(0, 40) + ")");
   if (!options.svg.empty()) require_writable(options.svg);
   std::optional<ProgressBar> bar(std::in_place, "rounds");
   const std::vector<SpeedGroup> groups =
@@ -70,21 +73,24 @@ int stability(const StabilityOptions& options) {
 Command add_stability(CLI::App& root) {
   const auto options = std::make_shared<StabilityOptions>();
   CLI::App* app =
-      root.add_subcommand("stability", "Measure where numerical methods fail, and this program's");
+      root.add_subcommand("stability", "Measure known numerical failures and the methods used here");
   app->footer(kStabilityExamples);
   CLI::Option* json = app->add_flag("--json", options->json, "Print JSON");
   app->add_option("--docs", options->docs,
-                  "Write the page and its pictures to a folder with a folder pictures")
+                  "Write stability.md and its charts to a folder; charts go to FOLDER/pictures")
       ->type_name("FOLDER")
       ->excludes(json);
-  CLI::Option* speed = app->add_flag("--speed", options->speed, "Measure what methods cost, and print that")
+  CLI::Option* speed = app->add_flag("--speed", options->speed, "Print the CPU time of methods, as ratios")
                            ->excludes(json)
                            ->excludes("--docs");
-  app->add_option("--svg", options->svg, "With --speed: also draw it")->type_name("FILE.svg")->needs(speed);
-  app->add_option("--rounds", options->rounds, "With --speed: of each method; the median counts")
-      ->check(CLI::Range(7, 1000).description(""))
+  app->add_option("--svg", options->svg, "With --speed: also draw a chart")
+      ->type_name("FILE.svg")
+      ->needs(speed);
+  app->add_option("--rounds", options->rounds,
+                  with_range("With --speed: runs per method, of which the median counts", 7, 1000,
+                             std::to_string(options->rounds)))
+      ->check(integer_from(7, 1000))
       ->type_name("N")
-      ->capture_default_str()
       ->needs(speed);
   return {app, [options] { return stability(*options); }};
 }

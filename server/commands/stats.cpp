@@ -57,7 +57,7 @@ void prediction_text(std::string& text, const Plan& plan, const TraceCounts& cou
                       verified_occluders = counts.accelerator.verified_occluders;
   const double share = 100.0 * static_cast<double>(verified_occluders) /
                        static_cast<double>(std::max<std::uint64_t>(1, predicted_occluders));
-  line(text, "%-12s %14llu by %s, of which %llu proved a shadow, %.1f %%", "proposals",
+  line(text, "%-12s %14llu by %s, %llu verified (%.1f %%)", "predictions",
        static_cast<unsigned long long>(predicted_occluders), std::string(name_of(plan.prediction)).c_str(),
        static_cast<unsigned long long>(verified_occluders), share);
 }
@@ -113,37 +113,37 @@ ordered_json certificate_file_json(const Scene& scene, const Plan& plan, const R
 std::string stats_text(const Plan& plan, const RunStats& stats) {
   const TraceCounts& counts = stats.render.counts;
   std::string text;
-  line(text, "%-12s %d x %d, %d a pixel", "picture", plan.width, plan.height, plan.samples);
+  line(text, "%-12s %d x %d pixels, samples per pixel: %d", "image", plan.width, plan.height, plan.samples);
   line(text, "%-12s %s, %s%s, %s, %s, threads %d", "rendered by", plan.technique->name,
-       stats.render.accelerator->name, plan.reorder ? " of sorted rays" : "",
+       stats.render.accelerator->name, plan.reorder ? ", sorted rays" : "",
        precision_name(plan.double_precision), std::string(instruction_level()).c_str(), stats.threads);
   rays_text(text, counts.rays);
   const AcceleratorFacts& structure = stats.render.structure;
-  line(text, "%-12s %14zu bytes, %d nodes deep, %zu references", "structure", structure.bytes,
-       structure.depth, structure.references);
-  line(text, "%-12s %14llu of nodes", "visits",
-       static_cast<unsigned long long>(counts.accelerator.node_visits));
-  line(text, "%-12s %14llu of boxes, %llu of primitives", "tests",
+  line(text, "%-12s %14zu bytes, depth %d, %zu references", "structure", structure.bytes, structure.depth,
+       structure.references);
+  line(text, "%-12s %14llu nodes", "visits", static_cast<unsigned long long>(counts.accelerator.node_visits));
+  line(text, "%-12s %14llu boxes, %llu primitives", "tests",
        static_cast<unsigned long long>(counts.accelerator.box_tests),
        static_cast<unsigned long long>(counts.accelerator.primitive_tests));
   if (plan.prediction != Prediction::none) prediction_text(text, plan, counts);
   line(text, "%-12s %14llu rays", "not traced", static_cast<unsigned long long>(counts.cut_rays));
   if (const SampledError& error = stats.render.error; error.known()) {
     const auto [low, high] = error.interval();
-    line(text, "%-12s %14.4g RMSE of a pixel (95 %%: %.4g to %.4g), %.3g of 4 x 4, %.3g of 32 x 32", "error",
-         error.pixel.rmse(), low, high, error.block4.rmse(), error.block32.rmse());
+    line(text, "%-12s %14.4g RMSE per pixel (95 %%: %.4g to %.4g), %.3g of 4x4 and %.3g of 32x32 means",
+         "error", error.pixel.rmse(), low, high, error.block4.rmse(), error.block32.rmse());
   }
   line(text, "%-12s %s", "error bound", bound_text(stats.certificate).c_str());
   if (stats.budget) line(text, "%-12s %s", "budget", budget_text(*stats.budget).c_str());
   if (!stats.certificate.biases.empty()) line(text, "%-12s %s", "bias", bias_text(stats.certificate).c_str());
   if (stats.render.non_finite_pixels > 0)
-    line(text, "%-12s %14llu", "not finite", static_cast<unsigned long long>(stats.render.non_finite_pixels));
+    line(text, "%-12s %14llu pixels", "non-finite",
+         static_cast<unsigned long long>(stats.render.non_finite_pixels));
   line(text, "%-12s %11.1f ms loading", "time", stats.load_ms);
   line(text, "%-12s %11.1f ms building", "", stats.render.build_ms);
   line(text, "%-12s %11.1f ms tracing, %.2f million rays/s", "", stats.render.trace_ms,
        mrays_per_s(stats.render));
   line(text, "%-12s %11.1f ms encoding", "", stats.encode_ms);
-  line(text, "%-12s %12.3f s rendering, %.3f s in all", "processor", stats.render_cpu_s,
+  line(text, "%-12s %12.3f s rendering, %.3f s total", "CPU time", stats.render_cpu_s,
        process_cpu_ms() / 1000);
   return text;
 }

@@ -9,8 +9,8 @@ namespace orrery {
 namespace {
 
 constexpr const char* kTokenExamples = R"(
-Example:
-  orrery token alice --scopes read,render,write >> tokens      prints the token, and adds its line to the file
+Examples:
+  orrery token alice --scopes read,render >> tokens      # prints the token
   orrery serve --tokens-file tokens
   curl -H "Authorization: Bearer $TOKEN" http://127.0.0.1:8080/v1/limits
 )";
@@ -23,7 +23,7 @@ int make_token(const TokenOptions& options) {
   const bool word =
       !options.name.empty() && std::all_of(options.name.begin(), options.name.end(),
                                            [](char c) { return c > ' ' && c != 0x7F && c != '#'; });
-  if (!word) throw InputError("NAME", "expected a word of plain characters without #");
+  if (!word) throw InputError("NAME", "must be a word without blanks, control characters and #");
   parse_scopes(options.scopes);
   constexpr std::size_t kBytes = 32;
   const std::string token = random_hex(kBytes);
@@ -36,13 +36,13 @@ int make_token(const TokenOptions& options) {
 
 Command add_token(CLI::App& root) {
   const auto options = std::make_shared<TokenOptions>();
-  CLI::App* app = root.add_subcommand("token", "Make a token, and its line for a tokens file");
+  CLI::App* app = root.add_subcommand("token", "Create an access token for the service");
   app->footer(kTokenExamples);
-  app->add_option("NAME", options->name, "Who will hold it")->required();
+  app->add_option("NAME", options->name, "Name of the client")->required()->group("Arguments");
   app->add_option("--scopes", options->scopes,
-                  "What the holder may do: read, render, write, admin (remove what others made)")
-      ->type_name("SCOPE,...")
-      ->capture_default_str();
+                  "Scopes: read, render, write and admin, which may remove data of other clients (default " +
+                      options->scopes + ")")
+      ->type_name("SCOPE,...");
   return {app, [options] { return make_token(*options); }};
 }
 

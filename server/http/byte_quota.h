@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/shorten.h"
 #include "server/http/limit_exceeded.h"
 
 namespace orrery {
@@ -14,15 +15,15 @@ namespace orrery {
 // Returns the error text for `takers` that hold `taken` of `most` bytes and need `needed` more.
 inline std::string over_limit_text(const std::string& takers, std::size_t taken, std::size_t most,
                                    const char* limit, std::size_t needed) {
-  return takers + " take " + std::to_string(taken) + " bytes already, of at most " + std::to_string(most) +
-         " (" + limit + "), and " + std::to_string(needed) + " more are needed";
+  return takers + " take " + grouped(taken) + " bytes, and " + grouped(needed) + " more are needed (limit " +
+         grouped(most) + ", " + limit + ")";
 }
 
 // Byte quota shared by all clients. A client may use half of it, or more for a single share. Shares of up to
 // 64 KiB are exempt from the client's half. Thread-safe.
 class ByteQuota {
  public:
-  // `name`: name of the limit in /v1/limits. `takers`: subject of error texts, capitalized.
+  // `name`: name of the limit in /v1/limits. `takers`: subject of error texts.
   ByteQuota(std::size_t most, const char* name, const char* takers)
       : max_(most), name_(name), takers_(takers) {}
 
@@ -56,8 +57,8 @@ class ByteQuota {
     constexpr std::size_t kSmall = 64 * 1024;  // bytes of a share that are exempt from the client's half
     const bool has_others = by_client > own && own + bytes > kSmall;
     if (has_others && bytes > max_ / 2 - std::min(by_client, max_ / 2))
-      throw ClientLimitExceeded(over_limit_text(takers_ + " of yours", by_client, max_ / 2, name_, bytes),
-                                kRetry_s, name_);
+      throw ClientLimitExceeded(
+          over_limit_text(takers_ + " of this client", by_client, max_ / 2, name_, bytes), kRetry_s, name_);
     if (bytes > max_ - taken_)
       throw LimitExceeded(over_limit_text(takers_, taken_, max_, name_, bytes), kRetry_s, name_);
     taken_by_[client] = by_client + bytes;

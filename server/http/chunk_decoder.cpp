@@ -3,6 +3,7 @@
 #include <charconv>
 #include <optional>
 
+#include "core/base/shorten.h"
 #include "server/http/head.h"
 
 namespace orrery {
@@ -10,18 +11,24 @@ namespace {
 
 constexpr std::size_t kLongestLine = 256, kMaxOverhead = 16 * 1024;
 
-[[noreturn]] void refuse(const char* why) {
-  throw HttpError(400, std::string("The body is not in chunks: ") + why);
+[[noreturn]] void refuse(const std::string& why) {
+  throw HttpError(400, "malformed chunked request body: " + why);
+}
+
+[[noreturn]] void refuse_overhead() {
+  refuse("extensions and trailers have more than " + grouped(kMaxOverhead) + " bytes (limit " +
+         grouped(kMaxOverhead) + ")");
 }
 
 // Returns the first line without its CR LF, or nullopt if it is incomplete.
 std::optional<std::string_view> line_of(std::string_view bytes) {
   const std::size_t end = bytes.find("\r\n");
   const std::string_view line = bytes.substr(0, end);
-  if (line.size() > kLongestLine) refuse("a line is too long");
+  if (line.size() > kLongestLine)
+    refuse("line has more than " + grouped(kLongestLine) + " bytes (limit " + grouped(kLongestLine) + ")");
   const bool whole = end != std::string_view::npos;
   if (!is_field_text(line.substr(0, line.size() - (!whole && line.ends_with('\r')))))
-    refuse("a line has control characters");
+    refuse("line must not contain control characters");
   return whole ? std::optional(line) : std::nullopt;
 }
 
@@ -29,8 +36,7 @@ std::optional<std::string_view> line_of(std::string_view bytes) {
 
 HttpError body_too_long(const BodyLimit& limit, const std::string& bytes) {
   return {413,
-          "The body has " + bytes + " bytes, at most " + std::to_string(limit.bytes) + " are allowed (" +
-              limit.name + ")",
+          "request body has " + bytes + " bytes (limit " + grouped(limit.bytes) + ", " + limit.name + ")",
           {},
           limit.name};
 }
@@ -63,10 +69,9 @@ std::size_t ChunkDecoder::take_size(std::string_view bytes) {
   const auto [end, problem] = std::from_chars(line->data(), line->data() + line->size(), left_, 16);
   const std::string_view extension(end, static_cast<std::size_t>(line->data() + line->size() - end));
   if (problem != std::errc() || !(extension.empty() || extension.front() == ';'))
-    refuse("a size is not in hexadecimal digits");
-  if ((overhead_ += extension.size()) > kMaxOverhead) refuse("its extensions are too long");
-  if (left_ > limit_.bytes - body_.size())
-    throw body_too_long(limit_, "more than " + std::to_string(limit_.bytes));
+    refuse("chunk size must be hexadecimal digits");
+  if ((overhead_ += extension.size()) > kMaxOverhead) refuse_overhead();
+  if (left_ > limit_.bytes - body_.size()) throw body_too_long(limit_, "more than " + grouped(limit_.bytes));
   expects_ = left_ > 0 ? Expects::data : Expects::trailer;
   return line->size() + 2;
 }
@@ -80,7 +85,7 @@ std::size_t ChunkDecoder::take_data(std::string_view bytes) {
 }
 
 std::size_t ChunkDecoder::take_end_of_data(std::string_view bytes) {
-  if (!std::string_view("\r\n").starts_with(bytes.substr(0, 2))) refuse("a chunk is longer than its size");
+  if (!std::string_view("\r\n").starts_with(bytes.substr(0, 2))) refuse("chunk is longer than its size");
   if (bytes.size() < 2) return 0;
   expects_ = Expects::size;
   return 2;
@@ -94,8 +99,8 @@ std::size_t ChunkDecoder::take_trailer(std::string_view bytes) {
     return 2;
   }
   if (!is_token(line->substr(0, line->find(':'))) || line->find(':') == std::string_view::npos)
-    refuse("a trailer is not NAME: VALUE");
-  if ((overhead_ += line->size()) > kMaxOverhead) refuse("its trailers are too long");
+    refuse("trailer must be NAME: VALUE");
+  if ((overhead_ += line->size()) > kMaxOverhead) refuse_overhead();
   return line->size() + 2;
 }
 

@@ -12,6 +12,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/shorten.h"
 #include "server/http/chunk_decoder.h"
 #include "server/http/handler_slots.h"
 
@@ -188,12 +189,10 @@ bool Connection::wait_to_receive(Clock::time_point deadline) {
 
 HttpError Connection::too_late(const std::string& part) const {
   if (is_evicted())
-    return {
-        408,
-        part + " came too slowly: others want a connection, and this one has waited longest (connections)"};
+    return {408, part + " arrived too slowly, and other clients need the connection (connections)"};
   if (shutdown_deadline_)
-    return {503, part + " did not come before the service ended", {{"Retry-After", "1"}}};
-  return {408, part + " did not come in time"};
+    return {503, part + " did not arrive before the service shut down", {{"Retry-After", "1"}}};
+  return {408, part + " did not arrive in time"};
 }
 
 void Connection::count_progress(Clock::time_point& since, std::size_t bytes) const {
@@ -205,7 +204,7 @@ Head Connection::read_head() {
   constexpr std::string_view kEnd = "\r\n\r\n";
   const auto deadline = Clock::now() + patience_.head;
   const auto receive_more = [&] {
-    if (!receive(deadline)) throw too_late("The request's headers");
+    if (!receive(deadline)) throw too_late("request headers");
   };
   while (!skip_empty_lines()) receive_more();
   std::size_t searched = 0, screened = 0;
@@ -215,8 +214,8 @@ Head Connection::read_head() {
     screen_head(std::string_view(received_).substr(0, std::min(size, kMaxHeadBytes)), screened);
     screened = size;
     if (size > kMaxHeadBytes)
-      throw HttpError(431,
-                      "The request's headers have more than " + std::to_string(kMaxHeadBytes) + " bytes");
+      throw HttpError(431, "request headers have more than " + grouped(kMaxHeadBytes) + " bytes (limit " +
+                               grouped(kMaxHeadBytes) + ", head_bytes)");
     if (end != std::string::npos) {
       const std::string bytes = received_.substr(0, size);
       received_.erase(0, size);
@@ -233,13 +232,13 @@ Head Connection::read_head() {
 std::string Connection::read_body(const Head& head, const BodyLimit& limit, const Received& received) {
   if (!head.chunked && !head.content_length) {
     body_left_ = std::numeric_limits<std::size_t>::max();  // all further input belongs to the body
-    throw HttpError(411, "A body must come with its Content-Length, or in chunks");
+    throw HttpError(411, "request body must have a Content-Length or chunked Transfer-Encoding");
   }
   const std::size_t length = head.content_length.value_or(limit.bytes);  // upper bound
-  if (length > limit.bytes) throw body_too_long(limit, std::to_string(length));
+  if (length > limit.bytes) throw body_too_long(limit, grouped(length));
   if (const auto expect = head.header("Expect")) {
     if (!equal_ignoring_case(*expect, "100-continue"))
-      throw HttpError(417, "Expected no Expect but 100-continue");
+      throw HttpError(417, "Expect must be 100-continue (got " + expect->substr(0, 40) + ")");
     const bool waits = received_.empty() && length > 0 && head.minor_version == 1;  // RFC 9110, 10.1.1
     if (waits) write({"HTTP/1.1 100 Continue\r\n\r\n"});
   }
@@ -273,7 +272,7 @@ std::string Connection::read_chunks(const BodyLimit& limit, const Received& rece
 
 void Connection::receive_part(MinimumRate& pace) {
   const std::size_t before = received_.size();
-  if (!receive(pace.deadline())) throw too_late("The body");
+  if (!receive(pace.deadline())) throw too_late("request body");
   pace.count(received_.size() - before);
   count_progress(reading_since_, received_.size() - before);
 }

@@ -21,9 +21,8 @@ void require_known(const std::string& host, const std::vector<std::string>& orig
   });
   const bool may_be_owned = host.find('.') != std::string::npos;  // by someone on the internet
   if (!listed && may_be_owned && !is_address_or_localhost(host))
-    throw HttpError(
-        403, "The host " + host.substr(0, 100) +
-                 " is not known here: expected an address, localhost or the host of one of cors_origins");
+    throw HttpError(403, "unknown host " + host.substr(0, 100) +
+                             " (must be an IP address, localhost or the host of one of cors_origins)");
 }
 
 }  // namespace
@@ -49,8 +48,7 @@ void reject_cross_origin(const Request& request, const std::vector<std::string>&
   const bool own = slashes != std::string::npos && equal_ignoring_case(origin->substr(slashes + 2), host) &&
                    (domains || is_address_or_localhost(host));
   if (!own && !is_listed(request, origins))
-    throw HttpError(
-        403, "Pages of the origin " + origin->substr(0, 100) + " may change nothing here (cors_origins)");
+    throw HttpError(403, "origin " + origin->substr(0, 100) + " must be one of cors_origins to change data");
 }
 
 void reject_unknown_host(const Request& request, const std::vector<std::string>& origins) {

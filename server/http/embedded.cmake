@@ -1,26 +1,16 @@
 # orrery_embed(<out.cpp> <file>...): generates a source file that defines embedded_files() of embedded.h for
 # the given files (paths from the repository root). The assembler includes the bytes (.incbin), so that large
-# files take no time to compile. The object is rebuilt when a file changes. Scripts and style sheets are
-# stripped by strip_text.cmake first.
-set(strip_script ${CMAKE_CURRENT_LIST_DIR}/strip_text.cmake)
+# files take no time to compile. The object is rebuilt when a file changes.
 function(orrery_embed out)
   list(SORT ARGN)
   list(LENGTH ARGN count)
   set(inputs "")
-  set(all_stripped "")
   set(assembly "")
   set(symbols "")
   set(table "")
   set(index 0)
   foreach(path IN LISTS ARGN)
     set(input ${PROJECT_SOURCE_DIR}/${path})
-    if(path MATCHES "\\.(js|css)$")
-      set(stripped ${PROJECT_BINARY_DIR}/generated/stripped/${path})
-      add_custom_command(OUTPUT ${stripped} DEPENDS ${input} ${strip_script}
-        COMMAND ${CMAKE_COMMAND} -DINPUT=${input} -DOUTPUT=${stripped} -P ${strip_script})
-      set(input ${stripped})
-      list(APPEND all_stripped ${stripped})
-    endif()
     list(APPEND inputs ${input})
     string(APPEND assembly "    \".balign 16\\n\"\n")
     string(APPEND assembly "    \"embedded_${index}: .incbin \\\"${input}\\\"\\n\"\n")
@@ -55,7 +45,6 @@ std::span<const EmbeddedFile> embedded_files() {
 
 }  // namespace orrery
 ]==])
-  add_custom_target(strip_text DEPENDS ${all_stripped})  # without a target, the commands would have no rule
   # A unity build would lose OBJECT_DEPENDS.
   set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${inputs}" SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

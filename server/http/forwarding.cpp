@@ -114,9 +114,9 @@ Forwarding::Forwarding(const std::vector<std::string>& trusted_proxies, std::str
     : trusted_(trusted_proxies.begin(), trusted_proxies.end()), prefix_(path_prefix) {
   if (prefix_.empty()) return;
   if (!is_prefix(prefix_))
-    throw InputError("", "expected a path such as /render, of letters, digits and - . _ ~, at most " +
-                             std::to_string(kLongestPrefix) + " bytes, without / at its end, got " +
-                             prefix_.substr(0, 80));
+    throw InputError("", "must be a path such as /render, of letters, digits and - . _ ~, of at most " +
+                             std::to_string(kLongestPrefix) + " bytes, without / at its end (got " +
+                             prefix_.substr(0, 80) + ")");
 }
 
 bool Forwarding::trusts(const IpAddress& peer) const {

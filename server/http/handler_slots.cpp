@@ -18,7 +18,7 @@ HandlerSlots::Handler::Handler(HandlerSlots& slots, std::string client, std::sto
   state_.begin_turn(WaitState::Kind::turn);
   acquire();
   state_.end();
-  if (!has_slot_) throw Cancelled("the client has gone");
+  if (!has_slot_) throw Cancelled("client disconnected");
   current = this;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 
+#include "core/base/shorten.h"
 #include "server/http/authority.h"
 #include "server/http/field_list.h"
 
@@ -15,26 +16,31 @@ constexpr std::array<std::string_view, 8> kMethods{"GET",    "HEAD",    "POST", 
                                                    "DELETE", "OPTIONS", "TRACE", "PATCH"};
 
 [[noreturn]] void throw_too_long() {
-  throw HttpError(414, "The address has more than " + std::to_string(kMaxTargetBytes) + " bytes");
+  throw HttpError(414, "URL has more than " + grouped(kMaxTargetBytes) + " bytes (limit " +
+                           grouped(kMaxTargetBytes) + ", address_bytes)");
 }
 
 void parse_request_line(std::string_view line, Head& head) {
   const std::size_t first = line.find(' '), last = line.rfind(' ');
   if (first == std::string_view::npos || first == last)
-    throw HttpError(400, "The request line is not METHOD PATH HTTP/1.1");
+    throw HttpError(400, "request line must be METHOD PATH HTTP/1.1");
   const std::string_view method = line.substr(0, first), version = line.substr(last + 1);
   const std::string_view target = line.substr(first + 1, last - first - 1);
-  if (!is_token(method)) throw HttpError(400, "The method is no word");
+  if (!is_token(method)) throw HttpError(400, "method must be a token (RFC 9110, 5.6.2)");
   if (target.size() > kMaxTargetBytes) throw_too_long();
   const bool visible =
       std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c != 0x7F; });
-  if (target.empty() || !visible) throw HttpError(400, "The address has a character that needs a %-escape");
+  if (target.empty() || !visible)
+    throw HttpError(400,
+                    "URL must not be empty or contain blanks and control characters; escape them with %");
   if (version != "HTTP/1.1" && version != "HTTP/1.0") {
-    if (version.starts_with("HTTP/")) throw HttpError(505, "This service speaks HTTP/1.1");
-    throw HttpError(400, "The request line is not METHOD PATH HTTP/1.1");
+    if (version.starts_with("HTTP/"))
+      throw HttpError(505,
+                      "HTTP version must be 1.1 or 1.0 (got " + std::string(version.substr(0, 40)) + ")");
+    throw HttpError(400, "request line must be METHOD PATH HTTP/1.1");
   }
   if (std::find(kMethods.begin(), kMethods.end(), method) == kMethods.end())
-    throw HttpError(501, "The method " + std::string(method.substr(0, 40)) + " is unknown here");
+    throw HttpError(501, "unknown method " + std::string(method.substr(0, 40)));
   head.method = method;
   head.target = target;
   head.minor_version = version.back() - '0';
@@ -42,22 +48,23 @@ void parse_request_line(std::string_view line, Head& head) {
 
 void parse_header(std::string_view line, Head& head) {
   if (head.headers.size() == kMaxHeaders)
-    throw HttpError(431, "The request has more than " + std::to_string(kMaxHeaders) + " headers");
+    throw HttpError(431, "request has more than " + std::to_string(kMaxHeaders) + " headers (limit " +
+                             std::to_string(kMaxHeaders) + ")");
   const std::size_t colon = line.find(':');
   const std::string_view name = line.substr(0, colon);
-  if (colon == std::string_view::npos || !is_token(name)) throw HttpError(400, "A header is not NAME: VALUE");
+  if (colon == std::string_view::npos || !is_token(name)) throw HttpError(400, "header must be NAME: VALUE");
   const std::string_view value = trimmed(line.substr(colon + 1));
   if (!is_field_text(value))
-    throw HttpError(400, "The header " + std::string(name.substr(0, 40)) + " has control characters");
+    throw HttpError(400,
+                    "header " + std::string(name.substr(0, 40)) + " must not contain control characters");
   head.headers.emplace_back(name, value);
 }
 
 void check_transfer_coding(std::string_view coding, Head& head) {
-  if (head.minor_version == 0) throw HttpError(400, "HTTP/1.0 has no Transfer-Encoding");
-  if (head.chunked) throw HttpError(400, "Transfer-Encoding is given twice");
+  if (head.minor_version == 0) throw HttpError(400, "Transfer-Encoding cannot be used with HTTP/1.0");
+  if (head.chunked) throw HttpError(400, "duplicate Transfer-Encoding header");
   if (!equal_ignoring_case(coding, "chunked"))
-    throw HttpError(
-        501, "Of transfer codings chunked alone is known here, got " + std::string(coding.substr(0, 40)));
+    throw HttpError(501, "Transfer-Encoding must be chunked (got " + std::string(coding.substr(0, 40)) + ")");
   head.chunked = true;
 }
 
@@ -68,20 +75,24 @@ void check_framing(Head& head) {
   for (const auto& [name, value] : head.headers) {
     if (equal_ignoring_case(name, "Host")) {
       ++hosts;
-      if (!value.empty() && !is_authority(value)) throw HttpError(400, "Host is not a host and a port");
+      if (!value.empty() && !is_authority(value))
+        throw HttpError(
+            400, "Host must be a host with an optional port (got " + std::string(value.substr(0, 100)) + ")");
     }
     if (equal_ignoring_case(name, "Transfer-Encoding")) check_transfer_coding(value, head);
     if (!equal_ignoring_case(name, "Content-Length")) continue;
     std::size_t length = 0;
     const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), length);
     if (problem != std::errc() || end != value.data() + value.size())
-      throw HttpError(400, "Content-Length is not a number of bytes");
-    if (head.content_length) throw HttpError(400, "Content-Length is given twice");
+      throw HttpError(
+          400, "Content-Length must be a number of bytes (got " + std::string(value.substr(0, 40)) + ")");
+    if (head.content_length) throw HttpError(400, "duplicate Content-Length header");
     head.content_length = length;
   }
   if (head.chunked && head.content_length)
-    throw HttpError(400, "Content-Length and Transfer-Encoding exclude each other");
-  if (hosts > 1 || (hosts == 0 && head.minor_version == 1)) throw HttpError(400, "Expected one Host header");
+    throw HttpError(400, "Content-Length cannot be used with Transfer-Encoding");
+  if (hosts > 1 || (hosts == 0 && head.minor_version == 1))
+    throw HttpError(400, "request must have one Host header (got " + std::to_string(hosts) + ")");
 }
 
 // Whether a Connection header lists `word`.
@@ -114,7 +125,7 @@ Head parse_head(std::string_view bytes) {
   bool first = true;
   while (!bytes.empty()) {
     const std::size_t end = bytes.find("\r\n");
-    if (end == std::string_view::npos) throw HttpError(400, "A line does not end with CR LF");
+    if (end == std::string_view::npos) throw HttpError(400, "line must end with CR LF");
     const std::string_view line = bytes.substr(0, end);
     bytes.remove_prefix(end + 2);
     if (line.empty()) break;
@@ -124,7 +135,7 @@ Head parse_head(std::string_view bytes) {
       parse_header(line, head);
     first = false;
   }
-  if (first) throw HttpError(400, "The request is empty");
+  if (first) throw HttpError(400, "request must not be empty");
   check_framing(head);
   head.keep_alive =
       head.minor_version == 1 ? !connection_says(head, "close") : connection_says(head, "keep-alive");
@@ -135,9 +146,9 @@ void screen_head(std::string_view bytes, std::size_t from) {
   for (std::size_t i = from; i < bytes.size(); ++i) {
     const auto byte = static_cast<unsigned char>(bytes[i]);
     const bool after_cr = i > 0 && bytes[i - 1] == '\r';
-    if (after_cr != (byte == '\n')) throw HttpError(400, "A line does not end with CR LF");
+    if (after_cr != (byte == '\n')) throw HttpError(400, "line must end with CR LF");
     if ((byte < 0x20 && byte != '\t' && byte != '\r' && byte != '\n') || byte == 0x7F)
-      throw HttpError(400, "The request has control characters");
+      throw HttpError(400, "request headers must not contain control characters");
   }
   constexpr std::size_t kAroundTarget = 20;  // bytes; method, blanks and version take fewer
   const std::size_t end = bytes.find("\r\n");

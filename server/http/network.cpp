@@ -73,14 +73,14 @@ IpNetwork::IpNetwork(std::string_view text) {
   const int most = v4 ? 32 : 128;
   const auto bits = slash == std::string_view::npos ? most : parse_number<int>(text.substr(slash + 1));
   if (!first || !bits || *bits < 0 || *bits > most)
-    throw InputError(
-        "", "expected an address or a network such as 10.0.0.0/8, got " + std::string(text.substr(0, 80)));
+    throw InputError("", "must be an IP address or a network such as 10.0.0.0/8 (got " +
+                             std::string(text.substr(0, 80)) + ")");
   first_ = *first;
   bits_ = v4 ? kMappedBits + *bits : *bits;
   for (int bit = bits_; bit < 128; ++bit)
     if (first_.bytes()[static_cast<std::size_t>(bit) / 8] >> (7 - bit % 8) & 1)
-      throw InputError("", "expected a network whose bits after the first " + std::to_string(*bits) +
-                               " are 0, got " + std::string(text));
+      throw InputError("", "must be a network whose bits after the first " + std::to_string(*bits) +
+                               " are 0 (got " + std::string(text) + ")");
 }
 
 bool IpNetwork::contains(const IpAddress& address) const { return have_same_prefix(first_, address, bits_); }

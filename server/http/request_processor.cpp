@@ -81,7 +81,7 @@ Response RequestProcessor::refuse(const Connection& connection, const Request& r
                                   std::exception_ptr error) const {
   if (connection.is_evicted())
     error = std::make_exception_ptr(ClientLimitExceeded(
-        "Others want a connection, and your address has most of them (connections)", 1, "connections"));
+        "other clients need a connection, and this address has the most (connections)", 1, "connections"));
   return handler_.refuse(request, error);
 }
 

@@ -52,10 +52,11 @@ class ResponseQuota {
     const auto known = clients_.find(client);
     if (known != clients_.end() && !known->second.has_room(bytes, max_ / 2))
       throw ClientLimitExceeded(
-          over_limit_text("Answers of yours", known->second.bytes, max_ / 2, kName, bytes.size()), kRetry_s,
-          kName);
+          over_limit_text("responses of this client", known->second.bytes, max_ / 2, kName, bytes.size()),
+          kRetry_s, kName);
     if (!all_.has_room(bytes, max_))
-      throw LimitExceeded(over_limit_text("Answers", all_.bytes, max_, kName, bytes.size()), kRetry_s, kName);
+      throw LimitExceeded(over_limit_text("responses", all_.bytes, max_, kName, bytes.size()), kRetry_s,
+                          kName);
     all_.add(bytes);
     clients_[client].add(bytes);
   }

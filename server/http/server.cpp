@@ -181,14 +181,15 @@ class HttpServer::Parts {
     Request request;
     request.start = Clock::now();
     request.id = make_request_id();
-    const auto told = [](std::size_t count, const char* whose) {
-      return std::to_string(count) + " connections are open already" + whose + " (connections)";
+    const auto open = [](std::size_t count, const char* whose, const char* limit) {
+      const std::string number = std::to_string(count);
+      return number + " connections" + whose + " are open (limit " + number + limit + ", connections)";
     };
     const auto error =
-        over_share
-            ? std::make_exception_ptr(ClientLimitExceeded(
-                  told(share_of_one(), " from your address, three quarters of all"), 1, "connections"))
-            : std::make_exception_ptr(LimitExceeded(told(options_.max_connections, ""), 1, "connections"));
+        over_share ? std::make_exception_ptr(ClientLimitExceeded(
+                         open(share_of_one(), " from this address", " per address"), 1, "connections"))
+                   : std::make_exception_ptr(
+                         LimitExceeded(open(options_.max_connections, "", ""), 1, "connections"));
     const Response response = handler_.refuse(request, error);
     return response_head(response, {.keep_alive = false}).append(response.body);
   }

@@ -33,9 +33,9 @@ std::size_t utf8_length(std::string_view text, std::size_t i) {
 void require_clean(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t length = utf8_length(text, i);
-    if (length == 0) throw HttpError(400, "The address is not UTF-8");
+    if (length == 0) throw HttpError(400, "URL must be UTF-8");
     if (length == 1 && (static_cast<unsigned char>(text[i]) < 0x20 || text[i] == 0x7F))
-      throw HttpError(400, "The address has a control character in it");
+      throw HttpError(400, "URL must not contain a control character");
     i += length;
   }
 }
@@ -50,8 +50,7 @@ std::string decode(std::string_view text, bool plus_is_space) {
     } else {
       const int high = i + 2 < text.size() ? digit_of(text[i + 1]) : -1;
       const int low = i + 2 < text.size() ? digit_of(text[i + 2]) : -1;
-      if (high < 0 || low < 0)
-        throw HttpError(400, "The address has a % that no two hexadecimal digits follow");
+      if (high < 0 || low < 0) throw HttpError(400, "URL must have two hexadecimal digits after %");
       decoded += static_cast<char>(high * 16 + low);
       i += 2;
     }
@@ -79,7 +78,7 @@ Fields parse_query(std::string_view text) {
     std::string name = decode(pair.substr(0, equals), true);
     std::string value = equals == std::string_view::npos ? "" : decode(pair.substr(equals + 1), true);
     if (std::any_of(query.begin(), query.end(), [&](const auto& field) { return field.first == name; }))
-      throw HttpError(400, "The address gives \"" + name.substr(0, 40) + "\" twice");
+      throw HttpError(400, "duplicate query parameter \"" + name.substr(0, 40) + "\"");
     query.emplace_back(std::move(name), std::move(value));
   });
   return query;
@@ -92,7 +91,9 @@ std::string_view take_authority(std::string_view& target) {
     if (!equal_ignoring_case(target.substr(0, scheme.size()), scheme)) continue;
     target.remove_prefix(scheme.size());
     const std::string_view authority = target.substr(0, target.find_first_of("/?"));
-    if (!is_authority(authority)) throw HttpError(400, "The address names no host and port");
+    if (!is_authority(authority))
+      throw HttpError(400, "URL must have a host with an optional port (got " +
+                               std::string(authority.substr(0, 100)) + ")");
     target.remove_prefix(authority.size());
     return authority;
   }
@@ -108,7 +109,8 @@ Target parse_target(std::string_view target) {
   const std::size_t mark = target.find('?');
   std::string_view path = target.substr(0, mark);
   if (path.empty() && !parsed.authority.empty()) path = "/";
-  if (!path.starts_with('/')) throw HttpError(400, "The address is no path that starts with /");
+  if (!path.starts_with('/'))
+    throw HttpError(400, "URL path must begin with / (got " + std::string(path.substr(0, 100)) + ")");
   parsed.path = decode(path, false);
   path.remove_prefix(1);
   if (!path.empty())

@@ -29,10 +29,10 @@ bool pass_by_link(const Access& access, Request& request) {
   if (!signature) return false;
   const auto expires = parse_number<std::int64_t>(find_field(request.query, kExpires).value_or(""));
   if (!expires || !access.is_signed(address_of(request), *expires, *signature))
-    throw HttpError(403, "The link is not one that this service has signed");
+    throw HttpError(403, "link has no valid signature of this service");
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   if (std::chrono::duration_cast<std::chrono::seconds>(now).count() > *expires)
-    throw HttpError(403, "The link has expired");
+    throw HttpError(403, "link has expired");
   std::erase_if(request.query,
                 [](const auto& field) { return field.first == kExpires || field.first == kSignature; });
   return true;
@@ -53,14 +53,12 @@ AccessLevel require_access(const Access& access, Scope needed, Request& request)
   const std::string header = request.header("Authorization").value_or("");
   const auto holder = access.holder_of(bearer_of(header));
   if (!holder)
-    throw HttpError(401,
-                    header.empty() ? "A token is needed (Authorization: Bearer)" : "The token is not known",
+    throw HttpError(401, header.empty() ? "missing token (Authorization: Bearer)" : "unknown token",
                     {{"WWW-Authenticate", header.empty() ? "Bearer" : "Bearer error=\"invalid_token\""}});
   if (const auto scope = missing_scope(holder->scopes, needed))
-    throw HttpError(403, "The token lacks the scope " + std::string(*scope));
+    throw HttpError(403, "token lacks scope " + std::string(*scope));
   if (find_field(request.query, kChosen) && missing_scope(holder->scopes, Scope::render))
-    throw HttpError(
-        403, "The token lacks the scope render, which choosing the " + std::string(kChosen) + " takes");
+    throw HttpError(403, "token lacks scope render, which the parameter " + std::string(kChosen) + " needs");
   request.client = holder->name;
   return AccessLevel::holders;
 }

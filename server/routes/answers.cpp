@@ -30,7 +30,7 @@ std::string pointer_to(std::string_view name) {
 void require_no_query(const Request& request) {
   if (!request.query.empty())
     throw InputError(pointer_to(request.query.begin()->first),
-                     "not read in the address: options stand in the body");
+                     "query parameters cannot be used with a JSON body; put options in the body");
 }
 
 void require_json(const Request& request) {
@@ -44,10 +44,11 @@ void require_json(const Request& request) {
   const bool known =
       std::any_of(kTypes.begin(), kTypes.end(), [&](auto t) { return equal_ignoring_case(t, type); });
   if (!known && !(type.starts_with("application/") && type.ends_with("+json")))
-    throw HttpError(415, "Expected a body of application/json, got " + std::string(type.substr(0, 100)));
+    throw HttpError(415,
+                    "Content-Type must be application/json (got " + std::string(type.substr(0, 100)) + ")");
   const std::string_view charset = parameter_of(header, "charset");
   if (!charset.empty() && !equal_ignoring_case(charset, "utf-8") && !equal_ignoring_case(charset, "us-ascii"))
-    throw HttpError(415, "Expected JSON in UTF-8 (RFC 8259), got " + std::string(charset.substr(0, 40)));
+    throw HttpError(415, "charset of JSON must be utf-8 (got " + std::string(charset.substr(0, 40)) + ")");
 }
 
 // Match of an entry of an Accept header, such as "image/*;q=0.5", with a media type. `weight`: 0..1.
@@ -80,7 +81,7 @@ RouteBody json_body(const App& app) {
 
 void refuse_compressed(const Request& request) {
   if (request.header("Content-Encoding"))
-    throw HttpError(415, "A body must not be compressed (Content-Encoding)");
+    throw HttpError(415, "request body must not be compressed (Content-Encoding)");
 }
 
 RenderRequest read_query(const Request& request, std::span<const std::string_view> more) {
@@ -118,8 +119,8 @@ std::string_view negotiate(const Request& request, std::span<const std::string_v
   }
   if (!best.empty()) return best;
   std::string all;
-  for (const std::string_view type : offered) all += (all.empty() ? "" : ", ") + std::string(type);
-  throw HttpError(406, "This can be had as " + all);
+  for (const std::string_view type : offered) all += (all.empty() ? "" : " or ") + std::string(type);
+  throw HttpError(406, "Accept must allow " + all);
 }
 
 std::string server_timing(const Timing& timing) {
@@ -155,7 +156,7 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
     char text[320];
     std::snprintf(
         text, sizeof text,
-        "structure;desc=\"%s, %zu bytes, %d deep\", work;desc=\"%llu visits, %llu boxes, %llu primitives\"",
+        "structure;desc=\"%s, %zu bytes, depth %d\", work;desc=\"%llu visits, %llu boxes, %llu primitives\"",
         stats.accelerator->name, stats.structure.bytes, stats.structure.depth,
         static_cast<unsigned long long>(work.node_visits), static_cast<unsigned long long>(work.box_tests),
         static_cast<unsigned long long>(work.primitive_tests));
@@ -163,7 +164,7 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
     response.rays = stats.counts.rays.total();
     response.set("X-Rays", std::to_string(response.rays));
   } else {
-    told += "kept;desc=\"made for another request\"";
+    told += "kept;desc=\"cached from another request\"";
   }
   if (const RenderStats& stats = rendered.picture->stats; stats.error.known())
     response.set("X-RMSE", error_text(stats));

@@ -35,8 +35,8 @@ class ChartWork final : public JobWork {
   JobResult result(const std::string& job_id, std::string_view path) const override {
     const ChartForm* form = chart_form_of(path);
     if (!form || path != folder() + job_id + std::string(form->ending))
-      throw NotFound("The job makes the chart " + job_id + ".svg, .csv and .json");
-    return {"The chart", form->type, std::nullopt,
+      throw NotFound("unknown file; the job has " + job_id + ".svg, .csv and .json");
+    return {"chart", form->type, std::nullopt,
             [this, form](const std::string& prefix) { return form->write(study_.chart(), prefix); }};
   }
 
@@ -57,9 +57,10 @@ ChartOrder read_chart_order(App& app, Request& request, Timing& timing) {
   order.extent.threads = app.settings().threads;
   app.read(request.body, caller_of(request), timing, [&](const Document& document, const AssetSource&) {
     for (const char* key : {"scene", "scene_id"})
-      if (document.member(key)) throw InputError(std::string("/") + key, "the address names the scene");
+      if (document.member(key))
+        throw InputError(std::string("/") + key, "cannot be used here (the URL names the scene)");
     order.view = read_request(document, [&](Params& p) {
-      p.optional_object("chart", "What is tried.", [&](Params& c) { read_extent(c, order.extent); });
+      p.optional_object("chart", "Extent of the chart.", [&](Params& c) { read_extent(c, order.extent); });
     });
   });
   return order;
@@ -85,7 +86,7 @@ Response start_chart(App& app, Request& request) {
 Response get_chart(App& app, Request& request) {
   const std::string name = request.path_value("chart");
   const ChartForm* form = chart_form_of(name);
-  if (!form) throw HttpError(404, "A chart can be had as .svg, .csv and .json");
+  if (!form) throw HttpError(404, "chart name must end in .svg, .csv or .json (got " + quoted(name) + ")");
   return job_result(app, request, name.substr(0, name.size() - form->ending.size()));
 }
 

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 1> kOwnParameters{"measure"};
 bool asks_to_measure(const Request& request) {
   const std::string text = find_field(request.query, kOwnParameters[0]).value_or("false");
   if (text != "true" && text != "false")
-    throw InputError("/measure", "expected true or false, got " + quoted(text));
+    throw InputError("/measure", "must be true or false (got " + quoted(text) + ")");
   return text == "true";
 }
 

@@ -52,10 +52,10 @@ class FrameWork final : public JobWork {
       const auto number = parse_number<int>(name.substr(0, name.find('.')));
       if (number && name == std::to_string(*number) + ".png" && *number >= 0 && *number < steps())
         return {
-            "Frame " + std::to_string(*number), "image/png", *number + 1,
+            "frame " + std::to_string(*number), "image/png", *number + 1,
             [this, step = *number](const std::string&) { return files_[static_cast<std::size_t>(step)]; }};
     }
-    throw NotFound("The job has " + begin + "0.png to " + std::to_string(steps() - 1) + ".png");
+    throw NotFound("unknown file; the job has " + begin + "0.png to " + std::to_string(steps() - 1) + ".png");
   }
 
  private:
@@ -80,13 +80,13 @@ FrameOrder read_frame_order(App& app, Request& request, Timing& timing) {
   bool orbits = false;
   RenderOrder order = read_render_order(app, request, timing, [&](Params& p) {
     orbits = p.has("orbit");
-    p.optional_object("orbit", "A turn of the camera; missing: one picture.", [&](Params& o) {
+    p.optional_object("orbit", "Camera orbit; default: one image.", [&](Params& o) {
       const std::int64_t most = app.settings().orbit_frames;
       frames.frames = static_cast<int>(
-          o.integer("frames", "Pictures of it.", 1, most, std::min<std::int64_t>(most, orbits ? 120 : 1)));
-      step_degrees = o.number("step_degrees", "Turn from picture to picture.", {.min = -360, .max = 360},
+          o.integer("frames", "Number of frames.", 1, most, std::min<std::int64_t>(most, orbits ? 120 : 1)));
+      step_degrees = o.number("step_degrees", "Degrees per frame.", {.min = -360, .max = 360},
                               derived(360.0 / frames.frames));
-      const double time = o.number("time_step_s", "Motion from picture to picture.",
+      const double time = o.number("time_step_s", "Seconds of scene motion per frame.",
                                    {.min = -kLongestStep_s, .max = kLongestStep_s}, derived(0.0));
       if (o.has("time_step_s")) time_step_s = time;
     });

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/shorten.h"
 #include "server/routes/problem.h"
 
 namespace orrery {
@@ -39,7 +40,8 @@ Response start_job(App& app, Request& request, JobSpec spec, const std::string& 
   const std::string key = request.header("Idempotency-Key").value_or("");
   constexpr std::size_t kLongestKey = 255;
   if (key.size() > kLongestKey)
-    throw HttpError(400, "Idempotency-Key has more than " + std::to_string(kLongestKey) + " characters");
+    throw HttpError(400, "Idempotency-Key has " + grouped(key.size()) + " characters (limit " +
+                             grouped(kLongestKey) + ")");
   const Jobs::StartResult started = app.jobs().start(std::move(spec), key, content);
   Response response = json_answer(202, job_json(*started.job, started.job->status(), request.prefix));
   response.set("Location", job_path(started.job->id()));
@@ -53,8 +55,8 @@ Response job_result(App& app, const Request& request, const std::string& job_id)
   const JobResult result = job->work().result(job_id, request.path);
   const JobStatus status = job->status();
   if (status.steps_done < result.after.value_or(status.steps))
-    throw HttpError(409, result.name + " is not made: " + std::to_string(status.steps_done) + " of " +
-                             std::to_string(status.steps) + " pictures are, and the job is " +
+    throw HttpError(409, result.name + " is not ready: " + std::to_string(status.steps_done) + " of " +
+                             std::to_string(status.steps) + " images are done, and the job is " +
                              std::string(name_of(status.state)));
   const std::string etag = "\"" + job_id + request.path.substr(request.path.rfind('/')) + "\"";
   Response response{.status = 304};

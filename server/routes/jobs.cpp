@@ -72,7 +72,8 @@ Response get_events(App& app, Request& request) {
   int seen = 0;
   if (const auto last = request.header("Last-Event-ID")) {
     seen = parse_number<int>(*last).value_or(-1);
-    if (seen < 0) throw HttpError(400, "Last-Event-ID is no number of an event: " + last->substr(0, 40));
+    if (seen < 0)
+      throw HttpError(400, "Last-Event-ID must be the number of an event (got " + last->substr(0, 40) + ")");
   }
   if (seen > job->status().steps) return {.status = 204};  // ends the client's reconnects
   Response response;
@@ -88,7 +89,8 @@ Response get_events(App& app, Request& request) {
 Response remove_job(App& app, Request& request) {
   const std::string& id = request.path_value("id");
   if (app.jobs().find(id)->client() != request.client && !may_remove_others(app.access(), request))
-    throw HttpError(403, "Only who started the job may remove it, or a token of the scope admin");
+    throw HttpError(403,
+                    "job can be removed only by the client that started it or with a token of scope admin");
   app.jobs().remove(id);
   return {.status = 204};
 }

@@ -27,8 +27,8 @@ double number_of(const Request& request, std::string_view name, double min, doub
     const auto number = parse_number<double>(text);
     if (number && *number >= min && *number <= max) return *number;
     char range[96];
-    std::snprintf(range, sizeof range, "expected a number >= %g and <= %g, got ", min, max);
-    problems.push_back({"/" + key, range + quoted(text)});
+    std::snprintf(range, sizeof range, "must be a number from %g to %g (got ", min, max);
+    problems.push_back({"/" + key, range + quoted(text) + ")"});
   }
   return fallback;
 }
@@ -39,10 +39,11 @@ OrbitSpec read_orbit(App& app, const Request& request) {
   const Scene& scene = spec.scene->scene();
   const RenderRequest first = read_query(request, kOwnParameters);
   require_layers_kept(first, FileFormat::png);
-  require_no_budget(first, "an orbit that is watched");
+  require_no_budget(first, "an orbit stream");
   std::vector<Problem> problems;
   const double frames = number_of(request, "frames", 1, app.settings().orbit_frames, 120, problems);
-  if (frames != std::floor(frames)) problems.push_back({"/frames", "expected a whole number"});
+  if (frames != std::floor(frames))
+    problems.push_back({"/frames", "must be an integer (got " + number_text(frames) + ")"});
   spec.frames = static_cast<int>(frames);
   spec.path = full_turn(scene, first, spec.frames);
   spec.path.step_degrees = number_of(request, "step", -360, 360, spec.path.step_degrees, problems);
@@ -119,8 +120,8 @@ Response orbit(App& app, Request& request) {
                      .first = {},
                      .gone = request.gone};
   orbit.first = next_of(orbit, WaitState::Kind::turn);  // errors can still set the status
-  if (!orbit.first && request.gone.stop_requested()) throw Cancelled("the client has gone");
-  if (!orbit.first) throw Busy("The service ends", 5);
+  if (!orbit.first && request.gone.stop_requested()) throw Cancelled("client disconnected");
+  if (!orbit.first) throw Busy("service is shutting down", 5);
   response.stream = [orbit, format](Sink& sink) { send(orbit, PictureWriter(sink, format)); };
   return response;
 }

@@ -67,8 +67,8 @@ Response malformed(const MalformedJson& error, std::string_view request_id) {
   more["offset"] = error.offset();
   more["line"] = error.line();
   more["column"] = error.column();
-  return respond(400, "The body is not JSON", error.what(), request_id, "urn:orrery:problem:malformed-json",
-                 more);
+  return respond(400, "Request body is not JSON", error.what(), request_id,
+                 "urn:orrery:problem:malformed-json", more);
 }
 
 // Returns a 422 with the outcome that was possible: the budget and its certificate.
@@ -77,13 +77,13 @@ Response missed(const BudgetMissed& error, std::string_view request_id) {
   ordered_json more = list_of({{outcome.error_met ? "/budget/seconds" : "/budget/error", outcome.reason}});
   more["budget"] = budget_json(outcome);
   more["certificate"] = certificate_json(error.certificate());
-  return respond(422, "The budget cannot be met", error.what(), request_id,
-                 "urn:orrery:problem:missed-budget", more);
+  return respond(422, "Budget cannot be met", error.what(), request_id, "urn:orrery:problem:missed-budget",
+                 more);
 }
 
 Response invalid(const InputError& error, std::string_view request_id) {
-  return respond(422, "The input cannot be used", error.what(), request_id,
-                 "urn:orrery:problem:invalid-input", list_of(error.problems()));
+  return respond(422, "Invalid input", error.what(), request_id, "urn:orrery:problem:invalid-input",
+                 list_of(error.problems()));
 }
 
 }  // namespace
@@ -121,15 +121,13 @@ Response problem_response(std::exception_ptr error, std::string_view request_id)
   } catch (const Cancelled& e) {
     return respond(499, e.what(), request_id);
   } catch (const std::bad_alloc&) {
-    return try_later(503, Busy("There is no memory left for this at the moment", 5), request_id,
-                     "memory_bytes");
+    return try_later(503, Busy("not enough memory; retry later", 5), request_id, "memory_bytes");
   } catch (const std::exception& e) {
-    Response response =
-        respond(500, "Something went wrong inside; the log has more under this request's id", request_id);
+    Response response = respond(500, "internal error; the log has details under this request id", request_id);
     response.note = e.what();
     return response;
   } catch (...) {
-    return respond(500, "Something went wrong inside", request_id);
+    return respond(500, "internal error", request_id);
   }
 }
 

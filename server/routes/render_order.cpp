@@ -9,7 +9,7 @@ namespace {
 SceneStore::Prepared find(App& app, const Document& id) {
   const std::string text = id.canonical();  // in quotes if it is a string
   if (!text.starts_with('"'))
-    throw InputError("/scene_id", "expected the id of a scene in quotes, got " + text.substr(0, 40));
+    throw InputError("/scene_id", "must be the id of a scene in quotes (got " + text.substr(0, 40) + ")");
   return app.scenes().find(text.substr(1, text.size() - 2));
 }
 
@@ -21,7 +21,7 @@ RenderOrder read_render_order(App& app, Request& request, Timing& timing,
   app.read(
       request.body, caller_of(request), timing, [&](const Document& document, const AssetSource& assets) {
         const auto scene = document.member("scene"), id = document.member("scene_id");
-        if (scene && id) throw InputError("/scene_id", "expected either scene or scene_id, got both");
+        if (scene && id) throw InputError("/scene_id", "cannot be used with \"scene\"");
         if (scene || id) order.request = read_request(document, more);
         order.scene = id ? find(app, *id)
                          : app.scenes().get(scene ? *scene : document, assets, caller_of(request).client);

@@ -59,7 +59,8 @@ const Route& Router::find(Request& request) const {
   for (const Route& route : routes_)
     if (route.method == method && matches(route, request)) return route;
   const std::string allowed = allowed_methods(request);
-  throw HttpError(405, request.method + " is not possible here, only " + allowed, {{"Allow", allowed}});
+  throw HttpError(405, "method must be one of " + allowed + " (got " + request.method + ")",
+                  {{"Allow", allowed}});
 }
 
 std::string Router::allowed_methods(Request& request) const {
@@ -71,8 +72,8 @@ std::string Router::allowed_methods(Request& request) const {
   }
   if (methods.empty()) {
     const std::string below = named_below(request);
-    throw HttpError(404, "There is nothing at " + request.path.substr(0, 200) +
-                             (below.empty() ? "" : ", but there is " + below));
+    throw HttpError(404, "unknown path " + request.path.substr(0, 200) +
+                             (below.empty() ? "" : " (did you mean " + below + "?)"));
   }
   methods.insert("OPTIONS");
   std::string list;

@@ -19,16 +19,18 @@ Response share(App& app, const Router& router, Request& request) {
   Timing timing;
   app.read(request.body, caller_of(request), timing, [&](const Document& document, const AssetSource&) {
     read_document(document, [&](Params& p) {
-      path = p.text("path", "What is shared, beginning with /v1/.", kLongestPath);
-      seconds = p.integer("seconds", "How long.", 1, kLongest_s, kUsual_s);
+      path = p.text("path", "Path to share; starts with /v1/.", kLongestPath);
+      seconds = p.integer("seconds", "Lifetime of the link in seconds.", 1, kLongest_s, kUsual_s);
     });
   });
   for (const std::string& prefix : {request.prefix, app.settings().path_prefix})
     if (path.starts_with(prefix + "/") && !path.starts_with("/v1/")) path.erase(0, prefix.size());
-  if (!path.starts_with("/v1/")) throw InputError("/path", "expected an address that begins with /v1/");
+  if (!path.starts_with("/v1/"))
+    throw InputError("/path", "must begin with /v1/ (got " + orrery::quoted(path) + ")");
   const bool plain =
       std::all_of(path.begin(), path.end(), [](char c) { return c > ' ' && c < 0x7F && c != '#'; });
-  if (!plain) throw InputError("/path", "expected an address without blanks and #, escaped by %");
+  if (!plain)
+    throw InputError("/path", "must not contain blanks, # and characters outside ASCII; escape them with %");
   Request target;
   target.method = "GET";
   try {
@@ -37,8 +39,8 @@ Response share(App& app, const Router& router, Request& request) {
     target.segments = std::move(parsed.segments);
     target.query = std::move(parsed.query);
     if (router.find(target).scope != Scope::read)
-      throw HttpError(422, "expected an address that links may give");
-    if (is_link(target)) throw HttpError(422, "expected an address that is no link yet");
+      throw HttpError(422, "must be a path that a link may open (got " + orrery::quoted(path) + ")");
+    if (is_link(target)) throw HttpError(422, "must not be a signed link already");
   } catch (const HttpError& error) {
     throw InputError("/path", error.what());
   }

@@ -54,7 +54,7 @@ Rays<T> aimed_rays(const std::vector<Vec3d>& targets, double from, int count) {
   return rays;
 }
 
-class Adversaries : public StructureTest {
+class AdversarialScenes : public StructureTest {
  protected:
   template <class T>
   AcceleratorFacts agree(const Json& scene, const Rays<T>& rays) {
@@ -94,18 +94,18 @@ Json sheet(int side, const Height& height) {
   return {{"type", "mesh"}, {"positions", positions}, {"indices", indices}};
 }
 
-TEST_P(Adversaries, WavesOfTriangles) {
+TEST_P(AdversarialScenes, MatchesListOnTriangleWaves) {
   covers("F1");
   agree(scene_with({sheet(12, [](double x, double y) { return 0.3 * std::sin(5 * x) * std::cos(4 * y); })}),
         {}, 1.2, 20'000);
 }
 
-TEST_P(Adversaries, FlatSheet) {
+TEST_P(AdversarialScenes, MatchesListOnFlatSheet) {
   covers("F4");
   agree(scene_with({sheet(12, [](double, double) { return 0.0; })}), {}, 1.2, 20'000);
 }
 
-TEST_P(Adversaries, FewPrimitives) {
+TEST_P(AdversarialScenes, MatchesListOnFewPrimitives) {
   covers("F4");
   for (int count = 1; count < 5; ++count) {
     Json objects = Json::array();
@@ -114,7 +114,7 @@ TEST_P(Adversaries, FewPrimitives) {
   }
 }
 
-TEST_P(Adversaries, IdenticalTrianglesStayShallow) {
+TEST_P(AdversarialScenes, BoundsDepthOnIdenticalTriangles) {
   covers("F2");
   Json indices = Json::array();
   constexpr int kCount = 20'000;
@@ -125,14 +125,14 @@ TEST_P(Adversaries, IdenticalTrianglesStayShallow) {
   EXPECT_LE(facts.depth, 2 * std::log2(kCount) + 32);
 }
 
-TEST_P(Adversaries, ConcentricSpheres) {
+TEST_P(AdversarialScenes, BoundsDepthOnConcentricSpheres) {
   covers("F2");
   Json objects = Json::array();
   for (int i = 0; i < 1000; ++i) objects.push_back(sphere({}, 0.001 * (i + 1)));
   EXPECT_LE(agree(scene_with(objects), {}, 1.2, 2'000).depth, 2 * std::log2(1000) + 32);
 }
 
-TEST_P(Adversaries, SpheresThatHalveAndHalve) {
+TEST_P(AdversarialScenes, MatchesListOnHalvingSpheres) {
   covers("F3");
   Json objects = Json::array();
   for (int i = -19; i < 37; ++i)
@@ -141,7 +141,7 @@ TEST_P(Adversaries, SpheresThatHalveAndHalve) {
 }
 
 // Growing gaps leave bottom-up grouping a single nearest pair at a time.
-TEST_P(Adversaries, GapsThatGrow) {
+TEST_P(AdversarialScenes, BoundsDepthOnGrowingGaps) {
   covers("F3");
   Json objects = Json::array();
   std::vector<Vec3d> centers;
@@ -155,7 +155,7 @@ TEST_P(Adversaries, GapsThatGrow) {
   agree<double>(scene, aimed_rays<double>(centers, 1.5, 5'000));
 }
 
-TEST_P(Adversaries, FarFromTheOrigin) {
+TEST_P(AdversarialScenes, MatchesListFarFromOrigin) {
   covers("F1");
   Random random(5);
   const Vec3d far(1e5, -3e4, 2e5);
@@ -164,7 +164,7 @@ TEST_P(Adversaries, FarFromTheOrigin) {
   agree(scene_with(objects), far, 12, 10'000);
 }
 
-TEST_P(Adversaries, SampleScenes) {
+TEST_P(AdversarialScenes, MatchesListOnSampleScenes) {
   covers("F1");
   for (const auto& entry : std::filesystem::directory_iterator("scenes")) {
     if (entry.path().extension() != ".json") continue;
@@ -177,7 +177,7 @@ TEST_P(Adversaries, SampleScenes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Adversaries, testing::ValuesIn(accelerator_names()), parameter_name);
+INSTANTIATE_TEST_SUITE_P(All, AdversarialScenes, testing::ValuesIn(accelerator_names()), parameter_name);
 
 }  // namespace
 }  // namespace orrery::test

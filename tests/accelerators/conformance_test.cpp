@@ -85,14 +85,14 @@ class Accelerators : public StructureTest {
   }
 };
 
-TEST_P(Accelerators, AgreeWithTheListOnACloudOfAllShapes) {
+TEST_P(Accelerators, MatchesListOnRandomShapes) {
   covers("F1 F5");
   agree<float>(cloud(20, 1), 8, 30, 100'000);
   agree<double>(cloud(20, 1), 8, 30, 100'000);
   agree<float>(cloud(20, 2, true), 8, 30, 50'000);
 }
 
-TEST_P(Accelerators, AgreeWithTheListWhereSurfacesCoincide) {
+TEST_P(Accelerators, MatchesListOnCoincidentSurfaces) {
   covers("F1");
   for (const double from : {2.0, 100.0, 3000.0}) {
     agree<float>(stack(), 1.2, from, 100'000);
@@ -102,7 +102,7 @@ TEST_P(Accelerators, AgreeWithTheListWhereSurfacesCoincide) {
 
 // At distant silhouettes the kernels decide within a few ulp of the distance. A box test must not reject a
 // ray that the kernel accepts.
-TEST_P(Accelerators, AgreeWithTheListFromAfar) {
+TEST_P(Accelerators, MatchesListOnDistantRays) {
   covers("F1");
   for (const std::string& type : shape_names())
     for (const Json& object : shape_samples(type)) {
@@ -115,7 +115,7 @@ TEST_P(Accelerators, AgreeWithTheListFromAfar) {
     }
 }
 
-TEST_P(Accelerators, AgreeWithTheListOnGrazingRays) {
+TEST_P(Accelerators, MatchesListOnGrazingRays) {
   covers("F1");
   for (const std::string& type : shape_names())
     for (const Json& object : shape_samples(type)) {
@@ -126,7 +126,7 @@ TEST_P(Accelerators, AgreeWithTheListOnGrazingRays) {
 }
 
 // Rays exactly along an axis may cost at most three times as much as jittered rays.
-TEST_P(Accelerators, AxisAlignedRaysCostNoMore) {
+TEST_P(Accelerators, BoundsCostOfAxisAlignedRays) {
   covers("A29");
   const auto work = [&](double jitter) {
     Structure<float> structure(cloud(20, 5, true), GetParam());
@@ -142,7 +142,7 @@ TEST_P(Accelerators, AxisAlignedRaysCostNoMore) {
   EXPECT_LE(work(0), 3 * work(1e-3));
 }
 
-TEST_P(Accelerators, RaysThatAreNoNumbersMeetNothing) {
+TEST_P(Accelerators, ReturnsNoHitForNanRays) {
   covers("A36");
   Structure<float> structure(cloud(2, 7), GetParam());
   const float nan = std::numeric_limits<float>::quiet_NaN();

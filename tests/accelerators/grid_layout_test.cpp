@@ -64,7 +64,7 @@ class GridLayouts : public testing::Test {};
 using Numbers = testing::Types<float, double>;
 TYPED_TEST_SUITE(GridLayouts, Numbers);
 
-TYPED_TEST(GridLayouts, VisitExactlyWhatRaysTouch) {
+TYPED_TEST(GridLayouts, VisitsExactlyTouchedCells) {
   covers("F12");
   using T = TypeParam;
   const GridLayout<T> layout({Vec3<T>(T(-1)), Vec3<T>(T(1))}, 512);
@@ -75,7 +75,7 @@ TYPED_TEST(GridLayouts, VisitExactlyWhatRaysTouch) {
                               Vec3<T>(safe_normalize(random.direction()))});
 }
 
-TYPED_TEST(GridLayouts, VisitBothSidesOfAPlaneThatARayRunsIn) {
+TYPED_TEST(GridLayouts, VisitsBothSidesOfPlaneContainingRay) {
   covers("F12");
   using T = TypeParam;
   const GridLayout<T> layout({Vec3<T>(T(0)), Vec3<T>(T(8))}, 512);
@@ -96,7 +96,7 @@ TYPED_TEST(GridLayouts, VisitBothSidesOfAPlaneThatARayRunsIn) {
   expect_visits<T>(layout, {{T(9), T(4), T(-3)}, {T(0), T(0), T(1)}});  // outside of the grid
 }
 
-TYPED_TEST(GridLayouts, VisitKnownPaths) {
+TYPED_TEST(GridLayouts, VisitsKnownPaths) {
   covers("F12");
   using T = TypeParam;
   const GridLayout<T> unit({Vec3<T>(T(0)), Vec3<T>(T(1))}, 1000);
@@ -107,7 +107,7 @@ TYPED_TEST(GridLayouts, VisitKnownPaths) {
   expect_visits<T>(wide, {{T(0), T(0), T(0)}, Vec3<T>(safe_normalize(Vec3d(90, -16, 45)))});
 }
 
-TYPED_TEST(GridLayouts, FlatBoxesHaveCells) {
+TYPED_TEST(GridLayouts, CreatesCellsForFlatBoxes) {
   covers("F13");
   using T = TypeParam;
   for (const Vec3<T>& size : {Vec3<T>(1, 1, 0), Vec3<T>(0, 1, 0), Vec3<T>(0, 0, 0)}) {

@@ -23,7 +23,7 @@ std::vector<std::string> hard_scenes() {
 
 class HardScenes : public testing::TestWithParam<std::string> {};
 
-TEST_P(HardScenes, AreTheSameByAllStructures) {
+TEST_P(HardScenes, RendersIdenticallyToList) {
   for (const std::string& path : hard_scenes()) {
     std::ifstream file(path);
     const auto scene = load(Json::parse(file));
@@ -81,7 +81,7 @@ Json slivers(double aspect, Random& random) {
 
 class Slivers : public testing::TestWithParam<std::string> {};
 
-TEST_P(Slivers, AreTheSameByAllStructures) {
+TEST_P(Slivers, RendersIdenticallyToList) {
   Random random(41);
   for (int i = 0; i < 60; ++i) {
     const bool in_float = i % 2 == 0;
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Structures, Slivers, testing::ValuesIn(accelerator_name
 });
 
 // The tilts of these disks and cylinders are below the square root of the rounding error.
-TEST(NearlyAxisAligned, DisksAndCylindersReachBeyondTheirPlane) {
+TEST(ShapeBounds, CoversSlightlyTiltedDisksAndCylinders) {
   for (const double tilt : {1e-8, 1e-12, 1e-100}) {
     const auto bounds = [](const Json& object) {
       const auto scene = load(scene_with(object));

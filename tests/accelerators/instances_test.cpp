@@ -89,7 +89,7 @@ Rays<T> rays_around(int count, std::uint64_t seed) {
 
 class Instances : public StructureTest {};
 
-TEST_P(Instances, AgreeWithTheListOfThem) {
+TEST_P(Instances, MatchesList) {
   covers("F1 A38");
   Json mixed = scene_of_places(
       ball_mesh(8, 12), Json::array({{{"type", "sphere"}, {"center", {1, 1, 1}}, {"radius", 0.8}},
@@ -104,7 +104,7 @@ TEST_P(Instances, AgreeWithTheListOfThem) {
 }
 
 // In model coordinates, these rays start millions of metres away from a ball of radius 1.
-TEST_P(Instances, AreFlattenedToAMillionth) {
+TEST_P(Instances, MatchesListWhenFlattenedToMillionth) {
   covers("A27 A38");
   Json scene = scene_of_places(ball_mesh(8, 12));
   for (const char* object :
@@ -131,14 +131,14 @@ TEST_P(Instances, AreFlattenedToAMillionth) {
   agree<float>(scene, rays, {50.0f, 1e30f});
 }
 
-TEST_P(Instances, OfAPlaneHaveNoBounds) {
+TEST_P(Instances, MatchesListOnUnboundedPlanes) {
   covers("F5 A38");
   const Json scene = scene_of_places(
       {{"type", "plane"}, {"point", {0, -1, 0}}, {"normal", {0, 1, 0}}, {"material", "white"}});
   agree<float>(scene, rays_around<float>(5'000, 3), {1e30f});
 }
 
-TEST_P(Instances, CountWhatIsTestedInThem) {
+TEST_P(Instances, CountsTestsInsideInstances) {
   const Json model = ball_mesh(8, 12);
   Structure<float> structure(scene_of_places(model), GetParam());
   const auto rays = rays_around<float>(1'000, 9);
@@ -152,7 +152,7 @@ TEST_P(Instances, CountWhatIsTestedInThem) {
 
 INSTANTIATE_TEST_SUITE_P(All, Instances, testing::ValuesIn(accelerator_names()), parameter_name);
 
-TEST(Instance, IsMetWhereItsMeshWouldBe) {
+TEST(Instance, MatchesBakedMesh) {
   covers("A38");
   const Json model = ball_mesh(8, 12);
   Structure<double> placed(scene_of_places(model), "bottom-up"), baked(baked_scene(model), "bottom-up");
@@ -239,7 +239,7 @@ void expect_outward_and_clear() {
   }
 }
 
-TEST(Instance, LooksOutwardHoweverItIsScaled) {
+TEST(Instance, ReturnsOutwardNormalsAtAnyScale) {
   covers("A38 A16");
   expect_outward_and_clear<float>();
   expect_outward_and_clear<double>();

@@ -93,7 +93,7 @@ class KnownHits : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(KnownHits, StayUnlessThereIsABetterOne) {
+TEST_P(KnownHits, ReplacesHitOnlyByBetterOne) {
   covers("F1");
   agree_on_all<float>();
   agree_on_all<double>();

@@ -110,7 +110,7 @@ class Motion : public StructureTest {
   }
 };
 
-TEST_P(Motion, PairsOfInstancesSwapPlaces) {
+TEST_P(Motion, RefitsOrRebuildsForSwappingInstances) {
   covers("F19 F1");
   const UpdateCounts followed = follow<float>(swapping_instances(), GetParam(), 20, 3000);
   follow<double>(swapping_instances(), GetParam(), 5, 1000);
@@ -118,7 +118,7 @@ TEST_P(Motion, PairsOfInstancesSwapPlaces) {
   expect_both(followed);
 }
 
-TEST_P(Motion, PairsOfTrianglesSwapPlaces) {
+TEST_P(Motion, RefitsOrRebuildsForSwappingTriangles) {
   covers("F19 F1");
   const UpdateCounts followed = follow<float>(swapping_triangles(), GetParam(), 20, 3000);
   follow<double>(swapping_triangles(), GetParam(), 5, 1000);
@@ -126,7 +126,7 @@ TEST_P(Motion, PairsOfTrianglesSwapPlaces) {
 }
 
 // This mesh has enough triangles for inner nodes with inner children.
-TEST_P(Motion, PairsOfManyTrianglesBeginToSwapPlaces) {
+TEST_P(Motion, MatchesListOnLargeMovingMesh) {
   covers("F19 F1");
   Json scene = swapping_triangles(kLarge);
   scene["objects"][1]["motion"][1]["time"] = 16;
@@ -134,7 +134,7 @@ TEST_P(Motion, PairsOfManyTrianglesBeginToSwapPlaces) {
   follow<double>(scene, GetParam(), 2, 1000, 20);
 }
 
-TEST_P(Motion, OneFliesAwayAndComesBack) {
+TEST_P(Motion, MatchesListWhenInstanceLeavesAndReturns) {
   covers("F19");
   Json scene = swapping_instances();
   for (Json& instance : scene["instances"]) instance.erase("motion");
@@ -144,7 +144,7 @@ TEST_P(Motion, OneFliesAwayAndComesBack) {
 }
 
 // A triangle collapses to a line and to a point, and so does a whole mesh.
-TEST_P(Motion, WhatLosesItsAreaIsNotMet) {
+TEST_P(Motion, MissesCollapsedTriangles) {
   covers("F19");
   Json scene = swapping_triangles();
   Json& mesh = scene["objects"][1];
@@ -165,7 +165,7 @@ TEST_P(Motion, WhatLosesItsAreaIsNotMet) {
 }
 
 // Float rounding gives some of these collinear triangles an area, but no ray may hit them.
-TEST_P(Motion, WhatIsFlattenedToLinesIsNotMet) {
+TEST_P(Motion, MissesTrianglesFlattenedToLines) {
   covers("F19");
   Random random(17);
   Json mesh = {{"type", "mesh"}, {"material", "white"}}, lines = Json::array();
@@ -200,7 +200,7 @@ TEST_P(Motion, WhatIsFlattenedToLinesIsNotMet) {
 
 INSTANTIATE_TEST_SUITE_P(All, Motion, testing::ValuesIn(accelerator_names()), parameter_name);
 
-TEST(MovingGeometry, SharesWhatRests) {
+TEST(MovingGeometry, SharesStaticGeometry) {
   Json json = swapping_instances();
   json["models"]["other"] = json["models"]["it"];
   json["models"]["other"]["objects"].push_back(swapping_triangles()["objects"][1]);
@@ -214,7 +214,7 @@ TEST(MovingGeometry, SharesWhatRests) {
 }
 
 // A tree built over coincident triangles must be rebuilt once they spread out.
-TEST(MovingGeometry, ForgetsATreeThatWasBuiltInOnePlace) {
+TEST(MovingGeometry, RebuildsTreeOfFormerlyCoincidentTriangles) {
   covers("F19");
   Random random(4);
   Json mesh = {{"type", "mesh"}, {"material", "white"}}, apart = Json::array();

@@ -59,7 +59,7 @@ class Scores : public testing::Test {};
 using NumberTypes = testing::Types<float, double, Lanes<float>, Lanes<double>>;
 TYPED_TEST_SUITE(Scores, NumberTypes);
 
-TYPED_TEST(Scores, AreThoseOfAPlainEvaluation) {
+TYPED_TEST(Scores, MatchesReferenceEvaluation) {
   using N = TypeParam;
   using T = ScalarOf<N>;
   Random random(2);
@@ -124,7 +124,7 @@ double share_right(const Network& network, const std::vector<NetworkExample>& of
   return right / static_cast<double>(of.size());
 }
 
-TEST(Training, LowersTheLossAlsoOfWhatWasNotSeen) {
+TEST(Training, LowersLossOnUnseenExamples) {
   const auto seen = examples(4000, 1), unseen = examples(4000, 2);
   const Network before = random_network(1), after = train_network(seen);
   EXPECT_LT(loss_of(after, seen), 0.1 * loss_of(before, seen));
@@ -132,7 +132,7 @@ TEST(Training, LowersTheLossAlsoOfWhatWasNotSeen) {
   EXPECT_GT(share_right(after, unseen), 0.95);
 }
 
-TEST(Training, IsTheSameTwice) {
+TEST(Training, IsDeterministicForEqualSeeds) {
   const auto seen = examples(500, 3);
   TrainingOptions options{.steps = 200};
   const Network once = train_network(seen, options);
@@ -142,7 +142,7 @@ TEST(Training, IsTheSameTwice) {
 }
 
 // Shadow rays from a floor under two balls towards a light: the predictor learns the place of each ball.
-TEST(NetworkPredictor, ProposesWhatStoodInTheWay) {
+TEST(NetworkPredictor, ProposesLearnedOccluders) {
   Random random(4);
   std::vector<OcclusionSample> samples;
   const auto occluder_at = [](double x) { return x < -0.5 ? 7 : x > 0.5 ? 3 : kNoPrimitive; };
@@ -169,7 +169,7 @@ TEST(NetworkPredictor, ProposesWhatStoodInTheWay) {
   EXPECT_GT(right, kBatch * 9 / 10);
 }
 
-TEST(NetworkPredictor, ProposesNothingWhereNothingWasInTheWay) {
+TEST(NetworkPredictor, ProposesNothingWithoutOccludedSamples) {
   const OcclusionSample lit{{{0, 0, 0}, {0, 1, 0}}, kNoPrimitive};
   const auto rays = std::make_unique<RayBatch<double>>();
   const auto proposed = std::make_unique<Array<IndexOf<double>>>();

@@ -61,13 +61,13 @@ Hull turned(Hull hull) {
   return hull;
 }
 
-TEST(OrientedBox, OfACubeIsNoLargerThanTheCube) {
+TEST(OrientedBox, FitsCubeTightly) {
   covers("F7");
   const Boundsd cube = Boundsd::around({}, Vec3d(1));
   EXPECT_NEAR(box_of(sides_of(cube)).volume(), 8, 1e-9);
 }
 
-TEST(OrientedBox, IsOnlyTakenWhereItIsSmaller) {
+TEST(OrientedBox, IsPreferredOnlyIfSmaller) {
   covers("F7");
   Random random(3);
   int taken = 0;
@@ -86,14 +86,14 @@ TEST(OrientedBox, IsOnlyTakenWhereItIsSmaller) {
   EXPECT_GT(taken, 20);
 }
 
-TEST(OrientedBox, FitsATurnedSlab) {
+TEST(OrientedBox, FitsRotatedSlab) {
   covers("F7");
   const Hull slab = turned(sides_of(Boundsd::around({}, {4, 1, 0.25})));
   EXPECT_NEAR(box_of(slab).volume(), 8, 1e-9);
 }
 
 // Points heaped in two corners rotate axes fitted to points, but not axes fitted to area.
-TEST(OrientedBox, IgnoresHowFinelyCornersAreCut) {
+TEST(OrientedBox, IgnoresTessellationDensity) {
   covers("F8");
   Hull rectangle{{Vec3d(0, 0, 0), Vec3d(4, 0, 0), Vec3d(4, 1, 0)},
                  {Vec3d(0, 0, 0), Vec3d(4, 1, 0), Vec3d(0, 1, 0)}};
@@ -107,7 +107,7 @@ TEST(OrientedBox, IgnoresHowFinelyCornersAreCut) {
   EXPECT_LE(volume(box_of(cube)), 1.1 * best_of_random(cube, volume));
 }
 
-TEST(OrientedBox, OfAPointALineAndAPlaneIsWhole) {
+TEST(OrientedBox, EnclosesDegenerateHulls) {
   covers("F9");
   const Vec3d p(3, -2, 5);
   const Hull point{{p, p, p}}, line{{p, p + Vec3d(1, 2, 3), p + Vec3d(2, 4, 6)}};
@@ -120,7 +120,7 @@ TEST(OrientedBox, OfAPointALineAndAPlaneIsWhole) {
   }
 }
 
-TEST(OrientedBox, HoldsWhatItIsAround) {
+TEST(OrientedBox, EnclosesItsHull) {
   covers("F9");
   Random random(5);
   for (int i = 0; i < 200; ++i) {

@@ -68,7 +68,7 @@ Json rough_sea() {
   return scene_with(Json{{"type", "mesh"}, {"positions", positions}, {"indices", indices}});
 }
 
-TEST(LargeTrees, FindWhatTheListFinds) {
+TEST(LargeBvh, MatchesList) {
   const Json scene = rough_sea();
   Structure<float> tree(scene, "bvh"), list(scene, "list");
   ASSERT_GT(tree.facts().bytes, std::size_t{16} << 20);
@@ -90,14 +90,14 @@ TEST(LargeTrees, FindWhatTheListFinds) {
   EXPECT_EQ(tree.occluded(rays, 0.2f), list.occluded(rays, 0.2f));
 }
 
-TEST(Packets, FindWhatTheListFindsAlsoWhereTheirBudgetEnds) {
+TEST(PacketTraversal, MatchesListBeyondPacketBudget) {
   expect_agreement<float>();
   expect_agreement<double>();
 }
 
 // A packet may visit a thousand times as many primitives as each of its rays. Neighbouring shadow rays from a
 // bundle to a light pass many straws together, but few each.
-TEST(Packets, EndWhereRaysAloneAreCheaper) {
+TEST(PacketTraversal, SwitchesToCheaperSingleRays) {
   const Json scene = straws(4000);
   Structure<float> tree(scene, "bvh");
   const Rays<float> camera = camera_rays<float>();

@@ -48,14 +48,14 @@ class Partitions : public StructureTest {
   }
 };
 
-TEST_P(Partitions, ShareATriangleThroughTheMiddleSparingly) {
+TEST_P(Partitions, LimitsReferencesToDiagonalTriangles) {
   covers("F14");
   Json objects{triangle({-1, -1, -1}, {1, 1, 0.9}, {-0.9, 1, 1})};
   for (int i = 0; i < 200; ++i) objects.push_back(triangle({-1, -1, -1}, {1, 1, 0.001 * i}, {-0.9, 1, 1}));
   expect_few_references(scene_with(objects), 1);
 }
 
-TEST_P(Partitions, DoNotCutPointsThatCoincide) {
+TEST_P(Partitions, DoesNotSplitCoincidentSpheres) {
   covers("F14 F15");
   Json objects{sphere({5, 5, 5}, 0.1)};
   for (int i = 0; i < 1000; ++i) objects.push_back(sphere({1, 2, 3}, 1e-4));
@@ -64,7 +64,7 @@ TEST_P(Partitions, DoNotCutPointsThatCoincide) {
   expect_few_references(scene_with(objects), rays);
 }
 
-TEST_P(Partitions, FindSheetsThatLieOnThePlanes) {
+TEST_P(Partitions, HitsSheetsOnSplitPlanes) {
   covers("F15");
   Json objects = Json::array();
   for (int i = -8; i <= 8; ++i)
@@ -86,7 +86,7 @@ TEST_P(Partitions, FindSheetsThatLieOnThePlanes) {
   agree<float>(scene, in_plane, {1e30f});
 }
 
-TEST_P(Partitions, FindTheNearerOfLongAndShort) {
+TEST_P(Partitions, ReturnsNearerOfLongAndShortPrimitives) {
   covers("F11");
   Random random(8);
   Json objects = Json::array();
@@ -134,7 +134,7 @@ double tests_per_ray(const Json& scene, const std::string& name, const Rays<floa
   return static_cast<double>(structure.counts().primitive_tests) / static_cast<double>(rays.size());
 }
 
-TEST(AdaptiveGrid, FindsTheTeapotInTheStadium) {
+TEST(AdaptiveGrid, ResolvesSmallMeshInLargeScene) {
   covers("F10");
   const Json scene = small_mesh_in_large_ring();
   Random random(9);
@@ -150,7 +150,7 @@ TEST(AdaptiveGrid, FindsTheTeapotInTheStadium) {
 
 // Expects at most 1.3 times the primitive tests of a bottom-up tree, both for evenly spread triangles and for
 // sizes that differ by a factor of 1,000.
-TEST(SurfaceAreaHeuristic, TestsAsFewPrimitivesAsGroupingFromTheBottomUp) {
+TEST(SurfaceAreaHeuristic, StaysNearBottomUpTestCount) {
   const Json scene = small_mesh_in_large_ring();
   Random random(10);
   Rays<float> near, far;

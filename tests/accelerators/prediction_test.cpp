@@ -140,9 +140,9 @@ void expect_no_change(const Subject& subject, const std::string& accelerator, in
   }
 }
 
-class PredictionOfShadows : public testing::TestWithParam<std::string> {};
+class ShadowPrediction : public testing::TestWithParam<std::string> {};
 
-TEST_P(PredictionOfShadows, ChangesNoneInFrontOfAnyStructure) {
+TEST_P(ShadowPrediction, PreservesShadowsOfEveryStructure) {
   covers("F18");
   for (const Subject& subject : subjects()) {
     expect_no_change<float>(subject, GetParam(), 4'000);
@@ -150,9 +150,9 @@ TEST_P(PredictionOfShadows, ChangesNoneInFrontOfAnyStructure) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PredictionOfShadows, testing::ValuesIn(accelerator_names()), parameter_name);
+INSTANTIATE_TEST_SUITE_P(All, ShadowPrediction, testing::ValuesIn(accelerator_names()), parameter_name);
 
-TEST(PredictionOfShadows, ChangesNoneOfMany) {  // a million in an exhaustive run
+TEST(ShadowPrediction, PreservesShadowsOfManyRays) {  // a million in an exhaustive run
   covers("F18");
   const int rays = exhaustive() ? 1'000'000 : 20'000;
   for (const Subject& subject : subjects()) {
@@ -162,7 +162,7 @@ TEST(PredictionOfShadows, ChangesNoneOfMany) {  // a million in an exhaustive ru
 }
 
 // Components of these rays are NaN, infinite, zero, denormal or the largest numbers.
-TEST(PredictionOfShadows, ChangesNoneOfBrokenRays) {
+TEST(ShadowPrediction, PreservesShadowsOfInvalidRays) {
   covers("F18");
   const Subject subject{"balls", balls(50, 1)};
   const Rays<float> rays = invalid_rays<float>(10'000, 6);
@@ -172,7 +172,7 @@ TEST(PredictionOfShadows, ChangesNoneOfBrokenRays) {
     EXPECT_EQ(Structure<float>(subject.scene, "bvh", stage).occluded(rays, 2), expected) << front;
 }
 
-TEST(PredictionOfShadows, LeavesTheNearestHitToTheStructure) {
+TEST(ShadowPrediction, IgnoresNearestHitQueries) {
   const Json scene = balls(50, 1);
   const Rays<float> rays = any_rays<float>(3, 5'000, 5);
   Structure<float> reference(scene, "list");
@@ -184,7 +184,7 @@ TEST(PredictionOfShadows, LeavesTheNearestHitToTheStructure) {
   }
 }
 
-TEST(PredictionCounts, TellProposalsFromProofs) {
+TEST(PredictionCounts, SeparatesPredictedFromVerifiedOccluders) {
   const Json scene = balls(150, 1);
   const Rays<float> rays = any_rays<float>(3, 1000, 5);
   const auto counts = [&](const Stage<float>& stage) {
@@ -202,7 +202,7 @@ TEST(PredictionCounts, TellProposalsFromProofs) {
   EXPECT_EQ(wrong.primitive_tests, bare.primitive_tests + 1000);
 }
 
-TEST(PredictionCounts, FallWhereThePastIsAGuide) {
+TEST(PredictionCounts, LowersTestCountForCoherentRays) {
   const Json scene = balls(150, 1);
   const Rays<float> rays = neighbouring_rays<float>(20'000, 4);
   Structure<float> bare(scene, "list"), last(scene, "list", [](const auto&primitives, auto behind) {

@@ -36,7 +36,7 @@ class Reordering : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(Reordering, ChangesNoHitAndNoShadow) {
+TEST_P(Reordering, PreservesHitsAndShadows) {
   covers("F17");
   agree_on_all<float>();
   agree_on_all<double>();
@@ -63,7 +63,7 @@ class RayOrders : public testing::Test {};
 using Numbers = testing::Types<float, double>;
 TYPED_TEST_SUITE(RayOrders, Numbers);
 
-TYPED_TEST(RayOrders, HoldEachActiveRayOnce) {
+TYPED_TEST(RayOrders, ContainsEachActiveRayOnce) {
   covers("F17");
   using T = TypeParam;
   for (const int count : {1, 7, 16, 500, kBatch}) {
@@ -84,7 +84,7 @@ TYPED_TEST(RayOrders, HoldEachActiveRayOnce) {
   EXPECT_EQ(order_of(*nobody, LaneGroups::covering(0, kBatch, kWidth<T>)).count, 0);
 }
 
-TYPED_TEST(RayOrders, KeepTheOrderOfEqualKeys) {
+TYPED_TEST(RayOrders, SortsEqualKeysStably) {
   covers("F17");
   using T = TypeParam;
   const Rays<T> same(900, {{T(1), T(2), T(3)}, {T(0), T(1), T(0)}});
@@ -101,7 +101,7 @@ TYPED_TEST(RayOrders, KeepTheOrderOfEqualKeys) {
   EXPECT_EQ(order_in<T>(directions), expected);
 }
 
-TYPED_TEST(RayOrders, BringOriginsOfOnePlaceTogether) {
+TYPED_TEST(RayOrders, GroupsNearbyOrigins) {
   using T = TypeParam;
   Random random(6);
   Rays<T> rays;
@@ -121,7 +121,7 @@ TYPED_TEST(RayOrders, BringOriginsOfOnePlaceTogether) {
 }
 
 // Origins in one point leave the order to the directions, octant by octant.
-TYPED_TEST(RayOrders, SortADotOfOriginsByOctant) {
+TYPED_TEST(RayOrders, SortsSharedOriginByOctant) {
   covers("F17");
   using T = TypeParam;
   const Rays<T> rays = rays_from_one_point<T>(3, 1000, 7);
@@ -134,7 +134,7 @@ TYPED_TEST(RayOrders, SortADotOfOriginsByOctant) {
       std::is_sorted(order.begin(), order.end(), [&](int a, int b) { return octant_of(a) < octant_of(b); }));
 }
 
-TYPED_TEST(RayOrders, PutNaNInTheLowestCell) {
+TYPED_TEST(RayOrders, PlacesNanInLowestCell) {
   covers("F17");
   using T = TypeParam;
   const T nan = std::numeric_limits<T>::quiet_NaN();
@@ -146,7 +146,7 @@ TYPED_TEST(RayOrders, PutNaNInTheLowestCell) {
 }
 
 // Inactive rays are not touched.
-TYPED_TEST(RayOrders, LeaveOtherRaysAlone) {
+TYPED_TEST(RayOrders, LeavesInactiveRaysUnchanged) {
   using T = TypeParam;
   Structure<T> sorted(balls(20, 1), "bvh", reorder<T>);
   const auto batch = std::make_unique<RayBatch<T>>();

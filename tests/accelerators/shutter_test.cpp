@@ -145,7 +145,7 @@ class Shutter : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(Shutter, MovingThingsAreFoundAsByTestingEverything) {
+TEST_P(Shutter, MatchesExhaustiveSearchOnMovingGeometry) {
   covers("F19 F1");
   agrees_with_testing_everything<float>();
   agrees_with_testing_everything<double>();
@@ -154,7 +154,7 @@ TEST_P(Shutter, MovingThingsAreFoundAsByTestingEverything) {
 INSTANTIATE_TEST_SUITE_P(All, Shutter, testing::ValuesIn(accelerator_names()), parameter_name);
 
 // Hits and surfaces of rays at one time equal those of the scene at that instant.
-TEST(MovingDuringAnExposure, StandsWhereItIsAtTheRaysTime) {
+TEST(MotionBlur, MatchesStillSceneAtRayTime) {
   covers("F19");
   const auto scene = load(busy_scene());
   const auto& type = type_named("bvh");
@@ -199,7 +199,7 @@ TEST(MovingDuringAnExposure, StandsWhereItIsAtTheRaysTime) {
 
 // Corners of rotating, growing and moving geometry stay in the box, and the box is not much larger than
 // needed.
-TEST(MovingDuringAnExposure, BoxesHoldArcs) {
+TEST(MotionBlur, BoundsRotatingGeometryTightly) {
   Random random(3);
   const Boundsd model = Boundsd::of({{-1, 0.5, -0.2}, {2, 0.7, 0.4}});
   for (int trial = 0; trial < 300; ++trial) {
@@ -228,7 +228,7 @@ TEST(MovingDuringAnExposure, BoxesHoldArcs) {
 }
 
 // Structures over resting geometry are reused for the next exposure.
-TEST(MovingDuringAnExposure, FollowsFromTheExposureBefore) {
+TEST(MotionBlur, ReusesStaticGeometryAcrossExposures) {
   const auto scene = load(busy_scene());
   const auto& type = type_named("bvh");
   const auto first = make_geometry<float>(scene, type, kExposure);

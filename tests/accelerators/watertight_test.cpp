@@ -81,14 +81,14 @@ class Watertight : public testing::TestWithParam<std::string> {
   static int rays() { return GetParam() == "bvh" ? 1'000'000 : 50'000; }
 };
 
-TEST_P(Watertight, AroundTheOrigin) {
+TEST_P(Watertight, LeaksNoRaysAroundOrigin) {
   covers("A12 A27 A28");
   expect_no_leak<float>({}, rays());
   expect_no_leak<double>({}, rays());
 }
 
 // Uses the position of Embree's own test.
-TEST_P(Watertight, FarFromTheOrigin) {
+TEST_P(Watertight, LeaksNoRaysFarFromOrigin) {
   covers("A12 A27 A28");
   expect_no_leak<float>({148376, 1234, -223423}, rays());
   expect_no_leak<double>({148376, 1234, -223423}, rays());

@@ -26,7 +26,7 @@ using test::kNever;
 using test::TurnOrder;
 using test::Waiters;
 
-TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
+TEST(Admission, SharesSlotsByCost) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
@@ -39,7 +39,7 @@ TEST(Admission, ClientsShareByCostHoweverMuchEachAsksFor) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"a1", "b1", "a2", "a3", "b2", "a4"}));  // finish at 10 15 20 30 30 40
 }
 
-TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
+TEST(Admission, PrefersInteractiveWorkButReservesBatchSlot) {
   ManualTimer timer;
   Admission admission({.running = 2, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
@@ -71,7 +71,7 @@ TEST(Admission, InteractiveWorkGoesFirstButBatchWorkAlwaysHasAPlace) {
 
 using std::chrono_literals::operator""ms;
 
-TEST(Admission, WorkLosesItsPlaceAfterAWhileToWhoWaits) {
+TEST(Admission, PreemptsForOtherClientAfterTimeSlice) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
@@ -94,7 +94,7 @@ TEST(Admission, WorkLosesItsPlaceAfterAWhileToWhoWaits) {
   EXPECT_EQ(admission.running(), 0);
 }
 
-TEST(Admission, WorkLosesItsPlaceToItsOwnClientAfterALongerWhile) {
+TEST(Admission, PreemptsForSameClientAfterLongerTimeSlice) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
@@ -108,7 +108,7 @@ TEST(Admission, WorkLosesItsPlaceToItsOwnClientAfterALongerWhile) {
   EXPECT_EQ(waiters.order(), TurnOrder{"a1"});
 }
 
-TEST(Admission, WhoComesTakesAPlaceThatWasHeldForAWhile) {
+TEST(Admission, PreemptsLongestHeldSlotOnArrival) {
   ManualTimer timer;
   Admission admission({.running = 2, .queue_rays = 1000}, timer);
   std::optional older(admission.enter(demand("z"), kNever));
@@ -138,7 +138,7 @@ class CountingTimer final : public ManualTimer {
 
 // Resumed work is charged for the time used before. A ticket that used 60 ms is admitted before one that used
 // 600 ms.
-TEST(Admission, WhatWasUsedIsChargedToWorkThatGoesOn) {
+TEST(Admission, ChargesUsedTimeToResumedWork) {
   CountingTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
   std::optional<Admission::Ticket> last;
@@ -180,7 +180,7 @@ void occupy_slot_while_contended(Admission& admission, ManualTimer& timer, std::
 }
 
 // The overrun is charged by time, not by the measured rate of slow work.
-TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
+TEST(Admission, ChargesOverrunToClient) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
   occupy_slot_while_contended(admission, timer, 1000ms);  // as 10 million rays
@@ -194,7 +194,7 @@ TEST(Admission, WhatWasUsedBeyondWhatWasExpectedIsChargedToTheClient) {
 }
 
 // A client that used the service alone for a minute owes nothing to later clients.
-TEST(Admission, WhatNobodyWaitedForIsFree) {
+TEST(Admission, ChargesNothingWithoutContention) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
   {
@@ -211,7 +211,7 @@ TEST(Admission, WhatNobodyWaitedForIsFree) {
 }
 
 // The debt is bounded, so that a client waits for seconds and not for minutes.
-TEST(Admission, WhatAClientOwesIsBounded) {
+TEST(Admission, BoundsClientDebt) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e15}, timer);
   occupy_slot_while_contended(admission, timer, 60'000ms);  // as 600 million rays; 16 slots are 8 million
@@ -228,7 +228,7 @@ TEST(Admission, WhatAClientOwesIsBounded) {
 }
 
 // Long work is charged for 50 ms at first. It starts next to shorter work, not after hours of it.
-TEST(Admission, LongWorkPaysForItsFirstPlaceAlone) {
+TEST(Admission, ChargesLongWorkForFirstSliceOnly) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e15}, timer);
   Waiters waiters(admission);
@@ -241,7 +241,7 @@ TEST(Admission, LongWorkPaysForItsFirstPlaceAlone) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"small", "long", "small"}));  // finish at 0.4, 0.52, 0.8 million
 }
 
-TEST(Admission, InteractiveWorkTakesThePlaceOfBatchWork) {
+TEST(Admission, PreemptsBatchRatherThanInteractiveWork) {
   ManualTimer timer;
   Admission admission({.running = 2, .queue_rays = 1000}, timer);
   const auto batch = admission.enter(demand("z", 10, Priority::batch), kNever);
@@ -257,7 +257,7 @@ TEST(Admission, InteractiveWorkTakesThePlaceOfBatchWork) {
   EXPECT_FALSE(interactive.expired());  // a slot is free
 }
 
-TEST(Admission, BatchWorkTakesThePlaceOfInteractiveWorkWhileNoneOfItRuns) {
+TEST(Admission, PreemptsInteractiveWorkIfNoBatchWorkRuns) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   const auto interactive = admission.enter(demand("z"), kNever);
@@ -269,7 +269,7 @@ TEST(Admission, BatchWorkTakesThePlaceOfInteractiveWorkWhileNoneOfItRuns) {
   EXPECT_TRUE(batch.expired());
 }
 
-TEST(Admission, WhoHasLostManyPlacesBeginsNoMore) {
+TEST(Admission, DelaysClientsWithManyPreemptions) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   std::list<Admission::Ticket> own;
@@ -290,7 +290,7 @@ TEST(Admission, WhoHasLostManyPlacesBeginsNoMore) {
 }
 
 // Work that has begun cannot be rejected, whatever its remaining cost.
-TEST(Admission, WorkThatLostItsPlaceShutsNobodyElseOut) {
+TEST(Admission, QueuesOthersDespiteLargePreemptedWork) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   std::optional large(admission.enter(demand("z", 1e12), kNever));
@@ -308,7 +308,7 @@ TEST(Admission, WorkThatLostItsPlaceShutsNobodyElseOut) {
   renewal.join();
 }
 
-TEST(Admission, TheLongestWaitIsThatOfWhoWaitsLeast) {
+TEST(Admission, ReportsShortestClientWait) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   EXPECT_EQ(admission.shortest_client_wait(), Clock::duration{});
@@ -326,7 +326,7 @@ TEST(Admission, TheLongestWaitIsThatOfWhoWaitsLeast) {
   waiters.join();
 }
 
-TEST(Admission, WorkThatIsCalledOffWhileItWaitsToGoOnHasNoPlace) {
+TEST(Admission, HoldsNoSlotAfterCancelledRenewal) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   std::stop_source stop;
@@ -343,7 +343,7 @@ TEST(Admission, WorkThatIsCalledOffWhileItWaitsToGoOnHasNoPlace) {
   EXPECT_EQ(admission.running(), 0);
 }
 
-TEST(Admission, WhatWaitsIsBoundedByItsCost) {
+TEST(Admission, BoundsQueueByCost) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 100}, timer);
   Waiters waiters(admission);
@@ -367,7 +367,7 @@ TEST(Admission, WhatWaitsIsBoundedByItsCost) {
   EXPECT_EQ(waiters.order().size(), 12U);
 }
 
-TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
+TEST(Admission, BoundsQueueOfEachPrioritySeparately) {
   ManualTimer timer;
   Admission admission({.running = 2, .queue_rays = 100}, timer);
   Waiters waiters(admission);
@@ -383,7 +383,7 @@ TEST(Admission, ALaneThatIsFullShutsNobodyOutOfTheOther) {
   EXPECT_EQ(waiters.order().size(), 2U);
 }
 
-TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
+TEST(Admission, AlternatesPrioritiesOnSingleSlot) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1000}, timer);
   Waiters waiters(admission);
@@ -398,7 +398,7 @@ TEST(Admission, OfOnePlaceBatchWorkHasEveryOtherTurn) {
 
 // Work starts at last after a long delay. Its old virtual finish time must not put new work ahead of waiting
 // clients.
-TEST(Admission, TimeDoesNotRunBackwards) {
+TEST(Admission, KeepsVirtualTimeMonotonic) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 1e9}, timer);
   Waiters waiters(admission);
@@ -423,7 +423,7 @@ TEST(Admission, TimeDoesNotRunBackwards) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"v", "z"}));
 }
 
-TEST(Admission, WhoHasMostWaitingMakesRoom) {
+TEST(Admission, DropsWorkOfClientWithLargestBacklog) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 100}, timer);
   Waiters waiters(admission);
@@ -442,7 +442,7 @@ TEST(Admission, WhoHasMostWaitingMakesRoom) {
   EXPECT_EQ(waiters.order(), (TurnOrder{"a3 429", "a4 429", "b2 429", "a1", "b1", "a2"}));
 }
 
-TEST(Admission, WorkThatBeganIsNotTurnedAway) {
+TEST(Admission, NeverRejectsReenteredWork) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 10}, timer);
   std::atomic<bool> done{false};
@@ -460,7 +460,7 @@ TEST(Admission, WorkThatBeganIsNotTurnedAway) {
   EXPECT_TRUE(done);
 }
 
-TEST(Admission, WhoGivesUpLeavesTheQueue) {
+TEST(Admission, RemovesCancelledWorkFromQueue) {
   ManualTimer timer;
   Admission admission({.running = 1, .queue_rays = 100}, timer);
   const auto ticket = admission.enter(demand("z"), kNever);
@@ -475,7 +475,7 @@ TEST(Admission, WhoGivesUpLeavesTheQueue) {
 
 // The default queue takes 20 images of several samples at once. One of them is rendering, with no rate
 // measured before.
-TEST(Admission, RefusesNoSecondOfWorkByDefault) {
+TEST(Admission, QueuesTwentyImagesByDefault) {
   for (const char* name :
        {"paper", "orrery", "sphereflake-3", "mirrors", "material-reflective", "light-spot"}) {
     ManualTimer timer;

@@ -13,7 +13,7 @@ std::string picture_file(int side) {
   return encode_png(image);
 }
 
-TEST(AssetStore, DecodesAPictureOnceForAllScenes) {
+TEST(AssetStore, DecodesPictureOnceForAllScenes) {
   AssetStore store(1 << 20);
   const std::string file = picture_file(16), name = sha256_hex(file);
   store.add(name, file, "one");
@@ -24,7 +24,7 @@ TEST(AssetStore, DecodesAPictureOnceForAllScenes) {
   EXPECT_EQ(store.picture_asset(name), texels);
 }
 
-TEST(AssetStore, KeepsNoTexelsThatWouldTakeMostOfTheStore) {
+TEST(AssetStore, DoesNotCacheOversizedTexels) {
   AssetStore store(64 << 10);
   const std::string file = picture_file(128), name = sha256_hex(file);  // 196,608 bytes of texels
   store.add(name, file, "one");

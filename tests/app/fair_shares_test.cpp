@@ -34,7 +34,7 @@ class FairSharesTest : public testing::Test {
   Ids evicted_;
 };
 
-TEST_F(FairSharesTest, OneClientLosesWhatItUsedLeastRecently) {
+TEST_F(FairSharesTest, EvictsLeastRecentlyUsedEntries) {
   for (const char* id : {"a", "b", "c"}) add("x", id, 30);
   shares_.touch("a");
   EXPECT_TRUE(add("x", "d", 30));
@@ -44,7 +44,7 @@ TEST_F(FairSharesTest, OneClientLosesWhatItUsedLeastRecently) {
   EXPECT_EQ(shares_.weight(), 90U);
 }
 
-TEST_F(FairSharesTest, AFloodTakesNothingFromOthers) {
+TEST_F(FairSharesTest, EvictsOnlyFromFloodingClient) {
   add("victim", "v", 10);
   for (int i = 0; i < 1000; ++i) {
     EXPECT_TRUE(add("flood", std::to_string(i), 1 + i % 7));
@@ -57,7 +57,7 @@ TEST_F(FairSharesTest, AFloodTakesNothingFromOthers) {
   EXPECT_EQ(lost[1], "1");
 }
 
-TEST_F(FairSharesTest, TheClientThatHoldsMostMakesRoomForOthers) {
+TEST_F(FairSharesTest, EvictsFromLargestHolder) {
   for (int i = 0; i < 8; ++i) add("most", "m" + std::to_string(i), 10);
   add("less", "l", 20);
   EXPECT_TRUE(add("new", "n", 30));
@@ -68,7 +68,7 @@ TEST_F(FairSharesTest, TheClientThatHoldsMostMakesRoomForOthers) {
   EXPECT_EQ(evicted(), Ids{"n"});
 }
 
-TEST_F(FairSharesTest, AnEntryThatAloneIsMoreThanWhatOthersHoldIsRefused) {
+TEST_F(FairSharesTest, RejectsEntryLargerThanOtherShares) {
   add("a", "a1", 20);
   add("a", "a2", 20);
   add("b", "b", 40);
@@ -82,7 +82,7 @@ TEST_F(FairSharesTest, AnEntryThatAloneIsMoreThanWhatOthersHoldIsRefused) {
   EXPECT_EQ(evicted(), Ids{"a1"}) << "the order of uses stays as well";
 }
 
-TEST_F(FairSharesTest, AnEntryGoesWithTheLastOfItsHolders) {
+TEST_F(FairSharesTest, RemovesEntryWithItsLastHolder) {
   add("a", "shared", 30);
   shares_.hold("shared", "b");
   EXPECT_EQ(shares_.weight(), 30U);
@@ -98,7 +98,7 @@ TEST_F(FairSharesTest, AnEntryGoesWithTheLastOfItsHolders) {
   EXPECT_EQ(shares_.weight(), 30U) << "of c";
 }
 
-TEST_F(FairSharesTest, LowRanksGoFirstAndHighOnesOnlyWhereTheyMay) {
+TEST_F(FairSharesTest, EvictsLowRanksFirst) {
   add("x", "kept", 30, 2);
   add("x", "cached", 30, 0);
   add("x", "kept too", 30, 2);
@@ -116,7 +116,7 @@ TEST_F(FairSharesTest, LowRanksGoFirstAndHighOnesOnlyWhereTheyMay) {
   EXPECT_EQ(shares_.rank("kept too", "z"), std::nullopt);
 }
 
-TEST_F(FairSharesTest, EntriesThatNobodyUsesForLongGoFirst) {
+TEST_F(FairSharesTest, EvictsStaleEntriesFirst) {
   add("left", "l1", 10);
   add("left", "l2", 10);
   add("left", "l3", 10);
@@ -132,7 +132,7 @@ TEST_F(FairSharesTest, EntriesThatNobodyUsesForLongGoFirst) {
 }
 
 // A client that loses an entry held at least an equal share, counted before or after the eviction.
-TEST_F(FairSharesTest, NobodyLosesBelowAnEqualShare) {
+TEST_F(FairSharesTest, NeverEvictsBelowEqualShare) {
   std::mt19937 random(1);
   std::map<std::string, std::map<std::string, std::size_t>> model;  // client, id
   const auto held = [&](const std::string& client) {

@@ -110,7 +110,7 @@ class JobsTest : public testing::Test {
   std::optional<Jobs> jobs_;  // last: it uses the others
 };
 
-TEST_F(JobsTest, EndBeforeTheirTimeIsUp) {
+TEST_F(JobsTest, FinishesWithinRunTime) {
   const auto job =
       start(3, [&](int step) { timer_.advance(step < 2 ? kRunTime / 2 - milliseconds(1) : seconds(0)); });
   const JobStatus status = end_of(job);
@@ -120,7 +120,7 @@ TEST_F(JobsTest, EndBeforeTheirTimeIsUp) {
   EXPECT_DOUBLE_EQ(status.elapsed_s, 99.998);
 }
 
-TEST_F(JobsTest, EndAsSoonAsTheirWorkWantsNoMore) {
+TEST_F(JobsTest, FinishesEarlyWhenWorkIsComplete) {
   auto work = std::make_unique<FakeWork>(
       9, bytes_a_step_, [](int) {}, 4);
   const auto job = jobs().start({scene_, std::move(work), "a"}, "", "").job;
@@ -132,7 +132,7 @@ TEST_F(JobsTest, EndAsSoonAsTheirWorkWantsNoMore) {
   EXPECT_EQ(status.tiles_done, status.tiles);
 }
 
-TEST_F(JobsTest, FailWhenTheirTimeIsUp) {
+TEST_F(JobsTest, FailsWhenRunTimeExpires) {
   const auto job = start(3, [&](int step) {
     if (step == 1) timer_.advance(kRunTime);
   });
@@ -141,10 +141,10 @@ TEST_F(JobsTest, FailWhenTheirTimeIsUp) {
   EXPECT_EQ(status.steps_done, 2);
   const std::string error = error_of(status);
   EXPECT_TRUE(error.starts_with("timed out: ")) << error;
-  EXPECT_NE(error.find("(job_seconds)"), std::string::npos) << error;
+  EXPECT_NE(error.find(", job_seconds)"), std::string::npos) << error;
 }
 
-TEST_F(JobsTest, AreKeptForTheTimeStatedAfterTheirEnd) {
+TEST_F(JobsTest, KeepsEndedJobsForRetentionTime) {
   const auto job = start(1, [&](int) { timer_.advance(kRunTime / 2); });
   end_of(job);
   timer_.advance(kRetention);
@@ -153,7 +153,7 @@ TEST_F(JobsTest, AreKeptForTheTimeStatedAfterTheirEnd) {
   EXPECT_FALSE(is_kept(job));
 }
 
-TEST_F(JobsTest, TellHowLongTheRestWillTake) {
+TEST_F(JobsTest, ReportsRemainingTime) {
   std::promise<JobPtr> started;
   std::promise<JobStatus> reported;
   const auto job = start(4, [&](int step) {
@@ -170,7 +170,7 @@ TEST_F(JobsTest, TellHowLongTheRestWillTake) {
 }
 
 // Rays that a budget spent on the first image alone do not enter the estimate for the rest.
-TEST_F(JobsTest, TellHowLongTheRestWillTakeWithABudget) {
+TEST_F(JobsTest, ReportsRemainingTimeUnderBudget) {
   std::promise<JobPtr> started;
   std::promise<JobStatus> reported;
   auto work = std::make_unique<FakeWork>(4, bytes_a_step_, [&](int step) {
@@ -187,7 +187,7 @@ TEST_F(JobsTest, TellHowLongTheRestWillTakeWithABudget) {
   EXPECT_EQ(end_of(job).tiles_done, 4);
 }
 
-TEST_F(JobsTest, AreAtMostSoManyAtOnceAndHalfOfThemOneClients) {
+TEST_F(JobsTest, LimitsRunningJobsPerClientAndInTotal) {
   std::promise<void> go;
   const auto goes = go.get_future().share();
   const auto wait = [&](int) { goes.wait(); };
@@ -201,7 +201,7 @@ TEST_F(JobsTest, AreAtMostSoManyAtOnceAndHalfOfThemOneClients) {
   EXPECT_EQ(meters_.jobs_done, 5U);
 }
 
-TEST_F(JobsTest, ThatEndedMakeRoomForBytesAndNoOthers) {
+TEST_F(JobsTest, EvictsEndedJobsOverByteLimit) {
   limits_.bytes = 35;
   const auto first = start(2);
   end_of(first);
@@ -216,10 +216,10 @@ TEST_F(JobsTest, ThatEndedMakeRoomForBytesAndNoOthers) {
   const JobStatus large = end_of(start(4));
   EXPECT_EQ(large.state, JobState::failed);
   EXPECT_EQ(large.steps_done, 3);
-  EXPECT_NE(error_of(large).find("(job_bytes)"), std::string::npos) << error_of(large);
+  EXPECT_NE(error_of(large).find(", job_bytes)"), std::string::npos) << error_of(large);
 }
 
-TEST_F(JobsTest, OfOthersStayHoweverManyAClientHasDone) {
+TEST_F(JobsTest, KeepsJobsOfOtherClientsDuringFlood) {
   limits_.ended = 10;
   const auto other = start(
       1, [](int) {}, "b");
@@ -231,7 +231,7 @@ TEST_F(JobsTest, OfOthersStayHoweverManyAClientHasDone) {
   EXPECT_EQ(std::count_if(flood.begin(), flood.end(), [&](const auto& job) { return is_kept(job); }), 9);
 }
 
-TEST_F(JobsTest, OfOthersStayHoweverManyBytesAClientsTake) {
+TEST_F(JobsTest, KeepsJobsOfOtherClientsUnderByteLimit) {
   limits_.bytes = 95;
   const auto other = start(
       2, [](int) {}, "b");
@@ -244,7 +244,7 @@ TEST_F(JobsTest, OfOthersStayHoweverManyBytesAClientsTake) {
 }
 
 // A running job is also evicted if its client holds most and has no other jobs.
-TEST_F(JobsTest, ThatTakeMostMakeRoomWhileTheyAreUnderWay) {
+TEST_F(JobsTest, EvictsLargestRunningJob) {
   limits_.bytes = 60;
   std::promise<void> go;
   const auto goes = go.get_future().share();
@@ -262,7 +262,7 @@ TEST_F(JobsTest, ThatTakeMostMakeRoomWhileTheyAreUnderWay) {
   EXPECT_EQ(jobs().bytes(), 30U);
 }
 
-TEST_F(JobsTest, LearnWhatTheirScenesTake) {
+TEST_F(JobsTest, UpdatesRayEstimateOfScene) {
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));
   const double expected = estimator_.estimate(scene_->scene(), plan);
   EXPECT_EQ(end_of(start(1)).state, JobState::done);
@@ -272,7 +272,7 @@ TEST_F(JobsTest, LearnWhatTheirScenesTake) {
 }
 
 // The rate counts the rays traced, not the estimate.
-TEST_F(JobsTest, TellTheAdmissionWhatTheyTook) {
+TEST_F(JobsTest, ReportsTracedRaysToAdmission) {
   Admission admission({.running = 1, .queue_rays = 1}, timer_);
   const RenderServices services = services_with(admission);
   const Plan plan = make_plan(scene_->scene(), test::size(8, 8));

@@ -57,7 +57,7 @@ void write_many(const Log& log, int count) {
     log.write(LogLevel::info, "number", {{"i", i}, {"more", std::string(500, 'x')}});
 }
 
-TEST(Log, WritesAllThatIsQueuedAtItsEnd) {
+TEST(Log, FlushesQueueOnDestruction) {
   const Pipe pipe;
   {
     const Log log(LogForm::json, LogLevel::info, pipe.writer());
@@ -71,7 +71,7 @@ TEST(Log, WritesAllThatIsQueuedAtItsEnd) {
   EXPECT_EQ(lines[0].at("event"), "number");
 }
 
-TEST(Log, DropsAndCountsLinesThatNobodyReads) {
+TEST(Log, DropsAndCountsUnreadLines) {
   constexpr int kLines = 10'000;  // 5 MB; a pipe takes 64 KiB, the queue 4,096 lines
   const Pipe pipe;
   {
@@ -84,7 +84,7 @@ TEST(Log, DropsAndCountsLinesThatNobodyReads) {
   EXPECT_LT(lines.size(), 200U);
 }
 
-TEST(Log, ReportsDroppedLinesOnceTheReaderReadsAgain) {
+TEST(Log, ReportsDroppedLinesOnceReaderResumes) {
   const Pipe pipe;
   const Log log(LogForm::json, LogLevel::info, pipe.writer());
   write_many(log, 1000);
@@ -104,7 +104,7 @@ TEST(Log, ReportsDroppedLinesOnceTheReaderReadsAgain) {
   EXPECT_EQ(written + reported, 1000U);
 }
 
-TEST(Log, GoesOnWithoutAReader) {
+TEST(Log, ContinuesWithoutReader) {
   Pipe pipe;
   pipe.close_reader();
   const Log log(LogForm::text, LogLevel::info, pipe.writer());
@@ -112,7 +112,7 @@ TEST(Log, GoesOnWithoutAReader) {
   EXPECT_TRUE(test::eventually([&] { return log.dropped() == 100; })) << log.dropped();
 }
 
-TEST(Log, CutsLongTexts) {
+TEST(Log, TruncatesLongTexts) {
   const Pipe pipe;
   {
     const Log log(LogForm::json, LogLevel::info, pipe.writer());

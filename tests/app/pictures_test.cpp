@@ -18,7 +18,7 @@ const std::stop_token kNotCancelled;
 
 Picture picture(std::string bytes) { return {.bytes = std::move(bytes), .stats = {}, .certificate = {}}; }
 
-TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
+TEST(Pictures, CachesUntilSpaceIsNeeded) {
   Pictures pictures(10'000);
   int made = 0;
   const auto get = [&](const std::string& key) {
@@ -38,7 +38,7 @@ TEST(Pictures, AreKeptUntilOthersNeedTheirRoom) {
   EXPECT_TRUE(get("a").made_here);
 }
 
-TEST(Pictures, OfAClientStayWhateverOthersAskFor) {
+TEST(Pictures, KeepsPicturesOfOtherClientsDuringFlood) {
   Pictures pictures(50'000);
   const auto get = [&](const std::string& key, const std::string& client) {
     return pictures.get(key, {kNotCancelled, client},
@@ -51,14 +51,14 @@ TEST(Pictures, OfAClientStayWhateverOthersAskFor) {
   EXPECT_GT(pictures.evictions(), 80U);
 }
 
-TEST(Pictures, TooLargeToKeepAreMadeAllTheSame) {
+TEST(Pictures, ReturnsPicturesTooLargeToCache) {
   Pictures pictures(0);
   for (int i = 0; i < 2; ++i)
     EXPECT_TRUE(pictures.get("a", {kNotCancelled}, [](const auto&) { return picture("x"); }).made_here);
   EXPECT_EQ(pictures.bytes(), 0U);
 }
 
-TEST(Pictures, ThatManyAskForAtOnceAreMadeOnce) {
+TEST(Pictures, MakesConcurrentlyRequestedPictureOnce) {
   Pictures pictures(1 << 20);
   std::atomic<int> made{0}, here{0};
   std::vector<std::thread> threads;
@@ -106,7 +106,7 @@ struct Pair {
   }
 };
 
-TEST(Pictures, AreFinishedForTheOthersWhenTheFirstLeaves) {
+TEST(Pictures, FinishesForOthersWhenFirstLeaves) {
   Pair pair;
   pair.run(
       [&](const auto& get) {
@@ -122,7 +122,7 @@ TEST(Pictures, AreFinishedForTheOthersWhenTheFirstLeaves) {
       });
 }
 
-TEST(Pictures, AreGivenUpWhenAllHaveLeft) {
+TEST(Pictures, CancelsWhenAllRequestersLeave) {
   Pair pair;
   pair.run(
       [&](const auto& get) {
@@ -137,7 +137,7 @@ TEST(Pictures, AreGivenUpWhenAllHaveLeft) {
       [&](const auto& get) { EXPECT_THROW(get([](const auto&) { return picture("y"); }), Cancelled); });
 }
 
-TEST(Pictures, RefusedToOneAreMadeByTheNext) {
+TEST(Pictures, RetriesForNextRequesterAfterRejection) {
   Pair pair;
   pair.run(
       [&](const auto& get) {
@@ -150,7 +150,7 @@ TEST(Pictures, RefusedToOneAreMadeByTheNext) {
       });
 }
 
-TEST(Pictures, WhoseTimeIsUpForOneAreMadeByTheNext) {
+TEST(Pictures, RetriesForNextRequesterAfterTimeout) {
   Pair pair;
   pair.run(
       [&](const auto& get) {
@@ -159,7 +159,7 @@ TEST(Pictures, WhoseTimeIsUpForOneAreMadeByTheNext) {
       [&](const auto& get) { EXPECT_TRUE(get([](const auto&) { return picture("y"); }).made_here); });
 }
 
-TEST(Pictures, ThatFailFailForAll) {
+TEST(Pictures, ReportsFailureToAllRequesters) {
   Pair pair;
   const auto fails = [&](const auto& get) {
     EXPECT_THROW(get([](const auto&) -> Picture { throw Error("no"); }), Error);

@@ -43,7 +43,7 @@ class PipelineMemory : public testing::Test {
   std::vector<Frame> frames_;
 };
 
-TEST_F(PipelineMemory, IsTakenWhileFramesAreKept) {
+TEST_F(PipelineMemory, ChargesFramesUntilDestruction) {
   run(3, kMega, [&] {
     EXPECT_GE(memory_.bytes(), 3 * kMega);
     EXPECT_LE(memory_.bytes(), 3 * kMega + kMega / 2);
@@ -53,7 +53,7 @@ TEST_F(PipelineMemory, IsTakenWhileFramesAreKept) {
   EXPECT_EQ(memory_.bytes(), 0U);
 }
 
-TEST_F(PipelineMemory, IsTakenBeyondTheLimitForFramesThatAreMadeAndTheNextOneWaits) {
+TEST_F(PipelineMemory, RejectsNextFilmWhileOverLimit) {
   const auto next_film = [] {
     const MemoryCharge film(kMega);
     interruption_point();
@@ -64,7 +64,7 @@ TEST_F(PipelineMemory, IsTakenBeyondTheLimitForFramesThatAreMadeAndTheNextOneWai
   EXPECT_NO_THROW(account_->run({}, next_film));
 }
 
-TEST_F(PipelineMemory, EndsWithTheLimitWhereAFrameIsLarge) {
+TEST_F(PipelineMemory, RejectsFrameLargerThanLimit) {
   EXPECT_THROW(run(1, 60 * kMega, [] {}), InputError);
   EXPECT_TRUE(frames_.empty());
 }

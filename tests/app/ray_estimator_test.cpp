@@ -22,17 +22,17 @@ RenderRequest large() {
   return request;
 }
 
-TEST(RayEstimator, BeginsWithWhatThePlanSays) {
+TEST(RayEstimator, StartsFromPlanEstimate) {
   RayEstimator estimator;
   const auto scene = load(sample("glass"));
   const Plan plan = make_plan(*scene, large());
   EXPECT_EQ(estimator.estimate(*scene, plan), expected_rays(*scene, plan));
 }
 
-class RaysOfSample : public testing::TestWithParam<const char*> {};
+class SampleRayEstimates : public testing::TestWithParam<const char*> {};
 
 // One small preview predicts the rays of the large image within 30 %.
-TEST_P(RaysOfSample, AreKnownAfterOneRenderOfTheScene) {
+TEST_P(SampleRayEstimates, PredictsLargeRenderFromPreview) {
   RayEstimator estimator;
   const auto scene = load(sample(GetParam()));
   RenderRequest preview = size(80, 60);
@@ -46,12 +46,12 @@ TEST_P(RaysOfSample, AreKnownAfterOneRenderOfTheScene) {
   EXPECT_LT(learned, 1.3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Samples, RaysOfSample,
+INSTANTIATE_TEST_SUITE_P(Samples, SampleRayEstimates,
                          testing::Values("glass", "light-many", "material-refractive", "mirrors", "orrery",
                                          "paper", "shape-mesh", "sphereflake-2"));
 
 // Each observation moves the estimate halfway to the observed value.
-TEST(RayEstimator, FollowsWhatChanges) {
+TEST(RayEstimator, MovesHalfwayToEachObservation) {
   RayEstimator estimator;
   const auto scene = load(sample("paper"));
   const Plan plan = make_plan(*scene, size(64, 64));
@@ -67,7 +67,7 @@ TEST(RayEstimator, FollowsWhatChanges) {
 
 // Clients can feed any sample to the estimator. A tiny image has little weight, and no image changes the
 // estimate by more than a factor of 8.
-TEST(RayEstimator, IsNotTalkedIntoAnything) {
+TEST(RayEstimator, LimitsInfluenceOfObservations) {
   const auto scene = load(sample("paper"));
   const Plan plan = make_plan(*scene, size(64, 64)), tiny = make_plan(*scene, size(1, 1));
   const double expected = expected_rays(*scene, plan);
@@ -80,7 +80,7 @@ TEST(RayEstimator, IsNotTalkedIntoAnything) {
   }
 }
 
-TEST(RayEstimator, LearnsForTheSceneAndTheModelAlone) {
+TEST(RayEstimator, LearnsPerSceneAndSettings) {
   RayEstimator estimator;
   const auto scene = load(sample("glass")), other = load(sample("paper"));
   const Plan plan = make_plan(*scene, large());

@@ -87,7 +87,7 @@ std::string file_of(const std::shared_ptr<const Scene>& scene, const RenderReque
 
 // The key of an image contains an option exactly if its table row has `changes_pixels`, and the pixels
 // confirm that.
-TEST(RenderOptions, AreInTheKeyIfTheyChangePixels) {
+TEST(RenderOptions, ChangesKeyExactlyIfPixelsChange) {
   const auto scene = load(revealing_scene());
   const RenderSettings own = resolve(*scene, {});
   RenderRequest paths;
@@ -114,7 +114,7 @@ TEST(RenderOptions, AreInTheKeyIfTheyChangePixels) {
   }
 }
 
-TEST(RenderOptions, SpaceIsInTheKeyAsErrorsDependOnIt) {
+TEST(RenderOptions, IncludesErrorSpaceInKey) {
   const auto scene = load(revealing_scene());
   RenderRequest linear, display;
   linear.error = display.error = 0.1;
@@ -123,7 +123,7 @@ TEST(RenderOptions, SpaceIsInTheKeyAsErrorsDependOnIt) {
   EXPECT_TRUE(file_of(scene, linear) != file_of(scene, display));
 }
 
-TEST(RenderOptions, ThatSayWhatTheSceneSaysGiveTheKeyOfTheScene) {
+TEST(RenderOptions, KeepsKeyForValuesEqualToScene) {
   const auto scene = load(revealing_scene());
   RenderRequest request;
   static_cast<RenderSettings&>(request) = resolve(*scene, {});
@@ -146,7 +146,7 @@ std::string problem(std::string_view name, const std::string& text) {
   return "accepted";
 }
 
-TEST(OptionTexts, AreReadByEveryNameAsTheyAreWritten) {
+TEST(OptionTexts, RoundTripsUnderEveryName) {
   for (const RenderOption& option : render_options()) {
     std::string text = option.text(default_settings());
     std::erase_if(text, [](char c) { return c == '"' || c == '[' || c == ']'; });
@@ -163,13 +163,13 @@ TEST(OptionTexts, AreReadByEveryNameAsTheyAreWritten) {
   EXPECT_EQ(find_render_option(""), nullptr);
 }
 
-TEST(OptionTexts, AreRefusedUnderTheNameTheyWereGiven) {
-  EXPECT_EQ(problem("azimuth", "x"), R"(--azimuth: expected a number >= -1e9 and <= 1e9, got "x")");
+TEST(OptionTexts, ReportsErrorsUnderGivenName) {
+  EXPECT_EQ(problem("azimuth", "x"), R"(--azimuth: must be a number from -1e9 to 1e9 (got "x"))");
   EXPECT_EQ(problem("azimuth_degrees", "nan").substr(0, 18), "--azimuth_degrees:");
   EXPECT_EQ(problem("pan", "1,x,3").substr(0, 8), "--pan/1:");
   EXPECT_EQ(problem("technique", "5").substr(0, 12), "--technique:");
   EXPECT_EQ(problem("technique", "whitted,raycast").substr(0, 12), "--technique:");
-  EXPECT_EQ(problem("reorder", "maybe"), R"(--reorder: expected true or false, got "maybe")");
+  EXPECT_EQ(problem("reorder", "maybe"), R"(--reorder: must be true or false (got "maybe"))");
   EXPECT_EQ(problem("samples", "").substr(0, 10), "--samples:");
 }
 

@@ -47,32 +47,32 @@ double retry_after(const std::vector<Work>& done, double waiting) {
 }
 
 // Retry-After is the number of waiting rays over the measured rate.
-TEST(RetryAfter, IsWhatWaitsOverTheRateMeasured) {
+TEST(RetryAfter, DividesWaitingRaysByMeasuredRate) {
   EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 10e6), 5);
   EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 40e6), 20);
   EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 0.5}}, 40e6), 5);
 }
 
-TEST(RetryAfter, HasBounds) {
+TEST(RetryAfter, StaysBetweenOneAndThirtySeconds) {
   EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 2.5e6), 1.25);
   EXPECT_EQ(retry_after({{4e6, 4e6, 2}}, 1.5e6), 1);
   EXPECT_DOUBLE_EQ(retry_after({{4e6, 4e6, 2}}, 58e6), 29);
   EXPECT_EQ(retry_after({{4e6, 4e6, 2}}, 62e6), 30);
 }
 
-TEST(RetryAfter, IsByTheRaysTracedNotThoseExpected) {
+TEST(RetryAfter, CountsTracedRatherThanExpectedRays) {
   EXPECT_DOUBLE_EQ(retry_after({{40e6, 4e6, 2}}, 10e6), 5);
 }
 
-TEST(RetryAfter, IsAGuessBeforeAnythingWasMeasured) { EXPECT_DOUBLE_EQ(retry_after({}, 50e6), 5); }
+TEST(RetryAfter, DefaultsToFiveSecondsBeforeMeasurement) { EXPECT_DOUBLE_EQ(retry_after({}, 50e6), 5); }
 
 // A measurement decays to 1/e after 10 s of work.
-TEST(RetryAfter, FollowsARateThatChanges) {
+TEST(RetryAfter, FollowsChangingRate) {
   const double faded = std::exp(-1), rate = (1e6 * faded + 9e6) / (10 * faded + 10);
   EXPECT_DOUBLE_EQ(retry_after({{1e6, 1e6, 10}, {9e6, 9e6, 10}}, 5e6), 5e6 / rate);
 }
 
-TEST(RetryAfter, CountsWorkAtOneTimeTogetherAndIdleTimeNot) {
+TEST(RetryAfter, AddsConcurrentWorkAndIgnoresIdleTime) {
   ManualTimer timer;
   Admission two({.running = 2, .queue_rays = 1}, timer);
   {

@@ -73,7 +73,7 @@ std::size_t size_of(const Document& document) {
   return store->bytes();
 }
 
-TEST(SceneStore, KnownScenesAreNotLoadedAndTheirMeshesNotRead) {
+TEST(SceneStore, ReusesKnownScenesWithoutReadingMeshes) {
   const std::string mesh = R"({"type": "mesh", "asset": ")" + std::string(64, 'a') + R"(", "material": "m"})";
   const CountedMeshes meshes;
   Store store(1 << 30);
@@ -96,7 +96,7 @@ TEST(SceneStore, KnownScenesAreNotLoadedAndTheirMeshesNotRead) {
   EXPECT_EQ(meshes.reads, 2);
 }
 
-TEST(SceneStore, CachedScenesPushOutOneAnotherButNoneThatIsKept) {
+TEST(SceneStore, NeverEvictsKeptScenesForCachedOnes) {
   Store store(3 * size_of(ball("kept")) + 100);
   store.keep(ball("kept"));
   for (const char* title : {"aaaa", "bbbb", "cccc"}) store.get(ball(title));
@@ -107,7 +107,7 @@ TEST(SceneStore, CachedScenesPushOutOneAnotherButNoneThatIsKept) {
   EXPECT_LE(store->bytes(), 3 * size_of(ball("kept")) + 100);
 }
 
-TEST(SceneStore, WhereKeptScenesLeaveNoRoomNothingIsCached) {
+TEST(SceneStore, CachesNothingIfKeptScenesFillStore) {
   Store store(2 * size_of(ball("kept")) - 1);
   store.keep(ball("kept"));
   EXPECT_EQ(store.get(ball("more"))->scene().title, "more");
@@ -116,7 +116,7 @@ TEST(SceneStore, WhereKeptScenesLeaveNoRoomNothingIsCached) {
   EXPECT_EQ(store->bytes(), size_of(ball("kept")));
 }
 
-TEST(SceneStore, KeptScenesPushOutCachedOnesFirst) {
+TEST(SceneStore, EvictsCachedScenesBeforeKeptOnes) {
   Store store(3 * size_of(ball("kept")) + 100);
   store.keep(ball("old1"));
   store.get(ball("cach"));
@@ -130,7 +130,7 @@ TEST(SceneStore, KeptScenesPushOutCachedOnesFirst) {
   EXPECT_TRUE(store.has(ball("new1")) && store.has(ball("new2")) && store.has(ball("old1")));
 }
 
-TEST(SceneStore, WhatIsTooLargeToKeepIsSaidToBe) {
+TEST(SceneStore, RejectsOversizedScene) {
   const Document large = balls("large", 100);
   Store store(size_of(large) - 1);
   try {
@@ -143,7 +143,7 @@ TEST(SceneStore, WhatIsTooLargeToKeepIsSaidToBe) {
   EXPECT_EQ(store->bytes(), 0u);
 }
 
-TEST(SceneStore, CachedScenesCanBeRemovedLikeKeptOnes) {
+TEST(SceneStore, RemovesCachedAndKeptScenes) {
   Store store(1 << 30);
   store.get(ball("cached"));
   store.keep(ball("kept"));
@@ -153,7 +153,7 @@ TEST(SceneStore, CachedScenesCanBeRemovedLikeKeptOnes) {
   EXPECT_EQ(store->bytes(), 0u);
 }
 
-TEST(SceneStore, KeptScenesStayWhileAnyoneKeepsThem) {
+TEST(SceneStore, RetainsSceneUntilLastKeeperRemovesIt) {
   Store store(1 << 30);
   const Document scene = ball("kept");
   const auto remove = [&](const char* client, bool of_all) { store->remove(scene.id(), client, of_all); };
@@ -170,7 +170,7 @@ TEST(SceneStore, KeptScenesStayWhileAnyoneKeepsThem) {
   EXPECT_FALSE(store.has(scene));
 }
 
-TEST(SceneStore, AFloodOfKeptScenesTakesNothingFromOthers) {
+TEST(SceneStore, KeepsScenesOfOtherClientsDuringFlood) {
   Store store(4 * size_of(ball("kept")) + 100);
   store->keep(ball("kept"), kNoMeshes, "a");
   store->get(ball("cach"), kNoMeshes, "b");
@@ -181,7 +181,7 @@ TEST(SceneStore, AFloodOfKeptScenesTakesNothingFromOthers) {
   EXPECT_FALSE(store.has(ball("2049"))) << "and its cached scenes take nothing from kept ones";
 }
 
-TEST(SceneStore, RefusesASceneThatOthersLeaveNoRoomFor) {
+TEST(SceneStore, RejectsSceneIfOthersFillStore) {
   const std::size_t small = size_of(ball("kept"));
   const Document large = balls("large", 100);
   Store store(size_of(large) + small / 2);
@@ -196,7 +196,7 @@ TEST(SceneStore, RefusesASceneThatOthersLeaveNoRoomFor) {
   EXPECT_EQ(store->bytes(), small);
 }
 
-TEST(SceneStore, OthersDoNotRemoveWhatAClientHasRendered) {
+TEST(SceneStore, RejectsRemovalByOtherClients) {
   Store store(1 << 30);
   const Document scene = ball("cach");
   store->get(scene, kNoMeshes, "a");
@@ -209,7 +209,7 @@ TEST(SceneStore, OthersDoNotRemoveWhatAClientHasRendered) {
 }
 
 // Structures that another client builds for a kept scene may be evicted, but no scene of its keeper.
-TEST(SceneStore, WhatIsBuiltForAKeptSceneCostsItsKeeperNoScene) {
+TEST(SceneStore, NeverEvictsKeptScenesForBuiltStructures) {
   const std::size_t bare = size_of(balls("kept", 2000));
   Store store(3 * bare);
   const auto scene = store->keep(balls("kept", 2000), kNoMeshes, "a").scene;
@@ -228,7 +228,7 @@ TEST(SceneStore, WhatIsBuiltForAKeptSceneCostsItsKeeperNoScene) {
 }
 
 // Structures built for a kept scene are evicted before the scene.
-TEST(SceneStore, ForgetsWhatWasBuiltWhereItTakesTooMuch) {
+TEST(SceneStore, EvictsOversizedBuiltStructures) {
   const std::size_t bare = size_of(balls("kept", 2000));
   Store store(2 * bare);
   const auto scene = store.keep(balls("kept", 2000)).scene;
@@ -246,7 +246,7 @@ TEST(SceneStore, ForgetsWhatWasBuiltWhereItTakesTooMuch) {
   EXPECT_GT(store.work.bytes(), bare) << "as long as it is used";
 }
 
-TEST(SceneStore, GivesAllBackOnceNothingIsUsed) {
+TEST(SceneStore, ChargesBuiltStructuresToStore) {
   Store store(1 << 30);
   const auto scene = store.keep(balls("kept", 2000)).scene;
   const auto other = store.get(balls("cached", 2000));

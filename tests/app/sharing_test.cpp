@@ -43,20 +43,20 @@ class SharedWork : public testing::Test {
   TurnOrder order_;
 };
 
-TEST_F(SharedWork, IsItsFirstClientsWhereNobodyElseWantsIt) {
+TEST_F(SharedWork, BelongsToFirstClientWithoutSubscribers) {
   ask();
   { const Admission::Subscription sharing(admission_, subscribers_, "b"); }
   EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "a3", "shared"}));  // finish at 10 15 20 30 40
 }
 
-TEST_F(SharedWork, StartsInTheEarliestTurnAndCountsAsWorkOfEach) {
+TEST_F(SharedWork, StartsEarliestAndChargesEachSubscriber) {
   ask();
   const Admission::Subscription sharing(admission_, subscribers_, "b");
   waiters_.add("b", demand("b"));
   EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "b", "a3"}));  // finish at 10 10 15 20 20 30
 }
 
-TEST_F(SharedWork, MayBeWantedBeforeItWaits) {
+TEST_F(SharedWork, AcceptsSubscribersBeforeQueueing) {
   const Admission::Subscription sharing(admission_, subscribers_, "b");
   const Admission::Subscription again(admission_, subscribers_, "b");
   { const Admission::Subscription third(admission_, subscribers_, "b"); }
@@ -64,7 +64,7 @@ TEST_F(SharedWork, MayBeWantedBeforeItWaits) {
   EXPECT_EQ(order(), (TurnOrder{"a1", "shared", "c", "a2", "a3"}));
 }
 
-TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
+TEST_F(SharedWork, StartsUnlessAllSubscribersAreDelayed) {
   ticket_.reset();
   std::list<Admission::Ticket> own;
   for (int i = 0; i < 2; ++i) {  // two for each slot
@@ -78,7 +78,7 @@ TEST_F(SharedWork, BeginsUnlessAllWhoWantItHaveLostMany) {
   EXPECT_EQ(order(), (TurnOrder{"shared"}));
 }
 
-TEST_F(SharedWork, IsNoLongerWorkOfWhoHasLeft) {
+TEST_F(SharedWork, DropsDepartedSubscriber) {
   const Admission::Subscription first(admission_, subscribers_, "a");
   ask();
   std::optional<Admission::Subscription> second;
@@ -89,7 +89,7 @@ TEST_F(SharedWork, IsNoLongerWorkOfWhoHasLeft) {
   EXPECT_EQ(order(), (TurnOrder{"a1", "c", "a2", "b", "a3", "b again", "shared"}));
 }
 
-TEST_F(SharedWork, IsNoLongerWorkOfWhoAskedFirstAndLeft) {
+TEST_F(SharedWork, DropsDepartedFirstClient) {
   std::optional<Admission::Subscription> first;
   first.emplace(admission_, subscribers_, "a");
   waiters_.add("shared", {Priority::interactive, "a", 10, subscribers_});
@@ -100,9 +100,9 @@ TEST_F(SharedWork, IsNoLongerWorkOfWhoAskedFirstAndLeft) {
 }
 
 // Shared work that keeps running in a slot that another client waits for.
-class SharedWorkThatRuns : public SharedWork {
+class RunningSharedWork : public SharedWork {
  protected:
-  SharedWorkThatRuns() {
+  RunningSharedWork() {
     ticket_.reset();
     ticket_.emplace(admission_.enter({Priority::interactive, "a", 1e9, subscribers_}, kNever));
   }
@@ -123,20 +123,20 @@ class SharedWorkThatRuns : public SharedWork {
   std::optional<Admission::Subscription> first_{std::in_place, admission_, subscribers_, "a"};
 };
 
-TEST_F(SharedWorkThatRuns, IsPaidByWhoLeavesIt) {
+TEST_F(RunningSharedWork, ChargesDepartedSubscriber) {
   const Admission::Subscription second(admission_, subscribers_, "b");
   another_waits();
   first_.reset();
   EXPECT_EQ(order_of({"a", "c"}), (TurnOrder{"z", "c", "a"}));
 }
 
-TEST_F(SharedWorkThatRuns, IsPaidByWhoComesLateOnlyFromThenOn) {
+TEST_F(RunningSharedWork, ChargesLateSubscriberFromArrivalOnly) {
   another_waits();
   const Admission::Subscription late(admission_, subscribers_, "b");
   EXPECT_EQ(order_of({"a", "b", "c"}), (TurnOrder{"z", "b", "c", "a"}));
 }
 
-TEST_F(SharedWorkThatRuns, IsNotFreeToWhoComesAndLeavesAgainAndAgain) {
+TEST_F(RunningSharedWork, ChargesRepeatedSubscriptions) {
   waiters_.add("z", demand("z"));
   for (int i = 0; i < 8; ++i) {
     const Admission::Subscription visit(admission_, subscribers_, "b");
@@ -145,7 +145,7 @@ TEST_F(SharedWorkThatRuns, IsNotFreeToWhoComesAndLeavesAgainAndAgain) {
   EXPECT_EQ(order_of({"b", "c"}), (TurnOrder{"z", "c", "b"}));
 }
 
-TEST_F(SharedWorkThatRuns, KeepsItsPlaceNoLongerFromWhoHasLeftIt) {
+TEST_F(RunningSharedWork, YieldsSlotToDepartedSubscriber) {
   std::optional<Admission::Subscription> second(std::in_place, admission_, subscribers_, "b");
   waiters_.add("b", demand("b"));
   timer_.advance(100ms);
@@ -155,7 +155,7 @@ TEST_F(SharedWorkThatRuns, KeepsItsPlaceNoLongerFromWhoHasLeftIt) {
   waiters_.join();
 }
 
-TEST_F(SharedWork, TakesAPlaceFromWhatOnlyOneOfItsClientsWants) {
+TEST_F(SharedWork, PreemptsSlotOfSingleSubscriber) {
   const Admission::Subscription first(admission_, subscribers_, "z"), second(admission_, subscribers_, "b");
   waiters_.add("shared", {Priority::interactive, "z", 10, subscribers_});
   timer_.advance(50ms);
@@ -163,7 +163,7 @@ TEST_F(SharedWork, TakesAPlaceFromWhatOnlyOneOfItsClientsWants) {
   waiters_.join();
 }
 
-TEST_F(SharedWork, CountsAsLostByWhoBeganItAndLeft) {
+TEST_F(SharedWork, CountsPreemptionAgainstDepartedStarter) {
   ticket_.reset();
   const Admission::Subscription stays(admission_, subscribers_, "b");
   std::list<Admission::Ticket> lost;
@@ -180,7 +180,7 @@ TEST_F(SharedWork, CountsAsLostByWhoBeganItAndLeft) {
 }
 
 // Two clients request one image, and the first has much work queued before it.
-TEST_F(SharedWork, MayBeAPicture) {
+TEST_F(SharedWork, AdmitsSharedPictureEarliest) {
   for (const char* name : {"a1", "a2"}) waiters_.add(name, demand("a"));
   waiters_.add("c", demand("c", 15));
   SubscribersByKey by_key;

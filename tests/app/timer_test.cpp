@@ -15,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-TEST(Timer, DoesEachThingAtItsTimeInOrder) {
+TEST(Timer, FiresAlarmsOnTimeAndInOrder) {
   ManualTimer timer;
   const auto start = timer.now();
   std::string done;
@@ -35,7 +35,7 @@ TEST(Timer, DoesEachThingAtItsTimeInOrder) {
   EXPECT_EQ(timer.now() - start, seconds(11));
 }
 
-TEST(Timer, WhatIsLateIsDoneAtOnce) {
+TEST(Timer, FiresOverdueAlarmAtOnce) {
   ManualTimer timer;
   int done = 0;
   const auto alarm = timer.at(timer.now(), [&] { ++done; });
@@ -44,7 +44,7 @@ TEST(Timer, WhatIsLateIsDoneAtOnce) {
   EXPECT_EQ(done, 1);
 }
 
-TEST(Timer, WhatIsCalledOffIsNotDone) {
+TEST(Timer, DoesNotFireCancelledAlarm) {
   ManualTimer timer;
   int done = 0;
   {
@@ -54,7 +54,7 @@ TEST(Timer, WhatIsCalledOffIsNotDone) {
   EXPECT_EQ(done, 0);
 }
 
-TEST(Timer, CallingOffWaitsForWhatIsBeingDone) {
+TEST(Timer, WaitsForRunningActionOnCancel) {
   ManualTimer timer;
   std::promise<void> begun, go_on;
   std::atomic<bool> ended{false};
@@ -76,7 +76,7 @@ TEST(Timer, CallingOffWaitsForWhatIsBeingDone) {
   driver.join();
 }
 
-TEST(Timer, AnActionMayCallItselfOff) {
+TEST(Timer, AllowsActionToCancelItself) {
   ManualTimer timer;
   std::unique_ptr<Timer::Alarm> alarm;
   alarm.reset(new Timer::Alarm(timer.at(timer.now() + seconds(1), [&] { alarm.reset(); })));
@@ -84,7 +84,7 @@ TEST(Timer, AnActionMayCallItselfOff) {
   EXPECT_FALSE(alarm);
 }
 
-TEST(Timer, OfTheMachineKeepsTheOrderToo) {
+TEST(Timer, FiresInOrderOnSteadyClock) {
   SteadyTimer timer;
   std::promise<void> all;
   std::string done;
@@ -117,7 +117,7 @@ struct Waiter {
   }
 };
 
-TEST(WaitUntil, EndsAtTheDeadlineAndNotBefore) {
+TEST(WaitUntil, EndsAtDeadline) {
   Waiter waiter;
   waiter.wait();
   waiter.timer.advance(seconds(5) - Clock::duration(1));

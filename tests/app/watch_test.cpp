@@ -22,7 +22,7 @@ struct WatchFixture {
   std::optional<WorkCancellation> made;
 };
 
-TEST(WorkCancellation, StopsOnceTheClientHasGone) {
+TEST(WorkCancellation, StopsWhenClientDisconnects) {
   WatchFixture w;
   const WorkCancellation& watch = w.watch();
   EXPECT_FALSE(watch.stop().stop_requested());
@@ -31,7 +31,7 @@ TEST(WorkCancellation, StopsOnceTheClientHasGone) {
   EXPECT_THROW(watch.explain(), Cancelled);
 }
 
-TEST(WorkCancellation, StopsOnceTheServiceEnds) {
+TEST(WorkCancellation, StopsWhenServiceEnds) {
   WatchFixture w;
   const WorkCancellation& watch = w.watch();
   w.service_ends.request_stop();
@@ -39,7 +39,7 @@ TEST(WorkCancellation, StopsOnceTheServiceEnds) {
   EXPECT_THROW(watch.explain(), Busy);
 }
 
-TEST(WorkCancellation, StopsAtItsTimeWhichCountsFromTheRequest) {
+TEST(WorkCancellation, StopsAtDeadlineCountedFromRequest) {
   WatchFixture w;
   w.age = seconds(20);
   const WorkCancellation& watch = w.watch();
@@ -50,11 +50,12 @@ TEST(WorkCancellation, StopsAtItsTimeWhichCountsFromTheRequest) {
   try {
     watch.explain();
   } catch (const TimedOut& error) {
-    EXPECT_STREQ(error.what(), "It took more than 60 s (request_seconds); fewer pixels or samples take less");
+    EXPECT_STREQ(error.what(),
+                 "request took more than 60 s (limit 60 s, request_seconds); use fewer pixels or samples");
   }
 }
 
-TEST(WorkCancellation, OfALateRequestStopsAtOnce) {
+TEST(WorkCancellation, StopsOverdueRequestAtOnce) {
   WatchFixture w;
   w.age = seconds(61);
   const WorkCancellation& watch = w.watch();
@@ -62,7 +63,7 @@ TEST(WorkCancellation, OfALateRequestStopsAtOnce) {
   EXPECT_THROW(watch.explain(), TimedOut);
 }
 
-TEST(WorkCancellation, TellsWhatCameFirst) {
+TEST(WorkCancellation, ReportsFirstCause) {
   WatchFixture w;
   const WorkCancellation& watch = w.watch();
   w.timer.advance(seconds(60));

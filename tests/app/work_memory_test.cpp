@@ -19,7 +19,7 @@ constexpr std::size_t kMega = 1 << 20;
 
 std::vector<char> block(std::size_t bytes) { return std::vector<char>(bytes); }
 
-TEST(MemoryAccount, HoldsWhatIsTakenInItsScopeUntilAnyoneGivesItBack) {
+TEST(MemoryAccount, ChargesScopedAllocationsUntilFreed) {
   WorkMemory memory(100 * kMega);
   const auto account = memory.open("a");
   EXPECT_EQ(account->bytes(), 0u);
@@ -33,7 +33,7 @@ TEST(MemoryAccount, HoldsWhatIsTakenInItsScopeUntilAnyoneGivesItBack) {
   EXPECT_EQ(account->bytes(), 0u);
 }
 
-TEST(MemoryAccount, KnowsEveryFormOfNew) {
+TEST(MemoryAccount, CountsEveryFormOfNew) {
   struct alignas(256) Wide {
     char bytes[256];
   };
@@ -65,7 +65,7 @@ TEST(MemoryAccount, KnowsEveryFormOfNew) {
   });
 }
 
-TEST(MemoryAccount, HoldsWhatWorkersAndImagesTake) {
+TEST(MemoryAccount, ChargesAllocationsOfWorkersAndImages) {
   WorkMemory memory(100 * kMega);
   const auto account = memory.open("a");
   WorkerPool pool(2);
@@ -84,14 +84,14 @@ TEST(MemoryAccount, HoldsWhatWorkersAndImagesTake) {
   EXPECT_GE(account->bytes(), 12 * kMega);
 }
 
-TEST(MemoryAccount, GivesItsShareBackThoughWhatItHeldStays) {
+TEST(MemoryAccount, ReleasesShareDespiteLiveAllocations) {
   WorkMemory memory(100 * kMega);
   std::vector<char> kept = memory.open("a")->run({}, [] { return block(10 * kMega); });
   EXPECT_EQ(memory.bytes(), 0u);
   std::vector<char>().swap(kept);
 }
 
-TEST(MemoryAccount, NeedsNoShareForWhatOthersAnswerFor) {
+TEST(MemoryAccount, ReleasesShareOfSettledBytes) {
   WorkMemory memory(100 * kMega);
   const auto account = memory.open("a");
   const std::vector<char> kept = account->run({}, [] { return block(10 * kMega); });
@@ -105,7 +105,7 @@ TEST(MemoryAccount, NeedsNoShareForWhatOthersAnswerFor) {
 }
 
 // Small allocations never fail, but the work ends at its next interruption point.
-TEST(MemoryAccount, EndsWorkOfManySmallBlocks) {
+TEST(MemoryAccount, InterruptsWorkOfManySmallBlocks) {
   WorkMemory memory(2 * kMega);
   const auto account = memory.open("a");
   std::vector<std::unique_ptr<int>> blocks;
@@ -123,7 +123,7 @@ TEST(MemoryAccount, EndsWorkOfManySmallBlocks) {
   account->run({}, [] { interruption_point(); });  // there is room again
 }
 
-TEST(InterruptionPoint, ThrowsOnceTheWorkIsToEnd) {
+TEST(InterruptionPoint, ThrowsOnceStopIsRequested) {
   WorkMemory memory(100 * kMega);
   std::stop_source source;
   const std::stop_token stop = source.get_token();
@@ -154,7 +154,7 @@ std::string refusal_of(const std::shared_ptr<MemoryAccount>& account, std::size_
   }
 }
 
-TEST(WorkMemory, LeavesAsMuchToOthersAsOneHas) {
+TEST(WorkMemory, LimitsClientToHalfOfFreeMemory) {
   WorkMemory memory(1000 * kMega);
   const auto first = memory.open("a"), more = memory.open("a"), second = memory.open("b"),
              third = memory.open("c");
@@ -167,11 +167,11 @@ TEST(WorkMemory, LeavesAsMuchToOthersAsOneHas) {
   EXPECT_EQ(refusal_of(third, 120 * kMega), "");
 }
 
-TEST(WorkMemory, TellsTheBytesThatWereTooMany) {
+TEST(WorkMemory, ReportsExceededByteLimit) {
   WorkMemory memory(1000 * kMega);
   const std::string told = refusal_of(memory.open("a"), 600 * kMega);
-  EXPECT_NE(told.find(std::to_string(500 * kMega)), std::string::npos) << told;
-  EXPECT_NE(told.find("(work_bytes)"), std::string::npos) << told;
+  EXPECT_NE(told.find("524,288,000"), std::string::npos) << told;
+  EXPECT_NE(told.find("of work_bytes)"), std::string::npos) << told;
 }
 
 }  // namespace

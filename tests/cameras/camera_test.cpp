@@ -58,7 +58,7 @@ void expect_near(const Vec3d& a, const Vec3d& b, double tolerance) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-TEST(Orbit, TurnsAsTheFormulaOfTheSourceDoes) {
+TEST(Orbit, MatchesRotationFormula) {
   for (const double dt : {0.0, 10.0, 45.0, 90.0, 123.0, -60.0, 270.0}) {
     const PlacedCamera camera = looking_at_origin({1, 2, 3});
     const double c = std::cos(dt * kRadians), s = std::sin(dt * kRadians);
@@ -66,13 +66,13 @@ TEST(Orbit, TurnsAsTheFormulaOfTheSourceDoes) {
   }
 }
 
-TEST(Orbit, KeepsTheCameraOfTheSceneToTheBit) {
+TEST(Orbit, PreservesSceneCameraExactly) {
   const PlacedCamera camera = looking_at_origin({0.1, 0.7, 3.3});
   EXPECT_EQ(frame_at(camera, {}).eye, camera.placement.eye);
   EXPECT_EQ(frame_at(camera, {360, 0, 1}).eye, camera.placement.eye);
 }
 
-TEST(Orbit, PansEyeAndTargetAlike) {
+TEST(Orbit, PansEyeAndTargetTogether) {
   const PlacedCamera camera = looking_at_origin({0.1, 0.7, 3.3});
   const Vec3d pan{0.5, -2, 8};
   PlacedCamera moved = camera;
@@ -86,7 +86,7 @@ TEST(Orbit, PansEyeAndTargetAlike) {
   EXPECT_EQ(turned.back, unmoved.back);
 }
 
-TEST(Orbit, FullTurnsEndWhereTheyBegan) {
+TEST(Orbit, ReturnsToStartAfterFullTurns) {
   covers("E10");
   const PlacedCamera camera = looking_at_origin({1, 2, 3});
   for (const double azimuth : {0.0, 33.5, -17.25, 180.0})
@@ -98,7 +98,7 @@ TEST(Orbit, FullTurnsEndWhereTheyBegan) {
     }
 }
 
-TEST(Orbit, LooksStraightDownWithoutLosingItsSense) {
+TEST(Orbit, KeepsOrientationAtPoles) {
   covers("E8");
   for (const double azimuth : {0.0, 30.0, 90.0, 200.0}) {
     const CameraFrame top = frame_at(looking_at_origin(), {azimuth, 90, 1});
@@ -114,7 +114,7 @@ TEST(Orbit, LooksStraightDownWithoutLosingItsSense) {
   }
 }
 
-TEST(Orbit, LiftStopsAtThePoles) {
+TEST(Orbit, ClampsElevationAtPoles) {
   const PlacedCamera camera = looking_at_origin({0, 3, 4});  // 36.87 degrees above the equator
   expect_near(frame_at(camera, {0, 60, 1}).back, Vec3d(0, 1, 0), 1e-15);
   expect_near(frame_at(camera, {0, 180, 1}).back, Vec3d(0, 1, 0), 1e-15);
@@ -122,7 +122,7 @@ TEST(Orbit, LiftStopsAtThePoles) {
   expect_near(frame_at(camera, {0, -36.86989764584402, 1}).eye, Vec3d(0, 0, 5), 1e-14);
 }
 
-TEST(Orbit, DirectionsAreUnitAndUpright) {
+TEST(Orbit, ReturnsOrthonormalUprightFrame) {
   covers("E8");
   Random random(1);
   for (int i = 0; i < 10'000; ++i) {
@@ -140,7 +140,7 @@ TEST(Orbit, DirectionsAreUnitAndUpright) {
   }
 }
 
-TEST(CameraRays, OnePixelLooksAlongTheAxis) {
+TEST(CameraRays, FollowsAxisInSinglePixelImage) {
   covers("E11");
   expect_near(ray_through(looking_at_origin(), 1, 1, 0, 0).direction, Vec3d(0, 0, -1), 1e-15);
   const PlacedCamera slanted = looking_at_origin({1, 2, 3});
@@ -148,7 +148,7 @@ TEST(CameraRays, OnePixelLooksAlongTheAxis) {
 }
 
 // The image height determines the scale of both axes, whatever the aspect ratio.
-TEST(CameraRays, HeightScalesBothAxes) {
+TEST(CameraRays, ScalesBothAxesByHeight) {
   covers("E9");
   const PlacedCamera camera = looking_at_origin();
   const auto slope = [&](int width, int height, int x, int y) {
@@ -163,7 +163,7 @@ TEST(CameraRays, HeightScalesBothAxes) {
   EXPECT_NEAR(slope(360, 640, 359, 639).x, top * 360 / 640 * (1 - 1 / 360.0), 1e-14);
 }
 
-TEST(CameraRays, MirrorAboutTheMiddleToTheBit) {
+TEST(CameraRays, MirrorsExactlyAboutCentre) {
   const PlacedCamera camera = looking_at_origin();
   for (const int width : {5, 64, 99})
     for (int x = 0; x < width; x += 3) {
@@ -173,7 +173,7 @@ TEST(CameraRays, MirrorAboutTheMiddleToTheBit) {
     }
 }
 
-TEST(CameraRays, OrthographicRaysAreParallelAndSpacedByTheHeight) {
+TEST(CameraRays, SpacesParallelOrthographicRaysByHeight) {
   const PlacedCamera camera{{}, camera_of({{"type", "orthographic"}, {"height", 3}})};
   const Ray<double> first = ray_through(camera, 200, 100, 0, 0),
                     last = ray_through(camera, 200, 100, 199, 99);
@@ -184,7 +184,7 @@ TEST(CameraRays, OrthographicRaysAreParallelAndSpacedByTheHeight) {
 }
 
 // Longitude grows evenly to the right and latitude upward. The centre is the view direction.
-TEST(CameraRays, OfAPanoramaHaveEvenAngles) {
+TEST(CameraRays, SpacesPanoramaAnglesEvenly) {
   const PlacedCamera camera{{}, camera_of({{"type", "panorama"}})};
   const int width = 128, height = 64;
   for (int y = 0; y < height; y += 7)
@@ -200,7 +200,7 @@ TEST(CameraRays, OfAPanoramaHaveEvenAngles) {
     }
 }
 
-TEST(CameraRays, PixelsBeyondThePictureAreInactive) {
+TEST(CameraRays, DeactivatesPixelsOutsideImage) {
   const auto rays = std::make_unique<RayBatch<float>>();
   const PlacedCamera standing = looking_at_origin();
   standing.camera->generate(frame_at(standing, {}), 37, 35, TileGrid(37, 35).at(3, 1), TileSamples::centres(),
@@ -208,7 +208,7 @@ TEST(CameraRays, PixelsBeyondThePictureAreInactive) {
   EXPECT_EQ(active_rays(*rays, groups_of(*rays)), 5u * 3u);
 }
 
-TEST(Camera, RefusesWhatItCannotLookThrough) {
+TEST(Camera, RejectsInvalidSceneCameras) {
   covers("E10");
   const auto problem = [](const char* camera) {
     return first_problem(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
@@ -228,7 +228,7 @@ TEST(Camera, RefusesWhatItCannotLookThrough) {
   EXPECT_EQ(problem("{'fov_degrees': 179.9}"), "accepted");
 }
 
-TEST(Camera, RefusesRequestsItCannotLookThrough) {
+TEST(Camera, RejectsInvalidRequests) {
   covers("E10");
   const auto problem = [](const char* camera) -> std::string {
     try {

@@ -28,7 +28,7 @@ constexpr double kPixelAngle = 2 * 0.363970234266202 / 128;  // tangent of a pix
 
 // A point at distance z shows as a disk of radius r |z - f| / z in the plane of focus. The total light equals
 // that of a pinhole camera.
-TEST(ThinLens, BlursAPointToADisk) {
+TEST(ThinLens, BlursPointToDisk) {
   covers("R26 light-41");
   const double sharp = picture_of(lamp_before_lens(0, 4)).sum();
   for (const double focus : {2.0, 3.0, 8.0}) {
@@ -47,13 +47,13 @@ TEST(ThinLens, BlursAPointToADisk) {
   }
 }
 
-TEST(ThinLens, IsSharpWhereItIsFocused) {
+TEST(ThinLens, IsSharpAtFocusDistance) {
   const Picture sharp = picture_of(lamp_before_lens(0, 4)), focused = picture_of(lamp_before_lens(0.1, 4));
   EXPECT_NEAR(focused.sum() / sharp.sum(), 1, 0.02);
   EXPECT_LE(focused.brighter_than(0), sharp.brighter_than(0) + 4);
 }
 
-TEST(ThinLens, WithoutApertureIsThePinhole) {
+TEST(ThinLens, MatchesPinholeWithoutAperture) {
   covers("E12 light-42");
   Json scene = sample("cornell-box");
   RenderRequest request = size(48, 48);

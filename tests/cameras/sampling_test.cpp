@@ -33,7 +33,7 @@ class Lens : public testing::TestWithParam<int> {};
 
 // Grid cells wholly within the aperture receive samples in proportion to their area. The area of the whole
 // aperture normalizes the density.
-TEST_P(Lens, PointsAreEvenOverItsAperture) {
+TEST_P(Lens, SamplesApertureUniformly) {
   covers("light-24 light-25");
   const int blades = GetParam();
   const double turn = 20;
@@ -105,7 +105,7 @@ double height(Filter filter, double x) {
 class PixelFilters : public testing::TestWithParam<Filter> {};
 
 // Samples of each part have its density over both axes, and the weights of the parts are their integrals.
-TEST_P(PixelFilters, PlaceSamplesAsDenseAsTheyAreHigh) {
+TEST_P(PixelFilters, SamplesInProportionToFilterValue) {
   covers("light-24 light-25");
   const Filter filter = GetParam();
   const PixelFilter own(filter, 0);

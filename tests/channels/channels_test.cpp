@@ -37,13 +37,13 @@ RenderRequest odd_size() { return in_double(size(33, 33)); }  // a pixel's centr
 
 const char* const kBall = "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]";
 
-TEST(Channels, DepthIsTheDistanceAlongTheRay) {
+TEST(Channels, StoresDistanceAlongRayAsDepth) {
   const Layers layers = render_layers(scene_of(kBall), odd_size(), {"depth"});
   EXPECT_EQ(layers.at(0, 0, 16, 16), 3.0f);
   EXPECT_EQ(layers.at(0, 0, 0, 0), std::numeric_limits<float>::infinity()) << "nothing is met there";
 }
 
-TEST(Channels, NormalAndPositionAreThoseOfTheSurface) {
+TEST(Channels, StoresSurfaceNormalAndPosition) {
   const Layers layers = render_layers(scene_of(kBall), odd_size(), {"normal", "position"});
   for (int x = 12; x <= 20; ++x)
     for (std::size_t c = 0; c < 3; ++c)
@@ -53,7 +53,7 @@ TEST(Channels, NormalAndPositionAreThoseOfTheSurface) {
 }
 
 // Shapes are stored by type, but object numbers follow the order of the file.
-TEST(Channels, ObjectIsItsPlaceInTheScene) {
+TEST(Channels, NumbersObjectsInFileOrder) {
   const Json scene = scene_of(R"([
       {'type': 'box', 'min': [-3, -1, -1], 'max': [-1.5, 1, 1]},
       {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5},
@@ -74,7 +74,7 @@ TEST(Channels, ObjectIsItsPlaceInTheScene) {
   EXPECT_EQ(at(-2, 1.8), 0);
 }
 
-TEST(Channels, UvInterpolatesTheTextureCoordinatesOfAMesh) {
+TEST(Channels, InterpolatesMeshTextureCoordinates) {
   const Json scene =
       scene_of(R"([{'type': 'mesh',
       'positions': [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]], 'indices': [[0, 1, 2], [0, 2, 3]],
@@ -88,14 +88,14 @@ TEST(Channels, UvInterpolatesTheTextureCoordinatesOfAMesh) {
     }
 }
 
-TEST(Channels, FootprintGrowsWithTheDistance) {
+TEST(Channels, GrowsFootprintWithDistance) {
   const char* const wall = "[{'type': 'plane', 'point': [0, 0, -6], 'normal': [0, 0, 1]}]";
   const Layers layers = render_layers(scene_of(wall), odd_size(), {"footprint"});
   EXPECT_NEAR(layers.at(0, 0, 16, 16), 10 * 2 * std::tan(std::numbers::pi / 8) / 33, 1e-6);
 }
 
 // The mean of a pixel counts only the samples that hit an object.
-TEST(Channels, EdgesTakeTheMeanOfWhatWasMet) {
+TEST(Channels, AveragesOnlyHitSamplesAtEdges) {
   RenderRequest request = odd_size();
   request.samples = 16;
   const Layers layers = render_layers(scene_of(kBall), request, {"depth", "object"});
@@ -113,7 +113,7 @@ TEST(Channels, EdgesTakeTheMeanOfWhatWasMet) {
   EXPECT_GT(edges, 0);
 }
 
-TEST(Channels, LeaveThePictureAsItIs) {
+TEST(Channels, LeavesPictureUnchanged) {
   const Json scene = sample("instances");
   const RenderRequest request = size(64, 48);
   std::vector<std::string> all;
@@ -125,7 +125,7 @@ TEST(Channels, LeaveThePictureAsItIs) {
 }
 
 // A render stopped after a pass equals the render with that sample count, and can be resumed.
-TEST(Film, PassesAddUpToTheWholeRender) {
+TEST(Film, AccumulatesPassesToFullRender) {
   const PreparedScene scene(load(sample("glass")));
   RenderRequest request = size(70, 45);
   request.samples = 9;
@@ -154,7 +154,7 @@ TEST(Film, PassesAddUpToTheWholeRender) {
 }
 
 // The views of one film equal the images rendered for each storage alone.
-TEST(Film, StoragesShowTheSamePicture) {
+TEST(Film, ReturnsSamePictureFromEveryStorage) {
   const PreparedScene scene(load(sample("paper")));
   RenderRequest request = size(50, 40);
   request.samples = 3;

@@ -60,7 +60,7 @@ const std::string kScene =
  "lights": [{"type": "directional", "from": [1, 1, 1]}],
  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "m"}]})";
 
-TEST_F(CommandLine, RenderWritesTheFormatOfTheEnding) {
+TEST_F(CommandLine, WritesFormatOfFileExtension) {
   const std::string scene = write("s.json", kScene);
   const std::pair<const char*, const char*> formats[] = {
       {"a.png", "\x89PNG"}, {"a.jpg", "\xFF\xD8\xFF"}, {"a.exr", "\x76\x2f\x31\x01"}};
@@ -72,7 +72,7 @@ TEST_F(CommandLine, RenderWritesTheFormatOfTheEnding) {
   EXPECT_EQ(run("render " + scene + " -o " + file("nosuch/a.png")).status, 1);
 }
 
-TEST_F(CommandLine, StatsCountEveryRay) {
+TEST_F(CommandLine, CountsEveryRayInStats) {
   const Outcome result = run("render " + write("s.json", kScene) + " --stats=json --samples 4 --width 20");
   ASSERT_EQ(result.status, 0) << result.err;
   const auto stats = nlohmann::json::parse(result.out);
@@ -87,7 +87,7 @@ TEST_F(CommandLine, StatsCountEveryRay) {
     EXPECT_TRUE(stats.contains(option)) << option;
 }
 
-TEST_F(CommandLine, OptionsHaveTheNamesThatJsonHas) {
+TEST_F(CommandLine, AcceptsJsonNamesAsOptions) {
   const std::string explain = "explain --json " + write("s.json", kScene);
   const std::string parameter_name =
       run(explain + " --azimuth-degrees 30 --elevation-degrees 5 --fov-degrees 40 --max-depth 2").out;
@@ -96,7 +96,7 @@ TEST_F(CommandLine, OptionsHaveTheNamesThatJsonHas) {
   EXPECT_EQ(nlohmann::json::parse(parameter_name).at("request").at("camera").at("azimuth_degrees"), 30);
 }
 
-TEST_F(CommandLine, PlanThatWasPrintedGivesThePictureAgain) {
+TEST_F(CommandLine, ReproducesPictureFromPrintedPlan) {
   const std::string render = "render " + write("s.json", kScene) + " -o ";
   ASSERT_EQ(run(render + file("a.png") + " --error 0.2 --azimuth 30 --certificate " + file("c.json")).status,
             0);
@@ -114,10 +114,10 @@ TEST_F(CommandLine, PlanThatWasPrintedGivesThePictureAgain) {
   EXPECT_EQ(run("explain " + file("s.json") + " --plan /v1/scenes/0/frame.png").status, 0)
       << "all as the scene says";
   const std::pair<const char*, const char*> wrong[] = {
-      {"samples=0", "--plan samples: expected an integer >= 1"},
-      {"sampels=4", "--plan sampels: unknown parameter (did you mean \"samples\"?)"},
-      {"azimuth=1&azimuth_degrees=2", "--plan azimuth_degrees: given as azimuth_degrees and as azimuth"},
-      {"samples=1&samples=2", "--plan: The address gives \"samples\" twice"},
+      {"samples=0", "--plan samples: must be an integer from 1 to "},
+      {"sampels=4", "--plan sampels: unknown query parameter \"sampels\" (did you mean \"samples\"?)"},
+      {"azimuth=1&azimuth_degrees=2", "--plan azimuth_degrees: cannot be used with \"azimuth\""},
+      {"samples=1&samples=2", "--plan: duplicate query parameter \"samples\""},
       {"samples=%zz", "--plan: "}};
   for (const auto& [given, said] : wrong) {
     const Outcome refused = run(render + file("g.png") + " --plan '" + given + "'");
@@ -126,14 +126,14 @@ TEST_F(CommandLine, PlanThatWasPrintedGivesThePictureAgain) {
   }
 }
 
-TEST_F(CommandLine, SceneComesFromStandardInputToo) {
+TEST_F(CommandLine, ReadsSceneFromStandardInput) {
   const std::string scene = write("s.json", kScene);
   EXPECT_EQ(run("render - -o " + file("a.png") + " <" + scene).status, 0);
   EXPECT_EQ(run("render " + scene + " -o " + file("b.png")).status, 0);
   EXPECT_EQ(bytes_of(file("a.png")), bytes_of(file("b.png")));
 }
 
-TEST_F(CommandLine, CheckNamesFilePlaceAndProblem) {
+TEST_F(CommandLine, ReportsFileAndPointerOfProblemsInCheck) {
   const std::string good = write("good.json", kScene);
   std::string text = kScene;
   text.replace(text.find("\"radius\": 1"), 11, "\"radius\": -1");
@@ -141,7 +141,7 @@ TEST_F(CommandLine, CheckNamesFilePlaceAndProblem) {
   EXPECT_EQ(run("check " + good).status, 0);
   const Outcome result = run("check " + good + " " + bad);
   EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(result.out.rfind(bad + ": /objects/0/radius: expected", 0), 0u) << result.out;
+  EXPECT_EQ(result.out.rfind(bad + ": /objects/0/radius: must be ", 0), 0u) << result.out;
   const std::string none = file("none.json");
   const Outcome with_none = run("check " + none + " " + bad);
   EXPECT_EQ(with_none.status, 1);
@@ -154,10 +154,10 @@ TEST_F(CommandLine, CheckNamesFilePlaceAndProblem) {
   EXPECT_EQ(problems[0].at("severity"), "error");
 }
 
-TEST_F(CommandLine, UselessPicturesAreWarnedOf) {
+TEST_F(CommandLine, WarnsAboutUselessPictures) {
   std::string text = kScene;
   text.replace(text.find("[0, 0, 4]"), 9, "[0, 0, 0.5]");
-  const std::string inside = write("inside.json", text), said = "the camera is inside an opaque shape";
+  const std::string inside = write("inside.json", text), said = "camera is inside an opaque shape";
   const Outcome checked = run("check " + inside);
   EXPECT_EQ(checked.status, 0);
   EXPECT_EQ(checked.out.rfind(inside + ": /camera/eye: warning: " + said, 0), 0u) << checked.out;
@@ -173,67 +173,71 @@ TEST_F(CommandLine, UselessPicturesAreWarnedOf) {
   EXPECT_EQ(run("check " + write("lamp.json", text)).out.find("warning"), std::string::npos);
 }
 
-TEST_F(CommandLine, LayersAreRefusedByFormatsThatKeepNone) {
+TEST_F(CommandLine, RejectsLayersForFormatsWithoutLayers) {
   const std::string scene = write("s.json", kScene);
   EXPECT_EQ(run("render " + scene + " --layers depth -o " + file("a.exr")).status, 0);
   const Outcome png = run("render " + scene + " --layers depth -o " + file("a.png"));
   EXPECT_EQ(png.status, 2);
-  EXPECT_NE(png.err.find("--layers: "), std::string::npos) << png.err;
+  EXPECT_NE(png.err.find("--layers: cannot be used with PNG (only EXR stores layers); use EXR"),
+            std::string::npos)
+      << png.err;
   EXPECT_EQ(run("orbit " + scene + " --frames 2 --layers depth -o " + file("a-%d.png")).status, 2);
 }
 
-TEST_F(CommandLine, WrongOptionsAreNamedAsTheyWereGiven) {
+TEST_F(CommandLine, ReportsInvalidOptionsAsGiven) {
   const std::string scene = write("s.json", kScene);
   const Outcome number = run("render " + scene + " --azimuth x --width 5000");
   EXPECT_EQ(number.status, 2);
-  EXPECT_NE(number.err.find("--azimuth: expected a number"), std::string::npos) << number.err;
+  EXPECT_NE(number.err.find("--azimuth: must be a number"), std::string::npos) << number.err;
   EXPECT_NE(number.err.find("--width: "), std::string::npos) << number.err;
   const Outcome word = run("render " + scene + " --technique witted");
   EXPECT_NE(word.err.find("did you mean \"whitted\""), std::string::npos) << word.err;
   const Outcome command = run("redner " + scene);
   EXPECT_EQ(command.status, 2);
-  EXPECT_NE(command.err.find("did you mean \"render\""), std::string::npos) << command.err;
+  EXPECT_NE(command.err.find("unknown command \"redner\" (did you mean render?)"), std::string::npos)
+      << command.err;
   const Outcome slip = run("render " + scene + " --widht 5 --samples=2");
   EXPECT_EQ(slip.status, 2);
-  EXPECT_EQ(slip.err,
-            "orrery: not expected: --widht (did you mean \"--width\"?); see orrery render --help\n");
+  EXPECT_EQ(slip.err, "orrery: unknown option --widht (did you mean --width?); see orrery render --help\n");
   EXPECT_EQ(run("check " + scene + " --quiet=1").err,
-            "orrery: not expected: --quiet=1; see orrery check --help\n");
-  EXPECT_NE(run("schema more").err.find("not expected: more;"), std::string::npos);
+            "orrery: unknown option --quiet; see orrery check --help\n");
+  EXPECT_NE(run("schema more").err.find("unknown argument \"more\";"), std::string::npos);
   const Outcome flag = run("render " + scene + " --reorder maybe");
-  EXPECT_NE(flag.err.find("--reorder: expected true or false"), std::string::npos) << flag.err;
+  EXPECT_NE(flag.err.find("--reorder: must be true or false"), std::string::npos) << flag.err;
   EXPECT_EQ(run("render " + scene + " --reorder true").status, 0);
   EXPECT_EQ(run("render nosuch.json").status, 1);
   EXPECT_EQ(run("render").status, 2);
   EXPECT_EQ(run("render " + scene + " -o ''").status, 2);
+  EXPECT_NE(run("render " + scene + " --spp 4").err.find("unknown option --spp (did you mean --samples?)"),
+            std::string::npos);
   const Outcome slice = run("render " + scene + " --slice 0");
-  EXPECT_NE(slice.err.find("--slice: Value 0 not in range 16 to 1024"), std::string::npos) << slice.err;
+  EXPECT_NE(slice.err.find("--slice: must be an integer from 16 to 1024 (got 0)"), std::string::npos)
+      << slice.err;
   const Outcome limit = run("serve --connections 0");
-  EXPECT_NE(limit.err.find("--connections: expected a whole number from 1 to 10000, got 0"),
-            std::string::npos)
+  EXPECT_NE(limit.err.find("--connections: must be an integer from 1 to 10000 (got 0)"), std::string::npos)
       << limit.err;
 }
 
-TEST_F(CommandLine, WholeNumbersAreNotRounded) {
+TEST_F(CommandLine, RejectsIntegersBeyondExactRange) {
   const std::string scene = write("s.json", kScene);
   EXPECT_EQ(run("render " + scene + " --seed 9007199254740992").status, 0);
   const Outcome beyond = run("render " + scene + " --seed 9007199254740993");
   EXPECT_EQ(beyond.status, 2);
-  EXPECT_NE(beyond.err.find("--seed: expected an integer >= 0 and <= 9007199254740992, got 9007199254740993"),
+  EXPECT_NE(beyond.err.find("--seed: must be an integer from 0 to 9007199254740992 (got 9007199254740993)"),
             std::string::npos)
       << beyond.err;
 }
 
-TEST_F(CommandLine, WhatIsNoSceneFileIsRefused) {
+TEST_F(CommandLine, RejectsFoldersAndEndlessFiles) {
   const Outcome folder = run("render " + folder_.string());
   EXPECT_EQ(folder.status, 1);
   EXPECT_EQ(folder.err, "orrery: cannot read " + folder_.string() + ": Is a directory\n");
   const Outcome endless = run("check /dev/zero");
   EXPECT_EQ(endless.status, 1);
-  EXPECT_NE(endless.err.find("it has more than 1073741824 bytes"), std::string::npos) << endless.err;
+  EXPECT_NE(endless.err.find("file has more than 1,073,741,824 bytes"), std::string::npos) << endless.err;
 }
 
-TEST_F(CommandLine, EveryCommandExplainsItself) {
+TEST_F(CommandLine, PrintsHelpForEveryCommand) {
   EXPECT_EQ(run("--help").status, 0);
   for (const char* command : {"serve", "render", "orbit", "check", "explain", "chart", "stability"}) {
     const Outcome help = run(std::string(command) + " --help");
@@ -242,7 +246,7 @@ TEST_F(CommandLine, EveryCommandExplainsItself) {
   }
 }
 
-TEST_F(CommandLine, StabilityIsToldAsTextJsonAndDocs) {
+TEST_F(CommandLine, WritesStabilityAsTextJsonAndDocs) {
   const Outcome text = run("stability"), json = run("stability --json");
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_EQ(text.out.rfind("A1 ", 0), 0u) << text.out;
@@ -262,13 +266,13 @@ TEST_F(CommandLine, StabilityIsToldAsTextJsonAndDocs) {
 
 // Browsers do not play the colour format that ffmpeg would choose (4:4:4). The format yuv420p requires even
 // sides.
-TEST_F(CommandLine, HelpOfOrbitMakesAFilmThatBrowsersPlay) {
+TEST_F(CommandLine, SuggestsBrowserPlayableVideoInOrbitHelp) {
   const std::string help = run("orbit --help").out;
   EXPECT_NE(help.find("-pix_fmt yuv420p orbit.mp4"), std::string::npos) << help;
   EXPECT_NE(help.find("pad=ceil(iw/2)*2:ceil(ih/2)*2"), std::string::npos) << help;
 }
 
-TEST_F(CommandLine, SchemaCatalogAndExplainPrintJson) {
+TEST_F(CommandLine, PrintsSchemaCatalogAndExplanationAsJson) {
   EXPECT_TRUE(nlohmann::json::accept(run("schema").out));
   EXPECT_TRUE(nlohmann::json::parse(run("catalog").out).contains("shapes"));
   const std::string scene = write("s.json", kScene);
@@ -278,7 +282,7 @@ TEST_F(CommandLine, SchemaCatalogAndExplainPrintJson) {
   EXPECT_NE(run("explain --measure --error 0.05 " + scene).out.find("forecast: about "), std::string::npos);
 }
 
-TEST_F(CommandLine, ChartWritesWhatTheEndingSays) {
+TEST_F(CommandLine, WritesChartFormatOfFileExtension) {
   const std::string few = "chart " + write("s.json", kScene) + " --chart-samples 4 --rounds 1 -o ";
   for (const char* name : {"c.svg", "c.csv", "c.json"}) EXPECT_EQ(run(few + file(name)).status, 0) << name;
   EXPECT_EQ(nlohmann::json::parse(bytes_of(file("c.json"))).at("points").size(), 4U);
@@ -291,7 +295,7 @@ TEST_F(CommandLine, ChartWritesWhatTheEndingSays) {
   EXPECT_EQ(run(few + file("C.SVG")).status, 0);
 }
 
-TEST_F(CommandLine, ChartTellsFlagsAndWritesThePicturesOfItsFront) {
+TEST_F(CommandLine, PrintsChartFlagsAndWritesFrontPictures) {
   const std::string scene = write("s.json", kScene);
   const Outcome told = run("chart " + scene + " --chart-samples 4 --chart-width 24 --rounds 2 -o " +
                            file("c.json") + " --pictures " + file("pictures"));
@@ -310,7 +314,7 @@ TEST_F(CommandLine, ChartTellsFlagsAndWritesThePicturesOfItsFront) {
   EXPECT_EQ(run("chart " + scene + " -o " + file("c.json") + " --pictures " + file("c.json/in")).status, 1);
 }
 
-TEST_F(CommandLine, OrbitWritesNumberedFrames) {
+TEST_F(CommandLine, WritesNumberedOrbitFrames) {
   const std::string scene = write("s.json", kScene);
   ASSERT_EQ(run("orbit " + scene + " --frames 3 --step 90 -o " + file("f-%03d.png")).status, 0);
   for (const char* name : {"f-000.png", "f-001.png", "f-002.png"})
@@ -322,7 +326,7 @@ TEST_F(CommandLine, OrbitWritesNumberedFrames) {
     EXPECT_EQ(run("orbit " + scene + " --frames 1 -o " + file(pattern)).status, 2) << pattern;
 }
 
-TEST_F(CommandLine, OrbitKeepsToABudget) {
+TEST_F(CommandLine, AppliesBudgetToOrbit) {
   const std::string orbit = "orbit " + write("s.json", kScene) + " --frames 3 --discard --stats=json ";
   const auto budget = nlohmann::json::parse(run(orbit + "--error 0.2").out).at("budget");
   EXPECT_EQ(budget.at("frames_met"), 3);
@@ -335,21 +339,20 @@ TEST_F(CommandLine, OrbitKeepsToABudget) {
   EXPECT_EQ(in_time.at("frames_met"), nullptr);
   const Outcome missed = run(orbit + "--error 0.0001 --samples 2");
   EXPECT_EQ(missed.status, 0);
-  EXPECT_NE(missed.err.find("the budget is missed: kept by 0 of 3 frames"), std::string::npos) << missed.err;
+  EXPECT_NE(missed.err.find("budget missed: met by 0 of 3 frames"), std::string::npos) << missed.err;
   EXPECT_EQ(run(orbit + "--error 0.0001 --samples 2 --on-miss fail").status, 3);
 }
 
-TEST_F(CommandLine, BudgetsOfFilesWithoutABoundNameTheFlag) {
+TEST_F(CommandLine, RejectsErrorBudgetForJpeg) {
   const std::string scene = write("s.json", kScene);
   for (const std::string command : {"render ", "orbit --frames 2 "}) {
     const Outcome jpeg = run(command + scene + " --error 0.1 -o " + file("a-%d.jpg"));
     EXPECT_EQ(jpeg.status, 2) << command;
-    EXPECT_NE(jpeg.err.find("--error: expected none, as what JPEG leaves out"), std::string::npos)
-        << jpeg.err;
+    EXPECT_NE(jpeg.err.find("--error: cannot be used with JPEG"), std::string::npos) << jpeg.err;
   }
 }
 
-TEST_F(CommandLine, PicturesAreWrittenWhereLinksLead) {
+TEST_F(CommandLine, WritesThroughSymbolicLinks) {
   fs::create_directory(folder_ / "far");
   write("far/a.png", "an older picture");
   fs::create_symlink(folder_ / "far" / "a.png", folder_ / "link.png");
@@ -358,15 +361,15 @@ TEST_F(CommandLine, PicturesAreWrittenWhereLinksLead) {
   EXPECT_EQ(bytes_of(folder_ / "far" / "a.png").rfind("\x89PNG", 0), 0u);
 }
 
-TEST_F(CommandLine, CertificateReplacesNoPicture) {
+TEST_F(CommandLine, RejectsCertificatePathOfPicture) {
   const std::string render = "render " + write("s.json", kScene) + " -o " + file("a.png") + " --certificate ";
   EXPECT_EQ(run(render + (folder_ / "." / "a.png").string()).status, 2);
   const Outcome bound = run("render " + file("s.json") + " --view bound --error 0.1");
   EXPECT_EQ(bound.status, 2);
-  EXPECT_NE(bound.err.find("--view: expected picture"), std::string::npos) << bound.err;
+  EXPECT_NE(bound.err.find("--view: must be \"picture\""), std::string::npos) << bound.err;
 }
 
-TEST_F(CommandLine, OrbitPlaysTheMotion) {
+TEST_F(CommandLine, PlaysMotionInOrbit) {
   auto moving = nlohmann::json::parse(kScene);
   moving["models"]["ball"]["objects"] = moving["objects"];
   moving["instances"] = {
@@ -392,7 +395,7 @@ TEST_F(CommandLine, OrbitPlaysTheMotion) {
   EXPECT_NE(run("explain " + scene + " --time 0.5").out.find("0.5 s"), std::string::npos);
 }
 
-TEST_F(CommandLine, InterruptedRenderLeavesNoFile) {
+TEST_F(CommandLine, LeavesNoFileAfterInterrupt) {
   const std::string scene = write("s.json", kScene), picture = file("never.png");
   const std::string self = program();
   const pid_t child = fork();
@@ -413,7 +416,7 @@ TEST_F(CommandLine, InterruptedRenderLeavesNoFile) {
     EXPECT_EQ(entry.path().filename().string().find("never"), std::string::npos) << entry.path();
 }
 
-TEST_F(CommandLine, MeshFilesLieBesideTheScene) {
+TEST_F(CommandLine, ReadsMeshesOnlyFromSceneFolder) {
   const std::string mesh = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
   const auto scene_with = [](const std::string& name) {
     auto scene = nlohmann::json::parse(kScene);
@@ -433,11 +436,11 @@ TEST_F(CommandLine, MeshFilesLieBesideTheScene) {
        {std::string("../outside.obj"), std::string("link.obj"), file("outside.obj")}) {
     const Outcome refused = check(outside);
     EXPECT_EQ(refused.status, 2) << outside;
-    EXPECT_NE(refused.out.find("/objects/0/file: expected a file in the scene's folder"), std::string::npos)
+    EXPECT_NE(refused.out.find("/objects/0/file: must be a file in the scene's folder"), std::string::npos)
         << refused.out;
   }
   EXPECT_NE(check("none.obj").out.find("/objects/0/file: cannot read"), std::string::npos);
-  EXPECT_NE(check("meshes").out.find("it is no file"), std::string::npos);
+  EXPECT_NE(check("meshes").out.find("not a regular file"), std::string::npos);
   EXPECT_NE(check("bad.obj").out.find("bad.obj: line 1"), std::string::npos) << check("bad.obj").out;
 }
 

@@ -38,9 +38,9 @@ Json floor_under(const Json& environment, const Vec3d& normal) {
   return scene;
 }
 
-TEST(Environments, AllTypesAreTested) { ASSERT_EQ(environment_types().size(), 3u); }
+TEST(Environments, HasTestsForAllTypes) { ASSERT_EQ(environment_types().size(), 3u); }
 
-TEST(Gradient, LightsAFloorAsItsIntegralSays) {
+TEST(GradientEnvironment, MatchesAnalyticIrradiance) {
   covers("light-33");
   const Json half_plus_half_cosine = {
       {"type", "gradient"}, {"zenith", {1, 1, 1}}, {"horizon", {0.5, 0.5, 0.5}}, {"ground", {0, 0, 0}}};
@@ -51,7 +51,7 @@ TEST(Gradient, LightsAFloorAsItsIntegralSays) {
     EXPECT_NEAR(floor_mean(load(floor_under(half_white, tilted(angle)))), (1 + std::cos(angle)) / 2, 1e-3);
 }
 
-TEST(Gradient, IsSeenByEveryTechnique) {
+TEST(GradientEnvironment, AppearsInEveryTechnique) {
   const Json scene = floor_under(
       {{"type", "gradient"}, {"zenith", {4, 1, 1}}, {"horizon", {2, 1, 1}}, {"ground", {0.5, 1, 1}}},
       tilted(0));
@@ -68,7 +68,7 @@ TEST(Gradient, IsSeenByEveryTechnique) {
   }
 }
 
-TEST(Constant, IsTheBackground) {
+TEST(ConstantEnvironment, MatchesBackground) {
   Json scene = sample("cornell-box");
   scene["image"] = {{"width", 32}, {"height", 32}};
   scene["background"] = {0.3, 0.2, 0.1};
@@ -80,7 +80,7 @@ TEST(Constant, IsTheBackground) {
   EXPECT_EQ(first_problem(scene), "/background");
 }
 
-TEST(Image, HalfWhiteSkyLightsATiltedFloor) {
+TEST(ImageEnvironment, MatchesAnalyticIrradianceOfHalfWhiteSky) {
   covers("light-33");
   const Texels half = painted(64, 128, [](int, int y) { return Vec3d(y < 64 ? 1 : 0); });
   for (const double angle : {0.0, 0.8, 1.5}) {
@@ -92,7 +92,7 @@ TEST(Image, HalfWhiteSkyLightsATiltedFloor) {
 }
 
 // Compares a rotated sky with random bright spots with the sum over a fine grid of directions.
-TEST(Image, LightsAFloorAsASumOverDirectionsDoes) {
+TEST(ImageEnvironment, MatchesSumOverDirections) {
   covers("light-22");
   Random random(3);
   const Texels picture =
@@ -153,7 +153,7 @@ void expect_draws_as_seen(const Scene& scene, T tolerance) {
     ASSERT_NEAR(out->incident[i].x * std::numbers::pi_v<T> * out->pdf[i] / (*radiance)[i].x, T(1), tolerance);
   }
 }
-TEST(Image, DrawsWhatRaysSee) {
+TEST(ImageEnvironment, MatchesSamplesWithRayRadianceAndDensity) {
   covers("light-24");
   Random random(8);
   const Texels picture = painted(32, 16, [&](int, int) { return Vec3d(0.1 + random.unit()); });
@@ -163,7 +163,7 @@ TEST(Image, DrawsWhatRaysSee) {
   expect_draws_as_seen<float>(*scene, 5e-3f);
 }
 
-TEST(Image, TurnsAnticlockwiseSeenFromAbove) {
+TEST(ImageEnvironment, RotatesAnticlockwiseFromAbove) {
   const Texels picture = painted(8, 4, [](int x, int) { return Vec3d(x); });
   const auto seen = [&](double degrees, const Vec3d& along) {
     Tracing tracing(surrounded(picture, Vec3d(0, 1, 0), {{"rotation_degrees", degrees}}));
@@ -175,7 +175,7 @@ TEST(Image, TurnsAnticlockwiseSeenFromAbove) {
   EXPECT_NEAR(seen(90, Vec3d(0, 0, -1)), 5.5, 1e-12);
 }
 
-TEST(Image, EveryThreadCountAndScaleGivesTheSameBits) {
+TEST(ImageEnvironment, IsBitIdenticalAcrossThreadsAndScales) {
   Random random(8);
   const Texels picture = painted(32, 16, [&](int, int) { return Vec3d(random.unit()); });
   const auto picture_of = [&](const Json& scene, int threads) {
@@ -197,7 +197,7 @@ TEST(Image, EveryThreadCountAndScaleGivesTheSameBits) {
   EXPECT_TRUE(identical(one, picture_of(scaled(scene, 0x1p17), 0)));
 }
 
-TEST(Image, AsksTheSourceAndNamesItsPlace) {
+TEST(ImageEnvironment, ReportsPointersOfInvalidFields) {
   const auto problem = [](const Json& environment) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
     scene["environment"] = environment;

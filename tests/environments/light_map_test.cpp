@@ -32,7 +32,7 @@ Texels sky_with_sun(double sun) {
 
 double unit_of(Random& random) { return std::floor(random.unit() * 0x1p24) * 0x1p-24; }
 
-TEST(ImportanceTable, CellsAreDrawnWithTheirProbabilities) {
+TEST(ImportanceTable, SamplesCellsByProbability) {
   covers("light-24");
   const std::vector<float> weights{0, 1, 0, 4, 0, 0, 0, 0, 2, 2, 0.5f, 0};
   const ImportanceTable table(4, 3, weights);
@@ -59,7 +59,7 @@ TEST(ImportanceTable, CellsAreDrawnWithTheirProbabilities) {
 }
 
 // In cells of half a texel the density is bilinear, so that its integral is the value in the middle.
-TEST(LightMap, PlacesAreDrawnWithTheirDensity) {
+TEST(LightMap, SamplesPlacesByDensity) {
   covers("light-24");
   constexpr int kWidth = 16, kHeight = 8, kDraws = 1'000'000;
   for (const Weights weights : {Weights::plain, Weights::compensated}) {
@@ -91,7 +91,7 @@ TEST(LightMap, PlacesAreDrawnWithTheirDensity) {
 }
 
 // Integrates over directions of the sphere instead of places in the map.
-TEST(LightMap, DensityIntegratesToOne) {
+TEST(LightMap, IntegratesDensityToOne) {
   covers("light-25");
   const LightMap map(spotted(16, 8));
   constexpr int kSteps = 2000;
@@ -107,7 +107,7 @@ TEST(LightMap, DensityIntegratesToOne) {
   EXPECT_NEAR(sum * 2 * kPi * kPi / (double{kSteps} * kSteps), 1, 2e-3);
 }
 
-TEST(LightMap, DirectionsAndPlacesAreEachOthersInverse) {
+TEST(LightMap, MapsDirectionsInvertibly) {
   const LightMap map(spotted(512, 256));
   Random random(4);
   for (int i = 0; i < 1000; ++i) {
@@ -127,7 +127,7 @@ TEST(LightMap, DirectionsAndPlacesAreEachOthersInverse) {
 
 // All samples hit the sun. The remaining noise comes from solid angles that vary over the texel and its
 // neighbours.
-TEST(LightMap, ASunOfOneTexelIsFoundByEveryDraw) {
+TEST(LightMap, HitsSingleTexelSunWithEverySample) {
   covers("light-34");
   const LightMap map(painted(512, 256, [](int x, int y) { return Vec3d(x == 100 && y == 127 ? 1000 : 0); }));
   Random random(6);
@@ -146,7 +146,7 @@ TEST(LightMap, ASunOfOneTexelIsFoundByEveryDraw) {
   EXPECT_LT(std::sqrt(std::max(0.0, squares - sum * sum)) / sum, 2e-4);
 }
 
-TEST(LightMap, NothingIsDrawnFromTheSameLightEverywhere) {
+TEST(LightMap, DisablesSamplingOfUniformLight) {
   EXPECT_FALSE(LightMap(painted(64, 32, [](int, int) { return Vec3d(0.3, 0.2, 0.7); })).sampled());
   EXPECT_FALSE(LightMap(painted(64, 32, [](int, int) { return Vec3d(0); })).sampled());
   EXPECT_TRUE(LightMap(sky_with_sun(100)).sampled());
@@ -184,7 +184,7 @@ Moments floor_under(const LightMap& map, int draws) {
   return {mean, squares / draws - mean * mean};
 }
 
-TEST(LightMap, CompensationLowersTheNoiseAndNothingElse) {
+TEST(LightMap, ReducesNoiseWithoutBiasByCompensation) {
   covers("light-35");
   constexpr int kDraws = 400'000;
   const Texels sky = sky_with_sun(300);

@@ -43,9 +43,9 @@ double roundings(const exact::Oracle& oracle, int x, int y, int object, double e
   return count;
 }
 
-class Exact : public testing::TestWithParam<SceneClass> {};
+class ExactVisibility : public testing::TestWithParam<SceneClass> {};
 
-TEST_P(Exact, ObjectsOfPixelsButForRoundingsAtEdges) {
+TEST_P(ExactVisibility, MatchesOracleUpToRoundingAtEdges) {
   const auto accelerators = accelerator_names();
   std::map<std::string, int> differing;
   int pixels = 0;
@@ -79,7 +79,7 @@ TEST_P(Exact, ObjectsOfPixelsButForRoundingsAtEdges) {
   for (const auto& [kind, count] : differing) std::cout << ", " << count << " " << kind << " roundings";
   std::cout << "\n";
 }
-INSTANTIATE_TEST_SUITE_P(Classes, Exact, testing::ValuesIn(scene_classes()),
+INSTANTIATE_TEST_SUITE_P(Classes, ExactVisibility, testing::ValuesIn(scene_classes()),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

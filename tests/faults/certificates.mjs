@@ -9,7 +9,7 @@ export const certificateFaults = [
     from: "sum += d;",
     to: "sum += std::fabs(d);",
     target: "test_study",
-    tests: ["Difference.HasASign"],
+    tests: ["Difference.ReportsSignedBias"],
   },
   {
     fault: 13,
@@ -18,7 +18,7 @@ export const certificateFaults = [
     from: "std::sqrt(squares / (count - 1) / count)",
     to: "std::sqrt(squares / (count - 1))",
     target: "test_study",
-    tests: ["Point.HasIntervalsOfItsMeans", "Point.IntervalsHoldTheMeanThatTheyPromise"],
+    tests: ["Point.ReportsIntervalsOfMeans", "Point.CoversMeanAtStatedRate"],
   },
   {
     fault: 13,
@@ -27,7 +27,7 @@ export const certificateFaults = [
     from: "kNearer = 0.99",
     to: "kNearer = 1",
     target: "test_study",
-    tests: ["Front.TakesAOnePercentSmallerErrorForNoSmaller"],
+    tests: ["ParetoFront.IgnoresErrorDifferencesBelowOnePercent"],
   },
   {
     fault: 13,
@@ -36,7 +36,7 @@ export const certificateFaults = [
     from: "kReferences + turn.round",
     to: "kReferences",
     target: "test_study",
-    tests: ["Study.TakesTurnsRoundByRoundWithOtherSeeds", "Study.IntervalsHoldTheErrorsOfOtherSeeds"],
+    tests: ["Study.CyclesConfigurationsWithNewSeedPerRound", "Study.CoversErrorsOfOtherSeedsInIntervals"],
   },
   {
     fault: 13,
@@ -45,7 +45,7 @@ export const certificateFaults = [
     from: "(double(reference_[i]) + double(values[i])) / kReferences",
     to: "double(values[i])",
     target: "test_study",
-    tests: ["Study.MeasuresWhatAnyoneWould"],
+    tests: ["Study.MatchesIndependentMeasurement"],
   },
   {
     fault: 13,
@@ -54,7 +54,7 @@ export const certificateFaults = [
     from: "(2.0 * four(first[c], i) - four(all[c], i)) * share",
     to: "(2.0 * four(first[c], i) - four(all[c], i)) * (2 * share)",
     target: "test_render",
-    tests: ["SampledError.IsTheError*"],
+    tests: ["SampledError.MatchesErrorOfImage*"],
   },
   {
     fault: 13,
@@ -81,7 +81,7 @@ export const certificateFaults = [
     from: "double kept = std::max(mean(), 1e-18), rejected = 1;",
     to: "return mean(); double kept = 0, rejected = 1;",
     target: "test_render",
-    tests: ["UpperMean.OfNothing*", "UpperMean.HoldsWhere*", "Certificate.NeverTells*"],
+    tests: ["UpperMean.FollowsRuleOfThreeWithoutEvents*", "UpperMean.HoldsForRareErrors*", "Certificate.NeverReportsZeroErrorFromSamples*"],
   },
   {
     fault: 13,
@@ -90,7 +90,7 @@ export const certificateFaults = [
     from: "const double scale = 2.0 /",
     to: "const double scale = 1.0 /",
     target: "test_render",
-    tests: ["Certificate.OfSamplesIsNotFar*"],
+    tests: ["Certificate.StaysCloseToSampleEstimate*"],
   },
   {
     fault: 13,
@@ -99,7 +99,7 @@ export const certificateFaults = [
     from: "std::max(kind, other.kind)",
     to: "std::min(kind, other.kind)",
     target: "test_render",
-    tests: ["Certificate.IsAsWeak*"],
+    tests: ["Certificate.IsAsWeakAsItsWeakestTerm*"],
   },
   {
     fault: 13,
@@ -108,7 +108,7 @@ export const certificateFaults = [
     from: "if (samples_ > 0) stats_.join(before);",
     to: "",
     target: "test_render",
-    tests: ["Certificate.OfPasses*"],
+    tests: ["Certificate.BoundsWholeRenderFromPasses*"],
   },
   {
     fault: 13,
@@ -117,7 +117,7 @@ export const certificateFaults = [
     from: "return made_.certificate.total().rms && *made_.certificate.total().rms <= error_;",
     to: "return *made_.certificate.estimate <= error_;",
     target: "test_render",
-    tests: ["ErrorBudget.IsMet*", "ErrorBudget.NamesWhat*"],
+    tests: ["ErrorBudget.MeetsReportedError*", "ErrorBudget.ReportsUnprovableError*"],
   },
   {
     fault: 13,
@@ -126,7 +126,7 @@ export const certificateFaults = [
     from: "stats.halves.upper_mean(part, reused)",
     to: "stats.halves.upper_mean(part, false)",
     target: "test_render",
-    tests: ["Certificate.KnowsThat*"],
+    tests: ["Certificate.DetectsCorrelatedPixelErrors*"],
   },
   {
     fault: 13,
@@ -135,7 +135,7 @@ export const certificateFaults = [
     from: "if (!reused && pixels_are_alike(stats.error))",
     to: "if (false)",
     target: "test_render",
-    tests: ["Certificate.KnowsThat*"],
+    tests: ["Certificate.DetectsCorrelatedPixelErrors*"],
   },
   {
     fault: 13,
@@ -144,7 +144,7 @@ export const certificateFaults = [
     from: "if (loses_caustics(scene_, plan_))",
     to: "if (false)",
     target: "test_render",
-    tests: ["LostLight.*"],
+    tests: ["Certificate.*"],
   },
   {
     fault: 13,
@@ -153,7 +153,7 @@ export const certificateFaults = [
     from: "return sum_ + rest_;",
     to: "return sum_;",
     target: "test_render",
-    tests: ["ProgressiveRender.TellsOfItsError*"],
+    tests: ["ProgressiveRender.ReportsErrorBitwiseReproducibly*"],
   },
   {
     fault: 13,
@@ -162,7 +162,7 @@ export const certificateFaults = [
     from: "range * std::sqrt(shares.upper_mean(Certificate::kAlpha))",
     to: "found.rms",
     target: "test_render",
-    tests: ["Audit.BoundsTheShare*"],
+    tests: ["Audit.BoundsTheShareOfWrongPixels*"],
   },
   {
     fault: 13,
@@ -171,6 +171,6 @@ export const certificateFaults = [
     from: "return figures.ours <= row.ours_at_most;",
     to: "return true;",
     target: "test_stability",
-    tests: ["StabilityReport.SaysWhatIsNotKept"],
+    tests: ["StabilityReport.ReportsExceededBounds"],
   },
 ];

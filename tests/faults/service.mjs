@@ -6,10 +6,10 @@ export const serviceFaults = [
     fault: 14,
     about: "the last of two Content-Length headers counts",
     file: "server/http/head.cpp",
-    from: "if (head.content_length) throw HttpError(400, \"Content-Length is given twice\");",
+    from: "if (head.content_length) throw HttpError(400, \"duplicate Content-Length header\");",
     to: "",
     target: "test_http",
-    tests: ["Http/Malformed.*/TwoLengths", "Http/Malformed.*/TwoEqualLengths"],
+    tests: ["Http/MalformedRequests.*/TwoLengths", "Http/MalformedRequests.*/TwoEqualLengths"],
   },
   {
     fault: 14,
@@ -18,7 +18,7 @@ export const serviceFaults = [
     from: "if (head.chunked && head.content_length)",
     to: "if (false)",
     target: "test_http",
-    tests: ["Http/Malformed.*/LengthAndCoding", "Http/Malformed.*/CodingAndLength"],
+    tests: ["Http/MalformedRequests.*/LengthAndCoding", "Http/MalformedRequests.*/CodingAndLength"],
   },
   {
     fault: 14,
@@ -27,7 +27,7 @@ export const serviceFaults = [
     from: "clients_.splice(clients_.end(), clients_, clients_.begin());",
     to: "",
     target: "test_http",
-    tests: ["HandlerSlots.GoRoundRobin*"],
+    tests: ["HandlerSlots.ServesClientsRoundRobin*"],
   },
   {
     fault: 14,
@@ -45,7 +45,7 @@ export const serviceFaults = [
     from: "  release();\n  acquire();",
     to: "",
     target: "test_http",
-    tests: ["HandlerSlots.AreGivenUpNowAndThen*"],
+    tests: ["HandlerSlots.YieldsSlotDuringLongWork*"],
   },
   {
     fault: 14,
@@ -54,7 +54,7 @@ export const serviceFaults = [
     from: "const TaskScope scope({nullptr, &stop});",
     to: "const TaskScope scope({nullptr, &stop, TaskScope::current().turn});",
     target: "test_load",
-    tests: ["Interruption.LetsNobodyGoFirst*"],
+    tests: ["Interruption.NeverYieldsWhileSceneIsLocked*"],
   },
   {
     fault: 14,
@@ -63,7 +63,7 @@ export const serviceFaults = [
     from: "!is_over(loop) || !thread_for_another()",
     to: "true",
     target: "test_render",
-    tests: ["WorkerPool.NoStepRuns*"],
+    tests: ["WorkerPool.RunsNoStepDuringLeaseRenewal*"],
   },
   {
     fault: 14,
@@ -81,7 +81,7 @@ export const serviceFaults = [
     from: "if (first) return make_for_all",
     to: "if (true) return make_for_all",
     target: "test_app",
-    tests: ["Pictures.ThatManyAskForAtOnce*"],
+    tests: ["Pictures.MakesConcurrentlyRequestedPictureOnce*"],
   },
   {
     fault: 14,
@@ -90,7 +90,7 @@ export const serviceFaults = [
     from: "now - entry.used <= protected_for_",
     to: "false",
     target: "test_app",
-    tests: ["FairSharesTest.AFlood*"],
+    tests: ["FairSharesTest.EvictsOnlyFromFloodingClient*"],
   },
   {
     fault: 14,
@@ -99,6 +99,6 @@ export const serviceFaults = [
     from: "!(rank(work) < rank(*best))",
     to: "true",
     target: "test_app",
-    tests: ["Admission.ClientsShareByCost*", "Admission.InteractiveWorkGoesFirst*"],
+    tests: ["Admission.SharesSlotsByCost*", "Admission.PrefersInteractiveWorkButReservesBatchSlot*"],
   },
 ];

@@ -9,7 +9,7 @@ export const structureFaults = [
     from: "bool open(T from) const { return from <= hit.t * kFarther<T>; }",
     to: "bool open(T from) const { return from >= 0 && hit.t > 0 && hit.primitive == kNoPrimitive; }",
     target: "test_accelerators",
-    tests: ["All/Partitions.FindTheNearerOfLongAndShort/grid"],
+    tests: ["All/Partitions.ReturnsNearerOfLongAndShortPrimitives/grid"],
   },
   {
     fault: 11,
@@ -18,7 +18,7 @@ export const structureFaults = [
     from: "proposed.kernel->occlude(proposed.index, rays_, one, counts_);",
     to: "rays_.t_max.put(i, Lanes<T>(T(proposed.index < 0 ? 1 : -1)));",
     target: "test_accelerators",
-    tests: ["PredictionOfShadows.*"],
+    tests: ["ShadowPrediction.*"],
   },
   {
     fault: 11,
@@ -27,7 +27,7 @@ export const structureFaults = [
     from: "this->behind_->occlude(rays, with_active_rays(rays, active), counts);",
     to: "",
     target: "test_accelerators",
-    tests: ["PredictionOfShadows.*"],
+    tests: ["ShadowPrediction.*"],
   },
   {
     fault: 11,
@@ -36,7 +36,7 @@ export const structureFaults = [
     from: "if (hit.budget >= 0) continue;",
     to: "if (true) continue;",
     target: "test_accelerators",
-    tests: ["Packets.*"],
+    tests: ["PacketTraversal.*"],
   },
   {
     fault: 11,
@@ -45,7 +45,7 @@ export const structureFaults = [
     from: "normalize(pose.normal(found->geometric.at(i)))",
     to: "normalize(pose.vector(found->geometric.at(i)))",
     target: "test_accelerators",
-    tests: ["Instance.LooksOutwardHoweverItIsScaled"],
+    tests: ["Instance.ReturnsOutwardNormalsAtAnyScale"],
   },
   {
     fault: 11,
@@ -54,7 +54,7 @@ export const structureFaults = [
     from: "const N u = difference_of_products(sc.x, sb.y, sc.y, sb.x);",
     to: "const N u = sc.x * sb.y - sc.y * sb.x;",
     target: "test_shapes",
-    tests: ["Triangle.LongAndThinDoesNotShadeItself", "Triangle.ObtuseSlivers*"],
+    tests: ["Triangle.AvoidsSelfShadowingIfLongAndThin", "Triangle.AvoidsSelfShadowingOfObtuseSlivers*"],
   },
   {
     fault: 11,
@@ -63,7 +63,7 @@ export const structureFaults = [
     from: "return of_pack.empty() ? before : of_pack[Blocks<T>::block_of(child)];",
     to: "return of_pack.empty() ? before : before;",
     target: "test_accelerators",
-    tests: ["All/Motion.PairsOfTrianglesSwapPlaces/bottom_up"],
+    tests: ["All/Motion.RefitsOrRebuildsForSwappingTriangles/bottom_up"],
   },
   {
     fault: 11,
@@ -72,6 +72,6 @@ export const structureFaults = [
     from: "const Vec3d pad(std::min(off, 2 * reach));",
     to: "const Vec3d pad(0 * off);",
     target: "test_accelerators",
-    tests: ["MovingDuringAnExposure.BoxesHoldArcs"],
+    tests: ["MotionBlur.BoundsRotatingGeometryTightly"],
   },
 ];

@@ -9,7 +9,7 @@ export const textbookFaults = [
     from: "const N t0 = (from_axis - radius) * (from_axis + radius) / q, t1 = q / a;",
     to: "const N t0 = (b - root) * a, t1 = (b + root) * a;",
     target: "test_shapes",
-    tests: ["Cylinder.RootsAreDividedByTwiceA"],
+    tests: ["Cylinder.DividesRootsByTwiceA"],
   },
   {
     fault: 1,
@@ -18,7 +18,7 @@ export const textbookFaults = [
     from: "const auto parallel = a == zero;",
     to: "const auto parallel = a < zero;",
     target: "test_shapes",
-    tests: ["Cylinder.RaysAlongTheAxisMeetTheCaps"],
+    tests: ["Cylinder.HitsCapsAlongAxis"],
   },
   {
     fault: 2,
@@ -27,7 +27,7 @@ export const textbookFaults = [
     from: "radius, length(top - base) / 2, reach});",
     to: "radius, base == Vec3d() ? infinity : length(top - base) / 2, reach});",
     target: "test_shapes",
-    tests: ["Cylinder.OriginIsNoSentinel"],
+    tests: ["Cylinder.TreatsOriginAsOrdinaryCapCentre"],
   },
   {
     fault: 2,
@@ -36,7 +36,7 @@ export const textbookFaults = [
     from: "radius, length(top - base) / 2, reach});",
     to: "radius, top == Vec3d() ? infinity : length(top - base) / 2, reach});",
     target: "test_shapes",
-    tests: ["Cylinder.OriginIsNoSentinel"],
+    tests: ["Cylinder.TreatsOriginAsOrdinaryCapCentre"],
   },
   {
     fault: 3,
@@ -45,7 +45,7 @@ export const textbookFaults = [
     from: "const Vec3d from = p.direction(\"from\",",
     to: "const Vec3d from = p.point(\"from\",",
     target: "test_lights",
-    tests: ["Directional.DirectionIsOfUnitLengthHoweverItWasWritten", "AllLights.*"],
+    tests: ["Directional.NormalizesDirection", "AllLights.*"],
   },
   {
     fault: 3,
@@ -54,7 +54,7 @@ export const textbookFaults = [
     from: "const Vec3d direction = p.direction(\"direction\",",
     to: "const Vec3d direction = p.point(\"direction\",",
     target: "test_lights",
-    tests: ["Spot.BeamGoesWhereItPointsWhateverTheLengthOfThat"],
+    tests: ["Spot.IgnoresLengthOfDirection"],
   },
   {
     fault: 3,
@@ -63,7 +63,7 @@ export const textbookFaults = [
     from: "return {toward / distance,",
     to: "return {toward,",
     target: "test_lights",
-    tests: ["AllLights.SendUnitDirectionsAndNoMoreThanTheirIntensity"],
+    tests: ["AllLights.SendsUnitDirectionsWithinIntensity"],
   },
   {
     fault: 3,
@@ -72,7 +72,7 @@ export const textbookFaults = [
     from: "const Vec3<N> to_light = toward / distance;",
     to: "const Vec3<N> to_light = toward;",
     target: "test_lights",
-    tests: ["AllLights.SendUnitDirectionsAndNoMoreThanTheirIntensity"],
+    tests: ["AllLights.SendsUnitDirectionsWithinIntensity"],
   },
   {
     fault: 3,
@@ -81,7 +81,7 @@ export const textbookFaults = [
     from: "return safe_normalize(do_three(key, doc, Kind::direction, range, fallback));",
     to: "return do_three(key, doc, Kind::direction, range, fallback);",
     target: "test_params",
-    tests: ["Reader.DirectionsComeNormalisedFromAnyLength"],
+    tests: ["Reader.NormalizesDirections"],
   },
   {
     fault: 4,
@@ -90,7 +90,7 @@ export const textbookFaults = [
     from: "out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));",
     to: "out.step.put(i, mine, N(T(1e-4)));",
     target: "test_shapes",
-    tests: ["Step.IsBelowTwoNanometresAThousandKilometresAway", "Shapes/Respawn.NoFloatRay*"],
+    tests: ["Step.StaysBelowTwoNanometresAt1000Kilometres", "Shapes/SecondaryRays.AvoidsSelfIntersectionInFloat*"],
   },
   {
     fault: 4,
@@ -99,7 +99,7 @@ export const textbookFaults = [
     from: "out.step.put(i, mine, s.magnitude * (8 * std::numeric_limits<T>::epsilon()));",
     to: "out.step.put(i, mine, N(T(1e-4)));",
     target: "test_render",
-    tests: ["RandomScenes.LookTheSameAtAnyScale", "Scenes/EveryScene.LooksTheSameAtAnyScale/paper"],
+    tests: ["RandomScenes.IsScaleInvariant", "Scenes/EveryScene.IsScaleInvariant/paper"],
   },
   {
     fault: 4,
@@ -108,7 +108,7 @@ export const textbookFaults = [
     from: "select(first > N(T(0)), first,",
     to: "select(first > N(T(1e-4)), first,",
     target: "test_shapes",
-    tests: ["Shapes/ShapeSurface.*PositionsLieOnTheShape/sphere"],
+    tests: ["Shapes/ShapeSurface.Keeps*PositionsOnShape/sphere"],
   },
   {
     fault: 4,
@@ -117,7 +117,7 @@ export const textbookFaults = [
     from: "select(t > N(T(0)), t,",
     to: "select(t > N(T(1e-4)), t,",
     target: "test_shapes",
-    tests: ["Shapes/ShapeSurface.*PositionsLieOnTheShape/plane"],
+    tests: ["Shapes/ShapeSurface.Keeps*PositionsOnShape/plane"],
   },
   {
     fault: 4,
@@ -126,7 +126,7 @@ export const textbookFaults = [
     from: "select(t > N(T(0)) && inside,",
     to: "select(t > N(T(1e-4)) && inside,",
     target: "test_shapes",
-    tests: ["Shapes/ShapeSurface.*PositionsLieOnTheShape/disk"],
+    tests: ["Shapes/ShapeSurface.Keeps*PositionsOnShape/disk"],
   },
   {
     fault: 4,
@@ -135,7 +135,7 @@ export const textbookFaults = [
     from: "enter <= leave && t > N(T(0))",
     to: "enter <= leave && t > N(T(1e-4))",
     target: "test_shapes",
-    tests: ["Shapes/ShapeSurface.*PositionsLieOnTheShape/box"],
+    tests: ["Shapes/ShapeSurface.Keeps*PositionsOnShape/box"],
   },
   {
     fault: 4,
@@ -144,7 +144,7 @@ export const textbookFaults = [
     from: "enter <= leave && t > zero",
     to: "enter <= leave && t > N(T(1e-4))",
     target: "test_shapes",
-    tests: ["Shapes/ShapeSurface.*PositionsLieOnTheShape/cylinder"],
+    tests: ["Shapes/ShapeSurface.Keeps*PositionsOnShape/cylinder"],
   },
   {
     fault: 4,
@@ -153,7 +153,7 @@ export const textbookFaults = [
     from: "determinant != zero && t > zero &&",
     to: "determinant != zero && t > N(T(1e-4)) &&",
     target: "test_shapes",
-    tests: ["Shapes/ShapeSurface.*Positions*/triangle", "Shapes/ShapeSurface.*Positions*/mesh"],
+    tests: ["Shapes/ShapeSurface.Keeps*PositionsOnShape/triangle", "Shapes/ShapeSurface.Keeps*PositionsOnShape/mesh"],
   },
   {
     fault: 4,
@@ -171,7 +171,7 @@ export const textbookFaults = [
     from: "const T pad = static_cast<T>(b.magnitude()) * std::numeric_limits<T>::epsilon() * 4;",
     to: "const T pad = T(1e-4);",
     target: "test_math",
-    tests: ["Bounds.PaddingCoversTheRoundingToFloat"],
+    tests: ["Bounds.CoversFloatRoundingIfPadded"],
   },
   {
     fault: 4,
@@ -180,7 +180,7 @@ export const textbookFaults = [
     from: "N(select(negative, t0, t1) * kFarPad)",
     to: "N(select(negative, t0, t1) + T(1e-4))",
     target: "test_math",
-    tests: ["Slabs/?.LoseNoneOfAMillionRaysThroughCorners"],
+    tests: ["SlabTest/?.MissesNoneOfMillionRaysThroughCorners"],
   },
   {
     fault: 5,
@@ -189,7 +189,7 @@ export const textbookFaults = [
     from: "const N eta = select(inside, ior, N(one / ior));",
     to: "const N eta = N(one / ior);",
     target: "test_materials",
-    tests: ["Refraction.LeavesGlassAtTheAngleOfSnell"],
+    tests: ["Refraction.FollowsSnellsLaw"],
   },
   {
     fault: 5,
@@ -198,7 +198,7 @@ export const textbookFaults = [
     from: "const N thinner = select(eta > one, cos_transmitted, cos_incident);",
     to: "const N thinner = cos_incident;",
     target: "test_materials",
-    tests: ["Fresnel.SchlickIsOffByWhatTheCatalogueSays"],
+    tests: ["Fresnel.HasDocumentedSchlickError"],
   },
   {
     fault: 5,
@@ -207,7 +207,7 @@ export const textbookFaults = [
     from: "out.normal.put(i, mine, s.normal * side);",
     to: "out.normal.put(i, mine, s.normal);",
     target: "test_techniques",
-    tests: ["Slab.LightLeavesParallelAndShifted", "BallLens.*"],
+    tests: ["Slab.ShiftsRayWithoutTurningIt", "BallLens.*"],
   },
   {
     fault: 5,
@@ -216,7 +216,7 @@ export const textbookFaults = [
     from: "out.geometric.put(i, mine, s.geometric * side);",
     to: "out.geometric.put(i, mine, s.geometric);",
     target: "test_shapes",
-    tests: ["Shapes/ShapeSurface.*PositionsLieOnTheShape/sphere"],
+    tests: ["Shapes/ShapeSurface.Keeps*PositionsOnShape/sphere"],
   },
   {
     fault: 5,
@@ -225,7 +225,7 @@ export const textbookFaults = [
     from: "out.side.put(i, mine, side);",
     to: "out.side.put(i, mine, N(1));",
     target: "test_techniques",
-    tests: ["Slab.LightLeavesParallelAndShifted", "Prism.*"],
+    tests: ["Slab.ShiftsRayWithoutTurningIt", "Prism.*"],
   },
   {
     fault: 6,
@@ -234,7 +234,7 @@ export const textbookFaults = [
     from: "return {select(total, one, r),",
     to: "return {select(total, fresnel_schlick(f0, cos_incident), r),",
     target: "test_materials",
-    tests: ["Refraction.BeyondTheCriticalAngleAllIsMirrored"],
+    tests: ["Refraction.ReflectsTotallyBeyondCriticalAngle"],
   },
   {
     fault: 6,
@@ -243,7 +243,7 @@ export const textbookFaults = [
     from: "Vec3<N>(one - split.reflectance)",
     to: "Vec3<N>((one - split.reflectance) * (one - split.reflectance))",
     target: "test_techniques",
-    tests: ["Furnace.GlassUnderAnEvenSkyIsInvisible"],
+    tests: ["Furnace.HidesGlassUnderUniformSky"],
   },
   {
     fault: 7,
@@ -252,7 +252,7 @@ export const textbookFaults = [
     from: "metal.reflectance(min_first(one, max_first(zero, cosine)))",
     to: "metal.reflectance(cosine)",
     target: "test_materials",
-    tests: ["Fresnel.NormalsThatFaceAwayCreateNoLight"],
+    tests: ["Fresnel.CreatesNoLightForBackfacingNormals"],
   },
   {
     fault: 7,
@@ -261,7 +261,7 @@ export const textbookFaults = [
     from: "const N cos_incident = min_first(one, max_first(zero, N(-dot(direction, normal))));",
     to: "const N cos_incident = N(-dot(direction, normal));",
     target: "test_materials",
-    tests: ["Fresnel.NormalsThatFaceAwayCreateNoLight"],
+    tests: ["Fresnel.CreatesNoLightForBackfacingNormals"],
   },
   {
     fault: 7,
@@ -270,7 +270,7 @@ export const textbookFaults = [
     from: "return min_first(N(T(1)), max_first(N(T(0)), c));",
     to: "return min_first(N(T(1)), select(c < N(T(0)), N(-c), c));",
     target: "test_materials",
-    tests: ["Highlight.HasNoNumberlessCorner"],
+    tests: ["Highlight.IsFiniteInDegenerateCases"],
   },
   {
     fault: 8,
@@ -279,7 +279,7 @@ export const textbookFaults = [
     from: "- T(width)) * scale;",
     to: "- T(height)) * scale;",
     target: "test_cameras",
-    tests: ["CameraRays.HeightScalesBothAxes", "CameraRays.MirrorAboutTheMiddleToTheBit"],
+    tests: ["CameraRays.ScalesBothAxesByHeight", "CameraRays.MirrorsExactlyAboutCentre"],
   },
   {
     fault: 8,
@@ -288,7 +288,7 @@ export const textbookFaults = [
     from: "- T(width)) * scale;",
     to: "- T(width)) * (scale * T(height) / T(width));",
     target: "test_cameras",
-    tests: ["CameraRays.HeightScalesBothAxes", "CameraRays.OrthographicRaysAreParallelAndSpacedByTheHeight"],
+    tests: ["CameraRays.ScalesBothAxesByHeight", "CameraRays.SpacesParallelOrthographicRaysByHeight"],
   },
   {
     fault: 8,
@@ -297,7 +297,7 @@ export const textbookFaults = [
     from: "- T(width)) * scale;",
     to: "- T(width)) * (scale * T(height) / T(width));",
     target: "test_render",
-    tests: ["Coverage.BallsAreRoundInAnyAspect"],
+    tests: ["Coverage.KeepsBallsRoundInAnyAspect"],
   },
   {
     fault: 9,
@@ -306,7 +306,7 @@ export const textbookFaults = [
     from: "near = max_first(near, select(negative, t1, t0));",
     to: "near = max_first(N(select(negative, t1, t0)), near);",
     target: "test_math",
-    tests: ["Slabs/?.KeepRaysInTheFacesAndRefuseTheOthers"],
+    tests: ["SlabTest/?.AcceptsOnlyTouchingRaysInFacePlanes"],
   },
   {
     fault: 9,
@@ -315,7 +315,7 @@ export const textbookFaults = [
     from: "far = min_first(far, N(select(negative, t0, t1) * kFarPad));",
     to: "far = min_first(N(select(negative, t0, t1) * kFarPad), far);",
     target: "test_math",
-    tests: ["Slabs/?.KeepRaysInTheFacesAndRefuseTheOthers"],
+    tests: ["SlabTest/?.AcceptsOnlyTouchingRaysInFacePlanes"],
   },
   {
     fault: 9,
@@ -324,7 +324,7 @@ export const textbookFaults = [
     from: "constexpr T kFarPad = 1 + 4 * std::numeric_limits<T>::epsilon();",
     to: "constexpr T kFarPad = 1;",
     target: "test_math",
-    tests: ["Slabs/?.LoseNoneOfAMillionRaysThroughCorners"],
+    tests: ["SlabTest/?.MissesNoneOfMillionRaysThroughCorners"],
   },
   {
     fault: 9,
@@ -333,7 +333,7 @@ export const textbookFaults = [
     from: "enter = max_first(enter, N((select(negative, hi_i, lo_i) - o) / d));",
     to: "enter = max_first(N((select(negative, hi_i, lo_i) - o) / d), enter);",
     target: "test_shapes",
-    tests: ["Flat/?.BoxesAreMetByRaysWithinTheirFaces"],
+    tests: ["FlatShapes/?.HitsBoxesWithRaysInFacePlanes"],
   },
   {
     fault: 9,
@@ -342,7 +342,7 @@ export const textbookFaults = [
     from: "leave = min_first(leave, N((select(negative, lo_i, hi_i) - o) / d));",
     to: "leave = min_first(N((select(negative, lo_i, hi_i) - o) / d), leave);",
     target: "test_shapes",
-    tests: ["Flat/?.BoxesAreMetByRaysWithinTheirFaces"],
+    tests: ["FlatShapes/?.HitsBoxesWithRaysInFacePlanes"],
   },
   {
     fault: 9,
@@ -351,7 +351,7 @@ export const textbookFaults = [
     from: "max_first(select(parallel, -infinity, min_first(t0, t1)), near_cap);",
     to: "max_first(near_cap, select(parallel, -infinity, min_first(t0, t1)));",
     target: "test_shapes",
-    tests: ["Cylinder.RaysInThePlaneOfACapMeetTheWall"],
+    tests: ["Cylinder.HitsWallInPlaneOfCap"],
   },
   {
     fault: 9,
@@ -360,7 +360,7 @@ export const textbookFaults = [
     from: "min_first(select(parallel, infinity, max_first(t0, t1)), far_cap);",
     to: "min_first(far_cap, select(parallel, infinity, max_first(t0, t1)));",
     target: "test_shapes",
-    tests: ["Cylinder.RaysInThePlaneOfACapMeetTheWall"],
+    tests: ["Cylinder.HitsWallInPlaneOfCap"],
   },
   {
     fault: 9,
@@ -369,7 +369,7 @@ export const textbookFaults = [
     from: "if (enters_far) later[waiting++] = far;",
     to: "",
     target: "test_accelerators",
-    tests: ["All/Accelerators.AgreeWithTheListOnACloudOfAllShapes/kd_median"],
+    tests: ["All/Accelerators.MatchesListOnRandomShapes/kd_median"],
   },
   {
     fault: 9,
@@ -378,7 +378,7 @@ export const textbookFaults = [
     from: "const T pad = max_component(abs(ray.origin)) * kRounding<T>;",
     to: "const T pad = 0;",
     target: "test_accelerators",
-    tests: ["All/Accelerators.AgreeWithTheListFromAfar/kd_sah"],
+    tests: ["All/Accelerators.MatchesListOnDistantRays/kd_sah"],
   },
   {
     fault: 10,
@@ -387,16 +387,16 @@ export const textbookFaults = [
     from: "Kind::coefficient, {.min = 0, .max = max}",
     to: "Kind::coefficient, {.min = -max, .max = 0}",
     target: "test_params",
-    tests: ["Reader.CoefficientsTakeANumberOrAColour"],
+    tests: ["Reader.ReadsCoefficientsAsNumberOrColour"],
   },
   {
     fault: 10,
     about: "glass may make light stronger on its way inside",
     file: "core/materials/refractive.cpp",
-    from: "\"What remains of light after one metre inside.\", Vec3d(1), 1);",
-    to: "\"What remains of light after one metre inside.\", Vec3d(1));",
+    from: "\"Share of light that remains after one metre inside, per channel.\", Vec3d(1), 1);",
+    to: "\"Share of light that remains after one metre inside, per channel.\", Vec3d(1));",
     target: "test_load",
-    tests: ["Load.HoldsSharesOfLightBetweenNothingAndAll"],
+    tests: ["Load.RejectsReflectancesOutsideUnitInterval"],
   },
   {
     fault: 10,
@@ -405,7 +405,7 @@ export const textbookFaults = [
     from: "out.reflectance.put(i, mine, metal.",
     to: "out.reflectance.put(i, mine, -metal.",
     target: "test_materials",
-    tests: ["Fresnel.GrazingMirrorsAllAndNothingLeavesTheUnitInterval"],
+    tests: ["Fresnel.StaysInUnitIntervalAndReachesOneAtGrazing"],
   },
   {
     fault: 10,
@@ -414,7 +414,7 @@ export const textbookFaults = [
     from: "out.reflectance.put(i, mine, Vec3<N>(split.reflectance));",
     to: "out.reflectance.put(i, mine, Vec3<N>(-split.reflectance));",
     target: "test_materials",
-    tests: ["Fresnel.GrazingMirrorsAllAndNothingLeavesTheUnitInterval"],
+    tests: ["Fresnel.StaysInUnitIntervalAndReachesOneAtGrazing"],
   },
   {
     fault: 10,
@@ -423,7 +423,7 @@ export const textbookFaults = [
     from: "out.transmittance.put(i, mine, Vec3<N>(one - split.reflectance));",
     to: "out.transmittance.put(i, mine, Vec3<N>(split.reflectance - one));",
     target: "test_materials",
-    tests: ["Fresnel.GrazingMirrorsAllAndNothingLeavesTheUnitInterval"],
+    tests: ["Fresnel.StaysInUnitIntervalAndReachesOneAtGrazing"],
   },
   {
     fault: 10,
@@ -432,7 +432,7 @@ export const textbookFaults = [
     from: "if (paths.depth >= plan.max_depth)",
     to: "if (paths.depth > plan.max_depth)",
     target: "test_techniques",
-    tests: ["DepthLimit.LedgerIsWhatFacingMirrorsStillCarry"],
+    tests: ["DepthLimit.RecordsRemainingLightOfFacingMirrors"],
   },
   {
     fault: 10,
@@ -441,7 +441,7 @@ export const textbookFaults = [
     from: "const auto wanted = mask && max_component(weight) > N(T(0));",
     to: "const auto wanted = mask;",
     target: "test_techniques",
-    tests: ["Growth.CountersObeyTheLawOfTheSlides"],
+    tests: ["RayTree.MatchesRayCountFormula"],
   },
   {
     fault: 10,
@@ -450,7 +450,7 @@ export const textbookFaults = [
     from: "this->follow(Kind::refracted, i, mine, specular.refracted.at(i), specular.transmittance.at(i));",
     to: "",
     target: "test_techniques",
-    tests: ["Growth.DoublesWhereEverySurfaceSendsTwo"],
+    tests: ["RayTree.DoublesPerLevelInsideSlabs"],
   },
   {
     fault: 10,
@@ -459,7 +459,7 @@ export const textbookFaults = [
     from: "+= static_cast<std::uint64_t>(reflected_->rays.count);",
     to: "+= static_cast<std::uint64_t>(reflected_->rays.count) * geometry_.material_of.size();",
     target: "test_techniques",
-    tests: ["Growth.IsByBranchesAndNotByObjects"],
+    tests: ["RayTree.GrowsWithBranchesNotObjects"],
   },
   {
     fault: 10,
@@ -468,6 +468,6 @@ export const textbookFaults = [
     from: "counts.primitive_tests += primitives.size() * active_rays(rays, groups);",
     to: "counts.primitive_tests += primitives.size() * primitives.size() * active_rays(rays, groups);",
     target: "test_techniques",
-    tests: ["Growth.IsLinearInObjectsForTheList"],
+    tests: ["RayTree.TestsEveryObjectPerRayWithList"],
   },
 ];

@@ -9,7 +9,7 @@ export const transportFaults = [
     from: "select(by_lobe > zero && by_light > zero, power_heuristic(by_lobe, by_light), one)",
     to: "one",
     target: "test_techniques",
-    tests: ["Path.IrradianceOf*", "Rooms/PathFurnace.*"],
+    tests: ["Path.MatchesIrradianceOf*", "Rooms/PathFurnace.*"],
   },
   {
     fault: 12,
@@ -27,7 +27,7 @@ export const transportFaults = [
     from: "max_first(N(kMinChance), sqrt(select(alive, most, one)))",
     to: "max_first(N(kMinChance), N(sqrt(select(alive, most, one)) * sqrt(select(alive, most, one))))",
     target: "test_techniques",
-    tests: ["ClosedRoom.Roulette*"],
+    tests: ["ClosedRoom.MatchesRouletteMeanVarianceAndRayCount*"],
   },
   {
     fault: 12,
@@ -54,7 +54,7 @@ export const transportFaults = [
     from: "turn < group_; ++turn) {\n      const Array<T>& of_turn",
     to: "turn < 1; ++turn) {\n      const Array<T>& of_turn",
     target: "test_techniques",
-    tests: ["Path.Sharing*"],
+    tests: ["Path.ChangesOnlyNoiseWithPathReuse*"],
   },
   {
     fault: 12,
@@ -63,7 +63,7 @@ export const transportFaults = [
     from: "wants_diffuse_rays_ ? shadowed_.diffuse_pdf.at(i) : zero",
     to: "zero",
     target: "test_techniques",
-    tests: ["Distributed.LampsThatAreMet*"],
+    tests: ["Distributed.CountsHitAndSampledLampsOnce*"],
   },
   {
     fault: 12,

@@ -45,7 +45,7 @@ struct TokenDaemon {
   httplib::Client client = daemon.client();
 };
 
-TEST(Access, NeedsATokenOfTheScope) {
+TEST(Access, RequiresTokenWithScope) {
   TokenDaemon guarded;
   auto& client = guarded.client;
   const std::string scene = small_scene().dump();
@@ -83,7 +83,7 @@ TEST(Access, NeedsATokenOfTheScope) {
   expect_problem(client.Delete("/v1/jobs/x", bearer("k")), 403);
   expect_problem(client.Delete("/v1/jobs/x", bearer("p")), 404);
   const auto share = expect_problem(post("/v1/shares", "w", R"({"path": "/v1/limits"})"), 403);
-  EXPECT_EQ(share.at("detail"), "The token lacks the scope read");
+  EXPECT_EQ(share.at("detail"), "token lacks scope read");
   const std::string kept_path = kept->get_header_value("Location");
   expect_problem(client.Delete(kept_path, bearer("w")), 403);
   EXPECT_EQ(client.Delete(kept_path, bearer("k"))->status, 204);
@@ -93,7 +93,7 @@ TEST(Access, NeedsATokenOfTheScope) {
   post("/v1/scenes", "k", scene);
   const std::string chosen = cached + "/frame.png?accelerator=list";
   const auto choice = expect_problem(client.Get(chosen, bearer("r")), 403);
-  EXPECT_EQ(choice.at("detail"), "The token lacks the scope render, which choosing the accelerator takes");
+  EXPECT_EQ(choice.at("detail"), "token lacks scope render, which the parameter accelerator needs");
   EXPECT_EQ(client.Get(chosen, bearer("p"))->status, 200);
   expect_problem(post("/v1/shares", "k", nlohmann::json({{"path", chosen}}).dump()), 403);
   EXPECT_EQ(post("/v1/shares", "k", nlohmann::json({{"path", cached}}).dump())->status, 201);
@@ -104,7 +104,7 @@ TEST(Access, NeedsATokenOfTheScope) {
     EXPECT_EQ(client.Get(open)->status, 200) << open;
 }
 
-TEST(Access, TokensAreReadAgainOnSighup) {
+TEST(Access, ReloadsTokensOnSighup) {
   TokenDaemon guarded;
   const auto status = [&](const std::string& token) {
     return guarded.client.Get("/v1/limits", bearer(token))->status;
@@ -125,7 +125,7 @@ TEST(Access, TokensAreReadAgainOnSighup) {
   EXPECT_EQ(status("o"), 200);
 }
 
-TEST(Settings, OriginsAreReadAgainOnSighup) {
+TEST(Settings, ReloadsOriginsOnSighup) {
   const Folder folder;
   const auto write = [&](const json& settings) { return folder.write("settings.json", settings.dump()); };
   const std::string file = write({{"cors_origins", {"https://one.example"}}});
@@ -150,7 +150,7 @@ TEST(Settings, OriginsAreReadAgainOnSighup) {
   EXPECT_FALSE(is_allowed("https://three.example"));
 }
 
-TEST(Access, SignedLinksNeedNoTokenUntilTheyExpire) {
+TEST(Access, AcceptsSignedLinksUntilExpiry) {
   TokenDaemon guarded;
   auto& client = guarded.client;
   const auto posted = client.Post("/v1/scenes", bearer("k"), small_scene().dump(), "application/json");
@@ -189,7 +189,7 @@ TEST(Access, SignedLinksNeedNoTokenUntilTheyExpire) {
     expect_problem(share({{"path", wrong}}), 422);
 }
 
-TEST(Access, FilesThatCannotBeUsedKeepTheServiceFromStarting) {
+TEST(Access, PreventsStartWithInvalidFiles) {
   Folder folder;
   const auto status_of = [&](const std::string& option, const std::string& file) {
     const std::string command = program() + " serve --check-config " + option + " " + file + " 2>/dev/null";
@@ -208,7 +208,7 @@ TEST(Access, FilesThatCannotBeUsedKeepTheServiceFromStarting) {
   EXPECT_EQ(status_of("--tokens-file", "/nonexistent"), 2);
 }
 
-TEST(Cors, OnlyListedOriginsMayRead) {
+TEST(Cors, AllowsOnlyListedOrigins) {
   Daemon daemon({"--cors-origins", "https://a.example,https://b.example"});
   auto client = daemon.client();
   const auto get = [&](const std::string& origin) { return client.Get("/v1/limits", {{"Origin", origin}}); };
@@ -230,7 +230,7 @@ TEST(Cors, OnlyListedOriginsMayRead) {
             std::string::npos);
 }
 
-TEST(Cors, PagesFromElsewhereChangeNothing) {
+TEST(Cors, RejectsWritesFromOtherOrigins) {
   Daemon daemon({"--cors-origins", "https://a.example"});
   const auto post = [&](const std::string& origin) {
     return daemon.client().Post("/v1/scenes", {{"Origin", origin}}, small_scene().dump(), "text/plain");
@@ -242,7 +242,7 @@ TEST(Cors, PagesFromElsewhereChangeNothing) {
 }
 
 // An attacker can point a domain at this machine (DNS rebinding), which makes its pages same-origin.
-TEST(Cors, DomainsChangeNothingUnlessAccessIsControlled) {
+TEST(Cors, RejectsWritesThroughUnknownDomains) {
   const auto post = [](Daemon& daemon, const std::string& host) {
     const std::string here = host + ":" + std::to_string(daemon.port());
     return daemon.client().Post("/v1/scenes", {{"Host", here}, {"Origin", "http://" + here}},
@@ -261,7 +261,7 @@ TEST(Cors, DomainsChangeNothingUnlessAccessIsControlled) {
             201);
 }
 
-TEST(Cors, DomainsReadNothingUnlessListedOrAccessIsControlled) {
+TEST(Cors, RejectsReadsThroughUnknownDomains) {
   Daemon daemon({"--cors-origins", "http://render.example:8080"});
   auto client = daemon.client();
   const auto status = [&](const char* path, const char* host) {
@@ -278,7 +278,7 @@ TEST(Cors, DomainsReadNothingUnlessListedOrAccessIsControlled) {
   EXPECT_EQ(guarded.client.Get("/v1/limits", headers)->status, 200);
 }
 
-TEST(Cors, IsOffUnlessAsked) {
+TEST(Cors, IsDisabledByDefault) {
   Daemon daemon;
   const auto result = daemon.client().Get("/v1/limits", {{"Origin", "https://a.example"}});
   EXPECT_FALSE(result->has_header("Access-Control-Allow-Origin"));

@@ -18,7 +18,7 @@ class Assets : public HttpTest {
   }
 };
 
-TEST_F(Assets, PutMeshIsDescribedAndComesBack) {
+TEST_F(Assets, StoresAndReturnsMesh) {
   const std::string path = path_of(kTetrahedron);
   const auto first = put(path, kTetrahedron), second = put(path, kTetrahedron);
   ASSERT_TRUE(first && second);
@@ -40,7 +40,7 @@ TEST_F(Assets, PutMeshIsDescribedAndComesBack) {
   expect_problem(client_.Delete(path), 404);
 }
 
-TEST_F(Assets, SceneThatNamesAMeshIsRendered) {
+TEST_F(Assets, RendersSceneWithMeshAsset) {
   const std::string hash = sha256_hex(kTetrahedron);
   const auto scene = small_scene({{"title", "a mesh"},
                                   {"objects", {{{"type", "mesh"}, {"asset", hash}, {"material", "ball"}}}},
@@ -57,7 +57,7 @@ TEST_F(Assets, SceneThatNamesAMeshIsRendered) {
   EXPECT_EQ(client_.Get("/v1/scenes/" + id + "/frame.png?azimuth=20")->status, 200) << "the scene keeps it";
 }
 
-TEST_F(Assets, PictureIsDescribedAndLightsAScene) {
+TEST_F(Assets, StoresPictureAndLightsScene) {
   std::ifstream file("scenes/image-sky/sky.hdr", std::ios::binary);
   const std::string sky((std::istreambuf_iterator<char>(file)), {}), path = path_of(sky);
   auto scene = small_scene(
@@ -79,7 +79,7 @@ TEST_F(Assets, PictureIsDescribedAndLightsAScene) {
   expect_problem(put(path_of(half), half), 422);
 }
 
-TEST_F(Assets, OfARenderedSceneAreNotReadAgain) {
+TEST_F(Assets, DoesNotReloadAssetsOfRenderedScene) {
   const std::string hash = sha256_hex(kTetrahedron);
   const auto scene = small_scene({{"title", "rendered, not kept"},
                                   {"objects", {{{"type", "mesh"}, {"asset", hash}, {"material", "ball"}}}},
@@ -96,7 +96,7 @@ TEST_F(Assets, OfARenderedSceneAreNotReadAgain) {
   EXPECT_EQ(client_.Post("/v1/scenes", scene.dump(), "application/json")->status, 200);
 }
 
-TEST_F(Assets, NothingButAMeshUnderItsOwnHashIsTaken) {
+TEST_F(Assets, RejectsInvalidMeshesAndWrongHashes) {
   expect_problem(put(path_of("something else"), kTetrahedron), 422);
   expect_problem(put("/v1/assets/short", kTetrahedron), 422);
   expect_problem(put("/v1/assets/" + std::string(64, 'G'), kTetrahedron), 422);
@@ -109,7 +109,7 @@ TEST_F(Assets, NothingButAMeshUnderItsOwnHashIsTaken) {
   expect_problem(client_.Post(path_of(kTetrahedron), kTetrahedron, "application/octet-stream"), 405);
 }
 
-TEST_F(Assets, NameThatIsNoHashIsSaidToBeNone) {
+TEST_F(Assets, ReportsInvalidHash) {
   const auto scene = small_scene({{"objects", {{{"type", "mesh"}, {"asset", "abc"}, {"material", "ball"}}}},
                                   {"materials", {{"ball", {{"type", "rough"}}}}}});
   const auto problem = expect_problem(client_.Post("/v1/render", scene.dump(), "application/json"), 422);
@@ -117,7 +117,7 @@ TEST_F(Assets, NameThatIsNoHashIsSaidToBeNone) {
 }
 
 // `explain` builds structures, and so has the time limit and priority of a render.
-TEST(Explain, IsBoundedInTime) {
+TEST(Explain, RespectsRequestTimeout) {
   Daemon daemon({"--request-seconds", "1"});
   httplib::Client client = daemon.client();
   client.set_read_timeout(std::chrono::seconds(600));
@@ -133,7 +133,7 @@ TEST(Explain, IsBoundedInTime) {
   EXPECT_TRUE(told->status == 200 || told->status == 504) << told->body;
 }
 
-TEST_F(Assets, FilesAreNotForRequests) {
+TEST_F(Assets, RejectsFileReferencesInRequests) {
   const auto scene =
       small_scene({{"objects", {{{"type", "mesh"}, {"file", "/etc/passwd"}, {"material", "ball"}}}},
                    {"materials", {{"ball", {{"type", "rough"}}}}}});
@@ -141,7 +141,7 @@ TEST_F(Assets, FilesAreNotForRequests) {
   EXPECT_EQ(problem.at("errors").at(0).at("pointer"), "/objects/0/file");
 }
 
-TEST_F(Assets, AreRemovedByClientsThatHavePutThemOnly) {
+TEST_F(Assets, AllowsRemovalByUploadersOnly) {
   const std::string path = path_of(kTetrahedron);
   httplib::Client other = daemon().client_at(2), third = daemon().client_at(3);
   const auto put = [&](httplib::Client& client) {
@@ -158,7 +158,7 @@ TEST_F(Assets, AreRemovedByClientsThatHavePutThemOnly) {
   expect_problem(client_.Get(path), 404);
 }
 
-TEST(AssetLimits, AFloodOfOneClientTakesNothingFromOthers) {
+TEST(AssetLimits, KeepsAssetsOfOtherClientsDuringFlood) {
   Daemon daemon({"--asset-store-bytes", "100000"});
   httplib::Client client = daemon.client(), flood = daemon.client_at(2);
   const std::string path = "/v1/assets/" + sha256_hex(kTetrahedron);
@@ -176,7 +176,7 @@ TEST(AssetLimits, AFloodOfOneClientTakesNothingFromOthers) {
   EXPECT_EQ(client.Get(path)->status, 200);
 }
 
-TEST(AssetLimits, HoldAndAreNamed) {
+TEST(AssetLimits, EnforcesAndReportsLimits) {
   Daemon daemon({"--asset-bytes", "200", "--asset-store-bytes", "4800"});
   httplib::Client client = daemon.client();
   const auto put = [&](const std::string& bytes) {

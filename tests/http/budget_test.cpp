@@ -10,8 +10,8 @@
 namespace orrery {
 namespace {
 
-TEST(ByteQuota, SharesTakeNoMoreThanThereIs) {
-  ByteQuota budget(100, "some_bytes", "Some");
+TEST(ByteQuota, RejectsGrowthBeyondTotal) {
+  ByteQuota budget(100, "some_bytes", "some");
   std::optional<ByteQuota::Share> a(std::in_place, budget, "a");
   ByteQuota::Share b(budget, "b");
   a->grow(60);
@@ -21,16 +21,15 @@ TEST(ByteQuota, SharesTakeNoMoreThanThereIs) {
     b.grow(41);
     FAIL() << "41 bytes of 40";
   } catch (const LimitExceeded& error) {
-    EXPECT_STREQ(error.what(),
-                 "Some take 100 bytes already, of at most 100 (some_bytes), and 1 more are needed");
+    EXPECT_STREQ(error.what(), "some take 100 bytes, and 1 more are needed (limit 100, some_bytes)");
     EXPECT_STREQ(error.limit(), "some_bytes");
   }
   a.reset();
   b.grow(100);
 }
 
-TEST(ByteQuota, AClientHasHalfOrOneShare) {
-  ByteQuota budget(1'000'000, "some_bytes", "Some");
+TEST(ByteQuota, LimitsClientToHalfOrOneShare) {
+  ByteQuota budget(1'000'000, "some_bytes", "some");
   {
     ByteQuota::Share large(budget, "a"), more(budget, "a"), other(budget, "b");
     large.grow(700'000);
@@ -47,7 +46,7 @@ TEST(ByteQuota, AClientHasHalfOrOneShare) {
   EXPECT_THROW(second.grow(300'001), ClientLimitExceeded);
 }
 
-TEST(ResponseQuota, BytesThatManyShareCountOnce) {
+TEST(ResponseQuota, CountsSharedBytesOnce) {
   ResponseQuota budget(200'000);
   const SharedBytes picture(std::string(100'000, 'p')), other(std::string(100'001, 'o'));
   std::vector<ResponseQuota::Share> shares;
@@ -60,7 +59,7 @@ TEST(ResponseQuota, BytesThatManyShareCountOnce) {
   shares.push_back(budget.take(other, "c"));
 }
 
-TEST(ResponseQuota, SmallAnswersAreFreeAndOneMayHaveAnySize) {
+TEST(ResponseQuota, ExemptsSmallAndSingleResponses) {
   ResponseQuota budget(1);
   const SharedBytes small(std::string(64 * 1024, 's')), large(std::string(64 * 1024 + 1, 'l')),
       other(std::string(64 * 1024 + 1, 'o'));
@@ -70,7 +69,7 @@ TEST(ResponseQuota, SmallAnswersAreFreeAndOneMayHaveAnySize) {
   EXPECT_THROW(budget.take(other, "b"), LimitExceeded);
 }
 
-TEST(ResponseQuota, AClientIsSentHalfAndPaysForWhatItIsSentAlone) {
+TEST(ResponseQuota, LimitsClientToHalf) {
   ResponseQuota budget(400'000);
   const SharedBytes shared(std::string(150'000, 's')), other(std::string(100'000, 'o'));
   auto first = budget.take(shared, "a"), second = budget.take(shared, "b");

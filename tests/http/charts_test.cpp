@@ -72,7 +72,7 @@ class ChartTest : public HttpTest {
   }
 };
 
-TEST_F(ChartTest, CanBeHadAsDrawingTableAndNumbers) {
+TEST_F(ChartTest, ReturnsSvgCsvAndJson) {
   const json job = start(ends_on("whitted"));
   EXPECT_EQ(job.at("frames"), 2 + 2 * 8);  // raycast and whitted, both precisions, 1 and 4 samples
   const std::string path = made(job);
@@ -96,7 +96,7 @@ TEST_F(ChartTest, CanBeHadAsDrawingTableAndNumbers) {
   EXPECT_NE(drawing->get_header_value("ETag"), table->get_header_value("ETag"));
 }
 
-TEST_F(ChartTest, PointsTellPlanPictureIntervalAndCertificate) {
+TEST_F(ChartTest, ReportsPlanPictureIntervalAndCertificate) {
   const json job = start(ends_on("whitted"));
   const json chart = json::parse(client_.Get(made(job) + ".json")->body);
   EXPECT_EQ(chart.at("noise_floor"), chart.at("reference").at("rmse"));
@@ -135,7 +135,7 @@ TEST_F(ChartTest, PointsTellPlanPictureIntervalAndCertificate) {
   }
 }
 
-TEST_F(ChartTest, MeasuresSmallerPicturesAndPredictsTheOneThatIsAsked) {
+TEST_F(ChartTest, PredictsFullSizeFromSmallerPictures) {
   json asked = ends_on("whitted");
   asked["image"] = {{"width", 1600}, {"height", 1200}};
   asked["chart"] = {{"samples", 1}, {"rounds", 1}, {"width", 16}};
@@ -152,7 +152,7 @@ TEST_F(ChartTest, MeasuresSmallerPicturesAndPredictsTheOneThatIsAsked) {
       << point.at("picture");
 }
 
-TEST_F(ChartTest, HasLinksBelowTheProxysPath) {
+TEST_F(ChartTest, PrefixesLinksBehindProxy) {
   Daemon daemon({"--path-prefix", "/render"});
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), kJson);
   const std::string scene = posted->get_header_value("Location");
@@ -178,7 +178,7 @@ TEST_F(ChartTest, KeepsNoPictures) {
   expect_problem(daemon.client().Get(job_path(job) + "/frames/0.png"), 404);
 }
 
-TEST_F(ChartTest, IsAConflictUntilItIsMade) {
+TEST_F(ChartTest, ReturnsConflictUntilFinished) {
   const json job = start({{"image", {{"width", 1024}, {"height", 1024}}}, {"chart", {{"samples", 1024}}}});
   const std::string id = job.at("id");
   const json problem = expect_problem(client_.Get(scene_ + "/charts/" + id + ".svg"), 409);
@@ -187,7 +187,7 @@ TEST_F(ChartTest, IsAConflictUntilItIsMade) {
   expect_problem(client_.Get(scene_ + "/charts/" + id + ".svg"), 404);
 }
 
-TEST_F(ChartTest, BelongsToItsScene) {
+TEST_F(ChartTest, IsFoundOnlyUnderItsScene) {
   const std::string path = made(start(ends_on("raycast")));
   const std::string id = path.substr(path.rfind('/') + 1);
   expect_problem(client_.Get("/v1/scenes/" + post_scene(moving_scene().dump()) + "/charts/" + id + ".svg"),
@@ -200,7 +200,7 @@ TEST_F(ChartTest, BelongsToItsScene) {
   expect_problem(client_.Post("/v1/scenes/nothing/charts", "{}", kJson), 404);
 }
 
-TEST_F(ChartTest, TheSameKeyStartsOneJob) {
+TEST_F(ChartTest, StartsOneJobPerIdempotencyKey) {
   const httplib::Headers key{{"Idempotency-Key", "chart-1"}};
   const json job = start(ends_on("whitted"), key);
   EXPECT_EQ(start(ends_on("whitted"), key).at("id"), job.at("id"));
@@ -212,7 +212,7 @@ TEST_F(ChartTest, TheSameKeyStartsOneJob) {
   expect_problem(client_.Post(scene_ + "/charts", key, other.dump(), kJson), 422);
 }
 
-TEST_F(ChartTest, WrongInputIsRefusedAtItsPlace) {
+TEST_F(ChartTest, ReportsPointersOfInvalidInput) {
   const auto pointer = [&](const json& body) {
     const json problem = expect_problem(client_.Post(scene_ + "/charts", body.dump(), kJson), 422);
     return problem.at("errors").at(0).at("pointer").get<std::string>();

@@ -39,7 +39,7 @@ std::string unpacked(std::string_view bytes) {
   return text;
 }
 
-TEST(Compression, GivesTheSameBytesBack) {
+TEST(Compression, RoundTripsBody) {
   std::string body;
   for (int i = 0; i < 100'000; ++i) body += std::to_string(i * 7919 % 1000);
   const Response response = compressed(text(body));
@@ -48,7 +48,7 @@ TEST(Compression, GivesTheSameBytesBack) {
   EXPECT_EQ(unpacked(response.body), body);
 }
 
-TEST(Compression, UsesTheCompressedFormThatIsKept) {
+TEST(Compression, ReusesStoredCompressedBody) {
   Response kept = text();
   kept.gzip = "kept form";
   const Response response = compressed(kept);
@@ -57,7 +57,7 @@ TEST(Compression, UsesTheCompressedFormThatIsKept) {
   EXPECT_FALSE(is_compressed(compressed(kept, "identity")));
 }
 
-TEST(Compression, IsForWhoTakesIt) {
+TEST(Compression, HonoursAcceptEncoding) {
   for (const char* accepts :
        {"gzip", "GZIP", "x-gzip", "br, gzip;q=0.1", "*", "identity;q=0, *;q=0.5", "deflate,gzip"})
     EXPECT_TRUE(is_compressed(compressed(text(), accepts))) << accepts;
@@ -69,7 +69,7 @@ TEST(Compression, IsForWhoTakesIt) {
   }
 }
 
-TEST(Compression, IsForTextOfSomeLength) {
+TEST(Compression, CompressesOnlyTextWithinSizeBounds) {
   for (const char* type : {"application/json", "application/schema+json", "image/svg+xml; charset=utf-8",
                            "text/html", "Application/JSON"})
     EXPECT_TRUE(is_compressed(compressed(text(kLong, type)))) << type;
@@ -82,19 +82,19 @@ TEST(Compression, IsForTextOfSomeLength) {
 }
 
 // The compressed length could reveal a secret next to data chosen by the client.
-TEST(Compression, IsNotForWhatMayNotBeKept) {
+TEST(Compression, SkipsNoStoreResponses) {
   EXPECT_FALSE(is_compressed(compressed(text().set("Cache-Control", "no-store"))));
   EXPECT_FALSE(is_compressed(compressed(text().set("Cache-Control", "private, no-store"))));
   EXPECT_TRUE(is_compressed(compressed(text().set("Cache-Control", "no-cache"))));
 }
 
-TEST(Compression, WeakensTheETag) {
+TEST(Compression, WeakensETag) {
   EXPECT_EQ(find_field(compressed(text().set("ETag", "\"a\"")).headers, "ETag"), "W/\"a\"");
   EXPECT_EQ(find_field(compressed(text().set("ETag", "\"a\""), "").headers, "ETag"), "\"a\"");
 }
 
 // A 304 response carries the entity tag of the cached representation.
-TEST(Compression, NotModifiedHasTheTagOfWhatTheClientHas) {
+TEST(Compression, ReturnsKnownETagInNotModified) {
   const auto tag_for = [](const std::string& known) {
     Request request;
     request.headers = {{"Accept-Encoding", "gzip"}, {"If-None-Match", known}};
@@ -108,7 +108,7 @@ TEST(Compression, NotModifiedHasTheTagOfWhatTheClientHas) {
   EXPECT_EQ(tag_for("\"a\""), "\"a\" ");
 }
 
-TEST(Compression, ReachesThePageAndIsKnownAgain) {
+TEST(Compression, ServesAndRevalidatesCompressedPage) {
   const Daemon daemon;
   const auto ask = [&](const std::string& more) {
     const RawClient raw(daemon.port());

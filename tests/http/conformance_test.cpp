@@ -22,14 +22,14 @@ class Conformance : public HttpTest {
 
 constexpr const char* kLast = " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
 
-TEST_F(Conformance, AbsoluteTargetsAreServed) {  // RFC 9112, 3.2.2
+TEST_F(Conformance, ServesAbsoluteTargets) {  // RFC 9112, 3.2.2
   for (const char* target : {"http://somewhere/healthz", "HTTP://x:8080/healthz", "https://[::1]/healthz?"})
     EXPECT_EQ(answer_to(std::string("GET ") + target + kLast).substr(9, 3), "200") << target;
   EXPECT_EQ(answer_to("GET http://x/nosuch" + std::string(kLast)).substr(9, 3), "404");
   EXPECT_EQ(answer_to("GET http://x" + std::string(kLast)).substr(9, 3), "200");
 }
 
-TEST_F(Conformance, OptionsOfTheServerAreToldWithoutABody) {  // RFC 9110, 9.3.7
+TEST_F(Conformance, AnswersServerOptionsWithoutBody) {  // RFC 9110, 9.3.7
   const std::string answer = answer_to("OPTIONS *" + std::string(kLast));
   EXPECT_EQ(answer.substr(0, 25), "HTTP/1.1 204 No Content\r\n");
   EXPECT_NE(answer.find("\r\nAllow: DELETE, GET, HEAD, OPTIONS, POST, PUT\r\n"), std::string::npos) << answer;
@@ -37,14 +37,14 @@ TEST_F(Conformance, OptionsOfTheServerAreToldWithoutABody) {  // RFC 9110, 9.3.7
   EXPECT_TRUE(answer.ends_with("\r\n\r\n"));
 }
 
-TEST_F(Conformance, OptionsOfAPathAreItsMethods) {
+TEST_F(Conformance, ListsMethodsOfPathInOptions) {
   const std::string answer = answer_to("OPTIONS /v1/render" + std::string(kLast));
   EXPECT_EQ(answer.substr(9, 3), "204");
   EXPECT_NE(answer.find("\r\nAllow: OPTIONS, POST\r\n"), std::string::npos) << answer;
   EXPECT_EQ(answer_to("OPTIONS /nosuch" + std::string(kLast)).substr(9, 3), "404");
 }
 
-TEST_F(Conformance, EmptyLinesBeforeARequestAreSkipped) {  // RFC 9112, 2.2
+TEST_F(Conformance, SkipsEmptyLinesBeforeRequest) {  // RFC 9112, 2.2
   const std::string request = std::string("GET /healthz") + kLast;
   EXPECT_EQ(answer_to("\r\n" + request).substr(9, 3), "200");
   EXPECT_EQ(answer_to("\r\n\r\n\r\n" + request).substr(9, 3), "200");
@@ -54,7 +54,7 @@ TEST_F(Conformance, EmptyLinesBeforeARequestAreSkipped) {  // RFC 9112, 2.2
   EXPECT_EQ(answer_to(many + request).substr(9, 3), "400");
 }
 
-TEST_F(Conformance, EmptyLinesBetweenRequestsAreSkipped) {
+TEST_F(Conformance, SkipsEmptyLinesBetweenRequests) {
   const RawClient raw(daemon().port());
   raw.send("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n\r\n");
   EXPECT_EQ(raw.receive_some().substr(9, 3), "200");
@@ -62,7 +62,7 @@ TEST_F(Conformance, EmptyLinesBetweenRequestsAreSkipped) {
   EXPECT_NE(raw.receive_all().find("HTTP/1.1 404"), std::string::npos);
 }
 
-TEST_F(Conformance, OldClientsAreNotToldToGoOn) {  // RFC 9110, 10.1.1
+TEST_F(Conformance, SendsNoContinueToHttp10Clients) {  // RFC 9110, 10.1.1
   const RawClient raw(daemon().port());
   const std::string scene = small_scene().dump();
   raw.send("POST /v1/render HTTP/1.0\r\nExpect: 100-continue\r\nContent-Length: " +
@@ -72,7 +72,7 @@ TEST_F(Conformance, OldClientsAreNotToldToGoOn) {  // RFC 9110, 10.1.1
   EXPECT_EQ(raw.receive_all().substr(0, 12), "HTTP/1.1 200");
 }
 
-TEST(Terminated, GivesHalfARequestOneLastCall) {
+TEST(Shutdown, GivesPartialRequestsGracePeriod) {
   Daemon daemon;
   const std::string post = "POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n{";
   const RawClient head(daemon.port()), body(daemon.port()), ends(daemon.port());
@@ -87,14 +87,14 @@ TEST(Terminated, GivesHalfARequestOneLastCall) {
   for (const RawClient* raw : {&head, &body}) {
     const std::string answer = raw->receive_all();
     EXPECT_EQ(answer.substr(9, 3), "503");  // a 408 would mean the usual timeout
-    EXPECT_NE(answer.find("before the service ended"), std::string::npos) << answer;
+    EXPECT_NE(answer.find("before the service shut down"), std::string::npos) << answer;
   }
   EXPECT_EQ(daemon.wait(), 0);
 }
 
 // Includes a client that shuts down its sending side long before it reads the response, which exceeds all
 // buffers.
-TEST(ClientThatLeaves, AfterTheWholeAnswerHasNotLeftEarly) {
+TEST(Disconnect, IsNotCountedAfterCompleteResponse) {
   Daemon daemon;
   for (int i = 0; i < 200; ++i) {
     const RawClient raw(daemon.port());

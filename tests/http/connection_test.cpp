@@ -61,12 +61,12 @@ void expect_too_slow(const std::string& framing, const std::string& begin) {
   }
 }
 
-TEST(Trickle, BodiesEnd) {
+TEST(Trickle, TimesOutSlowRequestBodies) {
   expect_too_slow("Content-Length: 1000000", "");
   expect_too_slow("Transfer-Encoding: chunked", "10000\r\n");
 }
 
-TEST(Trickle, AnswersEnd) {
+TEST(Trickle, TimesOutSlowResponses) {
   Trickle trickle("");
   EXPECT_FALSE(trickle.connection().write({std::string(10'000'000, 'a')}));
 }

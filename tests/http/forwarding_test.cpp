@@ -25,7 +25,7 @@ std::string client_of(const Fields& headers, const char* peer = "10.0.0.1") {
   return applied(headers, peer).client;
 }
 
-TEST(IpNetwork, HoldsWhatBeginsWithTheSameBits) {
+TEST(IpNetwork, ContainsAddressesWithSamePrefix) {
   EXPECT_TRUE(IpNetwork("10.0.0.0/8").contains(address("10.255.0.1")));
   EXPECT_FALSE(IpNetwork("10.0.0.0/8").contains(address("11.0.0.1")));
   EXPECT_TRUE(IpNetwork("10.0.0.128/25").contains(address("10.0.0.129")));
@@ -39,20 +39,20 @@ TEST(IpNetwork, HoldsWhatBeginsWithTheSameBits) {
   EXPECT_TRUE(IpNetwork("::/0").contains(address("1.2.3.4")));
 }
 
-TEST(IpNetwork, RefusesWhatIsNone) {
+TEST(IpNetwork, RejectsInvalidNetworks) {
   for (const char* text : {"", "proxy", "10.0.0.0/", "10.0.0.0/33", "10.0.0.0/-1", "10.0.0.0/8/8",
                            "10.0.0.1/8", "10.1", "::/129", "fd00::1/8", "10.0.0.0/ 8", " 10.0.0.1"})
     EXPECT_THROW(IpNetwork{text}, InputError) << text;
 }
 
-TEST(IpAddress, ANetworkIsAnAddressOrHalfOfOne) {
+TEST(IpAddress, ReturnsIpv4AddressOrIpv6HalfAsNetwork) {
   EXPECT_EQ(address("192.0.2.1").network(), "192.0.2.1");
   EXPECT_EQ(address("::ffff:192.0.2.1").network(), "192.0.2.1");
   EXPECT_EQ(address("2001:db8:1:2:3:4:5:6").network(), "2001:db8:1:2::");
   EXPECT_EQ(IpAddress().network(), "");
 }
 
-TEST(Forwarding, BelievesTrustedProxiesOnly) {
+TEST(Forwarding, TrustsOnlyListedProxies) {
   const Fields headers{{"X-Forwarded-For", "198.51.100.1"}};
   EXPECT_EQ(client_of(headers), "198.51.100.1");
   EXPECT_EQ(client_of(headers, "192.0.2.7"), "198.51.100.1");
@@ -61,7 +61,7 @@ TEST(Forwarding, BelievesTrustedProxiesOnly) {
   EXPECT_EQ(client_of({}), "10.0.0.1");
 }
 
-TEST(Forwarding, TheClientIsTheLastThatIsNoTrustedProxy) {
+TEST(Forwarding, ReturnsLastUntrustedAddressAsClient) {
   EXPECT_EQ(client_of({{"X-Forwarded-For", "203.0.113.9, 198.51.100.1"}}), "198.51.100.1");
   EXPECT_EQ(client_of({{"X-Forwarded-For", "203.0.113.9, 198.51.100.1,10.9.9.9"}}), "198.51.100.1");
   EXPECT_EQ(client_of({{"X-Forwarded-For", "203.0.113.9"}, {"X-Forwarded-For", "198.51.100.1"}}),
@@ -70,7 +70,7 @@ TEST(Forwarding, TheClientIsTheLastThatIsNoTrustedProxy) {
   EXPECT_EQ(client_of({{"X-Forwarded-For", ", 198.51.100.1,, "}}), "198.51.100.1");
 }
 
-TEST(Forwarding, ReadsEveryFormOfAnAddress) {
+TEST(Forwarding, ParsesEveryFormOfAddress) {
   EXPECT_EQ(client_of({{"X-Forwarded-For", "198.51.100.1:4711"}}), "198.51.100.1");
   EXPECT_EQ(client_of({{"X-Forwarded-For", "2001:db8:1:2:3::4"}}), "2001:db8:1:2::");
   EXPECT_EQ(client_of({{"X-Forwarded-For", "[2001:db8:1:2:3::4]:80"}}), "2001:db8:1:2::");
@@ -82,7 +82,7 @@ TEST(Forwarding, ReadsEveryFormOfAnAddress) {
 }
 
 // Values sent by the client precede the proxy's, in the same field line or an earlier one.
-TEST(Forwarding, AClientCannotHideWhatAProxyAppends) {
+TEST(Forwarding, KeepsProxyEntriesAfterForgedValues) {
   for (const char* own :
        {"1.2.3.4:\"", "[1.2.3.4]\"", "[::]\"", "\"", "1.2.3.4, \"", "[1.2.3.4", "1.2.3.4:\\\""}) {
     EXPECT_EQ(client_of({{"X-Forwarded-For", std::string(own) + ", 198.51.100.1"}}), "198.51.100.1") << own;
@@ -103,12 +103,12 @@ TEST(Forwarding, AClientCannotHideWhatAProxyAppends) {
             "10.0.0.1");
 }
 
-TEST(Forwarding, ForwardedWithoutAClientLeavesTheOtherHeader) {
+TEST(Forwarding, UsesXForwardedForIfForwardedLacksClient) {
   EXPECT_EQ(client_of({{"Forwarded", "proto=https;host=x"}, {"X-Forwarded-For", "198.51.100.1"}}),
             "198.51.100.1");
 }
 
-TEST(Forwarding, WhatIsNoAddressEndsTheList) {
+TEST(Forwarding, StopsAtInvalidAddress) {
   for (const char* node : {"unknown", "_hidden", "198.51.100.999", "[198.51.100.1", "[198.51.100.1]x",
                            "198.51.100.1:x", "198.51.100.1:123456", "::", "0.0.0.0", "[::]:80", "[", "]",
                            "::1::", "1.2.3.4:5:6", "evil.example"}) {
@@ -120,13 +120,13 @@ TEST(Forwarding, WhatIsNoAddressEndsTheList) {
 }
 
 // If a proxy sets only one of the two headers, the other is the client's own.
-TEST(Forwarding, OfTwoHeadersThatDisagreeNoneIsBelieved) {
+TEST(Forwarding, IgnoresConflictingHeaders) {
   EXPECT_EQ(client_of({{"Forwarded", "for=203.0.113.9"}, {"X-Forwarded-For", "198.51.100.1"}}), "10.0.0.1");
   EXPECT_EQ(client_of({{"Forwarded", "for=198.51.100.1"}, {"X-Forwarded-For", "198.51.100.1"}}),
             "198.51.100.1");
 }
 
-TEST(Forwarding, TheHostIsWhatTheClientAsked) {
+TEST(Forwarding, ReturnsHostRequestedByClient) {
   const auto host = [](const Fields& headers, const char* peer = "10.0.0.1") {
     return applied(headers, peer).forwarded_host;
   };
@@ -138,7 +138,7 @@ TEST(Forwarding, TheHostIsWhatTheClientAsked) {
   EXPECT_EQ(host({{"Host", "inner"}, {"X-Forwarded-Host", "render.example"}}, "203.0.113.1"), "");
 }
 
-TEST(Forwarding, ThePrefixIsTakenOffWhereItIs) {
+TEST(Forwarding, StripsPrefixIfPresent) {
   const Request below = applied({}, "203.0.113.1", "/a/b", {"a", "b", "v1", "limits"});
   EXPECT_EQ(below.path, "/v1/limits");
   EXPECT_EQ(below.segments, (std::vector<std::string>{"v1", "limits"}));
@@ -152,7 +152,7 @@ TEST(Forwarding, ThePrefixIsTakenOffWhereItIs) {
   EXPECT_TRUE(folder.segments.empty());
 }
 
-TEST(Forwarding, AProxyTellsThePrefixThatItTookOff) {
+TEST(Forwarding, AcceptsPrefixFromTrustedProxy) {
   const auto prefix = [](const std::string& told, const char* peer = "10.0.0.1") {
     return applied({{"X-Forwarded-Prefix", told}}, peer, "/usual").prefix;
   };
@@ -167,7 +167,7 @@ TEST(Forwarding, AProxyTellsThePrefixThatItTookOff) {
   EXPECT_EQ(prefix("/" + std::string(200, 'a')), "/usual");
 }
 
-TEST(Forwarding, RefusesAPrefixThatIsNone) {
+TEST(Forwarding, RejectsInvalidPrefixes) {
   for (const char* bad : {"/", "render", "/a/", "//a", "/.", "/a/..", "/a%20b", "/a;b", "https://a"})
     EXPECT_THROW(Forwarding({}, bad), InputError) << bad;
 }

@@ -68,7 +68,7 @@ struct Running {
   std::optional<HandlerSlots::Handler> handler;
 };
 
-TEST(HandlerSlots, GoRoundRobinToClients) {
+TEST(HandlerSlots, ServesClientsRoundRobin) {
   HandlerSlots slots(1);
   Queue queue(slots);
   {
@@ -78,7 +78,7 @@ TEST(HandlerSlots, GoRoundRobinToClients) {
   EXPECT_EQ(queue.order(), "abcabaa");
 }
 
-TEST(HandlerSlots, AreHeldByNoMoreHandlersThanThereAre) {
+TEST(HandlerSlots, LimitsConcurrentHandlers) {
   HandlerSlots slots(3);
   std::atomic<int> running{0}, most{0};
   {
@@ -100,7 +100,7 @@ TEST(HandlerSlots, AreHeldByNoMoreHandlersThanThereAre) {
   EXPECT_LE(most, 3);
 }
 
-TEST(HandlerSlots, AreFreeWhileTheirHandlerWaits) {
+TEST(HandlerSlots, ReleasesSlotDuringWait) {
   HandlerSlots slots(1);
   const Running first(slots, "a");
   Queue queue(slots);
@@ -113,7 +113,7 @@ TEST(HandlerSlots, AreFreeWhileTheirHandlerWaits) {
   queue.add("c");  // waits: the first has its slot again
 }
 
-TEST(HandlerSlots, AreGivenUpNowAndThenByLongWork) {
+TEST(HandlerSlots, YieldsSlotDuringLongWork) {
   HandlerSlots slots(1);
   const Running first(slots, "a");
   Queue queue(slots);
@@ -125,7 +125,7 @@ TEST(HandlerSlots, AreGivenUpNowAndThenByLongWork) {
   EXPECT_EQ(queue.order(), "b");
 }
 
-TEST(HandlerSlots, StayFreeWherePlacesOfAnotherKindBoundTheWork) {
+TEST(HandlerSlots, ReleasesSlotUntilResumed) {
   HandlerSlots slots(1);
   Running first(slots, "a");
   {
@@ -140,7 +140,7 @@ TEST(HandlerSlots, StayFreeWherePlacesOfAnotherKindBoundTheWork) {
   EXPECT_EQ(queue.order(), "c");
 }
 
-TEST(HandlerSlots, AreNotWaitedForByClientsThatHaveGone) {
+TEST(HandlerSlots, RemovesDisconnectedClientsFromQueue) {
   HandlerSlots slots(1);
   Queue queue(slots);
   {
@@ -154,7 +154,7 @@ TEST(HandlerSlots, AreNotWaitedForByClientsThatHaveGone) {
   EXPECT_EQ(queue.order(), "b");
 }
 
-TEST(HandlerSlots, ShowWhatTheirHandlerWaitsFor) {
+TEST(HandlerSlots, ReportsWaitKindForEviction) {
   HandlerSlots slots(1);
   Running first(slots, "a");
   EXPECT_EQ(first.state.kind(), std::nullopt);

@@ -45,7 +45,7 @@ struct WatchedConnection {
   HangupMonitor::Registration watching;
 };
 
-TEST(HangupMonitor, StopsTheWorkOfWhoHangsUp) {
+TEST(HangupMonitor, StopsWorkOnHangup) {
   HangupMonitor monitor;
   Pair stays, leaves;
   StopNotification staying, leaving;
@@ -56,14 +56,14 @@ TEST(HangupMonitor, StopsTheWorkOfWhoHangsUp) {
   EXPECT_FALSE(staying.source.stop_requested());
 }
 
-TEST(HangupMonitor, StopsTheWorkOfWhoSendsNoMore) {
+TEST(HangupMonitor, StopsWorkOnHalfCloseWithoutProbes) {
   WatchedConnection work(!kSendsProbes);
   EXPECT_EQ(write(work.pair.ends[1], "bytes", 5), 5);  // data is not a disconnect
   shutdown(work.pair.ends[1], SHUT_WR);
   work.told.future.wait();
 }
 
-TEST(HangupMonitor, AsksWhoSendsNoMoreWhetherItWaits) {
+TEST(HangupMonitor, ProbesHalfClosedConnections) {
   WatchedConnection work(kSendsProbes);
   shutdown(work.pair.ends[1], SHUT_WR);
   std::array<char, 100> bytes;
@@ -75,7 +75,7 @@ TEST(HangupMonitor, AsksWhoSendsNoMoreWhetherItWaits) {
 }
 
 // A relay may need several probes before it reports the disconnect.
-TEST(HangupMonitor, AsksAgain) {
+TEST(HangupMonitor, RepeatsProbes) {
   WatchedConnection work(kSendsProbes);
   shutdown(work.pair.ends[1], SHUT_WR);
   const std::string once = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -84,7 +84,7 @@ TEST(HangupMonitor, AsksAgain) {
   EXPECT_EQ(all, once + once + once);
 }
 
-TEST(HangupMonitor, AsksNobodyOnceTheAnswerBegins) {
+TEST(HangupMonitor, StopsProbingOnceResponseBegins) {
   WatchedConnection work(kSendsProbes);
   work.watching.stop_probing();
   shutdown(work.pair.ends[1], SHUT_WR);
@@ -93,7 +93,7 @@ TEST(HangupMonitor, AsksNobodyOnceTheAnswerBegins) {
   EXPECT_EQ(recv(work.pair.ends[1], &byte, 1, MSG_DONTWAIT), -1);
 }
 
-TEST(HangupMonitor, StopsTheWorkOfWhoHasLeftBefore) {
+TEST(HangupMonitor, DetectsHangupBeforeRegistration) {
   HangupMonitor monitor;
   Pair pair;
   pair.hang_up();
@@ -103,7 +103,7 @@ TEST(HangupMonitor, StopsTheWorkOfWhoHasLeftBefore) {
 }
 
 // A keep-alive connection has many requests, one after another.
-TEST(HangupMonitor, TellsOnlyTheWorkThatGoesOn) {
+TEST(HangupMonitor, StopsOnlyCurrentWork) {
   HangupMonitor monitor;
   Pair pair;
   StopNotification before, now;

@@ -7,7 +7,7 @@
 namespace orrery {
 namespace {
 
-TEST(Head, TakesARequestApart) {
+TEST(Head, ParsesRequest) {
   const Head head =
       parse_head("POST /v1/render?a=b HTTP/1.1\r\nHost: here\r\ncontent-length: 12\r\nX-A: \t b c \r\n\r\n");
   EXPECT_EQ(head.method, "POST");
@@ -18,7 +18,7 @@ TEST(Head, TakesARequestApart) {
   EXPECT_FALSE(head.chunked);
 }
 
-TEST(Head, ConnectionsLastByVersion) {
+TEST(Head, DerivesKeepAliveFromVersion) {
   EXPECT_FALSE(parse_head("GET / HTTP/1.0\r\n\r\n").keep_alive);
   EXPECT_TRUE(parse_head("GET / HTTP/1.0\r\nConnection: Keep-Alive\r\n\r\n").keep_alive);
   EXPECT_FALSE(parse_head("GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n").keep_alive);
@@ -26,18 +26,18 @@ TEST(Head, ConnectionsLastByVersion) {
   EXPECT_TRUE(parse_head("GET / HTTP/1.1\r\nHost: x\r\nConnection: closed\r\n\r\n").keep_alive);
 }
 
-TEST(Head, ValuesAreNotDecoded) {
+TEST(Head, DoesNotDecodeValues) {
   EXPECT_EQ(parse_head("GET / HTTP/1.1\r\nHost: x\r\nA: %0d%0aB: c\r\n\r\n").header("A"), "%0d%0aB: c");
 }
 
-TEST(Head, RefusesControlCharacters) {
+TEST(Head, RejectsControlCharacters) {
   for (const std::string& text : {std::string("GET / HTTP/1.1\r\nHost: x\r\nA: b\rc\r\n\r\n"),
                                   std::string("GET / HTTP/1.1\nHost: x\r\n\r\n"),
                                   std::string("GET / HTTP/1.1\r\nHost: x\r\nA: \0\r\n\r\n", 33)})
     EXPECT_THROW(parse_head(text), HttpError) << text;
 }
 
-TEST(Head, HostIsOneHostAndPortOrEmpty) {
+TEST(Head, AcceptsOnlyOneValidHost) {
   const auto parse = [](const std::string& host) {
     return parse_head("GET / HTTP/1.1\r\nHost: " + host + "\r\n\r\n");
   };
@@ -51,20 +51,20 @@ TEST(Head, HostIsOneHostAndPortOrEmpty) {
   EXPECT_THROW(parse("a\r\nHost: a"), HttpError);
 }
 
-TEST(Screening, RefusesAtOnceWhatIsNoRequest) {
+TEST(Screening, RejectsNonRequestsEarly) {
   for (const char* text : {"\x16\x03\x01\x02", "GET /\n", "GET / HTTP/1.1\r\nA: b\n", "GET /\r\n",
                            "GET / HTTP/1.1\rX", "hello\r\n", "\r\n", "\n"})
     EXPECT_THROW(screen_head(text, 0), HttpError) << text;
   EXPECT_THROW(screen_head("GET /" + std::string(3000, 'a'), 0), HttpError);
 }
 
-TEST(Screening, LetsWhateverMayBecomeARequestPassPieceByPiece) {
+TEST(Screening, AcceptsEveryPrefixOfValidRequest) {
   const std::string text = "GET /a HTTP/1.1\r\nHost: x\r\nA: \t \xC3\xA9\r\n\r\n";
   for (std::size_t size = 0; size < text.size(); ++size)
     EXPECT_NO_THROW(screen_head(text.substr(0, size + 1), size)) << size;
 }
 
-TEST(Target, MayBeAbsolute) {
+TEST(Target, ParsesAbsoluteForm) {
   for (const char* text : {"http://a.b:80/c/d?e=f", "HTTP://a.b:80/c/d?e=f", "https://a.b:80/c/d?e=f"}) {
     const Target target = parse_target(text);
     EXPECT_EQ(target.authority, "a.b:80") << text;
@@ -79,7 +79,7 @@ TEST(Target, MayBeAbsolute) {
     EXPECT_THROW(parse_target(text), HttpError) << text;
 }
 
-TEST(Target, IsDecodedPieceByPiece) {
+TEST(Target, DecodesEachComponent) {
   const Target target = parse_target("/a%2Fb/c?x=1+2&y=%C3%A9&z&&w=%3D");
   EXPECT_EQ(target.segments, (std::vector<std::string>{"a/b", "c"}));
   EXPECT_EQ(target.path, "/a/b/c");
@@ -88,7 +88,7 @@ TEST(Target, IsDecodedPieceByPiece) {
   EXPECT_EQ(query_text({}), "");
 }
 
-TEST(Target, RefusesWhatIsNoText) {
+TEST(Target, RejectsInvalidTargets) {
   for (const char* text :
        {"", "a", "/%", "/%4", "/%zz", "/%00", "/%0A", "/%ff", "/%C0%AF", "/%ED%A0%80", "/?a=1&a=2"})
     EXPECT_THROW(parse_target(text), HttpError) << text;

@@ -32,7 +32,7 @@ bool metrics_reach(Daemon& daemon, const Holds& holds) {
   return false;
 }
 
-TEST(Health, HasAPortOfItsOwn) {
+TEST(Health, ListensOnSeparatePort) {
   Daemon daemon;
   auto client = daemon.health_client();
   EXPECT_EQ(client.Get("/healthz")->status, 200);
@@ -45,7 +45,7 @@ TEST(Health, HasAPortOfItsOwn) {
   expect_problem(daemon.client().Get("/metrics"), 404);  // not public
 }
 
-TEST(Health, AnswersWhileAllElseIsFull) {
+TEST(Health, RespondsWhileServiceIsFull) {
   Daemon daemon(without_ray_limit(
       {"--threads", "1", "--queue-rays", "1", "--interactive-rays", "1000000000000", "--connections", "3"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
@@ -76,7 +76,7 @@ TEST(Health, AnswersWhileAllElseIsFull) {
   EXPECT_EQ(value_of(text, "orrery_connections_refused_total"), 1);
 }
 
-TEST(Health, MetricsCountWhatWasAnswered) {
+TEST(Health, CountsResponsesInMetrics) {
   const auto now_s = [] {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   };
@@ -112,7 +112,7 @@ TEST(Health, MetricsCountWhatWasAnswered) {
   EXPECT_GT(value_of(metrics(daemon), "process_cpu_seconds_total"), used) << "answering took some";
 }
 
-TEST(Health, MetricsTellWhatWasThereAndWhatHadToBeMade) {
+TEST(Health, CountsCacheHitsAndMisses) {
   Daemon daemon;
   auto client = daemon.client();
   const std::string text = small_scene().dump();
@@ -138,7 +138,7 @@ TEST(Health, MetricsTellWhatWasThereAndWhatHadToBeMade) {
   EXPECT_EQ(value_of(told, "orrery_queue_wait_seconds_count{lane=\"batch\"}"), 0);
 }
 
-TEST(Health, MetricsTellWhyRequestsWereRefused) {
+TEST(Health, CountsRejectionsByReason) {
   Daemon daemon({"--body-bytes", "10000", "--jobs", "1"});
   auto client = daemon.client();
   client.Post("/v1/scenes", std::string(10'001, ' '), "application/json");
@@ -153,7 +153,7 @@ TEST(Health, MetricsTellWhyRequestsWereRefused) {
   })) << metrics(daemon);
 }
 
-TEST(Health, MetricsTellHowJobsEnded) {
+TEST(Health, CountsEndedJobsByOutcome) {
   Daemon daemon({"--job-bytes", "20000"});
   auto client = daemon.client();
   const auto start = [&](int width, int samples) {
@@ -177,7 +177,7 @@ TEST(Health, MetricsTellHowJobsEnded) {
 }
 
 // Labels are route patterns, so that arbitrary paths cannot exhaust memory.
-TEST(Health, StrangeRequestsShareOneSeries) {
+TEST(Health, GroupsUnknownRequestsInOneSeries) {
   Daemon daemon;
   const auto lines = [&] {
     const std::string text = metrics(daemon);

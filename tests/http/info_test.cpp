@@ -14,12 +14,12 @@ class Info : public HttpTest {
   }
 };
 
-TEST_F(Info, HealthAndReadinessAreOk) {
+TEST_F(Info, ReportsHealthAndReadiness) {
   EXPECT_EQ(get_json("/healthz"), nlohmann::json({{"status", "ok"}}));
   EXPECT_EQ(get_json("/readyz"), nlohmann::json({{"status", "ok"}}));
 }
 
-TEST_F(Info, CatalogNamesWhatScenesCanUse) {
+TEST_F(Info, ListsSceneTypesInCatalog) {
   const auto catalog = get_json("/v1/catalog");
   for (const char* room : {"shapes", "materials", "lights", "cameras", "techniques", "accelerators"}) {
     ASSERT_FALSE(catalog.value(room, nlohmann::json()).empty()) << room;
@@ -30,7 +30,7 @@ TEST_F(Info, CatalogNamesWhatScenesCanUse) {
   }
 }
 
-TEST_F(Info, EverySampleOfTheCatalogIsServedAndIsAGoodScene) {
+TEST_F(Info, ServesValidSceneForEverySample) {
   const auto catalog = get_json("/v1/catalog");
   ASSERT_FALSE(catalog.at("samples").empty());
   for (const auto& sample : catalog.at("samples")) {
@@ -44,7 +44,7 @@ TEST_F(Info, EverySampleOfTheCatalogIsServedAndIsAGoodScene) {
   }
 }
 
-TEST_F(Info, EverySampleOfTheCatalogHasAThumbnail) {
+TEST_F(Info, ServesThumbnailForEverySample) {
   const auto catalog = get_json("/v1/catalog");
   ASSERT_FALSE(catalog.at("samples").empty());
   for (const auto& sample : catalog.at("samples")) {
@@ -57,7 +57,7 @@ TEST_F(Info, EverySampleOfTheCatalogHasAThumbnail) {
   }
 }
 
-TEST_F(Info, LimitsArePublished) {
+TEST_F(Info, PublishesLimits) {
   const auto limits = get_json("/v1/limits");
   EXPECT_EQ(limits.at("body_bytes"), 8 << 20);
   EXPECT_EQ(limits.at("image_side"), 4096);
@@ -67,14 +67,14 @@ TEST_F(Info, LimitsArePublished) {
   EXPECT_EQ(limits.at("chart_pixels"), 1048576);
 }
 
-TEST_F(Info, StabilityIsMeasuredAndHolds) {
+TEST_F(Info, ReportsStabilityWithinBounds) {
   const auto stability = get_json("/v1/stability");
   EXPECT_EQ(stability.at("holds"), true);
   EXPECT_GE(stability.at("rows").size(), 14u);
   EXPECT_EQ(get_json("/v1/stability"), stability);
 }
 
-TEST_F(Info, SchemaIsServedWithAnETag) {
+TEST_F(Info, ServesSchemaWithETag) {
   const auto schema = client_.Get("/schemas/scene.json");
   ASSERT_TRUE(schema);
   EXPECT_EQ(nlohmann::json::parse(schema->body).at("type"), "object");
@@ -83,7 +83,7 @@ TEST_F(Info, SchemaIsServedWithAnETag) {
   EXPECT_EQ(again->status, 304);
 }
 
-TEST_F(Info, DescribesItself) {
+TEST_F(Info, ServesOpenApiDescription) {
   const auto description = client_.Get("/openapi.json");
   ASSERT_TRUE(description && description->status == 200);
   EXPECT_EQ(nlohmann::json::parse(description->body).at("openapi"), "3.1.0");
@@ -120,7 +120,7 @@ TEST_F(Info, DescribesEveryRenderOption) {
   }
 }
 
-TEST_F(Info, LimitsAndDefaultsOfEveryRenderOptionArePublished) {
+TEST_F(Info, PublishesLimitsAndDefaultsOfRenderOptions) {
   const auto limits = get_json("/v1/limits").at("options"), defaults = get_json("/v1/catalog").at("defaults");
   for (const RenderOption& option : render_options()) {
     EXPECT_TRUE(bounds_its_values(limits.at(option.key))) << option.key;
@@ -129,7 +129,7 @@ TEST_F(Info, LimitsAndDefaultsOfEveryRenderOptionArePublished) {
   EXPECT_EQ(limits.at("samples"), nlohmann::json({{"type", "integer"}, {"minimum", 1}, {"maximum", 4096}}));
 }
 
-TEST_F(Info, ExplainGivesTheRequestThatRendersThePicture) {
+TEST_F(Info, ReturnsReproducibleRequestInExplain) {
   const std::string scene = "/v1/scenes/" + post_scene(moving_scene().dump());
   const std::string query = "?azimuth=30&pan=0.1,0,0&samples=3&time=0.5&fov=50&max_depth=2&seed=7";
   const auto explained = get_json((scene + "/explain" + query).c_str());
@@ -143,7 +143,7 @@ TEST_F(Info, ExplainGivesTheRequestThatRendersThePicture) {
   EXPECT_EQ(rendered->body, picture->body);
 }
 
-TEST_F(Info, PageIsServedWithTypesAndProtection) {
+TEST_F(Info, ServesPageWithTypesAndSecurityHeaders) {
   const auto page = client_.Get("/");
   ASSERT_TRUE(page && page->status == 200);
   EXPECT_EQ(page->get_header_value("Content-Type"), "text/html; charset=utf-8");
@@ -156,7 +156,7 @@ TEST_F(Info, PageIsServedWithTypesAndProtection) {
   EXPECT_EQ(script->get_header_value("Content-Type"), "text/javascript; charset=utf-8");
 }
 
-TEST_F(Info, PageIsNotSentAgainWhenKnown) {
+TEST_F(Info, ReturnsNotModifiedForKnownPage) {
   const auto page = client_.Get("/");
   ASSERT_TRUE(page);
   const auto again = get_known("/", "W/" + page->get_header_value("ETag"));
@@ -165,7 +165,7 @@ TEST_F(Info, PageIsNotSentAgainWhenKnown) {
   EXPECT_TRUE(again->body.empty());
 }
 
-TEST_F(Info, HeadHasTheHeadersOfGetWithoutTheBody) {
+TEST_F(Info, ReturnsGetHeadersForHead) {
   const auto get = client_.Get("/");
   const auto head = client_.Head("/");
   ASSERT_TRUE(get && head);
@@ -175,19 +175,19 @@ TEST_F(Info, HeadHasTheHeadersOfGetWithoutTheBody) {
   EXPECT_TRUE(head->body.empty());
 }
 
-TEST_F(Info, UnknownPathsAreNotFound) {
+TEST_F(Info, ReturnsNotFoundForUnknownPaths) {
   for (const char* path : {"/nosuch", "/v1", "/v1/", "/v1/scenes/x/y", "/scenes/nosuch.json", "/../core",
                            "//", "/web/index.html", "/%2e%2e/etc/passwd"})
     expect_problem(client_.Get(path), 404);
 }
 
-TEST_F(Info, PathsThatLackANameSayWhereItGoes) {
+TEST_F(Info, SuggestsFullPathIfNameIsMissing) {
   const auto problem = expect_problem(client_.Post("/v1/assets", "v 0 0 0", "model/obj"), 404);
   EXPECT_NE(problem.at("detail").get<std::string>().find("PUT /v1/assets/{sha256}"), std::string::npos)
       << problem;
 }
 
-TEST_F(Info, WrongMethodsAreToldWhichAreRight) {
+TEST_F(Info, ReportsAllowedMethods) {
   const auto remove = client_.Delete("/v1/render");
   expect_problem(remove, 405);
   EXPECT_EQ(remove->get_header_value("Allow"), "OPTIONS, POST");
@@ -196,7 +196,7 @@ TEST_F(Info, WrongMethodsAreToldWhichAreRight) {
   EXPECT_EQ(put->get_header_value("Allow"), "DELETE, GET, HEAD, OPTIONS");
 }
 
-TEST_F(Info, RequestIdIsEchoedIfItIsCleanAndMadeIfNot) {
+TEST_F(Info, EchoesValidRequestIdOrGeneratesOne) {
   EXPECT_EQ(client_.Get("/healthz", {{"X-Request-ID", "job-7.a_B"}})->get_header_value("X-Request-ID"),
             "job-7.a_B");
   const std::string dirty = "a b<script>";

@@ -34,7 +34,7 @@ constexpr const char* kDeepest = "/objects/0/0/0/0/0/0/0/0/0/0/0/0/0/0/0/0/0/0/0
 
 class BadInputs : public HttpTest, public ::testing::WithParamInterface<BadInput> {};
 
-TEST_P(BadInputs, AreRefusedWithTheirPlace) {
+TEST_P(BadInputs, ReportsPointerAndReason) {
   const BadInput& input = GetParam();
   for (const char* path : {"/v1/render", "/v1/scenes"}) {
     const auto problem = expect_problem(client_.Post(path, input.body, "application/json"), input.status);
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"NaNInJson", scene_with_text("/objects/0/radius", "NaN"), 400, "/objects/0/radius",
                  "column"},
         BadInput{"TooDeep", "{\"objects\": " + std::string(5000, '['), 422, kDeepest, "32"},
-        BadInput{"NotAnObject", "[1, 2]", 422, "", "expected an object"},
+        BadInput{"NotAnObject", "[1, 2]", 422, "", "must be an object"},
         BadInput{"DuplicateKey", "{\"version\": 1, \"version\": 1}", 422, "/version", "duplicate"},
         BadInput{"UnknownKey", scene_with("/camera/fov", 40), 422, "/camera", "did you mean \"fov_degrees\""},
         BadInput{"MissingVersion", scene_without("version"), 422, "", "missing key \"version\""},
@@ -85,16 +85,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"EyeAtTarget", scene_with("/camera/eye", {0, 0, 0}), 422, "/camera/look_at", "eye"}),
     [](const auto& input) { return input.param.name; });
 
-class Bodies : public HttpTest {};
+class RequestBodies : public HttpTest {};
 
-TEST_F(Bodies, OverTheLimitAreRefusedByTheirLength) {
+TEST_F(RequestBodies, RejectsBodiesOverLimit) {
   const auto problem =
       expect_problem(client_.Post("/v1/render", std::string(9 << 20, ' '), "application/json"), 413);
-  EXPECT_NE(problem.value("detail", "").find("8388608"), std::string::npos);
+  EXPECT_NE(problem.value("detail", "").find("8,388,608"), std::string::npos);
   EXPECT_EQ(client_.Get("/healthz")->status, 200);
 }
 
-TEST_F(Bodies, JustUnderTheLimitAreRead) {
+TEST_F(RequestBodies, AcceptsBodiesAtLimit) {
   std::string scene = small_scene().dump();
   scene.resize(8 << 20, ' ');
   EXPECT_EQ(client_.Post("/v1/render", scene, "application/json")->status, 200);
@@ -102,7 +102,7 @@ TEST_F(Bodies, JustUnderTheLimitAreRead) {
 
 // Deeply nested names of control characters give the longest possible errors. JSON escapes each character
 // with six bytes.
-TEST_F(Bodies, GetErrorsOfAtMost64KiB) {
+TEST_F(RequestBodies, LimitsErrorsTo64KiB) {
   const std::string name(1000, '\x01'), written = nlohmann::json(name).dump();
   std::string deep = "1";
   for (int i = 0; i < 30; ++i) deep = "{" + written + ":" + deep + "," + written + ":1}";
@@ -119,7 +119,7 @@ TEST_F(Bodies, GetErrorsOfAtMost64KiB) {
   }
 }
 
-TEST_F(Bodies, OfOtherTypesAreRefused) {
+TEST_F(RequestBodies, RejectsUnsupportedTypes) {
   for (const char* type : {"image/png", "multipart/form-data; boundary=x", "application/xml",
                            "application/json; charset=utf-16", "text/plain;CHARSET=\"latin1\""})
     expect_problem(client_.Post("/v1/render", small_scene().dump(), type), 415);
@@ -129,7 +129,7 @@ TEST_F(Bodies, OfOtherTypesAreRefused) {
   expect_problem(client_.Post("/v1/render", compressed, small_scene().dump(), "application/json"), 415);
 }
 
-TEST_F(Bodies, MalformedOnesSayWhere) {
+TEST_F(RequestBodies, ReportsPositionOfSyntaxError) {
   const auto problem =
       expect_problem(client_.Post("/v1/render", "{\n  \"version\": 1,\n  !\n}", "application/json"), 400);
   EXPECT_EQ(problem.at("line"), 3);

@@ -35,7 +35,7 @@ class JobFiles : public testing::Test {
   Router router_;
 };
 
-TEST_F(JobFiles, AreTheSameBytesForAllReaders) {
+TEST_F(JobFiles, SharesBytesBetweenReaders) {
   const nlohmann::json order = {{"scene", small_scene()}, {"image", {{"width", 1200}, {"height", 900}}}};
   const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));
   EXPECT_TRUE(test::eventually([&] { return json_of(answer("GET", job)).at("state") == "done"; }));
@@ -53,7 +53,7 @@ TEST_F(JobFiles, AreTheSameBytesForAllReaders) {
 }
 
 // A response keeps its bytes after the job is deleted.
-TEST_F(JobFiles, OutliveTheirJobWhileTheyAreSent) {
+TEST_F(JobFiles, OutlivesDeletedJob) {
   const nlohmann::json order = {{"scene", small_scene()}};
   const std::string job = job_path(json_of(answer("POST", "/v1/jobs", order.dump())));
   EXPECT_TRUE(test::eventually([&] { return json_of(answer("GET", job)).at("state") == "done"; }));

@@ -85,7 +85,7 @@ json endless() {
 }
 
 // Streams may use six of the eight connections, and one client half of these.
-TEST(Streams, LeaveConnectionsToOthers) {
+TEST(Streams, LimitsStreamsPerClient) {
   Daemon daemon({"--connections", "8"});
   httplib::Client client = daemon.client();
   const auto started = client.Post("/v1/jobs", endless().dump(), kJson);
@@ -102,12 +102,12 @@ TEST(Streams, LeaveConnectionsToOthers) {
   const int retry_s = std::stoi(refused->get_header_value("Retry-After"));
   EXPECT_TRUE(retry_s == 5 || retry_s == 6) << retry_s;  // with jitter
   EXPECT_EQ(json::parse(refused->body).at("detail"),
-            "3 streams are open already that you asked for, which is half of all (connections)");
+            "3 streams of this client are open (limit 3 per client, half of connections)");
   third.close();
   EXPECT_TRUE(test::eventually([&] { return watch(RawClient(daemon.port())) == "200"; }));  // slot freed
 }
 
-TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
+TEST_F(JobTest, RendersOrbitAndReportsEveryFrame) {
   const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}});
   EXPECT_EQ(job.at("frames"), 4);
   const auto told = events(job);
@@ -135,7 +135,7 @@ TEST_F(JobTest, RendersAnOrbitAndTellsOfEveryFrame) {
 }
 
 // The first frame determines the plan for all frames.
-TEST_F(JobTest, OrbitKeepsToABudget) {
+TEST_F(JobTest, AppliesBudgetToOrbit) {
   const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", {{"error", 0.2}}}});
   const auto told = events(job);
   ASSERT_EQ(told.back().name, "done");
@@ -160,7 +160,7 @@ TEST_F(JobTest, OrbitKeepsToABudget) {
   }
 }
 
-TEST_F(JobTest, FailsWhereABudgetThatIsMissedIsAnError) {
+TEST_F(JobTest, FailsOnMissedBudgetIfRequested) {
   const json budget = {{"error", 1e-5}, {"on_miss", "fail"}};
   const auto told = events(start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", budget}}));
   ASSERT_EQ(told.back().name, "failed");
@@ -169,7 +169,7 @@ TEST_F(JobTest, FailsWhereABudgetThatIsMissedIsAnError) {
   EXPECT_EQ(told.back().data.at("frames_done"), 0);
 }
 
-TEST_F(JobTest, WhoComesBackMissesNoEvent) {
+TEST_F(JobTest, ResumesAfterLastEventId) {
   const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}});
   const auto all = events(job);
   const auto rest = events(job, {{"Last-Event-ID", "2"}});
@@ -186,7 +186,7 @@ TEST_F(JobTest, WhoComesBackMissesNoEvent) {
     expect_problem(client_.Get(job_path(job) + "/events", {{"Last-Event-ID", wrong}}), 400);
 }
 
-TEST_F(JobTest, GoesOnWithoutAnyoneAndIsOverOnce) {
+TEST_F(JobTest, FinishesWithoutClientAndDeletesOnce) {
   const json job = start({{"scene", small_scene()}});
   EXPECT_TRUE(test::eventually([&] { return status(job).at("state") == "done"; }));
   EXPECT_TRUE(is_png(client_.Get(job_path(job) + "/frames/0.png")->body));
@@ -196,14 +196,14 @@ TEST_F(JobTest, GoesOnWithoutAnyoneAndIsOverOnce) {
   expect_problem(client_.Delete(job_path(job)), 404);
 }
 
-TEST_F(JobTest, AFrameThatIsNotThereYetIsAConflict) {
+TEST_F(JobTest, ReturnsConflictForUnfinishedFrame) {
   const json job = start(endless());
   const json problem = expect_problem(client_.Get(job_path(job) + "/frames/0.png"), 409);
   EXPECT_NE(problem.at("detail").get<std::string>().find("0 of 1"), std::string::npos);
   client_.Delete(job_path(job));
 }
 
-TEST_F(JobTest, DeletedIsCancelledAndThoseWhoWatchLearnOfIt) {
+TEST_F(JobTest, CancelsOnDeleteAndNotifiesWatchers) {
   EXPECT_TRUE(daemon().wait_until_idle());
   const json job = start(endless());
   EXPECT_TRUE(daemon().wait_until_working());
@@ -216,7 +216,7 @@ TEST_F(JobTest, DeletedIsCancelledAndThoseWhoWatchLearnOfIt) {
   EXPECT_TRUE(daemon().wait_until_idle());
 }
 
-TEST_F(JobTest, TheSameKeyStartsOneJob) {
+TEST_F(JobTest, StartsOneJobPerIdempotencyKey) {
   const httplib::Headers key{{"Idempotency-Key", "\"a-1\""}};
   const json body = {{"scene", small_scene()}, {"orbit", kOrbit}};
   const json job = start(body, key);
@@ -229,7 +229,7 @@ TEST_F(JobTest, TheSameKeyStartsOneJob) {
                  400);
 }
 
-TEST_F(JobTest, WrongInputIsRefusedAtItsPlace) {
+TEST_F(JobTest, ReportsPointersOfInvalidInput) {
   const auto pointer = [&](const json& body) {
     const json problem = expect_problem(client_.Post("/v1/jobs", body.dump(), kJson), 422);
     return problem.at("errors").at(0).at("pointer").get<std::string>();
@@ -260,28 +260,28 @@ std::vector<Event> events_of(Daemon& daemon, const json& job) {
   return parse_events(daemon.client().Get(job_path(job) + "/events")->body);
 }
 
-TEST(JobLimits, AreHeldAndNamed) {
+TEST(JobLimits, EnforcesAndReportsLimits) {
   Daemon daemon({"--jobs", "4", "--job-bytes", "3000"});
   const json first = post_job(daemon, endless());
   post_job(daemon, endless());
   const json problem = post_job(daemon, endless(), 429);
-  EXPECT_NE(problem.at("detail").get<std::string>().find("(jobs)"), std::string::npos);
+  EXPECT_NE(problem.at("detail").get<std::string>().find("half of jobs)"), std::string::npos);
   daemon.client().Delete(job_path(first));
   const auto told =
       events_of(daemon, post_job(daemon, {{"scene", small_scene()}, {"orbit", {{"frames", 100}}}}));
   EXPECT_EQ(told.back().name, "failed");
-  EXPECT_NE(told.back().data.at("error").at("detail").get<std::string>().find("(job_bytes)"),
+  EXPECT_NE(told.back().data.at("error").at("detail").get<std::string>().find("job_bytes)"),
             std::string::npos);
 }
 
-TEST(JobLimits, AreForAllClientsTogether) {
+TEST(JobLimits, LimitsJobsOfAllClients) {
   Daemon daemon({"--jobs", "1"});
   const json first = post_job(daemon, endless());
-  EXPECT_NE(post_job(daemon, endless(), 503).at("detail").get<std::string>().find("(jobs)"),
+  EXPECT_NE(post_job(daemon, endless(), 503).at("detail").get<std::string>().find("(limit 1, jobs)"),
             std::string::npos);
 }
 
-TEST(JobLimits, EndedJobsKeepNeitherThreadsNorMoreThanTheirNumber) {
+TEST(JobLimits, LimitsNumberOfEndedJobs) {
   Daemon daemon({"--jobs-kept", "3"});
   std::vector<std::string> paths;
   for (int i = 0; i < 20; ++i) {
@@ -295,7 +295,7 @@ TEST(JobLimits, EndedJobsKeepNeitherThreadsNorMoreThanTheirNumber) {
   EXPECT_EQ(daemon.client().Get(paths.back())->status, 200);
 }
 
-TEST(JobLimits, AFloodOfOneClientTakesNothingFromOthers) {
+TEST(JobLimits, KeepsJobsOfOtherClientsDuringFlood) {
   Daemon daemon({"--jobs-kept", "5"});
   const json job = post_job(daemon, {{"scene", small_scene()}});
   EXPECT_EQ(events_of(daemon, job).back().name, "done");
@@ -312,7 +312,7 @@ TEST(JobLimits, AFloodOfOneClientTakesNothingFromOthers) {
   EXPECT_GT(daemon.metric("orrery_evictions_total{store=\"jobs\"}"), 10);
 }
 
-TEST(JobLimits, JobsThatWaitKeepNobodyElseOut) {
+TEST(JobLimits, AdmitsRendersWhileJobsWait) {
   Daemon daemon;
   for (int i = 0; i < 4; ++i) post_job(daemon, endless());
   EXPECT_TRUE(daemon.wait_until_working());
@@ -321,7 +321,7 @@ TEST(JobLimits, JobsThatWaitKeepNobodyElseOut) {
   EXPECT_EQ(json::parse(daemon.client().Get("/readyz")->body).at("status"), "ok");
 }
 
-TEST(JobLimits, TheOldestResultsMakeRoomForNewOnes) {
+TEST(JobLimits, EvictsOldestResults) {
   Daemon daemon({"--job-bytes", "3000"});
   std::vector<std::string> paths;
   for (int i = 0; i < 8; ++i) {
@@ -333,7 +333,7 @@ TEST(JobLimits, TheOldestResultsMakeRoomForNewOnes) {
   EXPECT_EQ(daemon.client().Get(paths.back())->status, 200);
 }
 
-TEST(JobLimits, AJobEndsWithTheService) {
+TEST(JobLimits, FailsJobOnShutdown) {
   Daemon daemon;
   const json job = post_job(daemon, endless());
   EXPECT_TRUE(daemon.wait_until_working());

@@ -41,7 +41,7 @@ void expect_answers(const Daemon& daemon, int count) {
   }
 }
 
-TEST(LogPipe, ThatNobodyReadsStopsNoRequestAndNoEnd) {
+TEST(LogPipe, DoesNotBlockRequestsOrShutdownWhenFull) {
   const LogPipe pipe;
   Daemon daemon({}, pipe.ends[1]);
   expect_answers(daemon, kMany);
@@ -52,7 +52,7 @@ TEST(LogPipe, ThatNobodyReadsStopsNoRequestAndNoEnd) {
   EXPECT_EQ(daemon.wait(), 0);
 }
 
-TEST(LogPipe, WhoseReaderIsGoneStopsNothing) {
+TEST(LogPipe, KeepsServiceRunningAfterReaderCloses) {
   LogPipe pipe;
   Daemon daemon({}, pipe.ends[1]);
   pipe.close_reader();

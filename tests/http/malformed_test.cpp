@@ -66,9 +66,9 @@ void expect_problem_of(const Answer& answer) {
   EXPECT_EQ(problem.value("request_id", "?"), header(answer, "X-Request-ID"));
 }
 
-class Malformed : public HttpTest, public ::testing::WithParamInterface<RawCase> {};
+class MalformedRequests : public HttpTest, public ::testing::WithParamInterface<RawCase> {};
 
-TEST_P(Malformed, GetsTheRightAnswerAndTheNextClientToo) {
+TEST_P(MalformedRequests, ReturnsExpectedStatusesAndKeepsServing) {
   const std::vector<Answer> answers = answers_in(send(daemon(), GetParam().bytes));
   std::vector<int> statuses;
   for (const Answer& answer : answers) statuses.push_back(answer.status);
@@ -84,10 +84,10 @@ TEST_P(Malformed, GetsTheRightAnswerAndTheNextClientToo) {
   EXPECT_EQ(client_.Get("/healthz")->status, 200);
 }
 
-INSTANTIATE_TEST_SUITE_P(Http, Malformed, ::testing::ValuesIn(all_cases()),
+INSTANTIATE_TEST_SUITE_P(Http, MalformedRequests, ::testing::ValuesIn(all_cases()),
                          [](const auto& raw) { return raw.param.name; });
 
-TEST(MalformedTable, AgainAndAgainTakesNoMemoryAndNoDescriptors) {
+TEST(ResourceUse, StaysBoundedUnderMalformedRequests) {
   constexpr double kMost = test::kSanitized ? 1e12 : 32 << 20;
   const Daemon daemon;
   const std::vector<RawCase> cases = all_cases();

@@ -19,8 +19,13 @@ if (!recorded || !existsSync(recorded)) {
 }
 
 const kHome = "http://orrery/openapi.json";
-const exchanges = readFileSync(recorded, "utf8").trim().split("\n").map((line) => JSON.parse(line));
-const described = exchanges.find(({ method, path, status }) => method === "GET" && path === "/openapi.json" && status === 200);
+const exchanges = readFileSync(recorded, "utf8")
+  .trim()
+  .split("\n")
+  .map((line) => JSON.parse(line));
+const described = exchanges.find(
+  ({ method, path, status }) => method === "GET" && path === "/openapi.json" && status === 200,
+);
 if (!described) {
   console.log("not ok: no test has asked for /openapi.json");
   process.exit(1);
@@ -35,7 +40,10 @@ const escaped = (part) => part.replaceAll("~", "~0").replaceAll("/", "~1");
 const pointer_to = (...parts) => parts.map((part) => `/${escaped(part)}`).join("");
 // Returns the object at a pointer, or the component that it refers to, with the pointer to it.
 function resolve(pointer) {
-  const at = pointer.split("/").slice(1).map((part) => part.replaceAll("~1", "/").replaceAll("~0", "~"));
+  const at = pointer
+    .split("/")
+    .slice(1)
+    .map((part) => part.replaceAll("~1", "/").replaceAll("~0", "~"));
   const value = at.reduce((object, part) => object?.[part], description);
   return value?.$ref ? resolve(value.$ref.slice(1)) : { value, pointer };
 }
@@ -88,9 +96,7 @@ function check(exchange) {
   asked.add(`${method} ${place}`);
   const exact = resolve(`${operation.pointer}${pointer_to("responses", String(exchange.status))}`);
   const response =
-    exact.value || exchange.status < 400
-      ? exact
-      : resolve(`${operation.pointer}${pointer_to("responses", "default")}`);
+    exact.value || exchange.status < 400 ? exact : resolve(`${operation.pointer}${pointer_to("responses", "default")}`);
   if (!response.value) return "the status is not described";
   const missing = Object.keys(response.value.headers ?? {}).filter(
     (name) => !(name in exchange.headers) && !is_optional(`${response.pointer}${pointer_to("headers", name)}`),

@@ -23,7 +23,7 @@ class Protocol : public HttpTest {
 };
 
 // Sends the bytes one by one.
-TEST_F(Protocol, BodiesMayComeInChunks) {
+TEST_F(Protocol, AcceptsChunkedBodies) {
   const std::string scene = small_scene().dump();
   char size[20];
   std::snprintf(size, sizeof size, "%zx", scene.size());
@@ -34,13 +34,13 @@ TEST_F(Protocol, BodiesMayComeInChunks) {
   EXPECT_EQ(answer.substr(9, 2), "20") << answer;
 }
 
-TEST_F(Protocol, BodiesWithoutALengthAreRefused) {
+TEST_F(Protocol, RejectsBodiesWithoutLength) {
   const RawClient raw(daemon().port());
   raw.send("POST /v1/scenes HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
   EXPECT_EQ(raw.receive_all().substr(9, 3), "411");
 }
 
-TEST_F(Protocol, DoubtfulFramingIsRefused) {
+TEST_F(Protocol, RejectsAmbiguousFraming) {
   const std::string line = "POST /v1/render HTTP/1.1\r\nHost: x\r\n";
   EXPECT_EQ(status_of(line + "Content-Length: 2\r\nContent-Length: 3\r\n\r\n{}"), 400);
   EXPECT_EQ(status_of(line + "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n\r\n{}"), 400);
@@ -51,7 +51,7 @@ TEST_F(Protocol, DoubtfulFramingIsRefused) {
   EXPECT_EQ(status_of(line + "A: b\r\n folded: c\r\n\r\n"), 400);
 }
 
-TEST_F(Protocol, WhatIsNoRequestIsRefused) {
+TEST_F(Protocol, RejectsInvalidRequests) {
   EXPECT_EQ(status_of("hello\r\n\r\n"), 400);
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\n\r\n"), 400);  // no Host
   EXPECT_EQ(status_of("GET nopath HTTP/1.1\r\nHost: x\r\n\r\n"), 400);
@@ -59,7 +59,7 @@ TEST_F(Protocol, WhatIsNoRequestIsRefused) {
   EXPECT_EQ(status_of("GET / HTTP/2.0\r\nHost: x\r\n\r\n"), 505);
 }
 
-TEST_F(Protocol, SizesOfTheHeadAreLimited) {
+TEST_F(Protocol, LimitsHeadSize) {
   EXPECT_EQ(status_of("GET /" + std::string(3000, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n"), 414);
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: x\r\nA: " + std::string(20'000, 'a') + "\r\n\r\n"), 431);
   std::string many;
@@ -67,7 +67,7 @@ TEST_F(Protocol, SizesOfTheHeadAreLimited) {
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\nHost: x\r\n" + many + "\r\n"), 431);
 }
 
-TEST_F(Protocol, BodyOfARequestToNowhereIsNotReadAsTheNextRequest) {
+TEST_F(Protocol, DoesNotParseUnreadBodyAsRequest) {
   const RawClient raw(daemon().port());
   const std::string inner = "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n";
   raw.send("POST /nosuch HTTP/1.1\r\nHost: x\r\nContent-Length: " + std::to_string(inner.size()) +
@@ -77,7 +77,7 @@ TEST_F(Protocol, BodyOfARequestToNowhereIsNotReadAsTheNextRequest) {
   EXPECT_EQ(answer.find("HTTP/1.1", 1), std::string::npos) << answer;
 }
 
-TEST_F(Protocol, RequestsInARowAreAnsweredInOrder) {
+TEST_F(Protocol, AnswersPipelinedRequestsInOrder) {
   const RawClient raw(daemon().port());
   raw.send(
       "GET /healthz HTTP/1.1\r\nHost: x\r\n\r\nGET /nosuch HTTP/1.1\r\nHost: x\r\n\r\n"
@@ -89,7 +89,7 @@ TEST_F(Protocol, RequestsInARowAreAnsweredInOrder) {
   EXPECT_LT(second, third);
 }
 
-TEST_F(Protocol, ClientThatWaitsForLeaveToSendGetsIt) {
+TEST_F(Protocol, SendsContinueOnExpect) {
   const RawClient raw(daemon().port());
   const std::string scene = small_scene().dump();
   raw.send(
@@ -100,7 +100,7 @@ TEST_F(Protocol, ClientThatWaitsForLeaveToSendGetsIt) {
   EXPECT_EQ(raw.receive_all().substr(9, 3), "200");
 }
 
-TEST_F(Protocol, OldClientsGetStreamsThatEndWithTheConnection) {
+TEST_F(Protocol, EndsHttp10StreamsByClosing) {
   const std::string id = post_scene(small_scene().dump());
   const RawClient raw(daemon().port());
   raw.send("GET /v1/scenes/" + id +
@@ -110,7 +110,7 @@ TEST_F(Protocol, OldClientsGetStreamsThatEndWithTheConnection) {
   EXPECT_EQ(parse_frames(answer.substr(answer.find("\r\n\r\n") + 4)).size(), 2u);
 }
 
-TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
+TEST(Connections, RejectsConnectionsOverLimit) {
   Daemon daemon(without_ray_limit({"--connections", "2"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
@@ -128,7 +128,7 @@ TEST(Connections, OverTheLimitAreTurnedAwayAtOnce) {
   EXPECT_NE(answer.find("\r\nRetry-After: 1\r\n"), std::string::npos);
   EXPECT_NE(answer.find("\r\nContent-Type: application/problem+json\r\n"), std::string::npos);
   const auto problem = nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
-  EXPECT_EQ(problem.at("detail"), "2 connections are open already (connections)");
+  EXPECT_EQ(problem.at("detail"), "2 connections are open (limit 2, connections)");
   EXPECT_NE(answer.find("\r\nX-Request-ID: " + problem.at("request_id").get<std::string>() + "\r\n"),
             std::string::npos);
 }
@@ -142,7 +142,7 @@ std::string health_from(const Daemon& daemon, std::uint8_t address) {
   return raw.receive_all();
 }
 
-TEST(Connections, OfOneAddressLeaveAQuarterToOthers) {
+TEST(Connections, LimitsOneAddressToThreeQuarters) {
   Daemon daemon(without_ray_limit({"--connections", "8", "--queue-rays", "1000000000000"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
@@ -157,14 +157,14 @@ TEST(Connections, OfOneAddressLeaveAQuarterToOthers) {
   }));
   const std::string refused = health_from(daemon, kGreedy);
   EXPECT_EQ(refused.substr(0, 12), "HTTP/1.1 429");
-  EXPECT_NE(refused.find("6 connections are open already from your address, three quarters of all"),
+  EXPECT_NE(refused.find("6 connections from this address are open (limit 6 per address, connections)"),
             std::string::npos)
       << refused;
   EXPECT_EQ(health_from(daemon, kOther).substr(0, 12), "HTTP/1.1 200");
 }
 
 // Two addresses hold all connections, and most of their requests are queued.
-TEST(Connections, WhoseRequestsWaitForATurnMakeRoomForOthers) {
+TEST(Connections, EvictsQueuedRequestsForNewClients) {
   Daemon daemon(without_ray_limit({"--connections", "8", "--threads", "1", "--queue-rays", "1000000000000"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
@@ -189,7 +189,7 @@ TEST(Connections, WhoseRequestsWaitForATurnMakeRoomForOthers) {
   EXPECT_NE(evicted.find("(connections)"), std::string::npos) << evicted;
 }
 
-TEST(Connections, ThatAreAllAtWorkMakeTheServiceFull) {
+TEST(Connections, ReportsFullIfAllConnectionsAreBusy) {
   Daemon daemon(without_ray_limit({"--connections", "2"}));
   const auto posted = daemon.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
@@ -205,7 +205,7 @@ TEST(Connections, ThatAreAllAtWorkMakeTheServiceFull) {
 }
 
 // Idle connections of a burst from one address are evicted for other clients without delay.
-TEST(Connections, OfABurstMakeRoomForOthers) {
+TEST(Connections, EvictsIdleBurstForNewClients) {
   Daemon daemon({"--connections", "8"});
   std::vector<std::unique_ptr<RawClient>> burst, others;
   for (int i = 0; i < 6; ++i) burst.push_back(std::make_unique<RawClient>(daemon.port(), 0, kGreedy));

@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<std::string> kBehindProxy{"--path-prefix", "/render", "--trusted-proxies", "127.0.0.1"};
 
-TEST(Proxy, ServesBelowThePrefixAndWhereTheProxyTookItOff) {
+TEST(Proxy, ServesWithAndWithoutPrefix) {
   const Daemon daemon(kBehindProxy);
   auto client = daemon.client();
   for (const char* path : {"/v1/limits", "/render/v1/limits", "/", "/render/", "/render/healthz"})
@@ -21,7 +21,7 @@ TEST(Proxy, ServesBelowThePrefixAndWhereTheProxyTookItOff) {
   expect_problem(client.Get("/renderv1/limits"), 404);
 }
 
-TEST(Proxy, LinksBeginWithThePrefix) {
+TEST(Proxy, PrefixesLinks) {
   const Daemon daemon(kBehindProxy);
   auto client = daemon.client();
   const std::string scene = small_scene().dump();
@@ -46,7 +46,7 @@ TEST(Proxy, LinksBeginWithThePrefix) {
 }
 
 // A signature holds with and without the prefix, whichever side strips it.
-TEST(Proxy, SharedLinksHoldBelowThePrefix) {
+TEST(Proxy, AcceptsSharedLinksWithAndWithoutPrefix) {
   const std::string key = ::testing::TempDir() + "proxy_share_key";
   std::ofstream(key) << std::string(32, 'k');
   std::vector<std::string> arguments = kBehindProxy;
@@ -64,7 +64,7 @@ TEST(Proxy, SharedLinksHoldBelowThePrefix) {
 }
 
 // A page on a domain that points at this machine (DNS rebinding) can send any header.
-TEST(Proxy, AHostThatIsToldDoesNotExcuseTheOther) {
+TEST(Proxy, ChecksBothHostAndForwardedHost) {
   const Daemon daemon({"--trusted-proxies", "127.0.0.1", "--cors-origins", "https://render.example"});
   auto client = daemon.client();
   const auto get = [&](const char* host, const char* told) {
@@ -80,7 +80,7 @@ TEST(Proxy, AHostThatIsToldDoesNotExcuseTheOther) {
 }
 
 // One client may run half of the jobs. Two clients behind one proxy have separate quotas.
-TEST(Proxy, EachClientBehindItHasItsOwnShares) {
+TEST(Proxy, SeparatesQuotasOfForwardedClients) {
   const Daemon daemon({"--trusted-proxies", "127.0.0.1", "--jobs", "2"});
   auto client = daemon.client();
   const auto start = [&](const char* who, int width) {

@@ -32,7 +32,7 @@ class RefinementStream : public HttpTest {
   }
 };
 
-TEST_F(RefinementStream, PassesDoubleTheSamples) {
+TEST_F(RefinementStream, DoublesSamplesInEachPass) {
   EXPECT_EQ(samples_of(refine(view(1, 64) + "&technique=path")), (std::vector{1, 2, 4, 8, 16, 32, 64}));
   EXPECT_EQ(samples_of(refine(view(1, 12) + "&technique=path")), (std::vector{1, 3, 6, 12}));
   // A single sample of this technique lies at the pixel centre and is not one of a longer sequence.
@@ -41,7 +41,7 @@ TEST_F(RefinementStream, PassesDoubleTheSamples) {
 }
 
 // Another daemon renders each image directly. This one would answer from its cache.
-TEST_F(RefinementStream, EachPassIsThePictureOfSoManySamples) {
+TEST_F(RefinementStream, MatchesPictureOfEachSampleCount) {
   Daemon other;
   httplib::Client client = other.client();
   client.Post("/v1/scenes", small_scene().dump(), "application/json");
@@ -78,7 +78,7 @@ TEST_F(RefinementStream, TracesEachSampleOnce) {
   EXPECT_EQ(std::to_string(rays_of(frames)), whole->get_header_value("X-Rays"));
 }
 
-TEST_F(RefinementStream, EndsAtOnceWithAPictureThatIsKept) {
+TEST_F(RefinementStream, EndsAtOnceIfPictureIsCached) {
   ASSERT_GT(refine(view(4, 16)).size(), 1u);
   const double before = daemon().metric("orrery_rays_total");
   const auto again = refine(view(4, 16));
@@ -90,7 +90,7 @@ TEST_F(RefinementStream, EndsAtOnceWithAPictureThatIsKept) {
   EXPECT_EQ(daemon().metric("orrery_rays_total"), before);
 }
 
-TEST_F(RefinementStream, BrowsersGetPartsWithTheirErrors) {
+TEST_F(RefinementStream, SendsMultipartWithErrorsToBrowsers) {
   const auto result = client_.Get(scene_ + "/refinement?" + view(5, 4), {{"Accept", "image/*,*/*;q=0.8"}});
   ASSERT_EQ(result->get_header_value("Content-Type").substr(0, 27), "multipart/x-mixed-replace; ");
   for (const char* text : {"X-Samples: 2\r\n", "X-Samples: 4\r\n", "X-RMSE: ", "X-Rays: "})
@@ -98,7 +98,7 @@ TEST_F(RefinementStream, BrowsersGetPartsWithTheirErrors) {
   EXPECT_TRUE(result->body.ends_with("--\r\n"));
 }
 
-TEST_F(RefinementStream, BadRequestsAreRefusedBeforeTheStream) {
+TEST_F(RefinementStream, RejectsInvalidRequestsBeforeStreaming) {
   for (const char* query : {"samples=0", "width=0", "frames=3", "layers=depth"})
     expect_problem(client_.Get(scene_ + "/refinement?" + query, kFrames), 422);
   expect_problem(client_.Get(scene_ + "/refinement", {{"Accept", "text/html"}}), 406);
@@ -110,7 +110,7 @@ TEST_F(RefinementStream, BadRequestsAreRefusedBeforeTheStream) {
   EXPECT_TRUE(daemon().wait_until_idle());
 }
 
-TEST(RefinementMemory, IsTheClientsShare) {
+TEST(RefinementMemory, CountsAgainstClientShare) {
   Daemon daemon({"--memory-bytes", "400000000"});
   httplib::Client client = daemon.client();
   const auto posted = client.Post("/v1/scenes", small_scene().dump(), "application/json");

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <thread>
 
+#include "core/base/shorten.h"
 #include "tests/http/daemon.h"
 #include "tests/support/eventually.h"
 
@@ -22,7 +23,7 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST_F(Render, PostedSceneIsAnsweredWithItsPicture) {
+TEST_F(Render, ReturnsPictureOfPostedScene) {
   const auto result = render(small_scene());
   ASSERT_TRUE(result);
   ASSERT_EQ(result->status, 200) << result->body;
@@ -34,7 +35,7 @@ TEST_F(Render, PostedSceneIsAnsweredWithItsPicture) {
     EXPECT_NE(timing.find(step), std::string::npos) << timing;
 }
 
-TEST_F(Render, PictureHasTheSameBytesAsFromTheCommandLine) {
+TEST_F(Render, MatchesCommandLineOutput) {
   const auto folder = std::filesystem::temp_directory_path() / ("orrery-render-" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
   const auto scene = folder / "scene.json", picture = folder / "picture.png";
@@ -51,7 +52,7 @@ TEST_F(Render, PictureHasTheSameBytesAsFromTheCommandLine) {
   std::filesystem::remove_all(folder);
 }
 
-TEST_F(Render, BodyOfAFormIsReadAsJson) {  // as `curl --data-binary` labels it
+TEST_F(Render, ReadsFormBodyAsJson) {  // as `curl --data-binary` labels it
   std::string scene = small_scene().dump();
   scene.resize(20'000, ' ');  // longer than httplib allows for forms
   const auto result = client_.Post("/v1/render", scene, "application/x-www-form-urlencoded");
@@ -59,7 +60,7 @@ TEST_F(Render, BodyOfAFormIsReadAsJson) {  // as `curl --data-binary` labels it
   EXPECT_EQ(result->status, 200) << result->body;
 }
 
-TEST_F(Render, AcceptChoosesTheFormat) {
+TEST_F(Render, SelectsFormatByAccept) {
   const auto type_for = [&](const char* accept) {
     const auto result = render(small_scene(), {{"Accept", accept}});
     EXPECT_EQ(result->status, 200);
@@ -102,7 +103,7 @@ struct Formats {
   }
 };
 
-TEST_F(Render, AllFormatsOfAPictureAreRenderedOnceWhileItsFilmIsKept) {
+TEST_F(Render, ReusesCachedFilmForAllFormats) {
   const Formats once({}), each({"--film-bytes", "0"});
   EXPECT_GT(once.rays[0], 48 * 32);
   EXPECT_EQ(once.rays, (std::vector{once.rays[0], 0.0, 0.0}));
@@ -110,7 +111,7 @@ TEST_F(Render, AllFormatsOfAPictureAreRenderedOnceWhileItsFilmIsKept) {
   EXPECT_EQ(once.bodies, each.bodies);
 }
 
-TEST_F(Render, LayersHaveALimitOfBytes) {
+TEST_F(Render, LimitsLayerBytes) {
   const Daemon daemon({"--memory-bytes", "160000000"});
   httplib::Client client = daemon.client();
   const auto limits = nlohmann::json::parse(client.Get("/v1/limits")->body);
@@ -128,13 +129,12 @@ TEST_F(Render, LayersHaveALimitOfBytes) {
   const auto problem = expect_problem(answer(wide, "image/x-exr"), 422);
   EXPECT_EQ(problem.at("errors")[0].at("pointer"), "/render/layers");
   const std::string detail = problem.at("errors")[0].at("detail");
-  for (const std::string& told :
-       {std::to_string(wide * kRow), std::to_string(most), std::string("work_bytes")})
+  for (const std::string& told : {grouped(wide * kRow), grouped(most), std::string("work_bytes")})
     EXPECT_NE(detail.find(told), std::string::npos) << detail;
   EXPECT_EQ(expect_problem(answer(wide, "image/png"), 422).at("errors")[0].at("pointer"), "/render/layers");
 }
 
-TEST_F(Render, LayersThatASceneAsksForAreLeftOutOfWhatHasNone) {
+TEST_F(Render, OmitsSceneLayersFromFormatsWithoutLayers) {
   nlohmann::json with_layers = small_scene();
   with_layers["render"]["layers"] = {"depth"};
   const auto result = render(with_layers);
@@ -142,7 +142,7 @@ TEST_F(Render, LayersThatASceneAsksForAreLeftOutOfWhatHasNone) {
   EXPECT_EQ(result->body, render(small_scene())->body);
 }
 
-TEST_F(Render, UselessPicturesAreWarnedOf) {
+TEST_F(Render, WarnsAboutUselessPictures) {
   const auto warning = [&](const nlohmann::json& scene) {
     for (int i = 0; i < 2; ++i) render(scene);  // also from the cache
     return render(scene)->get_header_value("Orrery-Warning");
@@ -160,7 +160,7 @@ TEST_F(Render, UselessPicturesAreWarnedOf) {
   EXPECT_EQ(explanation.at("warnings")[0].at("pointer"), "/lights");
 }
 
-TEST_F(Render, StoredSceneIsNamedById) {
+TEST_F(Render, RendersStoredSceneById) {
   const auto inline_scene = render(small_scene());
   const auto stored = render({{"scene_id", post_scene(small_scene().dump())}});
   ASSERT_TRUE(inline_scene && stored);
@@ -169,7 +169,7 @@ TEST_F(Render, StoredSceneIsNamedById) {
   expect_problem(render({{"scene_id", std::string(64, '0')}}), 404);
 }
 
-TEST_F(Render, RenderedSceneIsFoundByTheIdThatTheAnswerTells) {
+TEST_F(Render, ReturnsIdOfRenderedScene) {
   const auto scene = small_scene({{"title", "found again"}});
   const auto rendered = render(scene);
   ASSERT_TRUE(rendered && rendered->status == 200);
@@ -186,14 +186,14 @@ TEST_F(Render, RenderedSceneIsFoundByTheIdThatTheAnswerTells) {
   expect_problem(client_.Get(path), 404);
 }
 
-TEST_F(Render, ErrorsInsideARequestPointFromItsRoot) {
+TEST_F(Render, ReportsPointersFromRequestRoot) {
   auto scene = small_scene();
   scene["objects"][0]["radius"] = -1;
   const auto problem = expect_problem(render({{"scene", scene}}), 422);
   EXPECT_EQ(problem.at("errors")[0].at("pointer"), "/scene/objects/0/radius");
 }
 
-TEST_F(Render, OptionsOfARequestAreChecked) {
+TEST_F(Render, RejectsInvalidRequestOptions) {
   const auto pointer_of = [&](const nlohmann::json& more) {
     nlohmann::json body = {{"scene", small_scene()}};
     body.update(more);
@@ -210,7 +210,7 @@ TEST_F(Render, OptionsOfARequestAreChecked) {
   EXPECT_EQ(pointer_of({{"colour", "x"}}), "");
 }
 
-TEST_F(Render, OptionsInTheAddressOfAPostAreNotPassedOver) {
+TEST_F(Render, RejectsQueryOptionsInPost) {
   const auto problem =
       expect_problem(client_.Post("/v1/render?width=4", small_scene().dump(), "application/json"), 422);
   EXPECT_EQ(problem.at("errors")[0].at("pointer"), "/width");
@@ -220,17 +220,18 @@ constexpr const char* kJson = "application/json";
 
 // The limit is 2 threads x 10 s x 50 million rays. The scene has two balls, one a mirror: half of the rays
 // continue at each of 5 levels, the others sample one light.
-TEST(RenderThatTakesTooLong, IsRefusedAtOnceAndToldWhereToGo) {
+TEST(RayLimit, RejectsExpensiveRendersAndSuggestsJobs) {
   Daemon daemon({"--threads", "2", "--request-seconds", "10"});
   httplib::Client client = daemon.client();
-  const std::string rays = std::to_string(4096LL * 4096 * 256 * (32 + 16 + 8 + 4 + 2 + 1) / 32 * 3 / 2);
+  const std::string rays = grouped(4096ULL * 4096 * 256 * (32 + 16 + 8 + 4 + 2 + 1) / 32 * 3 / 2);
   const nlohmann::json large = {{"image", {{"width", 4096}, {"height", 4096}}},
                                 {"render", {{"samples", 256}}}};
   nlohmann::json body = large;
   body["scene"] = small_scene();
   const auto expect_refused = [&](const httplib::Result& result) {
     const std::string detail = expect_problem(result, 422).value("detail", "");
-    for (const std::string& told : {rays, std::string("1000000000 (request_rays)"), std::string("/v1/jobs")})
+    for (const std::string& told :
+         {rays, std::string("limit 1,000,000,000, request_rays"), std::string("/v1/jobs")})
       EXPECT_NE(detail.find(told), std::string::npos) << detail;
   };
   expect_refused(client.Post("/v1/render", body.dump(), kJson));
@@ -247,7 +248,7 @@ TEST(RenderThatTakesTooLong, IsRefusedAtOnceAndToldWhereToGo) {
 }
 
 // 48 x 32 pixels have an estimate of 4,536 rays and take fewer, which lowers the next estimate.
-TEST(RenderThatTakesTooLong, IsJudgedByWhatTheSceneTookBefore) {
+TEST(RayLimit, UsesMeasuredRaysOfScene) {
   Daemon daemon({"--request-rays", "4536"});
   httplib::Client client = daemon.client();
   const auto render = [&](int width) {
@@ -262,7 +263,7 @@ TEST(RenderThatTakesTooLong, IsJudgedByWhatTheSceneTookBefore) {
 }
 
 // About a second of concurrent work, with no estimate for the scene yet.
-TEST(RendersAtOnce, OfASampleAreAllAnswered) {
+TEST(ConcurrentRenders, CompletesAllRendersOfSample) {
   Daemon daemon;
   const auto scene = nlohmann::json::parse(daemon.client().Get("/scenes/paper.json")->body);
   std::atomic<int> answered{0};

@@ -73,7 +73,7 @@ Response stream_of(const std::vector<std::string>& parts) {
   return response;
 }
 
-TEST(ResponseWriter, ABodyFollowsItsHeadersAndLength) {
+TEST(ResponseWriter, WritesBodyAfterHeadersAndLength) {
   EXPECT_EQ(written(text_response(200, "text/plain", "body")),
             "HTTP/1.1 200 OK\r\nContent-Type: text/plain\r\nContent-Length: 4\r\n\r\nbody");
   EXPECT_EQ(written(text_response(404, "text/plain", ""), {.keep_alive = false}),
@@ -84,7 +84,7 @@ TEST(ResponseWriter, ABodyFollowsItsHeadersAndLength) {
             "keep-alive\r\n\r\nb");
 }
 
-TEST(ResponseWriter, WhereThereIsNoBodyNoneIsWrittenOrAnnounced) {  // RFC 9110, 6.4.1 and 9.3.2
+TEST(ResponseWriter, OmitsBodyWhereForbidden) {  // RFC 9110, 6.4.1 and 9.3.2
   EXPECT_EQ(written({.status = 204, .body = "x"}), "HTTP/1.1 204 No Content\r\n\r\n");
   EXPECT_EQ(written({.status = 304, .body = "x"}), "HTTP/1.1 304 Not Modified\r\n\r\n");
   EXPECT_EQ(written({.status = 304, .stream = stream_of({"x"}).stream}), "HTTP/1.1 304 Not Modified\r\n\r\n");
@@ -93,7 +93,7 @@ TEST(ResponseWriter, WhereThereIsNoBodyNoneIsWrittenOrAnnounced) {  // RFC 9110,
   EXPECT_EQ(written(stream_of({"x"}), {.head_only = true}), "HTTP/1.1 200 OK\r\n\r\n");
 }
 
-TEST(ResponseWriter, PartsAreChunksAndTheEmptyOneIsTheLast) {  // RFC 9112, 7.1
+TEST(ResponseWriter, WritesPartsAsChunks) {  // RFC 9112, 7.1
   const std::string chunks = written(stream_of({"one", "", std::string(26, 'z')}));
   EXPECT_EQ(chunks, "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\none\r\n1a\r\n" +
                         std::string(26, 'z') + "\r\n0\r\n\r\n");
@@ -101,7 +101,7 @@ TEST(ResponseWriter, PartsAreChunksAndTheEmptyOneIsTheLast) {  // RFC 9112, 7.1
             "HTTP/1.1 200 OK\r\nConnection: close\r\n\r\nonetwo");
 }
 
-TEST(ResponseWriter, ValuesBeginNoHeadersOfTheirOwn) {
+TEST(ResponseWriter, PreventsHeaderInjection) {
   Response response;
   response.set("Location",
                "/a\r\nSet-Cookie: b\n\x01\x7f"
@@ -110,7 +110,7 @@ TEST(ResponseWriter, ValuesBeginNoHeadersOfTheirOwn) {
             "HTTP/1.1 200 OK\r\nLocation: /a  Set-Cookie: b   c\r\nContent-Length: 0\r\n\r\n");
 }
 
-TEST(ResponseWriter, LongAnswersArriveWholeThroughASmallBuffer) {
+TEST(ResponseWriter, WritesLongResponsesThroughSmallBuffer) {
   std::string body(1'000'003, '\0');
   for (std::size_t i = 0; i < body.size(); ++i) body[i] = static_cast<char>(i * 2654435761U >> 24);
   for (const bool streamed : {false, true}) {
@@ -130,7 +130,7 @@ TEST(ResponseWriter, LongAnswersArriveWholeThroughASmallBuffer) {
   }
 }
 
-TEST(ResponseWriter, AStreamThatFailsIsBrokenOff) {
+TEST(ResponseWriter, AbortsFailedStream) {
   Wire wire;
   Response response;
   response.stream = [](Sink& sink) {
@@ -143,7 +143,7 @@ TEST(ResponseWriter, AStreamThatFailsIsBrokenOff) {
   EXPECT_TRUE(wire.receive_all().ends_with("\r\n\r\n4\r\npart\r\n"));  // without the last chunk
 }
 
-TEST(ResponseWriter, TellsTheStreamThatItsClientHasLeft) {
+TEST(ResponseWriter, ReportsDisconnectToStream) {
   Wire wire;
   wire.hang_up();
   Response response;

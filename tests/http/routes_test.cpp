@@ -44,7 +44,7 @@ struct RouteScope {
   Scope scope;
 };
 
-TEST_F(Routes, AskForTheScopesThatTheyAreFor) {
+TEST_F(Routes, RequiresExpectedScopes) {
   for (const auto& [method, path, scope] : {
            RouteScope{"POST", "/v1/render", Scope::render},
            RouteScope{"POST", "/v1/jobs", Scope::render},
@@ -77,7 +77,7 @@ std::string with_placeholders_filled(std::string path) {
   return path;
 }
 
-TEST_F(Routes, AreThoseThatTheDescriptionHas) {
+TEST_F(Routes, MatchesOpenApiDescription) {
   const auto files = embedded_files();
   const auto file = std::find_if(files.begin(), files.end(),
                                  [](const auto& f) { return f.path == "server/routes/openapi.json"; });
@@ -102,7 +102,7 @@ TEST_F(Routes, AreThoseThatTheDescriptionHas) {
   EXPECT_GT(found, 15);
 }
 
-TEST_F(Routes, OnlyThoseThatSupervisorsAskAreLoggedQuietly) {
+TEST_F(Routes, LogsOnlyHealthProbesAtDebugLevel) {
   for (const char* path : {"/healthz", "/readyz"}) {
     EXPECT_EQ(find("GET", path).log, LogLevel::debug);
     Request request = request_for("HEAD", path);
@@ -123,7 +123,7 @@ std::string hostile_body(const Route& route) {
   return body + "]";
 }
 
-TEST(BodiesOfAllRoutes, CountInTheAccountOfTheirClient) {
+TEST(RouteBodies, ChargesClientAccount) {
   Settings settings = settings_within(150 << 20);
   settings.connections = 8;
   SteadyTimer timer;
@@ -149,14 +149,14 @@ TEST(BodiesOfAllRoutes, CountInTheAccountOfTheirClient) {
       route.handler(request);
       ADD_FAILURE() << route.pattern << " took it";
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("(work_bytes)"), std::string::npos)
+      EXPECT_NE(std::string(error.what()).find("work_bytes)"), std::string::npos)
           << route.pattern << ": " << error.what();
     }
   }
   EXPECT_GE(found, 6);
 }
 
-TEST_F(Routes, BodiesAreReadWhereTheyMeanSomething) {
+TEST_F(Routes, ReadsBodiesOnlyWhereExpected) {
   for (const char* path : {"/v1/render", "/v1/scenes", "/v1/jobs", "/v1/scenes/a/charts", "/v1/shares"}) {
     const Route& route = find("POST", path);
     ASSERT_TRUE(route.body) << path;

@@ -5,7 +5,7 @@ namespace {
 
 class Scenes : public HttpTest {};
 
-TEST_F(Scenes, PostedSceneIsSummarised) {
+TEST_F(Scenes, SummarisesPostedScene) {
   const auto result =
       client_.Post("/v1/scenes", small_scene({{"title", "summarised"}}).dump(), "application/json");
   ASSERT_TRUE(result);
@@ -23,7 +23,7 @@ TEST_F(Scenes, PostedSceneIsSummarised) {
   EXPECT_EQ(result->get_header_value("ETag"), "\"" + id + "\"");
 }
 
-TEST_F(Scenes, SameSceneInAnotherLayoutIsKnown) {
+TEST_F(Scenes, RecognisesSceneInAnotherLayout) {
   const auto scene = small_scene({{"title", "layout"}});
   const auto first = client_.Post("/v1/scenes", scene.dump(), "application/json");
   const auto second = client_.Post("/v1/scenes", scene.dump(4), "application/json");
@@ -33,7 +33,7 @@ TEST_F(Scenes, SameSceneInAnotherLayoutIsKnown) {
   EXPECT_EQ(first->body, second->body);
 }
 
-TEST_F(Scenes, SceneComesBackInCanonicalForm) {
+TEST_F(Scenes, ReturnsSceneInCanonicalForm) {
   const auto scene = small_scene({{"title", "canonical"}});
   const std::string id = post_scene(scene.dump(2));
   const auto got = client_.Get("/v1/scenes/" + id);
@@ -48,7 +48,7 @@ TEST_F(Scenes, SceneComesBackInCanonicalForm) {
   EXPECT_EQ(head->get_header_value("Content-Length"), std::to_string(got->body.size()));
 }
 
-TEST_F(Scenes, DeletedSceneIsGone) {
+TEST_F(Scenes, ReturnsNotFoundAfterDelete) {
   const std::string path = "/v1/scenes/" + post_scene(small_scene({{"title", "deleted"}}).dump());
   const auto removed = client_.Delete(path);
   ASSERT_TRUE(removed);
@@ -61,7 +61,7 @@ TEST_F(Scenes, DeletedSceneIsGone) {
   expect_problem(client_.Get(path + "/explain"), 404);
 }
 
-TEST_F(Scenes, ExplainForetellsWhatIsMeasured) {
+TEST_F(Scenes, ReturnsForecastIfMeasured) {
   const std::string path = "/v1/scenes/" + post_scene(small_scene().dump()) + "/explain?width=64&height=64";
   const auto told = [&](const std::string& query) {
     const auto result = client_.Get(path + query);
@@ -83,7 +83,7 @@ TEST_F(Scenes, ExplainForetellsWhatIsMeasured) {
   EXPECT_NE(refused->body.find("/measure"), std::string::npos) << refused->body;
 }
 
-TEST_F(Scenes, ExplainGivesReasonsForThisQuery) {
+TEST_F(Scenes, ExplainsDecisionsForQuery) {
   const std::string path = "/v1/scenes/" + post_scene(small_scene().dump()) + "/explain";
   const auto result = client_.Get(path + "?technique=raycast&width=100&height=50&samples=4");
   ASSERT_TRUE(result && result->status == 200);
@@ -95,7 +95,7 @@ TEST_F(Scenes, ExplainGivesReasonsForThisQuery) {
     for (const char* part : {"subject", "choice", "reason"}) EXPECT_FALSE(decision.value(part, "").empty());
 }
 
-TEST_F(Scenes, AreRemovedByClientsThatHavePostedThemOnly) {
+TEST_F(Scenes, AllowsRemovalByPostersOnly) {
   const std::string scene = small_scene({{"title", "of two"}}).dump(),
                     path = "/v1/scenes/" + post_scene(scene);
   httplib::Client other = daemon().client_at(2);
@@ -107,7 +107,7 @@ TEST_F(Scenes, AreRemovedByClientsThatHavePostedThemOnly) {
   expect_problem(client_.Get(path), 404);
 }
 
-TEST(SceneStore, ForgetsTheScenesUnusedForLongest) {
+TEST(SceneStore, EvictsLeastRecentlyUsedScenes) {
   Daemon daemon({"--store-bytes", "20000"});
   httplib::Client client = daemon.client();
   const auto post = [&](const char* title) {

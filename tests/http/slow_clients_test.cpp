@@ -44,7 +44,7 @@ class SlowClients : public ::testing::Test {
   Daemon daemon_{{"--connections", std::to_string(kConnections)}};
 };
 
-TEST_F(SlowClients, WhoSayNothingMakeRoom) {
+TEST_F(SlowClients, EvictsSilentClients) {
   const std::size_t before = daemon_.open_files();
   Clients clients = open("");
   expect_others_are_served();
@@ -52,7 +52,7 @@ TEST_F(SlowClients, WhoSayNothingMakeRoom) {
   expect_descriptors_come_back(before);
 }
 
-TEST_F(SlowClients, WhoseHeadsTrickleMakeRoomAndAreToldSo) {
+TEST_F(SlowClients, EvictsClientsWithSlowHeads) {
   const std::size_t before = daemon_.open_files();
   Clients clients = open("GET /healthz HTTP/1.1\r\nHost: x\r\n");
   clients.back()->send("A: b\r\n");
@@ -64,7 +64,7 @@ TEST_F(SlowClients, WhoseHeadsTrickleMakeRoomAndAreToldSo) {
   expect_descriptors_come_back(before);
 }
 
-TEST_F(SlowClients, WhoseBodiesTrickleMakeRoomAndAreToldSo) {
+TEST_F(SlowClients, EvictsClientsWithSlowBodies) {
   const std::size_t before = daemon_.open_files();
   Clients clients = open("POST /v1/scenes HTTP/1.1\r\nHost: x\r\nContent-Length: 5000\r\n\r\n{");
   expect_others_are_served();
@@ -75,7 +75,7 @@ TEST_F(SlowClients, WhoseBodiesTrickleMakeRoomAndAreToldSo) {
   expect_descriptors_come_back(before);
 }
 
-TEST_F(SlowClients, WhoDoNotReadMakeRoom) {
+TEST_F(SlowClients, EvictsClientsThatDoNotRead) {
   const std::size_t before = daemon_.open_files();
   // Requests for more than both kernel buffers hold, never read.
   std::string requests;
@@ -86,7 +86,7 @@ TEST_F(SlowClients, WhoDoNotReadMakeRoom) {
   expect_descriptors_come_back(before);
 }
 
-TEST_F(SlowClients, OfBadRequestsThatGoOnSendingMakeRoom) {
+TEST_F(SlowClients, EvictsRejectedClientsThatKeepSending) {
   const std::size_t before = daemon_.open_files();
   Clients clients = open("POST /nosuch HTTP/1.1\r\nHost: x\r\nContent-Length: 5000\r\n\r\n{");
   expect_others_are_served();
@@ -94,7 +94,7 @@ TEST_F(SlowClients, OfBadRequestsThatGoOnSendingMakeRoom) {
   expect_descriptors_come_back(before);
 }
 
-TEST_F(SlowClients, AtWorkAreNotPushedOut) {
+TEST_F(SlowClients, DoesNotEvictActiveClients) {
   const auto posted = daemon_.client().Post("/v1/scenes", small_scene().dump(), "application/json");
   const std::string id = nlohmann::json::parse(posted->body).at("id");
   const RawClient viewer(daemon_.port());

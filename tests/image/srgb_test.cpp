@@ -40,7 +40,7 @@ long double encoded(long double x) {
   return x <= 0.0031308L ? 12.92L * x : 1.055L * std::pow(x, 1 / 2.4L) - 0.055L;
 }
 
-TEST(Srgb, CodesAreTheNearestToTheStandardCurve) {
+TEST(Srgb, RoundsToNearestCodeOfStandardCurve) {
   std::vector<float> values;
   for (int i = 0; i <= 1'000'000; ++i) values.push_back(static_cast<float>(i) * 1e-6f);
   test::Random random(1);
@@ -60,7 +60,7 @@ TEST(Srgb, CodesAreTheNearestToTheStandardCurve) {
   EXPECT_LT(doubtful, static_cast<int>(values.size()) / 100);
 }
 
-TEST(Srgb, CodesRiseWithTheLight) {
+TEST(Srgb, EncodesMonotonically) {
   std::vector<float> values;
   for (float x = 1e-6f; x < 1.2f; x *= 1.00001f) values.push_back(x);
   const std::vector<int> codes = codes_of(values);
@@ -69,13 +69,13 @@ TEST(Srgb, CodesRiseWithTheLight) {
   EXPECT_EQ(codes.back(), 255);
 }
 
-TEST(Srgb, CutsWhatNoScreenShows) {
+TEST(Srgb, ClampsOutOfRangeValues) {
   const float infinity = std::numeric_limits<float>::infinity();
   EXPECT_EQ(codes_of({-1, -infinity, -0.0f, std::nanf("")}), (std::vector<int>{0, 0, 0, 0}));
   EXPECT_EQ(codes_of({1, 1.00001f, 2, 1e30f, infinity}), (std::vector<int>{255, 255, 255, 255, 255}));
 }
 
-TEST(Srgb, DecodingIsTheInverse) {
+TEST(Srgb, RoundTripsEveryCode) {
   std::vector<float> values;
   for (int code = 0; code < 256; ++code) values.push_back(decode_srgb(static_cast<float>(code) / 255));
   const std::vector<int> codes = codes_of(values);
@@ -83,7 +83,7 @@ TEST(Srgb, DecodingIsTheInverse) {
 }
 
 // Writes rows of any length, at any place, in both formats. No other pixel may change.
-TEST(Image, RowsTouchNoOtherPixel) {
+TEST(Image, WritesOnlyPixelsOfRow) {
   struct alignas(64) Row {
     std::array<float, 64> values;
   } red, green, blue;

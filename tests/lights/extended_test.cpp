@@ -50,7 +50,7 @@ Json sun(double degrees, const Vec3d& from = Vec3d(1, 2, -0.5)) {
 }
 
 // Counts samples in parts of equal solid angle of the sun's disc: rings of equal height, and sectors.
-TEST(Sun, IsDrawnFromEvenly) {
+TEST(Sun, SamplesDiscUniformly) {
   covers("light-24");
   constexpr int kRings = 8, kSectors = 16, kSamples = 64;
   const Vec3d axis = safe_normalize(Vec3d(1, 2, -0.5)), side = perpendicular(axis), third = cross(axis, side);
@@ -78,7 +78,7 @@ TEST(Sun, IsDrawnFromEvenly) {
   }
 }
 
-TEST(Sun, TellsTheDensityAndRadianceThatItDraws) {
+TEST(Sun, ReportsDensityAndRadianceOfSamples) {
   covers("light-24 light-25");
   for (const double degrees : {0.53, 20.0, 170.0}) {
     const auto kernel = std::make_unique<Kernel>(sun(degrees));
@@ -103,7 +103,7 @@ TEST(Sun, TellsTheDensityAndRadianceThatItDraws) {
 }
 
 // A white floor tilted under the sun reads the cosine of the tilt, as under parallel light.
-TEST(Sun, LightsAsParallelLightOfItsIntensityDoes) {
+TEST(Sun, MatchesParallelLightOfSameIntensity) {
   covers("light-17");
   for (const double degrees : {0.0, 0.53, 10.0, 60.0})
     for (const double tilt : {0.0, 0.5}) {
@@ -115,7 +115,7 @@ TEST(Sun, LightsAsParallelLightOfItsIntensityDoes) {
     }
 }
 
-TEST(Sun, IsSeenByTheCameraAndInMirrors) {
+TEST(Sun, IsVisibleToCameraAndInMirrors) {
   Json scene = scene_of(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]",
       "{'materials': {'white': {'type': 'reflective', 'kd': null, 'n': [0.1, 0.1, 0.1], 'k': [4, 4, 4]}}}");
@@ -129,7 +129,7 @@ TEST(Sun, IsSeenByTheCameraAndInMirrors) {
 }
 
 // Other techniques replace the sun by parallel light.
-TEST(Sun, IsParallelToTrees) {
+TEST(Sun, ActsAsParallelLightInWhittedTracing) {
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]}]");
   scene["lights"] = Json::array({sun(60, Vec3d(0.6, 0.8, 0))});
   const auto answer = [&] {
@@ -160,7 +160,7 @@ double irradiance_by_points(const Vec3d& from, const Vec3d& to, const Vec3d& at)
   return sum * length(to - from) / kDots / kPi;
 }
 
-TEST(Line, IrradianceIsThatOfItsPoints) {
+TEST(Line, MatchesIrradianceOfPointLights) {
   covers("R11 light-17");
   const Estimate middle =
       estimate(over_floor(Vec3d(-1, 1, 0), Vec3d(1, 1, 0)), Vec3d(0, 0.05, 30), Vec3d(), 1);
@@ -179,7 +179,7 @@ TEST(Line, IrradianceIsThatOfItsPoints) {
 }
 
 // The floor lies on the axis of a vertical line above it, or next to it: 1 / near - 1 / far in the limit.
-TEST(Line, EndsTowardWhatItLights) {
+TEST(Line, StaysFiniteOnItsAxis) {
   for (const double aside : {1e-3, 1e-6, 1e-9}) {
     const Estimate found =
         estimate(over_floor(Vec3d(aside, 1, 0), Vec3d(aside, 3, 0)), Vec3d(0, 0.05, 30), Vec3d(), 1);
@@ -189,14 +189,14 @@ TEST(Line, EndsTowardWhatItLights) {
       << "finite on the axis itself";
 }
 
-TEST(Line, IsOnePointOfItsPowerToTrees) {
+TEST(Line, ActsAsPointLightInWhittedTracing) {
   Json scene = over_floor(Vec3d(-1, 2, 0), Vec3d(1, 2, 0));
   scene["materials"]["white"] = {{"type", "rough"}, {"kd", 1}};
   const TraceOutput answer = Tracing(scene).trace({Vec3d(0, 0.05, 30), safe_normalize(Vec3d(0, -0.05, -30))});
   EXPECT_NEAR(answer.radiance.x, 2.0 / 4 / kPi, 1e-12);
 }
 
-TEST(Line, RefusesAPoint) {
+TEST(Line, RejectsZeroLength) {
   EXPECT_EQ(first_problem(over_floor(Vec3d(1, 1, 1), Vec3d(1, 1, 1))), "/lights/0/to");
 }
 

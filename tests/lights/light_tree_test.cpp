@@ -58,7 +58,7 @@ SelectedLight choose(const LightTree<T>& tree, const Vec3<T>& at, double u) {
 constexpr int kCounts[] = {1, 2, 5, 16, 17, 33, 300, 5000};
 
 // Samples weighted by their inverse probability count every light equally.
-TEST(LightTree, WeighsEveryLightAlike) {
+TEST(LightTree, WeightsEveryLightEqually) {
   covers("light-23");
   constexpr int kDraws = 10000;
   const auto lights = lights_of(33, small_light);
@@ -74,7 +74,7 @@ TEST(LightTree, WeighsEveryLightAlike) {
   }
 }
 
-TEST(LightTree, ChoosesByPowerFromAfar) {
+TEST(LightTree, SelectsByPowerAtLargeDistance) {
   covers("light-23");
   const auto lights = lights_of(33, small_light);
   const LightTree<double> tree(lights);
@@ -96,7 +96,7 @@ void tells_the_probability(int count) {
     EXPECT_EQ(probability, double{tree.probability(at, light)});
   }
 }
-TEST(LightTree, TellsTheProbabilityOfItsChoice) {
+TEST(LightTree, ReportsProbabilityOfSelection) {
   covers("light-23");
   for (const int count : kCounts) {
     tells_the_probability<double>(count);
@@ -104,7 +104,7 @@ TEST(LightTree, TellsTheProbabilityOfItsChoice) {
   }
 }
 
-TEST(LightTree, ForgetsNoLight) {
+TEST(LightTree, GivesEveryLightPositiveProbability) {
   covers("light-25");
   Random random(7);
   for (const int count : kCounts) {
@@ -122,7 +122,7 @@ TEST(LightTree, ForgetsNoLight) {
   }
 }
 
-TEST(LightTree, DrawsInProportion) {
+TEST(LightTree, SamplesInProportionToProbability) {
   covers("light-24");
   constexpr int kDraws = 200000;
   const auto lights = lights_of(101, any_light);
@@ -150,7 +150,7 @@ TEST(LightTree, DrawsInProportion) {
 }
 
 // A light hit by a BSDF sample is weighted by the probability of its selection by the tree.
-TEST(LightTree, WeightsOfBothStrategiesSumToOne) {
+TEST(LightTree, SumsMisWeightsToOne) {
   covers("light-21");
   const LightTree<double> tree(lights_of(33, any_light));
   Random random(13);
@@ -165,7 +165,7 @@ TEST(LightTree, WeightsOfBothStrategiesSumToOne) {
 }
 
 // A narrow sun has a density whose square overflows a float.
-TEST(PowerHeuristic, HoldsWhereSquaresAreOutOfRange) {
+TEST(PowerHeuristic, HandlesDensitiesWithOverflowingSquares) {
   EXPECT_EQ(power_heuristic(1e30f, 1.0f), 1.0f);
   EXPECT_EQ(power_heuristic(1.0f, 1e30f), 0.0f);
   EXPECT_EQ(power_heuristic(1e30f, 1e30f), 0.5f);
@@ -173,7 +173,7 @@ TEST(PowerHeuristic, HoldsWhereSquaresAreOutOfRange) {
 }
 
 // Selection does not depend on the unit of length.
-TEST(LightTree, ChoosesTheSameAtAnyScale) {
+TEST(LightTree, IsScaleInvariant) {
   const auto lights = lights_of(300, any_light);
   const LightTree<float> tree(lights);
   for (const double scale : {0x1p17, 0x1p-17}) {
@@ -198,7 +198,7 @@ TEST(LightTree, ChoosesTheSameAtAnyScale) {
 
 // Coincident lights and lights of no strength are selected evenly. A point at a light's centre gives finite
 // probabilities.
-TEST(LightTree, ChoosesAnyWhereLightsDoNotDiffer) {
+TEST(LightTree, SelectsAmongCoincidentLights) {
   for (const double strength : {0.0, 1.0}) {
     const LightTree<double> tree(std::vector<LightBounds>(
         100, LightBounds{.centre = Vec3d(1, 2, 3), .strength = strength, .attenuation = {0, 0, 1}}));
@@ -214,7 +214,7 @@ TEST(LightTree, ChoosesAnyWhereLightsDoNotDiffer) {
 // The floor reads the sum of (radius / distance)^2 times the cosine over emissive balls, some 30 times as far
 // as others. One sample of 40 balls has a relative standard deviation of 2.67 with uniform selection, and of
 // 0.41 if selected one by one by distance.
-TEST(LightTree, IrradianceOfBallsNearAndFar) {
+TEST(LightTree, MatchesIrradianceOfNearAndFarBalls) {
   covers("light-17");
   for (const int count : {5, 40}) {
     Json scene = scene_of(

@@ -27,7 +27,7 @@ std::string problem(const Json& light) {
 }
 
 // An unnormalized direction (1, 1, 1) would light a surface with a cosine of up to 1.732.
-TEST(Directional, DirectionIsOfUnitLengthHoweverItWasWritten) {
+TEST(Directional, NormalizesDirection) {
   covers("B2");
   for (const double length : {1e-150, 1e-3, 1.0, 5.0, 1e12}) {
     const Json light{{"type", "directional"}, {"from", numbers(Vec3d(1, 1, 1) * length)}};
@@ -39,7 +39,7 @@ TEST(Directional, DirectionIsOfUnitLengthHoweverItWasWritten) {
   }
 }
 
-TEST(Attenuation, IsTheFormulaCutAtOne) {
+TEST(Attenuation, ClampsFormulaToOne) {
   covers("B9");
   EXPECT_NEAR(weakened(Vec3d(.25, .1, .01), 10), 0.4444444444444444, 1e-15);
   EXPECT_EQ(weakened(Vec3d(1, 0, 0), 1e9), 1);
@@ -47,7 +47,7 @@ TEST(Attenuation, IsTheFormulaCutAtOne) {
   EXPECT_EQ(weakened(Vec3d(0, 1, 0), 0.5), 1) << "never more than the light itself";
 }
 
-TEST(Attenuation, GrowsTowardAPhysicalPoint) {
+TEST(Attenuation, FollowsInverseSquareIfUnlimited) {
   for (const char* type : {"point", "spot"}) {
     Json light = point_light(Vec3d(0, 0, 1));
     light["type"] = type;
@@ -82,14 +82,14 @@ TEST(Attenuation, StaysInTheUnitIntervalAtAnyDistance) {
     }
 }
 
-TEST(Attenuation, SaysNothingAtTheLightItself) {
+TEST(Attenuation, SendsNoLightAtZeroDistance) {
   covers("B10");
   EXPECT_EQ(arrival<double>(point_light(Vec3d(0, 0, 1)), Vec3d()).t_max, -1);
   EXPECT_EQ(arrival<float>(point_light(Vec3d(1, 0, 0)), Vec3f()).t_max, -1);
   EXPECT_EQ(weakened(Vec3d(0, 0, 1), 1e-4), 1);
 }
 
-TEST(Attenuation, RefusesWhatHasNoMeaning) {
+TEST(Attenuation, RejectsInvalidCoefficients) {
   covers("B9");
   EXPECT_EQ(problem(point_light(Vec3d(0, 0, 0))), "/lights/0/attenuation");
   EXPECT_EQ(problem(point_light(Vec3d(1, -2, 1))), "/lights/0/attenuation/1");
@@ -108,7 +108,7 @@ IncidentLight<double> in_beam(const Json& light, double degrees) {
   return arrival<double>(light, Vec3d(std::sin(a), 0, -std::cos(a)) * 3);
 }
 
-TEST(Spot, IsFullWithinNothingOutsideAndHalfInTheMiddle) {
+TEST(Spot, FallsOffBetweenInnerAndOuterAngle) {
   covers("B14");
   const Json light = spot(20, 40);
   EXPECT_EQ(in_beam(light, 0).incident.x, 1);
@@ -125,7 +125,7 @@ TEST(Spot, IsFullWithinNothingOutsideAndHalfInTheMiddle) {
   }
 }
 
-TEST(Spot, EqualAnglesMakeAStep) {
+TEST(Spot, CutsOffSharplyAtEqualAngles) {
   covers("B14");
   EXPECT_EQ(in_beam(spot(30, 30), 29.99).incident.x, 1);
   EXPECT_EQ(in_beam(spot(30, 30), 30.01).t_max, -1);
@@ -136,7 +136,7 @@ TEST(Spot, EqualAnglesMakeAStep) {
   EXPECT_EQ(problem(spot(31, 30)), "/lights/0/inner_degrees");
 }
 
-TEST(Spot, BeamGoesWhereItPointsWhateverTheLengthOfThat) {
+TEST(Spot, IgnoresLengthOfDirection) {
   covers("B14");
   Json light = spot(20, 40);
   light["direction"] = {0, 0, -1e-9};
@@ -144,7 +144,7 @@ TEST(Spot, BeamGoesWhereItPointsWhateverTheLengthOfThat) {
     EXPECT_EQ(in_beam(light, degrees).incident.x, in_beam(spot(20, 40), degrees).incident.x);
 }
 
-TEST(Directional, IsParallelIfNarrowerThanDirectionsAreRounded) {
+TEST(Directional, IsParallelBelowAngularResolution) {
   const auto sun = [](float height) { return Directional<float>{Vec3f(0, 1, 0), Vec3f(1), height}; };
   EXPECT_FALSE(sun(1e-20f).extended());
   EXPECT_FALSE(sun(0).extended());
@@ -153,7 +153,7 @@ TEST(Directional, IsParallelIfNarrowerThanDirectionsAreRounded) {
 
 // Checks every registered light: unit directions, no light below 0 or above its intensity, and float close to
 // double.
-TEST(AllLights, SendUnitDirectionsAndNoMoreThanTheirIntensity) {
+TEST(AllLights, SendsUnitDirectionsWithinIntensity) {
   const std::vector<Json> lights = {
       json("{'type': 'directional', 'from': [1, 2, 3], 'intensity': [1, 2, 3]}"),
       json(

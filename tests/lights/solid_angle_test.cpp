@@ -32,7 +32,7 @@ void expect_angle(const Square& square, double expected) {
 }
 
 // Unit squares above their centre, and a quarter plane, which fills an octant.
-TEST(SolidAngle, OfRectanglesHasTheClosedForm) {
+TEST(SolidAngle, MatchesClosedFormForRectangles) {
   covers("light-18");
   const Vec3d x(1, 0, 0), z(0, 0, 1);
   for (const auto& [height, expected] :
@@ -57,7 +57,7 @@ long double triangle_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return 2 * std::atan2(std::abs(volume), la * lb * lc + dot3(a, b) * lc + dot3(a, c) * lb + dot3(b, c) * la);
 }
 
-TEST(SolidAngle, OfAnyRectangleIsThatOfItsTwoTriangles) {
+TEST(SolidAngle, EqualsSumOfTwoTrianglesForRectangles) {
   covers("light-18");
   Random random(3);
   for (int i = 0; i < 2000; ++i) {
@@ -71,7 +71,7 @@ TEST(SolidAngle, OfAnyRectangleIsThatOfItsTwoTriangles) {
 }
 
 // A sphere is sampled evenly over its cone, so its density is one over the cone's solid angle.
-TEST(SolidAngle, OfASphereIsThatOfItsCone) {
+TEST(SolidAngle, EqualsConeForSpheres) {
   covers("light-18");
   for (const auto& [radius, distance] : {std::pair{0.5, 2.0}, {0.9, 1.0}, {1.0, 10.0}, {0.001, 3.0}}) {
     const Vec3d centre(0.3, -0.2, 0.7), to = safe_normalize(Vec3d(1, 2, -2));

@@ -3,16 +3,25 @@
 // be. Without arguments it judges this repository; with --self-test it judges small trees that each break
 // a rule.
 
-import {mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
-import {tmpdir} from "node:os";
-import {basename, dirname, extname, join} from "node:path";
-import {fileURLToPath} from "node:url";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, dirname, extname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 
 const kFloors = [
   ["core/base", "core/math"],
   ["core/params", "core/image", "core/meshes", "core/pictures"],
   ["core/model"],
-  ["core/shapes", "core/cameras", "core/materials", "core/lights", "core/environments", "core/accelerators", "core/channels", "core/stages"],
+  [
+    "core/shapes",
+    "core/cameras",
+    "core/materials",
+    "core/lights",
+    "core/environments",
+    "core/accelerators",
+    "core/channels",
+    "core/stages",
+  ],
   ["core/techniques"],
   ["core/plan"],
   ["core/prepare", "core/load"],
@@ -23,19 +32,19 @@ const kFloors = [
   ["server"],
 ];
 const kRegisteredRooms = [...kFloors[3].filter((room) => room !== "core/stages"), "core/techniques", "core/stability"];
-const kGenerated = ["core/base/version.h"];  // lies in the build folder
+const kGenerated = ["core/base/version.h"]; // lies in the build folder
 const kMaxLines = 500;
 const kTextFolders = [".ci", "core", "docker", "docs", "packaging", "scenes", "script", "server", "tests", "web"];
 const kCounted = new Set([".cpp", ".h", ".js", ".mjs", ".css", ".html", ".sh", ".cmake"]);
 const kText = new Set([...kCounted, ".in", ".md", ".json", ".yaml", ".yml", ".txt", ".svg", ".pov", ".service", ""]);
-const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]);  // the last is a file in a worktree
+const kUnread = new Set(["package-lock.json", "LICENSE", ".git"]); // the last is a file in a worktree
 const kLibraries = [
-  {name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
-  {name: "httplib", header: /^httplib\.h$/, rooms: /^tests\// },  // 20,000 lines of header
-  {name: "libpng", header: /^png\.h$/, rooms: /^core\/image\// },
-  {name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\// },
-  {name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/pictures\/decoder\// },
-  {name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\// },
+  { name: "nlohmann", header: /^nlohmann\//, rooms: /^(core\/params|core\/meshes|server)\// },
+  { name: "httplib", header: /^httplib\.h$/, rooms: /^tests\// }, // 20,000 lines of header
+  { name: "libpng", header: /^png\.h$/, rooms: /^core\/image\// },
+  { name: "turbojpeg", header: /^(turbojpeg|jpeglib)\.h$/, rooms: /^core\/image\// },
+  { name: "OpenImageIO", header: /^OpenImageIO\//, rooms: /^core\/pictures\/decoder\// },
+  { name: "OpenEXR", header: /^(OpenEXR\/|Imath\/|Imf|Imath|openexr)/, rooms: /^core\/image\// },
 ];
 // Folders that exist on one machine only. (Preceded by a word or a dot it is a relative path.)
 const kMachinePath = /(?<![\w.)}\]-])(?:\/(?:work|home|root|Users|mnt)\/|[A-Z]:\\\\?Users)/;
@@ -47,7 +56,7 @@ const isCode = (path) => /^(core|server)\/.*\.(cpp|h)$/.test(path);
 function listFiles(root) {
   const files = [];
   const walk = (folder) => {
-    for (const entry of readdirSync(join(root, folder), {withFileTypes: true})) {
+    for (const entry of readdirSync(join(root, folder), { withFileTypes: true })) {
       const path = folder ? `${folder}/${entry.name}` : entry.name;
       if (entry.isFile()) files.push(path);
       else if (entry.isDirectory() && (folder || kTextFolders.includes(path))) walk(path);
@@ -61,15 +70,15 @@ function includesOf(lines) {
   const found = [];
   lines.forEach((line, index) => {
     const match = line.match(/^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)/);
-    if (match) found.push({line: index + 1, target: match[1] ?? match[2], quoted: match[1] !== undefined});
+    if (match) found.push({ line: index + 1, target: match[1] ?? match[2], quoted: match[1] !== undefined });
   });
   return found;
 }
 
-// Returns what is wrong in the tree at `root`, as {path, line, rule, text}.
+// Returns the problems of the tree at `root`, as {path, line, rule, text}.
 function judge(root) {
   const problems = [];
-  const complain = (rule, path, line, text) => problems.push({rule, path, line, text});
+  const complain = (rule, path, line, text) => problems.push({ rule, path, line, text });
   const files = listFiles(root);
   const contents = new Map(files.map((path) => [path, readFileSync(join(root, path), "utf8")]));
   const includes = new Map();
@@ -102,7 +111,7 @@ function judgeIncludes(includes, complain) {
   for (const [path, list] of includes) {
     const floor = floorOf(path);
     if (floor < 0) complain("room", path, 1, `${roomOf(path)} is not a room of the design`);
-    for (const {line, target, quoted} of list) {
+    for (const { line, target, quoted } of list) {
       if (!quoted) continue;
       if (!includes.has(target) && !kGenerated.includes(target)) {
         complain("root", path, line, `"${target}" is no file of core/ or server/ from the repository root`);
@@ -117,8 +126,8 @@ function judgeIncludes(includes, complain) {
 
 function judgeLibraries(includes, complain) {
   for (const [path, list] of includes) {
-    for (const {line, target} of list) {
-      for (const {name, header, rooms} of kLibraries) {
+    for (const { line, target } of list) {
+      for (const { name, header, rooms } of kLibraries) {
         if (header.test(target) && !rooms.test(path)) {
           complain("library", path, line, `${name} may not be included here (only in ${rooms.source})`);
         }
@@ -133,7 +142,7 @@ function judgeCycles(includes, complain) {
     if (trail.includes(path)) {
       complain("cycle", path, 1, [...trail.slice(trail.indexOf(path)), path].join(" -> "));
     } else if (!done.has(path)) {
-      for (const {target, quoted} of includes.get(path) ?? []) if (quoted) visit(target, [...trail, path]);
+      for (const { target, quoted } of includes.get(path) ?? []) if (quoted) visit(target, [...trail, path]);
       done.add(path);
     }
   };
@@ -160,7 +169,7 @@ function judgeRegistries(contents, complain) {
 // ---- self-test ----
 
 const machineFolder = ["", "work", "checkout"].join("/");
-const innerFolder = ["..", "work", "checkout"].join("/");  // begins no path from the root
+const innerFolder = ["..", "work", "checkout"].join("/"); // begins no path from the root
 const kGoodTree = {
   "core/base/a.h": "#pragma once\n#include <string>\n",
   "core/params/params.cpp": '#include <nlohmann/json.hpp>\n#include "core/base/a.h"\n',
@@ -175,46 +184,46 @@ const kGoodTree = {
   "web/app.js": "// one\n".repeat(kMaxLines),
 };
 const kBadTrees = [
-  ["floor", {"core/model/bad.h": '#include "server/http/x.h"\n', "server/http/x.h": ""}],
-  ["floor", {"core/base/bad.h": '#include "core/model/shape.h"\n'}],
-  ["neighbour", {"core/math/bad.h": '#include "core/base/a.h"\n'}],
-  ["neighbour", {"core/shapes/bad.h": '#include "core/lights/light.h"\n', "core/lights/light.h": ""}],
-  ["cycle", {"core/base/p.h": '#include "core/base/q.h"\n', "core/base/q.h": '#include "core/base/p.h"\n'}],
-  ["registry", {"core/shapes/box.cpp": "int box;\n"}],
-  ["registry", {"core/shapes/box.cpp": "ShapeType box_type() {}\n", "core/shapes/box.h": "#pragma once\n"}],
-  ["registry", {"core/shapes/cone.cpp": "", "core/shapes/registry.cpp": "sphere_type(); // cone_type();\n"}],
-  ["registry", {"core/shapes/box.cpp": "", "core/shapes/registry.cpp": "sphere_type(); boxes_type();\n"}],
-  ["registry", {"core/lights/point.cpp": "int point;\n"}],
-  ["length", {"web/long.js": "// line\n".repeat(kMaxLines + 1)}],
-  ["length", {"script/long": `#!/bin/sh\n${"true\n".repeat(kMaxLines)}`}],
-  ["library", {"core/model/json.cpp": "#include <nlohmann/json.hpp>\n"}],
-  ["library", {"server/picture.cpp": "#include <png.h>\n"}],
-  ["library", {"core/render/picture.cpp": "#include <turbojpeg.h>\n"}],
-  ["library", {"core/load/picture.cpp": "#include <OpenEXR/ImfRgbaFile.h>\n"}],
-  ["library", {"server/http/client.cpp": "#include <httplib.h>\n"}],
-  ["machine", {"script/run": `cd ${machineFolder}\n`}],
-  ["machine", {"README.md": `It lies in "${machineFolder}".\n`}],
-  ["root", {"core/model/near.cpp": '#include "shape.h"\n'}],
-  ["room", {"core/attic/old.cpp": "int old;\n"}],
+  ["floor", { "core/model/bad.h": '#include "server/http/x.h"\n', "server/http/x.h": "" }],
+  ["floor", { "core/base/bad.h": '#include "core/model/shape.h"\n' }],
+  ["neighbour", { "core/math/bad.h": '#include "core/base/a.h"\n' }],
+  ["neighbour", { "core/shapes/bad.h": '#include "core/lights/light.h"\n', "core/lights/light.h": "" }],
+  ["cycle", { "core/base/p.h": '#include "core/base/q.h"\n', "core/base/q.h": '#include "core/base/p.h"\n' }],
+  ["registry", { "core/shapes/box.cpp": "int box;\n" }],
+  ["registry", { "core/shapes/box.cpp": "ShapeType box_type() {}\n", "core/shapes/box.h": "#pragma once\n" }],
+  ["registry", { "core/shapes/cone.cpp": "", "core/shapes/registry.cpp": "sphere_type(); // cone_type();\n" }],
+  ["registry", { "core/shapes/box.cpp": "", "core/shapes/registry.cpp": "sphere_type(); boxes_type();\n" }],
+  ["registry", { "core/lights/point.cpp": "int point;\n" }],
+  ["length", { "web/long.js": "// line\n".repeat(kMaxLines + 1) }],
+  ["length", { "script/long": `#!/bin/sh\n${"true\n".repeat(kMaxLines)}` }],
+  ["library", { "core/model/json.cpp": "#include <nlohmann/json.hpp>\n" }],
+  ["library", { "server/picture.cpp": "#include <png.h>\n" }],
+  ["library", { "core/render/picture.cpp": "#include <turbojpeg.h>\n" }],
+  ["library", { "core/load/picture.cpp": "#include <OpenEXR/ImfRgbaFile.h>\n" }],
+  ["library", { "server/http/client.cpp": "#include <httplib.h>\n" }],
+  ["machine", { "script/run": `cd ${machineFolder}\n` }],
+  ["machine", { "README.md": `It lies in "${machineFolder}".\n` }],
+  ["root", { "core/model/near.cpp": '#include "shape.h"\n' }],
+  ["room", { "core/attic/old.cpp": "int old;\n" }],
 ];
 
 function judgeTree(tree) {
   const root = mkdtempSync(join(tmpdir(), "layers-"));
   try {
     for (const [path, text] of Object.entries(tree)) {
-      mkdirSync(join(root, dirname(path)), {recursive: true});
+      mkdirSync(join(root, dirname(path)), { recursive: true });
       writeFileSync(join(root, path), text);
     }
-    return judge(root).map(({rule}) => rule);
+    return judge(root).map(({ rule }) => rule);
   } finally {
-    rmSync(root, {recursive: true});
+    rmSync(root, { recursive: true });
   }
 }
 
 function selfTest() {
   let failures = 0;
   for (const [expected, changes] of [[null, {}], ...kBadTrees]) {
-    const fired = [...new Set(judgeTree({...kGoodTree, ...changes}))];
+    const fired = [...new Set(judgeTree({ ...kGoodTree, ...changes }))];
     if (fired.join() === (expected ?? "")) continue;
     ++failures;
     console.error(`expected [${expected ?? ""}], got [${fired}] for ${Object.keys(changes)}`);
@@ -226,7 +235,7 @@ function selfTest() {
 function judgeRepository() {
   const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
   const problems = judge(root);
-  for (const {path, line, rule, text} of problems) console.error(`${path}:${line}: ${rule}: ${text}`);
+  for (const { path, line, rule, text } of problems) console.error(`${path}:${line}: ${rule}: ${text}`);
   console.log(`${problems.length} problems`);
   return problems.length;
 }

@@ -22,10 +22,8 @@ const trailingMarks = { slashes: /\s\/\/ (.*)$/, hash: /\s# (.*)$/ };
 
 // Patterns that leveldb, pbrt, nori, mitsuba and Boost.Beast have in at most 0.4 % of their sentences.
 const rules = {
-  start:
-    /^(?:What|Whatever|Who|Whoever|Whose|Whom|Of|Where|Beside|Likewise)\b/i,
-  word:
-    /\b(?:tells?|told|telling|foretells?|foretold|beside|anew|likewise|at hand|so (?:many|few)|who (?:waits?|asks?|has|had|have|leaves?|left|comes?|came|gives?|takes?|wants?|reads?|sends?)|what (?:is|has|had|was|are|waits?|moves?|shines?|comes?|came|goes|lies|stands)|holds? \w+ against|held against|none:)\b/i,
+  start: /^(?:What|Whatever|Who|Whoever|Whose|Whom|Of|Where|Beside|Likewise)\b/i,
+  word: /\b(?:tells?|told|telling|foretells?|foretold|beside|anew|likewise|at hand|so (?:many|few)|who (?:waits?|asks?|has|had|have|leaves?|left|comes?|came|gives?|takes?|wants?|reads?|sends?)|what (?:is|has|had|was|are|waits?|moves?|shines?|comes?|came|goes|lies|stands)|holds? \w+ against|held against|none:)\b/i,
 };
 
 const withoutCode = (text) => text.replace(/`[^`]*`/g, "`code`").replace(/"(?:[^"\\]|\\.)*"/g, '"text"');
@@ -65,7 +63,14 @@ function commentParagraphs(path, text) {
     const rest = whole ? null : trailing.exec(full.replace(/"(?:[^"\\]|\\.)*"/g, '""'));
     if (rest) paragraphs.push([{ line, text: rest[1] }]);
     else if (!whole || full.replace(mark, "").trim() === "") paragraphs.push([]);
-    else last.push({ line, text: full.replace(mark, "").replace(/\*\/\s*$/, "").trim() });
+    else
+      last.push({
+        line,
+        text: full
+          .replace(mark, "")
+          .replace(/\*\/\s*$/, "")
+          .trim(),
+      });
   });
   return paragraphs;
 }

@@ -1,10 +1,10 @@
 #!/usr/bin/env node
-// What a function may not be and what code may not say. Without arguments it judges this repository; with
+// Limits the length of functions and forbids some names and calls. Without arguments it judges this repository; with
 // --self-test it judges small texts that each break a rule.
 
-import {readdirSync, readFileSync} from "node:fs";
-import {dirname, extname, join} from "node:path";
-import {fileURLToPath} from "node:url";
+import { readdirSync, readFileSync } from "node:fs";
+import { dirname, extname, join } from "node:path";
+import { fileURLToPath } from "node:url";
 
 const kRoot = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const kFolders = ["core", "server", "tests", "web", "script"];
@@ -17,18 +17,18 @@ const kPrivateNames =
 // [rule, what it forbids, the files it holds for]
 const kPatterns = [
   ["name", kPrivateNames, /\.(?:cpp|h)$/],
-  ["stop", /\bstd::function<bool\(\)>/, /^(?:core|server)\//],  // std::stop_token
-  ["polling", /\bsleep_(?:for|until)\b|\busleep\b|\.wait_for\([^,()]*, *[^,]*\);/, /^(?:core|server)\//],  // waits for a condition
+  ["stop", /\bstd::function<bool\(\)>/, /^(?:core|server)\//], // std::stop_token
+  ["polling", /\bsleep_(?:for|until)\b|\busleep\b|\.wait_for\([^,()]*, *[^,]*\);/, /^(?:core|server)\//], // waits for a condition
 ];
 
 const withoutComments = (line) => line.replace(/"(?:[^"\\]|\\.)*"/g, '""').replace(/\/\/.*/, "");
 // A line that opens the body of a function, a lambda or a branch. The formatters see to it that the body ends
 // with a brace that is indented no deeper.
 const indentation = (line) => line.search(/\S|$/);
-const kRow = /^\s*[{"]/;  // of a table in a function: data, not code
+const kRow = /^\s*[{"]/; // row of a table in a function: data, not code
 const opensBody = (line) => /\)[^;{}]*\{$|=> \{$/.test(line) && !/^\s*(?:namespace|class|struct|enum)\b/.test(line);
 
-// Returns what is wrong, as {line, rule, text}.
+// Returns the problems as {line, rule, text}.
 function judge(path, text) {
   const problems = [];
   const lines = text.split("\n");
@@ -36,13 +36,15 @@ function judge(path, text) {
     const line = withoutComments(full).trimEnd();
     for (const [rule, pattern, where] of kPatterns) {
       const match = where.test(path) && line.match(pattern);
-      if (match) problems.push({line: index + 1, rule, text: `"${match[0]}"`});
+      if (match) problems.push({ line: index + 1, rule, text: `"${match[0]}"` });
     }
     if (!opensBody(line)) return;
-    const end = lines.findIndex((other, at) =>
-      at > index && /^\s*\}/.test(other) && indentation(other) <= indentation(line));
+    const end = lines.findIndex(
+      (other, at) => at > index && /^\s*\}/.test(other) && indentation(other) <= indentation(line),
+    );
     const length = lines.slice(index, end + 1).filter((other) => !kRow.test(other)).length;
-    if (length > kMaxLines) problems.push({line: index + 1, rule: "length", text: `${length} lines, at most ${kMaxLines}`});
+    if (length > kMaxLines)
+      problems.push({ line: index + 1, rule: "length", text: `${length} lines, at most ${kMaxLines}` });
   });
   return problems;
 }
@@ -50,9 +52,10 @@ function judge(path, text) {
 function judgeRepository() {
   let count = 0;
   const files = kFolders.flatMap((folder) =>
-    readdirSync(join(kRoot, folder), {recursive: true}).map((name) => `${folder}/${name}`));
+    readdirSync(join(kRoot, folder), { recursive: true }).map((name) => `${folder}/${name}`),
+  );
   for (const path of files.filter((name) => kCode.has(extname(name)))) {
-    for (const {line, rule, text} of judge(path, readFileSync(join(kRoot, path), "utf8"))) {
+    for (const { line, rule, text } of judge(path, readFileSync(join(kRoot, path), "utf8"))) {
       console.error(`${path}:${line}: ${rule}: ${text}`);
       ++count;
     }
@@ -81,7 +84,9 @@ const kSelfTests = [
 function selfTest() {
   let failures = 0;
   for (const [expected, path, text] of kSelfTests) {
-    const fired = judge(path, text).map(({rule}) => rule).join();
+    const fired = judge(path, text)
+      .map(({ rule }) => rule)
+      .join();
     if (fired === expected) continue;
     ++failures;
     console.error(`expected [${expected}], got [${fired}] for ${path}: ${text.slice(0, 60)}`);

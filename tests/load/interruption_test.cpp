@@ -33,20 +33,20 @@ bool is_interrupted(const Act& act) {
 const std::string kScene =
     test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'white'}").dump();
 
-TEST(Interruption, EndsReadingJson) {
+TEST(Interruption, StopsJsonParsing) {
   EXPECT_TRUE(is_interrupted([] { parse_document("[1, 2, 3]"); }));
 }
 
-TEST(Interruption, EndsReadingGltf) {
+TEST(Interruption, StopsGltfParsing) {
   EXPECT_TRUE(is_interrupted([] { parse_gltf("{}"); }));
 }
 
-TEST(Interruption, EndsReadingScenes) {
+TEST(Interruption, StopsSceneLoading) {
   const Document document = parse_document(kScene);
   EXPECT_TRUE(is_interrupted([&] { load_scene(document); }));
 }
 
-TEST(Interruption, EndsReadingMeshes) {
+TEST(Interruption, StopsMeshReading) {
   const TriangleMesh cube = test::cube();
   for (const std::string& bytes :
        {test::obj_of(cube), test::ply_of(cube), test::ply_of(cube, std::endian::little),
@@ -54,7 +54,7 @@ TEST(Interruption, EndsReadingMeshes) {
     EXPECT_TRUE(is_interrupted([&] { read_mesh(bytes); })) << bytes.substr(0, 60);
 }
 
-TEST(Interruption, EndsSmoothing) {
+TEST(Interruption, StopsSmoothing) {
   EXPECT_TRUE(is_interrupted([] {
     TriangleMesh mesh = test::cube();
     smooth_normals(mesh, 30);
@@ -62,7 +62,7 @@ TEST(Interruption, EndsSmoothing) {
 }
 
 // Requests the stop when the facets allocate their memory. No later stage may allocate any.
-TEST(Interruption, EndsSmoothingAmongTheFacets) {
+TEST(Interruption, StopsSmoothingDuringFacetPass) {
   constexpr std::size_t kTriangles = 1000, kOfFacets = kTriangles * 3 * sizeof(Vec3d);
   constexpr std::size_t kOfIndices = kTriangles * 3 * sizeof(std::uint32_t);
   TriangleMesh mesh;
@@ -83,7 +83,7 @@ TEST(Interruption, EndsSmoothingAmongTheFacets) {
   EXPECT_LT(taken_after, kOfIndices) << "the exception alone may take some";
 }
 
-TEST(Interruption, EndsBuildingEveryStructure) {
+TEST(Interruption, StopsBuildOfEveryAccelerator) {
   const auto scene = load_scene(kScene);
   for (const AcceleratorType& type : accelerator_types())
     EXPECT_TRUE(is_interrupted([&] {
@@ -94,7 +94,7 @@ TEST(Interruption, EndsBuildingEveryStructure) {
 }
 
 // An interrupted build is repeated by the next caller.
-TEST(Interruption, LeavesNothingHalfBuilt) {
+TEST(Interruption, LeavesNoPartialBuild) {
   const PreparedScene scene(load_scene(kScene));
   std::stop_source source;
   source.request_stop();
@@ -110,7 +110,7 @@ class CountedTurn final : public TimeSlice {
   std::atomic<int> asked{0};
 };
 
-TEST(Interruption, LetsOthersGoFirst) {
+TEST(Interruption, YieldsWhileLoading) {
   CountedTurn turn;
   const TaskScope scope({nullptr, nullptr, &turn});
   load_scene(kScene);
@@ -118,7 +118,7 @@ TEST(Interruption, LetsOthersGoFirst) {
 }
 
 // A thread that holds the scene's lock must not yield, since waiting threads may hold what the builder needs.
-TEST(Interruption, LetsNobodyGoFirstWhileASceneIsLocked) {
+TEST(Interruption, NeverYieldsWhileSceneIsLocked) {
   const PreparedScene scene(load_scene(kScene));
   CountedTurn turn;
   const TaskScope scope({nullptr, nullptr, &turn});

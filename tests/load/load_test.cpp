@@ -24,7 +24,7 @@ std::string problem_of_text(const char* what, const char* by) {
   return first_problem_in_text(text);
 }
 
-TEST(Load, RefusesRadiiThatAreNone) {
+TEST(Load, RejectsNonPositiveRadii) {
   covers("A6");
   EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 0}]"), "/objects/0/radius");
   EXPECT_EQ(problem_of_object("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': -1}]"),
@@ -38,7 +38,7 @@ TEST(Load, RefusesRadiiThatAreNone) {
   EXPECT_NE(problem_of_text("0.375", "NaN"), "accepted");
 }
 
-TEST(Load, RefusesBadNumbersByName) {
+TEST(Load, RejectsInvalidNumbersAtTheirPath) {
   covers("A36");
   for (const char* bad :
        {"NaN", "Infinity", "-Infinity", "1e999", "1,5", "0x10", "1.", ".5", "+1", "null", "\"1\"", "true"})
@@ -54,7 +54,7 @@ TEST(Load, RefusesBadNumbersByName) {
 
 // Reflectances and filters are between 0 and 1: no surface scatters a negative share, and no medium amplifies
 // light.
-TEST(Load, HoldsSharesOfLightBetweenNothingAndAll) {
+TEST(Load, RejectsReflectancesOutsideUnitInterval) {
   const auto problem = [](const char* material) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
     scene["materials"]["it"] = json(material);
@@ -72,7 +72,7 @@ TEST(Load, HoldsSharesOfLightBetweenNothingAndAll) {
             "/materials/it/filter/0");
 }
 
-TEST(Load, KnowsEveryRegisteredType) {
+TEST(Load, ListsEveryRegisteredTypeInSchema) {
   const std::string schema = scene_schema();
   const auto named = [&](const auto& types) {
     for (const auto& type : types)
@@ -83,7 +83,7 @@ TEST(Load, KnowsEveryRegisteredType) {
   named(light_types());
 }
 
-TEST(Load, GivesEachPrimitiveItsMaterial) {
+TEST(Load, AssignsMaterialToEachPrimitive) {
   const auto scene = load(scene_of(
       R"([{'type': 'box', 'min': [0, 0, 0], 'max': [1, 1, 1], 'material': 'glass'},
       {'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'b'},
@@ -109,7 +109,7 @@ TEST(Load, GivesEachPrimitiveItsMaterial) {
   EXPECT_EQ(scene->material_of[4], set_of("refractive"));
 }
 
-TEST(Load, WantsAnObjectOrAnInstance) {
+TEST(Load, RequiresObjectOrInstance) {
   Json scene = scene_of(R"({'type': 'sphere', 'center': [0, 0, 0], 'radius': 1})");
   scene["models"]["it"]["objects"] = scene["objects"];
   scene["objects"] = Json::array();
@@ -121,7 +121,7 @@ TEST(Load, WantsAnObjectOrAnInstance) {
   EXPECT_EQ(load(scene)->primitive_count(), 2);
 }
 
-TEST(Load, GathersTheFactsThePlanNeeds) {
+TEST(Load, CollectsFactsForPlanning) {
   const auto scene = load(scene_of(R"([{'type': 'plane', 'point': [0, -1e6, 0], 'normal': [0, 1, 0]},
       {'type': 'sphere', 'center': [100, 0, 0], 'radius': 2}, {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5}])"));
   EXPECT_EQ(scene->facts.magnitude.value, 1e6) << "the point that places a plane counts";
@@ -133,7 +133,7 @@ TEST(Load, GathersTheFactsThePlanNeeds) {
   EXPECT_FALSE(scene->facts.materials.mirrors);
 }
 
-TEST(Load, IdDependsOnMeaningAndNotOnLayout) {
+TEST(Load, DerivesIdFromContentNotLayout) {
   const auto id = [](const char* text) { return load_scene(json(text).dump(2))->id; };
   const char* plain =
       "{'version': 1, 'camera': {'type': 'perspective', 'eye': [0, 0, 4], 'look_at': [0, 0, 0]},"
@@ -147,7 +147,7 @@ TEST(Load, IdDependsOnMeaningAndNotOnLayout) {
   EXPECT_EQ(id(plain).size(), 64u);
 }
 
-TEST(Load, RefusesInstancesThatCannotBe) {
+TEST(Load, RejectsInvalidInstances) {
   covers("A38");
   const auto problem = [](const char* instance) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
@@ -165,7 +165,7 @@ TEST(Load, RefusesInstancesThatCannotBe) {
   EXPECT_EQ(problem("{'model': 'it', 'turn': 3}"), "/instances/0");
 }
 
-TEST(Load, RefusesMoreInstancedPrimitivesThanItsLimit) {
+TEST(Load, RejectsInstancedPrimitivesAboveLimit) {
   Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
   Json& objects = scene["models"]["it"]["objects"];
   for (int i = 0; i < 1000; ++i)

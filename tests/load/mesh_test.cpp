@@ -66,13 +66,13 @@ Vec3d shading_normal(const Scene& scene, const Vec3d& from, const Vec3d& toward)
   return {};
 }
 
-TEST(AssetFiles, AreReadFromWhereTheLoaderIsTold) {
+TEST(AssetFiles, LoadsFromAssetSource) {
   const auto scene = load_scene(text_of("[{'type': 'mesh', 'file': 'roof.obj'}]"), Shelf());
   EXPECT_EQ(scene->primitive_count(), 4);
   EXPECT_EQ(scene->facts.left_out, 1u);
 }
 
-TEST(AssetFiles, AreRefusedWhereTheirNameStands) {
+TEST(AssetFiles, ReportsErrorsAtFileReference) {
   const Problem missing = problem_of("[{'type': 'mesh', 'file': 'wall.obj'}]", Shelf());
   EXPECT_EQ(missing.pointer, "/objects/0/file");
   EXPECT_EQ(missing.detail, "cannot read wall.obj");
@@ -86,7 +86,7 @@ TEST(AssetFiles, AreRefusedWhereTheirNameStands) {
 }
 
 // Next to the ridge, the normal is flat unless the crease angle exceeds 90 degrees, and then vertical.
-TEST(AssetFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
+TEST(AssetFiles, SmoothsEdgesBelowCreaseAngle) {
   const auto normal = [](const char* object) {
     return shading_normal(*load_scene(text_of(object), Shelf()), {1e-9, 3, 1}, {0, -1, 0});
   };
@@ -102,7 +102,7 @@ TEST(AssetFiles, AreSmoothAcrossEdgesBelowTheCreaseAngle) {
 }
 
 // A file named by many objects is read once, and its size counts once for the limits.
-TEST(AssetFiles, AreReadOnceALoad) {
+TEST(AssetFiles, ReadsEachFileOncePerLoad) {
   class Counting final : public AssetSource {
    public:
     TriangleMesh mesh_file(const std::string&) const override {
@@ -118,7 +118,7 @@ TEST(AssetFiles, AreReadOnceALoad) {
   EXPECT_EQ(shelf.reads, 1);
 }
 
-TEST(AssetFiles, AreTooManyTogether) {
+TEST(AssetFiles, RejectsTotalVerticesAboveLimit) {
   class Dots final : public AssetSource {
    public:
     TriangleMesh mesh_file(const std::string&) const override {
@@ -131,7 +131,8 @@ TEST(AssetFiles, AreTooManyTogether) {
       "[{'type': 'mesh', 'file': 'a'}, {'type': 'mesh', 'file': 'a'}, {'type': 'mesh', 'file': 'a'}]";
   const Problem problem = problem_of(three, Dots());
   EXPECT_EQ(problem.pointer, "/objects/2");
-  EXPECT_NE(problem.detail.find("10000000 vertices (mesh_vertices)"), std::string::npos) << problem.detail;
+  EXPECT_NE(problem.detail.find("vertices (limit 10,000,000, mesh_vertices)"), std::string::npos)
+      << problem.detail;
   EXPECT_EQ(problem_of("[{'type': 'mesh', 'file': ''}]", Shelf()).pointer, "/objects/0/file");
   Json models = scene_of("[]");
   for (const char* name : {"a", "b", "c"})
@@ -145,7 +146,7 @@ TEST(AssetFiles, AreTooManyTogether) {
 }
 
 // Several meshes share one shape set, but each keeps its own vertices and normals.
-TEST(AssetFiles, KeepApartInOneScene) {
+TEST(AssetFiles, KeepsMeshesSeparateInOneScene) {
   const auto scene = load_scene(
       text_of("[{'type': 'mesh', 'positions': [[5, 0, 0], [6, 0, 0], [5, 1, 0]], 'indices': [[0, 1, 2]],"
               "  'normals': [[1, 0, 1], [1, 0, 1], [1, 0, 1]]},"
@@ -160,7 +161,7 @@ TEST(AssetFiles, KeepApartInOneScene) {
 }
 
 // Smoothing around a vertex of n triangles compares n * n pairs of them.
-TEST(AssetFiles, AVertexOfTooManyTrianglesIsNotSmoothed) {
+TEST(AssetFiles, RejectsSmoothingAboveTriangleLimitPerVertex) {
   Json mesh = {{"type", "mesh"}, {"positions", {{0, 0, 1}}}, {"crease_degrees", 30}};
   const auto fan = [&](int triangles) {
     mesh["indices"] = Json::array();

@@ -36,14 +36,14 @@ double albedo(const Probe<double>& material, double cosine) {
   return sum / (kSteps * kSteps);
 }
 
-TEST(LambertMaterial, WeighsEveryDrawByItsReflectance) {
+TEST(LambertMaterial, WeightsEverySampleByReflectance) {
   const Probe<double> material("{'type': 'lambert', 'reflectance': [0.7, 0.3, 0]}");
   for (const auto& drawn : material.sampled(Case{}, 10'000)) ASSERT_EQ(drawn.weight, Vec3d(0.7, 0.3, 0));
   EXPECT_EQ(material.ambient(), Vec3d(0.7, 0.3, 0));
   EXPECT_NEAR(albedo(material, 0.3), 0.7, 1e-5);
 }
 
-TEST(OrenNayarMaterial, WithoutRoughnessIsLambert) {
+TEST(OrenNayarMaterial, EqualsLambertAtZeroRoughness) {
   const Probe<double> smooth = clay(0.7, 0), lambert("{'type': 'lambert', 'reflectance': 0.7}");
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
@@ -54,7 +54,7 @@ TEST(OrenNayarMaterial, WithoutRoughnessIsLambert) {
   }
 }
 
-TEST(OrenNayarMaterial, WhiteReflectsAllLight) {
+TEST(OrenNayarMaterial, ReflectsAllLightIfWhite) {
   for (const double roughness : {0.1, 0.5, 1.0})
     for (const double cosine : {1.0, 0.7, 0.3, 0.1})
       EXPECT_NEAR(albedo(clay(1, roughness), cosine), 1, 2e-4) << roughness << " " << cosine;
@@ -62,7 +62,7 @@ TEST(OrenNayarMaterial, WhiteReflectsAllLight) {
 
 // Single scattering of reflectance rho has the albedo rho E, E = A (1 + roughness G / pi). Multiple
 // scattering adds rho_ms (1 - E). G is in the form of the paper.
-TEST(OrenNayarMaterial, AlbedoIsThatOfItsFormulas) {
+TEST(OrenNayarMaterial, MatchesAnalyticAlbedo) {
   constexpr double kPi = std::numbers::pi;
   const double a = 1 / (1 + (0.5 - 2 / (3 * kPi)) * 0.8);
   const double mean = a * (1 + (2.0 / 3 - 28 / (15 * kPi)) * 0.8);
@@ -75,7 +75,7 @@ TEST(OrenNayarMaterial, AlbedoIsThatOfItsFormulas) {
 }
 
 // Toward the light the surface is flatter than Lambert's: the limb is nearly as bright as the centre.
-TEST(OrenNayarMaterial, ShinesBackTowardTheLight) {
+TEST(OrenNayarMaterial, ScattersBackTowardLight) {
   const auto back = [](double cosine) {
     Case c;
     c.light = tilted(cosine);

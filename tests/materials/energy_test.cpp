@@ -24,7 +24,7 @@ Vec3d mean_weight(const Probe<double>& material, const Case& point, int draws = 
 }
 const double kCosines[] = {1, 0.7, 0.4, 0.1};
 
-TEST(Glass, LosesAndMakesNoLight) {
+TEST(Glass, ConservesEnergy) {
   covers("light-30");
   double worst = 0;
   for (const double alpha : {0.0, 0.0011, 0.04, 0.1, 0.25, 0.5, 1.0}) {
@@ -39,7 +39,7 @@ TEST(Glass, LosesAndMakesNoLight) {
   RecordProperty("worst_error", std::to_string(worst));
 }
 
-TEST(Glass, LosesNoLightAtOtherIndices) {
+TEST(Glass, ConservesEnergyAtOtherIndices) {
   for (const double ior : {0.75, 1.1, 2.4, 4.0})
     for (const double roughness : {0.3, 0.7, 1.0}) {
       const Probe<double> glass(Json{{"type", "glass"}, {"ior", ior}, {"roughness", roughness}});
@@ -50,7 +50,7 @@ TEST(Glass, LosesNoLightAtOtherIndices) {
     }
 }
 
-TEST(Glass, SmoothIsTheRefractiveOfItsIndex) {
+TEST(Glass, EqualsRefractiveIfSmooth) {
   const Probe<double> glass("{'type': 'glass', 'ior': 1.5, 'filter': [0.9, 0.5, 0.1]}");
   const Probe<double> clear(
       "{'type': 'refractive', 'ior': 1.5, 'fresnel': 'exact', 'filter': [0.9, 0.5, 0.1]}");
@@ -72,7 +72,7 @@ TEST(Glass, SmoothIsTheRefractiveOfItsIndex) {
 }
 
 // After two metres in the medium, a channel is down to the square of its one-metre transmittance.
-TEST(Glass, RoughFiltersWhatCrossedTheBody) {
+TEST(Glass, FiltersLightInsideIfRough) {
   const Probe<double> glass("{'type': 'glass', 'roughness': 0.5, 'filter': [0.9, 0.5, 0.1]}");
   const Probe<double> clear("{'type': 'glass', 'roughness': 0.5}");
   Case point = seen_at(0.9, -1);
@@ -87,7 +87,7 @@ TEST(Glass, RoughFiltersWhatCrossedTheBody) {
   EXPECT_EQ(glass.evaluated(point).pi_bsdf_cos, clear.evaluated(point).pi_bsdf_cos);
 }
 
-TEST(Plastic, OfAWhiteBaseReflectsAllLight) {
+TEST(Plastic, ReflectsAllLightIfWhite) {
   for (const double roughness : {0.0, 0.1, 0.3, 0.6, 1.0})
     for (const double ior : {1.0, 1.5, 2.0}) {
       const Probe<double> white(
@@ -103,7 +103,7 @@ TEST(Plastic, OfAWhiteBaseReflectsAllLight) {
 
 // If the interpolated normal faces away from the viewer, the coat reflects by the flipped normal, in
 // evaluation as in sampling.
-TEST(Plastic, CoatMirrorsByTheNormalThatFacesTheViewer) {
+TEST(Plastic, FlipsBackfacingNormalOfCoat) {
   const Probe<double> plastic("{'type': 'plastic', 'roughness': 0}");
   Case away = seen_at(0.9);
   away.normal = tilted(-0.1, 0.5);
@@ -111,7 +111,7 @@ TEST(Plastic, CoatMirrorsByTheNormalThatFacesTheViewer) {
   EXPECT_EQ(plastic.specular(away).reflectance, plastic.specular(flat).reflectance);
 }
 
-TEST(MetallicRoughness, StrictReflectsNoMoreThanItsLimit) {
+TEST(MetallicRoughness, StaysWithinLimitIfStrict) {
   for (const double roughness : {0.3, 0.5, 1.0}) {
     const Json strict{
         {"type", "metallic-roughness"}, {"base_color", 1}, {"roughness", roughness}, {"strict", true}};
@@ -122,7 +122,7 @@ TEST(MetallicRoughness, StrictReflectsNoMoreThanItsLimit) {
   }
 }
 
-TEST(Ambient, IsNoMoreThanItsLimit) {
+TEST(Ambient, StaysWithinLimit) {
   std::vector<Json> materials;
   for (const char* type : {"rough", "lambert", "oren-nayar", "translucent"})
     materials.push_back({{"type", type}});
@@ -145,7 +145,7 @@ TEST(Ambient, IsNoMoreThanItsLimit) {
 
 // A smooth coat has a closed form: F + (1 - F) rho (1 - F_in) / (1 - rho F_in), with F_in the mean internal
 // reflectance.
-TEST(Plastic, UnderASmoothCoatIsAsDarkAsLightBetweenCoatAndBaseMakesIt) {
+TEST(Plastic, MatchesClosedFormUnderSmoothCoat) {
   const Probe<double> plastic("{'type': 'plastic', 'reflectance': [0.2, 0.5, 0.9], 'roughness': 0}");
   constexpr double kOutside = 0.0917786, kInside = 1 - (1 - kOutside) / 2.25, kHead = 0.04;
   const Vec3d found = mean_weight(plastic, seen_at(1));
@@ -158,7 +158,7 @@ TEST(Plastic, UnderASmoothCoatIsAsDarkAsLightBetweenCoatAndBaseMakesIt) {
   EXPECT_NEAR(plastic.specular(seen_at(1)).reflectance.x, kHead, 1e-12);
 }
 
-TEST(MetallicRoughness, StrictCreatesTheEnergyOfItsFormula) {
+TEST(MetallicRoughness, CreatesDocumentedEnergyIfStrict) {
   covers("light-31");
   const Probe<double> strict(
       "{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}");
@@ -185,7 +185,7 @@ TEST(MetallicRoughness, CreatesNoEnergy) {
 }
 
 // Compares sampling with sums of evaluate() over the hemisphere.
-TEST(CookTorrance, ReflectsWhatItsFormulaSays) {
+TEST(CookTorrance, MatchesQuadratureOfFormula) {
   const Probe<double> gold(
       "{'type': 'cook-torrance', 'n': [0.156, 0.424, 1.383], 'k': [3.602, 2.472, 1.915], 'slope': 0.3}");
   for (const double cosine : {1.0, 0.5}) {
@@ -217,7 +217,7 @@ TEST(Translucent, SplitsLightBetweenItsSides) {
   EXPECT_NEAR(length(on - Vec3d(0.5)), 0, 3e-3);
 }
 
-TEST(Materials, TellHowMuchEnergyTheyCreate) {
+TEST(Materials, ReportsCreatedEnergy) {
   const auto most = [](const char* material) {
     const auto scene =
         load(scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]"),
@@ -231,7 +231,7 @@ TEST(Materials, TellHowMuchEnergyTheyCreate) {
   EXPECT_NEAR(most("{'type': 'rough', 'kd': 0.5, 'ks': 0.9, 'shininess': 2}"), 0.5 + 0.9 * 1.5, 1e-12);
 }
 
-TEST(Metal, GoldIsItsMeasuredIndices) {
+TEST(Metal, UsesMeasuredIndicesOfGold) {
   const Probe<double> named("{'type': 'metal', 'name': 'gold'}");
   const Probe<double> given("{'type': 'metal', 'n': [0.156, 0.424, 1.383], 'k': [3.602, 2.472, 1.915]}");
   EXPECT_EQ(named.ambient(), given.ambient());

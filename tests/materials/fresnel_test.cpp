@@ -42,7 +42,7 @@ long double textbook(Complex n1, Complex n2, long double degrees) {
   return (std::norm(s) + std::norm(p)) / 2;
 }
 
-TEST(Fresnel, ExactDielectricIsTheTextbook) {
+TEST(Fresnel, MatchesTextbookForDielectrics) {
   covers("D6 D7");
   for (const double ior : {1.01, 1.1, 1.333, 1.5, 2.417, 0.7}) {
     const Probe<double> exact = glass(ior, "exact");
@@ -56,7 +56,7 @@ TEST(Fresnel, ExactDielectricIsTheTextbook) {
   }
 }
 
-TEST(Fresnel, NumbersOfTheCatalogue) {
+TEST(Fresnel, MatchesCatalogueValues) {
   covers("D6 D7");
   const Probe<double> exact = glass(1.5, "exact");
   EXPECT_NEAR(reflectance(exact, 45), .0502399, 5e-8);
@@ -70,7 +70,7 @@ TEST(Fresnel, NumbersOfTheCatalogue) {
 
 // Schlick's approximation has the stated error, no more and no less, from both sides of the surface. Its
 // cosine is that of the optically thinner side.
-TEST(Fresnel, SchlickIsOffByWhatTheCatalogueSays) {
+TEST(Fresnel, HasDocumentedSchlickError) {
   covers("D6 D7");
   const auto worst = [](const Probe<double>& schlick, const Probe<double>& exact, double side) {
     std::vector<Case> cases;
@@ -96,7 +96,7 @@ TEST(Fresnel, SchlickIsOffByWhatTheCatalogueSays) {
       << "the inside cosine would give .0410";
 }
 
-TEST(Fresnel, ExactConductorIsTheTextbook) {
+TEST(Fresnel, MatchesTextbookForConductors) {
   covers("D7");
   for (const auto& [n, k] : {std::pair{1.10, 6.79}, {3.2, 3.3}, {0.14, 4.1}, {0.2, 3.9}, {1.5, 0.0}}) {
     const Probe<double> exact = metal(n, k, "exact");
@@ -107,7 +107,7 @@ TEST(Fresnel, ExactConductorIsTheTextbook) {
   }
 }
 
-TEST(Fresnel, GrazingMirrorsAllAndNothingLeavesTheUnitInterval) {
+TEST(Fresnel, StaysInUnitIntervalAndReachesOneAtGrazing) {
   covers("A32");
   Random random(1);
   for (const char* fresnel : {"schlick", "exact"})
@@ -131,7 +131,7 @@ TEST(Fresnel, GrazingMirrorsAllAndNothingLeavesTheUnitInterval) {
 
 // An interpolated normal may face away from the incident ray. (1 - cosine) is then above 1, and its fifth
 // power would amplify light up to 32 times.
-TEST(Fresnel, NormalsThatFaceAwayCreateNoLight) {
+TEST(Fresnel, CreatesNoLightForBackfacingNormals) {
   for (const Probe<double>& material :
        {metal(0.14, 4.1, "schlick"), metal(0.14, 4.1, "exact"), glass(1.5, "schlick"), glass(1.5, "exact")})
     for (double degrees = 0; degrees <= 180; degrees += 5) {

@@ -45,7 +45,7 @@ double single_albedo(double alpha, double cosine) {
   return sum / (kSteps * kSteps);
 }
 
-TEST(Microfacets, ReflectOnceWhatTheCatalogueSays) {
+TEST(Microfacets, MatchesSingleScatteringAlbedo) {
   covers("light-27");
   EXPECT_NEAR(single_albedo(1, 1), 1 - std::numbers::ln2, 1e-4);
   EXPECT_NEAR(single_albedo(0.5, 1), .68785, 1e-4);
@@ -56,7 +56,7 @@ TEST(Microfacets, ReflectOnceWhatTheCatalogueSays) {
 }
 
 // The density of normals projects to one unit of area.
-TEST(Microfacets, CoverTheSurface) {
+TEST(Microfacets, ProjectsToUnitArea) {
   constexpr int kSteps = 4000;
   for (const double alpha : {0.05, 0.3, 1.0}) {
     double sum = 0;
@@ -69,7 +69,7 @@ TEST(Microfacets, CoverTheSurface) {
   }
 }
 
-TEST(Microfacets, AlbedoSeriesIsTheQuadrature) {
+TEST(Microfacets, MatchesAlbedoQuadrature) {
   covers("light-27");
   double worst = 0;
   for (const double alpha : {0.001, 0.015, 0.05, 0.25, 0.77, 1.0}) {
@@ -81,7 +81,7 @@ TEST(Microfacets, AlbedoSeriesIsTheQuadrature) {
   RecordProperty("worst_error", std::to_string(worst));
 }
 
-TEST(Microfacets, MeanAlbedoIsThatOfTheCatalogue) {
+TEST(Microfacets, MatchesDocumentedMeanAlbedo) {
   struct Row {
     double alpha, mean;
   };
@@ -89,7 +89,7 @@ TEST(Microfacets, MeanAlbedoIsThatOfTheCatalogue) {
     EXPECT_NEAR(ggx_albedo(row.alpha).mean, row.mean, 5e-4) << row.alpha;
 }
 
-TEST(Metal, LosesAndMakesNoLight) {
+TEST(Metal, ConservesEnergy) {
   covers("light-28");
   double worst = 0;
   for (const double alpha : {0.0011, 0.04, 0.25, 0.6, 1.0})
@@ -103,7 +103,7 @@ TEST(Metal, LosesAndMakesNoLight) {
   RecordProperty("worst_error", std::to_string(worst));
 }
 
-TEST(Metal, GivesBackWhatFacetsPassOn) {
+TEST(Metal, AddsMultipleScattering) {
   covers("light-29");
   const GgxAlbedo<double> curve = ggx_albedo(1);
   const double passed_on = (1 - curve.at(1)) * multiple_scattering_reflectance(0.9, curve.mean);
@@ -112,7 +112,7 @@ TEST(Metal, GivesBackWhatFacetsPassOn) {
 
 // Gold of roughness 1. Single scattering reflects F, and the rest adds the lobe of Kulla and Conty with the
 // mean of F. Both are summed here independently.
-TEST(Metal, ColoursWhatFacetsPassOn) {
+TEST(Metal, ColoursMultipleScattering) {
   const Probe<double> gold(
       "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], "
       "'roughness': 1}");
@@ -138,7 +138,7 @@ TEST(Metal, ColoursWhatFacetsPassOn) {
   EXPECT_NEAR(sum.z / kDraws, expected(1.442, 1.603), 2e-3);
 }
 
-TEST(Metal, SmoothIsTheMirrorOfItsIndices) {
+TEST(Metal, EqualsMirrorIfSmooth) {
   const Probe<double> smooth(
       "{'type': 'metal', 'n': [0.143, 0.375, 1.442], 'k': [3.983, 2.386, 1.603], "
       "'roughness': 0.03}");
@@ -157,7 +157,7 @@ TEST(Metal, SmoothIsTheMirrorOfItsIndices) {
   }
 }
 
-TEST(Metal, RoughMirrorsNothingAlongOneRay) {
+TEST(Metal, HasNoSpecularLobeIfRough) {
   const Probe<double> rough("{'type': 'metal', 'n': [0.2, 0.9, 1.1], 'k': [3.9, 2.4, 2.1]}");
   const auto specular = rough.specular(seen_at(0.4));
   EXPECT_EQ(specular.reflectance, Vec3d(0));

@@ -23,7 +23,7 @@ Case arriving(double degrees, double side) {
 }
 double angle_of(const Vec3d& direction) { return std::atan2(direction.x, -direction.z) / kRadians; }
 
-TEST(Refraction, LeavesGlassAtTheAngleOfSnell) {
+TEST(Refraction, FollowsSnellsLaw) {
   covers("D4");
   const Probe<double> glass(kGlass);
   EXPECT_NEAR(angle_of(glass.specular(arriving(30, 1)).refracted), 19.471220634490692, 1e-10) << "in";
@@ -37,7 +37,7 @@ TEST(Refraction, LeavesGlassAtTheAngleOfSnell) {
 }
 
 // The refracted ray continues through the surface, in the plane of the ray and the normal, from either side.
-TEST(Refraction, GoesOnThroughTheSurface) {
+TEST(Refraction, ContinuesThroughSurface) {
   covers("D5");
   const Probe<double> glass(kGlass);
   Random random(1);
@@ -61,7 +61,7 @@ TEST(Refraction, GoesOnThroughTheSurface) {
   EXPECT_EQ(not_unit, 0);
 }
 
-TEST(Refraction, BeyondTheCriticalAngleAllIsMirrored) {
+TEST(Refraction, ReflectsTotallyBeyondCriticalAngle) {
   covers("D3 R19");
   const Probe<double> glass(kGlass);
   const auto s = glass.specular(arriving(60, -1));
@@ -76,7 +76,7 @@ TEST(Refraction, BeyondTheCriticalAngleAllIsMirrored) {
   EXPECT_NEAR(lowest, 41.810315, 5e-7);
 }
 
-TEST(Refraction, NoEnergyIsLostOrMade) {
+TEST(Refraction, ConservesEnergy) {
   covers("D3");
   for (const char* text :
        {kGlass, "{'type': 'refractive', 'ior': 1.5}", "{'type': 'refractive', 'ior': 2.417}",
@@ -90,7 +90,7 @@ TEST(Refraction, NoEnergyIsLostOrMade) {
 }
 
 // Reflectance from inside under uniform light: R = .59635, of which total reflection is 1 - 1/n^2.
-TEST(Refraction, DiffuseInternalReflectanceIsThatOfTheCatalogue) {
+TEST(Refraction, MatchesDiffuseInternalReflectance) {
   covers("D3");
   const Probe<double> glass(kGlass);
   constexpr int kSteps = 200'000;
@@ -110,7 +110,7 @@ TEST(Refraction, DiffuseInternalReflectanceIsThatOfTheCatalogue) {
   EXPECT_NEAR(total, 1 - 1 / 2.25, 1e-5);
 }
 
-TEST(Refraction, BodiesWeakenLightByTheWayInside) {
+TEST(Refraction, AttenuatesByDistanceInside) {
   covers("R24");
   const Probe<double> amber("{'type': 'refractive', 'ior': 1.5, 'filter': [0.5, 1, 0]}");
   Case c = arriving(20, -1);
@@ -141,7 +141,7 @@ void million_rays() {
   }
   EXPECT_EQ(wrong, 0);
 }
-TEST(Refraction, AMillionRaysGiveNumbers) {
+TEST(Refraction, StaysFiniteForMillionRays) {
   covers("A32");
   million_rays<float>();
   million_rays<double>();

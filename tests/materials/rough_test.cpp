@@ -28,7 +28,7 @@ constexpr const char* kDiffuse = "{'type': 'rough', 'kd': 1}";
 constexpr const char* kPhong = "{'type': 'rough', 'kd': 0, 'ks': 1, 'shininess': 50, 'shading': 'phong'}";
 constexpr const char* kBlinn = "{'type': 'rough', 'kd': 0, 'ks': 1, 'shininess': 50}";
 
-TEST(Lambert, IsTheCosineAndNeverNegative) {
+TEST(Lambert, EqualsClampedCosine) {
   covers("B1");
   const Probe<double> white(kDiffuse);
   for (double degrees = -89; degrees < 90; degrees += 7)
@@ -37,7 +37,7 @@ TEST(Lambert, IsTheCosineAndNeverNegative) {
   EXPECT_EQ(white.reflected(lit_from(180, 0)).x, 0);
 }
 
-TEST(Rough, ColoursAreCoefficientTimesColour) {
+TEST(Rough, MultipliesCoefficientsByColours) {
   const Probe<double> paint(
       "{'type': 'rough', 'ka': 0.5, 'kd': [0.1, 0.2, 0.3], 'cd': [1, 0.5, 2], 'ks': 0.4, 'cs': [0, 1, 0.5], "
       "'shininess': 1}");
@@ -50,7 +50,7 @@ TEST(Rough, ColoursAreCoefficientTimesColour) {
       << "ka is kd where left out";
 }
 
-TEST(Highlight, IsThePowerOfItsCosine) {
+TEST(Highlight, EqualsPowerOfCosine) {
   const Probe<double> phong(kPhong), blinn(kBlinn);
   for (double light = -80; light <= 80; light += 20)
     for (double viewer = -80; viewer <= 80; viewer += 10) {
@@ -61,7 +61,7 @@ TEST(Highlight, IsThePowerOfItsCosine) {
     }
 }
 
-TEST(Highlight, HasNoNumberlessCorner) {
+TEST(Highlight, IsFiniteInDegenerateCases) {
   covers("B3 B4 B5");
   const auto of = [](const char* shading, double shininess) {
     return Probe<double>(
@@ -95,7 +95,7 @@ TEST(Highlight, HasNoNumberlessCorner) {
 
 // Half the height is reached 9.52 degrees from the mirrored direction by Phong and 19.04 by Blinn-Phong. With
 // the exponent 4.02 n the two agree to 0.002.
-TEST(Highlight, BlinnNeedsFourTimesTheExponentOfPhong) {
+TEST(Highlight, MatchesPhongAtFourfoldBlinnExponent) {
   covers("B7");
   const Probe<double> phong(kPhong), blinn(kBlinn);
   EXPECT_NEAR(phong.reflected(lit_from(0, 9.52)).x, 0.5, 1e-3);
@@ -129,14 +129,14 @@ void million_directions(const char* material) {
   }
   EXPECT_LE(largest, 2.000001);
 }
-TEST(Rough, AMillionDirectionsGiveNumbers) {
+TEST(Rough, StaysFiniteForMillionDirections) {
   covers("A32 B1 B3");
   million_directions<float>("{'type': 'rough', 'kd': 1, 'ks': 1, 'shininess': 2.5, 'shading': 'phong'}");
   million_directions<float>("{'type': 'rough', 'kd': 1, 'ks': 1, 'shininess': 1000000}");
   million_directions<double>("{'type': 'rough', 'kd': 1, 'ks': 1, 'shininess': 0.5}");
 }
 
-TEST(Rough, FloatAndDoubleAgree) {
+TEST(Rough, AgreesInFloatAndDouble) {
   const Probe<double> exact("{'type': 'rough', 'kd': 0.8, 'ks': 0.5, 'shininess': 100}");
   const Probe<float> single("{'type': 'rough', 'kd': 0.8, 'ks': 0.5, 'shininess': 100}");
   Random random(2);
@@ -153,7 +153,7 @@ TEST(Rough, FloatAndDoubleAgree) {
 }
 
 // Light behind the geometric surface stays dark, even if it is in front of the interpolated normal.
-TEST(Rough, LightBehindTheTrueSurfaceStaysOut) {
+TEST(Rough, IgnoresLightBehindGeometricSurface) {
   Case c;
   c.normal = tilted(60);
   c.geometric = Vec3d(0, 0, 1);

@@ -51,7 +51,7 @@ const Vec3d kSlanted = safe_normalize(Vec3d(0.6, 0.1, -0.7));
 
 // The mean of the weights is the albedo, here by quadrature over the hemisphere (pi_bsdf_cos is pi times the
 // share). A tolerance of 1.5 % is four standard deviations of the highlight.
-TEST(RoughSampling, MeanWeightIsTheAlbedo) {
+TEST(RoughSampling, AveragesWeightToAlbedo) {
   const auto kernel = kernel_of("{'type': 'rough', 'kd': [0.5, 0.2, 0], 'ks': 0.4, 'shininess': 8}");
   const auto drawn = std::make_unique<SampleBatch>(kSlanted, 1.0);
   Vec3d sum;
@@ -84,7 +84,7 @@ TEST(RoughSampling, MeanWeightIsTheAlbedo) {
   EXPECT_NEAR(mean.z / albedo.z, 1, 0.015);
 }
 
-TEST(RoughSampling, TellsTheDensityThatEvaluateTells) {
+TEST(RoughSampling, MatchesDensityOfEvaluate) {
   const auto kernel = kernel_of("{'type': 'rough', 'kd': 0.5}");
   const auto drawn = std::make_unique<SampleBatch>(kSlanted, 1.0);
   const Draws draws(3, TileView{32, 64, kTileSide, kTileSide}, 5);
@@ -102,7 +102,7 @@ TEST(RoughSampling, TellsTheDensityThatEvaluateTells) {
 }
 
 // Glass without a filter loses no light: each sample has weight 1, and the mirrored share is Fresnel's.
-TEST(RefractiveSampling, MirrorsInProportionToTheReflectance) {
+TEST(RefractiveSampling, ReflectsInProportionToReflectance) {
   const auto kernel = kernel_of("{'type': 'refractive', 'ior': 1.5, 'fresnel': 'exact'}");
   const auto drawn = std::make_unique<SampleBatch>(safe_normalize(Vec3d(1, 0, -1)), 1.0);
   int mirrored = 0;
@@ -120,7 +120,7 @@ TEST(RefractiveSampling, MirrorsInProportionToTheReflectance) {
   EXPECT_NEAR(static_cast<double>(mirrored) / (kBatch * kSamples), 0.0502399, 0.004);
 }
 
-TEST(ReflectiveSampling, IsTheMirroredRay) {
+TEST(ReflectiveSampling, ReturnsMirroredRay) {
   const auto kernel = kernel_of("{'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]}");
   const auto drawn = std::make_unique<SampleBatch>(kSlanted, 1.0);
   const Draws draws(1, TileView{0, 0, kTileSide, kTileSide}, 0);

@@ -128,7 +128,7 @@ class Scattering : public testing::TestWithParam<Material> {};
 
 // Sidak: with 85 tests, one in a hundred runs would have a deviation above 3.68. The density integrates to
 // the share of samples that leave.
-TEST_P(Scattering, DrawsInProportionToItsDensity) {
+TEST_P(Scattering, SamplesInProportionToDensity) {
   covers("light-24 light-25");
   const Probe<double> material(GetParam().text);
   for (int v = 0; v < kViewers; ++v) {
@@ -144,7 +144,7 @@ TEST_P(Scattering, DrawsInProportionToItsDensity) {
 }
 
 // Radiance is divided by the squared index: f / n^2 of the light's side is the same in both directions.
-TEST_P(Scattering, IsTheSameFromLightToViewerAndBack) {
+TEST_P(Scattering, IsReciprocal) {
   covers("light-26");
   const Probe<double> material(GetParam().text);
   const double side = GetParam().side, ior = GetParam().ior;
@@ -172,7 +172,7 @@ TEST_P(Scattering, IsTheSameFromLightToViewerAndBack) {
   EXPECT_LT(worst, 1e-12);
 }
 
-TEST_P(Scattering, WeighsDrawsByWhatItEvaluates) {
+TEST_P(Scattering, WeightsSamplesByEvaluation) {
   const Probe<double> material(GetParam().text);
   for (int v = 0; v < kViewers; ++v) {
     std::vector<Case> cases;
@@ -197,7 +197,7 @@ TEST_P(Scattering, WeighsDrawsByWhatItEvaluates) {
 }
 
 // In float the direction itself is off by 1e-7, and the narrowest lobe is 0.09 wide.
-TEST_P(Scattering, FloatAndDoubleAgree) {
+TEST_P(Scattering, AgreesInFloatAndDouble) {
   const Probe<double> exact(GetParam().text);
   const Probe<float> single(GetParam().text);
   Random random(3);
@@ -256,7 +256,7 @@ void million_points(const Material& tested) {
     }
   EXPECT_EQ(wrong, 0);
 }
-TEST_P(Scattering, AMillionPointsGiveNumbers) {
+TEST_P(Scattering, StaysFiniteForMillionPoints) {
   covers("A32");
   million_points<float>(GetParam());
   million_points<double>(GetParam());
@@ -280,7 +280,7 @@ std::vector<Material> materials_and_paints() {
 }
 
 // Tests diffuse and non-diffuse lobes separately.
-class LobesOf : public testing::TestWithParam<Material> {
+class MaterialLobes : public testing::TestWithParam<Material> {
  protected:
   // Returns the lobe classes of the material.
   std::vector<Lobes> parts() const {
@@ -292,7 +292,7 @@ class LobesOf : public testing::TestWithParam<Material> {
   const Probe<double> material_{GetParam().text};
 };
 
-TEST_P(LobesOf, AddUpToTheMaterial) {
+TEST_P(MaterialLobes, SumsToWholeMaterial) {
   Random random(5);
   std::vector<Case> cases;
   for (int i = 0; i < 10'000; ++i) {
@@ -315,7 +315,7 @@ TEST_P(LobesOf, AddUpToTheMaterial) {
 }
 
 // Repeats the test of Scattering for single lobe classes, and for all lobes of paints. 48 tests.
-TEST_P(LobesOf, AreDrawnInProportionToTheirDensities) {
+TEST_P(MaterialLobes, SamplesInProportionToDensity) {
   covers("light-24");
   constexpr int kDraws = 200'000;
   std::vector<Lobes> asked = parts();
@@ -330,7 +330,7 @@ TEST_P(LobesOf, AreDrawnInProportionToTheirDensities) {
   }
 }
 
-TEST_P(LobesOf, WeighDrawsByWhatTheyEvaluate) {
+TEST_P(MaterialLobes, WeightsSamplesByEvaluation) {
   for (const Lobes lobes : parts()) {
     const Case point = seen_from(viewer(2), GetParam().side);
     std::vector<Case> cases;
@@ -350,11 +350,11 @@ TEST_P(LobesOf, WeighDrawsByWhatTheyEvaluate) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Materials, LobesOf, testing::ValuesIn(materials_and_paints()),
+INSTANTIATE_TEST_SUITE_P(Materials, MaterialLobes, testing::ValuesIn(materials_and_paints()),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 // Path reuse requires surfaces that look the same from every direction.
-TEST(Scatter, WhatLooksOtherwiseFromAnotherSideIsGlossy) {
+TEST(MaterialTraits, MarksViewDependentMaterialsAsGlossy) {
   std::vector<Material> all(std::begin(kMaterials), std::end(kMaterials));
   all.push_back({"Matt", "{'type': 'rough', 'kd': 0.5}"});
   all.push_back({"Shiny", "{'type': 'rough', 'kd': 0.5, 'ks': 0.5, 'shininess': 4}"});

@@ -12,7 +12,7 @@ namespace {
 
 constexpr long double kRadians = std::numbers::pi_v<long double> / 180;
 
-TEST(Angles, SineAndCosineAreGoodToOneUlp) {
+TEST(Angles, ComputesSineAndCosineWithinOneUlp) {
   test::Random random(1);
   for (int i = 0; i < 200'000; ++i) {
     const double degrees = random.between(-720, 720);
@@ -25,7 +25,7 @@ TEST(Angles, SineAndCosineAreGoodToOneUlp) {
   }
 }
 
-TEST(Angles, QuarterTurnsAreExact) {
+TEST(Angles, IsExactAtQuarterTurns) {
   for (int turns = -9; turns <= 9; ++turns) {
     const SineCosine a = sine_cosine_degrees(90.0 * turns);
     const int quarter = ((turns % 4) + 4) % 4;
@@ -37,7 +37,7 @@ TEST(Angles, QuarterTurnsAreExact) {
   EXPECT_EQ(tangent_degrees(0), 0);
 }
 
-TEST(Angles, FullTurnsChangeNoBit) {
+TEST(Angles, IsPeriodicBitwise) {
   test::covers("E10");
   test::Random random(2);
   for (int i = 0; i < 10'000; ++i) {
@@ -48,7 +48,7 @@ TEST(Angles, FullTurnsChangeNoBit) {
   }
 }
 
-TEST(Angles, OppositeAnglesMirror) {
+TEST(Angles, MirrorsOppositeAngles) {
   test::Random random(3);
   for (int i = 0; i < 10'000; ++i) {
     const double degrees = random.between(0, 180);

@@ -13,11 +13,11 @@ namespace orrery {
 namespace {
 
 template <class T>
-class Slabs : public testing::Test {};
+class SlabTest : public testing::Test {};
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(Slabs, Scalars);
+TYPED_TEST_SUITE(SlabTest, Scalars);
 
-TYPED_TEST(Slabs, LoseNoneOfAMillionRaysThroughCorners) {
+TYPED_TEST(SlabTest, MissesNoneOfMillionRaysThroughCorners) {
   using T = TypeParam;
   test::covers("A27");
   test::Random random(7);
@@ -31,7 +31,7 @@ TYPED_TEST(Slabs, LoseNoneOfAMillionRaysThroughCorners) {
   EXPECT_EQ(lost, 0);
 }
 
-TYPED_TEST(Slabs, KeepTheRayThatTheTextbookLoses) {
+TYPED_TEST(SlabTest, FindsRayMissedByTextbookMethod) {
   using T = TypeParam;
   test::covers("A27");
   BoxTest<T> b;
@@ -44,7 +44,7 @@ TYPED_TEST(Slabs, KeepTheRayThatTheTextbookLoses) {
 
 // A ray in the plane of a face gives 0 * infinity. Four places touch the unit cube, two do not, for each axis
 // of the direction, both of its signs and both signs of its zeros.
-TYPED_TEST(Slabs, KeepRaysInTheFacesAndRefuseTheOthers) {
+TYPED_TEST(SlabTest, AcceptsOnlyTouchingRaysInFacePlanes) {
   using T = TypeParam;
   test::covers("A28");
   struct Place {
@@ -77,7 +77,7 @@ TYPED_TEST(Slabs, KeepRaysInTheFacesAndRefuseTheOthers) {
         }
 }
 
-TYPED_TEST(Slabs, LanesEqualScalarsToTheBit) {
+TYPED_TEST(SlabTest, MatchesScalarsBitwiseInLanes) {
   using T = TypeParam;
   using N = Lanes<T>;
   test::Random random(9);
@@ -101,7 +101,7 @@ TYPED_TEST(Slabs, LanesEqualScalarsToTheBit) {
   }
 }
 
-TYPED_TEST(Slabs, LookOnlyAheadAndNoFurtherThanTheEnd) {
+TYPED_TEST(SlabTest, TestsOnlyBetweenOriginAndEnd) {
   using T = TypeParam;
   const Vec3<T> lo(T(1)), hi(T(2)), up(T(1), T(1), T(1));
   const BoxRay<T> ray(Vec3<T>(T(0)), up);
@@ -112,7 +112,7 @@ TYPED_TEST(Slabs, LookOnlyAheadAndNoFurtherThanTheEnd) {
   EXPECT_TRUE(enters(BoxRay<T>(Vec3<T>(T(1.5)), up), lo, hi, T(0.1))) << "starts inside";
 }
 
-TEST(Bounds, PaddingCoversTheRoundingToFloat) {
+TEST(Bounds, CoversFloatRoundingIfPadded) {
   test::Random random(11);
   for (int i = 0; i < 10'000; ++i) {
     const double scale = random.magnitude(1e-6, 1e6);
@@ -126,7 +126,7 @@ TEST(Bounds, PaddingCoversTheRoundingToFloat) {
 }
 
 // An empty box has inverted sides at infinity.
-TEST(Bounds, AnEmptyBoxAddsNothing) {
+TEST(Bounds, IgnoresEmptyBox) {
   Boundsd b = Boundsd::of({{-1, 2, 3}, {4, 5, 6}});
   b.include(Boundsd());
   EXPECT_EQ(b.lo, Vec3d(-1, 2, 3));

@@ -19,7 +19,7 @@ struct Register {
   using type = stdx::rebind_simd_t<T, std::conditional_t<sizeof(T) == 4, Lanes<float>, Lanes<double>>>;
 };
 
-TYPED_TEST(Compress, KeepsTheNamedLanesInOrder) {
+TYPED_TEST(Compress, KeepsMaskedLanesInOrder) {
   using T = TypeParam;
   using V = typename Register<T>::type;
   V v;
@@ -36,7 +36,7 @@ TYPED_TEST(Compress, KeepsTheNamedLanesInOrder) {
   }
 }
 
-TYPED_TEST(Compress, MasksBecomeBitsLaneZeroLowest) {
+TYPED_TEST(Compress, PacksMaskWithLaneZeroLowest) {
   using T = TypeParam;
   using V = typename Register<T>::type;
   test::Random random(5);

@@ -24,7 +24,7 @@ class Elementary : public testing::Test {
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Elementary, Scalars);
 
-TYPED_TEST(Elementary, Log2IsGoodToTwoUlpOfItsLargestPart) {
+TYPED_TEST(Elementary, ComputesLog2WithinTwoUlp) {
   using T = TypeParam;
   Random random(1);
   const auto check = [&](T x) {
@@ -43,7 +43,7 @@ TYPED_TEST(Elementary, Log2IsGoodToTwoUlpOfItsLargestPart) {
   EXPECT_EQ(log2_normal(T(1024)), T(10));
 }
 
-TYPED_TEST(Elementary, Exp2IsGoodToTwoUlp) {
+TYPED_TEST(Elementary, ComputesExp2WithinTwoUlp) {
   using T = TypeParam;
   const double lowest = std::log2(static_cast<double>(this->kSmallest));
   Random random(2);
@@ -62,7 +62,7 @@ TYPED_TEST(Elementary, Exp2IsGoodToTwoUlp) {
 
 // The bound stated in the header: 2 y |log2 x| ulp, and 2.5e-5 or 4e-13 wherever the result is normal.
 // Another 3 ulp are for the exponential itself where the power is close to 1.
-TYPED_TEST(Elementary, PowersOfTheUnitIntervalKeepTheStatedError) {
+TYPED_TEST(Elementary, ComputesPowersWithinDocumentedError) {
   using T = TypeParam;
   const long double most = std::is_same_v<T, float> ? 2.5e-5L : 4e-13L;
   Random random(3);
@@ -82,7 +82,7 @@ TYPED_TEST(Elementary, PowersOfTheUnitIntervalKeepTheStatedError) {
   }
 }
 
-TYPED_TEST(Elementary, PowersAtTheEndsAreExact) {
+TYPED_TEST(Elementary, ComputesExactPowersAtEndpoints) {
   using T = TypeParam;
   test::covers("B3");
   EXPECT_EQ(pow_unit(T(0), T(0)), T(1));
@@ -93,7 +93,7 @@ TYPED_TEST(Elementary, PowersAtTheEndsAreExact) {
   EXPECT_EQ(pow_unit(T(0.5), T(3)), T(0.125));
 }
 
-TYPED_TEST(Elementary, LanesEqualScalarsToTheBit) {
+TYPED_TEST(Elementary, MatchesScalarsBitwiseInLanes) {
   using T = TypeParam;
   using N = Lanes<T>;
   Random random(4);
@@ -112,7 +112,7 @@ TYPED_TEST(Elementary, LanesEqualScalarsToTheBit) {
   }
 }
 
-TYPED_TEST(Elementary, SineAndCosineOfTurnsAreGoodToTwoUlp) {
+TYPED_TEST(Elementary, ComputesSineAndCosineWithinTwoUlp) {
   using T = TypeParam;
   Random random(4);
   for (int i = 0; i < 100'000; ++i) {
@@ -131,7 +131,7 @@ TYPED_TEST(Elementary, SineAndCosineOfTurnsAreGoodToTwoUlp) {
   }
 }
 
-TYPED_TEST(Elementary, TurnsOfADirectionAreGoodToTwoUlp) {
+TYPED_TEST(Elementary, ComputesDirectionTurnsWithinTwoUlp) {
   using T = TypeParam;
   Random random(5);
   for (int i = 0; i < 100'000; ++i) {

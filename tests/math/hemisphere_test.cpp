@@ -48,7 +48,7 @@ std::array<double, 6> form_factors(std::size_t from) {
 
 // Form factor of opposite faces of a cube (Howell, "A Catalog of Radiation Heat Transfer Configuration
 // Factors", C-11), and the remainder for the four others.
-TEST(Hemisphere, CosineDirectionsHaveTheFormFactorsOfACube) {
+TEST(Hemisphere, MatchesFormFactorsOfCube) {
   test::covers("light-16");
   const double root2 = std::numbers::sqrt2, pi = std::numbers::pi;
   const double opposite = 2 / pi * (std::log(std::sqrt(4.0 / 3)) + 2 * root2 * std::atan(1 / root2) - pi / 2);

@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Stratification,
 
 // Three dimensions of one stream. In every aligned block of 2^m samples the third alone has one number in
 // each interval. Together, two points are in each box of volume 2^(1-m).
-TEST(Sampling, AThirdDimensionIsStratifiedWithTheOthers) {
+TEST(Sampling, StratifiesThirdDimensionJointly) {
   test::covers("light-1");
   constexpr std::uint32_t kCount = 64;
   for (std::uint32_t stream = 0; stream < 32; ++stream)
@@ -95,7 +95,7 @@ TEST(Sampling, AThirdDimensionIsStratifiedWithTheOthers) {
         }
 }
 
-TEST(Sampling, RandomBitsNeverReachOne) {
+TEST(Sampling, KeepsRandomNumbersBelowOne) {
   test::covers("A33");
   for (std::uint32_t below = 0; below < 256; ++below) {
     EXPECT_LT(unit_float(0xffffffffu - below), 1.0f);
@@ -104,7 +104,7 @@ TEST(Sampling, RandomBitsNeverReachOne) {
   EXPECT_EQ(unit_float(0xffffffffu), 1 - 0x1p-24f);
 }
 
-TEST(Sampling, MixingAndScramblingLoseNothing) {
+TEST(Sampling, MixesAndScramblesBijectively) {
   std::set<std::uint32_t> mixed, scrambled, reversed;
   for (std::uint32_t i = 0; i < 65536; ++i) {
     mixed.insert(mix_bits(i));
@@ -118,7 +118,7 @@ TEST(Sampling, MixingAndScramblingLoseNothing) {
 }
 
 // Each lane equals the scalar result.
-TEST(Sampling, LanesAreNumbers) {
+TEST(Sampling, MatchesScalarsInLanes) {
   for (std::uint32_t sample = 0; sample < 300; ++sample) {
     const stdx::native_simd<std::uint32_t> streams(
         [&](std::uint32_t lane) { return mix_bits(1000 * sample + lane); });
@@ -149,7 +149,7 @@ double rms_error(const F& f, double exact, int count) {
   return std::sqrt(squares);
 }
 
-TEST(Sampling, ErrorOfASmoothIntegralFallsWithThePower1_5) {
+TEST(Sampling, ConvergesAsPower3Over2ForSmoothIntegrals) {
   test::covers("light-4");
   const auto f = [](double u, double v) { return std::exp(-u - v); };
   const double exact = std::pow(1 - std::exp(-1), 2);
@@ -161,7 +161,7 @@ TEST(Sampling, ErrorOfASmoothIntegralFallsWithThePower1_5) {
   EXPECT_LE(std::log(e1024 / e64) / std::log(16), -1.3);
 }
 
-TEST(Sampling, ErrorAtAnEdgeFallsWithThePower0_75) {
+TEST(Sampling, ConvergesAsPower3Over4AtEdges) {
   test::covers("light-5");
   const auto f = [](double u, double v) { return u * u + v * v < 1 ? 1.0 : 0.0; };
   const double e64 = rms_error(f, std::numbers::pi / 4, 64), e1024 = rms_error(f, std::numbers::pi / 4, 1024);
@@ -172,7 +172,7 @@ TEST(Sampling, ErrorAtAnEdgeFallsWithThePower0_75) {
 }
 
 // The correlation between samples of neighbouring streams stays below 4 standard deviations.
-TEST(Sampling, StreamsAreIndependent) {
+TEST(Sampling, KeepsStreamsIndependent) {
   constexpr int kPairs = 100'000;
   double sum = 0;
   for (std::uint32_t pixel = 0; pixel < kPairs; ++pixel) {

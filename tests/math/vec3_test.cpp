@@ -31,7 +31,7 @@ TYPED_TEST(Normalize, GivesUnitVectorsAtAnyMagnitude) {
   EXPECT_EQ(safe_normalize(Vec3<T>()), Vec3<T>());
 }
 
-TEST(Normalize, NumbersOfTheCatalogue) {
+TEST(Normalize, MatchesCatalogueValues) {
   test::covers("A31");
   const float half = std::sqrt(0.5f);
   EXPECT_NEAR(safe_normalize(Vec3f(1e-23f, 1e-23f, 0)).x, half, 1e-7f);
@@ -40,7 +40,7 @@ TEST(Normalize, NumbersOfTheCatalogue) {
   EXPECT_NEAR(length(safe_normalize(Vec3d(1e160, 1e160, 1e160))), 1, 4e-16);
 }
 
-TEST(Vec3, ProductsObeyTheirLaws) {
+TEST(Vec3, SatisfiesProductIdentities) {
   test::Random random(2);
   for (int i = 0; i < 1000; ++i) {
     const Vec3d a = random.in_cube(2), b = random.in_cube(2);
@@ -51,7 +51,7 @@ TEST(Vec3, ProductsObeyTheirLaws) {
   EXPECT_EQ(cross(Vec3d(1, 0, 0), Vec3d(0, 1, 0)), Vec3d(0, 0, 1));
 }
 
-TEST(Vec3, AnIndexNamesTheComponentOfItsAxis) {
+TEST(Vec3, IndexesComponentsByAxis) {
   Vec3d v(1, 2, 3);
   v[2] += 4;
   EXPECT_EQ(v, Vec3d(1, 2, 7));

@@ -25,7 +25,7 @@ std::vector<File> cubes() {
           {"glb", MeshFormat::gltf, gltf_of(mesh).glb(kOneMesh)}};
 }
 
-TEST(MeshFile, TheSameCubeComesFromEveryFormat) {
+TEST(MeshFile, ReadsSameCubeFromEveryFormat) {
   for (const File& file : cubes()) {
     SCOPED_TRACE(file.name);
     EXPECT_EQ(mesh_format(file.bytes), file.format);
@@ -37,7 +37,7 @@ TEST(MeshFile, TheSameCubeComesFromEveryFormat) {
   }
 }
 
-TEST(MeshFile, TheSameBytesGiveTheSameMesh) {
+TEST(MeshFile, IsDeterministic) {
   for (const File& file : cubes()) {
     const TriangleMesh a = read_mesh(file.bytes), b = read_mesh(file.bytes);
     EXPECT_EQ(a.positions, b.positions) << file.name;
@@ -45,16 +45,16 @@ TEST(MeshFile, TheSameBytesGiveTheSameMesh) {
   }
 }
 
-TEST(MeshFile, LimitsHoldInEveryFormat) {
+TEST(MeshFile, AppliesLimitsInEveryFormat) {
   for (const File& file : cubes()) {
     EXPECT_EQ(problem(file.bytes, {8, 12}), "accepted") << file.name;
-    EXPECT_THAT(problem(file.bytes, {7, 12}), HasSubstr("at most 7 vertices")) << file.name;
-    EXPECT_THAT(problem(file.bytes, {8, 11}), HasSubstr("at most 11 triangles")) << file.name;
+    EXPECT_THAT(problem(file.bytes, {7, 12}), HasSubstr("vertices (limit 7, mesh_vertices)")) << file.name;
+    EXPECT_THAT(problem(file.bytes, {8, 11}), HasSubstr("triangles (limit 11, mesh_triangles)")) << file.name;
   }
 }
 
 // A truncated file is rejected, or read up to the cut.
-TEST(MeshFile, ACutFileIsRefusedOrReadUpToTheCut) {
+TEST(MeshFile, RejectsOrReadsTruncatedFilesUpToCut) {
   const std::vector<Corners> whole = corners_of(cube());
   for (const File& file : cubes())
     for (std::size_t size = 0; size < file.bytes.size(); ++size) {
@@ -66,16 +66,16 @@ TEST(MeshFile, ACutFileIsRefusedOrReadUpToTheCut) {
     }
 }
 
-TEST(MeshFile, OtherFilesAreRefusedWithTheirFirstBytes) {
+TEST(MeshFile, ReportsFirstBytesOfUnknownFiles) {
   EXPECT_THAT(problem(""), HasSubstr("0 bytes that begin with \"\""));
   EXPECT_THAT(problem("GIF89a\x01\x02"), HasSubstr("begin with \"GIF89a??\""));
   EXPECT_THAT(problem(std::string(500, 'x')), HasSubstr(std::string(40, 'x') + "...\""));
-  EXPECT_THAT(problem("# only a comment\n"), HasSubstr("expected an OBJ, PLY, STL"));
+  EXPECT_THAT(problem("# only a comment\n"), HasSubstr("must be an OBJ, PLY, STL"));
   const std::string stl = binary_stl_of(cube(), "");
   EXPECT_THAT(problem(stl.substr(0, stl.size() - 1)), HasSubstr("STL (84 + 50 n bytes if binary)"));
 }
 
-TEST(MeshFile, AMeshWithoutTrianglesIsRefused) {
+TEST(MeshFile, RejectsMeshWithoutTriangles) {
   EXPECT_THAT(problem("v 0 0 0\n"), HasSubstr("at least 1 triangle"));
   EXPECT_THAT(problem("solid\nendsolid\n"), HasSubstr("at least 1 triangle"));
   EXPECT_THAT(problem(ply_header("ascii", 0, 0)), HasSubstr("at least 1 triangle"));

@@ -26,7 +26,7 @@ void expect_near(const Vec3d& a, const Vec3d& b, double bound = 1e-15) {
   EXPECT_LE(length(a - b), bound) << a.x << ' ' << a.y << ' ' << a.z;
 }
 
-TEST(Gltf, TrianglesStripsAndFans) {
+TEST(Gltf, ReadsTrianglesStripsAndFans) {
   Gltf gltf;
   gltf.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}, {1, 2, 0}});
   const auto triangles = [&](const std::string& mode) {
@@ -41,7 +41,7 @@ TEST(Gltf, TrianglesStripsAndFans) {
   EXPECT_EQ(triangles(",\"mode\":6"), (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}, {4, 5, 0}}));
 }
 
-TEST(Gltf, IndicesOfEveryWidth) {
+TEST(Gltf, ReadsIndicesOfEveryWidth) {
   Gltf gltf;
   gltf.positions(kTriangle);
   gltf.add<std::uint8_t>({2, 0, 1}, "SCALAR", 5121);
@@ -54,14 +54,14 @@ TEST(Gltf, IndicesOfEveryWidth) {
               (std::vector<Triangle>{{2, 0, 1}}));
 }
 
-TEST(Gltf, AMatrixIsReadColumnByColumn) {
+TEST(Gltf, ReadsMatricesInColumnOrder) {
   const TriangleMesh mesh = placed(R"("nodes":[{"mesh":0,"matrix":[0,2,0,0,-3,0,0,0,0,0,4,0,5,6,7,1]}])");
   EXPECT_EQ(mesh.positions, (std::vector<Vec3d>{{5, 6, 7}, {5, 8, 7}, {2, 6, 7}}));
   EXPECT_EQ(mesh.normals[0], Vec3d(0, 0, 1));
 }
 
 // The mesh is scaled, turned by 90 degrees about y and moved. Its parent is turned by 90 degrees about z.
-TEST(Gltf, TranslationRotationAndScaleNest) {
+TEST(Gltf, ComposesNestedTransforms) {
   const std::string half = number(std::sqrt(0.5));
   const TriangleMesh mesh = placed(
       "\"nodes\":[{\"mesh\":0,\"scale\":[2,3,4],\"rotation\":[0," + half + ",0," + half +
@@ -75,7 +75,7 @@ TEST(Gltf, TranslationRotationAndScaleNest) {
 }
 
 // Under (x, y, z) -> (x, y, z + 2 x), the plane z = 0 becomes z = 2 x.
-TEST(Gltf, NormalsStayPerpendicularUnderAShear) {
+TEST(Gltf, KeepsNormalsPerpendicularUnderShear) {
   const TriangleMesh mesh = placed(R"("nodes":[{"mesh":0,"matrix":[1,0,2,0,0,1,0,0,0,0,1,0,0,0,0,1]}])");
   expect_near(mesh.normals[0], Vec3d(-2, 0, 1) / std::sqrt(5.0));
   const Vec3d flat =
@@ -83,7 +83,7 @@ TEST(Gltf, NormalsStayPerpendicularUnderAShear) {
   expect_near(mesh.normals[0], flat);
 }
 
-TEST(Gltf, AMirroredCubeKeepsItsFrontOutside) {
+TEST(Gltf, KeepsFrontFacesOutsideIfMirrored) {
   for (const char* scale : {"[-1,1,1]", "[1,-2,1]", "[-1,-1,-3]", "[-1,-1,1]", "[1e-200,1e-200,-1e-200]"}) {
     Gltf gltf = gltf_of(cube());
     std::vector<float> outward;
@@ -102,7 +102,7 @@ TEST(Gltf, AMirroredCubeKeepsItsFrontOutside) {
   }
 }
 
-TEST(Gltf, TheSceneDecidesWhatIsShown) {
+TEST(Gltf, ReadsOnlyNodesOfScene) {
   const std::string nodes = R"("nodes":[{"mesh":0},{"mesh":0,"translation":[1,0,0]},{"children":[1]}])";
   EXPECT_EQ(placed(nodes).triangles.size(), 2u);  // roots 0 and 2
   const std::string scenes = R"(,"scenes":[{"nodes":[0]},{"nodes":[2]},{"nodes":[2,0]}],"scene":)";
@@ -111,7 +111,7 @@ TEST(Gltf, TheSceneDecidesWhatIsShown) {
   EXPECT_EQ(placed(nodes + scenes + "2").positions[3], Vec3d(0, 0, 0));
 }
 
-TEST(Gltf, AttributesMayBeInterleavedAndNormalized) {
+TEST(Gltf, ReadsInterleavedNormalizedAttributes) {
   Gltf gltf;
   // x y z as floats, then u v as normalized bytes and two bytes of padding: 16 bytes a vertex.
   std::string bytes;
@@ -132,7 +132,7 @@ TEST(Gltf, AttributesMayBeInterleavedAndNormalized) {
   EXPECT_EQ(mesh.uvs[2], (std::array<double, 2>{0.2, 0}));  // v from the top, flipped
 }
 
-TEST(Gltf, WhatNotEveryPrimitiveHasIsLeftOut) {
+TEST(Gltf, DropsAttributesMissingInSomePrimitives) {
   Gltf gltf;
   gltf.positions(kTriangle);
   gltf.add<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126);

@@ -13,18 +13,18 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 const std::string kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-TEST(Obj, PolygonsBecomeFans) {
+TEST(Obj, SplitsPolygonsIntoFans) {
   const TriangleMesh mesh = read_mesh(kFour + "v -1 0.5 0\nf 1 2 3 4 5\n");
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
 }
 
-TEST(Obj, NegativeIndicesCountBackFromTheLastSoFar) {
+TEST(Obj, ResolvesNegativeIndices) {
   const TriangleMesh mesh = read_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 5 5 5\nf -1 1 -2\n");
   EXPECT_EQ(corners_of(mesh)[0], (Corners{Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(1, 1, 0)}));
   EXPECT_EQ(corners_of(mesh)[1], (Corners{Vec3d(5, 5, 5), Vec3d(0, 0, 0), Vec3d(1, 1, 0)}));
 }
 
-TEST(Obj, CornersThatDifferInNormalOrUvAreDifferentVertices) {
+TEST(Obj, SplitsVerticesByNormalAndUv) {
   const TriangleMesh mesh = read_mesh(kFour +
                                       "vn 0 0 2\nvn 0 3 0\nvt 0.25 0.5\nvt 0.75\n"
                                       "f 1/1/1 2/1/1 3/1/1\nf 1/1/1 3/2/1 4/1/2\n");
@@ -37,19 +37,19 @@ TEST(Obj, CornersThatDifferInNormalOrUvAreDifferentVertices) {
   EXPECT_EQ(mesh.uvs[3], (std::array<double, 2>{0.75, 0}));
 }
 
-TEST(Obj, WhatNotEveryCornerHasIsLeftOut) {
+TEST(Obj, DropsAttributesMissingAtSomeCorners) {
   const TriangleMesh mesh = read_mesh(kFour + "vn 0 0 1\nvt 0 0\nf 1//1 2//1 3//1\nf 1/1/1 3/1/1 4/1/1\n");
   EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
   EXPECT_TRUE(mesh.uvs.empty());
 }
 
-TEST(Obj, ANormalOfLengthZeroTakesThatOfItsFaces) {
+TEST(Obj, ReplacesZeroNormalsByFaceNormals) {
   const TriangleMesh mesh = read_mesh(kFour + "vn 0 0 0\nvn 0 1 0\nf 1//1 2//2 3//2\n");
   EXPECT_EQ(mesh.normals[0], Vec3d(0, 0, 1));
   EXPECT_EQ(mesh.normals[1], Vec3d(0, 1, 0));
 }
 
-TEST(Obj, LayoutOfTheTextDoesNotMatter) {
+TEST(Obj, IgnoresTextLayout) {
   const std::vector<Corners> plain = corners_of(read_mesh("v 0 0 0\nv 1 0 0\nv 1 1.5 0\nf 1 2 3\n"));
   for (const char* text :
        {"v 0 0 0\r\nv 1 0 0\r\nv 1 1.5 0\r\nf 1 2 3", "v 0 0 0\rv 1 0 0\rv 1 1.5 0\rf 1 2 3\r",
@@ -60,43 +60,43 @@ TEST(Obj, LayoutOfTheTextDoesNotMatter) {
     EXPECT_EQ(corners_of(read_mesh(text)), plain) << text;
 }
 
-TEST(Obj, NumbersAreTheNearestDoubles) {
+TEST(Obj, RoundsNumbersToNearestDouble) {
   const TriangleMesh mesh = read_mesh("v 0.1 123456.789012 -8.371950\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   EXPECT_EQ(mesh.positions[0], Vec3d(0.1, 123456.789012, -8.371950));
 }
 
-TEST(Obj, CommentsEndWithTheirLine) {
+TEST(Obj, EndsCommentsAtLineEnd) {
   EXPECT_EQ(read_mesh("# from C:\\models\\\n" + kFour + "f 1 2 3\n").triangles,
             (std::vector<Triangle>{{0, 1, 2}}));
 }
 
-TEST(Obj, NumbersBeyondDoublesAreRefusedHoweverTheyAreWritten) {
+TEST(Obj, RejectsNumbersBeyondDoubleRange) {
   const std::string large = "1" + std::string(400, '0') + "e-5", small = "0." + std::string(400, '0') + "1";
   EXPECT_THROW(read_mesh("v " + large + " 0 0\n" + kFour + "f 1 2 3\n"), InputError);
   EXPECT_EQ(read_mesh("v " + small + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").positions[0].x, 0);
 }
 
-TEST(Obj, RefusalsNameTheLine) {
+TEST(Obj, ReportsLineOfErrors) {
   const auto with = [](const std::string& line) { return problem(kFour + line + "\nf 1 2 3\n"); };
-  EXPECT_EQ(with("v 1 nan 0"), "line 5: expected a finite number for v, got \"nan\"");
-  EXPECT_EQ(with("v 1 0 -inf"), "line 5: expected a finite number for v, got \"-inf\"");
-  EXPECT_EQ(with("v 1 0 1e999"), "line 5: expected a finite number for v, got \"1e999\"");
+  EXPECT_EQ(with("v 1 nan 0"), "line 5: v must be a finite number (got \"nan\")");
+  EXPECT_EQ(with("v 1 0 -inf"), "line 5: v must be a finite number (got \"-inf\")");
+  EXPECT_EQ(with("v 1 0 1e999"), "line 5: v must be a finite number (got \"1e999\")");
   EXPECT_EQ(with("v 1 -2e12 0"),
-            "line 5: expected coordinates of at most 1e+12 in magnitude, got (1, -2e+12, 0)");
-  EXPECT_EQ(with("v 1 0"), "line 5: expected a finite number for v, got nothing");
-  EXPECT_EQ(with("vn 1 0 0x1"), "line 5: expected a finite number for vn, got \"0x1\"");
-  EXPECT_EQ(with("vt u"), "line 5: expected a finite number for vt, got \"u\"");
-  EXPECT_EQ(with("f 1 2"), "line 5: expected a face of 3 corners or more, got 2");
-  EXPECT_EQ(with("f 1 2 5"), "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got 5");
-  EXPECT_EQ(with("f 1 2 -5"), "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got -5");
-  EXPECT_EQ(with("f 1 2 0"), "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got 0");
+            "line 5: coordinates must be at most 1e+12 in magnitude (got (1, -2e+12, 0))");
+  EXPECT_EQ(with("v 1 0"), "line 5: v must be a finite number (got nothing)");
+  EXPECT_EQ(with("vn 1 0 0x1"), "line 5: vn must be a finite number (got \"0x1\")");
+  EXPECT_EQ(with("vt u"), "line 5: vt must be a finite number (got \"u\")");
+  EXPECT_EQ(with("f 1 2"), "line 5: face must have at least 3 corners (got 2)");
+  EXPECT_EQ(with("f 1 2 5"), "line 5: v of a corner must be from 1 to 4 or -1 to -4 (got 5)");
+  EXPECT_EQ(with("f 1 2 -5"), "line 5: v of a corner must be from 1 to 4 or -1 to -4 (got -5)");
+  EXPECT_EQ(with("f 1 2 0"), "line 5: v of a corner must be from 1 to 4 or -1 to -4 (got 0)");
   EXPECT_EQ(with("f 1 2 4294967299"),
-            "line 5: expected a v of a corner from 1 to 4 or -1 to -4, got 4294967299");
+            "line 5: v of a corner must be from 1 to 4 or -1 to -4 (got 4294967299)");
   EXPECT_EQ(with("f 1 2 99999999999999999999"),
-            "line 5: expected an integer for v of a corner, got \"99999999999999999999\"");
-  EXPECT_EQ(with("f 1/1 2 3"), "line 5: expected a vt of a corner from 1 to 0 or -1 to -0, got 1");
-  EXPECT_EQ(with("f 1/1/1/1 2 3"), "line 5: expected position/uv/normal for a corner, got \"1/1/1/1\"");
-  EXPECT_EQ(with("f \\\n1 2 x"), "line 6: expected an integer for v of a corner, got \"x\"");
+            "line 5: v of a corner must be an integer (got \"99999999999999999999\")");
+  EXPECT_EQ(with("f 1/1 2 3"), "line 5: vt of a corner must be absent before the first vt (got 1)");
+  EXPECT_EQ(with("f 1/1/1/1 2 3"), "line 5: corner must be position/uv/normal (got \"1/1/1/1\")");
+  EXPECT_EQ(with("f \\\n1 2 x"), "line 6: v of a corner must be an integer (got \"x\")");
 }
 
 }  // namespace

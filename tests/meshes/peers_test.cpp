@@ -47,7 +47,7 @@ std::string random_obj(Random& random) {
 }
 
 // tinyobjloader rounds decimals to a few units in the last place only, hence the bound.
-TEST(Peers, TinyobjloaderReadsTheSameCorners) {
+TEST(MeshFile, MatchesTinyobjloader) {
   Random random(1);
   for (int round = 0; round < 20; ++round) {
     const std::string text = random_obj(random);
@@ -74,7 +74,7 @@ TEST(Peers, TinyobjloaderReadsTheSameCorners) {
 #endif
 
 #ifdef TINYGLTF_IMPLEMENTATION
-TEST(Peers, TinygltfReadsTheSameCorners) {
+TEST(MeshFile, MatchesTinygltf) {
   for (const bool binary : {true, false}) {
     const std::string bytes = binary ? gltf_of(cube()).glb(kOneMesh) : gltf_of(cube()).gltf(kOneMesh);
     tinygltf::TinyGLTF peer;

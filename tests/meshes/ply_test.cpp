@@ -38,7 +38,7 @@ void reads_as(const std::string& type) {
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{2, 0, 1}})) << type << format;
   }
 }
-TEST(Ply, EveryTypeInBothByteOrders) {
+TEST(Ply, ReadsEveryTypeInBothByteOrders) {
   reads_as<std::int8_t>("char"), reads_as<std::int8_t>("int8");
   reads_as<std::uint8_t>("uchar"), reads_as<std::uint8_t>("uint8");
   reads_as<std::int16_t>("short"), reads_as<std::int16_t>("int16");
@@ -49,7 +49,7 @@ TEST(Ply, EveryTypeInBothByteOrders) {
   reads_as<double>("double"), reads_as<double>("float64");
 }
 
-TEST(Ply, NormalsAndUvsWhateverTheirNameAndPlace) {
+TEST(Ply, ReadsNormalsAndUvsInAnyOrder) {
   for (const auto& [u, v] : {std::pair("u", "v"), std::pair("s", "t"), std::pair("texture_u", "texture_v")}) {
     std::string text = header(
         "ascii", std::string("element vertex 3\nproperty float ny\nproperty float z\nproperty float ") + v +
@@ -65,7 +65,7 @@ TEST(Ply, NormalsAndUvsWhateverTheirNameAndPlace) {
   }
 }
 
-TEST(Ply, PolygonsBecomeFansAndOtherPropertiesAreSkipped) {
+TEST(Ply, SplitsPolygonsAndSkipsOtherProperties) {
   const std::string elements =
       "element material 1\nproperty list uint double shades\nproperty int id\n" + kVertex +
       "property list uchar short tags\nelement nothing 7\n"
@@ -90,13 +90,13 @@ TEST(Ply, PolygonsBecomeFansAndOtherPropertiesAreSkipped) {
   EXPECT_EQ(mesh.positions[3], Vec3d(3, 0, 9));
 }
 
-TEST(Ply, FacesMayComeBeforeVertices) {
+TEST(Ply, ReadsFacesBeforeVertices) {
   EXPECT_EQ(read_mesh(header("ascii", kFace + kVertex) + "3 0 1 3\n" + kFour).triangles,
             (std::vector<Triangle>{{0, 1, 3}}));
 }
 
 // A binary body begins right after the last line of the header, whatever its first byte.
-TEST(Ply, LineEndsOfTheHeaderDoNotTouchTheBody) {
+TEST(Ply, HandlesLineEndsBeforeBinaryBody) {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     std::string bytes;
     for (const char c : header("binary_little_endian",
@@ -111,60 +111,66 @@ TEST(Ply, LineEndsOfTheHeaderDoNotTouchTheBody) {
   }
 }
 
-TEST(Ply, RefusalsOfTheHeaderNameTheLine) {
+TEST(Ply, ReportsLineOfHeaderErrors) {
   const auto ascii = [](const std::string& elements) { return problem(header("ascii", elements)); };
-  EXPECT_EQ(problem("ply\nformat ascii 2.0\n"), "line 2: expected version 1.0, got \"2.0\"");
-  EXPECT_THAT(problem("ply\nformat binary 1.0\n"), HasSubstr("line 2: expected ascii, binary_little_endian"));
-  EXPECT_THAT(problem("ply\n"), HasSubstr("expected \"end_header\", got the end of the file"));
-  EXPECT_THAT(problem("ply\nend_header\n"), HasSubstr("line 2: expected a line \"format\""));
+  EXPECT_EQ(problem("ply\nformat ascii 2.0\n"), "line 2: must be version 1.0 (got \"2.0\")");
+  EXPECT_THAT(problem("ply\nformat binary 1.0\n"),
+              HasSubstr("line 2: must be one of ascii, binary_little_endian"));
+  EXPECT_THAT(problem("ply\n"), HasSubstr("must be \"end_header\" (got the end of the file)"));
+  EXPECT_THAT(problem("ply\nend_header\n"),
+              HasSubstr("line 2: \"end_header\" must follow a line \"format\""));
   EXPECT_THAT(ascii("elephant 3\n"),
-              HasSubstr("line 3: expected a keyword of a PLY header, got \"elephant\""));
-  EXPECT_THAT(ascii("element vertex -1\n"), HasSubstr("of at least 0, got -1"));
-  EXPECT_THAT(ascii("element vertex many\n"), HasSubstr("expected an integer for the number of elements"));
-  EXPECT_THAT(ascii("property float x\n"), HasSubstr("expected an element before a property"));
+              HasSubstr("line 3: must be a keyword of a PLY header (got \"elephant\")"));
+  EXPECT_THAT(ascii("element vertex -1\n"), HasSubstr("must be at least 0 (got -1)"));
+  EXPECT_THAT(ascii("element vertex many\n"),
+              HasSubstr("number of elements must be an integer (got \"many\")"));
+  EXPECT_THAT(ascii("property float x\n"), HasSubstr("property must follow an element"));
   EXPECT_THAT(ascii("element vertex 1\nproperty half x\n"),
-              HasSubstr("line 4: expected a type from char to double"));
+              HasSubstr("line 4: must be a type from char to double (got \"half\")"));
   EXPECT_THAT(ascii("element face 1\nproperty list float int vertex_index\n"),
-              HasSubstr("an integer type for the length"));
-  EXPECT_THAT(ascii(kFace), HasSubstr("expected one element \"vertex\", got 0"));
+              HasSubstr("length of a list must have an integer type"));
+  EXPECT_THAT(ascii(kFace), HasSubstr("must have one element \"vertex\" (got 0)"));
   EXPECT_THAT(ascii("element vertex 0\nproperty float x\n" + kFace), HasSubstr("properties x, y and z"));
-  EXPECT_THAT(ascii(kVertex + kVertex), HasSubstr("expected one element \"vertex\", got 2"));
+  EXPECT_THAT(ascii(kVertex + kVertex), HasSubstr("must have one element \"vertex\" (got 2)"));
   EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty int a\n") + kFour + "1"),
-              HasSubstr("expected a list"));
+              HasSubstr("face must have a list \"vertex_indices\""));
   std::string many = "element vertex 1\n";
   for (int i = 0; i < 1001; ++i) many += "property float a\n";
-  EXPECT_THAT(ascii(many), HasSubstr("at most 1000 elements and properties"));
+  EXPECT_THAT(ascii(many), HasSubstr("more than 1,000 elements and properties (limit 1,000)"));
 }
 
 // A count that exceeds the file is rejected before memory is allocated for it.
-TEST(Ply, CountsAreCheckedAgainstTheBytes) {
+TEST(Ply, ChecksCountsAgainstFileSize) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     EXPECT_THAT(problem(ply_header(format, 9'999'999, 1)),
-                HasSubstr("expected 9999999 of element \"vertex\""));
-    EXPECT_THAT(problem(ply_header(format, 0, 9'999'999)), HasSubstr("expected 9999999 of element \"face\""));
+                HasSubstr("element \"vertex\" must have 9999999 entries"));
+    EXPECT_THAT(problem(ply_header(format, 0, 9'999'999)),
+                HasSubstr("element \"face\" must have 9999999 entries"));
     EXPECT_THAT(problem(ply_header(format, 9'223'372'036'854'775'807, 1)),
-                HasSubstr("at most 10000000 vertices"));
-    EXPECT_THAT(problem(ply_header(format, 0, 9'223'372'036'854'775'807)), HasSubstr("of element \"face\""));
+                HasSubstr("vertices (limit 10,000,000, mesh_vertices)"));
+    EXPECT_THAT(problem(ply_header(format, 0, 9'223'372'036'854'775'807)),
+                HasSubstr("element \"face\" must have"));
     for (const char* count : {"9223372036854775807", "2305843009213693952"})  // times 8 the latter is 0
       EXPECT_THAT(problem(header(format, std::string("element x ") + count +
                                              "\nproperty list uint int y\nproperty int z\n" + kVertex)),
-                  HasSubstr("of element \"x\""));
+                  HasSubstr("element \"x\" must have"));
   }
   EXPECT_THAT(problem(header("ascii", kVertex + "element face 1\nproperty list uint int vertex_index\n") +
                       kFour + "4000000000 0 1"),
-              HasSubstr("triangles, got"));
+              HasSubstr("triangles (limit 10,000,000, mesh_triangles)"));
 }
 
-TEST(Ply, RefusalsOfTheBodyNameThePlace) {
+TEST(Ply, ReportsPositionOfBodyErrors) {
   const auto ascii = [](const std::string& body) { return problem(header("ascii", kVertex + kFace) + body); };
   EXPECT_EQ(ascii("0 0 0\n1 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
-            "line 12: expected a finite number for a value, got \"nan\"");
-  EXPECT_EQ(ascii(kFour + "2 0 1 2 3\n"), "line 14: expected 3 corners or more of face 0, got 2");
+            "line 12: value must be a finite number (got \"nan\")");
+  EXPECT_EQ(ascii(kFour + "2 0 1 2 3\n"), "line 14: face 0 must have at least 3 corners (got 2)");
   EXPECT_THAT(ascii(kFour + "3 0 1 4\n"),
-              HasSubstr("line 14: expected a vertex from 0 to below 4 of face 0, got 4"));
+              HasSubstr("line 14: vertex of face 0 must be an integer of at least 0 and < 4 (got 4)"));
   EXPECT_THAT(ascii(kFour + "3 0 1 -1\n"), HasSubstr("got -1"));
   EXPECT_THAT(ascii(kFour + "3 0 1 1.5\n"), HasSubstr("got 1.5"));
-  EXPECT_THAT(ascii(kFour + "-3 0 1 1\n"), HasSubstr("expected a length of a list, got -3"));
+  EXPECT_THAT(ascii(kFour + "-3 0 1 1\n"),
+              HasSubstr("length of a list must be an integer from 0 to 4294967295 (got -3)"));
   EXPECT_THAT(ascii(kFour + "4 0 1 2"), HasSubstr("got nothing"));
   std::string bytes = header("binary_little_endian",
                              "element vertex 1\nproperty float x\nproperty float y\n"
@@ -174,7 +180,7 @@ TEST(Ply, RefusalsOfTheBodyNameThePlace) {
   append(bytes, std::uint8_t{3});
   for (int i = 0; i < 3; ++i) append(bytes, 0);
   EXPECT_THAT(problem(bytes),
-              HasSubstr("expected coordinates of at most 1e+12 in magnitude, got (0, inf, 0) for vertex 0"));
+              HasSubstr("coordinates must be at most 1e+12 in magnitude (got (0, inf, 0) for vertex 0)"));
 }
 
 }  // namespace

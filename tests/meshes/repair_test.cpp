@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(SmoothNormals, ACubeIsCreasedAt30DegreesAndRoundAt100) {
+TEST(SmoothNormals, CreasesCubeAt30DegreesAndRoundsItAt100) {
   TriangleMesh creased = cube();
   smooth_normals(creased, 30);
   EXPECT_EQ(creased.positions.size(), 24u);
@@ -29,7 +29,7 @@ TEST(SmoothNormals, ACubeIsCreasedAt30DegreesAndRoundAt100) {
 }
 
 // The cube's faces differ by 90 degrees. A crease angle of exactly 90 degrees keeps them apart.
-TEST(SmoothNormals, FacesThatDifferByTheCreaseAngleStayApart) {
+TEST(SmoothNormals, SeparatesFacesAtExactCreaseAngle) {
   for (const auto& [degrees, vertices] : {std::pair(89.9, 24u), std::pair(90.0, 24u), std::pair(90.1, 8u)}) {
     TriangleMesh mesh = cube();
     smooth_normals(mesh, degrees);
@@ -37,7 +37,7 @@ TEST(SmoothNormals, FacesThatDifferByTheCreaseAngleStayApart) {
   }
 }
 
-TEST(SmoothNormals, EqualPositionsAreSmoothedAcrossASeamOfUvs) {
+TEST(SmoothNormals, SmoothsAcrossUvSeams) {
   TriangleMesh mesh = cube();
   const std::size_t count = mesh.positions.size();
   for (std::size_t i = 0; i < count; ++i) mesh.positions.push_back(mesh.positions[i]);
@@ -52,7 +52,7 @@ TEST(SmoothNormals, EqualPositionsAreSmoothedAcrossASeamOfUvs) {
 
 // The normal of a sphere of rings and segments is the direction from the centre. The discretization error
 // falls with the square of the step.
-TEST(SmoothNormals, ASphereHasTheNormalsOfASphere) {
+TEST(SmoothNormals, ConvergesToNormalsOfSphere) {
   double last = 1;
   for (const int n : {8, 16, 32, 64}) {
     TriangleMesh mesh;
@@ -84,7 +84,7 @@ TEST(SmoothNormals, ASphereHasTheNormalsOfASphere) {
   }
 }
 
-TEST(SmoothNormals, OfTrianglesWithoutAreaAreUnitVectors) {
+TEST(SmoothNormals, GivesUnitNormalsWithDegenerateTriangles) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {9, 9, 9}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 4, 4}};
@@ -92,7 +92,7 @@ TEST(SmoothNormals, OfTrianglesWithoutAreaAreUnitVectors) {
   for (const Vec3d& n : mesh.normals) EXPECT_EQ(n, Vec3d(0, 0, 1));
 }
 
-TEST(SmoothNormals, ComparesTheTrianglesAroundEachPlace) {
+TEST(SmoothNormals, CountsTrianglePairsAtEachPosition) {
   TriangleMesh fan;
   fan.positions.push_back({0, 0, 1});
   for (int i = 0; i <= 100; ++i) fan.positions.push_back({std::cos(0.01 * i), std::sin(0.01 * i), 0});
@@ -100,7 +100,7 @@ TEST(SmoothNormals, ComparesTheTrianglesAroundEachPlace) {
   EXPECT_EQ(count_pairs(fan, position_indices_of(fan.positions)), 100u * 100 + 99 * 2 * 2 + 2);
 }
 
-TEST(DropUnused, KeepsWhatTrianglesUseInItsOrder) {
+TEST(DropUnused, KeepsUsedVerticesInOrder) {
   TriangleMesh mesh;
   mesh.positions = {{9, 9, 9}, {0, 0, 0}, {8, 8, 8}, {1, 0, 0}, {0, 1, 0}, {7, 7, 7}};
   mesh.normals = {{1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 1}, {0, 0, 1}, {1, 0, 0}};
@@ -111,7 +111,7 @@ TEST(DropUnused, KeepsWhatTrianglesUseInItsOrder) {
   EXPECT_EQ(mesh.triangles.front(), (std::array<std::uint32_t, 3>{0, 1, 2}));
 }
 
-TEST(DropDegenerate, TakesOutWhatHasNoArea) {
+TEST(DropDegenerate, RemovesTrianglesWithoutArea) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1e-300, 0, 0}, {0, 1e-20, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 0, 3}, {0, 3, 4}, {0, 5, 6}, {0, 1, 4}};

@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(Stl, EachEdgeOfAClosedMeshIsSharedByTwo) {
+TEST(Stl, JoinsSharedEdgesOfClosedMesh) {
   for (const std::string& bytes : {ascii_stl_of(cube()), binary_stl_of(cube())}) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
     const TriangleMesh mesh = read_mesh(bytes);
@@ -25,7 +25,7 @@ TEST(Stl, EachEdgeOfAClosedMeshIsSharedByTwo) {
   }
 }
 
-TEST(Stl, MinusZeroIsZeroWhereCornersAreJoined) {
+TEST(Stl, JoinsCornersAtNegativeZero) {
   const TriangleMesh mesh = read_mesh(
       "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
       "facet normal 0 0 1\nouter loop\nvertex -0 0 -0\nvertex 0 1 0\nvertex -1 0 "
@@ -34,16 +34,16 @@ TEST(Stl, MinusZeroIsZeroWhereCornersAreJoined) {
   EXPECT_EQ(mesh.triangles[1][0], 0u);
 }
 
-TEST(Stl, BinaryIsToldByItsSizeWhateverItsTitle) {
+TEST(Stl, DetectsBinaryBySizeDespiteTitle) {
   for (const char* title : {"solid", "solid cube\nfacet normal", "ply", "", "v 1 2 3\nf 1 2 3\n"})
     EXPECT_EQ(corners_of(read_mesh(binary_stl_of(cube(), title))), corners_of(cube())) << title;
 }
 
-TEST(Stl, BinaryTitlesMayBeginAsTextsWithAMark) {
+TEST(Stl, AcceptsByteOrderMarkInBinaryTitle) {
   EXPECT_EQ(corners_of(read_mesh(binary_stl_of(cube(), "\xEF\xBB\xBF part"))), corners_of(cube()));
 }
 
-TEST(Stl, AsciiMayBeInCapitalsHaveSeveralSolidsAndAnyNames) {
+TEST(Stl, ReadsCapitalsSeveralSolidsAndAnyNames) {
   const std::string facet =
       "FACET NORMAL nan nan nan OUTER LOOP VERTEX 0 0 0 VERTEX 1 0 0 VERTEX 0 1 0 ENDLOOP ENDFACET\n";
   const TriangleMesh mesh =
@@ -52,20 +52,20 @@ TEST(Stl, AsciiMayBeInCapitalsHaveSeveralSolidsAndAnyNames) {
   EXPECT_EQ(mesh.positions.size(), 3u);
 }
 
-TEST(Stl, RefusalsNameThePlace) {
+TEST(Stl, ReportsPositionOfErrors) {
   std::string bytes = binary_stl_of(cube());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(bytes.data() + 84 + 3 * 50 + 12 + 12, &nan, 4);
   EXPECT_THAT(problem(bytes),
-              HasSubstr("facet 3 at byte 234: expected coordinates of at most 1e+12 in magnitude, got ("));
+              HasSubstr("facet 3 at byte 234: coordinates must be at most 1e+12 in magnitude (got ("));
   const std::string facet = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
   EXPECT_EQ(problem("solid\n" + facet + "vertex 1 inf 0\n"),
-            "line 6: expected a finite number for y, got \"inf\"");
-  EXPECT_EQ(problem("solid\n" + facet + "endloop\n"), "line 6: expected \"vertex\", got \"endloop\"");
-  EXPECT_EQ(problem("solid\n" + facet), "line 6: expected \"vertex\", got the end of the file");
-  EXPECT_EQ(problem("solid\n"), "line 2: expected \"endsolid\", got the end of the file");
-  EXPECT_EQ(problem("solid\nvertex\n"), "line 2: expected \"facet\" or \"endsolid\", got \"vertex\"");
-  EXPECT_EQ(problem("solid\nendsolid\nfacet\n"), "line 3: expected \"solid\", got \"facet\"");
+            "line 6: y must be a finite number (got \"inf\")");
+  EXPECT_EQ(problem("solid\n" + facet + "endloop\n"), "line 6: must be \"vertex\" (got \"endloop\")");
+  EXPECT_EQ(problem("solid\n" + facet), "line 6: must be \"vertex\" (got the end of the file)");
+  EXPECT_EQ(problem("solid\n"), "line 2: must be \"endsolid\" (got the end of the file)");
+  EXPECT_EQ(problem("solid\nvertex\n"), "line 2: must be \"facet\" or \"endsolid\" (got \"vertex\")");
+  EXPECT_EQ(problem("solid\nendsolid\nfacet\n"), "line 3: must be \"solid\" (got \"facet\")");
 }
 
 }  // namespace

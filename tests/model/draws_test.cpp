@@ -17,7 +17,7 @@ SamplePoint<double> draw(const Draws& draws, SampleSet set, int depth, int slot)
 }
 
 // A random number depends on its pixel, not on the tile of the render.
-TEST(Draws, BelongToThePixel) {
+TEST(Draws, DependsOnPixelNotTile) {
   const Draws whole(7, TileView{0, 0, kTileSide, kTileSide}, 3);
   const Draws beside(7, TileView{16, 8, kTileSide, kTileSide}, 3);
   for (int slot = 0; slot < kBatch; ++slot) {
@@ -33,7 +33,7 @@ TEST(Draws, BelongToThePixel) {
   }
 }
 
-TEST(Draws, AreTheSameInFloatAndDouble) {
+TEST(Draws, AgreesInFloatAndDouble) {
   const Draws draws(1, TileView{32, 0, kTileSide, kTileSide}, 9);
   for (int slot = 0; slot < kBatch; slot += 11) {
     const auto a = draw<float>(draws, SampleSet::light, 2, slot),
@@ -45,7 +45,7 @@ TEST(Draws, AreTheSameInFloatAndDouble) {
 
 // Numbers do not depend on earlier draws: here all of some tiles and samples, and again in reverse order,
 // from other objects.
-TEST(Draws, DoNotDependOnWhatWasDrawnBefore) {
+TEST(Draws, IsIndependentOfEarlierDraws) {
   covers("light-3");
   constexpr int kTiles = 3, kSamples = 5, kDepths = 3;
   const auto numbers_of = [](int tile, int sample, int depth, int slot) {
@@ -69,7 +69,7 @@ TEST(Draws, DoNotDependOnWhatWasDrawnBefore) {
 
 // Sets, depths and frames have separate sequences. No two are equal, and their correlation over the pixels of
 // a tile stays below 4 standard deviations.
-TEST(Draws, OfOtherSetsDepthsAndFramesAreOthers) {
+TEST(Draws, IsUncorrelatedAcrossSetsDepthsAndFrames) {
   const TileView tile{0, 0, kTileSide, kTileSide};
   TileView later = tile;
   later.frame = 1;
@@ -90,7 +90,7 @@ TEST(Draws, OfOtherSetsDepthsAndFramesAreOthers) {
 
 // A quarter of the 256 samples is in the lower half of both sets, as with independent samples. Two sequences
 // in the same order would have a deviation of .25 over pixels at any sample count.
-TEST(Draws, OfTwoSetsOfAPixelFillTheirProduct) {
+TEST(Draws, CoversProductOfTwoSets) {
   covers("light-2");
   constexpr int kSamples = 256, kPixels = 64;
   const std::array sets{SampleSet::pixel, SampleSet::light, SampleSet::lobe, SampleSet::lens};

@@ -21,7 +21,7 @@ std::unique_ptr<TileSums> sums_of(const TileView& tile) {
   return sums;
 }
 
-TEST(Film, CountsValuesThatAreNotFiniteAmongItsPixelsAlone) {
+TEST(Film, CountsNonFiniteValues) {
   for (const FilmStorage storage : {FilmStorage::srgb8, FilmStorage::linear32, FilmStorage::sums})
     for (const auto& [width, height] : {std::pair{kTileSide, kTileSide}, {1, 1}, {30, 17}}) {
       Film film(width, height, storage);

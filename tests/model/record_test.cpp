@@ -20,7 +20,7 @@ class Records : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Records, Scalars);
 
-TYPED_TEST(Records, EachLaneGetsItsOwn) {
+TYPED_TEST(Records, FetchesOneRecordPerLane) {
   using T = TypeParam;
   using N = Lanes<T>;
   std::vector<Body<T>> table;
@@ -47,14 +47,14 @@ TYPED_TEST(Records, EachLaneGetsItsOwn) {
   }
 }
 
-TYPED_TEST(Records, BecomeAnotherPrecisionFieldByField) {
+TYPED_TEST(Records, ConvertsPrecisionOfEachField) {
   using T = TypeParam;
   const Body<T> got = convert_record<Body, T>(Body<double>{{0.1, 0.2, 0.3}, 1e-5});
   EXPECT_EQ(got.place.y, static_cast<T>(0.2));
   EXPECT_EQ(got.size, static_cast<T>(1e-5));
 }
 
-TYPED_TEST(Records, GroupsCoverEveryRay) {
+TYPED_TEST(Records, CoversEveryRayWithLaneGroups) {
   constexpr int width = kWidth<TypeParam>;
   for (const int count : {0, 1, width - 1, width, width + 1, kBatch}) {
     const LaneGroups all = LaneGroups::covering(0, count, width);

@@ -45,7 +45,7 @@ TEST(Describe, WritesRangesDefaultsAndDescriptions) {
   EXPECT_EQ(properties["attenuation"]["default"], json::array({1, 0, 0}));
 }
 
-TEST(Describe, SharesPointsAndColours) {
+TEST(Describe, SharesDefinitionsOfPointsAndColours) {
   const json schema = schema_of([](Params& p) {
     p.point("eye", "Where.");
     p.direction("up", "Up.", Vec3d{0, 1, 0});
@@ -62,7 +62,7 @@ TEST(Describe, SharesPointsAndColours) {
   EXPECT_EQ(schema["required"], json::array({"eye"}));
 }
 
-TEST(Describe, WalksEveryTypeAndForm) {
+TEST(Describe, DescribesEveryTypeAndForm) {
   constexpr Choice kTypes[] = {{"sphere", "A ball."}, {"cylinder", "A column."}};
   const json schema = schema_of([&](Params& p) {
     p.each("objects", "Things.", {.min = 1, .max = 9}, [&](Params& object) {
@@ -89,7 +89,7 @@ TEST(Describe, WalksEveryTypeAndForm) {
   EXPECT_EQ(ways[2]["properties"]["type"]["const"], "cylinder");
 }
 
-TEST(Describe, MapsListsAndOptionalObjects) {
+TEST(Describe, DescribesMapsListsAndOptionalObjects) {
   const json schema = schema_of([](Params& p) {
     p.each_named("materials", "", {.min = 1}, [](const std::string&, Params& m) { m.number("kd", ""); });
     p.each("lights", "", {.max = 1024}, [](Params& light) { light.flag("on", "", true); });
@@ -109,13 +109,13 @@ TEST(Describe, MapsListsAndOptionalObjects) {
   EXPECT_EQ(schema["required"], json::array({"materials", "positions", "indices"}));
 }
 
-TEST(Describe, IgnoresMeaning) {
+TEST(Describe, SkipsSemanticChecks) {
   EXPECT_NO_THROW(schema_of([](Params& p) {
     if (p.point("eye", "") == p.point("look_at", "")) p.fail("eye", "equals look_at");
   }));
 }
 
-TEST(EditDistance, CountsSlipsIncludingSwaps) {
+TEST(EditDistance, CountsEditsAndTranspositions) {
   EXPECT_EQ(edit_distance("radius", "radius", 2), 0);
   EXPECT_EQ(edit_distance("raduis", "radius", 2), 1);
   EXPECT_EQ(edit_distance("radis", "radius", 2), 1);
@@ -141,7 +141,7 @@ int slow_edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
-TEST(EditDistance, AgreesWithTheWholeTable) {
+TEST(EditDistance, MatchesFullTable) {
   std::uint32_t state = 1;
   const auto next = [&](std::uint32_t below) {
     return (state = state * 1664525 + 1013904223) / 65536 % below;
@@ -159,7 +159,7 @@ TEST(EditDistance, AgreesWithTheWholeTable) {
   }
 }
 
-TEST(Suggestion, FindsSlipsCaseAndAbbreviations) {
+TEST(Suggestion, FindsTyposCaseAndAbbreviations) {
   const std::string_view keys[] = {"eye", "look_at", "up", "fov_degrees", "center", "radius"};
   EXPECT_EQ(nearest("lookAt", keys), "look_at");
   EXPECT_EQ(nearest("Radius", keys), "radius");
@@ -179,6 +179,51 @@ TEST(Suggestion, FindsSlipsCaseAndAbbreviations) {
   EXPECT_EQ(nearest(std::string(62, 'b'), std::vector<std::string_view>(names.begin(), names.end())),
             std::nullopt);
   EXPECT_EQ(did_you_mean("uup", keys), " (did you mean \"up\"?)");
+}
+
+TEST(Suggestion, FindsKeysOfTheSameMeaning) {
+  const auto key_for = [](std::string_view word, std::vector<std::string_view> keys) {
+    return nearest_key(word, keys).value_or("none");
+  };
+  const std::vector<std::string_view> rough = {"kd", "ka", "ks", "shininess", "shading", "emission"},
+                                      camera = {"eye", "look_at", "up", "fov_degrees"},
+                                      mesh = {"material", "positions", "indices", "normals", "file"};
+  for (const char* word :
+       {"diffuse", "color", "colour", "albedo", "diffuse_color", "diffuseColor", "Albedo"}) {
+    EXPECT_EQ(key_for(word, rough), "kd") << word;
+    EXPECT_EQ(key_for(word, {"reflectance", "emission"}), "reflectance") << word;
+  }
+  EXPECT_EQ(key_for("specular", rough), "ks");
+  EXPECT_EQ(key_for("ambient_color", rough), "ka");
+  for (const char* word : {"emissive", "emit", "emitted"})
+    EXPECT_EQ(key_for(word, rough), "emission") << word;
+  for (const char* word : {"position", "pos", "origin", "location", "from"})
+    EXPECT_EQ(key_for(word, camera), "eye") << word;
+  for (const char* word : {"position", "pos", "origin", "location"})
+    EXPECT_EQ(key_for(word, {"center", "radius"}), "center") << word;
+  for (const char* word : {"target", "lookat", "look", "LookAt"})
+    EXPECT_EQ(key_for(word, camera), "look_at") << word;
+  for (const char* word : {"fov", "angle"}) EXPECT_EQ(key_for(word, camera), "fov_degrees") << word;
+  EXPECT_EQ(key_for("spp", {"samples", "seed"}), "samples");
+  for (const char* word : {"bounces", "depth"})
+    EXPECT_EQ(key_for(word, {"technique", "max_depth"}), "max_depth") << word;
+  EXPECT_EQ(key_for("transform", {"model", "scale", "rotate", "translate"}), "translate");
+  EXPECT_EQ(key_for("size", {"width", "height"}), "width");
+  for (const char* word : {"eta", "index"}) EXPECT_EQ(key_for(word, {"ior", "filter"}), "ior") << word;
+  for (const char* word : {"vertices", "points"}) EXPECT_EQ(key_for(word, mesh), "positions") << word;
+  EXPECT_EQ(key_for("faces", mesh), "indices");
+  EXPECT_EQ(key_for("raduis", {"center", "radius"}), "radius") << "spelling";
+}
+
+TEST(Suggestion, OfMeaningTakesFreeKeysOnly) {
+  const std::vector<std::string_view> with_vertices = {"material", "vertices"}, plane = {"point", "normal"};
+  EXPECT_EQ(nearest_key("points", with_vertices), "vertices");
+  EXPECT_EQ(nearest_key("points", plane), "point") << "spelling";
+  EXPECT_EQ(nearest_key("color", plane), std::nullopt);
+  EXPECT_EQ(nearest_key("", plane), std::nullopt);
+  EXPECT_EQ(nearest_key(std::string(1 << 20, 'x'), plane), std::nullopt);
+  EXPECT_EQ(did_you_mean_key("position", plane), " (did you mean \"point\"?)");
+  EXPECT_EQ(did_you_mean_key("color", plane), "");
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ MalformedJson malformed(std::string_view text) {
 
 std::string nested(std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); }
 
-TEST(Hash, AgreesWithThePublishedVectors) {
+TEST(Hash, MatchesPublishedVectors) {
   EXPECT_EQ(sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
@@ -52,7 +52,7 @@ TEST(Canonical, WritesEqualNumbersEqually) {
             "[1,1,1,0,0,0,0.1,1e+300,123456.5,1000000000000000,1e-07]");
 }
 
-TEST(Canonical, NumbersReadBackToTheSameDouble) {
+TEST(Canonical, RoundTripsDoubles) {
   for (const char* text :
        {"0.1", "2.2250738585072014e-308", "1.7976931348623157e308", "5e-324", "-3.3333333333333335",
         "9007199254740993", "18446744073709551615", "0.30000000000000004"}) {
@@ -67,7 +67,7 @@ TEST(Canonical, KeepsTextReadable) {
   EXPECT_EQ(canonical(R"(["\u00e9\"\\\n\t\u0001\/\u0000 é"])"), R"(["é\"\\\n\t\u0001/\u0000 é"])");
 }
 
-TEST(Canonical, OneTextForAllLayoutsMeansOneId) {
+TEST(Canonical, GivesOneIdForAllLayouts) {
   const Document a = parse_document(R"({"x": 1.0, "y": [2]})");
   const Document b = parse_document("{\"y\":[2.000],\r\n\"x\":1}");
   const Document c = parse_document(R"({"x": 1.0, "y": [3]})");
@@ -76,7 +76,7 @@ TEST(Canonical, OneTextForAllLayoutsMeansOneId) {
   EXPECT_EQ(a.id(), sha256_hex(R"({"x":1,"y":[2]})"));
 }
 
-TEST(Member, SharesTheTreeAndOutlivesTheWhole) {
+TEST(Document, KeepsTreeAliveThroughMember) {
   std::optional<Document> scene;
   {
     const Document whole = parse_document(R"({"a/b~": {"version": 1}, "list": [1]})");
@@ -91,21 +91,21 @@ TEST(Member, SharesTheTreeAndOutlivesTheWhole) {
   EXPECT_EQ(scene->pointer(), "/a~1b~0");
 }
 
-TEST(Malformed, SaysWhereInBytesLinesAndCharacters) {
+TEST(JsonParser, ReportsErrorOffsetLineAndColumn) {
   const MalformedJson error = malformed("{\n  \"é\": 1,\n  \"é\" 2\n}");
   EXPECT_EQ(error.offset(), 20u);
   EXPECT_EQ(error.line(), 3u);
   EXPECT_EQ(error.column(), 7u);
-  EXPECT_STREQ(error.what(), "/é: line 3, column 7: unexpected number; expected ':'");
+  EXPECT_STREQ(error.what(), "/é: line 3, column 7: must be ':' (got a number)");
 }
 
-TEST(Malformed, PointsIntoTheDocument) {
+TEST(JsonParser, ReportsPointerOfError) {
   const MalformedJson error = malformed(R"({"objects": [{"radius": 1}, {"radius": NaN}]})");
   EXPECT_EQ(error.problems().front().pointer, "/objects/1/radius");
   EXPECT_EQ(error.problems().front().detail, "line 1, column 40: \"NaN\" is not a JSON value");
 }
 
-TEST(Malformed, NamesWordsThatAreNoJson) {
+TEST(JsonParser, ReportsInvalidLiterals) {
   for (const char* word :
        {"NaN", "Infinity", "-Infinity", "nan", "+1", "01", ".5", "1.", "0x10", "tru", "None"}) {
     const std::string text = "[1, " + std::string(word) + "]";
@@ -118,7 +118,7 @@ TEST(Malformed, NamesWordsThatAreNoJson) {
             std::string::npos);
 }
 
-TEST(Malformed, TheEndMayComeTooEarlyOrTooLate) {
+TEST(JsonParser, RejectsTruncatedAndTrailingText) {
   EXPECT_EQ(malformed("").offset(), 0u);
   EXPECT_EQ(malformed("{\"a\": [1, 2").offset(), 11u);
   EXPECT_EQ(malformed("{} {}").offset(), 3u);
@@ -129,19 +129,19 @@ TEST(Malformed, TheEndMayComeTooEarlyOrTooLate) {
   malformed("\"open");
 }
 
-TEST(Malformed, AForgottenCommaIsSaidToBeMissing) {
+TEST(JsonParser, ReportsMissingCommasAndBrackets) {
   const auto detail_of = [](const char* text) { return malformed(text).problems().front().detail; };
   EXPECT_EQ(detail_of("{\n  \"a\": 1\n  \"b\": 2\n}"),
             "line 3, column 3: a comma or '}' is missing before text in double quotes");
-  EXPECT_EQ(detail_of("[1 2]"), "line 1, column 4: a comma or ']' is missing before number");
+  EXPECT_EQ(detail_of("[1 2]"), "line 1, column 4: a comma or ']' is missing before a number");
   EXPECT_EQ(detail_of("[{} {}]"), "line 1, column 5: a comma or ']' is missing before '{'");
   EXPECT_EQ(detail_of("{\"a\": [1, 2}"), "line 1, column 12: a comma or ']' is missing before '}'");
   EXPECT_EQ(detail_of("{\"a\": [1, 2"), "line 1, column 12: ']' is missing at the end of the text");
   EXPECT_EQ(detail_of("{\"a\": 1"), "line 1, column 8: '}' is missing at the end of the text");
-  EXPECT_EQ(detail_of("{\"a\" 1}"), "line 1, column 6: unexpected number; expected ':'");
+  EXPECT_EQ(detail_of("{\"a\" 1}"), "line 1, column 6: must be ':' (got a number)");
 }
 
-TEST(Malformed, NeitherCommentsNorZeroBytesNorBrokenTextPass) {
+TEST(JsonParser, RejectsCommentsZeroBytesAndInvalidText) {
   malformed("// scene\n{}");
   malformed("{} /* end */");
   malformed("{'a': 1}");
@@ -151,7 +151,7 @@ TEST(Malformed, NeitherCommentsNorZeroBytesNorBrokenTextPass) {
     malformed(bytes);
 }
 
-TEST(Malformed, MessagesAreForPeople) {
+TEST(JsonParser, WritesShortReadableMessages) {
   const std::string junk = "{\"" + std::string(100000, 'x') + "\xff\": 1}";
   for (const std::string& text :
        {std::string("{\"a\" 1}"), std::string("nope"), junk, std::string("[1, 2")}) {
@@ -162,7 +162,7 @@ TEST(Malformed, MessagesAreForPeople) {
   }
 }
 
-TEST(Strict, DuplicateKeysAreAllReported) {
+TEST(JsonParser, ReportsEveryDuplicateKey) {
   const InputError error =
       input_error(R"({"a": 1, "b": {"x": 1, "x": 2}, "c": [0, {"y": 1, "y": [1]}], "a": 2})");
   ASSERT_EQ(error.problems().size(), 3u);
@@ -172,40 +172,40 @@ TEST(Strict, DuplicateKeysAreAllReported) {
   EXPECT_EQ(error.problems()[2].pointer, "/a");
 }
 
-TEST(Strict, ManyDuplicatesStayTwenty) {
+TEST(JsonParser, ReportsAtMostTwentyDuplicates) {
   std::string text = "{\"a\":0";
   for (int i = 0; i < 1000; ++i) text += ",\"a\":0";
   EXPECT_EQ(input_error(text + "}").problems().size(), InputError::kMaxProblems);
 }
 
-TEST(Strict, NumbersThatNoDoubleHoldsAreRefusedInPlace) {
+TEST(JsonParser, RejectsNumbersBeyondDoubleRange) {
   for (const char* number : {"1e999", "-1e999", "1e400"}) {
     const InputError error =
         input_error(R"({"lights": [{}, {"intensity": [1, )" + std::string(number) + "]}]}");
     EXPECT_EQ(error.problems().front().pointer, "/lights/1/intensity/1");
     EXPECT_EQ(error.problems().front().detail,
-              "number too large for a double, got \"" + std::string(number) + "\"");
+              "must be a number that a double can hold (got \"" + std::string(number) + "\")");
   }
   EXPECT_EQ(canonical("1e-999"), "0");
 }
 
-TEST(Limits, DepthHoldsAtTheLimitAndNotPastIt) {
+TEST(JsonLimits, RejectsDepthAboveLimit) {
   EXPECT_NO_THROW(parse_document(nested(32)));
   const InputError error = input_error(nested(33));
-  EXPECT_NE(error.problems().front().detail.find("32"), std::string::npos);
+  EXPECT_EQ(error.problems().front().detail, "JSON nesting has more than 32 levels (limit 32, json_depth)");
   input_error(nested(1'000'000));  // neither recursion nor time grows with the depth
   EXPECT_NO_THROW(parse_document(nested(5), {.depth = 5}));
   input_error(nested(6), {.depth = 5});
 }
 
-TEST(Limits, NodesHoldAtTheLimitAndNotPastIt) {
+TEST(JsonLimits, RejectsNodesAboveLimit) {
   EXPECT_NO_THROW(parse_document(R"({"a": [1, 2], "b": 3})", {.nodes = 5}));
   const InputError error = input_error(R"({"a": [1, 2], "b": 3})", {.nodes = 4});
   EXPECT_EQ(error.problems().front().pointer, "/b");
-  EXPECT_NE(error.problems().front().detail.find("more than 4 values"), std::string::npos);
+  EXPECT_EQ(error.problems().front().detail, "document has more than 4 JSON values (limit 4, json_nodes)");
 }
 
-TEST(Errors, SummaryNamesTheFirstAndCountsTheRest) {
+TEST(InputError, SummarizesFirstProblemAndCountsOthers) {
   EXPECT_STREQ(InputError(std::vector<Problem>{{"/a", "bad"}, {"/b", "worse"}, {"", "worst"}}).what(),
                "/a: bad (and 2 more problems)");
   EXPECT_STREQ(InputError(std::vector<Problem>{{"", "bad"}, {"/b", "worse"}}).what(),

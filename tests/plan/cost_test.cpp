@@ -37,13 +37,13 @@ double expected(const std::shared_ptr<const Scene>& scene, const RenderRequest& 
   return expected_rays(*scene, make_plan(*scene, request)) / (8 * 4 * 2);
 }
 
-TEST(Cost, OfRoughThingsIsCameraRaysAndAShadowRayToEachLight) {
+TEST(Cost, CountsCameraAndShadowRaysForRoughSurfaces) {
   EXPECT_EQ(expected(balls("plaster", 0), deep(5)), 1);
   EXPECT_EQ(expected(balls("plaster", 1), deep(5)), 2);
   EXPECT_EQ(expected(balls("plaster", 3), deep(5)), 4);
 }
 
-TEST(Cost, OfARayGrowsWithThePrimitivesWhereEachIsAsked) {
+TEST(Cost, GrowsWithPrimitivesTestedPerRay) {
   Json many = scene_of("[]");
   for (int i = 0; i < 1000; ++i)
     many["objects"].push_back(
@@ -69,24 +69,24 @@ TEST(Cost, GrowsWithPixelsAndSamples) {
   EXPECT_EQ(expected(scene, large), 30 * expected(scene, deep(5)));
 }
 
-TEST(Cost, OfMirrorsGrowsByOneRayALevel) {
+TEST(Cost, AddsOneRayPerLevelForMirrors) {
   EXPECT_EQ(expected(balls("mirror", 0), deep(0)), 1);
   EXPECT_EQ(expected(balls("mirror", 0), deep(3)), 1 + 0.5 + 0.25 + 0.125);
 }
 
-TEST(Cost, OfGlassGrowsByTwoRaysALevel) {
+TEST(Cost, AddsTwoRaysPerLevelForGlass) {
   EXPECT_EQ(expected(balls("glass", 0), deep(3)), 1 + 2 * 0.5 + 4 * 0.25 + 8 * 0.125);
   EXPECT_EQ(expected(balls("glass", 0), deep(12)), 13);
 }
 
-TEST(Cost, OfGlassIsCutByTheLeastContribution) {
+TEST(Cost, LimitsGlassByMinContribution) {
   RenderRequest request = deep(4);
   request.min_contribution = 0.25;  // four rays of a generation may have that weight
   EXPECT_EQ(expected(balls("glass", 0), request), 1 + 2 * 0.5 + 4 * 0.25 + 4 * 0.125 + 4 * 0.0625);
 }
 
 // A time budget may end an image before its sample count, an error budget does not.
-TEST(Cost, OfATimeBudgetIsNotThatOfAllItsSamples) {
+TEST(Cost, AssumesFewerSamplesForTimeBudgets) {
   RenderRequest request = deep(0);
   request.samples = 4096;
   request.error = 0.01;
@@ -95,13 +95,13 @@ TEST(Cost, OfATimeBudgetIsNotThatOfAllItsSamples) {
   EXPECT_LT(expected(balls("glass", 0), request), 4096 / 2);
 }
 
-TEST(Cost, OfATechniqueWithoutSecondaryRaysHasNoLevels) {
+TEST(Cost, IgnoresDepthWithoutSecondaryRays) {
   RenderRequest request = deep(5);
   request.technique = "raycast";
   EXPECT_EQ(expected(balls("glass", 0), request), 1);
 }
 
-TEST(Cost, OfShadowsIsThatOfTheLitHalfWhereSomeThingsAreSpecular) {
+TEST(Cost, CountsShadowRaysOnlyForDiffuseShare) {
   Json scene = scene_of(
       "[{'type': 'sphere', 'center': [1, 0, 0], 'radius': 0.5, 'material': 'mirror'},"
       " {'type': 'sphere', 'center': [-1, 0, 0], 'radius': 0.5, 'material': 'plaster'}]",
@@ -109,7 +109,7 @@ TEST(Cost, OfShadowsIsThatOfTheLitHalfWhereSomeThingsAreSpecular) {
   EXPECT_EQ(expected(load(scene), deep(2)), 1.75 * 1.5);
 }
 
-TEST(Cost, OfDistributedRaysEndsAtDiffuseSurfaces) {
+TEST(Cost, EndsDistributedRaysAtDiffuseSurfaces) {
   RenderRequest request = deep(3);
   request.technique = "distributed";
   EXPECT_EQ(expected(balls("plaster", 1), request), 1 + 2 + 1) << "one shadow ray";
@@ -120,9 +120,9 @@ TEST(Cost, OfDistributedRaysEndsAtDiffuseSurfaces) {
   EXPECT_NEAR(expected(balls("plaster", 1), request), mirrors, 1e-12);
 }
 
-class CostOfSamples : public testing::TestWithParam<std::string> {};
+class SampleSceneCost : public testing::TestWithParam<std::string> {};
 
-TEST_P(CostOfSamples, IsOfTheOrderOfWhatIsTraced) {
+TEST_P(SampleSceneCost, MatchesOrderOfTracedRays) {
   const auto scene = load(sample(GetParam()));
   RenderRequest request = size(160, 120);
   if (reduced()) request.samples = 2;
@@ -133,7 +133,7 @@ TEST_P(CostOfSamples, IsOfTheOrderOfWhatIsTraced) {
   EXPECT_LT(share, 6.5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Samples, CostOfSamples, testing::ValuesIn(sample_names()));
+INSTANTIATE_TEST_SUITE_P(Samples, SampleSceneCost, testing::ValuesIn(sample_names()));
 
 }  // namespace
 }  // namespace orrery::test

@@ -79,7 +79,7 @@ std::vector<Json> invalid_values(const RenderOption& option) {
   return std::visit(InvalidValues(), option.kind);
 }
 
-TEST(RenderOptions, HaveDifferentNamesAndAWord) {
+TEST(RenderOptions, HasUniqueNamesAndHelp) {
   std::set<std::string_view> names;
   for (const RenderOption& option : render_options()) {
     EXPECT_TRUE(names.insert(option.key).second) << option.key;
@@ -89,7 +89,7 @@ TEST(RenderOptions, HaveDifferentNamesAndAWord) {
   }
 }
 
-TEST(RenderOptions, DefaultsAreAllowedAndAreWhatAnEmptySceneGets) {
+TEST(RenderOptions, UsesValidDefaultsForEmptyScene) {
   Json bare = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
   for (const char* member : {"image", "render"}) bare.erase(member);
   bare["camera"].erase("fov_degrees");
@@ -104,7 +104,7 @@ TEST(RenderOptions, DefaultsAreAllowedAndAreWhatAnEmptySceneGets) {
 
 // A request may change the technique of its scene. Without an explicit depth, the technique's default
 // applies.
-TEST(RenderOptions, DepthIsThatOfTheTechniqueUnlessNamed) {
+TEST(RenderOptions, UsesDepthOfTechniqueByDefault) {
   Json named = sample("paper"), unnamed = named;
   named["render"]["max_depth"] = 4;
   unnamed["render"].erase("max_depth");
@@ -121,14 +121,14 @@ TEST(RenderOptions, DepthIsThatOfTheTechniqueUnlessNamed) {
                                   [](const RenderOption& option) { return option.key == "max_depth"; });
     const std::string depth = std::to_string(type.max_depth);
     const bool usual = type.max_depth == *default_settings().max_depth;
-    EXPECT_NE(row->help.find(usual ? "Unless told " + depth : std::string("of ") + type.name + " " + depth),
+    EXPECT_NE(row->help.find(usual ? "Default: " + depth : std::string(type.name) + " " + depth),
               std::string_view::npos)
         << type.name;
   }
 }
 
 // Settings named in the request are kept.
-TEST(RenderOptions, BudgetsFreeWhatIsNotAskedWhateverTheSceneSays) {
+TEST(RenderOptions, RelaxesUnrequestedSettingsUnderBudgets) {
   Json json = sample("paper");
   json["render"].update(
       {{"max_depth", 4}, {"min_contribution", 0.5}, {"precision", "float"}, {"samples", 3}});
@@ -154,7 +154,7 @@ TEST(RenderOptions, BudgetsFreeWhatIsNotAskedWhateverTheSceneSays) {
   }
 }
 
-TEST(RenderOptions, AreReadUpToTheirLimitsAndWrittenAsTheyWere) {
+TEST(RenderOptions, RoundTripsExtremeValues) {
   for (const RenderOption& option : render_options()) {
     ASSERT_GE(extreme_values(option).size(), 2U) << option.key;
     for (const Json& value : extreme_values(option)) {
@@ -169,13 +169,13 @@ TEST(RenderOptions, AreReadUpToTheirLimitsAndWrittenAsTheyWere) {
   }
 }
 
-TEST(RenderOptions, AreRefusedBeyondTheirLimits) {
+TEST(RenderOptions, RejectsValuesBeyondLimits) {
   for (const RenderOption& option : render_options())
     for (const Json& value : invalid_values(option))
       EXPECT_TRUE(problem(option, value).starts_with(option.pointer())) << option.key << " " << value;
 }
 
-TEST(RenderOptions, ThatSceneAndRequestShareHaveOneRange) {
+TEST(RenderOptions, SharesRangesBetweenSceneAndRequest) {
   for (const RenderOption& option : render_options()) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]");
     const std::string section(name_of(option.section));
@@ -193,7 +193,7 @@ TEST(RenderOptions, ThatSceneAndRequestShareHaveOneRange) {
   }
 }
 
-TEST(RenderOptions, OfARequestComeBeforeThoseOfItsScene) {
+TEST(RenderOptions, PrefersRequestOverScene) {
   for (const RenderOption& option : render_options()) {
     if (!option.in_scene) continue;
     const std::vector<Json> values = extreme_values(option);
@@ -211,7 +211,7 @@ TEST(RenderOptions, OfARequestComeBeforeThoseOfItsScene) {
   }
 }
 
-TEST(RenderOptions, WithoutAValueAreNotWritten) {
+TEST(RenderOptions, OmitsUnsetValues) {
   EXPECT_EQ(to_json({}), "{}");
   EXPECT_EQ(read(Json::object()), RenderSettings());
   RenderSettings settings;
@@ -223,7 +223,7 @@ TEST(RenderOptions, WithoutAValueAreNotWritten) {
 }
 
 // No option is a list of names yet. Such an option works like the others.
-TEST(RenderOptions, MayBeListsOfNames) {
+TEST(RenderOptions, SupportsListsOfNames) {
   struct MoreSettings : RenderSettings {
     std::optional<std::vector<std::string>> layers;
   };
@@ -235,7 +235,7 @@ TEST(RenderOptions, MayBeListsOfNames) {
                                      [] {
                                        return RenderOption::Names{"depth", "normal", "albedo"};
                                      }},
-      .help = "What is written beside the picture."};
+      .help = "Additional channels of the image."};
   EXPECT_EQ(option.value_name(), "depth|normal|albedo");
   EXPECT_EQ(option.form(), RenderOption::Form::strings);
   const auto read_layers = [&](const Json& json) {

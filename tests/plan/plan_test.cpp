@@ -52,7 +52,7 @@ bool decides(const Plan& plan, const std::string& subject) {
                      [&](const Decision& d) { return d.subject == subject; });
 }
 
-TEST(Plan, LeavesOutLightThatNothingAnswers) {
+TEST(Plan, OmitsDirectLightWithoutEffect) {
   const Json no_light = scene_of_materials({kRough, kRough}, "[]");
   EXPECT_FALSE(plan_of(no_light).direct_light);
   const Json dark_light = scene_of_materials(
@@ -65,7 +65,7 @@ TEST(Plan, LeavesOutLightThatNothingAnswers) {
   EXPECT_GT(sum(render(scene_of_materials({kRough, kMirror})).stats.counts.rays.shadow), 0u);
 }
 
-TEST(Plan, LeavesOutShadowsOfALonelyConvexBody) {
+TEST(Plan, OmitsShadowsOfSingleConvexBody) {
   Json scene = scene_of_materials({kRough});
   EXPECT_FALSE(plan_of(scene).shadows);
   EXPECT_EQ(sum(render(scene).stats.counts.rays.shadow), 0u);
@@ -78,7 +78,7 @@ TEST(Plan, LeavesOutShadowsOfALonelyConvexBody) {
                    .shadows);
 }
 
-TEST(Plan, LeavesOutMirroredAndRefractedRays) {
+TEST(Plan, OmitsUnneededReflectedAndRefractedRays) {
   const Json rough = scene_of_materials({kRough, kRough}), metal = scene_of_materials({kRough, kMirror}),
              glass = scene_of_materials({kRough, kGlass}), amber = scene_of_materials({kRough, kAmber});
   EXPECT_FALSE(plan_of(rough).specular);
@@ -95,20 +95,20 @@ TEST(Plan, LeavesOutMirroredAndRefractedRays) {
   EXPECT_TRUE(plan_of(amber).filters);
 }
 
-TEST(Plan, MaterialsNobodyUsesCostNothing) {
+TEST(Plan, IgnoresUnusedMaterials) {
   Json scene = scene_of_materials({kRough, kRough});
   scene["materials"]["unused"] = json(kAmber);
   EXPECT_FALSE(plan_of(scene).specular);
   EXPECT_FALSE(plan_of(scene).filters);
 }
 
-TEST(Plan, LonelyMirrorNeedsNoDepth) {
+TEST(Plan, LimitsDepthForSingleMirror) {
   EXPECT_EQ(plan_of(scene_of_materials({kMirror})).max_depth, 1);
   EXPECT_EQ(plan_of(scene_of_materials({kMirror, kMirror})).max_depth, 5);
   EXPECT_EQ(plan_of(scene_of_materials({kGlass})).max_depth, 5) << "what goes in comes out later";
 }
 
-TEST(Plan, RaycastSendsNoSecondaryRays) {
+TEST(Plan, SendsNoSecondaryRaysForRaycast) {
   RenderRequest request;
   request.technique = "raycast";
   const Json scene = scene_of_materials({kRough, kMirror, kAmber});
@@ -117,7 +117,7 @@ TEST(Plan, RaycastSendsNoSecondaryRays) {
   EXPECT_EQ(sum(rays.reflected) + sum(rays.refracted), 0u);
 }
 
-TEST(Plan, ChoosesDoubleWhereFloatWouldShow) {
+TEST(Plan, ChoosesDoubleForVisibleFloatErrors) {
   covers("A18");
   const auto is_double = [](const Vec3d& at, double radius, double distance) {
     const Json ball{{"type", "sphere"}, {"center", numbers(at)}, {"radius", radius}};
@@ -138,7 +138,7 @@ TEST(Plan, ChoosesDoubleWhereFloatWouldShow) {
       << "as asked";
 }
 
-TEST(Plan, ChoosesTheListForAFewPrimitives) {
+TEST(Plan, ChoosesListForFewPrimitives) {
   Json objects = Json::array();
   for (int i = 0; i < 8; ++i) objects.push_back(placed(json(kBall), 0.1, Vec3d(i, 0, 0)));
   EXPECT_STREQ(plan_of(scene_with(objects)).accelerator->name, "list");
@@ -151,37 +151,37 @@ TEST(Plan, ChoosesTheListForAFewPrimitives) {
   }
 }
 
-TEST(Plan, SortsRaysOnlyIfAsked) {
+TEST(Plan, SortsRaysOnlyOnRequest) {
   Json scene = scene_of_materials({kRough, kMirror});
   RenderRequest request;
   EXPECT_FALSE(plan_of(scene).reorder);
   request.reorder = true;
   const Plan asked = plan_of(scene, request);
   EXPECT_TRUE(asked.reorder);
-  EXPECT_TRUE(decides(asked, "order of rays"));
-  EXPECT_FALSE(decides(plan_of(scene), "order of rays"));
+  EXPECT_TRUE(decides(asked, "ray order"));
+  EXPECT_FALSE(decides(plan_of(scene), "ray order"));
   scene["render"] = {{"reorder", true}};
   EXPECT_TRUE(plan_of(scene).reorder);
   request.reorder = false;
   EXPECT_FALSE(plan_of(scene, request).reorder);
 }
 
-TEST(Plan, PredictsShadowsOnlyIfAsked) {
+TEST(Plan, PredictsShadowsOnlyOnRequest) {
   Json scene = scene_of_materials({kRough, kMirror});
   EXPECT_EQ(plan_of(scene).prediction, Prediction::none);
-  EXPECT_FALSE(decides(plan_of(scene), "prediction of shadows"));
+  EXPECT_FALSE(decides(plan_of(scene), "shadow prediction"));
   scene["render"] = {{"prediction", "network"}};
   EXPECT_EQ(plan_of(scene).prediction, Prediction::network);
   RenderRequest request;
   request.prediction = Prediction::last;
   EXPECT_EQ(plan_of(scene, request).prediction, Prediction::last);
-  EXPECT_TRUE(decides(plan_of(scene, request), "prediction of shadows"));
+  EXPECT_TRUE(decides(plan_of(scene, request), "shadow prediction"));
   request.prediction = Prediction::none;
   EXPECT_EQ(plan_of(scene, request).prediction, Prediction::none);
 }
 
-TEST(Plan, DistributedRaysEndAtDiffuseSurfaces) {
-  const std::string subject = "light between diffuse surfaces";
+TEST(Plan, EndsDistributedRaysAtDiffuseSurfaces) {
+  const std::string subject = "diffuse interreflection";
   RenderRequest request;
   request.technique = "distributed";
   const auto choice = [&](const Json& scene) -> std::string {
@@ -192,7 +192,7 @@ TEST(Plan, DistributedRaysEndAtDiffuseSurfaces) {
   Json scene = scene_of_materials({kRough, kMirror});
   scene["camera"]["aperture_radius"] = 0.1;
   scene["camera"]["focus_distance"] = 4;
-  EXPECT_EQ(choice(scene), "absent");
+  EXPECT_EQ(choice(scene), "none");
   const char* brushed = "{'type': 'metal', 'name': 'iron', 'roughness': 0.4}";
   EXPECT_EQ(choice(scene_of_materials({kMirror, kGlass, brushed})), "") << "nothing is diffuse";
   scene["ambient"] = {0.1, 0.1, 0.1};
@@ -213,7 +213,7 @@ TEST(Plan, GivesAReasonForEveryDecision) {
     }
 }
 
-TEST(Plan, TakesFromTheSceneWhatTheRequestLeavesOut) {
+TEST(Plan, FallsBackToSceneSettings) {
   Json scene = scene_of_materials({kRough, kGlass});
   scene["image"] = {{"width", 123}, {"height", 45}};
   scene["render"] = {
@@ -255,7 +255,7 @@ void expect_same_picture(const Plan& a, const Plan& b) {
   EXPECT_EQ(a.constant_half, b.constant_half);
 }
 
-TEST(Plan, WrittenAsARequestAndReadBackIsTheSamePlan) {
+TEST(Plan, RoundTripsThroughRequest) {
   RenderRequest turned = size(97, 31);
   turned.azimuth_degrees = 1.0 / 3;
   turned.elevation_degrees = -12.5;

@@ -78,7 +78,7 @@ Json from_file(const std::filesystem::path& path) {
   return Json::parse(file);
 }
 
-class HardForFloat : public testing::TestWithParam<std::string> {};
+class PrecisionScene : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> hard_scenes() {
   std::vector<std::string> names;
@@ -88,17 +88,17 @@ std::vector<std::string> hard_scenes() {
   return names;
 }
 
-TEST_P(HardForFloat, IsRenderedAsInDouble) {
+TEST_P(PrecisionScene, MatchesDoublePrecision) {
   EXPECT_LE(error_of_choice(load(from_file("tests/scenes/precision/" + GetParam() + ".json"))), kMaxError);
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, HardForFloat, testing::ValuesIn(hard_scenes()), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Scenes, PrecisionScene, testing::ValuesIn(hard_scenes()), [](const auto& test) {
   std::string name = test.param;
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return name;
 });
 
-TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
+TEST(Precision, UsesFloatWithoutVisibleErrorForSampleScenes) {
   for (const std::string& name : sample_names()) {
     Json scene = sample(name);
     const bool small = reduced();
@@ -110,13 +110,13 @@ TEST(Precision, OfSamplesIsFloatAndShowsNothing) {
 }
 
 // Includes layers that approach each other only later.
-TEST(Precision, OfMotionIsThatOfItsNarrowestMoment) {
+TEST(Precision, ConsidersNarrowestMomentOfMotion) {
   const auto scene = load(from_file("tests/scenes/closing_gap.json"));
   EXPECT_TRUE(make_plan(*scene, {}).double_precision);
 }
 
 // The reason names the element that needs double precision.
-TEST(Precision, SaysWhatNeedsDouble) {
+TEST(Precision, ReportsReasonForDouble) {
   const auto reason = [](const std::string& name) {
     const Plan plan = make_plan(*load(from_file("tests/scenes/precision/" + name + ".json")), {});
     EXPECT_TRUE(plan.double_precision) << name;
@@ -129,14 +129,14 @@ TEST(Precision, SaysWhatNeedsDouble) {
   EXPECT_THAT(reason("plane_point_1e+06_away"), testing::HasSubstr("(/objects/0)"));
   EXPECT_THAT(reason("tube_point_100000_away"), testing::HasSubstr("(/objects/0)"));
   EXPECT_THAT(reason("decal_1e-07_above_floor"), testing::HasSubstr("/objects/0 is 9.99"));
-  EXPECT_THAT(reason("bubble_1e-06_thick"), testing::HasSubstr("from the next"));
+  EXPECT_THAT(reason("bubble_1e-06_thick"), testing::HasSubstr("from the next surface"));
   EXPECT_THAT(reason("film_1e-06_thick_10_wide"), testing::HasSubstr("/objects/0 is 9.99"));
   EXPECT_THAT(reason("mirror_tubes_0.3_depth_5"), testing::HasSubstr("each of 5 reflections"));
-  EXPECT_THAT(reason("mesh_of_size_1e-14"), testing::HasSubstr("too small for float"));
+  EXPECT_THAT(reason("mesh_of_size_1e-14"), testing::HasSubstr("underflow in float"));
   EXPECT_THAT(reason("tele_1e-4_look_at_10000_away"), testing::HasSubstr("a pixel is 1.27"));
 }
 
-TEST(Precision, OfAPlaneInAModelIsThatOfWhereItStands) {
+TEST(Precision, ConsidersPositionOfInstancedPlanes) {
   const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
                                    "{'models': {'floor': {'objects': [{'type': 'plane', 'point': [0, 0, 0],"
                                    " 'normal': [0, 1, 0.3], 'material': 'white'}]}},"
@@ -147,7 +147,7 @@ TEST(Precision, OfAPlaneInAModelIsThatOfWhereItStands) {
 }
 
 // Scenes too small for float are right in double, down to the smallest size of the format.
-TEST(Precision, OfTinyScenesIsRightToTheLeastSize) {
+TEST(Precision, StaysExactForTinyScenes) {
   const Json tiny = from_file("tests/scenes/precision/mesh_of_size_1e-14.json");
   const Picture large = render(scaled(tiny, 0x1p47), in_double());
   for (const double factor : {1.0, 0x1p-100, 0x1p-250}) {
@@ -292,7 +292,7 @@ class RandomScene {
   Json scene_;
 };
 
-TEST(Precision, OfRandomScenesIsThatOfDouble) {
+TEST(Precision, MatchesDoubleForRandomScenes) {
   constexpr int kScenes = 500;
   int in_float = 0, float_suffices = 0, float_errs = 0;
   double worst = 0;

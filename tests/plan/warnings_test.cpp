@@ -33,13 +33,13 @@ std::string warned(const Json& scene, const RenderRequest& request = {}) {
   return places;
 }
 
-TEST(Warnings, ThereAreNoneOfAnOrdinaryScene) { EXPECT_EQ(warned(lit(kBall)), ""); }
+TEST(Warnings, IsEmptyForOrdinaryScene) { EXPECT_EQ(warned(lit(kBall)), ""); }
 
-TEST(Warnings, ThereAreNoneOfTheSampleScenes) {
+TEST(Warnings, IsEmptyForSampleScenes) {
   for (const std::string& name : sample_names()) EXPECT_EQ(warned(sample(name)), "") << name;
 }
 
-TEST(Warnings, TellThatNothingIsLit) {
+TEST(Warnings, ReportsUnlitScene) {
   Json scene = lit(kBall, {0, 0, 4}, "[]");
   EXPECT_EQ(warned(scene), "") << "ambient light shows the outline";
   scene["ambient"] = {0, 0, 0};
@@ -50,7 +50,7 @@ TEST(Warnings, TellThatNothingIsLit) {
   EXPECT_EQ(warned(scene), "");
 }
 
-TEST(Warnings, TellWhoSendsOnMoreLightThanItGets) {
+TEST(Warnings, ReportsEnergyCreatingMaterials) {
   Json scene = lit(kBall);
   scene["materials"]["white"] =
       json("{'type': 'metallic-roughness', 'base_color': 1, 'roughness': 0.5, 'strict': true}");
@@ -62,7 +62,7 @@ TEST(Warnings, TellWhoSendsOnMoreLightThanItGets) {
 }
 
 // Light without extent reaches a floor by way of a smooth ball with probability 0.
-TEST(Warnings, NameLightsAndSmoothSurfacesThatPathsCannotConnect) {
+TEST(Warnings, ReportsLightsUnreachableThroughSmoothSurfaces) {
   covers("light-53");
   const auto with = [](const char* light, const char* ball) {
     Json scene =
@@ -105,7 +105,7 @@ TEST(Warnings, NameLightsAndSmoothSurfacesThatPathsCannotConnect) {
   EXPECT_NE(detail.find("a sphere lamp of radius 0.02 m"), std::string::npos) << detail;
 }
 
-TEST(Warnings, KnowThatAMirrorShowsTheBackground) {
+TEST(Warnings, CountsMirroredBackgroundAsLight) {
   Json scene = lit(kBall, {0, 0, 4}, "[]");
   scene["ambient"] = {0, 0, 0};
   scene["materials"]["white"] = json("{'type': 'reflective', 'n': [0.2, 0.2, 0.2], 'k': [3, 3, 3]}");
@@ -115,7 +115,7 @@ TEST(Warnings, KnowThatAMirrorShowsTheBackground) {
   EXPECT_EQ(warned(scene), "");
 }
 
-TEST(Warnings, TellThatTheCameraIsInsideAnOpaqueShape) {
+TEST(Warnings, ReportsCameraInsideOpaqueShape) {
   EXPECT_EQ(warned(lit(kBall, {0, 0, 0.9})), "/camera/eye ");
   EXPECT_EQ(warned(lit(kBall, {0, 0, 1.1})), "");
   EXPECT_EQ(warned(lit("{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}", {0.9, 0.9, 0.9})),
@@ -126,7 +126,7 @@ TEST(Warnings, TellThatTheCameraIsInsideAnOpaqueShape) {
   EXPECT_EQ(warned(lit(kBall), near), "/camera/eye ") << "an orbit leads there";
 }
 
-TEST(Warnings, KnowThatARoomHasALamp) {
+TEST(Warnings, AcceptsCameraInsideLitRoom) {
   const char* room = "{'type': 'box', 'min': [-5, -5, -5], 'max': [5, 5, 5]}";
   EXPECT_EQ(warned(lit(room, {0, 0, 4}, "[{'type': 'point', 'position': [1, 1, 1]}]")), "");
   EXPECT_EQ(warned(lit(room, {0, 0, 4}, "[{'type': 'point', 'position': [1, 9, 1]}]")), "/camera/eye ");
@@ -134,7 +134,7 @@ TEST(Warnings, KnowThatARoomHasALamp) {
   EXPECT_EQ(warned(lit(room, {0, 0, 4}, dark)), "/camera/eye ");
 }
 
-TEST(Warnings, KnowThatAmbientLightShowsWhatIsInARoom) {
+TEST(Warnings, AcceptsCameraInsideFurnishedAmbientRoom) {
   const std::string room = "{'type': 'box', 'min': [-5, -5, -5], 'max': [5, 5, 5]}";
   Json furnished = lit((room + ", " + kBall).c_str());
   EXPECT_EQ(warned(furnished), "");
@@ -145,7 +145,7 @@ TEST(Warnings, KnowThatAmbientLightShowsWhatIsInARoom) {
 }
 
 // The check compares each shape around the camera with each light, and so has a limit on shapes.
-TEST(Warnings, GiveUpAfterEightShapesAroundTheCamera) {
+TEST(Warnings, StopsAfterEightShapesAroundCamera) {
   const auto warned_after = [](int lit_shapes) {
     Json scene = lit("", {0, 0, 4}, "[{'type': 'point', 'position': [0, 0, 5]}]");
     const auto add = [&](double radius) {
@@ -161,13 +161,13 @@ TEST(Warnings, GiveUpAfterEightShapesAroundTheCamera) {
   EXPECT_EQ(warned_after(8), "");
 }
 
-TEST(Warnings, KnowThatGlassIsSeenThrough) {
+TEST(Warnings, AcceptsCameraInsideGlass) {
   Json scene = lit(kBall, {0, 0, 0.5});
   scene["materials"]["white"] = json("{'type': 'refractive', 'ior': 1.5}");
   EXPECT_EQ(warned(scene), "");
 }
 
-TEST(Warnings, TellThatNothingIsInView) {
+TEST(Warnings, ReportsEmptyView) {
   Json scene = lit(kBall);
   scene["camera"]["look_at"] = {0, 0, 9};
   EXPECT_EQ(warned(scene), "/camera ") << "it is behind";
@@ -177,7 +177,7 @@ TEST(Warnings, TellThatNothingIsInView) {
   EXPECT_EQ(warned(floor), "") << "it has no end";
 }
 
-TEST(Warnings, FollowInstancesAndMotion) {
+TEST(Warnings, FollowsInstances) {
   Json scene = lit("");
   scene["models"]["ball"]["objects"] = Json::array({json(kBall)});
   scene["models"]["ball"]["objects"][0]["material"] = "white";
@@ -191,7 +191,7 @@ TEST(Warnings, FollowInstancesAndMotion) {
   EXPECT_EQ(with("{'model': 'ball', 'translate': [0, 0, 3.5]}"), "/camera/eye ");
 }
 
-TEST(Warnings, KnowFromWhatWasTracedWhetherAnythingWasMet) {
+TEST(Warnings, ReportsEmptyViewFromTracedHits) {
   const auto scene = load(lit(kBall));
   const Plan plan = make_plan(*scene, {});
   TraceCounts traced;

@@ -104,7 +104,7 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.file; }
 
 class Povray : public testing::TestWithParam<Case> {};
 
-TEST_P(Povray, PictureEqualsOurs) {
+TEST_P(Povray, RendersSamePicture) {
   if (!povray_is_installed()) GTEST_SKIP() << "povray is not installed";
   const Case& c = GetParam();
   const std::string folder = std::string("build/povray/") + c.name;

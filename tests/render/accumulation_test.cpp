@@ -55,7 +55,7 @@ struct Accumulator {
 
 // Renders the maximum sample count of a request, of a value without a finite binary fraction. Each addition
 // errs by at most half a unit in the last place, all together by 4096 * 2^-53.
-TEST(Accumulation, OfTheMostSamplesKeepsAConstant) {
+TEST(Accumulation, KeepsConstantAtMaximumSamples) {
   covers("light-10");
   Accumulator accumulator(0.1);
   accumulator.render(0, 1024);
@@ -65,7 +65,7 @@ TEST(Accumulation, OfTheMostSamplesKeepsAConstant) {
 }
 
 // Adds values that single precision would lose: one half to half of 10^8.
-TEST(Accumulation, GoesOnAtAHundredMillionSamples) {
+TEST(Accumulation, StaysExactAtHundredMillionSamples) {
   covers("light-10");
   constexpr int kAll = 100'000'000, kLast = 64;
   ASSERT_EQ(float{kAll / 2} + 0.5f, float{kAll / 2});
@@ -113,7 +113,7 @@ Json seen_from_above(Json scene, double height) {
 
 // At an edge, variance falls with the power 3/2 of the sample count (Mitchell, "Consequences of Stratified
 // Sampling in Graphics", SIGGRAPH 1996).
-TEST(Stratification, VarianceAtAnEdgeFallsWithThePower3Halves) {
+TEST(Stratification, ReducesVarianceAsPower3Over2AtEdges) {
   covers("light-6");
   constexpr int kWidth = 64, kHeight = 16;
   constexpr double kSlope = 0.1871, kAt = 0.037;
@@ -136,7 +136,7 @@ TEST(Stratification, VarianceAtAnEdgeFallsWithThePower3Halves) {
 
 // For smooth radiance, variance falls with the power 2 for one random point per cell. For scrambled nets the
 // power is nearly 3 (Owen, "Scrambled Net Variance for Integrals of Smooth Functions", 1997: n^-3 log n).
-TEST(Stratification, VarianceOfASmoothPixelFallsFasterThanThePower2) {
+TEST(Stratification, ReducesVarianceFasterThanPower2IfSmooth) {
   covers("light-6");
   constexpr int kSide = 8;
   const Json scene = seen_from_above(

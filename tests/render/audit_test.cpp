@@ -30,7 +30,7 @@ double truth(const Json& scene, const RenderRequest& request) {
                         linear_values(rendered(loaded, whole).film));
 }
 
-TEST(Audit, BoundsWhatIsCutOfRandomScenes) {
+TEST(Audit, BoundsTruncationErrorOfRandomScenes) {
   covers("certificate-1");
   Random random(11);
   int held = 0;
@@ -48,7 +48,7 @@ TEST(Audit, BoundsWhatIsCutOfRandomScenes) {
 
 // From far away, where a float's spacing is half a metre, the edge of a ball is ragged. From nearby it hardly
 // is.
-TEST(Audit, SeesWhatFloatsLose) {
+TEST(Audit, DetectsFloatErrors) {
   covers("certificate-11");
   const auto seen_from = [](double distance) {
     const Json scene = scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"),
@@ -69,7 +69,7 @@ TEST(Audit, SeesWhatFloatsLose) {
 }
 
 // The objects are about as large as pixels: one sample per pixel reveals no error, but 64 do.
-TEST(Audit, SeesWhatOneSampleMisses) {
+TEST(Audit, DetectsUndersampling) {
   covers("certificate-23");
   Json dots = json("[]");
   for (int x = 0; x < 24; ++x)
@@ -105,7 +105,7 @@ TEST(Audit, BoundsTheShareOfWrongPixels) {
   EXPECT_FALSE(found.bound.max) << "the pixels that were not drawn may be off by anything";
 }
 
-TEST(Audit, OfTheWholeModelIsNothing) {
+TEST(Audit, ReportsZeroErrorForFullModel) {
   RenderRequest r = in_double(size(64, 64));
   r.max_depth = 32;
   r.min_contribution = 1e-4;
@@ -115,7 +115,7 @@ TEST(Audit, OfTheWholeModelIsNothing) {
   EXPECT_EQ(found.rms, 0);
 }
 
-TEST(Audit, RefusesWhatItDoesNotKeep) {
+TEST(Audit, RejectsBudgetsViewsAndLayers) {
   RenderRequest r = size(32, 32);
   r.error = 0.1;
   EXPECT_THROW(audited(sample("paper"), r, 1), InputError);

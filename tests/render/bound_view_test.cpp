@@ -22,7 +22,7 @@ RenderRequest flat() {
 
 // The pixels of a mirror have the colour of the bound on its omitted reflections. Nothing is omitted
 // elsewhere.
-TEST(BoundView, HasTheColourOfWhatIsLeftOut) {
+TEST(BoundView, ShowsBoundOfOmittedLight) {
   const auto loaded = test::load(test::scene_with(
       json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'mirror'}]"),
       Json{{"materials",
@@ -51,7 +51,7 @@ TEST(BoundView, HasTheColourOfWhatIsLeftOut) {
 }
 
 // Only pixels whose halves differ show noise.
-TEST(BoundView, HasTheColourOfNoise) {
+TEST(BoundView, ShowsSamplingNoise) {
   const auto loaded = test::load(
       test::scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]", "{'ambient': [1, 1, 1]}"));
   RenderRequest r = flat();

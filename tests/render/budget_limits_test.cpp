@@ -18,7 +18,7 @@ RenderRequest square(int side, double error = 0) {
 }
 
 // A smaller min_contribution adds no rays to a technique without secondary rays.
-TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
+TEST(ErrorBudget, SkipsWeakRaySearchWithoutSecondaryRays) {
   const auto scene = test::load(test::sample("glass"));
   RenderRequest r = square(64, 0.1);
   r.technique = "raycast";
@@ -27,17 +27,17 @@ TEST(ErrorBudget, LooksForNoWeakRaysWhereNoneAreFollowed) {
 }
 
 // The error of fewer samples than requested is not that of the requested image.
-TEST(ErrorBudget, IsMissedByFewerSamplesThanAreNamed) {
+TEST(ErrorBudget, IsMissedBelowRequestedSamples) {
   RenderRequest r = square(64, 0.9);
   r.samples = 1024;
   const RenderResult result = rendered(test::load(test::sample("paper")), r, {.max_rays = 1e6});
   EXPECT_LT(*result.budget->settings.samples, 1024);
   EXPECT_FALSE(result.budget->met());
-  EXPECT_NE(result.budget->reason.find("more than the"), std::string::npos) << result.budget->reason;
+  EXPECT_NE(result.budget->reason.find("(limit "), std::string::npos) << result.budget->reason;
 }
 
 // If a copy of the film exceeds the memory limit, the current film is the image.
-TEST(TimeBudget, KeepsThePictureWhereMemoryEnds) {
+TEST(TimeBudget, KeepsImageIfMemoryRunsOut) {
   const auto scene = test::load(test::sample("paper"));
   RenderRequest r = square(1200);  // 35 MB of sums
   r.technique = "raycast";

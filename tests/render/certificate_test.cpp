@@ -99,7 +99,7 @@ TEST(Ledger, BoundsTheErrorOfRandomScenes) {
   }
 }
 
-TEST(RadianceRange, HoldsAllRadianceOfRandomScenes) {
+TEST(RadianceRange, ContainsRadianceOfRandomScenes) {
   covers("certificate-6");
   test::Random random = scenes_seed();
   for (int i = 0; i < 200; ++i) {
@@ -119,13 +119,13 @@ TEST(RadianceRange, HoldsAllRadianceOfRandomScenes) {
 }
 
 // Plum reflects .3 of the ambient .4, and .3 and a highlight of 2 of the light's 2.
-TEST(RadianceRange, OfThePapersSceneIsThatByHand) {
+TEST(RadianceRange, MatchesHandComputedPaperScene) {
   covers("certificate-6");
   const auto scene = test::load(test::sample("paper"));
   EXPECT_NEAR(max_component(scene->facts.tree_radiance.most), 4.72, 1e-9);
 }
 
-TEST(RadianceRange, OfLightsFallsWithTheirDistance) {
+TEST(RadianceRange, FallsWithDistanceOfLights) {
   const auto most = [](const char* lights) {
     return test::load(test::scene_of("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}",
                                      std::string("{'lights': [") + lights + "]}"))
@@ -138,7 +138,7 @@ TEST(RadianceRange, OfLightsFallsWithTheirDistance) {
 }
 
 // An emissive mirror, or one that does not attenuate its ambient light, adds up over repeated reflections.
-TEST(RadianceRange, IsUnknownWhereSpecularSurfacesShine) {
+TEST(RadianceRange, IsUnknownForEmissiveSpecularSurfaces) {
   const auto finite = [](const char* material, const char* ambient) {
     return test::load(test::scene_of(
                           "{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'm'}",
@@ -153,7 +153,7 @@ TEST(RadianceRange, IsUnknownWhereSpecularSurfacesShine) {
 }
 
 // A lamp of radiance L in a closed room of albedo a: at most L / (1 - a) with its own albedo.
-TEST(RadianceRange, OfPathsIsTheSeries) {
+TEST(RadianceRange, MatchesGeometricSeriesForPaths) {
   const Json scene = test::scene_of(
       "[{'type': 'box', 'min': [-2, -2, -2], 'max': [2, 2, 2], 'material': 'wall'},"
       " {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.5, 'material': 'lamp'}]",
@@ -169,7 +169,7 @@ TEST(RadianceRange, OfPathsIsTheSeries) {
 }
 
 // Two facing mirrors of .95 with a lit end beyond depth 5: the omitted part is .95^6 of the range.
-TEST(Ledger, OfACorridorIsThatOfTheClosedForm) {
+TEST(Ledger, MatchesClosedFormForCorridor) {
   covers("certificate-3");
   const double n = (1 + std::sqrt(.95)) / (1 - std::sqrt(.95));
   const Json scene = test::scene_with(
@@ -188,7 +188,7 @@ TEST(Ledger, OfACorridorIsThatOfTheClosedForm) {
 
 // A ray in a slab of glass beyond the critical angle never leaves. The whole ray is omitted, but the bound is
 // finite.
-TEST(Ledger, OfALightGuideIsTheWholeRange) {
+TEST(Ledger, CoversWholeRangeInLightGuide) {
   covers("certificate-4");
   const Json scene = test::scene_with(
       json("[{'type': 'box', 'min': [-500, -1, -500], 'max': [500, 1, 500], 'material': 'glass'}]"),
@@ -204,7 +204,7 @@ TEST(Ledger, OfALightGuideIsTheWholeRange) {
 }
 
 // Ambient light replaces a ray that would have been dark.
-TEST(Ledger, CountsASubstituteThatIsTooBright) {
+TEST(Ledger, CountsTooBrightSubstitutes) {
   const auto loaded = test::load(
       test::scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'glass'}]"),
                        Json{{"materials", {{"glass", {{"type", "refractive"}, {"ior", 1.5}}}}},
@@ -238,7 +238,7 @@ int count_bounded_seeds(const Json& scene, RenderRequest r, int samples_of_truth
 }
 
 // Edges, highlights in glass, and dots seen by one pixel in a hundred: the bound holds over seeds.
-TEST(Certificate, OfSamplesHoldsOverSeeds) {
+TEST(Certificate, BoundsSamplingErrorOverSeeds) {
   covers("certificate-17");
   Json dots = test::scene_with(json("[]"));
   dots["materials"]["lamp"] = json("{'type': 'lambert', 'reflectance': 0, 'emission': [1, 1, 1]}");
@@ -254,7 +254,7 @@ TEST(Certificate, OfSamplesHoldsOverSeeds) {
 }
 
 // On a display the range of paths is bounded, too. With path reuse, errors are correlated within a tile.
-TEST(Certificate, OfPathsHoldsOnADisplay) {
+TEST(Certificate, BoundsPathErrorOnDisplay) {
   covers("certificate-17 certificate-18");
   for (const char* name : {"cornell-box", "outdoors"}) {
     for (const int reuse : {1, 16}) {
@@ -271,7 +271,7 @@ TEST(Certificate, OfPathsHoldsOnADisplay) {
   }
 }
 
-TEST(Certificate, KnowsThatPixelsErrAlike) {
+TEST(Certificate, DetectsCorrelatedPixelErrors) {
   covers("certificate-22");
   Plan plan;
   plan.technique = &technique_types()[0];
@@ -321,7 +321,7 @@ TEST(Certificate, KnowsThatPixelsErrAlike) {
 }
 
 // A root mean square is at most the maximum, and two display values differ by at most 1.
-TEST(Certificate, OfADisplayIsNoMoreThanItsLargestDifference) {
+TEST(Certificate, LimitsDisplayErrorToLargestDifference) {
   RenderRequest r = request(32, 0.5);
   r.space = Space::display;
   const auto scene = test::load(test::sample("mirrors"));
@@ -343,7 +343,7 @@ TEST(Certificate, OfADisplayIsNoMoreThanItsLargestDifference) {
 }
 
 // All pixels of a tile have the same error.
-TEST(Halves, HoldWhereTilesAloneAreIndependent) {
+TEST(Halves, BoundsMeanIfOnlyTilesAreIndependent) {
   test::Random random(1);
   int held = 0, held_by_pixels = 0;
   for (int run = 0; run < 1000; ++run) {
@@ -361,7 +361,7 @@ TEST(Halves, HoldWhereTilesAloneAreIndependent) {
 }
 
 // Compares with tables of Student's t distribution.
-TEST(StudentQuantile, IsAsInTables) {
+TEST(StudentQuantile, MatchesTables) {
   for (const auto& [degrees, t] : {std::pair{1, 12.7062},
                                    {2, 4.30265},
                                    {3, 3.18245},
@@ -375,7 +375,7 @@ TEST(StudentQuantile, IsAsInTables) {
   EXPECT_NEAR(student_quantile(0.05, 5), 2.01505, 1e-4);
 }
 
-TEST(Certificate, OfSamplesIsNotFarAboveWhatTheyTell) {
+TEST(Certificate, StaysCloseToSampleEstimate) {
   RenderRequest r = request(5);
   r.width = r.height = 64;
   r.samples = 2;
@@ -386,7 +386,7 @@ TEST(Certificate, OfSamplesIsNotFarAboveWhatTheyTell) {
 }
 
 // Samples of a constant image show no error, but the certificate does not claim zero error.
-TEST(Certificate, NeverTellsAnErrorOfNothingFromSamples) {
+TEST(Certificate, NeverReportsZeroErrorFromSamples) {
   covers("certificate-20");
   const auto empty = test::load(
       test::scene_of("{'type': 'sphere', 'center': [0, 0, 99], 'radius': 1}", "{'background': [2, 2, 2]}"));
@@ -402,7 +402,7 @@ TEST(Certificate, NeverTellsAnErrorOfNothingFromSamples) {
   EXPECT_EQ(test::rendered(empty, r).certificate.total().kind, Bound::Kind::unknown);
 }
 
-TEST(Certificate, IsAsWeakAsItsWeakestTermAndStillTellsTheRest) {
+TEST(Certificate, IsAsWeakAsItsWeakestTerm) {
   const auto certificate_of = [](const Json& scene, const RenderRequest& r) {
     return test::rendered(test::load(scene), r).certificate;
   };
@@ -424,7 +424,7 @@ TEST(Certificate, IsAsWeakAsItsWeakestTermAndStillTellsTheRest) {
 }
 
 // Renders the same samples with and without clamp. The ledger equals the difference in each channel.
-TEST(Clamp, LedgerIsWhatIsTakenAway) {
+TEST(Clamp, ReportsRemovedLightInLedger) {
   covers("light-50");
   for (const char* name : {"cornell-box", "material-glass", "outdoors"})
     for (const int reuse : {1, 16}) {
@@ -472,7 +472,7 @@ TEST(Clamp, KeepsDirectLight) {
 }
 
 // The ledger of passes is at least that of the whole render.
-TEST(Certificate, OfPassesBoundsThatOfTheWhole) {
+TEST(Certificate, BoundsWholeRenderFromPasses) {
   const auto loaded = test::load(test::sample("material-refractive"));
   RenderRequest r = request(2);
   r.samples = 8;

@@ -35,7 +35,7 @@ TEST(Control, CountsEveryTileOnce) {
   EXPECT_EQ(largest, 12);
 }
 
-TEST(Control, StopEndsTheRenderAtOnce) {
+TEST(Control, StopsRenderImmediately) {
   const PreparedScene prepared(paper());
   RenderRequest request = size(1000, 1000);
   std::atomic<int> tiles = 0;
@@ -73,7 +73,7 @@ class StopsAtThirdBatch final : public Accelerator<float> {
 };
 
 // Nested glass: the tree of one camera ray can grow to billions of rays, so a stop must not wait for its end.
-TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
+TEST(Control, StopsInsideDeepRayTree) {
   std::string spheres;
   for (int i = 0; i < 27; ++i)
     spheres += std::string(i ? "," : "") + R"({"type":"sphere","material":"glass","radius":0.49,"center":[)" +
@@ -92,7 +92,7 @@ TEST(Control, StopEndsARenderInsideOneDeepRayTree) {
   EXPECT_THROW(try_tiles(world, plan, 1, stops->stop.get_token()), Cancelled);
 }
 
-TEST(Control, AStoppedRenderLeavesTheNextOneWhole) {
+TEST(Control, RendersCompletelyAfterStop) {
   const PreparedScene prepared(paper());
   const Plan plan = make_plan(*paper(), size(64, 64));
   EXPECT_THROW(render_frame(prepared, settle(prepared, plan), FilmStorage::linear32, shared_pool(),
@@ -104,7 +104,7 @@ TEST(Control, AStoppedRenderLeavesTheNextOneWhole) {
 }
 
 // A stop request ends the wait for a structure that another thread builds.
-TEST(Control, StopEndsTheWaitForWhatAnotherBuilds) {
+TEST(Control, StopsWaitForConcurrentBuild) {
   StoppableMutex mutex;
   mutex.lock();
   std::stop_source stop;
@@ -116,7 +116,7 @@ TEST(Control, StopEndsTheWaitForWhatAnotherBuilds) {
   mutex.unlock();
 }
 
-TEST(Control, RendersAtTheSameTimeDoNotDisturbEachOther) {
+TEST(Control, RendersConcurrentlyWithoutInterference) {
   const Picture expected = render(paper(), size(128, 96));
   const PreparedScene prepared(paper());
   std::vector<std::jthread> callers;
@@ -135,7 +135,7 @@ TEST(Control, RendersAtTheSameTimeDoNotDisturbEachOther) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(Control, PreparationIsPaidOnce) {
+TEST(Control, PreparesSceneOnce) {
   const PreparedScene prepared(load(sample("sphereflake-3")));
   const Plan plan = make_plan(prepared.scene(), size(16, 16));
   EXPECT_GT(render_frame(prepared, settle(prepared, plan), FilmStorage::srgb8, shared_pool()).stats.build_ms,
@@ -145,7 +145,7 @@ TEST(Control, PreparationIsPaidOnce) {
 }
 
 // An orbit frame equals the image of a scene with its camera there.
-TEST(Orbit, FramesAreThoseOfAMovedCamera) {
+TEST(Orbit, MatchesMovedCamera) {
   Json scene = sample("paper");
   RenderRequest orbit = in_double(size(96, 64));
   orbit.azimuth_degrees = 90;

@@ -69,7 +69,7 @@ double bias_in_standard_errors(const Json& json, const RenderRequest& r, const R
   return mean / std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
 }
 
-TEST(Convergence, LeavesNoBiasInAnyModeThatHasNone) {
+TEST(Convergence, IsUnbiasedInEveryUnbiasedMode) {
   covers("light-55");
   struct Mode {
     const char* name;
@@ -92,7 +92,7 @@ TEST(Convergence, LeavesNoBiasInAnyModeThatHasNone) {
   }
 }
 
-TEST(Convergence, ShowsTheBiasOfAClamp) {
+TEST(Convergence, DetectsBiasOfClamp) {
   RenderRequest unbiased = test::size(16, 16), clamped = unbiased;
   clamped.clamp_indirect = 0.1;
   EXPECT_GT(bias_in_standard_errors(test::sample("cornell-box"), clamped, unbiased), 3);

@@ -19,7 +19,7 @@ Json orthographic(double height) {
   return {{"type", "orthographic"}, {"eye", {0, 0, 5}}, {"look_at", {0, 0, 0}}, {"height", height}};
 }
 
-TEST(Coverage, TinyBallsAreSeenLikeLargeOnes) {
+TEST(Coverage, ShowsTinyBallsLikeLargeOnes) {
   covers("A3");
   for (const double radius : {1.0, 1e-3, 1e-5, 1e-9, 1e-11})
     for (const RenderRequest& request : {size(64, 64), in_float(size(64, 64)), in_double(size(64, 64))}) {
@@ -29,7 +29,7 @@ TEST(Coverage, TinyBallsAreSeenLikeLargeOnes) {
 }
 
 // The rim is complete from 10,000 radii away. 16 samples a pixel, 512 pixels across: 3.3 million rays.
-TEST(Coverage, FarBallsKeepTheirRim) {
+TEST(Coverage, KeepsRimOfDistantBalls) {
   covers("A20");
   const double distance = 1e4, angle = 2 * std::atan(1.25 / distance) * 180 / std::numbers::pi;
   RenderRequest request = in_double(size(512, 512));
@@ -39,7 +39,7 @@ TEST(Coverage, FarBallsKeepTheirRim) {
   EXPECT_NEAR(covered / (std::numbers::pi * radius * radius), 1, 1e-4);
 }
 
-TEST(Coverage, DiscsHaveTheirArea) {
+TEST(Coverage, MatchesAreaOfDisc) {
   covers("R28");
   const double expected = std::numbers::pi * 20 * 20;
   RenderRequest request = size(64, 64);
@@ -49,7 +49,7 @@ TEST(Coverage, DiscsHaveTheirArea) {
 }
 
 // A ball of a fifth of a pixel on the corner of four pixels: one ray per pixel misses it, many do not.
-TEST(Coverage, BallsBelowAPixelNeedSamples) {
+TEST(Coverage, ResolvesSubpixelBallsWithSamples) {
   covers("E7");
   RenderRequest request = size(16, 16);
   EXPECT_EQ(render(ball(.2, orthographic(16)), request).sum(), 0);
@@ -60,7 +60,7 @@ TEST(Coverage, BallsBelowAPixelNeedSamples) {
 }
 
 // The image height determines the scale of both axes: a ball is round in any aspect ratio.
-TEST(Coverage, BallsAreRoundInAnyAspect) {
+TEST(Coverage, KeepsBallsRoundInAnyAspect) {
   covers("E9");
   for (const auto& [width, height] : {std::pair{640, 360}, {360, 640}, {1920, 1080}, {100, 400}})
     for (const Json& camera : {Json{{"eye", {0, 0, 10}}, {"fov_degrees", 20}}, orthographic(3)}) {
@@ -81,7 +81,7 @@ TEST(Coverage, BallsAreRoundInAnyAspect) {
     }
 }
 
-TEST(Coverage, MeansOfManySamplesDoNotDrift) {
+TEST(Coverage, KeepsMeanOfManySamplesExact) {
   covers("A34");
   Json scene = ball(20, orthographic(4));  // fills the image
   scene["ambient"] = {.1, .1, .1};
@@ -90,7 +90,7 @@ TEST(Coverage, MeansOfManySamplesDoNotDrift) {
   for (const Vec3f& pixel : render(scene, request).pixels) EXPECT_EQ(pixel.x, .1f);
 }
 
-TEST(Coverage, SamplesConvergeAndSeedsDiffer) {
+TEST(Coverage, VariesWithSeedOnlyForSeveralSamples) {
   RenderRequest request = size(32, 32);
   const Json scene = ball(10.3, orthographic(32));
   request.samples = 4;

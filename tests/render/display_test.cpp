@@ -25,10 +25,10 @@ Bound bound_of(const char* subject, const Certificate& certificate) {
   throw Error(std::string("no term ") + subject);
 }
 
-constexpr const char *kCodes = "codes of 8 bits", *kClamp = "clamp of indirect light";
+constexpr const char *kCodes = "8-bit codes", *kClamp = "indirect light clamp";
 
 // In a constant image all codes have the same error, at most half of one.
-TEST(DisplayCertificate, CodesOfAnEvenPictureAreAllOffByTheSame) {
+TEST(DisplayCertificate, MatchesCodeErrorOfConstantImage) {
   for (const float code : {127.5f, 127.25f, 127.0f, 0.0f, 255.0f}) {
     const std::string value = number_text(double{decode_srgb(code / 255)});
     const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 50], 'radius': 1}]",
@@ -39,7 +39,7 @@ TEST(DisplayCertificate, CodesOfAnEvenPictureAreAllOffByTheSame) {
   }
 }
 
-TEST(DisplayCertificate, CodesAreOffAsThoseOfTheFile) {
+TEST(DisplayCertificate, MatchesCodeErrorOfFile) {
   const RenderResult made = rendered(load(sample("paper")), on_a_display(100, 4));
   const Image codes = made.film.image(PixelFormat::srgb8);
   std::vector<double> values;
@@ -52,7 +52,7 @@ TEST(DisplayCertificate, CodesAreOffAsThoseOfTheFile) {
 }
 
 // A filter with negative lobes subtracts in some pixels, which offsets nothing in others.
-TEST(DisplayCertificate, ClampIsBoundedUnderFiltersThatTakeAway) {
+TEST(DisplayCertificate, BoundsClampUnderNegativeFilterLobes) {
   const auto scene = load(sample("cornell-box"));
   for (const Filter filter : {Filter::box, Filter::lanczos}) {
     RenderRequest r = on_a_display(48, 4);
@@ -70,7 +70,7 @@ TEST(DisplayCertificate, ClampIsBoundedUnderFiltersThatTakeAway) {
   }
 }
 
-TEST(DisplayCertificate, OfAClampThatCutsNothingIsExact) {
+TEST(DisplayCertificate, IsExactForInactiveClamp) {
   RenderRequest r = on_a_display(32, 2);
   r.technique = "path";
   r.clamp_indirect = 1e6;

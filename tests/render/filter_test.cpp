@@ -20,7 +20,7 @@ constexpr std::array kAll{Filter::box, Filter::gaussian, Filter::blackman_harris
                           Filter::lanczos};
 
 // The background is constant.
-TEST(Filters, AConstantPictureStaysConstant) {
+TEST(Filters, KeepsConstantImage) {
   covers("light-46");
   const Json scene =
       scene_of("[{'type': 'sphere', 'center': [0, 0, 900], 'radius': 1}]", "{'background': [0.7, 0.3, 1.7]}");
@@ -58,7 +58,7 @@ double height(Filter filter, double x) {
 }
 
 // The edge of a half plane shows as the integral of the filter, which rings for negative lobes.
-TEST(Filters, AnEdgeIsTheFiltersIntegral) {
+TEST(Filters, ShowsEdgeAsFilterIntegral) {
   covers("light-46");
   Json scene = scene_of(
       "[{'type': 'rectangle', 'corner': [0.3, -100, 0], 'a': [100, 0, 0], 'b': [0, 200, 0], 'material': "
@@ -82,7 +82,7 @@ TEST(Filters, AnEdgeIsTheFiltersIntegral) {
 
 // Passes, threads and scale do not change the image. A single sample of Whitted's technique lies at the pixel
 // centre.
-TEST(Filters, KeepTheirBytes) {
+TEST(Filters, IsIndependentOfThreadsAndScale) {
   const Json own = sample("cornell-box");
   for (const Filter filter : {Filter::blackman_harris, Filter::lanczos}) {
     RenderRequest request = filtered(filter, 4, size(40, 40));

@@ -27,7 +27,7 @@ Forecast extrapolated(const std::shared_ptr<const Scene>& scene, const RenderReq
 }
 
 // Passes double the samples, so a forecast may miss by one pass. Rays are compared per sample.
-TEST(Forecast, ComesToTheSamplesAndRaysOfABudget) {
+TEST(Forecast, PredictsSamplesAndRaysOfErrorBudget) {
   for (const char* name : {"paper", "glass", "cornell-box", "sphereflake-2"})
     for (const double error : {0.05, 0.02}) {
       const auto scene = load(sample(name));
@@ -46,7 +46,7 @@ TEST(Forecast, ComesToTheSamplesAndRaysOfABudget) {
     }
 }
 
-TEST(Forecast, OfGivenSamplesTellsTheirRaysAndError) {
+TEST(Forecast, PredictsRaysAndErrorOfFixedSamples) {
   for (const char* name : {"glass", "cornell-box"}) {
     const auto scene = load(sample(name));
     RenderRequest r = square();
@@ -67,7 +67,7 @@ TEST(Forecast, OfGivenSamplesTellsTheirRaysAndError) {
 }
 
 // A budget of twice the time may have about twice the samples. The client's clock stands still.
-TEST(Forecast, OfABudgetOfTimeFillsIt) {
+TEST(Forecast, FillsTimeBudget) {
   const auto scene = load(sample("cornell-box"));
   RenderRequest r = square();
   r.seconds = 100;
@@ -91,7 +91,7 @@ TEST(Forecast, DependsOnThePlanAlone) {
 }
 
 // The budget's limits on rays and time do not apply. (The service rejects such requests.)
-TEST(Forecast, OfGivenSamplesIsNotEndedByLimits) {
+TEST(Forecast, IgnoresLimitsForFixedSamples) {
   RenderRequest r = square();
   r.samples = 4096;
   const Forecast told =
@@ -100,7 +100,7 @@ TEST(Forecast, OfGivenSamplesIsNotEndedByLimits) {
 }
 
 // At this size only tiles are traced, and blocks miss all three omitted rays.
-TEST(Forecast, TellsWhatOnlyTilesLeaveOut) {
+TEST(Forecast, ReportsOmissionsSeenOnlyInTiles) {
   const auto scene = load(sample("orrery"));
   RenderRequest r = test::size(128, 128);
   r.samples = 4;
@@ -111,18 +111,18 @@ TEST(Forecast, TellsWhatOnlyTilesLeaveOut) {
   EXPECT_GT(*bound.rms, 0);
 }
 
-TEST(Forecast, SaysWhatWouldBeMissed) {
+TEST(Forecast, PredictsMissedBudget) {
   RenderRequest r = square();
   r.error = 1e-6;
   r.on_miss = OnMiss::fail;
   const BudgetOutcome told = extrapolated(load(sample("paper")), r).outcome;
   EXPECT_FALSE(told.met());
-  EXPECT_NE(told.reason.find("prove no less"), std::string::npos) << told.reason;
+  EXPECT_NE(told.reason.find("smallest provable error"), std::string::npos) << told.reason;
   EXPECT_GT(*told.min_error, 1e-6);
 }
 
 // The pilot is the whole image, or the image is smaller than a block.
-TEST(Forecast, IsThereForTheSmallestPictures) {
+TEST(Forecast, SupportsSmallestImages) {
   for (const int side : {1, 3, 33}) {
     RenderRequest r = square();
     r.width = r.height = side;
@@ -134,7 +134,7 @@ TEST(Forecast, IsThereForTheSmallestPictures) {
   }
 }
 
-TEST(Forecast, EndsWhenItIsStopped) {
+TEST(Forecast, StopsOnCancellation) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW(extrapolated(load(sample("paper")), square(), test::shared_pool(), {.stop = stop.get_token()}),

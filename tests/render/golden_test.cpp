@@ -35,7 +35,7 @@ std::string read(const fs::path& file) {
 
 class Golden : public testing::TestWithParam<std::string> {};
 
-TEST_P(Golden, PictureIsAsItWas) {
+TEST_P(Golden, MatchesStoredImage) {
   const fs::path file = fs::path("tests/golden") / (GetParam() + ".png");
   const Image now = picture_of(GetParam());
   if (std::getenv("ORRERY_UPDATE_GOLDEN")) {

@@ -24,7 +24,7 @@ class EveryScene : public testing::TestWithParam<std::string> {
   const std::shared_ptr<const Scene> scene_ = load(sample(GetParam()));
 };
 
-TEST_P(EveryScene, HasOnlyNumbers) {
+TEST_P(EveryScene, HasOnlyFiniteValues) {
   covers("A36 B3");
   for (const RenderRequest& request : {in_float(small(4)), in_double(small())}) {
     const Picture picture = render(scene_, request);
@@ -33,7 +33,7 @@ TEST_P(EveryScene, HasOnlyNumbers) {
   }
 }
 
-TEST_P(EveryScene, LooksTheSameForAnyThreadsAndSlices) {
+TEST_P(EveryScene, IsIndependentOfThreadsAndSlices) {
   covers("E21");
   const Picture expected = render(scene_, small(2), 1);
   EXPECT_TRUE(identical(expected, render(scene_, small(2), 2)));
@@ -45,7 +45,7 @@ TEST_P(EveryScene, LooksTheSameForAnyThreadsAndSlices) {
   }
 }
 
-TEST_P(EveryScene, LooksTheSameInFullAndAsPlanned) {
+TEST_P(EveryScene, MatchesFullModel) {
   for (RenderRequest request : {in_float(small()), in_double(small())}) {
     const Picture planned = render(scene_, request);
     request.full_model = true;
@@ -53,7 +53,7 @@ TEST_P(EveryScene, LooksTheSameInFullAndAsPlanned) {
   }
 }
 
-TEST_P(EveryScene, LooksTheSameWithEveryAccelerator) {
+TEST_P(EveryScene, IsIndependentOfAccelerator) {
   covers("F1");
   for (RenderRequest request : {in_float(small()), in_double(small())}) {
     request.accelerator = "list";
@@ -65,7 +65,7 @@ TEST_P(EveryScene, LooksTheSameWithEveryAccelerator) {
   }
 }
 
-TEST_P(EveryScene, LooksTheSameWithRaysInAnotherOrder) {
+TEST_P(EveryScene, IsIndependentOfRayOrder) {
   covers("F17");
   for (RenderRequest request : {in_float(small()), in_double(small())}) {
     const Picture reference = render(scene_, request);
@@ -77,7 +77,7 @@ TEST_P(EveryScene, LooksTheSameWithRaysInAnotherOrder) {
   }
 }
 
-TEST_P(EveryScene, LooksTheSameWithShadowsPredicted) {
+TEST_P(EveryScene, IsIndependentOfShadowPrediction) {
   covers("F18");
   for (RenderRequest request : {in_float(small()), in_double(small())}) {
     const Picture reference = render(scene_, request);
@@ -92,7 +92,7 @@ TEST_P(EveryScene, LooksTheSameWithShadowsPredicted) {
 }
 
 // Lengths are scaled by 2^17 and 2^-17, with equal irradiance: no constant of the program is a length.
-TEST_P(EveryScene, LooksTheSameAtAnyScale) {
+TEST_P(EveryScene, IsScaleInvariant) {
   covers("A19");
   const Json scene = without_filters(sample(GetParam()));
   for (const RenderRequest& request : {in_float(small()), in_double(small())}) {
@@ -109,7 +109,7 @@ TEST_P(EveryScene, LooksTheSameAtAnyScale) {
 
 // Float may decide an edge differently from double, and curved mirrors multiply edges. On 820 mirrored balls,
 // 40 pixels of 19,200 differ by more than 1/512, in most scenes none.
-TEST_P(EveryScene, LooksAlmostTheSameInFloatAndDouble) {
+TEST_P(EveryScene, AgreesInFloatAndDouble) {
   const Picture single = render(scene_, in_float(small())), exact = render(scene_, in_double(small()));
   EXPECT_LE(differing_pixels(single, exact, 1.0 / 512), 160 * 120 / 200);
   double off = 0;
@@ -119,7 +119,7 @@ TEST_P(EveryScene, LooksAlmostTheSameInFloatAndDouble) {
 }
 
 // Ray casting equals Whitted's technique at depth 0.
-TEST_P(EveryScene, LooksTheSameCastAndTracedToDepthZero) {
+TEST_P(EveryScene, MatchesRaycastAtDepthZero) {
   RenderRequest cast = small(), traced = small();
   cast.technique = "raycast";
   traced.technique = "whitted";
@@ -127,7 +127,7 @@ TEST_P(EveryScene, LooksTheSameCastAndTracedToDepthZero) {
   EXPECT_TRUE(identical(render(scene_, cast), render(scene_, traced)));
 }
 
-TEST_P(EveryScene, CountsCameraRaysAndNoImpossibleOnes) {
+TEST_P(EveryScene, CountsPlausibleRays) {
   const RenderRequest request = small(3);
   const Picture picture = render(scene_, request);
   const RayCounts& rays = picture.stats.counts.rays;
@@ -196,7 +196,7 @@ Json random_scene(std::uint64_t seed) {
   return scene;
 }
 
-TEST(RandomScenes, LookTheSameInFullAndAsPlannedWithEveryAccelerator) {
+TEST(RandomScenes, MatchesFullModelWithEveryAccelerator) {
   covers("A36 F1");
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto scene = load(random_scene(seed));
@@ -213,7 +213,7 @@ TEST(RandomScenes, LookTheSameInFullAndAsPlannedWithEveryAccelerator) {
   }
 }
 
-TEST(RandomScenes, LookTheSameAtAnyScale) {
+TEST(RandomScenes, IsScaleInvariant) {
   covers("A19");
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     const Json scene = without_filters(random_scene(seed));

@@ -50,7 +50,7 @@ Json standing_scene() {
   return scene;
 }
 
-TEST(Motion, AMomentIsThePictureOfTheSceneStandingStill) {
+TEST(Motion, MatchesStaticSceneAtEachMoment) {
   covers("F19");
   const auto moving = load(moving_scene());
   for (const RenderRequest& in : {in_float(size(96, 72)), in_double(size(96, 72))}) {
@@ -60,7 +60,7 @@ TEST(Motion, AMomentIsThePictureOfTheSceneStandingStill) {
   }
 }
 
-TEST(Motion, PicturesDoNotDependOnWhichMomentsCameBefore) {
+TEST(Motion, IsIndependentOfEarlierMoments) {
   covers("F19");
   const auto scene = load(moving_scene());
   for (const auto& type : accelerator_types()) {
@@ -81,7 +81,7 @@ TEST(Motion, PicturesDoNotDependOnWhichMomentsCameBefore) {
   }
 }
 
-TEST(Motion, RestsBeforeItsFirstAndAfterItsLastKey) {
+TEST(Motion, RestsOutsideKeyframes) {
   const auto scene = load(moving_scene());
   EXPECT_EQ(scene->motion.first, 0);
   EXPECT_EQ(scene->motion.last, 4);
@@ -93,7 +93,7 @@ TEST(Motion, RestsBeforeItsFirstAndAfterItsLastKey) {
   EXPECT_TRUE(identical(render(own, size(96, 72)), render(scene, at_time(3.5))));
 }
 
-TEST(Motion, BeginsAgainInALoop) {
+TEST(Motion, WrapsTimeInLoop) {
   constexpr TimeSpan span{2, 5}, none{};
   const std::pair<double, double> moments[] = {{2, 2}, {5, 5},  {5.5, 2.5},  {8, 2},
                                                {1, 4}, {-1, 2}, {3.25, 3.25}};
@@ -101,7 +101,7 @@ TEST(Motion, BeginsAgainInALoop) {
   EXPECT_EQ(none.moment_of_loop(7), 0);
 }
 
-TEST(Motion, PlanCountsOnEveryMoment) {
+TEST(Motion, PlansForEveryMoment) {
   Json far = moving_scene();
   far["instances"][0]["motion"][1]["translate"] = {3e7, 0, 0};
   EXPECT_FALSE(make_plan(*load(moving_scene()), at_time(0)).double_precision);
@@ -137,7 +137,7 @@ Json dome(double petal, bool moving, bool smooth) {
                          " 'lights': [{'type': 'point', 'position': [2, 5, 1]}]}"));
 }
 
-TEST(Motion, NothingIsLeftOfWhatHasNoSizeAndOfWhatNobodyUses) {
+TEST(Motion, IgnoresDegenerateTrianglesAndUnusedVertices) {
   covers("F19");
   for (const double petal : {0.0, 0.5, 1.0})
     for (const RenderRequest& in : {in_float(size(96, 72)), in_double(size(96, 72))})
@@ -149,7 +149,7 @@ TEST(Motion, NothingIsLeftOfWhatHasNoSizeAndOfWhatNobodyUses) {
 }
 
 // Two halves of a roof close like a book, and open again along the ridge.
-TEST(Motion, WhatStandsTogetherIsSmoothedTogether) {
+TEST(Motion, SmoothsCoincidentVerticesTogether) {
   covers("F19");
   const auto roof = [](double lift, double gap) {
     return Json{{-1, 0, -1},     {-gap, lift, -1}, {-gap, lift, 1}, {-1, 0, 1},
@@ -173,7 +173,7 @@ TEST(Motion, WhatStandsTogetherIsSmoothedTogether) {
 }
 
 // All vertices coincide half-way, which must not affect the smoothing groups.
-TEST(Motion, AMeshMayTurnInsideOutThroughAPoint) {
+TEST(Motion, SupportsMeshCollapsingToPoint) {
   covers("F19");
   Json mesh = {{"type", "mesh"}, {"crease_degrees", 60}}, mirrored = Json::array();
   constexpr int kSteps = 20'000;
@@ -189,7 +189,7 @@ TEST(Motion, AMeshMayTurnInsideOutThroughAPoint) {
   EXPECT_GT(render(scene, at_time(0.6)).brighter_than(0.1f), 10);
 }
 
-TEST(Motion, FramesOfManyMomentsAtOnceAreRight) {
+TEST(Motion, RendersSeveralMomentsConcurrently) {
   const auto scene = load(moving_scene());
   const PreparedScene prepared(scene);
   std::vector<Picture> expected;

@@ -18,7 +18,7 @@ RenderRequest of_paths(int side, int samples) {
 }
 
 // Suns are in front of the sky, and two of them may overlap.
-TEST(RadianceRange, OfPathsHoldsTheSkyWithAllItsSuns) {
+TEST(RadianceRange, CoversSkyWithAllSunsForPaths) {
   const auto scene = load(scene_of(
       "[{'type': 'sphere', 'center': [0, 0, 50], 'radius': 1, 'material': 'black'}]",
       "{'materials': {'black': {'type': 'lambert', 'reflectance': 0}},"
@@ -34,7 +34,7 @@ TEST(RadianceRange, OfPathsHoldsTheSkyWithAllItsSuns) {
 }
 
 // Path reuse does not change the omitted part of the image.
-TEST(PathLedger, IsThatOfThePictureWherePathsAreReused) {
+TEST(PathLedger, IsUnchangedByPathReuse) {
   const auto box = load(sample("cornell-box"));
   RenderRequest r = of_paths(64, 16);
   r.max_depth = 2;
@@ -45,7 +45,7 @@ TEST(PathLedger, IsThatOfThePictureWherePathsAreReused) {
 }
 
 // A background is light of one reflection, in either form.
-TEST(Clamp, KeepsTheLightOfTheBackground) {
+TEST(Clamp, KeepsBackgroundLight) {
   const std::string even =
       "'zenith': [0.8, 0.8, 0.8], 'horizon': [0.8, 0.8, 0.8], 'ground': [0.8, 0.8, 0.8]}";
   for (const std::string& sky :

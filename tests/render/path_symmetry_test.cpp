@@ -25,7 +25,7 @@ Json with_twice_the_light(Json scene) {
   return scene;
 }
 
-TEST(PathSymmetry, TwiceTheLightIsTwiceThePicture) {
+TEST(PathSymmetry, DoublesImageWithDoubledLight) {
   covers("R31 light-52");
   for (const char* name : {"lamps", "cornell-box", "material-glass", "light-line"}) {
     RenderRequest request = size(64, 40);
@@ -85,7 +85,7 @@ void expect_equal(const Blocks& a, const Blocks& b) {
 }
 
 // The order of lights maps the same random numbers to other lights: the noise differs, but not the mean.
-TEST(PathSymmetry, OrderOfLightsChangesTheNoiseAlone) {
+TEST(PathSymmetry, ChangesOnlyNoiseWithLightOrder) {
   covers("R31 light-52");
   const Json scene = sample("lamps");
   Json permuted = scene;
@@ -94,7 +94,7 @@ TEST(PathSymmetry, OrderOfLightsChangesTheNoiseAlone) {
   expect_equal(blocks_of(scene, 0), blocks_of(permuted, 100));
 }
 
-TEST(PathSymmetry, MirroredSceneIsTheMirroredPicture) {
+TEST(PathSymmetry, MirrorsImageWithScene) {
   covers("R31 light-52");
   for (const char* name : {"lamps", "cornell-box"})
     expect_equal(blocks_of(sample(name), 0), blocks_of(mirrored(sample(name)), 100, true));

@@ -31,7 +31,7 @@ Traced traced(const Json& json, int side) {
 }
 
 // Three tiles of an image predict .64 to 1.21 of its rays.
-TEST(Pilot, ForetellsTheRaysOfAPicture) {
+TEST(Pilot, PredictsRayCountOfImage) {
   covers("certificate-33");
   constexpr int kSide = 512;
   Random random(1);
@@ -46,7 +46,7 @@ TEST(Pilot, ForetellsTheRaysOfAPicture) {
 }
 
 // Includes images whose size is not a multiple of the tile size, or smaller than a block.
-TEST(Pilot, LiesWithinThePicture) {
+TEST(Pilot, StaysWithinImage) {
   Random random(2);
   const Json scene = random_optics(random);
   for (const int side : {1, 3, 33, 50}) {

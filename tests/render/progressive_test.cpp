@@ -18,7 +18,7 @@ RenderRequest of(int samples, const char* technique) {
 
 // Images, errors and ray counts are equal bit for bit. With an emission pass, each pass first
 // traces two rays through corners of each pixel.
-TEST(ProgressiveRender, GivesThePicturesOfItsSamplesAtOnce) {
+TEST(ProgressiveRender, MatchesSinglePassRender) {
   for (const char* name : {"paper", "cornell-box", "open-shutter", "depth-of-field", "light-many"}) {
     for (const char* technique : {"whitted", "path", "distributed"}) {
       const auto scene = load(sample(name));
@@ -48,7 +48,7 @@ TEST(ProgressiveRender, GivesThePicturesOfItsSamplesAtOnce) {
 }
 
 // The error does not depend on the order of tiles, nor on threads.
-TEST(ProgressiveRender, TellsOfItsErrorToTheBit) {
+TEST(ProgressiveRender, ReportsErrorBitwiseReproducibly) {
   for (const char* name : {"cornell-box", "material-refractive", "outdoors"})
     for (const Space space : {Space::linear, Space::display}) {
       RenderRequest request = size(300, 200);
@@ -80,7 +80,7 @@ TEST(ProgressiveRender, TellsOfItsErrorToTheBit) {
     }
 }
 
-TEST(ProgressiveRender, HasPassesThatAreHalvesOfTheNext) {
+TEST(ProgressiveRender, DoublesSamplesPerPass) {
   const auto scene = load(sample("paper"));
   const auto passes = [&](int samples, const char* technique) {
     return progressive_samples(make_plan(*scene, of(samples, technique)));

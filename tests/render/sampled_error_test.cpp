@@ -21,7 +21,7 @@ RenderRequest of(int side, int samples, int reuse, std::uint64_t seed) {
 
 // Compares with the true error, the mean of half the squared differences between images of other seeds. At
 // edges the halves are not independent, and overestimate by up to a third.
-TEST(SampledError, IsTheErrorOfThePicture) {
+TEST(SampledError, MatchesErrorOfImage) {
   covers("light-47 D17");
   constexpr int kSeeds = 12;
   const auto box = load(sample("cornell-box"));
@@ -51,7 +51,7 @@ TEST(SampledError, IsTheErrorOfThePicture) {
 
 // In random scenes, images of other seeds confirm the estimate. Halves may overestimate, up to 1.6 times at
 // edges and up to 4 times for smooth images.
-TEST(SampledError, AgreesWithOtherSeeds) {
+TEST(SampledError, MatchesErrorOverOtherSeeds) {
   covers("certificate-27");
   Random random(27);
   int told = 0, near = 0;
@@ -78,7 +78,7 @@ TEST(SampledError, AgreesWithOtherSeeds) {
 }
 
 // Non-finite pixels are reported separately.
-TEST(SampledError, LeavesOutWhatIsNotFinite) {
+TEST(SampledError, ExcludesNonFinitePixels) {
   covers("certificate-28");
   const auto scene = load(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]"));
   const Plan plan = make_plan(*scene, of(32, 2, 1, 0));
@@ -88,17 +88,17 @@ TEST(SampledError, LeavesOutWhatIsNotFinite) {
   stats.non_finite_pixels = 3;
   const Certificate certificate = certify(plan, stats);
   EXPECT_EQ(certificate.total().kind, Bound::Kind::unknown);
-  EXPECT_EQ(certificate.terms.back().reason, "3 pixels have one");
+  EXPECT_EQ(certificate.terms.back().reason, "3 pixels have such a value");
 }
 
-TEST(SampledError, IsToldOfEvenCountsAlone) {
+TEST(SampledError, IsKnownOnlyForEvenSampleCounts) {
   const auto box = load(sample("cornell-box"));
   EXPECT_FALSE(render(box, of(32, 1, 1, 0)).stats.error.known());
   EXPECT_FALSE(render(box, of(32, 3, 1, 0)).stats.error.known());
   EXPECT_TRUE(render(box, of(32, 2, 1, 0)).stats.error.known());
 }
 
-TEST(SampledError, IsNothingOfAnEvenPicture) {
+TEST(SampledError, IsZeroForConstantImage) {
   RenderRequest request = size(40, 40);
   request.samples = 4;
   const Picture picture = render(

@@ -80,7 +80,7 @@ double cost(const PreparedScene& scene, const Plan& plan, const AcceleratorType&
   return type.costs.of(counts.rays.total(), counts.accelerator);
 }
 
-TEST(Settle, TakesAStructureThatCostsLittleMoreThanTheBest) {
+TEST(Settle, ChoosesNearlyCheapestStructure) {
   covers("F16");
   for (const auto& [name, json] : scenes()) {
     SCOPED_TRACE(name);
@@ -95,7 +95,7 @@ TEST(Settle, TakesAStructureThatCostsLittleMoreThanTheBest) {
   }
 }
 
-TEST(Settle, KeepsToItsChoiceWhileTheCameraMoves) {
+TEST(Settle, KeepsChoiceWhileCameraMoves) {
   covers("F16");
   const PreparedScene scene(load(sample("glass")));
   std::set<std::string> chosen;
@@ -107,7 +107,7 @@ TEST(Settle, KeepsToItsChoiceWhileTheCameraMoves) {
   EXPECT_EQ(chosen.size(), 1u);
 }
 
-TEST(Settle, SaysWhatItWentBy) {
+TEST(Settle, ReportsReasonForChoice) {
   const PreparedScene scene(load(sample("glass")));
   const SettledPlan plan = settle(scene, make_plan(scene.scene(), {}));
   for (const Decision& decision : plan->decisions) {
@@ -118,12 +118,12 @@ TEST(Settle, SaysWhatItWentBy) {
   }
 }
 
-TEST(Settle, EndsWhenNobodyWaits) {
+TEST(Settle, StopsOnCancellation) {
   const PreparedScene scene(load(sample("glass")));
   EXPECT_THROW(settle(scene, make_plan(scene.scene(), {}), stopped()), Cancelled);
 }
 
-TEST(Settle, LeavesAloneWhatWasAskedFor) {
+TEST(Settle, KeepsRequestedStructure) {
   const PreparedScene scene(load(sample("glass")));
   RenderRequest request;
   request.accelerator = "octree";

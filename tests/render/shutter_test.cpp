@@ -45,7 +45,7 @@ Json square(double side) {
 
 // A square of side w that moves by v shows as a trapezoid, the share of the time that the square covers a
 // point.
-TEST(Shutter, AMovingSquareIsATrapezoid) {
+TEST(Shutter, BlursMovingSquareToTrapezoid) {
   covers("light-43");
   constexpr int kSide = 64;
   for (const auto& [w, v] : {std::pair(8.0, 20.0), std::pair(20.0, 8.0)}) {
@@ -70,7 +70,7 @@ TEST(Shutter, AMovingSquareIsATrapezoid) {
 }
 
 // A moving square that is out of focus has the same sum, and the lens adds its blur.
-TEST(Shutter, MotionAndLensBlurTogether) {
+TEST(Shutter, CombinesMotionAndLensBlur) {
   covers("light-43");
   Json scene = moving_by(seen_from_above(square(8), 64), {20, 0, 0});
   scene["camera"]["aperture_radius"] = 6;
@@ -91,7 +91,7 @@ TEST(Shutter, MotionAndLensBlurTogether) {
 }
 
 // A disk of diameter d that moves by D > d covers points of its centre line for d / D of the time.
-TEST(Shutter, AMovingDiskCoversItsCentreLineEvenly) {
+TEST(Shutter, CoversCentreLineOfMovingDiskEvenly) {
   covers("light-44");
   const Json disk = {
       {"type", "disk"}, {"material", "lamp"}, {"center", {0, 0, 0}}, {"normal", {0, 0, 1}}, {"radius", 64}};
@@ -105,7 +105,7 @@ TEST(Shutter, AMovingDiskCoversItsCentreLineEvenly) {
 }
 
 // A mesh with moving vertices gives the same image as the moving instance.
-TEST(Shutter, AMeshThatMovesIsATrapezoidToo) {
+TEST(Shutter, BlursMovingMeshLikeMovingInstance) {
   covers("light-43");
   constexpr int kSide = 64;
   Json scene = seen_from_above(square(8), kSide);
@@ -129,7 +129,7 @@ TEST(Shutter, AMeshThatMovesIsATrapezoidToo) {
 
 // A moving lamp gives the mean over time of its light from each position. A sphere of radius r and radiance 1
 // gives a floor h below pi r^2 h / d^3.
-TEST(Shutter, AMovingLampLightsAsTheMeanOverItsWay) {
+TEST(Shutter, AveragesLightOfMovingLamp) {
   covers("light-45");
   const double r = 0.5, h = 2, way = 6;
   Json scene = scene_of(
@@ -152,7 +152,7 @@ TEST(Shutter, AMovingLampLightsAsTheMeanOverItsWay) {
 }
 
 // A ball moves between a directional light and the floor. The shadow is that of a moving disk.
-TEST(Shutter, ShadowsAreOfTheRaysTime) {
+TEST(Shutter, CastsShadowsAtTimeOfRay) {
   covers("light-45");
   const Json ball = {{"type", "sphere"}, {"material", "white"}, {"center", {0, 0, 5}}, {"radius", 4}};
   Json scene = moving_by(seen_from_above(ball, 64), {20, 0, 0});
@@ -187,7 +187,7 @@ Json spinning() {
 }
 
 // The mean of many instants, each with its own time, equals one image with an open shutter.
-TEST(Shutter, IsTheMeanOfInstants) {
+TEST(Shutter, AveragesInstants) {
   const auto scene = load(spinning());
   constexpr int kInstants = 64;
   std::vector<double> mean(48 * 36, 0.0);
@@ -214,7 +214,7 @@ TEST(Shutter, IsTheMeanOfInstants) {
   EXPECT_LT(squares, 1.5 * noise);
 }
 
-TEST(Shutter, OneSampleIsTakenInTheMiddle) {
+TEST(Shutter, TakesSingleSampleAtMidpoint) {
   Json flat = spinning();
   flat["objects"][1].erase("crease_degrees");
   const auto scene = load(flat);
@@ -225,7 +225,7 @@ TEST(Shutter, OneSampleIsTakenInTheMiddle) {
   EXPECT_LT(differing_pixels(render(scene, open), render(scene, middle), 1e-6), 8);
 }
 
-TEST(Shutter, ThatMeetsNoMotionChangesNothing) {
+TEST(Shutter, ChangesNothingWithoutMotion) {
   covers("light-42");
   const auto scene = load(spinning());
   RenderRequest instant = size(48, 36);
@@ -240,7 +240,7 @@ TEST(Shutter, ThatMeetsNoMotionChangesNothing) {
 }
 
 // Threads, slices and structures do not change the image, nor does scaling the scene.
-TEST(Shutter, ShowsTheSameBytesHoweverItIsRendered) {
+TEST(Shutter, IsIndependentOfThreadsStructuresAndScale) {
   const Json own = spinning();
   const auto scene = load(own);
   for (const char* technique : {"whitted", "distributed", "path"}) {
@@ -268,7 +268,7 @@ TEST(Shutter, ShowsTheSameBytesHoweverItIsRendered) {
 }
 
 // A turning object does not shade itself: under a uniform sky it is as bright as at rest.
-TEST(Shutter, WhatTurnsDoesNotShadeItself) {
+TEST(Shutter, AvoidsSelfShadowingOfTurningObjects) {
   Json scene = scene_of("[{'type': 'sphere', 'center': [0, -300, 0], 'radius': 1}]",
                         R"({'background': [1, 1, 1], 'camera': {'eye': [7, 5, 9], 'look_at': [7, 5, 5]},
           'materials': {'chalk': {'type': 'lambert', 'reflectance': 0.5}},

@@ -39,7 +39,7 @@ std::vector<OcclusionSample> samples_of(const Json& json, const RenderRequest& r
   return sample_occlusion(world_for<T>(scene.parts(), *plan.accelerator, plan.time, build_ms), plan);
 }
 
-TEST(OcclusionSamples, AreShadowRaysWithWhatTheyMeet) {
+TEST(OcclusionSamples, RecordsShadowRaysWithOccluders) {
   const Json json = balls_over_a_floor();
   const auto samples = samples_of<double>(json, size(256, 256));
   int met = 0;
@@ -54,7 +54,7 @@ TEST(OcclusionSamples, AreShadowRaysWithWhatTheyMeet) {
   EXPECT_GT(static_cast<int>(samples.size()), met);
 }
 
-TEST(OcclusionSamples, AreNeverTooMany) {
+TEST(OcclusionSamples, LimitsSampleCount) {
   Json json = sample("glass");
   for (int i = 0; i < 40; ++i) json["lights"].push_back({{"type", "point"}, {"position", {0.1 * i, 5, 3}}});
   const auto samples = samples_of<float>(json, size(512, 512));
@@ -64,7 +64,7 @@ TEST(OcclusionSamples, AreNeverTooMany) {
 
 // A floor seen from above has equal numbers of samples in its upper and lower half, although half of the
 // early ones were dropped.
-TEST(OcclusionSamples, AreSpreadEvenly) {
+TEST(OcclusionSamples, CoversImageEvenly) {
   const Json floor = scene_of(
       R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},
           {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.01}])",
@@ -77,7 +77,7 @@ TEST(OcclusionSamples, AreSpreadEvenly) {
   EXPECT_NEAR(static_cast<double>(lower) / static_cast<double>(samples.size()), 0.5, 0.05);
 }
 
-TEST(OcclusionSamples, EndWhenNobodyWaits) {
+TEST(OcclusionSamples, StopsOnCancellation) {
   const PreparedScene scene(load(sample("glass")));
   const SettledPlan plan = settle(scene, make_plan(scene.scene(), asking(Prediction::network)));
   double build_ms = 0;
@@ -85,7 +85,7 @@ TEST(OcclusionSamples, EndWhenNobodyWaits) {
   EXPECT_NO_THROW(staged_world<float>(scene.parts(), plan, build_ms));
 }
 
-TEST(Stages, CountWhatWasProposedAndProved) {
+TEST(Stages, CountsPredictedAndVerifiedOccluders) {
   for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
     const Picture picture = render(balls_over_a_floor(), asking(prediction));
     const AcceleratorCounts& counts = picture.stats.counts.accelerator;
@@ -98,7 +98,7 @@ TEST(Stages, CountWhatWasProposedAndProved) {
       0u);
 }
 
-TEST(Stages, NetworkProvesMoreThanChance) {
+TEST(Stages, VerifiesMoreNetworkPredictionsThanRandom) {
   const auto share = [](Prediction prediction) {
     const AcceleratorCounts counts = render(sample("paper"), asking(prediction)).stats.counts.accelerator;
     return static_cast<double>(counts.verified_occluders) / static_cast<double>(counts.predicted_occluders);
@@ -107,7 +107,7 @@ TEST(Stages, NetworkProvesMoreThanChance) {
 }
 
 // Samples, network and counts are the same for any number of threads.
-TEST(Stages, CountTheSameTwice) {
+TEST(Stages, CountsDeterministically) {
   for (const Prediction prediction : {Prediction::network, Prediction::last, Prediction::random}) {
     const auto counts = [&](int threads) {
       return render(sample("paper"), asking(prediction), threads).stats.counts.accelerator;
@@ -117,7 +117,7 @@ TEST(Stages, CountTheSameTwice) {
   }
 }
 
-TEST(Stages, NetworkIsTrainedOnceForAScene) {
+TEST(Stages, TrainsNetworkOncePerScene) {
   const PreparedScene scene(load(sample("paper")));
   const SettledPlan plan = settle(scene, make_plan(scene.scene(), asking(Prediction::network)));
   double first_ms = 0, second_ms = 0;

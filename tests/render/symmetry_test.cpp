@@ -27,7 +27,7 @@ const std::vector<std::string> kScenes = {
     "paper",      "mirrors",        "glass",      "light-many",
     "light-spot", "shape-cylinder", "shape-disk", "camera-orthographic"};
 
-TEST(Symmetry, TwiceTheLightIsTwiceThePicture) {
+TEST(Symmetry, DoublesImageWithDoubledLight) {
   covers("R31");
   for (const std::string& name : kScenes) {
     Json scene = sample(name), bright = scene;
@@ -44,7 +44,7 @@ TEST(Symmetry, TwiceTheLightIsTwiceThePicture) {
   }
 }
 
-TEST(Symmetry, OrderOfLightsDoesNotMatter) {
+TEST(Symmetry, IgnoresOrderOfLights) {
   covers("R31 B13");
   const Json scene = sample("light-many");
   Json permuted = scene;
@@ -53,7 +53,7 @@ TEST(Symmetry, OrderOfLightsDoesNotMatter) {
   EXPECT_LE(largest_difference(trace_picture(scene, small()), trace_picture(permuted, small())), 1e-12);
 }
 
-TEST(Symmetry, OrderOfObjectsDoesNotMatter) {
+TEST(Symmetry, IgnoresOrderOfObjects) {
   covers("R31");
   for (const std::string& name : kScenes) {
     Json permuted = sample(name);
@@ -64,7 +64,7 @@ TEST(Symmetry, OrderOfObjectsDoesNotMatter) {
   }
 }
 
-TEST(Symmetry, MirroredSceneIsTheMirroredPicture) {
+TEST(Symmetry, MirrorsImageWithScene) {
   covers("R31");
   for (const std::string& name : kScenes) {
     const Picture seen = render(sample(name), small()), other = render(mirrored(sample(name)), small());
@@ -76,7 +76,7 @@ TEST(Symmetry, MirroredSceneIsTheMirroredPicture) {
 }
 
 // A camera rolled by 90 degrees gives the rotated image, bit for bit.
-TEST(Symmetry, TurnedCameraIsTheTurnedPicture) {
+TEST(Symmetry, RotatesImageWithCamera) {
   covers("R31");
   for (const char* name : {"paper", "glass", "light-many"}) {
     Json scene = sample(name), turned = scene;
@@ -93,7 +93,7 @@ TEST(Symmetry, TurnedCameraIsTheTurnedPicture) {
   }
 }
 
-TEST(Symmetry, SplittingTrianglesChangesNothing) {
+TEST(Symmetry, IgnoresTriangleSplitting) {
   covers("R31");
   const char* patch = R"({'lights': [{'type': 'point', 'position': [1, 2, 3]}], 'ambient': [0.1, 0.1, 0.1],
                           'materials': {'white': {'ks': 0.5}}})";
@@ -125,7 +125,7 @@ Json hidden_ball(const Json& scene) {
   return {};
 }
 
-TEST(Symmetry, WhatNobodySeesChangesNothing) {
+TEST(Symmetry, IgnoresHiddenObjects) {
   covers("R31");
   for (const std::string& name : kScenes) {
     Json scene = sample(name);
@@ -137,7 +137,7 @@ TEST(Symmetry, WhatNobodySeesChangesNothing) {
   }
 }
 
-TEST(Symmetry, MovingEverythingFarAwayChangesNothingToSee) {
+TEST(Symmetry, IsTranslationInvariant) {
   covers("A18");
   for (const char* name : {"paper", "light-point", "shape-cylinder"}) {
     const Json far = moved(sample(name), Vec3d(1e6, 1e6, 1e6));
@@ -148,7 +148,7 @@ TEST(Symmetry, MovingEverythingFarAwayChangesNothingToSee) {
 }
 
 // Compares the pole with a view a billionth of a degree away.
-TEST(Symmetry, PolesOfTheOrbitAreNoSpecialPlaces) {
+TEST(Symmetry, IsContinuousAtOrbitPoles) {
   covers("E8");
   const Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
                               "{'camera': {'fov_degrees': 20}, 'lights': [{'type': 'directional', 'from': "

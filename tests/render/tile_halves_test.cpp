@@ -52,7 +52,7 @@ class TileHalvesTest : public ::testing::TestWithParam<std::pair<int, int>> {
   }
 };
 
-TEST_P(TileHalvesTest, TellTheErrorOfPixelsAndBlocks) {
+TEST_P(TileHalvesTest, MatchesErrorOfPixelsAndBlocks) {
   double squares = 0, values = 0, block_squares = 0, blocks = 0, tile_sums[3]{};
   std::array<std::array<double, 3>, kBatch / 16> sums{}, counts{};
   for_each_value([&](int slot, std::size_t c, double a, double b) {
@@ -85,7 +85,7 @@ TEST_P(TileHalvesTest, TellTheErrorOfPixelsAndBlocks) {
   EXPECT_NEAR(told.tile_sum, squares / values, 1e-9);
 }
 
-TEST_P(TileHalvesTest, TellWhatRadianceDiffersBy) {
+TEST_P(TileHalvesTest, MatchesRadianceDifference) {
   Plan plan;
   plan.sample_range = 2;
   double sum = 0, pixels = 0, of_pixel = 0;
@@ -101,7 +101,7 @@ TEST_P(TileHalvesTest, TellWhatRadianceDiffersBy) {
   EXPECT_NEAR(told.mean(), sum / pixels, 1e-9);
 }
 
-TEST_P(TileHalvesTest, TellWhatADisplayShows) {
+TEST_P(TileHalvesTest, MatchesDisplayedDifference) {
   Plan plan;
   plan.space = Space::display;
   double sum = 0, pixels = 0, of_pixel = 0;

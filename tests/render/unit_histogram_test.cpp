@@ -22,7 +22,7 @@ UnitHistogram draw(int count, const Draw& value) {
 }
 
 // Without any event, the bound on the mean is at most 2.5 times the rule of three, 1 - delta^(1/n).
-TEST(UpperMean, OfNothingSeenIsTheRuleOfThree) {
+TEST(UpperMean, FollowsRuleOfThreeWithoutEvents) {
   for (const int count : {100, 1000, 60000}) {
     const double bound = draw(count, [] { return 0.0; }).upper_mean(0.05);
     const double rule = 1 - std::pow(0.05, 1.0 / count);
@@ -32,7 +32,7 @@ TEST(UpperMean, OfNothingSeenIsTheRuleOfThree) {
   EXPECT_EQ(UnitHistogram().upper_mean(0.05), 1);
 }
 
-TEST(UpperMean, OfEqualValuesIsCloseToThem) {
+TEST(UpperMean, StaysCloseToEqualValues) {
   for (const double value : {1e-6, 1e-3, 0.1, 0.5, 0.99}) {
     const double bound = draw(60000, [&] { return value; }).upper_mean(0.05);
     EXPECT_GE(bound, value);
@@ -52,7 +52,7 @@ TEST(UnitHistogram, ScalesCountsAndValues) {
 }
 
 // Most runs see none of the few large values.
-TEST(UpperMean, HoldsWhereErrorIsRare) {
+TEST(UpperMean, HoldsForRareErrors) {
   covers("certificate-26");
   EXPECT_LE(stability_row("certificate-26").measure().ours, 5);
 }
@@ -69,7 +69,7 @@ TEST(UpperMean, HoldsForOtherDistributions) {
   holds(0.01, [&] { return random.unit() < 0.1 ? 0.1 : 0.0; });
 }
 
-TEST(UpperMean, IsThatOfAllPartsTogether) {
+TEST(UpperMean, IsUnchangedByMerging) {
   Random random(3);
   UnitHistogram all, first, second;
   for (int i = 0; i < 1000; ++i) {

@@ -25,7 +25,7 @@ bool give_way_until(const std::atomic<bool>& done, TimeSlice& turn) {
   return done;
 }
 
-TEST(WorkerPool, DoesEveryStepOnceWithAWorkerOfItsOwn) {
+TEST(WorkerPool, RunsEveryStepOnceWithOwnWorker) {
   WorkerPool pool(3);
   std::mutex mutex;
   std::multiset<int> steps, busy;
@@ -46,7 +46,7 @@ TEST(WorkerPool, DoesEveryStepOnceWithAWorkerOfItsOwn) {
   EXPECT_EQ(steps.size(), 200u);
 }
 
-TEST(WorkerPool, ALongStepLetsOthersGoFirst) {
+TEST(WorkerPool, RunsOthersWhileLongStepYields) {
   for (const int threads : {1, 2}) {
     WorkerPool pool(threads);
     std::atomic<int> begun = 0;
@@ -67,7 +67,7 @@ TEST(WorkerPool, ALongStepLetsOthersGoFirst) {
 }
 
 // The step never yields.
-TEST(WorkerPool, AStepThatNeverGivesWayStopsNobody) {
+TEST(WorkerPool, RunsOthersDuringNonYieldingStep) {
   for (const int threads : {1, 2}) {
     WorkerPool pool(threads);
     std::atomic<int> begun = 0;
@@ -92,7 +92,7 @@ TEST(WorkerPool, AStepThatNeverGivesWayStopsNobody) {
   }
 }
 
-TEST(WorkerPool, ATaskThatTakesLongStopsNobody) {
+TEST(WorkerPool, RunsLoopsDuringLongTask) {
   WorkerPool pool(1);
   std::atomic<bool> begun = false, done = false, seen = false;
   pool.enqueue(kForeground, [&] {
@@ -105,7 +105,7 @@ TEST(WorkerPool, ATaskThatTakesLongStopsNobody) {
   EXPECT_TRUE(test::eventually([&] { return seen.load(); }));
 }
 
-TEST(WorkerPool, StepsThatGaveWayGoOnInTurn) {
+TEST(WorkerPool, ResumesYieldedStepsInTurn) {
   constexpr int kLoops = 6;
   WorkerPool pool(2);
   std::atomic<int> present = 0, running = 0;
@@ -139,7 +139,7 @@ struct OnePass final : SlotLease {
   bool fails = false;
 };
 
-TEST(WorkerPool, NoStepRunsWhileAPassIsRenewed) {
+TEST(WorkerPool, RunsNoStepDuringLeaseRenewal) {
   WorkerPool pool(2);
   OnePass pass;
   std::atomic<std::uint64_t> progress = 0;
@@ -169,7 +169,7 @@ TEST(WorkerPool, NoStepRunsWhileAPassIsRenewed) {
   caller.join();
 }
 
-TEST(WorkerPool, APassThatIsNotRenewedEndsTheLoop) {
+TEST(WorkerPool, EndsLoopIfLeaseRenewalFails) {
   WorkerPool pool(1);
   OnePass pass;
   pass.fails = true;
@@ -183,7 +183,7 @@ TEST(WorkerPool, APassThatIsNotRenewedEndsTheLoop) {
   EXPECT_EQ(begun, 1);
 }
 
-TEST(WorkerPool, TasksAreDoneWhileALongStepRuns) {
+TEST(WorkerPool, RunsTasksDuringLongStep) {
   WorkerPool pool(1);
   std::atomic<bool> done = false;
   bool seen = false;
@@ -195,7 +195,7 @@ TEST(WorkerPool, TasksAreDoneWhileALongStepRuns) {
   EXPECT_TRUE(seen);
 }
 
-TEST(WorkerPool, AFailureEndsTheLoopAndIsThrown) {
+TEST(WorkerPool, EndsLoopAndRethrowsFailure) {
   WorkerPool pool(2);
   std::atomic<int> begun = 0;
   const auto fail = [&](int, int, TimeSlice&) -> bool {

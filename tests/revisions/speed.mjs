@@ -9,7 +9,7 @@ import { spawn } from "node:child_process";
 import { FrameReader, cpu_seconds, post_scene, send } from "../bench/daemon.mjs";
 import { start_two_sided } from "../bench/two_sided.mjs";
 
-const kFlake = "build/bench-scenes/sphereflake.json";  // 7,381 spheres
+const kFlake = "build/bench-scenes/sphereflake.json"; // 7,381 spheres
 
 function arguments_of(words) {
   const [name, ...rest] = words;
@@ -63,7 +63,8 @@ function embree_row(subject, place, triangles, kind) {
   return {
     name: `embree-${subject}-${place}-${triangles / 1000}k-${kind}`,
     async run(build) {
-      if (!sides.has(build)) sides.set(build, await start_two_sided(`${build}/bench`, [subject, String(triangles), place, "default"]));
+      if (!sides.has(build))
+        sides.set(build, await start_two_sided(`${build}/bench`, [subject, String(triangles), place, "default"]));
       return (await sides.get(build).ours(kind)).cpu_s;
     },
     async stop() {
@@ -101,7 +102,7 @@ console.log("CPU seconds of theirs over ours, medians of interleaved runs: above
 for (const row of rows().filter(({ name }) => name.includes(only))) {
   const times = { build: [], [theirs]: [] };
   try {
-    for (const build of ["build", theirs]) await row.run(build);  // warm up
+    for (const build of ["build", theirs]) await row.run(build); // warm up
     for (let round = 0; round < rounds; ++round)
       for (const build of round % 2 ? ["build", theirs] : [theirs, "build"]) times[build].push(await row.run(build));
   } finally {
@@ -109,5 +110,7 @@ for (const row of rows().filter(({ name }) => name.includes(only))) {
   }
   const ratios = times.build.map((ours, i) => times[theirs][i] / ours).sort((a, b) => a - b);
   const ratio = median(times[theirs]) / median(times.build);
-  console.log(`${row.name.padEnd(22)} ${ratio.toFixed(3)}  (pairs ${ratios[0].toFixed(3)} to ${ratios.at(-1).toFixed(3)})`);
+  console.log(
+    `${row.name.padEnd(22)} ${ratio.toFixed(3)}  (pairs ${ratios[0].toFixed(3)} to ${ratios.at(-1).toFixed(3)})`,
+  );
 }

@@ -34,7 +34,7 @@ std::vector<fs::path> scenes_in(const fs::path& folder) {
   return files;
 }
 
-TEST(Corpus, GoodScenesLoad) {
+TEST(Corpus, LoadsGoodScenes) {
   for (const fs::path& folder : {kCorpus / "good", fs::path("scenes")}) {
     for (const fs::path& file : scenes_in(folder)) {
       EXPECT_NO_THROW(load_scene(text_of(file))) << file;
@@ -42,7 +42,7 @@ TEST(Corpus, GoodScenesLoad) {
   }
 }
 
-TEST(Corpus, BadScenesAreRefusedAtTheRightPlace) {
+TEST(Corpus, RejectsBadScenesAtExpectedPath) {
   const auto expectations = nlohmann::json::parse(text_of(kCorpus / "expectations.json"));
   std::size_t seen = 0;
   for (const fs::path& file : scenes_in(kCorpus / "bad")) {
@@ -61,7 +61,7 @@ TEST(Corpus, BadScenesAreRefusedAtTheRightPlace) {
   EXPECT_EQ(seen, expectations.size());
 }
 
-TEST(Corpus, OneMistakeIsOneProblem) {
+TEST(Corpus, ReportsOneProblemPerMistake) {
   for (const char* name :
        {"sphere-radius-negative", "camera-up-zero", "material-type-unknown", "light-type-unknown",
         "object-type-unknown", "camera-type-unknown", "mesh-index-too-large", "cylinder-of-neither-form",
@@ -76,7 +76,7 @@ TEST(Corpus, OneMistakeIsOneProblem) {
   }
 }
 
-TEST(Schema, CheckedInFileIsTheOneWrittenFromTheReaders) {
+TEST(Schema, MatchesCheckedInFile) {
   EXPECT_EQ(text_of("scenes/schema/scene.json"), scene_schema())
       << "renew it: orrery schema > scenes/schema/scene.json";
 }

@@ -22,7 +22,10 @@ const here = "tests/schema";
 const schema = JSON.parse(readFileSync("scenes/schema/scene.json", "utf8"));
 // strict: a schema keyword that is unknown to ajv or cannot apply is an error.
 const accepts = new Ajv({ strict: true, strictTypes: false, allErrors: false }).compile(schema);
-const names_in = (folder) => readdirSync(folder).filter((name) => name.endsWith(".json")).sort();
+const names_in = (folder) =>
+  readdirSync(folder)
+    .filter((name) => name.endsWith(".json"))
+    .sort();
 
 // Returns the problems that the loader finds, by file, without warnings. Files without problems are absent.
 function check(files) {

@@ -10,7 +10,13 @@ const generate = (level) =>
 for (const level of [1, 2, 3])
   assert.equal(generate(level), readFileSync(`scenes/sphereflake-${level}.json`, "utf8"), `level ${level}`);
 
-for (const [level, count] of [[0, 1], [1, 10], [2, 91], [3, 820], [4, 7381]]) {
+for (const [level, count] of [
+  [0, 1],
+  [1, 10],
+  [2, 91],
+  [3, 820],
+  [4, 7381],
+]) {
   const spheres = JSON.parse(generate(level)).objects.filter((object) => object.type === "sphere");
   assert.equal(spheres.length, count);
   if (level > 3) continue; // the loop below visits every pair

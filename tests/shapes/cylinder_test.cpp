@@ -27,7 +27,7 @@ Crossing crossing(const Target<T>& shape, const Ray<double>& ray) {
 }
 
 // The roots are (-B -+ sqrt D) / (2 A). With A != 1, a missing pair of brackets shows.
-TEST(Cylinder, RootsAreDividedByTwiceA) {
+TEST(Cylinder, DividesRootsByTwiceA) {
   covers("A7");
   const auto check = [](const Ray<double>& ray, double enter, double leave) {
     const Crossing d = crossing(Target<double>::of_objects(kEndless), ray);
@@ -42,7 +42,7 @@ TEST(Cylinder, RootsAreDividedByTwiceA) {
   check({{-5, 0, 0}, {1, 0, 0}}, 4, 6);
 }
 
-TEST(Cylinder, RaysAlongTheAxisMeetTheCaps) {
+TEST(Cylinder, HitsCapsAlongAxis) {
   covers("A8");
   const auto capped = Target<double>::of_objects(kCapped);
   for (const double slant : {0.0, 1e-10, -1e-10, 1e-200, 1e-310})
@@ -60,7 +60,7 @@ TEST(Cylinder, RaysAlongTheAxisMeetTheCaps) {
 }
 
 // Along an axis that doubles cannot represent exactly, the perpendicular component is rounding noise.
-TEST(Cylinder, RaysAlongASlantedAxisMeetTheCapsToo) {
+TEST(Cylinder, HitsCapsAlongSlantedAxis) {
   covers("A8");
   Random random(1);
   for (int i = 0; i < 2'000; ++i) {
@@ -74,7 +74,7 @@ TEST(Cylinder, RaysAlongASlantedAxisMeetTheCapsToo) {
 }
 
 // A cap centre at the origin does not mean an infinite cylinder, which is a separate form.
-TEST(Cylinder, OriginIsNoSentinel) {
+TEST(Cylinder, TreatsOriginAsOrdinaryCapCentre) {
   covers("A9");
   const Ray<double> above{{-5, 0, 100}, {1, 0, 0}};
   const auto met = [&](const char* object) { return Target<double>::of_objects(object).closest(above); };
@@ -85,7 +85,7 @@ TEST(Cylinder, OriginIsNoSentinel) {
 }
 
 // Rays through the rim cross the surface twice. Cap and wall must not each leave the crossing to the other.
-TEST(Cylinder, RimDoesNotLeak) {
+TEST(Cylinder, DoesNotLeakAtRim) {
   covers("A10");
   const auto capped = Target<double>::of_objects(kCapped);
   Random random(2);
@@ -112,7 +112,7 @@ TEST(Cylinder, RimDoesNotLeak) {
 }
 
 // In the plane of a cap, the distance to that cap is 0 / 0, which must not affect the result.
-TEST(Cylinder, RaysInThePlaneOfACapMeetTheWall) {
+TEST(Cylinder, HitsWallInPlaneOfCap) {
   const auto check = [](const auto& capped, auto number) {
     using T = decltype(number);
     for (const T side : {T(1), T(-1)}) {
@@ -128,7 +128,7 @@ TEST(Cylinder, RaysInThePlaneOfACapMeetTheWall) {
   check(Target<float>::of_objects(kCapped), float());
 }
 
-TEST(Cylinder, IsMetFromWithin) {
+TEST(Cylinder, IsHitFromInside) {
   covers("A11");
   const auto shape = Target<double>::of_objects(
       "[{'type': 'cylinder', 'point': [0, 0, 0], 'axis': [0, 1, 0], 'radius': 0.5}]");

@@ -15,11 +15,11 @@ constexpr const char* kFloor = "[{'type': 'plane', 'point': [0, 0, 0], 'normal':
 constexpr const char* kCube = "[{'type': 'box', 'min': [0, 0, 0], 'max': [1, 1, 1]}]";
 
 template <class T>
-class Flat : public testing::Test {};
+class FlatShapes : public testing::Test {};
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(Flat, Scalars);
+TYPED_TEST_SUITE(FlatShapes, Scalars);
 
-TYPED_TEST(Flat, RaysAlongAPlaneMissIt) {
+TYPED_TEST(FlatShapes, MissesRaysParallelToPlane) {
   using T = TypeParam;
   covers("A37");
   const auto plane = Target<T>::of_objects(kFloor);
@@ -32,7 +32,7 @@ TYPED_TEST(Flat, RaysAlongAPlaneMissIt) {
   EXPECT_FALSE(disk.closest(Ray<T>{{-5, 0, 1}, {1, 0, 0}}).met());
 }
 
-TYPED_TEST(Flat, PlanesAreMetAtTheRightDistanceHoweverSlanted) {
+TYPED_TEST(FlatShapes, FindsPlaneAtAnySlant) {
   using T = TypeParam;
   covers("A37");
   const auto plane = Target<T>::of_objects(kFloor);
@@ -44,7 +44,7 @@ TYPED_TEST(Flat, PlanesAreMetAtTheRightDistanceHoweverSlanted) {
 }
 
 // The distance overflows, or nearly does. The ray then misses, or its surface has only finite numbers.
-TEST(Plane, HasNoHorizonOfNotANumbers) {
+TEST(Plane, StaysFiniteAtHorizon) {
   covers("A37");
   const auto plane = Target<double>::of_objects(kFloor);
   for (const double slope : {1e-100, 1e-300, 1e-307, 5e-324}) {
@@ -58,7 +58,7 @@ TEST(Plane, HasNoHorizonOfNotANumbers) {
   }
 }
 
-TYPED_TEST(Flat, DisksEndAtTheirRadius) {
+TYPED_TEST(FlatShapes, EndsDisksAtRadius) {
   using T = TypeParam;
   const auto disk =
       Target<T>::of_objects("[{'type': 'disk', 'center': [1, 0, 0], 'normal': [0, 0, 1], 'radius': 2}]");
@@ -74,7 +74,7 @@ TYPED_TEST(Flat, DisksEndAtTheirRadius) {
 
 // Rays in the plane of a face give 0 * infinity. Tests the catalogue's six places for each axis, sign and
 // zero.
-TYPED_TEST(Flat, BoxesAreMetByRaysWithinTheirFaces) {
+TYPED_TEST(FlatShapes, HitsBoxesWithRaysInFacePlanes) {
   using T = TypeParam;
   covers("A28");
   const auto cube = Target<T>::of_objects(kCube);
@@ -100,7 +100,7 @@ TYPED_TEST(Flat, BoxesAreMetByRaysWithinTheirFaces) {
         }
 }
 
-TEST(Box, IsMetFromWithinAndFromCorners) {
+TEST(Box, IsHitFromInsideAndThroughCorners) {
   const auto cube = Target<double>::of_objects(kCube);
   EXPECT_NEAR(cube.closest(Ray<double>{{0.5, 0.5, 0.5}, {0, 0, -1}}).t, 0.5, 1e-15);
   const Vec3d diagonal = safe_normalize(Vec3d(1, 1, 1));
@@ -108,7 +108,7 @@ TEST(Box, IsMetFromWithinAndFromCorners) {
   EXPECT_FALSE(cube.closest(Ray<double>{{2, 2, 2}, diagonal}).met()) << "behind the origin";
 }
 
-TEST(Box, NormalBelongsToTheFaceThatIsMet) {
+TEST(Box, ReportsNormalOfHitFace) {
   const auto cube = Target<double>::of_objects("[{'type': 'box', 'min': [-3, -1, -2], 'max': [1, 5, 4]}]");
   Random random(4);
   for (int axis = 0; axis < 3; ++axis)

@@ -117,11 +117,11 @@ class ShapeOracle : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(ShapeOracle, FloatFindsWhatLongDoubleFinds) {
+TEST_P(ShapeOracle, MatchesLongDoubleInFloat) {
   covers("A1 A2");
   check<float>();
 }
-TEST_P(ShapeOracle, DoubleFindsWhatLongDoubleFinds) {
+TEST_P(ShapeOracle, MatchesLongDoubleInDouble) {
   covers("A1 A2");
   check<double>();
 }

@@ -41,7 +41,7 @@ std::vector<SurfaceParameters> parameters_of(const Json& scene_json, const Rays<
 
 class ShapeParameters : public testing::TestWithParam<std::string> {};
 
-TEST_P(ShapeParameters, TangentsAreUnitAndLieInTheSurface) {
+TEST_P(ShapeParameters, GivesUnitTangentsInSurface) {
   for (const Json& object : shape_samples(GetParam())) {
     const auto found = parameters_of(scene_with(object), rays_at<double>(object, {1, Vec3d()}, 400, 3));
     ASSERT_GT(found.size(), 20u) << object;
@@ -54,7 +54,7 @@ TEST_P(ShapeParameters, TangentsAreUnitAndLieInTheSurface) {
 }
 
 // Between two nearby hits, the one farther along the tangent has the larger u.
-TEST_P(ShapeParameters, TextureCoordinateGrowsAlongTheTangent) {
+TEST_P(ShapeParameters, IncreasesTextureCoordinateAlongTangent) {
   for (const Json& object : shape_samples(GetParam())) {
     Rays<double> rays;
     for (const Ray<double>& ray : rays_at<double>(object, {1, Vec3d()}, 300, 5)) rays.push_back(ray);
@@ -78,7 +78,7 @@ TEST_P(ShapeParameters, TextureCoordinateGrowsAlongTheTangent) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShapeParameters, testing::ValuesIn(shape_names()));
 
-TEST(Parameters, OfASphereAreLongitudeAndLatitude) {
+TEST(Parameters, MapsSphereToLongitudeAndLatitude) {
   const Json ball = json("{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}");
   const auto at = [&](const Vec3d& from) {
     return parameters_of(scene_with(ball), {{from, safe_normalize(-from)}}).at(0);
@@ -92,7 +92,7 @@ TEST(Parameters, OfASphereAreLongitudeAndLatitude) {
   EXPECT_NEAR(at({5, 5, 0}).v, 0.75, 1e-15);
 }
 
-TEST(Parameters, OfAMeshAreItsTextureCoordinates) {
+TEST(Parameters, UsesTextureCoordinatesOfMesh) {
   const Json mesh = json(R"({'type': 'mesh', 'positions': [[0, 0, 0], [4, 0, 0], [0, 4, 0]],
                              'indices': [[0, 1, 2]], 'uvs': [[0.5, 0], [0.5, 1], [0.25, 0]]})");
   const SurfaceParameters f = parameters_of(scene_with(mesh), {{{1, 1, 5}, {0, 0, -1}}}).at(0);
@@ -103,7 +103,7 @@ TEST(Parameters, OfAMeshAreItsTextureCoordinates) {
   EXPECT_NEAR(f.tangent.y, -1, 1e-15) << "s falls upward";
 }
 
-TEST(Parameters, UvsMustBeAsManyAsPositions) {
+TEST(Parameters, RejectsUvCountMismatch) {
   EXPECT_EQ(first_problem(scene_with(json(R"({'type': 'mesh', 'positions': [[0, 0, 0], [4, 0, 0], [0, 4, 0]],
                              'indices': [[0, 1, 2]], 'uvs': [[0.5, 0]]})"))),
             "/objects/0/uvs");

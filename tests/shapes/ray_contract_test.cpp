@@ -76,22 +76,22 @@ class RayContract : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(RayContract, BadRaysMeetNothing) {
+TEST_P(RayContract, MissesInvalidRays) {
   covers("A36");
   check_bad_rays<float>();
   check_bad_rays<double>();
 }
-TEST_P(RayContract, OcclusionAgreesWithTheNearestHit) {
+TEST_P(RayContract, AgreesOnOcclusionAndNearestHit) {
   check_occlusion<float>();
   check_occlusion<double>();
 }
-TEST_P(RayContract, LanesDoNotMatter) {
+TEST_P(RayContract, IsIndependentOfLanes) {
   check_lanes<float>();
   check_lanes<double>();
 }
 
 // For three copies of an object, the lowest number wins in any order of the tests.
-TEST_P(RayContract, EqualHitsGoToTheLowestNumber) {
+TEST_P(RayContract, BreaksTiesByLowestNumber) {
   for (const Json& object : shape_samples(GetParam())) {
     const Target<double> one(scene_with(object));
     const Target<double> three(scene_with(Json::array({object, object, object})));

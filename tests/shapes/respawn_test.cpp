@@ -75,7 +75,7 @@ class Leaver {
   std::vector<SurfaceSample<T>> spots_;
 };
 
-class Respawn : public testing::TestWithParam<std::string> {
+class SecondaryRays : public testing::TestWithParam<std::string> {
  protected:
   template <class T>
   void check(int total) {
@@ -99,18 +99,18 @@ class Respawn : public testing::TestWithParam<std::string> {
 };
 
 // All shape types together trace more than a million rays in each precision.
-TEST_P(Respawn, NoDoubleRayMeetsThePlaceItLeft) {
+TEST_P(SecondaryRays, AvoidsSelfIntersectionInDouble) {
   covers("A16 A17 A11");
   check<double>(150'000);
 }
-TEST_P(Respawn, NoFloatRayMeetsThePlaceItLeft) {
+TEST_P(SecondaryRays, AvoidsSelfIntersectionInFloat) {
   covers("A16");
   check<float>(150'000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Respawn, testing::ValuesIn(shape_names()), parameter_name);
+INSTANTIATE_TEST_SUITE_P(Shapes, SecondaryRays, testing::ValuesIn(shape_names()), parameter_name);
 
-TEST(Step, IsBelowTwoNanometresAThousandKilometresAway) {
+TEST(Step, StaysBelowTwoNanometresAt1000Kilometres) {
   covers("A17");
   for (const std::string& type : shape_names())
     for (const Json& object : shape_samples(type)) {

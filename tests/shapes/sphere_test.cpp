@@ -18,7 +18,7 @@ Target<T> sphere(const Vec3d& center, double radius) {
 }
 
 // For rays along -z from (h, 0, D) at the unit sphere, the closed form is t = D - sqrt(1 - h^2).
-TEST(Sphere, IsRightFromAMillionRadiiAway) {
+TEST(Sphere, IsAccurateFromMillionRadii) {
   covers("A1");
   const auto shape = sphere<double>(Vec3d(), 1);
   Random random(1);
@@ -39,7 +39,7 @@ TEST(Sphere, IsRightFromAMillionRadiiAway) {
 }
 
 // Random directions, so that no test profits from an axis.
-TEST(Sphere, IsRightFromAfarInAnyDirection) {
+TEST(Sphere, IsAccurateFromAfarInAnyDirection) {
   covers("A1");
   const auto shape = sphere<double>(Vec3d(), 1);
   Random random(2);
@@ -55,7 +55,7 @@ TEST(Sphere, IsRightFromAfarInAnyDirection) {
 
 // In float the residue is known to a few ulp of the distance. If h differs from 1 by more, no ray is wrong.
 // The textbook discriminant is wrong for 29 % of these rays at a distance of 10,000.
-TEST(Sphere, IsRightInFloatToAFewUlpOfTheDistance) {
+TEST(Sphere, IsAccurateInFloatWithinFewUlp) {
   covers("A1");
   const auto shape = sphere<float>(Vec3d(), 1);
   Random random(3);
@@ -74,7 +74,7 @@ TEST(Sphere, IsRightInFloatToAFewUlpOfTheDistance) {
   }
 }
 
-TEST(Sphere, ServesAsTheGround) {
+TEST(Sphere, IsAccurateAsGround) {
   covers("A2");
   for (const double radius : {1.0, 1e3, 1e6, 1e7}) {
     const auto shape = sphere<double>(Vec3d(0, -radius, 0), radius);
@@ -88,7 +88,7 @@ TEST(Sphere, ServesAsTheGround) {
   }
 }
 
-TEST(Sphere, NestedShellsStayApart) {
+TEST(Sphere, SeparatesNestedShells) {
   covers("A4");
   const auto shells = Target<double>::of_objects(
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}, {'type': 'sphere', 'center': [0, 0, 0], "
@@ -105,7 +105,7 @@ TEST(Sphere, NestedShellsStayApart) {
   }
 }
 
-TEST(Sphere, StartsOnItAndInIt) {
+TEST(Sphere, HandlesRaysStartingOnAndInside) {
   covers("A5");
   const auto unit = sphere<double>(Vec3d(), 1);
   EXPECT_FALSE(unit.closest(Ray<double>{{1, 0, 0}, {1, 0, 0}}).met());
@@ -124,7 +124,7 @@ TEST(Sphere, StartsOnItAndInIt) {
   }
 }
 
-TEST(Sphere, TakesDirectionsOfAnyLength) {
+TEST(Sphere, AcceptsDirectionsOfAnyLength) {
   const auto shape = sphere<double>(Vec3d(), 1);
   for (const double length : {1e-6, 0.5, 3.0, 1e6})
     EXPECT_NEAR(shape.closest(Ray<double>{{0, 0, 5}, {0, 0, -length}}).t * length, 4, 1e-12) << length;

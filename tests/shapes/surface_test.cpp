@@ -80,11 +80,11 @@ class ShapeSurface : public testing::TestWithParam<std::string> {
   }
 };
 
-TEST_P(ShapeSurface, FloatPositionsLieOnTheShape) { check_positions<float>(); }
-TEST_P(ShapeSurface, DoublePositionsLieOnTheShape) { check_positions<double>(); }
+TEST_P(ShapeSurface, KeepsFloatPositionsOnShape) { check_positions<float>(); }
+TEST_P(ShapeSurface, KeepsDoublePositionsOnShape) { check_positions<double>(); }
 
 // Neighbouring points of the surface, found by other rays, lie at right angles to the normal.
-TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
+TEST_P(ShapeSurface, GivesPerpendicularNormals) {
   for_each_placed_shape<double>(1000, [](const PlacedShape<double>& s, const Placement& placement) {
     const long double h = 1e-6L * static_cast<long double>(placement.size);
     int judged = 0, slanted = 0;
@@ -115,7 +115,7 @@ TEST_P(ShapeSurface, NormalsStandUprightOnTheSurface) {
 }
 
 // A ray from a closed convex shape outward misses, and a ray from just inside hits the surface again.
-TEST_P(ShapeSurface, NormalsOfClosedShapesPointOutward) {
+TEST_P(ShapeSurface, OrientsNormalsOfClosedShapesOutward) {
   covers("A38");
   for_each_placed_shape<double>(1000, [](const PlacedShape<double>& s, const Placement& placement) {
     if (!s.shape.traits(0).closed || !s.shape.traits(0).convex) return;
@@ -128,7 +128,7 @@ TEST_P(ShapeSurface, NormalsOfClosedShapesPointOutward) {
   });
 }
 
-TEST_P(ShapeSurface, BoundsHoldEveryPosition) {
+TEST_P(ShapeSurface, ContainsEveryPositionInBounds) {
   for_each_placed_shape<float>(500, [](const PlacedShape<float>& s, const Placement&) {
     for (std::size_t i = 0; i < s.hits.size(); ++i) {
       const Bounds<float> box = padded<float>(s.shape.bounds(s.hits[i].primitive));
@@ -142,7 +142,7 @@ TEST_P(ShapeSurface, BoundsHoldEveryPosition) {
 INSTANTIATE_TEST_SUITE_P(Shapes, ShapeSurface, testing::ValuesIn(shape_names()), parameter_name);
 
 // Open shapes face as specified in their input.
-TEST(OpenShapes, FaceAsTheyWereGiven) {
+TEST(OpenShapes, KeepsSpecifiedOrientation) {
   const auto outward = [](std::string_view object, const Vec3d& from, const Vec3d& direction) {
     const auto shape = Target<double>::of_objects(object);
     const Ray<double> ray{from, direction};
@@ -166,7 +166,7 @@ TEST(OpenShapes, FaceAsTheyWereGiven) {
   }
 }
 
-TEST(Mesh, InterpolatesNormalsAndFallsBackWhereTheyCancel) {
+TEST(Mesh, InterpolatesNormalsUnlessTheyCancel) {
   const auto shape = Target<double>::of_objects(
       R"([{'type': 'mesh', 'positions': [[0, 0, 0], [1, 0, 0], [0, 1, 0]], 'indices': [[0, 1, 2]],
            'normals': [[-1, 0, 1], [1, 0, 1], [0, 0, 1]]},

@@ -50,7 +50,7 @@ TEST(Mesh, DoesNotLeakFarFromTheOrigin) {
       << "in float its vertices lie on a coarse grid, but they are shared";
 }
 
-TEST(Triangle, MayBeAsSmallAsAPicometre) {
+TEST(Triangle, SupportsPicometreSize) {
   covers("A13");
   for (double s = 9.9e-4; s > 0.9e-12; s /= 10) {
     const Json object{{"type", "triangle"}, {"vertices", {{0, 0, 0}, {s, 0, 0}, {0, s, 0}}}};
@@ -61,7 +61,7 @@ TEST(Triangle, MayBeAsSmallAsAPicometre) {
   }
 }
 
-TEST(Triangle, WithoutAreaIsRefusedOrNeverMet) {
+TEST(Triangle, RejectsOrMissesZeroArea) {
   covers("A14");
   const auto problem = [](const char* vertices) {
     return first_problem(scene_with(Json{{"type", "triangle"}, {"vertices", json(vertices)}}));
@@ -127,7 +127,7 @@ int hits_of_leaving_a_strip(double length, double width) {
   return met;
 }
 
-TEST(Triangle, LongAndThinDoesNotShadeItself) {
+TEST(Triangle, AvoidsSelfShadowingIfLongAndThin) {
   covers("A16");
   for (const double width : {0.6, 0.06}) EXPECT_EQ(hits_of_leaving_a_strip<float>(600, width), 0) << width;
   for (const double width : {0.6, 0.06, 0.006, 6e-6})
@@ -164,7 +164,7 @@ int hits_of_leaving_an_obtuse_sliver(double height, Random& random) {
 }
 
 // The cross product of the two shorter sides, which are nearly antiparallel, has few significant digits.
-TEST(Triangle, ObtuseSliversDoNotShadeThemselves) {
+TEST(Triangle, AvoidsSelfShadowingOfObtuseSlivers) {
   covers("A16");
   Random random(31);
   for (int i = 0; i < 25; ++i) {
@@ -176,7 +176,7 @@ TEST(Triangle, ObtuseSliversDoNotShadeThemselves) {
 }
 
 // Rays that start exactly on a triangle miss it, in either order of its vertices.
-TEST(Triangle, IsNotMetByRaysThatStartOnIt) {
+TEST(Triangle, MissesRaysStartingOnIt) {
   for (const char* vertices :
        {"[[2, -4, -4], [2, 5, -4], [2, 0, 6]]", "[[2, -4, -4], [2, 0, 6], [2, 5, -4]]"}) {
     const Json scene = scene_with(Json{{"type", "triangle"}, {"vertices", json(vertices)}});
@@ -220,14 +220,14 @@ double slip_on_strip(double size, double aspect) {
 
 // Barycentric weights from rounded products are uncertain by eps times the aspect ratio, which would shift
 // positions along the strip.
-TEST(Triangle, HitsDoNotSlideAlongSlivers) {
+TEST(Triangle, LocatesHitsAccuratelyOnSlivers) {
   EXPECT_LE(slip_on_strip<float>(100, 1e5), 1e-5);
   EXPECT_LE(slip_on_strip<double>(100, 1e7), 1e-13);
   EXPECT_LE(slip_on_strip<double>(100, 1e9), 1e-13);
 }
 
 // A rounded cross product of two long sides loses the digits of the aspect ratio.
-TEST(Triangle, NormalsOfSliversAreExact) {
+TEST(Triangle, ComputesExactNormalsOfSlivers) {
   Random random(9);
   const auto whole = [](const Vec3d& v) { return Vec3d(std::round(v.x), std::round(v.y), std::round(v.z)); };
   for (int i = 0; i < 1000; ++i) {
@@ -244,7 +244,7 @@ TEST(Triangle, NormalsOfSliversAreExact) {
 
 // Rays graze a sliver with sides 11.2, 9.8 and 1.4, at half a degree or less. The point at t must be near the
 // triangle.
-TEST(Triangle, SliversAreMetWhereTheyAre) {
+TEST(Triangle, KeepsGrazingHitsOnSlivers) {
   covers("A15");
   constexpr double kAngle = 0.52 * std::numbers::pi / 180, kFar = 600;
   const Vec3d a(0, 0, 0), b(11.2, 0, 0), c(9.79, 0.05, 0);

@@ -9,7 +9,7 @@ mkdir "$folder/pictures"
 "$program" stability --docs "$folder"
 compare() {
   diff -u "docs/$1" "$folder/$1" && return
-  echo "docs/$1 is not what this build measures. To write it anew: $program stability --docs docs" >&2
+  echo "docs/$1 differs from the measurements of this build. To update it: $program stability --docs docs" >&2
   exit 1
 }
 compare stability.md

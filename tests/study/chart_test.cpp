@@ -40,26 +40,26 @@ std::vector<ParetoStatus> front_of(std::vector<Point> points, double floor = 0) 
 using testing::ElementsAre;
 using enum ParetoStatus;
 
-TEST(Front, HoldsWhatNothingBeatsInBoth) {
+TEST(ParetoFront, ContainsNonDominatedPoints) {
   EXPECT_THAT(front_of({point(1, 0.5), point(2, 0.1), point(3, 0.2)}), ElementsAre(front, front, dominated));
   EXPECT_THAT(front_of({point(3, 0.2), point(2, 0.1), point(1, 0.5)}), ElementsAre(dominated, front, front));
   EXPECT_THAT(front_of({point(1, 0), point(2, 0)}), ElementsAre(front, dominated));
 }
 
-TEST(Front, TakesAOnePercentSmallerErrorForNoSmaller) {
+TEST(ParetoFront, IgnoresErrorDifferencesBelowOnePercent) {
   EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995)}), ElementsAre(front, dominated));
   EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0985)}), ElementsAre(front, front));
   EXPECT_THAT(front_of({point(1, 0.1), point(2, 0.0995), point(3, 0.0989)}),
               ElementsAre(front, dominated, front));
 }
 
-TEST(Front, TakesErrorsBelowTheFloorForTheFloor) {
+TEST(ParetoFront, RaisesErrorsToFloor) {
   EXPECT_THAT(front_of({point(1, 0.01), point(2, 0.002), point(3, 0.001)}), ElementsAre(front, front, front));
   EXPECT_THAT(front_of({point(1, 0.01), point(2, 0.002), point(3, 0.001)}, 0.002),
               ElementsAre(front, front, dominated));
 }
 
-TEST(Front, LeavesUndecidedWhatRoundsCannotTell) {
+TEST(ParetoFront, LeavesIndistinguishablePointsUndecided) {
   const Point quick = point({{1, 0.1}, {1.01, 0.1}, {0.99, 0.1}});
   EXPECT_THAT(front_of({quick, point({{2, 0.12}, {2.1, 0.13}, {1.9, 0.12}})}), ElementsAre(front, dominated));
   // Possibly more accurate, possibly not.
@@ -69,7 +69,7 @@ TEST(Front, LeavesUndecidedWhatRoundsCannotTell) {
   EXPECT_THAT(front_of({point(1, 0.1), point(1, 0.1)}), ElementsAre(undecided, undecided));
 }
 
-TEST(Front, ComparesPointsRoundByRound) {
+TEST(ParetoFront, ComparesPointsRoundByRound) {
   // The rounds differ much more than the points, since the same seeds and load shift both alike.
   EXPECT_THAT(
       front_of({point({{1, 0.10}, {2, 0.20}, {3, 0.15}}), point({{1.5, 0.10}, {2.5, 0.20}, {3.5, 0.15}})}),
@@ -77,13 +77,13 @@ TEST(Front, ComparesPointsRoundByRound) {
 }
 
 // The two common rounds are too few to decide, but all rounds of each are not.
-TEST(Front, HoldsNothingThatIsBeatenBeyondTheIntervals) {
+TEST(ParetoFront, ExcludesPointsDominatedBeyondIntervals) {
   const Point slow =
       point({{20, 0.2}, {4, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}, {20.1, 0.2}, {20, 0.2}});
   EXPECT_THAT(front_of({point({{1, 0.1}, {1.01, 0.1}}), slow}), ElementsAre(front, dominated));
 }
 
-TEST(Point, SumsUpItsRounds) {
+TEST(Point, AveragesRounds) {
   Point p = point(5, 0.3);
   p.rounds.push_back(point(100, 0.4).rounds[0]);
   p.rounds.push_back(point(6, 0).rounds[0]);
@@ -97,7 +97,7 @@ TEST(Point, SumsUpItsRounds) {
 }
 
 // Student's t of two degrees of freedom is 4.302652730 at 0.975.
-TEST(Point, HasIntervalsOfItsMeans) {
+TEST(Point, ReportsIntervalsOfMeans) {
   EXPECT_FALSE(point(5, 0.3).rmse_interval());
   EXPECT_EQ(point(5, 0.3).max_rmse(), 0.3);
   const Point p = point({{5, 0.3}, {7, 0.4}, {6, 0.2}});
@@ -113,7 +113,7 @@ TEST(Point, HasIntervalsOfItsMeans) {
 }
 
 // The interval contains the mean of normal values at the stated rate, for any number of values.
-TEST(Point, IntervalsHoldTheMeanThatTheyPromise) {
+TEST(Point, CoversMeanAtStatedRate) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal(0.3, 0.05);
   for (const std::size_t rounds : {2U, 3U, 8U}) {
@@ -148,7 +148,7 @@ TEST(Chart, ListsItsFrontByCost) {
   EXPECT_THAT(mixed.front(), ElementsAre(2, 1, 0, 3));
 }
 
-TEST(Chart, PredictsTheFullSizeByPixelsAndThreads) {
+TEST(Chart, PredictsFullSizeTimeFromPixelsAndThreads) {
   Chart quartered = chart();
   EXPECT_DOUBLE_EQ(quartered.full_seconds(500), 2);
   quartered.threads = 8;
@@ -185,7 +185,7 @@ std::vector<std::string> elements(const std::string& xml) {
   return all;
 }
 
-TEST(Drawing, IsWellFormedWhateverTheTitle) {
+TEST(ChartSvg, IsWellFormedForAnyTitle) {
   const std::string svg = svg_of(chart());
   const auto found = elements(svg);
   EXPECT_EQ(found.front(), "svg");
@@ -195,7 +195,7 @@ TEST(Drawing, IsWellFormedWhateverTheTitle) {
   EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
-TEST(Drawing, IsMadeOfFewAndEqualPointsToo) {
+TEST(ChartSvg, SupportsFewAndEqualPoints) {
   Chart one = chart();
   one.reference_rmse = 0;
   for (const std::size_t count : {3U, 1U}) {
@@ -207,22 +207,22 @@ TEST(Drawing, IsMadeOfFewAndEqualPointsToo) {
   }
 }
 
-TEST(Drawing, FillsHalfOfWhatIsUndecidedAndGreysWhatTheReferenceCannotTell) {
+TEST(ChartSvg, MarksUndecidedAndUnresolvedPoints) {
   using testing::HasSubstr;
   using testing::Not;
   Chart unsure = chart();
-  EXPECT_THAT(svg_of(unsure), Not(HasSubstr("perhaps on the front")));
+  EXPECT_THAT(svg_of(unsure), Not(HasSubstr("possibly on the Pareto front")));
   unsure.points[1].pareto_status = undecided;
   const std::string svg = svg_of(unsure);
   const std::string mark = svg.substr(svg.find("<g id=\"point-1\">"), svg.find("</g>", svg.find("point-1")));
   EXPECT_THAT(mark, HasSubstr("fill=\"#ffffff\""));
-  EXPECT_THAT(mark, HasSubstr("perhaps on the front"));
+  EXPECT_THAT(mark, HasSubstr("possibly on the Pareto front"));
   EXPECT_THAT(mark, HasSubstr("a5 5 0 0 0 0 10z"));
-  EXPECT_THAT(svg, HasSubstr("less than the reference is off"));
+  EXPECT_THAT(svg, HasSubstr("below the error of the reference"));
   EXPECT_THAT(svg, HasSubstr("fill=\"#999999\""));
 }
 
-TEST(Drawing, ShowsNoDifferenceAsZero) {
+TEST(ChartSvg, LabelsZeroError) {
   using testing::HasSubstr;
   Chart same = chart();
   EXPECT_THAT(svg_of(same), HasSubstr(">0</text>"));
@@ -233,7 +233,7 @@ TEST(Drawing, ShowsNoDifferenceAsZero) {
   EXPECT_THAT(svg_of(same), HasSubstr(">0</text>"));
 }
 
-TEST(Drawing, ReachesFromTheLeastErrorToTheLargest) {
+TEST(ChartSvg, SpansAllErrors) {
   using testing::HasSubstr;
   using testing::Not;
   Chart bright = chart();
@@ -243,7 +243,7 @@ TEST(Drawing, ReachesFromTheLeastErrorToTheLargest) {
                                     Not(HasSubstr(">1</text>\n<text x=\"76"))));
 }
 
-TEST(Drawing, ShortensALongTitle) {
+TEST(ChartSvg, ShortensLongTitle) {
   Chart chart_of_long = chart();
   chart_of_long.title.clear();
   for (int i = 0; i < 200; ++i) chart_of_long.title += "\xC3\xA9";

@@ -10,7 +10,7 @@
 namespace orrery::test {
 namespace {
 
-TEST(Difference, OfAnEqualShiftIsThatShift) {
+TEST(Difference, EqualsUniformShift) {
   const std::array<float, 6> reference{0.125f, 0.25f, 0.5f, 0.75f, 0, 0.375f};
   std::array<float, 6> picture = reference;
   for (float& value : picture) value += 0.125f;
@@ -23,7 +23,7 @@ TEST(Difference, OfAnEqualShiftIsThatShift) {
   EXPECT_EQ(d.non_finite, 0U);
 }
 
-TEST(Difference, HasASign) {
+TEST(Difference, ReportsSignedBias) {
   const std::array<float, 2> reference{0.5f, 0.5f};
   const Difference balanced = difference(std::array{0.75f, 0.25f}, reference);
   EXPECT_EQ(balanced.bias, 0);
@@ -31,20 +31,20 @@ TEST(Difference, HasASign) {
   EXPECT_EQ(difference(std::array{0.25f, 0.5f}, reference).bias, -0.125);
 }
 
-TEST(Difference, IsRelativeToTheReferenceAndAHundredth) {
+TEST(Difference, RegularizesRelativeErrorInTheDark) {
   const double in_the_dark = difference(std::array{0.01f}, std::array{0.0f}).relative_mse;
   EXPECT_NEAR(in_the_dark, 1, 1e-6);
   const double in_the_light = difference(std::array{1.01f}, std::array{1.0f}).relative_mse;
   EXPECT_NEAR(in_the_light, std::pow(0.01 / 1.01, 2), 1e-8);
 }
 
-TEST(Difference, SeesNoMoreThanAScreenWhereItIsCut) {
+TEST(Difference, ClampsToDisplayRange) {
   const Difference d = difference(std::array{7.0f, -1.0f, 0.5f}, std::array{3.0f, 0.0f, 0.5f});
   EXPECT_EQ(d.cut_mse, 0);
   EXPECT_EQ(d.largest, 4);
 }
 
-TEST(Difference, LeavesOutWhatIsNotFiniteAndCountsIt) {
+TEST(Difference, CountsAndExcludesNonFiniteValues) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const Difference d = difference(std::array{nan, 0.5f, inf, 1.0f}, std::array{0.0f, 0.25f, 0.0f, nan});
   EXPECT_EQ(d.non_finite, 3U);

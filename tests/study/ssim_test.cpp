@@ -22,21 +22,21 @@ std::vector<float> grey(const std::vector<double>& shown) {
   return values;
 }
 
-TEST(Ssim, OfEqualPicturesIsOne) {
+TEST(Ssim, IsOneForEqualImages) {
   std::vector<double> shown;
   for (int i = 0; i < 35; ++i) shown.push_back(0.5 + 0.4 * std::sin(i));
   EXPECT_NEAR(ssim(grey(shown), grey(shown), 7), 1, 1e-12);
   EXPECT_NEAR(ssim(grey({0.3}), grey({0.3}), 1), 1, 1e-12);
 }
 
-TEST(Ssim, OfFlatPicturesComparesTheirLuma) {
+TEST(Ssim, ComparesLumaOfFlatImages) {
   const std::vector<double> dark(20 * 15, 0.2), bright(20 * 15, 0.8);
   EXPECT_NEAR(ssim(grey(dark), grey(bright), 20), (2 * 0.16 + kC1) / (0.04 + 0.64 + kC1), 1e-5);
 }
 
 // A pattern of alternating columns and its negative have equal means, and a covariance of -variance. Far from
 // the edges the weights of even and odd columns agree to 1e-5.
-TEST(Ssim, OfAPatternAndItsNegativeIsNegative) {
+TEST(Ssim, IsNegativeForInvertedPattern) {
   constexpr int kWidth = 200;
   std::vector<double> pattern, negative;
   for (int i = 0; i < kWidth * 3; ++i) {
@@ -48,7 +48,7 @@ TEST(Ssim, OfAPatternAndItsNegativeIsNegative) {
   EXPECT_NEAR(ssim(grey(pattern), grey(std::vector(pattern.size(), 0.5)), kWidth), kC2 / (kC2 + 0.01), 0.01);
 }
 
-TEST(Ssim, SeesWhatAScreenShows) {
+TEST(Ssim, ClampsToDisplayRange) {
   std::vector<double> shown(100, 0.25);
   std::vector<float> brighter = grey(std::vector(100, 1.0)), white = brighter;
   for (float& value : brighter) value = 7;
@@ -60,7 +60,7 @@ TEST(Ssim, SeesWhatAScreenShows) {
   EXPECT_LT(found, 1);
 }
 
-TEST(Ssim, IsTheSameTurnedOnItsSide) {
+TEST(Ssim, IsInvariantUnderTransposition) {
   constexpr int kWidth = 12, kHeight = 9;
   std::vector<double> a, b, a_turned, b_turned;
   const auto code = [](int x, int y, int seed) { return 0.5 + 0.4 * std::sin(3.1 * x + 1.7 * y + seed); };

@@ -69,7 +69,7 @@ std::vector<std::string> lines_of(const Chart& chart) {
   return names;
 }
 
-TEST(Study, TriesNoModelThatTheSceneDoesNotNeed) {
+TEST(Study, SkipsModelsUnneededByScene) {
   const auto glass = load(sample("glass"));
   EXPECT_THAT(lines_of(Study(*glass, {}, {}).chart()),
               testing::ElementsAre("raycast 0", "raycast 0, double", "whitted 1", "whitted 1, double",
@@ -84,7 +84,7 @@ TEST(Study, TriesNoModelThatTheSceneDoesNotNeed) {
   EXPECT_EQ(lines_of(Study(*rough, {}, {}).chart()).size(), 2U);
 }
 
-TEST(Study, TriesAllTechniquesThatModelLessThanThePlans) {
+TEST(Study, TriesAllSimplerTechniques) {
   const auto names = [](const char* technique) {
     RenderRequest view;
     view.technique = technique;
@@ -99,7 +99,7 @@ TEST(Study, TriesAllTechniquesThatModelLessThanThePlans) {
   EXPECT_THAT(names("path"), ElementsAre("raycast 0", "whitted 2", "distributed 2", "path 1", "path 2"));
 }
 
-TEST(Study, HoldsSimplerTechniquesAgainstPathsToo) {
+TEST(Study, ComparesSimplerTechniquesWithPaths) {
   RenderRequest view = size(24, 24);
   view.max_depth = 4;
   const Chart chart = chart_of(sample("cornell-box"), view, {.samples = 16, .rounds = 2});
@@ -111,14 +111,14 @@ TEST(Study, HoldsSimplerTechniquesAgainstPathsToo) {
       << "more samples do not bring it nearer to what it does not model";
 }
 
-TEST(Study, LeavesOutWhatTurnsOutToBeTheSame) {
+TEST(Study, DropsEquivalentConfigurations) {
   const Chart chart = chart_of(sample("flag"), size(24, 24), {.samples = 4, .rounds = 1});
   EXPECT_THAT(lines_of(chart),
               testing::ElementsAre("raycast 0", "raycast 0, double", "whitted 1", "whitted 1, double"));
   EXPECT_EQ(chart.reference.max_depth, 5);
 }
 
-TEST(Study, TakesTurnsRoundByRoundWithOtherSeeds) {
+TEST(Study, CyclesConfigurationsWithNewSeedPerRound) {
   RenderRequest view = size(30, 20);
   view.seed = kMaxSeed - 1;
   view.max_depth = 1;
@@ -144,7 +144,7 @@ TEST(Study, TakesTurnsRoundByRoundWithOtherSeeds) {
   EXPECT_THAT(seeds, testing::ElementsAre(0, 1, kMaxSeed - 1, kMaxSeed));
 }
 
-TEST(Study, SpendsRoundsWhereTheyDecide) {
+TEST(Study, SpendsRoundsOnFrontCandidates) {
   const PreparedScene scene(load(sample("glass")));
   RenderRequest view = size(24, 24);
   view.max_depth = 1;
@@ -167,7 +167,7 @@ TEST(Study, SpendsRoundsWhereTheyDecide) {
   EXPECT_EQ(chart.rounds, kMost);
 }
 
-TEST(Study, GoesOnWithWhatIsUndecided) {
+TEST(Study, ContinuesUndecidedPoints) {
   const PreparedScene scene(load(sample("glass")));
   RenderRequest view = size(24, 24);
   view.max_depth = 1;
@@ -230,7 +230,7 @@ ChartedScene charted(const char* name, int rounds) {
   return made;
 }
 
-TEST(Study, GivesThePlanThatRendersThePointsPicture) {
+TEST(Study, GivesPlanReproducingImageOfPoint) {
   for (const char* name : {"glass", "cornell-box", "flag"}) {
     const ChartedScene made = charted(name, 1);
     for (const Point& p : made.chart.points) {
@@ -243,7 +243,7 @@ TEST(Study, GivesThePlanThatRendersThePointsPicture) {
   }
 }
 
-TEST(Study, MeasuresSmallerPicturesOfTheOneThatIsAsked) {
+TEST(Study, MeasuresReducedImages) {
   const auto scene = load(sample("glass"));
   const Study study(*scene, size(1000, 750), {.samples = 1, .rounds = 1, .width = 80});
   EXPECT_EQ(study.request(2).width, 80);
@@ -264,7 +264,7 @@ TEST(Study, MeasuresSmallerPicturesOfTheOneThatIsAsked) {
 
 // Renders points of several charts again from their plans, with new seeds. The mean of the errors is inside
 // the interval from the chart's few rounds.
-TEST(Study, IntervalsHoldTheErrorsOfOtherSeeds) {
+TEST(Study, CoversErrorsOfOtherSeedsInIntervals) {
   test::covers("certificate-39");
   constexpr int kSeeds = 24;
   int points = 0, inside = 0;
@@ -289,7 +289,7 @@ TEST(Study, IntervalsHoldTheErrorsOfOtherSeeds) {
   EXPECT_GE(inside * 30, points * 28);
 }
 
-TEST(Study, FrontIsSortedAndNoMemberIsBeatenBeyondTheIntervals) {
+TEST(Study, SortsFrontWithoutDominatedMembers) {
   const Chart chart = chart_of(sample("glass"), size(32, 32), {.samples = 16, .rounds = 4});
   const auto front = chart.front();
   ASSERT_FALSE(front.empty());
@@ -305,7 +305,7 @@ TEST(Study, FrontIsSortedAndNoMemberIsBeatenBeyondTheIntervals) {
     }
 }
 
-TEST(Study, SeesErrorsShrinkWithSamplesToWhatTheModelLacks) {
+TEST(Study, ConvergesToModelError) {
   const Chart chart = chart_of(sample("glass"), size(48, 48), {.samples = 64, .rounds = 2});
   const auto rmse = [&](const char* technique, int depth, bool doubles, int samples) {
     return find(chart, {technique, depth, doubles, samples}).rmse();
@@ -320,7 +320,7 @@ TEST(Study, SeesErrorsShrinkWithSamplesToWhatTheModelLacks) {
   EXPECT_GT(chart.reference_rmse, 0);
 }
 
-TEST(Study, MeasuresWhatAnyoneWould) {
+TEST(Study, MatchesIndependentMeasurement) {
   const Json scene = sample("paper");
   const RenderRequest view = size(24, 16);
   const Chart chart = chart_of(scene, view, {.samples = 4, .rounds = 1});
@@ -346,7 +346,7 @@ TEST(Study, MeasuresWhatAnyoneWould) {
   EXPECT_GT(chart.points[1].cpu_ms(), 0);
 }
 
-TEST(Study, RefusesWhatItVariesItselfAndWhatIsTooLarge) {
+TEST(Study, RejectsVariedSettingsAndLargeImages) {
   RenderRequest view = size(2000, 1000);
   view.samples = 4;
   view.precision = Precision::single_precision;
@@ -358,7 +358,7 @@ TEST(Study, RefusesWhatItVariesItselfAndWhatIsTooLarge) {
     EXPECT_EQ(error.problems()[0].pointer, "/render/samples");
     EXPECT_EQ(error.problems()[1].pointer, "/render/precision");
     EXPECT_EQ(error.problems()[2].pointer, "/image");
-    EXPECT_THAT(error.problems()[2].detail, testing::HasSubstr("1048576"));
+    EXPECT_THAT(error.problems()[2].detail, testing::HasSubstr("1,048,576"));
   }
 }
 

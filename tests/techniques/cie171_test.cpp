@@ -61,7 +61,7 @@ void expect_factor(const Json& scene, const Vec3d& point, const Vec3d& normal, d
 }
 
 // 5.3: a lamp of 1 m x 1 m in the ceiling of a black room 4 m wide and 3 m high, onto a wall.
-TEST(Cie171, AreaLampOntoAWallAndAFloor) {
+TEST(Cie171, MatchesAreaLampOnWallAndFloor) {
   covers("R8 R9 light-40");
   const Json scene = scene_of_lamp(Vec3d(-0.5, -0.5, 3), Vec3d(1, 0, 0), Vec3d(0, 1, 0));
   const double illuminances[] = {32.68, 75.19, 81.32, 69.06, 53.40, 40.00};  // at 1000 cd/m^2
@@ -79,7 +79,7 @@ TEST(Cie171, AreaLampOntoAWallAndAFloor) {
 }
 
 // 5.6: a uniformly bright floor of 4 m x 4 m, onto the wall at its edge and the ceiling 3 m above.
-TEST(Cie171, BrightFloorOntoAWallAndACeiling) {
+TEST(Cie171, MatchesBrightFloorOnWallAndCeiling) {
   covers("R8 R9 light-40");
   const Json scene = scene_of_lamp(Vec3d(0, -2, 0), Vec3d(4, 0, 0), Vec3d(0, 4, 0));
   const double wall[] = {0.35901, 0.27992, 0.21639, 0.16716, 0.12967};
@@ -98,7 +98,7 @@ TEST(Cie171, BrightFloorOntoAWallAndACeiling) {
 
 // 5.7: as 5.6, with an upright screen next to the point, or with one that hangs in the room and occludes a
 // part.
-TEST(Cie171, ScreensHideTheirPartOfABrightFloor) {
+TEST(Cie171, MatchesBrightFloorBehindScreens) {
   covers("R8 light-40");
   Json scene = scene_of_lamp(Vec3d(0, -2, 0), Vec3d(4, 0, 0), Vec3d(0, 4, 0));
   Json upright = scene, hanging = scene;
@@ -114,7 +114,7 @@ TEST(Cie171, ScreensHideTheirPartOfABrightFloor) {
 
 // 5.8: in a closed room of reflectance rho, light after k reflections sums to rho^k of the lamp's, for any
 // shape of the room.
-TEST(Cie171, AClosedRoomKeepsTheLampsLight) {
+TEST(Cie171, ConservesLightInClosedRoom) {
   covers("light-40");
   constexpr double kReflectance = 0.7, kSide = 4;
   constexpr int kDepth = 8;
@@ -158,7 +158,7 @@ TEST(Cie171, AClosedRoomKeepsTheLampsLight) {
 }
 
 // 5.9: a uniform sky through an open roof of 4 m x 4 m, 3 m above the floor, is a uniformly bright ceiling.
-TEST(Cie171, EvenSkyThroughAnOpenRoof) {
+TEST(Cie171, MatchesUniformSkyThroughOpenRoof) {
   covers("R8 R9 light-40");
   Json room = scene_with(Json::array(), json("{'background': [1, 1, 1], 'materials': {'white': {'type': "
                                              "'lambert', 'kd': null, 'reflectance': 1},"

@@ -62,7 +62,7 @@ void expect_block(std::vector<Quad>& quads, const Quad& top) {
 // Cornell University Program of Computer Graphics, "Cornell Box Data": positions in millimetres, a camera of
 // focal length 0.035 over a film of 0.025 x 0.025. Linear RGB colours do not follow from its spectra. The
 // scene uses those of the Tungsten renderer's scene, as its description states.
-TEST(CornellBox, HasThePublishedData) {
+TEST(CornellBox, MatchesPublishedData) {
   covers("light-39");
   const Json scene = sample("cornell-box");
   std::vector<Quad> white = quads_of(scene["objects"][0]), green = quads_of(scene["objects"][1]),
@@ -146,7 +146,7 @@ std::vector<Bounce> by_bounce(int most, int side, int seeds) {
 // Variance shares of single samples, by an independent path tracer without roulette. Direct light has 8 %,
 // one bounce 49 to 58 %, two bounces 21 to 26 % and three 9 to 13 %. Roulette moves a few points to longer
 // paths, and edges in these large pixels move a few to direct light.
-TEST(CornellBox, VarianceByBounce) {
+TEST(CornellBox, MatchesVarianceByBounce) {
   covers("light-37");
   const std::vector<Bounce> bounces = by_bounce(8, 128, 6);
   double all = 0;
@@ -161,7 +161,7 @@ TEST(CornellBox, VarianceByBounce) {
 // Compares with paths of 17 bounces. After eight bounces, 0.37 % of the reflected red light is lost (the lamp
 // is visible), and 0.172 % of the whole image. Cycles (Blender 3.4.1) loses 0.1722 % +- 0.0011 %. The ledger
 // assumes the maximum radiance for omitted rays.
-TEST(CornellBox, LosesOfLightWhatItsLedgerCovers) {
+TEST(CornellBox, LosesNoMoreLightThanLedger) {
   covers("light-38");
   const auto box = load(sample("cornell-box"));
   const Picture lamp = render(box, alone(96, 64, 0, 1)), cut = render(box, alone(96, 64, 9, 1)),
@@ -190,7 +190,7 @@ const std::array<Measured, 7> kCycles{{
 }};
 
 // Errors that cancel over the whole image differ by path length.
-TEST(CornellBox, EachPathLengthBringsWhatCyclesFinds) {
+TEST(CornellBox, MatchesCyclesByPathLength) {
   covers("light-36");
   constexpr int kSide = 128, kSeeds = 6;
   const auto box = load(sample("cornell-box"));
@@ -250,7 +250,7 @@ double slope(const std::shared_ptr<const Scene>& box, int side, int max_depth, i
 
 // Direct light has few dimensions and few edges, but many bounces have more dimensions than are stratified
 // together. (In very small images most pixels have edges, and few pixels most of the error.)
-TEST(CornellBox, ErrorFallsFasterThanThatOfIndependentSamples) {
+TEST(CornellBox, ConvergesFasterThanIndependentSamples) {
   covers("light-51");
   if (kSanitized) GTEST_SKIP() << "twenty million paths";
   const auto box = load(sample("cornell-box"));

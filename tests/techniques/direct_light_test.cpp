@@ -20,7 +20,7 @@ Vec3d seen(const Json& scene, const Vec3d& from, const Vec3d& toward) {
   return Tracing(scene).trace(Ray<double>{from, safe_normalize(toward - from)}).radiance;
 }
 
-TEST(Ambient, EvenSkyShowsTheAlbedo) {
+TEST(Ambient, ShowsAlbedoUnderUniformLight) {
   covers("R1");
   for (const double albedo : {1.0, .5, .18}) {
     const Json scene =
@@ -39,7 +39,7 @@ TEST(Ambient, FillsAClosedRoom) {
     EXPECT_EQ(seen(room, Vec3d(1, 0, -1), Vec3d(1, 0, -1) + random.direction()).x, 1);
 }
 
-TEST(Point, LightFallsByTheCubeOfTheCosine) {
+TEST(Point, FollowsCosineCubedLaw) {
   covers("R6");
   const double height = 2;
   const Json scene =
@@ -53,7 +53,7 @@ TEST(Point, LightFallsByTheCubeOfTheCosine) {
 }
 
 // Mean over the disc of a Lambert ball, with the light `phase` degrees from the eye.
-TEST(Directional, PhasesOfABallAreThoseOfTheMoon) {
+TEST(Directional, MatchesPhasesOfLambertSphere) {
   covers("R5");
   RenderRequest request = in_double(size(256, 256));
   request.samples = 16;
@@ -72,7 +72,7 @@ TEST(Directional, PhasesOfABallAreThoseOfTheMoon) {
   EXPECT_NEAR(mean(135), .03220, 2e-4);
 }
 
-TEST(Directional, ShadowsReachToInfinity) {
+TEST(Directional, CastsShadowsFromAnyDistance) {
   covers("B18");
   const auto lit = [](double distance, double radius) {
     Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
@@ -86,7 +86,7 @@ TEST(Directional, ShadowsReachToInfinity) {
   EXPECT_NEAR(lit(-1e12, 1e3), 1, 1e-12) << "behind the surface";
 }
 
-TEST(Point, ShadowsEndAtTheLight) {
+TEST(Point, IgnoresOccludersBeyondLight) {
   const auto lit = [](double z) {
     Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
                           "{'lights': [{'type': 'point', 'position': [0, 0, 2]}]}");
@@ -101,7 +101,7 @@ TEST(Point, ShadowsEndAtTheLight) {
   EXPECT_NEAR(lit(2.000001), 1, 1e-12);
 }
 
-TEST(Lights, AreSummedAndAmbientIsAddedOnce) {
+TEST(Lights, SumsLightsAndAddsAmbientOnce) {
   covers("B13 R31");
   const auto with = [](const std::vector<double>& intensities) {
     Json scene = scene_of(kBall, "{'ambient': [0.125, 0.125, 0.125]}");
@@ -116,7 +116,7 @@ TEST(Lights, AreSummedAndAmbientIsAddedOnce) {
   EXPECT_NEAR(with({.1, .2, .3, .4}), with({.4, .2, .1, .3}), 1e-12);
 }
 
-TEST(Lights, ValuesAboveOneStayWhatTheyAre) {
+TEST(Lights, KeepsValuesAboveOne) {
   covers("B12");
   const Json scene =
       scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
@@ -128,7 +128,7 @@ TEST(Lights, ValuesAboveOneStayWhatTheyAre) {
 
 // A plane of 2 x 2 seen from 1 above its centre, under a distant light from above. With one half vector for
 // the whole plane, the corners would be as bright as the centre.
-TEST(Highlight, HalfVectorIsThatOfEachPoint) {
+TEST(Highlight, UsesHalfVectorOfEachPoint) {
   covers("B6");
   const Json scene = scene_of("[{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 0]}]",
                               R"({'lights': [{'type': 'directional', 'from': [0, 0, 1]}],
@@ -140,7 +140,7 @@ TEST(Highlight, HalfVectorIsThatOfEachPoint) {
   EXPECT_NEAR(seen(scene, Vec3d(0, 0, 1), corner).x, exact, 1e-12);
 }
 
-TEST(Lights, NoneMakesAnythingNegative) {
+TEST(Lights, NeverGivesNegativeRadiance) {
   covers("B1 B4");
   Json scene = scene_of(
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}, {'type': 'plane', 'point': [0, -1, 0], "
@@ -155,7 +155,7 @@ TEST(Lights, NoneMakesAnythingNegative) {
 }
 
 // Whitted's model has no caustics: glass casts a black shadow. This test pins that known error of the model.
-TEST(Glass, ThrowsABlackShadow) {
+TEST(Glass, CastsBlackShadow) {
   covers("E6");
   const Json scene =
       scene_with(json(R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]},

@@ -71,7 +71,7 @@ Json without_diffuse_lobes() {
   return scene;
 }
 
-TEST(Distributed, IsPathTracingWhereNothingIsDiffuse) {
+TEST(Distributed, MatchesPathTracingWithoutDiffuseLobes) {
   covers("light-54");
   const auto scene = load(without_diffuse_lobes());
   for (const RenderRequest& number : {in_float(), in_double()}) {
@@ -84,7 +84,7 @@ TEST(Distributed, IsPathTracingWhereNothingIsDiffuse) {
 }
 
 // Threads, slices and structures do not change the image, nor does scaling the scene by a power of two.
-TEST(Distributed, ShowsTheSameBytesHoweverItIsRendered) {
+TEST(Distributed, IsIndependentOfThreadsStructureAndScale) {
   covers("light-7");
   Json own = without_filters(without_diffuse_lobes());
   own["materials"]["floor"] = json("{'type': 'plastic', 'roughness': 0.3}");
@@ -110,7 +110,7 @@ class SoftShadow : public testing::TestWithParam<const char*> {};
 
 // A square lamp over a white floor, with a screen between them. A point sees the part of the lamp beyond the
 // screen's edge.
-TEST_P(SoftShadow, IsTheShareOfTheLampThatIsSeen) {
+TEST_P(SoftShadow, MatchesVisibleShareOfLamp) {
   covers("light-17 light-22");
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},"
@@ -138,7 +138,7 @@ class DiffuseRoom : public testing::TestWithParam<const char*> {};
 
 // Walls emit 1, reflect a share, and receive ambient light. Only direct and ambient light counts at any
 // depth. At depth 0, ambient light alone is added to the emission.
-TEST_P(DiffuseRoom, ShowsDirectAndAmbientLightAlone) {
+TEST_P(DiffuseRoom, ShowsOnlyDirectAndAmbientLight) {
   covers("light-11");
   Json room = scene_of_materials(GetParam(), {}, "{'ambient': [0.3, 0.3, 0.3]}");
   room["materials"]["white"] = json("{'type': 'lambert', 'reflectance': 0.5, 'emission': [1, 1, 1]}");
@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Rooms, DiffuseRoom,
                                          "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
 // A flat floor that reflects 0.6, under skies that are sampled or not.
-TEST(Distributed, SkiesLightDiffuseSurfaces) {
+TEST(Distributed, LightsDiffuseSurfacesFromSky) {
   covers("light-33");
   for (const char* sky :
        {"{'background': [1, 1, 1]}", "{'environment': {'type': 'constant', 'radiance': [1, 1, 1]}}",
@@ -170,7 +170,7 @@ TEST(Distributed, SkiesLightDiffuseSurfaces) {
 
 // A lamp that cannot be sampled and one that can, over matt and coated floors. Compares with the direct light
 // of paths.
-TEST(Distributed, LampsThatAreMetByChanceCountOnceBesideThoseThatAreDrawn) {
+TEST(Distributed, CountsHitAndSampledLampsOnce) {
   covers("light-22");
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'},"
@@ -205,7 +205,7 @@ TEST(Distributed, LampsThatAreMetByChanceCountOnceBesideThoseThatAreDrawn) {
 
 // A convex ball under a sky sees nothing of itself, and so receives no light from other surfaces. Distributed
 // rays find all that paths find: direct light and the reflections of the coat.
-TEST(Distributed, CoatsAreFollowedAndBasesEnd) {
+TEST(Distributed, FollowsCoatsButNotBases) {
   Json scene =
       scene_of_materials("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]", {},
                          "{'environment': {'type': 'gradient', 'zenith': [1, 1, 1], 'horizon': [0.2, 0.2, "
@@ -223,7 +223,7 @@ TEST(Distributed, CoatsAreFollowedAndBasesEnd) {
 }
 
 // In front of a background as bright as ambient light, a white object is invisible, with or without a coat.
-TEST(Ambient, LeavesNothingToSeeOfWhite) {
+TEST(Ambient, HidesWhiteBeforeEqualBackground) {
   for (const char* white :
        {"{'type': 'plastic', 'roughness': 0, 'reflectance': 1}",
         "{'type': 'plastic', 'roughness': 0.4, 'reflectance': 1}",
@@ -247,7 +247,7 @@ TEST(Ambient, LeavesNothingToSeeOfWhite) {
 
 // With ambient light alone, a polished floor mirrors a diffuse ceiling. The coat reflects by Fresnel's
 // equations, and the base shows the rest of the ambient light.
-TEST(Distributed, ACoatMirrorsDiffuseWalls) {
+TEST(Distributed, ReflectsDiffuseWallsInCoat) {
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'},"
       " {'type': 'plane', 'point': [0, 4, 0], 'normal': [0, -1, 0], 'material': 'ceiling'}]",
@@ -268,7 +268,7 @@ TEST(Distributed, ACoatMirrorsDiffuseWalls) {
 
 // A sheet between the eye and a diffuse ceiling, in ambient light. The sheet reflects ambient light and
 // transmits the ceiling's radiance.
-TEST(Distributed, SheetsLetLightThrough) {
+TEST(Distributed, TransmitsLightThroughSheets) {
   Json scene = scene_of_materials(
       "[{'type': 'rectangle', 'corner': [-500, 1, -500], 'a': [1000, 0, 0], 'b': [0, 0, 1000], 'material': "
       "'sheet'},"
@@ -286,7 +286,7 @@ TEST(Distributed, SheetsLetLightThrough) {
 }
 
 // Only light between two diffuse walls is found by paths and not by distributed rays.
-TEST(Distributed, LeavesOutLightBetweenDiffuseSurfaces) {
+TEST(Distributed, OmitsLightBetweenDiffuseSurfaces) {
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},"
       " {'type': 'plane', 'point': [-1, 0, 0], 'normal': [1, 0, 0]}]",

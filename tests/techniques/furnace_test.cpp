@@ -72,7 +72,7 @@ struct Survivors {
 // throughput beta = rho^2 survives with probability sqrt(beta) = rho, and then has throughput rho again. Each
 // later ray adds rho, and the sum is 1 + rho N. Without a depth limit its mean is 1 / (1 - rho), its variance
 // rho^3 / (1 - rho)^2.
-TEST(ClosedRoom, RouletteHasTheMeanVarianceAndRaysOfItsRule) {
+TEST(ClosedRoom, MatchesRouletteMeanVarianceAndRayCount) {
   covers("R2 light-12");
   constexpr int kBatches = 98, kDepth = 32;
   for (const double rho : {0.5, 0.9}) {
@@ -95,7 +95,7 @@ TEST(ClosedRoom, RouletteHasTheMeanVarianceAndRaysOfItsRule) {
 
 // For paths that reach the depth limit the ledger has their throughput: rho each, and rho^D on average.
 // Continued, each would have found rho / (1 - rho) per unit of throughput.
-TEST(ClosedRoom, LedgerHasTheWeightOfWhatIsCut) {
+TEST(ClosedRoom, RecordsCutThroughputInLedger) {
   covers("light-38");
   for (const double rho : {0.5, 0.8})
     for (const int depth : {1, 4, 8}) {
@@ -117,7 +117,7 @@ TEST(ClosedRoom, LedgerHasTheWeightOfWhatIsCut) {
 
 // A dome of radius 1 over a floor. Any point of the dome sees half floor and half dome, and the floor sees
 // only the dome. Both emit 1 and reflect different shares.
-TEST(ClosedRoom, ReflectsWhatTheRoomsPartsReflect) {
+TEST(ClosedRoom, MatchesExchangeBetweenDomeAndFloor) {
   covers("light-13");
   const Json room = scene_of(
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'dome'},"
@@ -146,7 +146,7 @@ TEST(ClosedRoom, ReflectsWhatTheRoomsPartsReflect) {
 // A disk lamp closes a sphere and replaces a tenth of its area. Every wall point sees a tenth lamp by the
 // cosine, the rest wall, and the lamp sees only wall. Radiance by the number of reflections since the lamp:
 // wall' = rho (0.9 wall + 0.1 lamp), lamp' = rho wall.
-TEST(ClosedRoom, EachReflectionOfALampInASphereIsTheSameEverywhere) {
+TEST(ClosedRoom, MatchesEachReflectionInSphere) {
   covers("light-14");
   const Json room = scene_of(
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'wall'},"
@@ -175,7 +175,7 @@ TEST(ClosedRoom, EachReflectionOfALampInASphereIsTheSameEverywhere) {
 
 // A sphere of radius 1 around a point light that makes its wall read rho: each reflection is rho times the
 // last.
-TEST(ClosedRoom, AnIntegratingSphereReadsTheSumOfItsReflections) {
+TEST(ClosedRoom, MatchesIntegratingSphere) {
   covers("R4 light-15");
   constexpr int kDepth = 9;
   for (const auto& [rho, expected] : {std::pair{0.8, 3.4631}, {0.9, 5.5132}}) {

@@ -42,7 +42,7 @@ std::vector<Ray<double>> leaving(const Tracing& tracing, std::size_t depth) {
   return found;
 }
 
-TEST(Slab, LightLeavesParallelAndShifted) {
+TEST(Slab, ShiftsRayWithoutTurningIt) {
   covers("R18 D4");
   Tracing tracing(one_body("[{'type': 'box', 'min': [-50, -50, -0.5], 'max': [50, 50, 0.5]}]", 1.5),
                   depth(2));
@@ -64,7 +64,7 @@ TEST(Slab, LightLeavesParallelAndShifted) {
   }
 }
 
-TEST(Prism, DeviatesLeastWhereTheWayIsSymmetric) {
+TEST(Prism, DeviatesLeastOnSymmetricPath) {
   covers("R19");
   // An equilateral prism along y. Its upper edge is at z = sqrt 3, its base at z = 0.
   const double edge = std::sqrt(3.0);
@@ -95,7 +95,7 @@ TEST(Prism, DeviatesLeastWhereTheWayIsSymmetric) {
   EXPECT_GT(deviation(symmetric - 2), deviation(symmetric));
 }
 
-TEST(WaterDrop, SendsTheRainbowAtItsAngle) {
+TEST(WaterDrop, MatchesRainbowAngle) {
   covers("R20");
   Tracing tracing(unit_ball(1.333), depth(3));
   const auto deviation = [&](double h) {  // one reflection inside
@@ -110,7 +110,7 @@ TEST(WaterDrop, SendsTheRainbowAtItsAngle) {
   EXPECT_GT(deviation(rainbow - 0.01), deviation(rainbow));
 }
 
-TEST(BallLens, CrossesTheAxisWhereItShould) {
+TEST(BallLens, MatchesAxisCrossings) {
   covers("R21");
   Tracing tracing(unit_ball(1.5), depth(2));
   const auto crossing = [&](double h) {
@@ -125,7 +125,7 @@ TEST(BallLens, CrossesTheAxisWhereItShould) {
   EXPECT_NEAR(crossing(.9), 1.1044456, 5e-8);
 }
 
-TEST(ConcaveMirror, CrossesTheAxisWhereItShould) {
+TEST(ConcaveMirror, MatchesAxisCrossings) {
   covers("R22");
   Tracing tracing(scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]", kMirror), depth(1));
   for (const double h : {1e-6, .1, .5, .75, .9}) {
@@ -137,7 +137,7 @@ TEST(ConcaveMirror, CrossesTheAxisWhereItShould) {
   }
 }
 
-TEST(CornerReflector, ReturnsEveryRayTheWayItCame) {
+TEST(CornerReflector, ReversesEveryRay) {
   covers("R23");
   Tracing tracing(scene_of(R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [1, 0, 0]},
                                {'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},
@@ -155,7 +155,7 @@ TEST(CornerReflector, ReturnsEveryRayTheWayItCame) {
 }
 
 // From under water the whole sky is in a window of 48.6 degrees.
-TEST(WaterSurface, ShowsTheSkyInAWindow) {
+TEST(WaterSurface, ShowsSkyInSnellsWindow) {
   covers("R25");
   Json scene = one_body("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]", 1.333);
   scene["materials"]["black"] = {{"type", "rough"}, {"kd", 0}};

@@ -23,7 +23,7 @@ double mean_of(const Json& scene, int side, int samples, int max_depth, int reus
 
 // A sky of 1 through glass over a floor that reflects rho. The glass transmits t, and the floor shows rho t /
 // (1 - rho (1 - t)).
-TEST(PathMaterials, FloorUnderASlabOfGlass) {
+TEST(PathMaterials, MatchesFloorUnderGlassSlab) {
   covers("light-32");
   Json scene = scene_of(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'floor'},"
@@ -37,7 +37,7 @@ TEST(PathMaterials, FloorUnderASlabOfGlass) {
 }
 
 // A lossless ball is invisible against a uniform sky. Each scattering event is off by at most a thousandth.
-TEST(PathMaterials, GlassAmongEvenLightIsNotSeen) {
+TEST(PathMaterials, HidesGlassUnderUniformLight) {
   covers("light-30");
   for (const double roughness : {0.0, 0.4, 1.0}) {
     Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'glass'}]",
@@ -51,7 +51,7 @@ TEST(PathMaterials, GlassAmongEvenLightIsNotSeen) {
 
 // A disk in the shadow of a glass ball receives no light from a point, but a caustic from a lamp in its
 // place.
-TEST(PathMaterials, GlassFocusesLampsAndNotPoints) {
+TEST(PathMaterials, FocusesLampsButNotPointsThroughGlass) {
   covers("light-53");
   Json scene = scene_of(
       "[{'type': 'disk', 'center': [0, -1, 0], 'normal': [0, 1, 0], 'radius': 0.5},"
@@ -75,11 +75,11 @@ struct Lit {
   const char* text;
   double lamp_height;  // below 0: light is transmitted
 };
-class UnderALamp : public testing::TestWithParam<Lit> {};
+class LampIllumination : public testing::TestWithParam<Lit> {};
 
 // One point of a wide surface under a square lamp. Light and BSDF sampling with MIS give the sum over the
 // lamp of the evaluated material, and so does BSDF sampling alone.
-TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
+TEST_P(LampIllumination, MatchesIntegralOverLamp) {
   covers("light-22");
   const auto& [name, text, height] = GetParam();
   const Vec3d eye = safe_normalize(Vec3d(0.8, 0.9, 0.1));
@@ -135,7 +135,7 @@ TEST_P(UnderALamp, BothStrategiesFindTheSumOverTheLamp) {
   EXPECT_NEAR(mean_of(model, 32, 256, 1) / sum, 1, 0.02) << name;
 }
 INSTANTIATE_TEST_SUITE_P(
-    Materials, UnderALamp,
+    Materials, LampIllumination,
     testing::Values(Lit{"GlassThrough", "{'type': 'glass', 'roughness': 0.6}", -1},
                     Lit{"GlassAbove", "{'type': 'glass', 'roughness': 0.6}", 1},
                     Lit{"Plastic", "{'type': 'plastic', 'roughness': 0.4}", 1},
@@ -161,7 +161,7 @@ double lit_by(const Sees& sees) {
 }
 
 // Instances turn a ball into an ellipsoid and a square into a skewed one, with the light of those shapes.
-TEST(PathMaterials, InstancesDistortLamps) {
+TEST(PathMaterials, TransformsLampsByInstances) {
   const Vec3d centre(0.3, 1, 0), radii(0.8, 0.2, 0.4);
   const double ellipsoid = lit_by([&](const Vec3d& d) {
     const Vec3d from(centre.x / radii.x, centre.y / radii.y, centre.z / radii.z);
@@ -196,7 +196,7 @@ TEST(PathMaterials, InstancesDistortLamps) {
 // Stripes of chalk and of dark polished plastic, under a ceiling lit by a spot light. Samples of the coat go
 // through a mirror, those of chalk never do. Path reuse must weight a shared sample by the densities of all
 // lobes, not by the one that drew it. The plastic is too dark to offset an excess at the chalk.
-TEST(PathMaterials, SharingCountsDrawsThatWentThroughAMirror) {
+TEST(PathMaterials, WeightsSharedSamplesThroughMirrors) {
   covers("light-9");
   Json scene = scene_of("[{'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'chalk'}]",
                         "{'materials': {'chalk': {'type': 'lambert', 'reflectance': 0.8},"

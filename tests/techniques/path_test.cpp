@@ -30,7 +30,7 @@ class PathFurnace : public testing::TestWithParam<const char*> {};
 
 // In a closed room whose walls emit 1 and reflect a share, every point shows the sum of the powers of that
 // share.
-TEST_P(PathFurnace, ShowsTheSumOfAllBounces) {
+TEST_P(PathFurnace, SumsAllBounces) {
   covers("R2 light-11");
   const Json room = scene_of(GetParam(), "{'materials': {'white': {'kd': 0.5, 'emission': [1, 1, 1]}}}");
   for (const int depth : {0, 1, 2, 3, 8, 32}) {
@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 2}]"));
 
 // Unit square over a point, by height. `sd` is the relative standard deviation of a sample by solid angle.
-TEST(Path, IrradianceOfASquare) {
+TEST(Path, MatchesIrradianceOfSquare) {
   covers("R9 light-17 light-19");
   struct Case {
     double height, irradiance, sd;
@@ -58,7 +58,7 @@ TEST(Path, IrradianceOfASquare) {
   }
 }
 
-TEST(Path, IrradianceOfASphereAndADisk) {
+TEST(Path, MatchesIrradianceOfSphereAndDisk) {
   covers("light-17 light-20");
   const Estimate ball =
       estimate(over_floor({{"type", "sphere"}, {"center", {0, 2, 0}}, {"radius", 0.5}}), kBeside, kBelow, 1);
@@ -86,7 +86,7 @@ const Json kWhiteFloor = scene_of(
     "{'materials': {'white': {'kd': 1}, 'lamp': {'type': 'rough', 'kd': 0, 'emission': [1, 1, 1]}}}");
 
 // Large balls, which BSDF samples hit as often as light samples do, with small ones around another place.
-TEST(Path, LampsNearAndFarAreWeighedWhereTheyAreSeenFrom) {
+TEST(Path, MatchesIrradianceOfNearAndFarLamps) {
   covers("light-17");
   const Vec3d point(3, 0, 2);
   for (const int small : {0, 24}) {
@@ -102,7 +102,7 @@ TEST(Path, LampsNearAndFarAreWeighedWhereTheyAreSeenFrom) {
   }
 }
 
-TEST(Path, ASunBesideALampIsAsBrightAsAlone) {
+TEST(Path, AddsSunAndLamp) {
   covers("light-17");
   const Vec3d point(3, 0, 2);
   double expected = 0.1 * std::cos(0.5);
@@ -116,7 +116,7 @@ TEST(Path, ASunBesideALampIsAsBrightAsAlone) {
 }
 
 // A reflective lamp alone in the dark is flat or seen from outside, so that nothing can light it.
-TEST(Path, ConvexLampsDoNotLightThemselves) {
+TEST(Path, AvoidsSelfLightingOfConvexLamps) {
   struct Lamp {
     const char* text;
     Vec3d middle;
@@ -141,7 +141,7 @@ TEST(Path, ConvexLampsDoNotLightThemselves) {
 
 // An emitter that encloses all else is not sampled, since every point sees it from inside. The samples go to
 // other lamps.
-TEST(Path, LampsAroundAllElseAreLeftToChance) {
+TEST(Path, SkipsLightSamplingOfEnclosingLamps) {
   const auto is_drawn_from = [](std::string_view objects) {
     const Json scene =
         scene_of(objects, "{'materials': {'white': {'emission': [1, 1, 1]}, 'dark': {'type': 'rough'}}}");
@@ -160,7 +160,7 @@ TEST(Path, LampsAroundAllElseAreLeftToChance) {
 }
 
 // A square of 100,352 triangles. Each vertex of a path samples one of them.
-TEST(Path, ManyEmittersAreAsBrightAsOne) {
+TEST(Path, MatchesOneEmitterWithMany) {
   constexpr int kSide = 224;
   Json positions = Json::array(), indices = Json::array();
   for (int y = 0; y <= kSide; ++y)
@@ -184,7 +184,7 @@ TEST(Path, ManyEmittersAreAsBrightAsOne) {
 }
 
 // Path reuse changes neither the mean nor the distribution of light, and lowers the error of a pixel.
-TEST(Path, SharingPathsChangesTheNoiseAlone) {
+TEST(Path, ChangesOnlyNoiseWithPathReuse) {
   covers("light-8 light-9");
   const auto box = load(sample("cornell-box"));
   const auto picture = [&](int reuse, int samples, std::uint64_t seed) {
@@ -212,7 +212,7 @@ TEST(Path, SharingPathsChangesTheNoiseAlone) {
 }
 
 // Light found through a mirror by some paths could not have been sampled by others.
-TEST(Path, SharingLeavesOutWhatMirrorsFind) {
+TEST(Path, ExcludesMirrorLightFromReuse) {
   const auto room = load(scene_of(
       "[{'type': 'box', 'min': [-2, -1, -2], 'max': [2, 2, 5]}, {'type': 'sphere', 'center': [0.9, -0.4, 0],"
       "'radius': 0.6, 'material': 'mirror'}, {'type': 'rectangle', 'corner': [-1, 1.9, -1], 'a': [1, 0, 0],"
@@ -231,7 +231,7 @@ TEST(Path, SharingLeavesOutWhatMirrorsFind) {
 }
 
 // Slices and the number of threads do not change the image.
-TEST(Path, DependsOnNothingButTheSample) {
+TEST(Path, IsIndependentOfSlicesAndThreads) {
   covers("light-7");
   const auto box = load(sample("cornell-box"));
   RenderRequest request = size(80, 72);

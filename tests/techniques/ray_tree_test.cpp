@@ -52,7 +52,7 @@ const Ray<double> kDown{{0, 0, 5}, {0, 0, -1}};
 
 // At depth 5, mirrors of .9 omit .53 of the light. At depth 10, mirrors of .99 omit .90. The ledger has that
 // share, and ambient light replaces it.
-TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
+TEST(DepthLimit, RecordsRemainingLightOfFacingMirrors) {
   covers("E1");
   for (const auto& [reflectance, depth] : {std::pair{.5, 5}, {.9, 5}, {.99, 10}, {.9, 32}}) {
     const double left = std::pow(reflectance, depth + 1);
@@ -67,7 +67,7 @@ TEST(DepthLimit, LedgerIsWhatFacingMirrorsStillCarry) {
 // A room with glass walls that reflect `albedo` at normal incidence, under a sky of 1 / (1 - albedo). Each
 // wall transmits 1 into the room and reflects `albedo` of the light inside. After n walls a ray has gathered
 // (1 - albedo^n) / (1 - albedo), and with the ledger 1 / (1 - albedo).
-TEST(ClosedRoom, WallsThatShineAndMirrorSumTheGeometricSeries) {
+TEST(ClosedRoom, SumsGeometricSeriesForRefractiveWalls) {
   covers("R2");
   const auto seen = [](double albedo, int walls) {
     const double sky = 1 / (1 - albedo);
@@ -87,7 +87,7 @@ TEST(ClosedRoom, WallsThatShineAndMirrorSumTheGeometricSeries) {
   EXPECT_NEAR(seen(0.9, 32), (1 - std::pow(0.9, 32)) / 0.1, 1e-11);
 }
 
-TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
+TEST(DepthLimit, EndsPerfectMirrorsAndReportsCut) {
   covers("E4");
   const Picture picture = render(mirrors(1, 0), [] {
     RenderRequest r = limits(32);
@@ -107,7 +107,7 @@ TEST(DepthLimit, PerfectMirrorsEndAtTheCapAndSaySo) {
 // At a threshold of 1/255, an evenly splitting tree ends at depth 8, where every branch carries 1/256. The
 // ledger bounds the error by the sum of the branches. With four surfaces of reflectance 1/2, two slabs
 // transmit 1/5.
-TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
+TEST(Threshold, SumsOmittedBranchesInLedger) {
   covers("E2");
   const TraceOutput coarse = Tracing(slabs(2, .5), limits(32, 1.0 / 255)).trace(kDown);
   EXPECT_GT(std::abs(coarse.radiance.x - .2), 1.0 / 255) << "each branch is small, together they are not";
@@ -119,7 +119,7 @@ TEST(Threshold, LedgerSumsTheBranchesThatAreLeftOut) {
 
 // One strong branch: each surface of a slab reflects .9. Without a threshold, the error is that of the depth
 // limit alone.
-TEST(Threshold, NoneIsTheDefaultAndCostsNothingOfASingleBranch) {
+TEST(Threshold, IsDisabledByDefault) {
   covers("E3");
   EXPECT_EQ(load(slabs(1, .9))->render.min_contribution, 0);
   const double exact = (1 - .9) / (1 + .9);
@@ -134,7 +134,7 @@ TEST(Threshold, NoneIsTheDefaultAndCostsNothingOfASingleBranch) {
 
 // Rays are traced while they carry at least the threshold in some channel. The count for a slab's series (1 -
 // R) R^j follows from the formula.
-TEST(Threshold, IsMetRayByRay) {
+TEST(Threshold, AppliesToEachRay) {
   constexpr double kR = .5;
   for (const double threshold : {0.4, 0.2, 0.1, 0.01, 0.0011}) {
     Tracing tracing(slabs(1, kR), limits(32, threshold));
@@ -152,7 +152,7 @@ TEST(Threshold, IsMetRayByRay) {
 
 // If each surface sends two rays on, the tree at most doubles from one depth to the next. The number of
 // objects does not matter.
-TEST(Growth, IsByBranchesAndNotByObjects) {
+TEST(RayTree, GrowsWithBranchesNotObjects) {
   Tracing tracing(slabs(3, .3), limits(10));
   tracing.trace(kDown);
   const RayCounts& rays = tracing.counts().rays;
@@ -173,7 +173,7 @@ TEST(Growth, IsByBranchesAndNotByObjects) {
 }
 
 // From the middle of the slabs no ray leaves in time, and every surface sends two rays on: 2^d rays.
-TEST(Growth, DoublesWhereEverySurfaceSendsTwo) {
+TEST(RayTree, DoublesPerLevelInsideSlabs) {
   constexpr int kDepth = 10;
   Tracing tracing(slabs(24, .3), limits(kDepth));
   tracing.trace(Ray<double>{{0, 0, -23.5}, {0, 0, -1}});
@@ -185,7 +185,7 @@ TEST(Growth, DoublesWhereEverySurfaceSendsTwo) {
 }
 
 // Without a structure every ray is tested against every object exactly once.
-TEST(Growth, IsLinearInObjectsForTheList) {
+TEST(RayTree, TestsEveryObjectPerRayWithList) {
   for (const int balls : {0, 1, 10, 100}) {
     Json scene = mirrors(.5, 1);
     for (int i = 0; i < balls; ++i)  // not hit by any ray
@@ -203,7 +203,7 @@ TEST(Growth, IsLinearInObjectsForTheList) {
 // (m + 1) d N M rays: each of the d rays of a pixel sends m shadow rays from a surface with direct light.
 // Rough surfaces end the path here and mirrors have no direct light, so d is 1 without mirrors. Behind k
 // mirrors the pixel costs k + 1 rays and m shadow rays.
-TEST(Growth, CountersObeyTheLawOfTheSlides) {
+TEST(RayTree, MatchesRayCountFormula) {
   const auto counts = [](int mirrors_on_the_way, int lights) {
     Json scene = json(
         "{'version': 1, 'camera': {'type': 'orthographic', 'eye': [0, 0, 0], 'look_at': [0, 0, -1], "
@@ -252,7 +252,7 @@ TEST(Growth, CountersObeyTheLawOfTheSlides) {
 }
 
 // Every bounce costs one ray and one test of each primitive, however faint the light.
-TEST(Growth, FaintRaysCostWhatBrightOnesDo) {
+TEST(RayTree, CostsSameForFaintAndBrightRays) {
   covers("A35");
   for (const double reflectance : {.5, 1e-4}) {  // 1e-4 ^ 33 is below the smallest float
     RenderRequest request = in_float(limits(32));

@@ -20,7 +20,7 @@ Json leaning(const Json& material) {
 
 // At a slant, the direction mirrored about a leaning normal points below the surface. The geometric normal is
 // used instead.
-TEST(ShadingNormal, SendsNoMirroredRayIntoTheSurface) {
+TEST(ShadingNormal, ReflectsNoRayIntoSurface) {
   covers("C12");
   Tracing tracing(leaning(json("{'type': 'reflective', 'n': [0, 0, 0], 'k': [0, 0, 0]}")));
   Random random(1);
@@ -41,7 +41,7 @@ TEST(ShadingNormal, SendsNoMirroredRayIntoTheSurface) {
 }
 
 // A mirror never adds light, however its normals lean.
-TEST(ShadingNormal, MakesNoLight) {
+TEST(ShadingNormal, CreatesNoLight) {
   Tracing tracing(leaning(json("{'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]}")));
   Random random(2);
   for (int i = 0; i < 2'000; ++i) {

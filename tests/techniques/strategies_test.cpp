@@ -170,11 +170,11 @@ Estimate by_both(const Json& lamp, const Json& material, int samples) {
   return estimate_alone(scene_of_lamp(lamp, &material), kViewer * 0.1, Vec3d(), 1, samples);
 }
 
-class Strategies : public testing::TestWithParam<Named> {};
+class SamplingStrategies : public testing::TestWithParam<Named> {};
 
 // MIS is as good as the better strategy, unless light sampling alone has almost no noise. In that case the
 // BSDF samples, despite their small weight, raise the deviation by up to a quarter.
-TEST_P(Strategies, OfDrawingAgreeForEveryMaterial) {
+TEST_P(SamplingStrategies, AgreesForEveryMaterial) {
   covers("light-22");
   const Json lamp = json(GetParam().text);
   for (const auto& [name, text] : kMaterials) {
@@ -193,7 +193,7 @@ TEST_P(Strategies, OfDrawingAgreeForEveryMaterial) {
     EXPECT_LE(both.sd, 1.25 * std::min(light.sd, lobe.sd)) << name;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Lamps, Strategies, testing::ValuesIn(kLamps),
+INSTANTIATE_TEST_SUITE_P(Lamps, SamplingStrategies, testing::ValuesIn(kLamps),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 }  // namespace

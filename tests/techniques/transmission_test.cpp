@@ -44,13 +44,13 @@ Json slab_from_below(double filter = 1) {
   return scene;
 }
 
-TEST(Slab, TransmitsWhatTheSeriesSumsTo) {
+TEST(Slab, MatchesTransmittanceSeries) {
   covers("R16");
   EXPECT_NEAR(Tracing(slab(), depth(32)).trace(slanted(0)).radiance.x, .92307692307692, 1e-12);
   EXPECT_NEAR(Tracing(slab_from_below(), depth(32)).trace(slanted(0)).radiance.x, .07692307692308, 1e-12);
 }
 
-TEST(Slab, TransmitsLessAtASlant) {
+TEST(Slab, TransmitsLessAtSlantedAngles) {
   covers("R17 D10");
   Tracing tracing(slab(), depth(32));
   EXPECT_NEAR(tracing.trace(slanted(45)).radiance.x, .90432679, 5e-9);
@@ -66,7 +66,7 @@ TEST(Slab, AbsorbsOnEveryPass) {
 }
 
 // 0, 1 and 2 round trips inside, and the ledger of the omitted rest.
-TEST(Slab, TruncatedSeriesIsOffByNoMoreThanTheLedger) {
+TEST(Slab, BoundsTruncationErrorByLedger) {
   covers("D9");
   const double expected[] = {.9216, .92307456, .9230769193};
   for (int trips = 0; trips < 3; ++trips) {
@@ -77,7 +77,7 @@ TEST(Slab, TruncatedSeriesIsOffByNoMoreThanTheLedger) {
   }
 }
 
-TEST(Ball, WeakensByTheChord) {
+TEST(Ball, AttenuatesByChord) {
   covers("R24");
   const double sigma = .5;
   Json scene = scene_with(json("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'fog'}]"),
@@ -98,7 +98,7 @@ TEST(Ball, WeakensByTheChord) {
 }
 
 // Lossless glass of any closed shape is invisible under a sky of 1, for any light path.
-TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
+TEST(Furnace, HidesGlassUnderUniformSky) {
   covers("R3 D11");
   for (const char* object : {"{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}",
                              "{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 1]}",
@@ -129,7 +129,7 @@ TEST(Furnace, GlassUnderAnEvenSkyIsInvisible) {
 
 // The mean over the disc of a ball is 7.3 % low without internal reflections, 1.15 % with one and .081 % with
 // four. The ledger has exactly these values.
-TEST(Furnace, BallFallsShortByWhatItsDepthLeavesOut) {
+TEST(Furnace, MatchesShortfallOfLimitedDepth) {
   covers("D11");
   const Json scene = scene_of(
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",

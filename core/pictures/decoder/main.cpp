@@ -16,6 +16,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/math/elementary.h"
@@ -42,8 +43,23 @@ void write_all(std::span<const std::byte> bytes) {
   std::_Exit(0);
 }
 
+// Reports an error of a library: the first line of its text, without the names of libraries and of the input.
+[[noreturn]] void fail_damaged(std::string text) {
+  constexpr std::string_view kNames[] = {"PNG read error: ",
+                                         "JPEG error: ",
+                                         "OpenEXR exception: ",
+                                         "Cannot read image file \"picture\". ",
+                                         "Cannot read image file \"picture\"",
+                                         " (\"picture\")",
+                                         "\"picture\" "};
+  text.resize(std::min(text.find('\n'), text.size()));
+  for (const std::string_view name : kNames)
+    if (const std::size_t at = text.find(name); at != text.npos) text.erase(at, name.size());
+  fail("image is damaged: " + (text.empty() ? "decoder cannot read it" : text));
+}
+
 // Returns the writable memory that this process has mapped, in bytes, as RLIMIT_DATA counts it.
-rlim_t mapped_data() {
+[[maybe_unused]] rlim_t mapped_data() {
   std::FILE* const file = std::fopen("/proc/self/statm", "r");
   unsigned long pages = 0;
   const bool read = file && std::fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) == 1;
@@ -53,10 +69,8 @@ rlim_t mapped_data() {
 
 void limit_process() {
   constexpr rlim_t kMaxSeconds = 300;
-  constexpr int kLowerPriority = 5;  // nice value, above that of the service
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   close_range(STDERR_FILENO + 1, ~0U, 0);
-  [[maybe_unused]] const int priority = nice(kLowerPriority);
   const rlimit seconds{kMaxSeconds, kMaxSeconds}, none{0, 0};
   setrlimit(RLIMIT_CPU, &seconds);
   setrlimit(RLIMIT_CORE, &none);
@@ -73,10 +87,10 @@ void limit_memory([[maybe_unused]] std::uint64_t bytes) {
 
 std::span<std::byte> map_input() {
   struct stat status {};
-  if (fstat(STDIN_FILENO, &status) != 0 || status.st_size <= 0) fail("there is no input");
+  if (fstat(STDIN_FILENO, &status) != 0 || status.st_size <= 0) fail("input is missing");
   const auto size = static_cast<std::size_t>(status.st_size);
   void* const start = mmap(nullptr, size, PROT_READ, MAP_SHARED, STDIN_FILENO, 0);
-  if (start == MAP_FAILED) fail("the input cannot be mapped");
+  if (start == MAP_FAILED) fail("input cannot be mapped");
   return {static_cast<std::byte*>(start), size};
 }
 
@@ -109,7 +123,7 @@ void read_rows(OIIO::ImageInput& input, int begin, int end, std::vector<Sample>&
     for (int y = begin; y < end && read; ++y)
       read = input.read_scanline(spec.y + y, 0, type,
                                  samples.data() + row * static_cast<std::size_t>(y - begin));
-  if (!read) fail("the picture is damaged: " + input.geterror());
+  if (!read) fail_damaged(input.geterror());
 }
 
 // Writes red, green and blue of each texel, converted by `light`. Grey is written three times. Alpha is
@@ -149,9 +163,10 @@ void run(const char* plugin, std::uint64_t memory_bytes) {
   OIIO::ImageSpec spec, how;
   how.attribute("oiio:UnassociatedAlpha", 1);
   if (!input || !input->set_ioproxy(&reader) || !input->open("picture", spec, how))
-    fail("the picture is damaged: " + (input ? input->geterror() : OIIO::geterror()));
-  if (spec.depth > 1 || spec.deep) fail("expected a flat picture, got one with depth");
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) fail("the picture is damaged: it is empty");
+    fail_damaged(input ? input->geterror() : OIIO::geterror());
+  if (spec.depth > 1 || spec.deep) fail("must be a flat image (got a deep one)");
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
+    fail("image is damaged: size must be at least 1 x 1");
   const std::string_view format = plugin;
   const bool linear = format == "openexr" || format == "hdr";
   if (linear)
@@ -170,9 +185,9 @@ int main(int argc, char** argv) {
   try {
     run(argv[1], std::strtoull(argv[2], nullptr, 10));
   } catch (const std::bad_alloc&) {
-    fail("it takes more memory to be decoded than its size explains");
+    fail("decoding takes more memory than the size of the image explains");
   } catch (const std::exception& error) {
-    fail(std::string("the picture is damaged: ") + error.what());
+    fail_damaged(error.what());
   }
   std::_Exit(0);  // skips cleanup by libraries
 }

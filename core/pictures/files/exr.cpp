@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/shorten.h"
 #include "core/pictures/picture_file.h"
 
 namespace orrery {
@@ -24,7 +25,7 @@ bool next_attribute(ByteReader& reader, Attribute& out) {
   if (out.name.empty()) return false;
   out.type = reader.take_until('\0');
   const std::uint32_t size = reader.little_endian_32();
-  out.value = ByteReader(reader.take(size));
+  out.value = reader.part(size);
   return true;
 }
 
@@ -33,6 +34,11 @@ int count_channels(ByteReader list) {
   int channels = 0;
   for (; !list.take_until('\0').empty(); ++channels) list.take(kDescription);
   return channels;
+}
+
+[[noreturn]] void fail_header(std::size_t limit, const std::string& noun) {
+  throw InputError("",
+                   "header has more than " + grouped(limit) + " " + noun + " (limit " + grouped(limit) + ")");
 }
 
 // Returns the number of texels from the first to the last coordinate, or 0 if `last` is below `first`.
@@ -49,9 +55,8 @@ bool read_header(ByteReader& reader, int& attributes, PictureFile& file) {
   Attribute attribute{{}, {}, ByteReader({})};
   const int before = attributes;
   for (; next_attribute(reader, attribute); ++attributes) {
-    if (attributes == kMaxAttributes || reader.at() > kMaxHeader)
-      throw InputError("", "expected a header of at most " + std::to_string(kMaxAttributes) +
-                               " attributes and " + std::to_string(kMaxHeader) + " bytes, got more");
+    if (attributes == kMaxAttributes) fail_header(kMaxAttributes, "attributes");
+    if (reader.at() > kMaxHeader) fail_header(kMaxHeader, "bytes");
     if (attribute.name == "channels" && attribute.type == "chlist")
       file.channels = count_channels(attribute.value);
     if (attribute.name == "dataWindow" && attribute.type == "box2i") {
@@ -83,7 +88,7 @@ void inspect_exr(std::string_view bytes, PictureFile& file) {
   ByteReader reader(bytes);
   reader.take(4);
   const std::uint32_t flags = reader.little_endian_32();
-  if (flags & kDeep) throw InputError("", "expected a flat picture, got one with depth");
+  if (flags & kDeep) throw InputError("", "must be a flat image (got a deep one)");
   int attributes = 0;
   read_header(reader, attributes, file);
   PictureFile other{.format = file.format, .parts = {}};

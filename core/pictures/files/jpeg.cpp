@@ -34,8 +34,7 @@ bool is_colour_transform(unsigned marker, std::string_view content) {
   return marker == kAdobe && content.starts_with("Adobe") && content.size() < 64;
 }
 
-void read_frame(unsigned marker, std::string_view content, PictureFile& file) {
-  ByteReader reader(content);
+void read_frame(unsigned marker, ByteReader reader, PictureFile& file) {
   reader.take(1);  // bits per sample
   file.height = reader.big_endian(2);
   file.width = reader.big_endian(2);
@@ -52,7 +51,7 @@ void read_frame(unsigned marker, std::string_view content, PictureFile& file) {
 void skip_scan(std::string_view bytes, ByteReader& reader) {
   for (;;) {
     reader.take_until(static_cast<char>(kMarker));
-    if (reader.left() == 0) fail_damaged("it has no end");
+    if (reader.left() == 0) fail_damaged(reader.offset(), "scan ends early");
     const auto next = static_cast<unsigned char>(bytes[reader.at()]);
     if (next == 0 || within(next, kFirstRestart, kLastRestart)) continue;
     reader = ByteReader(bytes, reader.at() - 1);
@@ -72,22 +71,27 @@ void inspect_jpeg(std::string_view bytes, PictureFile& file) {
   file.keep(reader.take(2));
   for (int scans = 0;;) {
     std::size_t start = reader.at();
-    if (reader.byte() != kMarker) fail_damaged("it has bytes that belong to no segment");
+    if (const unsigned first = reader.byte(); first != kMarker)
+      fail_damaged(start, "segment must begin with byte 255 (got " + std::to_string(first) + ")");
     unsigned marker = reader.byte();
     for (; marker == kMarker; marker = reader.byte()) ++start;
     if (marker == kEnd) {
-      if (scans == 0) fail_damaged("it has no scans");
+      if (scans == 0) fail_damaged(start, "file ends without a scan");
       return file.keep(bytes.substr(start, 2));
     }
     const std::uint32_t length = reader.big_endian(2);
-    if (length < 2) fail_damaged("it has a segment without a length");
+    if (length < 2)
+      fail_damaged(reader.offset() - 2,
+                   "segment length must be at least 2 (got " + std::to_string(length) + ")");
+    const std::size_t begin = reader.offset();
     const std::string_view content = reader.take(length - 2);
-    if (is_frame(marker)) read_frame(marker, content, file);
+    if (is_frame(marker)) read_frame(marker, ByteReader(content, 0, begin), file);
     if (marker == kScan) {
-      if (file.channels == 0) fail_damaged("it has no size before its scans");
+      if (file.channels == 0) fail_damaged(start, "scan precedes the image size");
       skip_scan(bytes, reader);
       if (++scans > kMaxScans)
-        throw InputError("", "expected at most " + std::to_string(kMaxScans) + " scans, got more");
+        throw InputError("", "file has more than " + std::to_string(kMaxScans) + " scans (limit " +
+                                 std::to_string(kMaxScans) + ")");
     }
     const bool describes = within(marker, kFirstApplication, kLastApplication) || marker == kComment;
     if (!describes || is_colour_transform(marker, content))

@@ -10,14 +10,16 @@ constexpr std::array<std::string_view, 7> kTexelChunks = {"IHDR", "PLTE", "tRNS"
                                                           "sRGB", "IDAT", "IEND"};
 
 // Returns the channels of a colour type (PNG specification, 11.2.2). A palette may have an alpha chunk.
-int channels_of(unsigned colour_type) {
+int channels_of(unsigned colour_type, std::size_t offset) {
   switch (colour_type) {
     case 0: return 1;
     case 2: return 3;
     case 3: return 4;
     case 4: return 2;
     case 6: return 4;
-    default: fail_damaged("it has no colour type " + std::to_string(colour_type));
+    default:
+      fail_damaged(offset,
+                   "colour type must be one of 0, 2, 3, 4 or 6 (got " + std::to_string(colour_type) + ")");
   }
 }
 
@@ -31,20 +33,22 @@ void inspect_png(std::string_view bytes, PictureFile& file) {
     const std::size_t start = reader.at();
     const std::uint32_t length = reader.big_endian(4);
     type = reader.take(4);
-    ByteReader content(reader.take(length));
+    ByteReader content = reader.part(length);
     reader.take(4);
-    if (file.width == 0 && type != "IHDR") fail_damaged("it does not begin with its size");
+    if (file.width == 0 && type != "IHDR")
+      fail_damaged(start, "first chunk must be IHDR, which contains the size");
     if (type == "IHDR") {
       file.width = content.big_endian(4);
       file.height = content.big_endian(4);
       const std::uint64_t depth = content.byte();
-      file.channels = channels_of(content.byte());
+      const std::size_t offset = content.offset();
+      file.channels = channels_of(content.byte(), offset);
       content.take(2);                              // compression and filter methods
       const bool interlaced = content.byte() != 0;  // interlaced files are decoded as a whole
       if (interlaced)
         file.decoder_bytes =
             file.width * file.height * static_cast<std::uint64_t>(file.channels) * (depth > 8 ? 2 : 1);
-      if (file.width == 0) fail_damaged("it has no width");
+      if (file.width == 0) fail_damaged(start, "width must be at least 1 (got 0)");
     }
     const bool makes_texels = std::find(kTexelChunks.begin(), kTexelChunks.end(), type) != kTexelChunks.end();
     if (makes_texels) file.keep(bytes.substr(start, reader.at() - start));
