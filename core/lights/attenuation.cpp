@@ -12,7 +12,7 @@ Attenuation<double> read_attenuation(Params& p) {
     p.fail("attenuation", "must have at least one coefficient > 0 (got [0,0,0])");
   constexpr double kUnlimited = 1e12;
   const bool limited =
-      p.flag("limited",
+      p.flag("clamp_to_one",
              "Limit the attenuation factor to 1. If false, [0, 0, 1] gives the inverse-square law of "
              "a physical point light.",
              true);

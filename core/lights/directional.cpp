@@ -8,7 +8,7 @@ namespace orrery {
 
 template <class N>
 Directional<double> Directional<N>::read(Params& p) {
-  const Vec3d from = p.direction("from", "Direction toward the light.");
+  const Vec3d from = p.direction("direction_to_light", "Direction toward the light.");
   const Vec3d intensity = p.color(
       "intensity", "Intensity; a white surface that faces a light of intensity 1 has radiance 1.", Vec3d(1));
   const double angle =

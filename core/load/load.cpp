@@ -44,11 +44,11 @@ void read_camera(Params& p, Scene& scene) {
   if (p.has("focus_distance")) placement.focus_distance = focus;
   placement.blades = {
       static_cast<int>(
-          p.integer("blades", "Number of aperture blades, at least 3; 0: round.", 0, kMaxBlades, 0)),
+          p.integer("aperture_blades", "Number of aperture blades, at least 3; 0: round.", 0, kMaxBlades, 0)),
       p.number("blade_degrees", "Angle of the first aperture corner in degrees, from right toward up.",
                {.min = -360, .max = 360}, 0.0)};
   if (const int blades = placement.blades.count; blades == 1 || blades == 2)
-    p.fail("blades", "must be 0 or at least 3 (got " + std::to_string(blades) + ")");
+    p.fail("aperture_blades", "must be 0 or at least 3 (got " + std::to_string(blades) + ")");
   scene.camera = camera_types()[*type].read(p);
   if (scene.camera->all_around() && placement.aperture_radius > 0)
     p.fail("aperture_radius", "must be 0 for a panorama, which cannot focus in all directions (got " +

@@ -13,8 +13,8 @@ Rough<double> Rough<N>::read(Params& p) {
   const Vec3d kd = p.coefficient("kd", "Diffuse coefficient.", Vec3d(0.8));
   const Vec3d ka = p.coefficient("ka", "Ambient coefficient; default: kd.", derived(kd));
   const Vec3d ks = p.coefficient("ks", "Specular coefficient.", Vec3d(0));
-  const Vec3d cd = p.color("cd", "Colour that multiplies ka and kd.", Vec3d(1));
-  const Vec3d cs = p.color("cs", "Colour that multiplies ks.", Vec3d(1));
+  const Vec3d cd = p.color("diffuse_color", "Colour that multiplies ka and kd.", Vec3d(1));
+  const Vec3d cs = p.color("specular_color", "Colour that multiplies ks.", Vec3d(1));
   const double shininess = p.number("shininess", "Exponent of the highlight.", {.min = 0, .max = 1e6}, 20.0);
   const bool phong =
       p.choice("shading", "Highlight model.", {"blinn-phong", "phong"}, "blinn-phong") == "phong";

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/shorten.h"
+#include "core/params/former_names.h"
 #include "core/params/json.h"
 #include "core/params/suggest.h"
 #include "core/params/words.h"
@@ -51,7 +52,7 @@ Reader::Reader(Reader& parent, const Location& location, const json& object)
 void Reader::finish() {
   if (type_unknown_) return;
   const auto was_asked = [&](Key key) {
-    return std::find(asked_.begin(), asked_.end(), key) != asked_.end();
+    return std::any_of(asked_.begin(), asked_.end(), [&](Key asked) { return written_key(asked) == key; });
   };
   for (const auto& [key, value] : object_->get_ref<const json::object_t&>()) {
     if (was_asked(key)) continue;
@@ -61,9 +62,15 @@ void Reader::finish() {
   }
 }
 
+Reader::Key Reader::written_key(Key key) const {
+  const auto& members = object_->get_ref<const json::object_t&>();
+  const Key former = former_name(key);
+  return !former.empty() && !members.contains(key) && members.contains(former) ? former : key;
+}
+
 const json* Reader::lookup(Key key) const {
   const auto& members = object_->get_ref<const json::object_t&>();
-  const auto found = members.find(key);
+  const auto found = members.find(written_key(key));
   return found == members.end() ? nullptr : &found->second;
 }
 
@@ -231,7 +238,7 @@ void Reader::do_fail(Key key, std::string detail) {
 
 std::string Reader::do_pointer(Key key) const {
   std::string text = parent_ ? parent_->location_text(location_) : document_.pointer();
-  if (!key.empty()) text += pointer_step(key);
+  if (!key.empty()) text += pointer_step(written_key(key));
   return text;
 }
 

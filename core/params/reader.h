@@ -83,6 +83,8 @@ class Reader final : public Params {
     return value;
   }
   void note_missing(Key key, const std::string& allowed);
+  // Returns the name of `key` in this object: the former one if the object has only that.
+  Key written_key(Key key) const;
   const nlohmann::json* lookup(Key key) const;
   // Returns the list at `key`. Reports an error and returns null if the type or the size is wrong.
   const nlohmann::json* find_list(Key key, Count count, std::string_view noun);

@@ -114,7 +114,8 @@ constexpr std::array kOptions{
       .kind = O::Number{&S::filter_width, {.min = 0, .max = 16}, 0},
       .placeholder = "PIXELS",
       .help = "Filter width in pixels; 0: the usual width of the filter."},
-    O{.key = "reuse",
+    O{.key = "path_reuse",
+      .short_name = "reuse",
       .section = Section::render,
       .kind = O::Integer<int>{&S::reuse, 1, kMaxReuse, 16},
       .placeholder = "N",
@@ -139,12 +140,14 @@ constexpr std::array kOptions{
       .kind = O::Integer<std::uint64_t>{&S::seed, 0, kMaxSeed, 0},
       .placeholder = "N",
       .help = "Seed of all random numbers."},
-    O{.key = "reorder",
+    O{.key = "ray_sorting",
+      .short_name = "reorder",
       .section = Section::render,
       .kind = O::Flag{&S::reorder, false},
       .help = "Sort rays by origin and direction before traversal.",
       .changes_pixels = false},
-    O{.key = "prediction",
+    O{.key = "occluder_prediction",
+      .short_name = "prediction",
       .section = Section::render,
       .kind = O::Enumeration<Prediction>{&S::prediction, kPredictions},
       .help = "Occluder predictor used before shadow-ray traversal.",
@@ -170,20 +173,23 @@ constexpr std::array kOptions{
       .help = "Output: the image, or the error bound of each pixel as a colour: its cut light plus half the "
               "difference of the halves of its samples.",
       .in_scene = false},
-    O{.key = "error",
+    O{.key = "max_error",
+      .short_name = "error",
       .section = Section::budget,
       .kind = O::Number{&S::error, {.min = 0, .max = 1}, 0},
       .placeholder = "RMS",
       .help = "Maximum RMS error (error budget); 0: none. Samples, depth, minimum contribution and precision "
               "adapt unless set.",
       .in_scene = false},
-    O{.key = "space",
+    O{.key = "error_metric",
+      .short_name = "space",
       .section = Section::budget,
       .kind = O::Enumeration<Space>{&S::space, kSpaces},
       .help = "Error metric: linear radiance, or display (sRGB, 0-1); auto: display for 8-bit files with a "
               "budget, else linear.",
       .in_scene = false},
-    O{.key = "seconds",
+    O{.key = "time_limit_seconds",
+      .short_name = "seconds",
       .section = Section::budget,
       .kind = O::Number{&S::seconds, {.min = 0, .max = kMaxBudgetSeconds}, 0},
       .placeholder = "SECONDS",
@@ -191,7 +197,8 @@ constexpr std::array kOptions{
               "depth "
               "and precision adapt unless set.",
       .in_scene = false},
-    O{.key = "on_miss",
+    O{.key = "on_budget_miss",
+      .short_name = "on_miss",
       .section = Section::budget,
       .kind = O::Enumeration<OnMiss>{&S::on_miss, kOnMisses},
       .help = "Result of a missed budget: the best image so far, or an error.",
@@ -392,7 +399,7 @@ bool has_budget(const RenderSettings& settings) {
 
 void require_no_budget(const RenderSettings& settings, std::string_view what) {
   if (has_budget(settings))
-    throw InputError(settings.error.value_or(0) > 0 ? "/budget/error" : "/budget/seconds",
+    throw InputError(settings.error.value_or(0) > 0 ? "/budget/max_error" : "/budget/time_limit_seconds",
                      "cannot be used with " + std::string(what) + " (a budget applies to one image)");
 }
 

@@ -39,7 +39,7 @@ void require_layers_kept(const RenderRequest& request, FileFormat format) {
 
 void choose_space(RenderRequest& request, FileFormat format) {
   if (format == FileFormat::jpeg && request.error.value_or(0) > 0)
-    throw InputError("/budget/error",
+    throw InputError("/budget/max_error",
                      "cannot be used with JPEG (compression error is unbounded); use PNG or EXR");
   if (has_budget(request)) require_picture(request, "a budget");
   const bool open = request.space.value_or(Space::automatic) == Space::automatic;

@@ -16,7 +16,7 @@ std::shared_ptr<const Scene> scene_at(double offset) {
   };
   return load_scene(
       R"({"version": 1, "ambient": [0.2, 0.2, 0.2], "materials": {"m": {"type": "rough"}},
-          "lights": [{"type": "directional", "from": [1, 2, 1]}],
+          "lights": [{"type": "directional", "direction_to_light": [1, 2, 1]}],
           "camera": {"type": "perspective", "eye": )" +
       at(0, 1, 4) + R"(, "look_at": )" + at(0, 0, 0) + R"(}, "objects": [
           {"type": "sphere", "center": )" +
@@ -24,7 +24,7 @@ std::shared_ptr<const Scene> scene_at(double offset) {
           {"type": "sphere", "center": )" +
       at(0.5, 0, 0) + R"(, "radius": 0.25, "material": "m"},
           {"type": "rectangle", "corner": )" +
-      at(-1, -0.5, -1) + R"(, "a": [2, 0, 0], "b": [0, 0, 2], "material": "m"}]})");
+      at(-1, -0.5, -1) + R"(, "edge_u": [2, 0, 0], "edge_v": [0, 0, 2], "material": "m"}]})");
 }
 
 std::vector<float> picture_of(double offset, Precision precision) {

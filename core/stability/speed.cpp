@@ -31,13 +31,13 @@ struct MethodComparison {
 // Scene with 512 balls of glass over a floor.
 std::shared_ptr<const Scene> balls(const char* fresnel) {
   std::string objects =
-      R"({"type": "rectangle", "corner": [-6, -4.5, -6], "a": [0, 0, 12], "b": [12, 0, 0], "material": "floor"})";
+      R"({"type": "rectangle", "corner": [-6, -4.5, -6], "edge_u": [0, 0, 12], "edge_v": [12, 0, 0], "material": "floor"})";
   for (int i = 0; i < 512; ++i)
     objects += printed(R"(,{"type": "sphere", "center": [%d, %d, %d], "radius": 0.4, "material": "glass"})",
                        i % 8 - 4, i / 8 % 8 - 4, i / 64 - 4);
   return load_scene(printed(R"({"version": 1, "ambient": [0.3, 0.3, 0.3], "background": [0.4, 0.6, 0.9],
       "camera": {"type": "perspective", "eye": [4, 6, 14], "look_at": [0, 0, 0]},
-      "lights": [{"type": "directional", "from": [1, 2, 1]}],
+      "lights": [{"type": "directional", "direction_to_light": [1, 2, 1]}],
       "materials": {"floor": {"type": "rough"}, "glass": {"type": "refractive", "ior": 1.5, "fresnel": "%s"}},
       "objects": [)",
                             fresnel) +

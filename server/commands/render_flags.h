@@ -22,8 +22,8 @@ namespace orrery {
 inline constexpr const char* kCommonGroup = "Common options";
 // Keys of the image options in that group. The help lists the other image options by name.
 using CommonOptions = std::span<const std::string_view>;
-inline constexpr std::array<std::string_view, 5> kCommonOptions{"width", "height", "samples", "error",
-                                                                "seconds"};
+inline constexpr std::array<std::string_view, 5> kCommonOptions{"width", "height", "samples", "max_error",
+                                                                "time_limit_seconds"};
 
 // Flags of every command that renders or plans. Must not move after add_render_flags().
 struct RenderFlags {

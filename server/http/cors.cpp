@@ -62,9 +62,11 @@ void allow_origin(const Request& request, const std::vector<std::string>& origin
   response.set("Vary", vary.empty() ? "Origin" : vary + ", Origin");
   if (!is_listed(request, origins)) return;
   response.set("Access-Control-Allow-Origin", *request.header("Origin"));
-  response.set("Access-Control-Expose-Headers",
-               "Content-Location, ETag, Location, Orrery-Budget, Orrery-Error-Bound, Orrery-Scene-Id, "
-               "Orrery-Warning, Retry-After, Server-Timing, X-Bias, X-Rays, X-RMSE, X-Request-ID");
+  response.set(
+      "Access-Control-Expose-Headers",
+      "Content-Location, ETag, Location, Orrery-Bias, Orrery-Budget, Orrery-Error-Bound, Orrery-Rays, "
+      "Orrery-RMSE, Orrery-Scene-Id, Orrery-Warning, Retry-After, Server-Timing, X-Bias, X-Rays, X-RMSE, "
+      "X-Request-ID");
 }
 
 }  // namespace orrery

@@ -71,6 +71,11 @@ Fit fit_of(std::string_view entry, std::string_view type) {
   return fit;
 }
 
+// Sets Orrery-NAME, and X-NAME for clients of version 0.1.
+void set_with_former_name(Response& response, const std::string& name, const std::string& value) {
+  response.set("Orrery-" + name, value).set("X-" + name, value);
+}
+
 }  // namespace
 
 Caller caller_of(const Request& request) { return {request.client, request.gone}; }
@@ -162,15 +167,15 @@ Response picture_response(std::string_view type, const Rendered& rendered, const
         static_cast<unsigned long long>(work.primitive_tests));
     told += text;
     response.rays = stats.counts.rays.total();
-    response.set("X-Rays", std::to_string(response.rays));
+    set_with_former_name(response, "Rays", std::to_string(response.rays));
   } else {
     told += "kept;desc=\"cached from another request\"";
   }
   if (const RenderStats& stats = rendered.picture->stats; stats.error.known())
-    response.set("X-RMSE", error_text(stats));
+    set_with_former_name(response, "RMSE", error_text(stats));
   response.set("Orrery-Error-Bound", bound_text(rendered.picture->certificate));
-  if (std::string bias = bias_text(rendered.picture->certificate); !bias.empty())
-    response.set("X-Bias", std::move(bias));
+  if (const std::string bias = bias_text(rendered.picture->certificate); !bias.empty())
+    set_with_former_name(response, "Bias", bias);
   response.set("Server-Timing", std::move(told));
   set_warnings(response, rendered.picture->warnings);
   return response;

@@ -40,7 +40,7 @@ std::string server_timing(const Timing& timing);
 void set_warnings(Response& response, std::span<const Problem> warnings);
 
 // Returns a response with the picture and its cost: Server-Timing with the steps, the accelerator and its
-// counted work, and X-Rays. Sets X-RMSE if the error was estimated from the samples.
+// counted work, and Orrery-Rays. Sets Orrery-RMSE if the error was estimated from the samples.
 Response picture_response(std::string_view type, const Rendered& rendered, const Timing& timing);
 
 // Sets the headers of a picture with a budget: Orrery-Budget with the outcome and, for PNG, Content-Location.

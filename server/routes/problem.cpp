@@ -74,7 +74,8 @@ Response malformed(const MalformedJson& error, std::string_view request_id) {
 // Returns a 422 with the outcome that was possible: the budget and its certificate.
 Response missed(const BudgetMissed& error, std::string_view request_id) {
   const BudgetOutcome& outcome = error.outcome();
-  ordered_json more = list_of({{outcome.error_met ? "/budget/seconds" : "/budget/error", outcome.reason}});
+  ordered_json more =
+      list_of({{outcome.error_met ? "/budget/time_limit_seconds" : "/budget/max_error", outcome.reason}});
   more["budget"] = budget_json(outcome);
   more["certificate"] = certificate_json(error.certificate());
   return respond(422, "Budget cannot be met", error.what(), request_id, "urn:orrery:problem:missed-budget",

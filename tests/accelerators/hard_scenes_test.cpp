@@ -75,7 +75,7 @@ Json slivers(double aspect, Random& random) {
           {"materials",
            {{"bright", {{"type", "rough"}, {"kd", {0.9, 0.8, 0.6}}}},
             {"dark", {{"type", "rough"}, {"kd", {0.1, 0.2, 0.3}}}}}},
-          {"lights", {{{"type", "directional"}, {"from", numbers(random.direction())}}}},
+          {"lights", {{{"type", "directional"}, {"direction_to_light", numbers(random.direction())}}}},
           {"objects", objects}};
 }
 

@@ -50,7 +50,7 @@ def material_of(name, record):
 def vertices_and_faces(record):
     if record["type"] == "mesh":
         return record["positions"], record["indices"]
-    corner, a, b = (mathutils.Vector(record[key]) for key in ("corner", "a", "b"))
+    corner, a, b = (mathutils.Vector(record[key]) for key in ("corner", "edge_u", "edge_v"))
     return [corner, corner + a, corner + a + b, corner + b], [[0, 1, 2], [0, 2, 3]]
 
 

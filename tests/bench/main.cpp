@@ -24,7 +24,7 @@ constexpr std::size_t kFewestRays = 10'000;  // kinds with fewer rays are skippe
 
 constexpr const char* kScene =
     R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 5], "look_at": [0, 0, 0]},
-        "materials": {"m": {"type": "rough"}}, "lights": [{"type": "directional", "from": [1, 1, 1]}],
+        "materials": {"m": {"type": "rough"}}, "lights": [{"type": "directional", "direction_to_light": [1, 1, 1]}],
         "objects": [{"type": "mesh", "material": "m", "file": "the mesh"}]})";
 
 class InMemory final : public AssetSource {

@@ -220,7 +220,9 @@ TEST(Camera, RejectsInvalidSceneCameras) {
   EXPECT_EQ(problem("{'type': 'panorama', 'eye': [0, 0, 4], 'look_at': [0, 0, 0], 'aperture_radius': 0}"),
             "accepted");
   for (const char* blades : {"1", "2", "17", "-3"})
-    EXPECT_EQ(problem(("{'blades': " + std::string(blades) + "}").c_str()), "/camera/blades") << blades;
+    EXPECT_EQ(problem(("{'aperture_blades': " + std::string(blades) + "}").c_str()),
+              "/camera/aperture_blades")
+        << blades;
   EXPECT_EQ(problem("{'fov_degrees': 180}"), "/camera/fov_degrees");
   EXPECT_EQ(problem("{'eye': [1, 2, 3], 'look_at': [1, 2, 3]}"), "/camera/look_at");
   EXPECT_EQ(problem("{'eye': [0, 5, 0]}"), "/camera/up");

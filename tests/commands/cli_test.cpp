@@ -57,7 +57,7 @@ class CommandLine : public ::testing::Test {
 const std::string kScene =
     R"({"version": 1, "camera": {"type": "perspective", "eye": [0, 0, 4], "look_at": [0, 0, 0]},
  "image": {"width": 40, "height": 30}, "materials": {"m": {"type": "rough"}},
- "lights": [{"type": "directional", "from": [1, 1, 1]}],
+ "lights": [{"type": "directional", "direction_to_light": [1, 1, 1]}],
  "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "m"}]})";
 
 TEST_F(CommandLine, WritesFormatOfFileExtension) {

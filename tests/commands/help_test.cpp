@@ -79,7 +79,7 @@ TEST(Help, StartsWithTheCommonOptions) {
     std::size_t before = text.find("Common options:");
     ASSERT_NE(before, std::string::npos) << command;
     for (const char* option :
-         {"-o, --output ", "--width ", "--height ", "--samples ", "--error ", "--seconds ", "Output:"}) {
+         {"-o, --output ", "--width ", "--height ", "--samples ", "--error, ", "--seconds, ", "Output:"}) {
       const std::size_t at = text.find(option);
       ASSERT_NE(at, std::string::npos) << option;
       EXPECT_GT(at, before) << option;

@@ -120,8 +120,8 @@ TEST(ImageEnvironment, MatchesSumOverDirections) {
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))) / expected, 1,
               3e-3);
   // With another light, each is sampled half of the time.
-  scene["lights"] =
-      Json::array({{{"type", "directional"}, {"from", numbers(normal)}, {"intensity", {3, 3, 3}}}});
+  scene["lights"] = Json::array(
+      {{{"type", "directional"}, {"direction_to_light", numbers(normal)}, {"intensity", {3, 3, 3}}}});
   EXPECT_NEAR(floor_mean(load_scene(parse_document(scene.dump()), SingleImageSource(picture))), expected + 3,
               5e-3 * (expected + 3));
 }
@@ -188,7 +188,7 @@ TEST(ImageEnvironment, IsBitIdenticalAcrossThreadsAndScales) {
   scene["environment"] = {{"type", "image"}, {"file", "f"}};
   scene["lights"] = Json::array(
       {{{"type", "line"}, {"from", {1, 5, 1}}, {"to", {2, 5, 1.5}}, {"intensity_per_metre", {1, 2, 3}}},
-       {{"type", "directional"}, {"from", {1, 1, 1}}, {"angle_degrees", 8}}});
+       {{"type", "directional"}, {"direction_to_light", {1, 1, 1}}, {"angle_degrees", 8}}});
   scene.erase("background");
   EXPECT_TRUE(identical(picture_of(scene, 1), picture_of(scene, 3)));
   scene["lights"].erase(1);  // selection depends on the light's power in a scene of this size

@@ -263,7 +263,7 @@ nlohmann::json small_scene(const nlohmann::json& more) {
       {"materials",
        {{"plum", {{"type", "rough"}, {"kd", {0.6, 0.1, 0.4}}, {"ks", 0.5}}},
         {"silver", {{"type", "reflective"}, {"n", {0.14, 0.16, 0.13}}, {"k", {4.1, 2.3, 3.1}}}}}},
-      {"lights", {{{"type", "directional"}, {"from", {1, 2, 1}}}}},
+      {"lights", {{{"type", "directional"}, {"direction_to_light", {1, 2, 1}}}}},
       {"objects",
        {{{"type", "sphere"}, {"center", {0.4, 0, 0}}, {"radius", 0.7}, {"material", "plum"}},
         {{"type", "plane"}, {"point", {0, -0.7, 0}}, {"normal", {0, 1, 0}}, {"material", "silver"}}}}};

@@ -17,7 +17,7 @@ TEST_F(FramePng, ReturnsImmutablePng) {
   EXPECT_TRUE(is_png(result->body));
   EXPECT_EQ(result->body.substr(16, 8), std::string("\0\0\0\x28\0\0\0\x1e", 8));  // width and height
   EXPECT_EQ(result->get_header_value("Cache-Control"), "public, max-age=31536000, immutable");
-  EXPECT_FALSE(result->get_header_value("X-Rays").empty());
+  EXPECT_FALSE(result->get_header_value("Orrery-Rays").empty());
 }
 
 TEST_F(FramePng, ReturnsEqualBytesForEqualUrls) {
@@ -62,7 +62,7 @@ TEST_F(FramePng, ReturnsNotModifiedForKnownPicture) {
     ASSERT_TRUE(again);
     EXPECT_EQ(again->status, 304) << known;
     EXPECT_TRUE(again->body.empty());
-    EXPECT_FALSE(again->has_header("X-Rays"));
+    EXPECT_FALSE(again->has_header("Orrery-Rays"));
     EXPECT_FALSE(again->has_header("Content-Length"));
     EXPECT_EQ(again->get_header_value("ETag"), etag);
   }
@@ -74,7 +74,7 @@ TEST_F(FramePng, DoesNotRenderForHead) {
   ASSERT_TRUE(head);
   EXPECT_EQ(head->status, 200);
   EXPECT_EQ(head->get_header_value("Content-Type"), "image/png");
-  EXPECT_FALSE(head->has_header("X-Rays"));
+  EXPECT_FALSE(head->has_header("Orrery-Rays"));
 }
 
 TEST_F(FramePng, ReportsInvalidQueryParameters) {

@@ -136,7 +136,7 @@ TEST_F(JobTest, RendersOrbitAndReportsEveryFrame) {
 
 // The first frame determines the plan for all frames.
 TEST_F(JobTest, AppliesBudgetToOrbit) {
-  const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", {{"error", 0.2}}}});
+  const json job = start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", {{"max_error", 0.2}}}});
   const auto told = events(job);
   ASSERT_EQ(told.back().name, "done");
   const json budget = told.back().data.at("budget");
@@ -161,7 +161,7 @@ TEST_F(JobTest, AppliesBudgetToOrbit) {
 }
 
 TEST_F(JobTest, FailsOnMissedBudgetIfRequested) {
-  const json budget = {{"error", 1e-5}, {"on_miss", "fail"}};
+  const json budget = {{"max_error", 1e-5}, {"on_budget_miss", "fail"}};
   const auto told = events(start({{"scene", small_scene()}, {"orbit", kOrbit}, {"budget", budget}}));
   ASSERT_EQ(told.back().name, "failed");
   const json error = told.back().data.at("error");

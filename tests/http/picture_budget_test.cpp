@@ -92,7 +92,7 @@ TEST_F(PictureBudget, DoesNotCacheTimeBudget) {
   EXPECT_EQ(first->get_header_value("Cache-Control"), "no-store");
   EXPECT_TRUE(first->get_header_value("ETag").empty());
   EXPECT_TRUE(has(first, "Orrery-Budget", "seconds=0.2;seconds-met=?"));
-  EXPECT_FALSE(get("seconds=0.2")->get_header_value("X-Rays").empty()) << "made again";
+  EXPECT_FALSE(get("seconds=0.2")->get_header_value("Orrery-Rays").empty()) << "made again";
 }
 
 TEST_F(PictureBudget, ReportsMissedBudgetOrFails) {
@@ -104,7 +104,7 @@ TEST_F(PictureBudget, ReportsMissedBudgetOrFails) {
   ASSERT_EQ(failed->status, 422);
   const auto problem = nlohmann::json::parse(failed->body);
   EXPECT_EQ(problem["type"], "urn:orrery:problem:missed-budget");
-  EXPECT_EQ(problem["errors"][0]["pointer"], "/budget/error");
+  EXPECT_EQ(problem["errors"][0]["pointer"], "/budget/max_error");
   EXPECT_GT(problem["budget"]["reachable_error"], 0.001);
   EXPECT_EQ(problem["certificate"]["space"], "display");
 }
@@ -127,15 +127,15 @@ TEST_F(PictureBudget, AcceptsBudgetInBody) {
     const nlohmann::json body = {{"scene", small_scene()}, {"budget", budget}};
     return client_.Post("/v1/render", {{"Accept", type}}, body.dump(), "application/json");
   };
-  const auto png = render({{"error", 0.2}}, "image/png");
+  const auto png = render({{"max_error", 0.2}}, "image/png");
   ASSERT_EQ(png->status, 200) << png->body.substr(0, 400);
   EXPECT_TRUE(has(png, "Orrery-Budget", "met=?1"));
   EXPECT_TRUE(client_.Get(png->get_header_value("Content-Location"))->body == png->body);
-  const auto exr = render({{"error", 0.2}}, "image/x-exr");
+  const auto exr = render({{"max_error", 0.2}}, "image/x-exr");
   EXPECT_TRUE(has(exr, "Orrery-Error-Bound", "space=linear"));
   EXPECT_TRUE(exr->get_header_value("Content-Location").empty()) << "that is a PNG";
-  EXPECT_TRUE(has(render({{"seconds", 0.2}}, "image/jpeg"), "Orrery-Error-Bound", "space=linear"));
-  EXPECT_EQ(render({{"error", -1}}, "image/png")->status, 422);
+  EXPECT_TRUE(has(render({{"time_limit_seconds", 0.2}}, "image/jpeg"), "Orrery-Error-Bound", "space=linear"));
+  EXPECT_EQ(render({{"max_error", -1}}, "image/png")->status, 422);
   EXPECT_EQ(render({{"second", 1}}, "image/png")->status, 422);
 }
 
@@ -145,7 +145,7 @@ TEST_F(PictureBudget, RejectsBudgetForStreams) {
         client_.Get("/v1/scenes/" + post_scene(small_scene().dump()) + "/" + what + "?error=0.1");
     ASSERT_TRUE(result);
     EXPECT_EQ(result->status, 422) << what;
-    EXPECT_NE(result->body.find("/budget/error"), std::string::npos);
+    EXPECT_NE(result->body.find("/budget/max_error"), std::string::npos);
   }
 }
 

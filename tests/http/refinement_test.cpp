@@ -51,9 +51,9 @@ TEST_F(RefinementStream, MatchesPictureOfEachSampleCount) {
     for (const StreamedFrame& frame : frames) {
       const std::string samples = std::to_string(frame.header.at("samples").get<int>());
       const auto whole = client.Get(scene_ + "/frame.png?azimuth=2&samples=" + samples + more);
-      ASSERT_TRUE(whole->has_header("X-Rays"));
+      ASSERT_TRUE(whole->has_header("Orrery-Rays"));
       EXPECT_EQ(whole->body, frame.png) << samples << more;
-      const std::string told = whole->get_header_value("X-RMSE");
+      const std::string told = whole->get_header_value("Orrery-RMSE");
       EXPECT_EQ(told.empty(), !frame.header.contains("error")) << samples;
       if (told.empty()) continue;
       const auto& error = frame.header.at("error");
@@ -75,7 +75,7 @@ TEST_F(RefinementStream, TracesEachSampleOnce) {
   httplib::Client client = other.client();
   client.Post("/v1/scenes", small_scene().dump(), "application/json");
   const auto whole = client.Get(scene_ + "/frame.png?" + view(3, 64));
-  EXPECT_EQ(std::to_string(rays_of(frames)), whole->get_header_value("X-Rays"));
+  EXPECT_EQ(std::to_string(rays_of(frames)), whole->get_header_value("Orrery-Rays"));
 }
 
 TEST_F(RefinementStream, EndsAtOnceIfPictureIsCached) {
@@ -86,14 +86,15 @@ TEST_F(RefinementStream, EndsAtOnceIfPictureIsCached) {
   EXPECT_EQ(again.at(0).header.at("rays"), 0);
   EXPECT_GT(again.at(0).header.at("error").at("rays"), 0);
   const auto part = client_.Get(scene_ + "/frame.png?" + view(4, 8));  // images of passes are cached, too
-  EXPECT_FALSE(part->has_header("X-Rays"));
+  EXPECT_FALSE(part->has_header("Orrery-Rays"));
   EXPECT_EQ(daemon().metric("orrery_rays_total"), before);
 }
 
 TEST_F(RefinementStream, SendsMultipartWithErrorsToBrowsers) {
   const auto result = client_.Get(scene_ + "/refinement?" + view(5, 4), {{"Accept", "image/*,*/*;q=0.8"}});
   ASSERT_EQ(result->get_header_value("Content-Type").substr(0, 27), "multipart/x-mixed-replace; ");
-  for (const char* text : {"X-Samples: 2\r\n", "X-Samples: 4\r\n", "X-RMSE: ", "X-Rays: "})
+  for (const char* text :
+       {"Orrery-Samples: 2\r\n", "Orrery-Samples: 4\r\n", "Orrery-RMSE: ", "Orrery-Rays: "})
     EXPECT_NE(result->body.find(text), std::string::npos) << text;
   EXPECT_TRUE(result->body.ends_with("--\r\n"));
 }

@@ -29,7 +29,7 @@ TEST_F(Render, ReturnsPictureOfPostedScene) {
   ASSERT_EQ(result->status, 200) << result->body;
   EXPECT_EQ(result->get_header_value("Content-Type"), "image/png");
   EXPECT_TRUE(is_png(result->body));
-  EXPECT_GE(std::stoull(result->get_header_value("X-Rays")), 48u * 32u);
+  EXPECT_GE(std::stoull(result->get_header_value("Orrery-Rays")), 48u * 32u);
   const std::string timing = result->get_header_value("Server-Timing");
   for (const char* step : {"load;dur=", "plan;dur=", "build;dur=", "render;dur=", "encode;dur="})
     EXPECT_NE(timing.find(step), std::string::npos) << timing;
@@ -98,7 +98,7 @@ struct Formats {
       EXPECT_EQ(result->status, 200) << result->body;
       bodies.push_back(result->body);
       rays.push_back(daemon.metric("orrery_rays_total") - before);
-      EXPECT_EQ(result->has_header("X-Rays"), rays.back() > 0);
+      EXPECT_EQ(result->has_header("Orrery-Rays"), rays.back() > 0);
     }
   }
 };
@@ -258,7 +258,7 @@ TEST(RayLimit, UsesMeasuredRaysOfScene) {
   expect_problem(render(49), 422);
   const auto rendered = render(48);
   ASSERT_EQ(rendered->status, 200) << rendered->body;
-  EXPECT_LT(std::stoi(rendered->get_header_value("X-Rays")), 4536 * 48 / 49);
+  EXPECT_LT(std::stoi(rendered->get_header_value("Orrery-Rays")), 4536 * 48 / 49);
   EXPECT_EQ(render(49)->status, 200);
 }
 

@@ -46,7 +46,7 @@ struct Kernel {
 };
 
 Json sun(double degrees, const Vec3d& from = Vec3d(1, 2, -0.5)) {
-  return {{"type", "directional"}, {"from", numbers(from)}, {"angle_degrees", degrees}};
+  return {{"type", "directional"}, {"direction_to_light", numbers(from)}, {"angle_degrees", degrees}};
 }
 
 // Counts samples in parts of equal solid angle of the sun's disc: rings of equal height, and sectors.

@@ -30,7 +30,7 @@ std::string problem(const Json& light) {
 TEST(Directional, NormalizesDirection) {
   covers("B2");
   for (const double length : {1e-150, 1e-3, 1.0, 5.0, 1e12}) {
-    const Json light{{"type", "directional"}, {"from", numbers(Vec3d(1, 1, 1) * length)}};
+    const Json light{{"type", "directional"}, {"direction_to_light", numbers(Vec3d(1, 1, 1) * length)}};
     const auto a = arrival<double>(light, Vec3d(3, 4, 5));
     EXPECT_NEAR(a.direction.y, 0.5773502691896258, 1e-15) << length;
     EXPECT_NEAR(dot(a.direction, a.direction), 1, 4e-16);
@@ -51,7 +51,7 @@ TEST(Attenuation, FollowsInverseSquareIfUnlimited) {
   for (const char* type : {"point", "spot"}) {
     Json light = point_light(Vec3d(0, 0, 1));
     light["type"] = type;
-    light["limited"] = false;
+    light["clamp_to_one"] = false;
     if (light["type"] == "spot") light["direction"] = {1, 0, 0};
     const auto read = [&](double distance) {
       return arrival<double>(light, Vec3d(distance, 0, 0)).incident.x;
@@ -63,7 +63,7 @@ TEST(Attenuation, FollowsInverseSquareIfUnlimited) {
       const float single = arrival<float>(light, Vec3f(distance, 0, 0)).incident.x;
       EXPECT_TRUE(single >= 1e5f && single <= 1e12f) << single << " at " << distance;
     }
-    light["limited"] = true;
+    light["clamp_to_one"] = true;
     EXPECT_EQ(read(0.1), 1);
   }
 }
@@ -155,7 +155,7 @@ TEST(Directional, IsParallelBelowAngularResolution) {
 // double.
 TEST(AllLights, SendsUnitDirectionsWithinIntensity) {
   const std::vector<Json> lights = {
-      json("{'type': 'directional', 'from': [1, 2, 3], 'intensity': [1, 2, 3]}"),
+      json("{'type': 'directional', 'direction_to_light': [1, 2, 3], 'intensity': [1, 2, 3]}"),
       json(
           "{'type': 'point', 'position': [1, 2, 3], 'intensity': [1, 2, 3], 'attenuation': [0.5, 0.1, 0.1]}"),
       json("{'type': 'spot', 'position': [1, 2, 3], 'direction': [-1, -2, -3], 'intensity': [1, 2, 3]}"),

@@ -39,7 +39,8 @@ TEST(Lambert, EqualsClampedCosine) {
 
 TEST(Rough, MultipliesCoefficientsByColours) {
   const Probe<double> paint(
-      "{'type': 'rough', 'ka': 0.5, 'kd': [0.1, 0.2, 0.3], 'cd': [1, 0.5, 2], 'ks': 0.4, 'cs': [0, 1, 0.5], "
+      "{'type': 'rough', 'ka': 0.5, 'kd': [0.1, 0.2, 0.3], 'diffuse_color': [1, 0.5, 2], 'ks': 0.4, "
+      "'specular_color': [0, 1, 0.5], "
       "'shininess': 1}");
   const Vec3d got = paint.reflected(Case{});  // light, viewer and normal coincide: every cosine is 1
   EXPECT_NEAR(got.x, 0.1, 1e-15);

@@ -21,7 +21,8 @@ std::shared_ptr<const Scene> balls(const std::string& material, int lights) {
                             ", {'type': 'sphere', 'center': [-1, 0, 0], 'radius': 0.5" + of + "]",
                         "{" + std::string(kMaterials) + "}");
   scene["lights"] = Json::array();
-  for (int i = 0; i < lights; ++i) scene["lights"].push_back({{"type", "directional"}, {"from", {1, 2, i}}});
+  for (int i = 0; i < lights; ++i)
+    scene["lights"].push_back({{"type", "directional"}, {"direction_to_light", {1, 2, i}}});
   return load(scene);
 }
 
@@ -105,7 +106,8 @@ TEST(Cost, CountsShadowRaysOnlyForDiffuseShare) {
   Json scene = scene_of(
       "[{'type': 'sphere', 'center': [1, 0, 0], 'radius': 0.5, 'material': 'mirror'},"
       " {'type': 'sphere', 'center': [-1, 0, 0], 'radius': 0.5, 'material': 'plaster'}]",
-      "{" + std::string(kMaterials) + ", 'lights': [{'type': 'directional', 'from': [0, 1, 0]}]}");
+      "{" + std::string(kMaterials) +
+          ", 'lights': [{'type': 'directional', 'direction_to_light': [0, 1, 0]}]}");
   EXPECT_EQ(expected(load(scene), deep(2)), 1.75 * 1.5);
 }
 

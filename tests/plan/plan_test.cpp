@@ -18,7 +18,7 @@ namespace orrery::test {
 namespace {
 
 constexpr const char* kBall = "{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}";
-constexpr const char* kSun = "[{'type': 'directional', 'from': [1, 1, 1]}]";
+constexpr const char* kSun = "[{'type': 'directional', 'direction_to_light': [1, 1, 1]}]";
 
 Plan plan_of(const Json& scene, const RenderRequest& request = {}) {
   return make_plan(*load(scene), request);
@@ -56,7 +56,7 @@ TEST(Plan, OmitsDirectLightWithoutEffect) {
   const Json no_light = scene_of_materials({kRough, kRough}, "[]");
   EXPECT_FALSE(plan_of(no_light).direct_light);
   const Json dark_light = scene_of_materials(
-      {kRough, kRough}, "[{'type': 'directional', 'from': [1, 1, 1], 'intensity': [0, 0, 0]}]");
+      {kRough, kRough}, "[{'type': 'directional', 'direction_to_light': [1, 1, 1], 'intensity': [0, 0, 0]}]");
   EXPECT_FALSE(plan_of(dark_light).direct_light);
   const Json all_mirrors = scene_of_materials({kMirror, kGlass});
   EXPECT_FALSE(plan_of(all_mirrors).direct_light);

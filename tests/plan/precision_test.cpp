@@ -264,7 +264,7 @@ class RandomScene {
     for (int i = 0; i < count; ++i) {
       const Vec3d from = random_.direction() * random_.between(3, 6);
       if (one_of(3)) {
-        scene_["lights"].push_back({{"type", "directional"}, {"from", numbers(from)}});
+        scene_["lights"].push_back({{"type", "directional"}, {"direction_to_light", numbers(from)}});
       } else if (one_of(2)) {
         scene_["lights"].push_back({{"type", "point"}, {"position", numbers(from)}});
       } else {

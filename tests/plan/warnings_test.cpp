@@ -11,7 +11,7 @@
 namespace orrery::test {
 namespace {
 
-constexpr const char* kSun = "[{'type': 'directional', 'from': [1, 1, 1]}]";
+constexpr const char* kSun = "[{'type': 'directional', 'direction_to_light': [1, 1, 1]}]";
 constexpr const char* kBall = "{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}";
 
 Json lit(const char* objects, const Json& eye = {0, 0, 4}, const char* lights = kSun) {
@@ -44,7 +44,8 @@ TEST(Warnings, ReportsUnlitScene) {
   EXPECT_EQ(warned(scene), "") << "ambient light shows the outline";
   scene["ambient"] = {0, 0, 0};
   EXPECT_EQ(warned(scene), "/lights ");
-  scene["lights"] = json("[{'type': 'directional', 'from': [1, 1, 1], 'intensity': [0, 0, 0]}]");
+  scene["lights"] =
+      json("[{'type': 'directional', 'direction_to_light': [1, 1, 1], 'intensity': [0, 0, 0]}]");
   EXPECT_EQ(warned(scene), "/lights ");
   scene["lights"] = json(kSun);
   EXPECT_EQ(warned(scene), "");
@@ -76,7 +77,7 @@ TEST(Warnings, ReportsLightsUnreachableThroughSmoothSurfaces) {
   const char *lantern = "[{'type': 'point', 'position': [1, 3, 1]}]",
              *spot = "[{'type': 'spot', 'position': [1, 3, 1], 'direction': [0, -1, 0]}]",
              *line = "[{'type': 'line', 'from': [1, 3, 1], 'to': [2, 3, 1]}]",
-             *wide = "[{'type': 'directional', 'from': [1, 1, 1], 'angle_degrees': 1}]",
+             *wide = "[{'type': 'directional', 'direction_to_light': [1, 1, 1], 'angle_degrees': 1}]",
              *dark = "[{'type': 'point', 'position': [1, 1, 1], 'intensity': [0, 0, 0]}]";
   const char *mirror = "{'type': 'metal', 'name': 'silver', 'roughness': 0}",
              *glass = "{'type': 'glass', 'roughness': 0}", *clear = "{'type': 'refractive', 'ior': 1.5}",

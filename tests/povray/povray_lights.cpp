@@ -40,7 +40,7 @@ std::string light_of(const Json& light, double exposure) {
   const std::string type = light.at("type");
   const Vec3d intensity = vector_of(light, "intensity", Vec3d(1)) * exposure;
   if (type == "directional")
-    return "light_source { " + text(normalize(vector_of(light, "from")) * kFarAway) + " rgb " +
+    return "light_source { " + text(normalize(vector_of(light, "direction_to_light")) * kFarAway) + " rgb " +
            text(intensity) + " parallel point_at 0 }\n";
   if (type != "point" && type != "spot") throw UnsupportedFeature("the light type " + type);
   const Fading fading = fading_of(light);

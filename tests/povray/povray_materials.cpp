@@ -21,10 +21,10 @@ Vec3d ratio(const Vec3d& a, const Vec3d& b) {
 // The pigment is our diffuse colour. POV-Ray's highlights have the light's colour. `phong` is a power of the
 // mirrored direction's cosine as in ours, `specular` a power 1 / roughness of the half vector's.
 Material rough(const Json& m) {
-  const Vec3d cd = vector_of(m, "cd", Vec3d(1));
+  const Vec3d cd = vector_of(m, "diffuse_color", Vec3d(1));
   const Vec3d kd = coefficient_of(m, "kd", Vec3d(0.8));
   const Vec3d ambient = ratio(coefficient_of(m, "ka", kd) * cd, kd * cd);
-  const Vec3d highlight = coefficient_of(m, "ks", Vec3d(0)) * vector_of(m, "cs", Vec3d(1));
+  const Vec3d highlight = coefficient_of(m, "ks", Vec3d(0)) * vector_of(m, "specular_color", Vec3d(1));
   if (highlight.x != highlight.y || highlight.y != highlight.z)
     throw UnsupportedFeature("a coloured highlight");
   const double shininess = m.value("shininess", 20.0);

@@ -134,7 +134,8 @@ TEST(RadianceRange, FallsWithDistanceOfLights) {
   // The box is 9 m away, and white reflects all.
   EXPECT_NEAR(most("{'type': 'point', 'position': [10, 0, 0], 'attenuation': [1, 0, 1]}"), 1.0 / 82, 1e-12);
   EXPECT_NEAR(most("{'type': 'point', 'position': [10, 0, 0], 'attenuation': [1, 0, 0]}"), 1, 1e-12);
-  EXPECT_NEAR(most("{'type': 'directional', 'from': [1, 0, 0], 'intensity': [3, 3, 3]}"), 3, 1e-12);
+  EXPECT_NEAR(most("{'type': 'directional', 'direction_to_light': [1, 0, 0], 'intensity': [3, 3, 3]}"), 3,
+              1e-12);
 }
 
 // An emissive mirror, or one that does not attenuate its ambient light, adds up over repeated reflections.
@@ -452,11 +453,12 @@ TEST(Clamp, ReportsRemovedLightInLedger) {
 
 // A lamp, its direct light and its mirror image are direct. Only light of more reflections is clamped.
 TEST(Clamp, KeepsDirectLight) {
-  const auto lit = test::load(test::scene_of(
-      "[{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'floor'},"
-      " {'type': 'rectangle', 'corner': [-1, 2, -1], 'a': [2, 0, 0], 'b': [0, 0, 2], 'material': 'lamp'}]",
-      "{'materials': {'floor': {'type': 'metal', 'name': 'iron', 'roughness': 0.4},"
-      " 'lamp': {'type': 'lambert', 'reflectance': 0, 'emission': [9, 9, 9]}}}"));
+  const auto lit = test::load(
+      test::scene_of("[{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'floor'},"
+                     " {'type': 'rectangle', 'corner': [-1, 2, -1], 'edge_u': [2, 0, 0], 'edge_v': [0, 0, "
+                     "2], 'material': 'lamp'}]",
+                     "{'materials': {'floor': {'type': 'metal', 'name': 'iron', 'roughness': 0.4},"
+                     " 'lamp': {'type': 'lambert', 'reflectance': 0, 'emission': [9, 9, 9]}}}"));
   RenderRequest r = request(4);
   r.technique = "path";
   r.samples = 4;

@@ -61,7 +61,8 @@ double height(Filter filter, double x) {
 TEST(Filters, ShowsEdgeAsFilterIntegral) {
   covers("light-46");
   Json scene = scene_of(
-      "[{'type': 'rectangle', 'corner': [0.3, -100, 0], 'a': [100, 0, 0], 'b': [0, 200, 0], 'material': "
+      "[{'type': 'rectangle', 'corner': [0.3, -100, 0], 'edge_u': [100, 0, 0], 'edge_v': [0, 200, 0], "
+      "'material': "
       "'lamp'}]",
       "{'camera': {'type': 'orthographic', 'eye': [0, 0, 4], 'look_at': [0, 0, 0], 'height': 16}, "
       "'materials': {'lamp': {'type': 'lambert', "

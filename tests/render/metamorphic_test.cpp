@@ -177,8 +177,9 @@ Json random_scene(std::uint64_t seed) {
   }
   for (int i = random.below(4); i > 0; --i) {
     if (i == 1)
-      lights.push_back(
-          {{"type", "directional"}, {"from", numbers(random.direction())}, {"intensity", color()}});
+      lights.push_back({{"type", "directional"},
+                        {"direction_to_light", numbers(random.direction())},
+                        {"intensity", color()}});
     if (i == 2)
       lights.push_back(
           {{"type", "point"}, {"position", numbers(random.in_cube(4))}, {"attenuation", {.5, .1, .1}}});

@@ -184,7 +184,8 @@ TEST(Motion, SupportsMeshCollapsingToPoint) {
     if (i >= 2) mesh["indices"].push_back({i - 2, i - 1, i});
   }
   mesh["motion"] = {{{"time", 0}}, {{"time", 1}, {"positions", mirrored}}};
-  const auto scene = load(scene_with(mesh, json("{'lights': [{'type': 'directional', 'from': [0, 0, 1]}]}")));
+  const auto scene =
+      load(scene_with(mesh, json("{'lights': [{'type': 'directional', 'direction_to_light': [0, 0, 1]}]}")));
   EXPECT_NO_THROW(render(scene, at_time(0.5)));
   EXPECT_GT(render(scene, at_time(0.6)).brighter_than(0.1f), 10);
 }

@@ -19,12 +19,14 @@ RenderRequest of_paths(int side, int samples) {
 
 // Suns are in front of the sky, and two of them may overlap.
 TEST(RadianceRange, CoversSkyWithAllSunsForPaths) {
-  const auto scene = load(scene_of(
-      "[{'type': 'sphere', 'center': [0, 0, 50], 'radius': 1, 'material': 'black'}]",
-      "{'materials': {'black': {'type': 'lambert', 'reflectance': 0}},"
-      " 'background': [0.5, 0.5, 0.5], 'lights': ["
-      "{'type': 'directional', 'from': [0, 0, -1], 'angle_degrees': 90, 'intensity': [0.4, 0.4, 0.4]},"
-      "{'type': 'directional', 'from': [0, 0, -1], 'angle_degrees': 60, 'intensity': [0.2, 0.2, 0.2]}]}"));
+  const auto scene =
+      load(scene_of("[{'type': 'sphere', 'center': [0, 0, 50], 'radius': 1, 'material': 'black'}]",
+                    "{'materials': {'black': {'type': 'lambert', 'reflectance': 0}},"
+                    " 'background': [0.5, 0.5, 0.5], 'lights': ["
+                    "{'type': 'directional', 'direction_to_light': [0, 0, -1], 'angle_degrees': 90, "
+                    "'intensity': [0.4, 0.4, 0.4]},"
+                    "{'type': 'directional', 'direction_to_light': [0, 0, -1], 'angle_degrees': 60, "
+                    "'intensity': [0.2, 0.2, 0.2]}]}"));
   double brightest = 0;
   for (const double value : linear_values(rendered(scene, of_paths(32, 2)).film))
     brightest = std::max(brightest, value);

@@ -61,7 +61,7 @@ Json light(Random& random, double share) {
   const Json intensity = color(random, 2 * share);
   if (random.below(3) == 0)
     return {{"type", "directional"},
-            {"from", numbers(random.direction_above({0, 1, 0}))},
+            {"direction_to_light", numbers(random.direction_above({0, 1, 0}))},
             {"intensity", intensity}};
   const Vec3d place = random.direction_above({0, 1, 0}) * random.between(1, 6);
   Json found = {{"type", "point"},

@@ -159,7 +159,8 @@ TEST(Shutter, CastsShadowsAtTimeOfRay) {
   scene["materials"]["white"] = {{"type", "lambert"}, {"reflectance", 1}};
   scene["objects"] = {
       {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 0, 1}}, {"material", "white"}}};
-  scene["lights"] = {{{"type", "directional"}, {"from", {0, 1, 1}}}};  // the shadow falls 5 m below the ball
+  scene["lights"] = {
+      {{"type", "directional"}, {"direction_to_light", {0, 1, 1}}}};  // the shadow falls 5 m below the ball
   for (const char* technique : {"whitted", "distributed", "path"}) {
     RenderRequest request = open_for(1, 64, size(64, 64));
     request.technique = technique;

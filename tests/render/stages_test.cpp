@@ -21,7 +21,7 @@ Json balls_over_a_floor() {
       R"([{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0]},
           {'type': 'sphere', 'center': [-1, 0.5, 0], 'radius': 0.8},
           {'type': 'sphere', 'center': [1, 0.5, 0], 'radius': 0.8}])",
-      "{'lights': [{'type': 'directional', 'from': [0, 1, 0]}], 'camera': {'eye': [0, 2, 6]}}");
+      "{'lights': [{'type': 'directional', 'direction_to_light': [0, 1, 0]}], 'camera': {'eye': [0, 2, 6]}}");
 }
 
 RenderRequest asking(Prediction prediction) {
@@ -68,7 +68,7 @@ TEST(OcclusionSamples, CoversImageEvenly) {
   const Json floor = scene_of(
       R"([{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},
           {'type': 'sphere', 'center': [0, 0, 0], 'radius': 0.01}])",
-      R"({'lights': [{'type': 'directional', 'from': [0, 1, 0]}],
+      R"({'lights': [{'type': 'directional', 'direction_to_light': [0, 1, 0]}],
           'camera': {'type': 'orthographic', 'eye': [0, 9, 0], 'look_at': [0, 0, 0], 'up': [0, 0, -1], 'height': 2}})");
   const auto samples = samples_of<float>(floor, size(512, 512));
   EXPECT_GT(samples.size(), 8'192u);

@@ -150,9 +150,10 @@ TEST(Symmetry, IsTranslationInvariant) {
 // Compares the pole with a view a billionth of a degree away.
 TEST(Symmetry, IsContinuousAtOrbitPoles) {
   covers("E8");
-  const Json scene = scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
-                              "{'camera': {'fov_degrees': 20}, 'lights': [{'type': 'directional', 'from': "
-                              "[1, 2, 3]}], 'ambient': [0.1, 0.1, 0.1]}");
+  const Json scene =
+      scene_of("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}]",
+               "{'camera': {'fov_degrees': 20}, 'lights': [{'type': 'directional', 'direction_to_light': "
+               "[1, 2, 3]}], 'ambient': [0.1, 0.1, 0.1]}");
   for (const double pole : {90.0, -90.0}) {
     RenderRequest at = in_double(small()), beside = at;
     at.elevation_degrees = pole;

@@ -23,21 +23,20 @@ constexpr std::string_view kEmptyScene = R"({
 })";
 
 // Keys of the scene format, by meaning.
-const std::set<std::string> kPoints = {"translate", "eye", "look_at", "center",   "point",  "base",
-                                       "top",       "min", "max",     "position", "corner", "to"};
-const std::set<std::string> kSides = {"a", "b"};  // vectors with a length
+const std::set<std::string> kPoints = {"translate", "eye", "look_at",  "center", "point", "base", "top",
+                                       "min",       "max", "position", "corner", "from",  "to"};
+const std::set<std::string> kSides = {"edge_u", "edge_v"};  // vectors with a length
 const std::set<std::string> kPointLists = {"vertices", "positions"};
 const std::set<std::string> kLengths = {"radius", "height", "aperture_radius", "focus_distance"};
-const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "from"};
+const std::set<std::string> kDirections = {"up", "axis", "normal", "direction", "direction_to_light"};
 const std::set<std::string> kPerLength = {"intensity_per_metre"};  // colours that scale with lengths
 
 using Change = std::function<void(const std::string& key, Json& value)>;
 
 // Calls `change` for each key and value of `object` and of its motion.
 void change_members(Json& object, const Change& change) {
-  const bool line = object.contains("to");  // its "from" is a point
   for (auto& [key, value] : object.items()) {
-    change(line && key == "from" ? "to" : key, value);
+    change(key, value);
     if (key == "motion")
       for (Json& moment : value) change_members(moment, change);
   }
@@ -78,7 +77,7 @@ Change move_by(const Vec3d& offset) {
 void mirror_rectangle(Json& object) {
   if (!object.contains("corner")) return;
   for (const std::string& side : kSides) object[side][0] = -object[side][0].get<double>();
-  std::swap(object["a"], object["b"]);
+  std::swap(object["edge_u"], object["edge_v"]);
 }
 
 void mirror_mesh(Json& object) {

@@ -23,8 +23,9 @@ const std::map<std::string, std::vector<Json>>& all_samples() {
     add("{'type': 'triangle', 'vertices': [[-1, 0, 0], [1, 0.0625, 0], [0, 0, 0]]}");
     add("{'type': 'disk', 'center': [0, 0, 0], 'normal': [0, 0, 1], 'radius': 1}");
     add("{'type': 'disk', 'center': [0.25, 0, -0.5], 'normal': [-2, 1, 2], 'radius': 0.5}");
-    add("{'type': 'rectangle', 'corner': [-1, -0.5, 0], 'a': [2, 0, 0], 'b': [0, 1.5, 0]}");
-    add("{'type': 'rectangle', 'corner': [0.5, 0.25, -0.5], 'a': [-1, 0.5, 0], 'b': [0.25, 0.5, 0.75]}");
+    add("{'type': 'rectangle', 'corner': [-1, -0.5, 0], 'edge_u': [2, 0, 0], 'edge_v': [0, 1.5, 0]}");
+    add("{'type': 'rectangle', 'corner': [0.5, 0.25, -0.5], 'edge_u': [-1, 0.5, 0], 'edge_v': [0.25, 0.5, "
+        "0.75]}");
     add("{'type': 'box', 'min': [-1, -0.5, -0.75], 'max': [0.5, 1, 0.25]}");
     add("{'type': 'box', 'min': [-1, -1, -0.0625], 'max': [1, 1, 0.0625]}");
     add("{'type': 'cylinder', 'base': [0, -0.5, 0], 'top': [0, 0.5, 0], 'radius': 0.75}");

@@ -80,8 +80,8 @@ TEST(CornellBox, MatchesPublishedData) {
   // The ceiling, 556 by 559.2, surrounds the lamp, from [213, 227] to [343, 332].
   const Json& lamp = scene["objects"][3];
   EXPECT_EQ(lamp["corner"], Json({0.213, 0.5488, 0.227}));
-  EXPECT_EQ(lamp["a"], Json({0.13, 0, 0}));
-  EXPECT_EQ(lamp["b"], Json({0, 0, 0.105}));
+  EXPECT_EQ(lamp["edge_u"], Json({0.13, 0, 0}));
+  EXPECT_EQ(lamp["edge_v"], Json({0, 0, 0.105}));
   double area = 0.13 * 0.105;
   for (const Quad& part : white) {
     for (const Vec3d& corner : part) EXPECT_EQ(corner.y, 0.5488);

@@ -63,7 +63,7 @@ TEST(Directional, MatchesPhasesOfLambertSphere) {
         json(kBall),
         Json{
             {"camera", json("{'type': 'orthographic', 'eye': [0, 0, 5], 'look_at': [0, 0, 0], 'height': 2}")},
-            {"lights", {{{"type", "directional"}, {"from", {std::sin(a), 0, std::cos(a)}}}}}});
+            {"lights", {{{"type", "directional"}, {"direction_to_light", {std::sin(a), 0, std::cos(a)}}}}}});
     return render(scene, request).sum() / (std::numbers::pi * 128 * 128);
   };
   EXPECT_NEAR(mean(0), .66667, 2e-4);
@@ -76,7 +76,7 @@ TEST(Directional, CastsShadowsFromAnyDistance) {
   covers("B18");
   const auto lit = [](double distance, double radius) {
     Json scene = scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
-                          "{'lights': [{'type': 'directional', 'from': [0, 0, 1]}]}");
+                          "{'lights': [{'type': 'directional', 'direction_to_light': [0, 0, 1]}]}");
     scene["objects"].push_back(
         {{"type", "sphere"}, {"center", {0, 0, distance}}, {"radius", radius}, {"material", "white"}});
     return seen(scene, Vec3d(0, 1, 1), Vec3d()).x;
@@ -107,7 +107,8 @@ TEST(Lights, SumsLightsAndAddsAmbientOnce) {
     Json scene = scene_of(kBall, "{'ambient': [0.125, 0.125, 0.125]}");
     scene["lights"] = Json::array();
     for (const double i : intensities)
-      scene["lights"].push_back({{"type", "directional"}, {"from", {0.3, 0.2, 1}}, {"intensity", {i, i, i}}});
+      scene["lights"].push_back(
+          {{"type", "directional"}, {"direction_to_light", {0.3, 0.2, 1}}, {"intensity", {i, i, i}}});
     return seen(scene, Vec3d(0, 0, 4), Vec3d(.3, .2, 0)).x;
   };
   EXPECT_EQ(with({}), .125);
@@ -118,10 +119,10 @@ TEST(Lights, SumsLightsAndAddsAmbientOnce) {
 
 TEST(Lights, KeepsValuesAboveOne) {
   covers("B12");
-  const Json scene =
-      scene_of("[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
-               R"({'lights': [{'type': 'directional', 'from': [0, 0, 1], 'intensity': [1, 0.5, 0.5]},
-                                             {'type': 'directional', 'from': [0, 0, 1], 'intensity': [1, 0.5, 0.5]}]})");
+  const Json scene = scene_of(
+      "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 0, 1]}]",
+      R"({'lights': [{'type': 'directional', 'direction_to_light': [0, 0, 1], 'intensity': [1, 0.5, 0.5]},
+                                             {'type': 'directional', 'direction_to_light': [0, 0, 1], 'intensity': [1, 0.5, 0.5]}]})");
   const Picture picture = render(scene, size(8, 8));
   EXPECT_EQ(picture.at(4, 4), Vec3f(2, 1, 1));
 }
@@ -131,7 +132,7 @@ TEST(Lights, KeepsValuesAboveOne) {
 TEST(Highlight, UsesHalfVectorOfEachPoint) {
   covers("B6");
   const Json scene = scene_of("[{'type': 'box', 'min': [-1, -1, -1], 'max': [1, 1, 0]}]",
-                              R"({'lights': [{'type': 'directional', 'from': [0, 0, 1]}],
+                              R"({'lights': [{'type': 'directional', 'direction_to_light': [0, 0, 1]}],
                                   'materials': {'white': {'kd': 0, 'ks': 1, 'shininess': 50}}})");
   EXPECT_NEAR(seen(scene, Vec3d(0, 0, 1), Vec3d(1e-9, 0, 0)).x, 1, 1e-12);
   const Vec3d corner(1 - 1e-12, 1 - 1e-12, 0), to_eye = safe_normalize(Vec3d(0, 0, 1) - corner);
@@ -146,8 +147,8 @@ TEST(Lights, NeverGivesNegativeRadiance) {
       "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1}, {'type': 'plane', 'point': [0, -1, 0], "
       "'normal': [0, 1, 0]}]",
       R"({'materials': {'white': {'kd': 1, 'ks': 1, 'shininess': 3}},
-                            'lights': [{'type': 'directional', 'from': [0, 0, -1]}, {'type': 'point', 'position': [0, -3, 0]},
-                                       {'type': 'directional', 'from': [-0.8, -0.01, 0]}]})");
+                            'lights': [{'type': 'directional', 'direction_to_light': [0, 0, -1]}, {'type': 'point', 'position': [0, -3, 0]},
+                                       {'type': 'directional', 'direction_to_light': [-0.8, -0.01, 0]}]})");
   for (const char* shading : {"phong", "blinn-phong"}) {
     scene["materials"]["white"]["shading"] = shading;
     for (const Vec3f& pixel : render(scene, size(64, 64)).pixels) EXPECT_GE(pixel.x, 0);

@@ -52,7 +52,8 @@ Json without_diffuse_lobes() {
                               "{'type': 'reflective', 'n': [0.14, 0.16, 0.13], 'k': [4.1, 2.3, 3.1]}"};
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, -1, 0], 'normal': [0, 1, 0], 'material': 'floor'},"
-      " {'type': 'rectangle', 'corner': [-2, 3, -2], 'a': [2, 0, 0], 'b': [0, 0, 2], 'material': 'lamp'},"
+      " {'type': 'rectangle', 'corner': [-2, 3, -2], 'edge_u': [2, 0, 0], 'edge_v': [0, 0, 2], 'material': "
+      "'lamp'},"
       " {'type': 'cylinder', 'base': [2, 1, -2], 'top': [2, 2, -2], 'radius': 0.3, 'material': 'lamp'}]",
       {{"floor", "{'type': 'metal', 'name': 'copper', 'roughness': 0.3}"}},
       "{'camera': {'eye': [0, 1, 6], 'look_at': [0, 0, 0], 'aperture_radius': 0.1, 'focus_distance': 6},"
@@ -114,8 +115,10 @@ TEST_P(SoftShadow, MatchesVisibleShareOfLamp) {
   covers("light-17 light-22");
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0]},"
-      " {'type': 'rectangle', 'corner': [-2, 1, -2], 'a': [4, 0, 0], 'b': [0, 0, 4], 'material': 'lamp'},"
-      " {'type': 'rectangle', 'corner': [-40, 0.5, -40], 'a': [40, 0, 0], 'b': [0, 0, 80], 'material': "
+      " {'type': 'rectangle', 'corner': [-2, 1, -2], 'edge_u': [4, 0, 0], 'edge_v': [0, 0, 4], 'material': "
+      "'lamp'},"
+      " {'type': 'rectangle', 'corner': [-40, 0.5, -40], 'edge_u': [40, 0, 0], 'edge_v': [0, 0, 80], "
+      "'material': "
       "'black'}]",
       {{"black", "{'type': 'lambert', 'reflectance': 0}"}});
   scene["materials"]["white"] = json(GetParam());
@@ -174,7 +177,8 @@ TEST(Distributed, CountsHitAndSampledLampsOnce) {
   covers("light-22");
   Json scene = scene_of_materials(
       "[{'type': 'plane', 'point': [0, 0, 0], 'normal': [0, 1, 0], 'material': 'it'},"
-      " {'type': 'rectangle', 'corner': [0.3, 0.6, -1], 'a': [0.8, 0.4, 0], 'b': [0, 0, 2], 'material': "
+      " {'type': 'rectangle', 'corner': [0.3, 0.6, -1], 'edge_u': [0.8, 0.4, 0], 'edge_v': [0, 0, 2], "
+      "'material': "
       "'lamp'}]",
       {},
       "{'background': [0.2, 0.2, 0.2], 'camera': {'eye': [0, 0.5, 1], 'look_at': [0, 0, 0], 'fov_degrees': "
@@ -206,11 +210,11 @@ TEST(Distributed, CountsHitAndSampledLampsOnce) {
 // A convex ball under a sky sees nothing of itself, and so receives no light from other surfaces. Distributed
 // rays find all that paths find: direct light and the reflections of the coat.
 TEST(Distributed, FollowsCoatsButNotBases) {
-  Json scene =
-      scene_of_materials("[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]", {},
-                         "{'environment': {'type': 'gradient', 'zenith': [1, 1, 1], 'horizon': [0.2, 0.2, "
-                         "0.2], 'ground': [0.1, 0, 0]},"
-                         " 'lights': [{'type': 'directional', 'from': [1, 1, 1], 'angle_degrees': 20}]}");
+  Json scene = scene_of_materials(
+      "[{'type': 'sphere', 'center': [0, 0, 0], 'radius': 1, 'material': 'it'}]", {},
+      "{'environment': {'type': 'gradient', 'zenith': [1, 1, 1], 'horizon': [0.2, 0.2, "
+      "0.2], 'ground': [0.1, 0, 0]},"
+      " 'lights': [{'type': 'directional', 'direction_to_light': [1, 1, 1], 'angle_degrees': 20}]}");
   for (const char* material : {"{'type': 'plastic', 'roughness': 0}", "{'type': 'plastic', 'roughness': 0.5}",
                                "{'type': 'metallic-roughness', 'metallic': 0.4, 'roughness': 0.4}",
                                "{'type': 'cook-torrance', 'diffuse': 0.3, 'specular': 0.6}",
@@ -270,7 +274,8 @@ TEST(Distributed, ReflectsDiffuseWallsInCoat) {
 // transmits the ceiling's radiance.
 TEST(Distributed, TransmitsLightThroughSheets) {
   Json scene = scene_of_materials(
-      "[{'type': 'rectangle', 'corner': [-500, 1, -500], 'a': [1000, 0, 0], 'b': [0, 0, 1000], 'material': "
+      "[{'type': 'rectangle', 'corner': [-500, 1, -500], 'edge_u': [1000, 0, 0], 'edge_v': [0, 0, 1000], "
+      "'material': "
       "'sheet'},"
       " {'type': 'plane', 'point': [0, 2, 0], 'normal': [0, -1, 0], 'material': 'ceiling'}]",
       {{"sheet", "{'type': 'translucent', 'reflectance': 0.3, 'transmittance': 0.6}"},

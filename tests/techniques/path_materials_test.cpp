@@ -186,11 +186,11 @@ TEST(PathMaterials, TransformsLampsByInstances) {
                   "{'model': 'lamp', 'scale': [2, 0.5, 1], 'translate': [0.3, 1, 0]}") /
                   ellipsoid,
               1, 0.01);
-  EXPECT_NEAR(
-      lit("{'type': 'rectangle', 'corner': [0, 0, 0], 'a': [1, 0, 1], 'b': [1, 0, -1], 'material': 'lamp'}",
-          "{'model': 'lamp', 'scale': [1, 1, 0.3], 'translate': [-1, 1, 0]}") /
-          skew,
-      1, 0.01);
+  EXPECT_NEAR(lit("{'type': 'rectangle', 'corner': [0, 0, 0], 'edge_u': [1, 0, 1], 'edge_v': [1, 0, -1], "
+                  "'material': 'lamp'}",
+                  "{'model': 'lamp', 'scale': [1, 1, 0.3], 'translate': [-1, 1, 0]}") /
+                  skew,
+              1, 0.01);
 }
 
 // Stripes of chalk and of dark polished plastic, under a ceiling lit by a spot light. Samples of the coat go

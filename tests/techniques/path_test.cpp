@@ -108,7 +108,7 @@ TEST(Path, AddsSunAndLamp) {
   double expected = 0.1 * std::cos(0.5);
   Json scene = with_balls(kWhiteFloor, {Vec3d(-1, 1.5, 0)}, point, 0.4, expected);
   scene["lights"] = Json::array({{{"type", "directional"},
-                                  {"from", {std::sin(0.5), std::cos(0.5), 0}},
+                                  {"direction_to_light", {std::sin(0.5), std::cos(0.5), 0}},
                                   {"intensity", {0.1, 0.1, 0.1}},
                                   {"angle_degrees", 60}}});
   const Estimate found = estimate(scene, point + Vec3d(30, 0.05, 0), point, 1);
@@ -122,7 +122,8 @@ TEST(Path, AvoidsSelfLightingOfConvexLamps) {
     Vec3d middle;
   };
   for (const auto& [text, middle] :
-       {Lamp{"{'type': 'rectangle', 'corner': [0.1, 0.2, -0.3], 'a': [0.5, 0.2, 0.1], 'b': [-0.2, 0.4, 0.2]}",
+       {Lamp{"{'type': 'rectangle', 'corner': [0.1, 0.2, -0.3], 'edge_u': [0.5, 0.2, 0.1], 'edge_v': [-0.2, "
+             "0.4, 0.2]}",
              Vec3d(0.25, 0.5, -0.15)},
         Lamp{"{'type': 'disk', 'center': [0.3, 0.4, -0.2], 'normal': [0.3, 0.5, 0.8], 'radius': 0.5}",
              Vec3d(0.3, 0.4, -0.2)},
@@ -215,8 +216,9 @@ TEST(Path, ChangesOnlyNoiseWithPathReuse) {
 TEST(Path, ExcludesMirrorLightFromReuse) {
   const auto room = load(scene_of(
       "[{'type': 'box', 'min': [-2, -1, -2], 'max': [2, 2, 5]}, {'type': 'sphere', 'center': [0.9, -0.4, 0],"
-      "'radius': 0.6, 'material': 'mirror'}, {'type': 'rectangle', 'corner': [-1, 1.9, -1], 'a': [1, 0, 0],"
-      "'b': [0, 0, 1], 'material': 'lamp'}]",
+      "'radius': 0.6, 'material': 'mirror'}, {'type': 'rectangle', 'corner': [-1, 1.9, -1], 'edge_u': [1, 0, "
+      "0],"
+      "'edge_v': [0, 0, 1], 'material': 'lamp'}]",
       "{'materials': {'white': {'kd': 0.6}, 'mirror': {'type': 'metal', 'n': [0, 0, 0], 'k': [1, 1, 1], "
       "'roughness': 0},"
       "'lamp': {'type': 'lambert', 'reflectance': 0, 'emission': [5, 5, 5]}}}"));

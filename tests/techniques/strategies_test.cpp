@@ -23,14 +23,15 @@ struct Named {
 };
 // Lamps partly in the mirror direction of the viewer.
 const std::vector<Named> kLamps = {
-    {"Rectangle", "{'type': 'rectangle', 'corner': [-2, 1.5, -0.8], 'a': [1.5, 0, 0], 'b': [0, 0.3, 1.6]}"},
+    {"Rectangle",
+     "{'type': 'rectangle', 'corner': [-2, 1.5, -0.8], 'edge_u': [1.5, 0, 0], 'edge_v': [0, 0.3, 1.6]}"},
     {"Ball", "{'type': 'sphere', 'center': [-1.2, 1.6, 0.3], 'radius': 0.7}"},
     {"Disk", "{'type': 'disk', 'center': [-1, 1.4, 0.2], 'normal': [0.2, -1, 0.1], 'radius': 0.8}"},
     {"Triangle", "{'type': 'triangle', 'vertices': [[-2, 1.2, -1], [0.5, 1.5, -0.5], [-0.8, 1.9, 1.2]]}"},
     {"Mesh",
      "{'type': 'mesh', 'positions': [[-2, 1.2, -1], [0.5, 1.5, -0.5], [-0.8, 1.9, 1.2], [-2.5, 1.3, 0.8]],"
      " 'indices': [[0, 1, 2], [0, 3, 2]]}"},
-    {"Sun", "{'type': 'directional', 'from': [-0.8, 1, 0.1], 'angle_degrees': 40}"},
+    {"Sun", "{'type': 'directional', 'direction_to_light': [-0.8, 1, 0.1], 'angle_degrees': 40}"},
     {"Box", "{'type': 'box', 'min': [-1.6, 1, -0.5], 'max': [-0.6, 1.6, 0.7]}"},
     {"LowBox", "{'type': 'box', 'min': [-2, 0.1, -0.8], 'max': [-0.4, 2, 1]}"},
     {"Column", "{'type': 'cylinder', 'base': [-1, 0.9, -0.8], 'top': [-1.4, 1.6, 0.9], 'radius': 0.3}"},
@@ -45,7 +46,7 @@ const std::vector<Named> kLamps = {
      "{'type': 'cylinder', 'base': [0, 0, 0], 'top': [0, 1, 0], 'radius': 0.5, 'instance': "
      "{'scale': [0.6, 2, 0.6], 'rotate': {'axis': [1, 0, 0.3], 'degrees': 60}, 'translate': [-1, 0.9, -1]}}"},
     {"PlacedRectangle",
-     "{'type': 'rectangle', 'corner': [-0.5, 0, -0.5], 'a': [1, 0, 0], 'b': [0, 0, 1], 'instance': "
+     "{'type': 'rectangle', 'corner': [-0.5, 0, -0.5], 'edge_u': [1, 0, 0], 'edge_v': [0, 0, 1], 'instance': "
      "{'scale': [1.5, 9, 2], 'rotate': {'axis': [0.1, 0, 1], 'degrees': 20}, 'translate': [-1.2, 1.6, 0]}}"},
     {"PlacedBall",
      "{'type': 'sphere', 'center': [0.1, 0, 0], 'radius': 0.35, 'instance': "

@@ -54,7 +54,7 @@ const char* kScene = R"({"version": 1,
   "image": {"width": 2048, "height": 2048},
   "background": [0.2, 0.4, 0.8],
   "materials": {"m": {"type": "refractive", "ior": 1.5}},
-  "lights": [{"type": "directional", "from": [1, 1, 1], "intensity": [2, 2, 2]}],
+  "lights": [{"type": "directional", "direction_to_light": [1, 1, 1], "intensity": [2, 2, 2]}],
   "objects": [{"type": "mesh", "file": "mesh", "material": "m"CREASE}]})";
 
 std::string scene_text(const std::string& crease) {
